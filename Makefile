@@ -1,0 +1,65 @@
+# Everything a newcomer, the CI and a developer need. Each target does its own set-up, in a
+# private environment that is made once and reused; only Python >= 3.11, pip and make are needed.
+
+PYTHON ?= python3
+VENV   := .venv
+BIN    := $(VENV)/bin
+OUTPUT ?= results
+ROOMS  := model particles kinetic comparison
+
+.PHONY: help run test check notebooks benchmark validate clean
+.DEFAULT_GOAL := help
+
+help:
+	@echo "make run        compare simulation and theory at e = 1; figures into $(OUTPUT)/"
+	@echo "make test       run the tests"
+	@echo "make check      lint, format and type checks"
+	@echo "make notebooks  execute the notebooks"
+	@echo "make benchmark  measure the speed"
+	@echo "make validate   run the long statistical tests"
+	@echo "make clean      remove the environment and everything built"
+
+run: $(VENV)/installed
+	$(BIN)/crazybilliards compare --output $(OUTPUT)
+
+test: $(VENV)/installed-test
+	$(BIN)/python -m pytest -n 2 -m "not validate"
+
+validate: $(VENV)/installed-test
+	$(BIN)/python -m pytest -n 2 -m validate
+
+check: $(VENV)/installed-check build/types
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	MYPYPATH=build/types $(BIN)/mypy $(ROOMS:%=-p crazybilliards.%)
+
+notebooks: $(VENV)/installed-notebooks
+	$(BIN)/python -m pytest --nbmake --nbmake-timeout=300 notebooks
+
+benchmark: $(VENV)/installed-benchmark
+	$(BIN)/python -m pytest benchmarks -o python_files="*.py" --benchmark-columns=median,iqr,rounds
+
+# mypy does not see through an editable install: it reads the rooms through this farm of links.
+build/types: Makefile
+	mkdir -p $@/crazybilliards
+	for room in $(ROOMS); do ln -sfn ../../../$$room $@/crazybilliards/$$room; done
+	touch $@
+
+$(VENV)/created:
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
+	  { echo "Python 3.11 or later is needed; name one with: make PYTHON=python3.12 ..."; exit 1; }
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --upgrade pip
+	touch $@
+
+$(VENV)/installed: pyproject.toml $(VENV)/created
+	$(BIN)/python -m pip install --quiet --editable .
+	touch $@
+
+$(VENV)/installed-%: pyproject.toml $(VENV)/created
+	$(BIN)/python -m pip install --quiet --editable ".[$*]"
+	touch $@
+
+clean:
+	rm -rf $(VENV) build *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +
