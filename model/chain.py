@@ -1,0 +1,216 @@
+r"""The chain: L hard rods on springs, its parameters and the scales that follow from them.
+
+Between collisions rod i = 1..L obeys (arXiv:1404.7460, its equation of motion)
+
+    m x'' = -gamma x' - F(x - x0_i) + A xi(t),
+
+with white noise of unit strength and F(d) = k d (linear) or k d |d| (quadratic spring). The
+anchors x0_i are spaced 2R + g. A collision conserves momentum and reverses the relative
+velocity, v1' - v2' = -e (v1 - v2).
+
+**The reduced coordinate** takes the rods' own length out:
+
+    y_i = x_i - 2R (i - (L+1)/2).
+
+Rods become points that may touch but not pass, y_1 <= ... <= y_L, with anchors spaced g. The
+displacement from the anchor is the same in both. The whole package computes in y.
+
+Units: length R, mass M, time sqrt(M/k).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import asdict, dataclass, fields, replace
+from numbers import Integral, Real
+from typing import Any, Literal, Self, get_args
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Spring = Literal["linear", "quadratic"]
+
+# Squares and ratios of parameters must neither overflow nor underflow.
+_SMALLEST, _LARGEST = 1e-60, 1e60
+
+
+def check_real(name: str, value: object, *, positive: bool = False, signed: bool = False) -> float:
+    """Return ``value`` as a float, or raise the one ValueError that says what ``name`` takes.
+
+    Accepts real numbers (Python's or numpy's) that are finite and whose magnitude lies within
+    1e-60..1e60, or 0 unless ``positive``; negative ones only if ``signed``.
+    """
+    sign = "" if signed else "positive " if positive else "non-negative "
+    wanted = f"{name} must be a finite {sign}number between 1e-60 and 1e60"
+    if not positive:
+        wanted += " (or 0)"
+    if isinstance(value, bool | np.bool_) or not isinstance(value, Real):
+        raise ValueError(f"{wanted}, got {value!r}")
+    number = float(value)
+    in_range = _SMALLEST <= abs(number) <= _LARGEST or (number == 0 and not positive)
+    if not in_range or (number < 0 and not signed):
+        raise ValueError(f"{wanted}, got {value!r}")
+    return number
+
+
+def check_integer(name: str, value: object, *, least: int) -> int:
+    """Return ``value`` as an int, or raise the one ValueError that says what ``name`` takes."""
+    wrong_type = isinstance(value, bool | np.bool_) or not isinstance(value, Integral)
+    if wrong_type or int(value) < least:  # type: ignore[call-overload]
+        raise ValueError(f"{name} must be an integer >= {least}, got {value!r}")
+    return int(value)  # type: ignore[call-overload]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Chain:
+    """The parameters of one chain, checked; the defaults are the paper's reference at e = 1.
+
+    Parameters
+    ----------
+    size
+        Number of rods L, at least 1.
+    restitution
+        e >= 0: below 1 dissipative, 1 elastic, above 1 anti-dissipative (flippers).
+    amplitude
+        Noise amplitude A >= 0 [M R / T^(3/2)].
+    damping
+        gamma >= 0 [M/T]. With 0 there is no steady state.
+    stiffness
+        k >= 0 [M/T^2], for a quadratic spring [M/(R T^2)]. With 0 there is no steady state.
+    gap
+        g >= 0, the free distance between neighbouring rods at their anchors [R].
+    radius, mass
+        Half a rod's length R > 0 and its mass m > 0; 4 pi/3 is a sphere of unit density.
+    spring
+        ``"linear"``: F = k d; ``"quadratic"``: F = k d |d|.
+
+    Raises
+    ------
+    ValueError
+        For the first parameter that is wrong, naming it, what it got and what it takes.
+
+    Examples
+    --------
+    >>> chain = Chain(size=10, amplitude=3)
+    >>> round(chain.free_velocity_width, 4)
+    1.0365
+    >>> chain.replace(gap=0.5).anchors[:2]
+    array([-11.25,  -8.75])
+    """
+
+    size: int = 100
+    restitution: float = 1.0
+    amplitude: float = 1.0
+    damping: float = 1.0
+    stiffness: float = 1.0
+    gap: float = 0.0
+    radius: float = 1.0
+    mass: float = 4 * math.pi / 3
+    spring: Spring = "linear"
+
+    def __post_init__(self) -> None:
+        checked: dict[str, Any] = {"size": check_integer("size", self.size, least=1)}
+        for name in ("restitution", "amplitude", "damping", "stiffness", "gap"):
+            checked[name] = check_real(name, getattr(self, name))
+        for name in ("radius", "mass"):
+            checked[name] = check_real(name, getattr(self, name), positive=True)
+        if self.spring not in get_args(Spring):
+            raise ValueError(f"spring must be 'linear' or 'quadratic', got {self.spring!r}")
+        for name, value in checked.items():
+            object.__setattr__(self, name, value)
+
+    def replace(self, **changes: Any) -> Self:
+        """Return the same chain with some parameters changed (and all checked again)."""
+        known = {field.name for field in fields(self)}
+        for name in changes:
+            if name not in known:
+                raise ValueError(f"Chain has no parameter {name!r}; it has {sorted(known)}")
+        return replace(self, **changes)
+
+    def parameters(self) -> dict[str, int | float | str]:
+        """Return all parameters as a plain dictionary; ``Chain(**parameters)`` is the inverse."""
+        return asdict(self)
+
+    # -- geometry ---------------------------------------------------------------------------
+
+    @property
+    def rank(self) -> NDArray[np.float64]:
+        """Labels counted from the middle, i - (L+1)/2 for i = 1..L; shape (L,)."""
+        return np.arange(1.0, self.size + 1) - (self.size + 1) / 2
+
+    @property
+    def anchors(self) -> NDArray[np.float64]:
+        """Anchors x0_i = (2R + g)(i - (L+1)/2) [R], shape (L,)."""
+        return (2 * self.radius + self.gap) * self.rank
+
+    @property
+    def reduced_anchors(self) -> NDArray[np.float64]:
+        """Anchors in the reduced coordinate, y0_i = g (i - (L+1)/2) [R], shape (L,)."""
+        return self.gap * self.rank
+
+    def reduced(self, x: ArrayLike) -> NDArray[np.float64]:
+        """Reduced coordinates y of rod centres ``x``, shape (..., L)."""
+        return np.asarray(x) - 2 * self.radius * self.rank
+
+    def physical(self, y: ArrayLike) -> NDArray[np.float64]:
+        """Rod centres x of reduced coordinates ``y``, shape (..., L)."""
+        return np.asarray(y) + 2 * self.radius * self.rank
+
+    @property
+    def close_packed_density(self) -> float:
+        """The largest density rods can have, 1/(2R) [1/R]."""
+        return 1 / (2 * self.radius)
+
+    # -- spring -----------------------------------------------------------------------------
+
+    @property
+    def potential_exponent(self) -> int:
+        """The n of the spring's potential U(d) = k |d|^n / n: 2 linear, 3 quadratic."""
+        return 2 if self.spring == "linear" else 3
+
+    def force(self, displacement: ArrayLike) -> NDArray[np.float64]:
+        """Restoring force F(d) = k d or k d |d|, the sign being that of d [M R/T^2]."""
+        d = np.asarray(displacement, dtype=float)
+        return self.stiffness * d * np.abs(d) ** (self.potential_exponent - 2)
+
+    def potential(self, displacement: ArrayLike) -> NDArray[np.float64]:
+        """Spring energy U(d) = k |d|^n / n [M R^2/T^2]."""
+        n = self.potential_exponent
+        return self.stiffness * np.abs(np.asarray(displacement, dtype=float)) ** n / n
+
+    # -- heat -------------------------------------------------------------------------------
+
+    @property
+    def temperature(self) -> float:
+        """T = m W^2 = A^2 / (2 gamma) of the free case [M R^2/T^2]; inf if nothing damps."""
+        if self.amplitude == 0:
+            return 0.0
+        if self.damping == 0:
+            return math.inf
+        return self.amplitude**2 / (2 * self.damping)
+
+    @property
+    def free_velocity_width(self) -> float:
+        """W = A / sqrt(2 m gamma), the velocity width without collisions [R/T]."""
+        return math.sqrt(self.temperature / self.mass)
+
+    @property
+    def thermal_length(self) -> float:
+        """(T/k)^(1/n), the natural length of the spring: sqrt(T/k) if linear [R]."""
+        if self.temperature == 0:
+            return 0.0
+        if self.stiffness == 0:
+            return math.inf
+        return (self.temperature / self.stiffness) ** (1 / self.potential_exponent)
+
+    def require_steady_state(self) -> None:
+        """Raise a ValueError that says why, if this chain has no steady state to compute."""
+        reason = None
+        if self.amplitude == 0:
+            reason = "amplitude=0: without noise the rods come to rest, the density is singular"
+        elif self.damping == 0:
+            reason = "damping=0: nothing takes out the energy that the noise puts in"
+        elif self.stiffness == 0:
+            reason = "stiffness=0: nothing ties the rods, they spread for ever"
+        if reason:
+            raise ValueError(f"this chain has no steady state: {reason}")

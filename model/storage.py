@@ -1,0 +1,81 @@
+"""Saving and loading results: NetCDF files, written atomically and checked when read.
+
+A file is an ordinary NetCDF-4 file followed by a trailer with the SHA-256 of everything before
+it (NetCDF readers ignore what follows the data). :func:`load` compares the two before any
+NetCDF library sees the bytes, so a damaged or truncated file can never give a wrong result.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import os
+import tempfile
+from pathlib import Path
+
+import xarray as xr
+
+_MARK = b"\ncrazybilliards-result-1 sha256 "
+_TRAILER = len(_MARK) + 64 + 1  # hexadecimal digest and a newline
+
+
+def save(result: xr.Dataset | xr.DataTree, path: str | os.PathLike[str]) -> Path:
+    """Write a result, or a tree of results, to a NetCDF file; return its path.
+
+    The file appears under its name only when it is complete: an interrupted or failed write
+    leaves a former file as it was. Missing folders are made.
+
+    Raises
+    ------
+    ValueError
+        If the path does not end in ``.nc``.
+    OSError
+        If the file cannot be written (no room, no permission).
+    """
+    path = Path(path)
+    if path.suffix != ".nc":
+        raise ValueError(f"results are NetCDF files: the name must end in .nc, got {str(path)!r}")
+    content = bytes(result.to_netcdf(engine="h5netcdf"))
+    digest = hashlib.sha256(content).hexdigest().encode()
+    write_atomically(path, content + _MARK + digest + b"\n")
+    return path
+
+
+def load(path: str | os.PathLike[str]) -> xr.Dataset | xr.DataTree:
+    """Read a result that :func:`save` wrote, all of it into memory.
+
+    Raises
+    ------
+    FileNotFoundError
+        If there is no such file.
+    ValueError
+        If the file is damaged, truncated, or was not written by :func:`save`.
+    """
+    raw = Path(path).read_bytes()
+    content, trailer = raw[:-_TRAILER], raw[-_TRAILER:]
+    if not trailer.startswith(_MARK):
+        raise ValueError(f"{path}: truncated, or not a file that crazybilliards saved")
+    if trailer[len(_MARK) : -1] != hashlib.sha256(content).hexdigest().encode():
+        raise ValueError(f"{path}: damaged, its content does not match its checksum")
+    tree = xr.open_datatree(io.BytesIO(content), engine="h5netcdf").load()
+    tree.close()
+    return tree if tree.children else tree.to_dataset()
+
+
+def write_atomically(path: Path, content: bytes) -> None:
+    """Write ``content`` beside ``path``, then rename: readers see the old file or the new one."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    handle, temporary = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".part", dir=path.parent)
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(content)
+            file.flush()
+            os.fsync(file.fileno())
+        # mkstemp makes files private; results are as readable as any other new file.
+        umask = os.umask(0)
+        os.umask(umask)
+        os.chmod(temporary, 0o666 & ~umask)
+        os.replace(temporary, path)
+    except BaseException:
+        Path(temporary).unlink(missing_ok=True)
+        raise

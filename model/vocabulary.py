@@ -1,0 +1,116 @@
+"""The names, dimensions and units that every result of this package is written in.
+
+Simulations and theories return an :class:`xarray.Dataset` built by :func:`result`, so anything
+can be laid over anything. A measured ``NAME`` comes with ``NAME_error``, one standard error.
+"""
+
+from __future__ import annotations
+
+import json
+import platform
+from collections.abc import Iterable, Mapping
+from importlib.metadata import version
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from crazybilliards.model.chain import Chain
+from numpy.typing import ArrayLike
+
+# name: (meaning, unit). R length, M mass, T = sqrt(M/k) time.
+VOCABULARY = {
+    "density": ("particle density rho", "1/R"),
+    "density_block": ("particle density rho, block by block", "1/R"),
+    "outside": ("rods per snapshot outside the grid x", "1"),
+    "mean_displacement": ("mean displacement <x_i - x0_i>", "R"),
+    "displacement_width": ("displacement width W_x", "R"),
+    "velocity_width": ("velocity width W_v", "R/T"),
+    "displacement": ("mean displacement <dx>(x)", "R"),
+    "label": ("number of rods to the left N", "1"),
+    "position": ("rod centres x_i", "R"),
+    "velocity": ("rod velocities v_i", "R/T"),
+    "x": ("position x", "R"),
+    "particle": ("particle i", "1"),
+    "mean_position": ("mean position <x_i>", "R"),
+    "normalized_particle": ("normalized particle i_n", "1"),
+}
+
+STATUSES = ("completed", "diverged", "interrupted")
+
+
+def result(
+    chain: Chain,
+    variables: Mapping[str, tuple[tuple[str, ...] | str, ArrayLike]],
+    *,
+    source: str,
+    method: Mapping[str, Any],
+    x: ArrayLike | None = None,
+    status: str = "completed",
+    end_time: float | None = None,
+    residual: float | None = None,
+) -> xr.Dataset:
+    """Build a result in the common vocabulary: coordinates, units, status and provenance.
+
+    Parameters
+    ----------
+    chain
+        The chain it belongs to.
+    variables
+        ``{name: (dims, values)}``; each name, or NAME of NAME_error, stands in the vocabulary.
+    source
+        ``"simulation"`` or ``"theory"``.
+    method
+        How it was computed, for the provenance: anything JSON can hold.
+    x
+        Position grid, if there is one.
+    status, end_time
+        ``completed``, ``diverged`` or ``interrupted``, and the time reached.
+    residual
+        How well a theory's equations are satisfied; what it measures its function says.
+    """
+    coordinates: dict[str, Any] = {}
+    if x is not None:
+        coordinates["x"] = ("x", np.asarray(x, dtype=float))
+    if any("particle" in dims for dims, _ in variables.values()):
+        ends = max(chain.size - 1, 1)
+        coordinates["particle"] = ("particle", np.arange(1, chain.size + 1))
+        coordinates["normalized_particle"] = ("particle", 2 * chain.rank / ends)
+    if "mean_displacement" in variables:
+        mean = np.asarray(variables["mean_displacement"][1])
+        coordinates["mean_position"] = ("particle", chain.anchors + mean)
+    dataset = xr.Dataset(dict(variables), coords=coordinates)
+    for name in (*dataset.data_vars, *dataset.coords):
+        meaning, unit = VOCABULARY[str(name).removesuffix("_error")]
+        if str(name).endswith("_error"):
+            meaning = f"standard error of {meaning}"
+        dataset[name].attrs.update(long_name=meaning, units=unit)
+    dataset.attrs["source"] = source
+    dataset.attrs["status"] = status
+    for name, value in {"end_time": end_time, "residual": residual}.items():
+        if value is not None:
+            dataset.attrs[name] = float(value)
+    dataset.attrs["provenance"] = json.dumps(
+        {"chain": chain.parameters(), **method, "versions": _versions()}, sort_keys=True
+    )
+    return dataset
+
+
+def chain_of(dataset: xr.Dataset) -> Chain:
+    """Return the chain a result was computed for, read from its provenance."""
+    try:
+        return Chain(**json.loads(dataset.attrs["provenance"])["chain"])
+    except (KeyError, TypeError, json.JSONDecodeError) as error:
+        raise ValueError("not a crazybilliards result: its provenance names no chain") from error
+
+
+def require(dataset: xr.Dataset, names: Iterable[str]) -> None:
+    """Raise a ValueError naming the first of ``names`` that the result lacks."""
+    for name in names:
+        if name not in dataset:
+            has = ", ".join(map(str, dataset.data_vars)) or "nothing"
+            raise ValueError(f"the result has no {name!r}; it has {has}")
+
+
+def _versions() -> dict[str, str]:
+    packages = ("crazybilliards", "numpy", "numba", "scipy", "xarray")
+    return {"python": platform.python_version()} | {name: version(name) for name in packages}

@@ -1,0 +1,103 @@
+"""The chain: what it accepts, and the scales it derives."""
+
+import math
+
+import numpy as np
+import pytest
+from crazybilliards.model import Chain
+from hypothesis import given
+from hypothesis import strategies as st
+
+positive = st.floats(min_value=1e-6, max_value=1e6)
+gaps = st.floats(0, 10).map(lambda gap: round(gap, 6))
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("size", 0),
+        ("size", -3),
+        ("size", 2.0),
+        ("size", True),
+        ("size", "ten"),
+        ("restitution", -0.1),
+        ("amplitude", math.nan),
+        ("amplitude", math.inf),
+        ("amplitude", "1"),
+        ("damping", -1),
+        ("stiffness", None),
+        ("gap", -1e-9),
+        ("gap", False),
+        ("radius", 0),
+        ("mass", 0.0),
+        ("mass", 1e300),
+        ("amplitude", 1e-300),
+        ("stiffness", 1j),
+        ("spring", "cubic"),
+        ("spring", 3),
+    ],
+)
+def test_a_wrong_parameter_is_named_with_what_it_got(name, value):
+    with pytest.raises(ValueError, match=name) as caught:
+        Chain(**{name: value})
+    assert repr(value) in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_zero_amplitude_damping_and_stiffness_are_chains_without_a_steady_state():
+    for name in ("amplitude", "damping", "stiffness"):
+        chain = Chain(**{name: 0})
+        with pytest.raises(ValueError, match=f"no steady state: {name}=0"):
+            chain.require_steady_state()
+    assert Chain(damping=0).temperature == math.inf
+    assert Chain(amplitude=0, damping=0).temperature == 0
+
+
+def test_numpy_numbers_become_plain_ones():
+    chain = Chain(size=np.int64(7), amplitude=np.float32(2), gap=1)
+    assert chain == Chain(size=7, amplitude=2.0, gap=1.0)
+    assert type(chain.size) is int
+    assert type(chain.gap) is float
+
+
+def test_is_frozen_and_replace_checks():
+    with pytest.raises(AttributeError):
+        Chain().gap = 1
+    with pytest.raises(ValueError, match="gap must be"):
+        Chain().replace(gap=-1)
+    with pytest.raises(ValueError, match="no parameter 'length'"):
+        Chain().replace(length=3)
+
+
+def test_scales_of_the_reference_chain():
+    chain = Chain()
+    assert chain.temperature == pytest.approx(0.5)
+    assert chain.free_velocity_width == pytest.approx(1 / math.sqrt(2 * 4 * math.pi / 3))
+    assert chain.thermal_length == pytest.approx(math.sqrt(0.5))
+    assert Chain(spring="quadratic").thermal_length == pytest.approx(0.5 ** (1 / 3))
+
+
+@given(size=st.integers(1, 40), gap=gaps, radius=positive)
+def test_reduced_and_physical_coordinates_are_inverse(size, gap, radius):
+    chain = Chain(size=size, gap=gap, radius=radius)
+    np.testing.assert_allclose(
+        chain.reduced(chain.anchors), chain.reduced_anchors, atol=1e-9 * radius * size
+    )
+    y = np.linspace(-3, 3, size)
+    np.testing.assert_allclose(chain.reduced(chain.physical(y)), y, atol=1e-9 * max(radius, 1))
+    np.testing.assert_allclose(np.diff(chain.anchors), 2 * radius + gap)
+    np.testing.assert_allclose(chain.anchors, -chain.anchors[::-1])
+
+
+@pytest.mark.parametrize("spring", ["linear", "quadratic"])
+def test_the_force_is_odd_and_the_slope_of_the_potential(spring):
+    chain = Chain(stiffness=1.7, spring=spring)
+    d, h = np.linspace(-2, 2, 41), 1e-5
+    slope = (chain.potential(d + h) - chain.potential(d - h)) / (2 * h)
+    np.testing.assert_allclose(chain.force(d), slope, atol=1e-8)
+    np.testing.assert_array_equal(chain.force(-d), -chain.force(d))
+
+
+def test_parameters_round_trip():
+    chain = Chain(size=3, gap=0.25, spring="quadratic")
+    assert Chain(**chain.parameters()) == chain

@@ -1,0 +1,95 @@
+"""Files: what is saved comes back, what is damaged is refused in one line."""
+
+import numpy as np
+import pytest
+import xarray as xr
+from crazybilliards.model import Chain, chain_of, load, save
+from crazybilliards.model.vocabulary import result
+
+
+@pytest.fixture
+def dataset():
+    chain = Chain(size=5, gap=0.5)
+    values = np.linspace(0, 1, 5)
+    return result(
+        chain,
+        {
+            "mean_displacement": ("particle", values),
+            "mean_displacement_error": ("particle", values),
+        },
+        source="simulation",
+        method={"seed": 3},
+        end_time=12.5,
+    )
+
+
+def test_a_result_comes_back_the_same(dataset, tmp_path):
+    path = save(dataset, tmp_path / "deep" / "run.nc")
+    back = load(path)
+    xr.testing.assert_identical(back, dataset)
+    assert chain_of(back) == Chain(size=5, gap=0.5)
+    assert back.mean_displacement.attrs["units"] == "R"
+    assert [each.name for each in path.parent.iterdir()] == ["run.nc"]
+
+
+def test_a_tree_comes_back_the_same(dataset, tmp_path):
+    tree = xr.DataTree.from_dict({"a/simulation": dataset, "b": dataset})
+    back = load(save(tree, tmp_path / "tree.nc"))
+    xr.testing.assert_identical(back, tree)
+
+
+def test_other_programs_can_read_the_file(dataset, tmp_path):
+    path = save(dataset, tmp_path / "run.nc")
+    with xr.open_dataset(path, engine="h5netcdf") as plain:
+        xr.testing.assert_equal(plain, dataset)
+
+
+def test_saving_replaces_the_old_file_whole(dataset, tmp_path):
+    path = save(dataset, tmp_path / "run.nc")
+    save(dataset * 2, path)
+    np.testing.assert_array_equal(load(path).mean_displacement, 2 * dataset.mean_displacement)
+
+
+def test_a_failed_write_leaves_the_old_file_and_no_other(dataset, tmp_path, monkeypatch):
+    path = save(dataset, tmp_path / "run.nc")
+    before = path.read_bytes()
+    monkeypatch.setattr("os.fsync", lambda _: (_ for _ in ()).throw(OSError("no room")))
+    with pytest.raises(OSError, match="no room"):
+        save(dataset * 2, path)
+    assert path.read_bytes() == before
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_every_truncation_and_damage_is_refused(dataset, tmp_path):
+    whole = save(dataset, tmp_path / "run.nc").read_bytes()
+    broken = tmp_path / "broken.nc"
+    generator = np.random.default_rng(1)
+    for length in range(0, len(whole), max(len(whole) // 50, 1)):
+        broken.write_bytes(whole[:length])
+        with pytest.raises(ValueError, match=r"truncated|damaged"):
+            load(broken)
+    for position in generator.integers(0, len(whole), 200):
+        flipped = bytearray(whole)
+        flipped[position] ^= 1 << int(generator.integers(8))
+        broken.write_bytes(bytes(flipped))
+        with pytest.raises(ValueError, match=r"truncated|damaged") as caught:
+            load(broken)
+        assert "\n" not in str(caught.value)
+
+
+def test_foreign_files_are_refused(dataset, tmp_path):
+    foreign = tmp_path / "foreign.nc"
+    dataset.to_netcdf(foreign, engine="h5netcdf")
+    for content in (foreign.read_bytes(), b"", b"not a NetCDF file" * 20):
+        foreign.write_bytes(content)
+        with pytest.raises(ValueError, match="not a file that crazybilliards saved"):
+            load(foreign)
+    with pytest.raises(FileNotFoundError):
+        load(tmp_path / "missing.nc")
+    with pytest.raises(ValueError, match=r"must end in \.nc"):
+        save(dataset, tmp_path / "run.txt")
+
+
+def test_a_result_without_provenance_names_no_chain():
+    with pytest.raises(ValueError, match="names no chain"):
+        chain_of(xr.Dataset())
