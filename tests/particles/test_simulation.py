@@ -1,0 +1,191 @@
+"""simulate(): against the exact equilibrium, reproducible, interruptible, strict."""
+
+import signal
+import threading
+
+import numpy as np
+import pytest
+import xarray as xr
+from crazybilliards.kinetic import equilibrium, equilibrium_states
+from crazybilliards.model import Chain
+from crazybilliards.particles import simulate
+from crazybilliards.particles.schedule import make_schedule, relaxation_time
+
+QUANTITIES = ("velocity_width", "mean_displacement", "displacement_width")
+
+
+@pytest.mark.parametrize("spring", ["linear", "quadratic"])
+@pytest.mark.parametrize("gap", [0.0, 0.2, 1.0])
+@pytest.mark.parametrize("size", [2, 3, 20, 100])
+def test_elastic_chain_is_in_its_exact_equilibrium(size, gap, spring):
+    """Every particle's widths and displacement within 5 standard errors, t-distributed."""
+    chain = Chain(size=size, gap=gap, spring=spring)
+    run = simulate(chain, duration=40_000, replicas=2, seed=7, observe="widths", progress=False)
+    exact = equilibrium(chain)
+    for name in QUANTITIES:
+        error = run[f"{name}_error"]
+        assert (error < 0.02 * chain.thermal_length).all()
+        assert float(np.abs((run[name] - exact[name]) / error).max()) < 5, name
+
+
+def test_the_same_seed_gives_the_same_bits_whatever_the_threads():
+    chain = Chain(size=30, gap=0.1)
+    runs = [
+        simulate(chain, duration=200, replicas=3, threads=threads, seed=5, progress=False)
+        for threads in (1, 2, 3)
+    ]
+    for run in runs[1:]:
+        xr.testing.assert_identical(run, runs[0])
+    other = simulate(chain, duration=200, replicas=3, seed=6, progress=False)
+    assert (other.velocity_width != runs[0].velocity_width).all()
+
+
+def test_rescaling_the_amplitude_rescales_everything_exactly():
+    """Without gap, A is only a unit of length: a factor 4 is exact in binary arithmetic."""
+    one, four = (
+        simulate(
+            Chain(size=10, amplitude=amplitude), duration=200, observe="widths", progress=False
+        )
+        for amplitude in (1.0, 4.0)
+    )
+    for name in QUANTITIES:
+        np.testing.assert_array_equal(four[name], 4 * one[name])
+
+
+def test_a_single_rod_is_free():
+    chain = Chain(size=1)
+    run = simulate(chain, duration=60_000, progress=False)
+    assert (
+        abs(run.velocity_width - chain.free_velocity_width).item()
+        < 5 * run.velocity_width_error.item()
+    )
+    assert abs(run.displacement_width - chain.thermal_length).item() < 0.03
+    assert run.normalized_particle.values.tolist() == [0]
+
+
+def test_without_noise_everything_stays_at_the_anchors():
+    run = simulate(Chain(size=5, amplitude=0, gap=1), duration=100, progress=False)
+    for name in QUANTITIES:
+        assert (run[name] == 0).all()
+        assert (run[f"{name}_error"] == 0).all()
+
+
+def test_density_holds_every_rod_and_its_blocks_average_to_it():
+    run = simulate(Chain(size=7, gap=0.5), duration=300, progress=False)
+    spacing = run.x[1] - run.x[0]
+    assert float(run.density.sum() * spacing) == pytest.approx(7)
+    np.testing.assert_allclose(run.density_block.mean("block"), run.density, atol=1e-14)
+    assert run.outside == 0
+    assert run.density_block.sizes["block"] == 64
+
+
+def test_an_equilibrium_start_needs_no_warm_up():
+    chain = Chain(size=20, gap=0.3)
+    start = equilibrium_states(chain, 64, seed=3)
+    run = simulate(chain, start=start, replicas=64, duration=30, progress=False)
+    assert run.attrs["end_time"] == pytest.approx(30, rel=0.05)
+    exact = equilibrium(chain)
+    for name in QUANTITIES:
+        assert float(np.abs((run[name] - exact[name]) / run[f"{name}_error"]).max()) < 5
+
+
+def test_the_error_bar_is_the_exact_one_of_a_free_rod():
+    """The time average of a free rod's displacement has the variance A^2/(k^2 duration)."""
+    duration = 20_000
+    run = simulate(Chain(size=1), duration=duration, observe="widths", progress=False)
+    # From 64 blocks an error bar is itself known to 9 %; uncorrelated snapshots would give 0.72.
+    assert run.mean_displacement_error.item() * np.sqrt(duration) == pytest.approx(1, abs=0.27)
+
+
+def test_ctrl_c_keeps_what_was_measured():
+    timer = threading.Timer(0.5, signal.raise_signal, [signal.SIGINT])
+    simulate(Chain(size=2), duration=100, progress=False)  # compiled before the clock starts
+    timer.start()
+    run = simulate(Chain(size=50), duration=1e9, replicas=2, progress=False)
+    assert run.attrs["status"] == "interrupted"
+    assert 0 < run.attrs["end_time"] < 1e9
+    assert np.isfinite(run.velocity_width).all()
+    assert (run.velocity_width_error > 0).all()
+
+
+def test_ctrl_c_before_anything_was_measured_is_raised():
+    timer = threading.Timer(0.5, signal.raise_signal, [signal.SIGINT])
+    simulate(Chain(size=2), duration=100, progress=False)
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        simulate(Chain(size=50), duration=100, warmup=1e9, progress=False)
+
+
+def test_a_chain_that_blows_up_is_marked_diverged():
+    chain = Chain(size=5, spring="quadratic")
+    run = simulate(chain, duration=1000, time_step=1.2, warmup=0, stepper="euler", progress=False)
+    assert run.attrs["status"] in ("completed", "diverged")
+    assert np.isfinite(run.velocity_width).all()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"duration": 0}, "duration must be"),
+        ({"duration": float("nan")}, "duration must be"),
+        ({"duration": 1}, "duration must be at least"),
+        ({"duration": 1e30}, "too small"),
+        ({"warmup": -1}, "warmup must be"),
+        ({"time_step": 0}, "time_step must be"),
+        ({"time_step": 5}, "time_step must be below"),
+        ({"stepper": "leapfrog"}, "stepper must be one of"),
+        ({"seed": -1}, "seed must be"),
+        ({"seed": 1.5}, "seed must be"),
+        ({"replicas": 0}, "replicas must be"),
+        ({"threads": 0}, "threads must be"),
+        ({"observe": ("widths", "colour")}, "observe takes any of"),
+        ({"observe": ()}, "observe must name"),
+    ],
+)
+def test_wrong_arguments_are_refused_in_one_line(arguments, message):
+    with pytest.raises(ValueError, match=message) as caught:
+        simulate(Chain(size=3), progress=False, **arguments)
+    assert "\n" not in str(caught.value)
+
+
+def test_chains_without_a_scale_need_a_time_step():
+    with pytest.raises(ValueError, match="give time_step"):
+        simulate(Chain(stiffness=0, damping=0), observe="widths", progress=False)
+    with pytest.raises(ValueError, match="'density' needs"):
+        simulate(Chain(stiffness=0), progress=False)
+    with pytest.raises(ValueError, match="restitution must be 1"):
+        simulate(Chain(restitution=0.5), progress=False)
+
+
+def test_wrong_starts_are_refused():
+    chain = Chain(size=4)
+    start = equilibrium_states(chain, 2)
+    with pytest.raises(ValueError, match="3 replicas of 4"):
+        simulate(chain, start=start, replicas=3, progress=False)
+    with pytest.raises(ValueError, match="no 'velocity'"):
+        simulate(chain, start=start.drop_vars("velocity"), replicas=2, progress=False)
+    with pytest.raises(ValueError, match="in order"):
+        simulate(
+            chain,
+            start=start.assign(position=-start.position),
+            replicas=2,
+            progress=False,
+        )
+    with pytest.raises(ValueError, match="finite"):
+        simulate(chain, start=start * np.nan, replicas=2, progress=False)
+
+
+def test_schedule_rounds_up_to_whole_blocks():
+    schedule = make_schedule(
+        Chain(), duration=1000, warmup=None, time_step=None, replicas=3, started=False
+    )
+    assert schedule.blocks == 22
+    assert 1000 <= schedule.duration < 1000 + 22 * 10 * schedule.time_step
+    assert schedule.warmup == pytest.approx(12 * relaxation_time(Chain()), abs=schedule.time_step)
+
+
+@pytest.mark.parametrize("damping", [0.1, 4.0, 50.0])
+def test_relaxation_time_is_that_of_the_slowest_mode(damping):
+    chain = Chain(damping=damping)
+    roots = np.roots([chain.mass, chain.damping, chain.stiffness])
+    assert relaxation_time(chain) == pytest.approx(1 / np.abs(roots.real).min())

@@ -1,0 +1,112 @@
+"""The steppers: exact stationary covariances of one rod, and orders of convergence in dt."""
+
+import numpy as np
+import pytest
+from crazybilliards.kinetic import equilibrium
+from crazybilliards.model import Chain
+from crazybilliards.particles import simulate
+from crazybilliards.particles.stepping import advance, make_step
+from scipy.linalg import solve_discrete_lyapunov
+
+
+def stationary_widths(stepper, time_step, **parameters):
+    """W_x, W_v of one rod: the linear map read off the kernel, its Lyapunov equation solved."""
+    chain = Chain(size=1, **parameters)
+    step = make_step(chain, time_step, stepper)
+    quiet = step._replace(noise=0.0)
+    generator = np.random.Generator(np.random.PCG64(0))
+    columns = []
+    for y, v in ((1.0, 0.0), (0.0, 1.0)):
+        state = np.array([y]), np.array([v])
+        advance(*state, np.zeros(1), generator, quiet, 1)
+        columns.append(np.concatenate(state))
+    propagator = np.array(columns).T
+    # The noise enters where the decayed velocity does.
+    kick = propagator[:, 1] * step.noise / step.decay
+    covariance = solve_discrete_lyapunov(propagator, np.outer(kick, kick))
+    return np.sqrt(np.diag(covariance))
+
+
+def test_splitting_has_the_exact_velocity_width_at_any_step_and_order_two_in_displacement():
+    chain = Chain(size=1)
+    errors = []
+    for time_step in (0.1, 0.2, 0.4, 1.5):
+        displacement, velocity = stationary_widths("splitting", time_step)
+        assert velocity == pytest.approx(chain.free_velocity_width, rel=1e-12)
+        rate = np.sqrt(chain.stiffness / chain.mass)
+        shadow = chain.thermal_length / np.sqrt(1 - (rate * time_step / 2) ** 2)
+        assert displacement == pytest.approx(shadow, rel=1e-12)
+        errors.append(displacement / chain.thermal_length - 1)
+    orders = np.log2(np.array(errors[1:3]) / errors[:2])
+    np.testing.assert_allclose(orders, 2, atol=0.02)
+
+
+def test_euler_has_order_one_in_the_velocity_width():
+    width = Chain().free_velocity_width
+    errors = [stationary_widths("euler", dt)[1] / width - 1 for dt in (0.05, 0.1, 0.2)]
+    np.testing.assert_allclose(np.log2(np.array(errors[1:]) / errors[:-1]), 1, atol=0.1)
+
+
+def test_without_spring_the_velocity_is_exact_or_as_stated():
+    chain = Chain(stiffness=0, damping=2, amplitude=3)
+    for stepper, factor in (("splitting", 1.0), ("euler", 1 / (1 - 2 * 0.3 / (2 * chain.mass)))):
+        step = make_step(chain, 0.3, stepper)
+        variance = step.noise**2 / (1 - step.decay**2)
+        assert variance == pytest.approx(factor * chain.free_velocity_width**2, rel=1e-12)
+
+
+def test_the_noise_without_damping_is_the_limit_of_weak_damping():
+    weak = make_step(Chain(damping=1e-9), 0.1, "splitting")
+    none = make_step(Chain(damping=0), 0.1, "splitting")
+    assert none.noise == pytest.approx(weak.noise)
+    assert none.decay == 1
+
+
+@pytest.mark.parametrize(("gap", "tolerance"), [(0.0, 1e-4), (0.3, 1e-2)])
+@pytest.mark.parametrize("spring", ["linear", "quadratic"])
+def test_the_frictionless_noiseless_chain_keeps_its_energy(spring, gap, tolerance):
+    """Without gap forces do not know who is who; with it, collisions let the energy wander."""
+    chain = Chain(size=10, amplitude=0, damping=0, gap=gap, spring=spring)
+    generator = np.random.Generator(np.random.PCG64(2))
+    y = chain.reduced_anchors + np.sort(generator.normal(size=10))
+    v = generator.normal(size=10)
+
+    def energy():
+        return (chain.mass / 2 * v**2 + chain.potential(y - chain.reduced_anchors)).sum()
+
+    step = make_step(chain, 0.01, "splitting")
+    before, drifts = energy(), []
+    for _ in range(200):
+        advance(y, v, chain.reduced_anchors, generator, step, 100)
+        drifts.append(energy() / before - 1)
+    assert np.abs(drifts).max() < tolerance
+
+
+def test_one_step_does_not_depend_on_how_steps_are_grouped():
+    step = make_step(Chain(size=20), 0.1, "splitting")
+    results = []
+    for groups in ([30], [1] * 30, [7, 20, 3]):
+        generator = np.random.Generator(np.random.PCG64(3))
+        y, v = np.zeros((2, 20))
+        for steps in groups:
+            advance(y, v, np.zeros(20), generator, step, steps)
+        results.append((y, v))
+    for y, v in results[1:]:
+        np.testing.assert_array_equal(y, results[0][0])
+        np.testing.assert_array_equal(v, results[0][1])
+
+
+def test_chain_with_collisions_and_gap_converges_with_order_two():
+    """Mean square displacement of the chain against the exact one, at two time steps."""
+    chain = Chain(size=20, gap=0.2)
+    exact = equilibrium(chain)
+    square = (exact.displacement_width**2 + exact.mean_displacement**2).sum().item()
+    errors = []
+    for time_step in (0.4, 0.8):
+        run = simulate(
+            chain, time_step=time_step, duration=4e5, replicas=2, observe="widths", progress=False
+        )
+        measured = (run.displacement_width**2 + run.mean_displacement**2).sum().item()
+        errors.append(measured / square - 1)
+    # The statistical error of each is 4e-4: 0.07 in the order.
+    assert np.log2(errors[1] / errors[0]) == pytest.approx(2, abs=0.35)
