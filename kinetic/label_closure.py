@@ -1,0 +1,155 @@
+r"""The force balance closed by labels: a boundary-value problem without any input.
+
+With the label N(x) = int rho, the mean displacement at x is <dx> = x - (2R + g)(N - L/2). In the
+reduced coordinate y = x - 2R (N - L/2) the rods' length drops out. Take the thermal length
+s = (T/k)^(1/n) as unit (n: exponent of the spring's potential) and
+
+    zeta  distance of y from the outer edge of the lattice of anchors, y = s zeta + g L/2,
+    t     share of the rods further out, N = L (1 - t),
+    P     log density, rho_y = (L/s) exp(P),
+    u     displacement <dx>/s = zeta + Lam t,   with Lam = g L/s the only parameter left.
+
+Then, on the right half of the (symmetric) chain,
+
+    P' = -u |u|^(n-2),      t' = -exp(P),      t = 1/2 at the centre,      t = 0 far outside.
+
+Lam exp(P) - P - |u|^n/n is conserved; its drift is the residual. Without gap (Lam = 0) the
+solution is rho_y = L times the density of a free rod.
+
+Deep inside a chain with gap, u = 0 and rho_y = 1/g: a plateau. Perturbations of it decay as
+exp(-distance) for linear and as 6/distance^2 for quadratic springs; the solver starts where they
+have vanished.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+from crazybilliards.model import Chain
+from crazybilliards.model.grid import position_grid
+from crazybilliards.model.vocabulary import result
+from numpy.typing import NDArray
+from scipy.integrate import solve_bvp
+from scipy.special import gamma, gammaincc
+from scipy.stats import gennorm
+
+Array = NDArray[np.float64]
+
+_TAIL = 36.0  # tails are followed down to exp(-36) = 2e-16 of the maximum
+_EDGE_DEPTH = {2: 40.0, 3: 1e4}  # where the plateau is reached, by exponent n
+
+
+def solve_label_closure(chain: Chain) -> xr.Dataset:
+    """Solve the force balance closed by labels; see ``force_balance``, which checks the chain."""
+    edge = _solve_edge(chain.potential_exponent, chain.gap * chain.size / chain.thermal_length)
+    s, L, R = chain.thermal_length, chain.size, chain.radius
+
+    def position(zeta: Array) -> tuple[Array, Array]:
+        log_density, share = edge.evaluate(zeta)
+        x = s * (zeta + edge.lam / 2) + 2 * R * L * (0.5 - share)
+        return x, s + 2 * R * L * np.exp(log_density)
+
+    def label(zeta: Array) -> tuple[Array, Array]:
+        log_density, share = edge.evaluate(zeta)
+        return L * (1 - share), L * np.exp(log_density)
+
+    x = position_grid(chain)
+    side = np.sign(x)
+    zeta = edge.invert(position, np.abs(x))
+    log_density, share = edge.evaluate(zeta)
+    reduced_density = L / s * np.exp(log_density)
+    # The middle of rod i has the label i - 1/2.
+    rods = edge.invert(label, L / 2 + np.abs(chain.rank))
+    mean = np.sign(chain.rank) * s * (rods + edge.lam * edge.evaluate(rods)[1])
+    return result(
+        chain,
+        {
+            "density": ("x", reduced_density / (1 + 2 * R * reduced_density)),
+            "label": ("x", L / 2 + side * L * (0.5 - share)),
+            "displacement": ("x", side * s * (zeta + edge.lam * share)),
+            "mean_displacement": ("particle", mean),
+            "velocity_width": ("particle", np.full(L, chain.free_velocity_width)),
+        },
+        x=x,
+        source="theory",
+        method={"theory": "force balance, by labels"},
+        residual=edge.residual,
+    )
+
+
+@dataclass(frozen=True)
+class _Edge:
+    """The solution on zeta: plateau up to ``left``, computed up to ``right``, vacuum beyond."""
+
+    lam: float
+    left: float
+    right: float
+    scale: float  # the solver's second unknown is scale * t
+    curve: Callable[[Array], Array]
+    residual: float
+
+    def evaluate(self, zeta: Array) -> tuple[Array, Array]:
+        """Return P and t at zeta."""
+        log_density, scaled = self.curve(np.clip(zeta, self.left, self.right))
+        share = np.clip(scaled / self.scale, 0.0, 1.0)
+        inside, outside = zeta < self.left, zeta > self.right
+        if inside.any():
+            log_density = np.where(inside, -np.log(self.lam), log_density)
+            share = np.where(inside, -zeta / self.lam, share)
+        return np.where(outside, -np.inf, log_density), np.where(outside, 0.0, share)
+
+    def invert(self, function: Callable[[Array], tuple[Array, Array]], target: Array) -> Array:
+        """Solve function(zeta) = target for an ascending function that returns (value, slope)."""
+        far = self.right + 1e3 * max(self.right, 1.0)
+        table = np.concatenate([[-self.lam / 2], np.linspace(self.left, self.right, 40_001), [far]])
+        zeta = np.interp(target, function(table)[0], table)
+        for _ in range(3):  # the table is right to 1e-3 or better, so this reaches rounding
+            value, slope = function(zeta)
+            zeta = zeta - (value - target) / slope
+        return zeta
+
+
+def _solve_edge(n: int, lam: float) -> _Edge:
+    depth = _EDGE_DEPTH[n]
+    left, right = -min(lam / 2, depth), (n * _TAIL) ** (1 / n)
+    share_left = 0.5 if lam <= 2 * depth else depth / lam
+    scale = max(lam, 1.0)
+
+    def equations(zeta: Array, state: Array) -> Array:
+        u = zeta + lam / scale * state[1]
+        return np.array([-u * np.abs(u) ** (n - 2), -scale * np.exp(state[0])])
+
+    def boundary(at_left: Array, at_right: Array) -> Array:
+        return np.array([at_left[1] / scale - share_left, at_right[1]])
+
+    # Fine near the edge, geometrically coarser into the plateau.
+    inner = -np.geomspace(5, -left, 200)[:0:-1] if left < -5 else np.empty(0)
+    mesh = np.concatenate([inner, np.linspace(max(left, -5.0), right, 300)])
+    guess_density, guess_share = _free_lattice(n, lam, mesh)
+    guess = np.array([np.log(guess_density), scale * guess_share])
+    solution = solve_bvp(equations, boundary, mesh, guess, tol=1e-9, max_nodes=100_000)
+    if not solution.success:
+        raise ValueError(f"the force balance found no solution: {solution.message}")
+    P, u = solution.y[0], solution.x + lam / scale * solution.y[1]
+    conserved = (lam * np.exp(P) - P - np.abs(u) ** n / n)[P.max() - 30 < P]
+    return _Edge(lam, left, right, scale, solution.sol, float(np.ptp(conserved)))
+
+
+def _free_lattice(n: int, lam: float, zeta: Array) -> tuple[Array, Array]:
+    """Density exp(P) and share t if the rods did not collide: the lattice, thermally smeared."""
+    free = gennorm(n, scale=n ** (1 / n))
+    if lam < 1e-3:
+        return free.pdf(zeta), free.sf(zeta)
+
+    def beyond(a: Array) -> Array:
+        """int_a^inf sf = E max(d - a, 0)."""
+        moment = gamma(2 / n) / gamma(1 / n) * n ** (1 / n) / 2
+        size = np.abs(a)
+        positive = moment * gammaincc(2 / n, size**n / n) - size * free.sf(size)
+        return np.where(a > 0, positive, positive - a)
+
+    density = (free.sf(zeta) - free.sf(zeta + lam)) / lam
+    return np.maximum(density, 1e-17 / lam), (beyond(zeta) - beyond(zeta + lam)) / lam
