@@ -1,0 +1,183 @@
+"""The command ``crazybilliards``: one subcommand per job.
+
+Only the standard library and typer are imported up here, so that ``--help`` answers at once; a
+job imports what it needs when it runs.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+INTERRUPTED = 130
+
+app = typer.Typer(
+    add_completion=False,
+    no_args_is_help=True,
+    rich_markup_mode=None,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+
+@app.callback()
+def crazybilliards() -> None:
+    """Noisy rods on springs colliding in one dimension: simulation and theory side by side.
+
+    Lengths are in units of the rod radius R, masses in M, times in sqrt(M/k).
+
+    Example: crazybilliards compare --output results
+    """
+
+
+@app.command()
+def compare(
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            help="Folder for density.png, displacement.png and comparison.nc, made if missing; "
+            "without it nothing is written."
+        ),
+    ] = None,
+    size: Annotated[int, typer.Option(help="Number of rods L, at least 3.")] = 100,
+    amplitudes: Annotated[
+        str, typer.Option(help="Driving amplitudes A, separated by commas.")
+    ] = "1,3,10,30",
+    gap: Annotated[float, typer.Option(help="Gap g between rods at their anchors [R].")] = 0.0,
+    duration: Annotated[
+        float, typer.Option(help="Simulated time of each of two replicas.")
+    ] = 200_000.0,
+    seed: Annotated[int, typer.Option(help="Seed of the random numbers.")] = 0,
+    threads: Annotated[
+        int | None, typer.Option(help="Threads to simulate in; default: one per core.")
+    ] = None,
+) -> None:
+    """Compare the elastic chain with its theories, at several driving amplitudes.
+
+    Simulates the chain at restitution 1, computes its exact equilibrium, the force balance
+    closed by labels and the paper's force balance with a fitted displacement, draws them over
+    one another and prints how far apart they are.
+
+    Ctrl-C stops early: what has been computed is written under names with "-interrupted".
+
+    Example: crazybilliards compare --output results --amplitudes 1,10 --gap 0.2
+    """
+    from crazybilliards.comparison.elastic_chain import compare_elastic
+    from crazybilliards.model import Chain
+
+    if size < 3:
+        raise ValueError(f"size must be at least 3 to compare with an arctanh fit, got {size}")
+    folder = None if output is None else _writable_folder(output)
+    tree = compare_elastic(
+        Chain(size=size, gap=gap),
+        _numbers("amplitudes", amplitudes),
+        duration=duration,
+        seed=seed,
+        threads=threads,
+    )
+    status = tree.attrs["status"]
+    if folder is not None:
+        _write_comparison(tree, folder, "" if status == "completed" else f"-{status}")
+    _print_deviations(tree)
+    if folder is None:
+        print("Nothing was written; --output FOLDER keeps the figures and the data.")
+    if status == "interrupted":
+        raise typer.Exit(INTERRUPTED)
+    if status != "completed":
+        raise typer.Exit(1)
+
+
+def _write_comparison(tree: xr.DataTree, folder: Path, suffix: str) -> None:
+    from io import BytesIO
+
+    import matplotlib
+
+    matplotlib.use("Agg")
+    from crazybilliards.comparison.elastic_figures import draw_density, draw_displacement
+    from crazybilliards.model import save
+    from crazybilliards.model.storage import write_atomically
+
+    # The data first: a failing picture must not cost the computation.
+    print(f"wrote {save(tree, folder / f'comparison{suffix}.nc')}")
+    for name, draw in (("density", draw_density), ("displacement", draw_displacement)):
+        picture = BytesIO()
+        draw(tree).savefig(picture, format="png", dpi=150)
+        path = folder / f"{name}{suffix}.png"
+        write_atomically(path, picture.getvalue())
+        print(f"wrote {path}")
+
+
+def _print_deviations(tree: xr.DataTree) -> None:
+    from crazybilliards.comparison.elastic_chain import (
+        THEORIES,
+        deviations,
+        largest_width_error,
+    )
+    from rich.console import Console
+    from rich.table import Table
+
+    table = Table(
+        title="Density: simulation minus theory, in % of close packing 1/(2R)",
+        caption="Smoothed as in the paper. sigma: one standard error of the simulation. The last "
+        "column is the velocity widths' largest distance from their exact value.",
+    )
+    table.add_column("A", justify="right")
+    for name in THEORIES.values():
+        table.add_column(f"{name}\nmax / rms", justify="right")
+    table.add_column("exact\nmax [sigma]", justify="right")
+    table.add_column("W_v\nmax [sigma]", justify="right")
+    for name, by_theory in deviations(tree).items():
+        exact = by_theory.get("exact")
+        table.add_row(
+            name.removeprefix("amplitude_"),
+            *(
+                f"{100 * by_theory[key].maximum:.2f} / {100 * by_theory[key].rms:.2f}"
+                if key in by_theory
+                else "-"
+                for key in THEORIES
+            ),
+            "-" if exact is None else f"{exact.maximum_in_errors or 0:.1f}",
+            f"{largest_width_error(tree.children[name]):.1f}",
+        )
+    Console().print(table)
+
+
+def _numbers(name: str, text: str) -> list[float]:
+    try:
+        return [float(part) for part in text.split(",")]
+    except ValueError as error:
+        raise ValueError(f"{name} takes numbers separated by commas, got {text!r}") from error
+
+
+def _writable_folder(path: Path) -> Path:
+    """Make the folder and try it, before any work."""
+    import tempfile
+
+    path.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryFile(dir=path):
+        pass
+    return path
+
+
+def main() -> None:
+    """Entry point: a user's mistake is one line on standard error and exit status 2."""
+    try:
+        status = app(standalone_mode=False)
+    except typer.TyperException as error:
+        status = _complain(error.format_message())
+    except ValueError as error:
+        status = _complain(str(error))
+    except OSError as error:
+        status = _complain(f"{error.filename or 'file'}: {error.strerror or error}")
+    sys.exit(status)
+
+
+def _complain(message: str) -> int:
+    print(f"crazybilliards: error: {' '.join(message.split())}", file=sys.stderr)
+    return 2

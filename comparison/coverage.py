@@ -1,0 +1,106 @@
+"""The density as the paper bins it: partial coverage of bins, then a running average.
+
+The paper divides the line into bins much smaller than R, adds to each bin the fraction of it
+that rods cover, divides by the number of samples and by 2R, and takes a running average over a
+window of 2R. Both steps are rectangular convolutions of the density of the rods' centres with a
+box of length 2R. Compare densities only after the same steps: where A is small, rods form a
+near-crystal whose bare density is a row of spikes.
+
+On the package's grid (nodes at multiples of h = 2R/n, n odd) the first step is exact for points
+kept in hat weights: the bin around a node is covered by the mean of the n hats around it.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from crazybilliards.model import Chain, chain_of
+from crazybilliards.model.grid import deposit, position_grid
+from crazybilliards.model.vocabulary import require, result
+from numpy.typing import NDArray
+from scipy.ndimage import convolve1d
+
+Array = NDArray[np.float64]
+
+
+def coverage_density(source: xr.Dataset) -> xr.Dataset:
+    """First step of the paper: the fraction of each bin that rods cover, divided by 2R.
+
+    Parameters
+    ----------
+    source
+        One of three kinds of result: *states* (``position`` over replica and particle), a
+        *simulation* (``density``, ``density_error``, ``density_block`` over x), or a *theory*
+        (``density`` and ``label`` over x).
+
+    Returns
+    -------
+    xarray.Dataset
+        ``density`` over x, for a simulation with ``density_error`` and ``density_block``, the
+        error being that of the convolved density.
+
+    Raises
+    ------
+    ValueError
+        If the result holds none of these.
+    """
+    chain = chain_of(source)
+    if "position" in source:
+        return _box(_hat_density_of_states(chain, source))
+    require(source, ("density",))
+    return _box(_hat_density_of_theory(source) if "label" in source else source)
+
+
+def smooth(source: xr.Dataset) -> xr.Dataset:
+    """Both steps of the paper: :func:`coverage_density`, then the running average over 2R."""
+    return _box(coverage_density(source))
+
+
+def _box(source: xr.Dataset) -> xr.Dataset:
+    """Convolve density (and block densities, hence the error) with a box of length 2R."""
+    length = 2 * chain_of(source).radius
+    n = round(length / float(source.x[1] - source.x[0]))
+
+    def average(values: Array) -> Array:
+        return convolve1d(values, np.full(n, 1 / n), axis=-1, mode="constant")
+
+    convolved = source.drop_vars(set(source.data_vars) - {"density", "density_block"})
+    for name in convolved.data_vars:
+        convolved[name] = convolved[name].copy(data=average(source[name].values))
+    if "density_block" in convolved:
+        blocks = convolved.density_block
+        error = blocks.std("block", ddof=1) / np.sqrt(blocks.sizes["block"])
+        convolved["density_error"] = error.assign_attrs(source.density_error.attrs)
+    return convolved
+
+
+def _hat_density_of_states(chain: Chain, source: xr.Dataset) -> xr.Dataset:
+    positions = source.position.values
+    reach = float(np.abs(positions - chain.anchors).max()) + chain.radius
+    x = position_grid(chain, reach)
+    weights = np.zeros(x.size)
+    outside = deposit(positions.ravel(), x[0], x[1] - x[0], weights)
+    if outside:
+        raise ValueError("the states hold positions that are not finite")
+    density = weights / (x[1] - x[0]) / (positions.size / chain.size)
+    return result(chain, {"density": ("x", density)}, x=x, **_origin(source))
+
+
+def _hat_density_of_theory(source: xr.Dataset) -> xr.Dataset:
+    """Hat weights of a smooth density: second differences of the integral of the label.
+
+    The integral over a cell is Hermite's, from N and N' = rho at both ends, so that the weights
+    add up to the rods exactly, however narrow the peaks of rho are.
+    """
+    h = float(source.x[1] - source.x[0])
+    label, density = source.label.values, source.density.values
+    cells = h * (label[1:] + label[:-1]) / 2 - h**2 * np.diff(density) / 12
+    weights = np.zeros(label.size)
+    weights[1:-1] = np.diff(cells) / h**2
+    return source.assign(density=source.density.copy(data=np.maximum(weights, 0)))
+
+
+def _origin(source: xr.Dataset) -> dict[str, Any]:
+    return {"source": source.attrs["source"], "method": {"density": "of states"}}

@@ -1,0 +1,88 @@
+"""Drawing results over one another: simulations as symbols, theories as lines."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from itertools import cycle
+from typing import Any, Literal
+
+import matplotlib.pyplot as plt
+import xarray as xr
+from crazybilliards.model.vocabulary import require
+from matplotlib.axes import Axes
+
+# Okabe and Ito's colours, told apart with any colour vision; line styles differ as well.
+_SYMBOL_COLOUR = "#000000"
+_LINES: tuple[dict[str, Any], ...] = (
+    {"color": "#E69F00", "linestyle": "-", "linewidth": 2.2},
+    {"color": "#0072B2", "linestyle": "--", "linewidth": 1.6},
+    {"color": "#CC79A7", "linestyle": ":", "linewidth": 2.0},
+    {"color": "#009E73", "linestyle": "-.", "linewidth": 1.6},
+)
+_MOST_SYMBOLS = 60
+
+
+def overlay(
+    results: Mapping[str, xr.Dataset],
+    quantity: str = "density",
+    *,
+    along: Literal["normalized_particle", "mean_position"] = "normalized_particle",
+    ax: Axes | None = None,
+) -> Axes:
+    """Draw one quantity of several results into one picture.
+
+    Parameters
+    ----------
+    results
+        ``{label: result}``. Simulations are drawn as circles with their standard errors,
+        theories as lines, in the order given.
+    quantity
+        A variable over x or over particle. Densities should be smoothed alike first.
+    along
+        Abscissa of a quantity over particle: i_n in -1..1, or the mean position of the rods.
+    ax
+        Axes to draw into; None: those of a new figure.
+
+    Raises
+    ------
+    ValueError
+        If a result lacks the quantity.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        Without a legend yet: call its ``legend()``.
+    """
+    for dataset in results.values():
+        require(dataset, (quantity,))
+    if ax is None:
+        _, ax = plt.subplots(layout="constrained")
+    lines = cycle(_LINES)
+    for label, dataset in results.items():
+        values = dataset[quantity]
+        abscissa = dataset["x" if "x" in values.dims else along]
+        if dataset.attrs.get("source") == "simulation":
+            every = max(abscissa.size // _MOST_SYMBOLS, 1)
+            error = dataset.get(f"{quantity}_error")
+            ax.errorbar(
+                abscissa[::every],
+                values[::every],
+                None if error is None else error[::every],
+                fmt="o",
+                markersize=4.5,
+                markerfacecolor="none",
+                color=_SYMBOL_COLOUR,
+                linewidth=0.8,
+                label=label,
+                zorder=3,
+            )
+        else:
+            ax.plot(abscissa, values, label=label, zorder=2, **next(lines))
+        ax.set_xlabel(_axis_label(abscissa))
+        ax.set_ylabel(_axis_label(values))
+    return ax
+
+
+def _axis_label(variable: xr.DataArray) -> str:
+    unit = variable.attrs["units"]
+    return variable.attrs["long_name"] + (f" [{unit}]" if unit != "1" else "")
