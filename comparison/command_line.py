@@ -6,6 +6,7 @@ job imports what it needs when it runs.
 
 from __future__ import annotations
 
+import os
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -73,7 +74,8 @@ def compare(
 
     if size < 3:
         raise ValueError(f"size must be at least 3 to compare with an arctanh fit, got {size}")
-    folder = None if output is None else _writable_folder(output)
+    if output is not None:
+        _check_folder(output)
     tree = compare_elastic(
         Chain(size=size, gap=gap),
         _numbers("amplitudes", amplitudes),
@@ -82,10 +84,10 @@ def compare(
         threads=threads,
     )
     status = tree.attrs["status"]
-    if folder is not None:
-        _write_comparison(tree, folder, "" if status == "completed" else f"-{status}")
+    if output is not None:
+        _write_comparison(tree, output, "" if status == "completed" else f"-{status}")
     _print_deviations(tree)
-    if folder is None:
+    if output is None:
         print("Nothing was written; --output FOLDER keeps the figures and the data.")
     if status == "interrupted":
         raise typer.Exit(INTERRUPTED)
@@ -155,14 +157,13 @@ def _numbers(name: str, text: str) -> list[float]:
         raise ValueError(f"{name} takes numbers separated by commas, got {text!r}") from error
 
 
-def _writable_folder(path: Path) -> Path:
-    """Make the folder and try it, before any work."""
-    import tempfile
-
-    path.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryFile(dir=path):
-        pass
-    return path
+def _check_folder(path: Path) -> None:
+    """Raise, before any work, if ``path`` cannot become or is not a folder to write to."""
+    existing = next(each for each in (path, *path.absolute().parents) if each.exists())
+    if not existing.is_dir():
+        raise ValueError(f"output must be a folder, but {existing} is a file")
+    if not os.access(existing, os.W_OK | os.X_OK):
+        raise ValueError(f"output: no permission to write to {existing}")
 
 
 def main() -> None:

@@ -91,15 +91,17 @@ def _hat_density_of_states(chain: Chain, source: xr.Dataset) -> xr.Dataset:
 def _hat_density_of_theory(source: xr.Dataset) -> xr.Dataset:
     """Hat weights of a smooth density: second differences of the integral of the label.
 
-    The integral over a cell is Hermite's, from N and N' = rho at both ends, so that the weights
-    add up to the rods exactly, however narrow the peaks of rho are.
+    The integral over a cell is Hermite's, from N and N' = rho at both ends, kept between its
+    bounds h N(left) and h N(right): the weights are positive and add up to the rods exactly,
+    even where the peaks of rho are narrower than a cell.
     """
     h = float(source.x[1] - source.x[0])
     label, density = source.label.values, source.density.values
     cells = h * (label[1:] + label[:-1]) / 2 - h**2 * np.diff(density) / 12
+    cells = np.clip(cells, h * label[:-1], h * label[1:])
     weights = np.zeros(label.size)
     weights[1:-1] = np.diff(cells) / h**2
-    return source.assign(density=source.density.copy(data=np.maximum(weights, 0)))
+    return source.assign(density=source.density.copy(data=weights))
 
 
 def _origin(source: xr.Dataset) -> dict[str, Any]:

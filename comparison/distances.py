@@ -64,10 +64,11 @@ def deviation(result: xr.Dataset, reference: xr.Dataset, floor: float = 1e-3) ->
     )
     a, b = xr.align(ours.density, theirs.density, join="outer", fill_value=0.0)
     difference = a - b
-    seen = difference[((a > floor * unit) | (b > floor * unit)).values] / unit
+    either = ((a > floor * unit) | (b > floor * unit)).values
+    seen = difference.values[either] / unit if either.any() else np.zeros(1)
     squared_error = _squared_error(ours, a) + _squared_error(theirs, b)
-    measured = ((a > floor * unit) & (b > floor * unit) & (squared_error > 0)).values
-    in_errors = (difference / np.sqrt(squared_error.where(squared_error > 0, 1)))[measured]
+    both = ((a > floor * unit) & (b > floor * unit) & (squared_error > 0)).values
+    in_errors = difference.values[both] / np.sqrt(squared_error.values[both])
     return Deviation(
         maximum=float(np.abs(seen).max()),
         rms=float(np.sqrt((seen**2).mean())),

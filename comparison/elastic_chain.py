@@ -16,8 +16,9 @@ from crazybilliards.comparison.distances import Deviation, deviation
 from crazybilliards.comparison.fits import fit_arctanh
 from crazybilliards.kinetic import equilibrium, force_balance
 from crazybilliards.model import Chain, chain_of
-from crazybilliards.model.chain import check_real
+from crazybilliards.model.chain import check_integer, check_real
 from crazybilliards.particles import simulate
+from crazybilliards.particles.schedule import make_schedule
 
 SIMULATION = "simulation"
 THEORIES = {
@@ -62,7 +63,8 @@ def compare_elastic(
     ValueError
         For a wrong argument, before any work.
     """
-    chains = _chains(chain, amplitudes)
+    chains = _chains(chain, amplitudes, duration)
+    seed = check_integer("seed", seed, least=0)
     results: dict[str, xr.Dataset] = {}
     status = "completed"
     seeds = np.random.SeedSequence(seed).generate_state(len(chains))
@@ -110,7 +112,8 @@ def largest_width_error(group: xr.DataTree) -> float:
     return float(np.abs((run.velocity_width - width) / run.velocity_width_error).max())
 
 
-def _chains(chain: Chain, amplitudes: Sequence[float]) -> list[Chain]:
+def _chains(chain: Chain, amplitudes: Sequence[float], duration: float) -> list[Chain]:
+    """Return the chain at every amplitude, after all checks, so that none fails half-way."""
     if chain.restitution != 1:
         raise ValueError(f"the comparison is of elastic chains, got e={chain.restitution:g}")
     if not amplitudes:
@@ -121,6 +124,7 @@ def _chains(chain: Chain, amplitudes: Sequence[float]) -> list[Chain]:
     chains = [chain.replace(amplitude=value) for value in positive]
     for each in chains:
         each.require_steady_state()
+        make_schedule(each, duration=duration, replicas=_REPLICAS)
     return chains
 
 

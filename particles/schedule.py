@@ -87,10 +87,10 @@ def make_schedule(
     chain: Chain,
     *,
     duration: float,
-    warmup: float | None,
-    time_step: float | None,
-    replicas: int,
-    started: bool,
+    warmup: float | None = None,
+    time_step: float | None = None,
+    replicas: int = 1,
+    started: bool = False,
 ) -> Schedule:
     """Check the times a user gave, fill in those not given, and return whole numbers of steps.
 

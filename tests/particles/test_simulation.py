@@ -176,9 +176,7 @@ def test_wrong_starts_are_refused():
 
 
 def test_schedule_rounds_up_to_whole_blocks():
-    schedule = make_schedule(
-        Chain(), duration=1000, warmup=None, time_step=None, replicas=3, started=False
-    )
+    schedule = make_schedule(Chain(), duration=1000, replicas=3)
     assert schedule.blocks == 22
     assert 1000 <= schedule.duration < 1000 + 22 * 10 * schedule.time_step
     assert schedule.warmup == pytest.approx(12 * relaxation_time(Chain()), abs=schedule.time_step)

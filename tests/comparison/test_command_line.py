@@ -1,0 +1,132 @@
+"""The command line: answers fast, refuses in one line, writes all or nothing, keeps on Ctrl-C."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from crazybilliards.model import load
+
+COMMAND = [sys.executable, "-c", "from crazybilliards.comparison.command_line import main; main()"]
+QUICK = ["compare", "--size", "10", "--duration", "1000", "--amplitudes", "1,5"]
+
+
+def run(*arguments, **options):
+    return subprocess.run(
+        [*COMMAND, *arguments], capture_output=True, text=True, timeout=120, check=False, **options
+    )
+
+
+@pytest.mark.parametrize("arguments", [["--help"], ["compare", "--help"], ["-h"]])
+def test_help_shows_an_example_and_loads_nothing_heavy(arguments):
+    script = (
+        "import sys; sys.argv[1:] = sys.argv[1:]\n"
+        "from crazybilliards.comparison.command_line import main\n"
+        "try:\n    main()\n"
+        "finally:\n"
+        "    heavy = {'numpy', 'numba', 'scipy', 'matplotlib', 'xarray'} & set(sys.modules)\n"
+        "    assert not heavy, heavy\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", script, *arguments], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    assert "Example: crazybilliards compare" in done.stdout
+
+
+def test_compare_writes_both_figures_and_the_data(tmp_path):
+    folder = tmp_path / "new" / "folder"
+    done = run(*QUICK, "--output", str(folder))
+    assert done.returncode == 0, done.stderr
+    assert sorted(path.name for path in folder.iterdir()) == [
+        "comparison.nc",
+        "density.png",
+        "displacement.png",
+    ]
+    tree = load(folder / "comparison.nc")
+    assert tree.attrs["status"] == "completed"
+    assert (folder / "density.png").read_bytes().startswith(b"\x89PNG")
+    assert "close packing" in done.stdout
+    # Not a terminal: no progress bar, no colours.
+    assert "simulating" not in done.stderr
+    assert "\x1b" not in done.stdout
+    # A second run with the same seed gives the same data.
+    again = run(*QUICK, "--output", str(folder), "--threads", "1")
+    assert again.returncode == 0
+    assert load(folder / "comparison.nc").identical(tree)
+
+
+def test_without_output_nothing_is_written(tmp_path):
+    done = run(*QUICK, cwd=tmp_path)
+    assert done.returncode == 0
+    assert "Nothing was written" in done.stdout
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["--size", "2"], "size"),
+        (["--size", "ten"], "size"),
+        (["--size", "-1"], "size"),
+        (["--amplitudes", "1,x"], "amplitudes takes numbers"),
+        (["--amplitudes", ""], "amplitudes takes numbers"),
+        (["--amplitudes", "0"], "amplitude must be"),
+        (["--amplitudes", "nan"], "amplitude must be"),
+        (["--amplitudes", "1,1"], "differ"),
+        (["--gap", "-1"], "gap must be"),
+        (["--gap", "inf"], "gap must be"),
+        (["--duration", "0"], "duration must be"),
+        (["--duration", "1"], "duration must be at least"),
+        (["--seed", "-5"], "seed"),
+        (["--threads", "0"], "threads must be"),
+        (["--colour"], "No such option"),
+        (["extra"], "unexpected extra argument"),
+    ],
+)
+def test_bad_input_is_one_line_exit_two_and_nothing_written(arguments, message, tmp_path):
+    folder = tmp_path / "results"
+    done = run("compare", *arguments, "--output", str(folder))
+    assert done.returncode == 2
+    assert message in done.stderr
+    assert done.stderr.count("\n") == 1
+    assert done.stdout == ""
+    assert not folder.exists()
+
+
+def test_an_unknown_command_and_an_unusable_folder_are_one_line(tmp_path):
+    done = run("simulat")
+    assert (done.returncode, done.stderr.count("\n")) == (2, 1)
+    file = tmp_path / "file"
+    file.write_text("mine")
+    done = run(*QUICK, "--output", str(file))
+    assert (done.returncode, done.stderr.count("\n")) == (2, 1)
+    assert str(file) in done.stderr
+    assert file.read_text() == "mine"
+
+
+@pytest.mark.skipif(os.name == "nt", reason="sends a POSIX signal")
+def test_ctrl_c_saves_what_was_computed_beside_a_finished_result(tmp_path):
+    assert run(*QUICK, "--output", str(tmp_path)).returncode == 0
+    finished = (tmp_path / "comparison.nc").read_bytes()
+    process = subprocess.Popen(
+        [*COMMAND, *QUICK[:3], "--duration", "1e9", "--output", str(tmp_path)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    time.sleep(6)
+    process.send_signal(signal.SIGINT)
+    output, errors = process.communicate(timeout=60)
+    assert process.returncode == 130, errors
+    assert "Traceback" not in errors
+    tree = load(tmp_path / "comparison-interrupted.nc")
+    assert tree.attrs["status"] == "interrupted"
+    assert tree["amplitude_1/simulation"].attrs["status"] == "interrupted"
+    assert (tmp_path / "density-interrupted.png").exists()
+    assert (tmp_path / "comparison.nc").read_bytes() == finished
+    assert "close packing" in output
+    assert not [path for path in Path(tmp_path).iterdir() if path.suffix == ".part"]

@@ -1,0 +1,95 @@
+"""The paper's binning against a slow twin that measures every overlap of rod and bin."""
+
+import numpy as np
+import pytest
+import xarray as xr
+from crazybilliards.comparison import coverage_density, smooth
+from crazybilliards.kinetic import equilibrium, equilibrium_states, force_balance
+from crazybilliards.model import Chain
+from crazybilliards.particles import simulate
+
+
+def coverage_slowly(positions, x, radius):
+    """Sum the share of each bin that each rod covers; per sample and per 2R."""
+    h = x[1] - x[0]
+    left, right = x - h / 2, x + h / 2
+    covered = np.zeros(x.size)
+    for state in positions:
+        for centre in state:
+            overlap = np.minimum(right, centre + radius) - np.maximum(left, centre - radius)
+            covered += np.maximum(overlap, 0) / h
+    return covered / len(positions) / (2 * radius)
+
+
+def running_average_slowly(values, n):
+    half = n // 2
+    padded = np.pad(values, half)
+    return np.array([padded[i : i + n].mean() for i in range(values.size)])
+
+
+@pytest.mark.parametrize("radius", [1.0, 0.3])
+@pytest.mark.parametrize("gap", [0.0, 0.7])
+def test_states_are_binned_like_the_slow_twin(gap, radius):
+    chain = Chain(size=6, gap=gap, radius=radius)
+    states = equilibrium_states(chain, 20, seed=1)
+    density = coverage_density(states)
+    expected = coverage_slowly(states.position.values, density.x.values, radius)
+    np.testing.assert_allclose(density.density, expected, atol=1e-12)
+    n = round(2 * radius / float(density.x[1] - density.x[0]))
+    np.testing.assert_allclose(
+        smooth(states).density, running_average_slowly(expected, n), atol=1e-12
+    )
+
+
+@pytest.mark.parametrize("convolve", [coverage_density, smooth])
+def test_no_rod_is_lost(convolve):
+    chain = Chain(size=9, gap=0.4, amplitude=2)
+    results = [
+        equilibrium(chain),
+        force_balance(chain),
+        simulate(chain, duration=300, progress=False),
+        equilibrium_states(chain, 10),
+    ]
+    for result in results:
+        density = convolve(result)
+        rods = float(density.density.sum() * (density.x[1] - density.x[0]))
+        assert rods == pytest.approx(9, rel=1e-6)
+        assert (density.density >= 0).all()
+
+
+def test_a_theory_with_unresolved_spikes_is_binned_right():
+    """All but motionless rods on a grid coarser than their motion: covered, or not."""
+    chain = Chain(size=1000, gap=1, amplitude=1e-3)
+    exact = equilibrium(chain)
+    density = coverage_density(exact)
+    h = float(density.x[1] - density.x[0])
+    assert h > 10 * chain.thermal_length
+    # Anchors lie at the half-odd multiples of 3.
+    distance = np.abs(density.x.values % 3 - 1.5)
+    within = np.abs(density.x.values) < chain.anchors[-1] + 1
+    np.testing.assert_allclose(
+        density.density.values[within & (distance < 1 - 2 * h)], 0.5, rtol=1e-6
+    )
+    np.testing.assert_allclose(density.density.values[distance > 1 + 2 * h], 0, atol=1e-9)
+    assert (density.density >= 0).all()
+    assert float(density.density.sum() * h) == pytest.approx(1000, rel=1e-9)
+
+
+def test_the_error_of_a_convolved_density_is_that_of_its_blocks():
+    run = simulate(Chain(size=5), duration=640, progress=False)
+    convolved = smooth(run)
+    blocks = convolved.density_block
+    assert blocks.sizes["block"] == 64
+    error = blocks.std("block", ddof=1) / 8
+    np.testing.assert_allclose(convolved.density_error, error, atol=1e-15)
+    np.testing.assert_allclose(blocks.mean("block"), convolved.density, atol=1e-12)
+    # Convolution takes out noise: the naive, unsmoothed error bar would be far too large.
+    assert convolved.density_error.max() < run.density_error.max()
+
+
+def test_what_holds_no_density_is_refused():
+    run = simulate(Chain(size=3), duration=100, observe="widths", progress=False)
+    with pytest.raises(ValueError, match="no 'density'; it has mean_displacement"):
+        coverage_density(run)
+    with pytest.raises(ValueError, match="names no chain"):
+        smooth(xr.Dataset({"density": ("x", np.ones(3))}))

@@ -1,0 +1,82 @@
+"""Deviations in both units, and the arctanh fit."""
+
+import numpy as np
+import pytest
+from crazybilliards.comparison import deviation, fit_arctanh
+from crazybilliards.kinetic import equilibrium, force_balance
+from crazybilliards.model import Chain
+from crazybilliards.model.vocabulary import result
+
+
+def flat(chain, height, width, error=None, spacing=0.5):
+    x = spacing * np.arange(-width, width + 1)
+    variables = {"density": ("x", np.full(x.size, height))}
+    if error is not None:
+        variables["density_error"] = ("x", np.full(x.size, error))
+    return result(chain, variables, source="theory", method={}, x=x)
+
+
+def test_deviation_in_both_units():
+    chain = Chain(size=10)
+    d = deviation(flat(chain, 0.31, 4, error=0.003), flat(chain, 0.3, 4, error=0.004))
+    assert d.maximum == pytest.approx(0.02)
+    assert d.rms == pytest.approx(0.02)
+    assert d.integrated == pytest.approx(9 * 0.5 * 0.01 / 10)
+    assert d.maximum_in_errors == pytest.approx(2)
+    assert d.rms_in_errors == pytest.approx(2)
+
+
+def test_outside_a_grid_the_density_is_zero():
+    chain = Chain(size=10)
+    d = deviation(flat(chain, 0.3, 4), flat(chain, 0.3, 6))
+    assert d.maximum == pytest.approx(0.6)
+    assert d.integrated == pytest.approx(4 * 0.5 * 0.3 / 10)
+    assert d.maximum_in_errors is None
+
+
+def test_deviation_refuses_what_it_cannot_align():
+    chain = Chain(size=10)
+    with pytest.raises(ValueError, match="different spacing"):
+        deviation(flat(chain, 0.3, 4), flat(chain, 0.3, 4, spacing=0.4))
+    with pytest.raises(ValueError, match="no 'density'"):
+        deviation(flat(chain, 0.3, 4).drop_vars("density"), flat(chain, 0.3, 4))
+
+
+def test_a_vanishing_density_deviates_by_nothing():
+    chain = Chain(size=10)
+    d = deviation(flat(chain, 0.0, 4), flat(chain, 0.0, 4))
+    assert (d.maximum, d.rms, d.integrated) == (0, 0, 0)
+
+
+def test_the_fit_recovers_an_arctanh():
+    chain = Chain(size=51, amplitude=5)
+    x = np.linspace(-60, 60, 51)
+    mean = 2.5 * np.arctanh(x / 66)
+    # Anchors are where they have to be for the mean positions to be x.
+    dataset = result(
+        Chain(size=51), {"mean_displacement": ("particle", mean)}, source="theory", method={}
+    )
+    fit = fit_arctanh(dataset)
+    positions = Chain(size=51).anchors + mean
+    np.testing.assert_allclose(fit(positions), mean, atol=0.25)
+    assert chain.size == 51
+    assert fit.support == (-1 / fit.steepness, 1 / fit.steepness)
+    assert fit.support[1] > np.abs(positions).max()
+
+
+def test_the_fit_of_the_reference_chain():
+    """Against the closure by labels at L = 100, g = 0: B/s and 1/C for A = 10."""
+    chain = Chain(amplitude=10)
+    fit = fit_arctanh(force_balance(chain))
+    assert fit.scale / chain.thermal_length == pytest.approx(1.41, abs=0.02)
+    assert 1 / fit.steepness == pytest.approx(123.4, abs=1)
+    assert fit.scale_error < 0.02 * fit.scale
+    assert fit.misfit < 0.05 * chain.thermal_length
+
+
+def test_chains_that_no_arctanh_fits_are_refused():
+    with pytest.raises(ValueError, match="at least 3 rods"):
+        fit_arctanh(equilibrium(Chain(size=2)))
+    inward = equilibrium(Chain(size=5))
+    with pytest.raises(ValueError, match="not displaced outward"):
+        fit_arctanh(inward.assign(mean_displacement=-0.1 * inward.mean_displacement))

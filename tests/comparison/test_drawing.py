@@ -1,0 +1,57 @@
+"""Overlays: symbols for simulations, lines for theories, units on the axes."""
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+from crazybilliards.comparison import compare_elastic, overlay, smooth
+from crazybilliards.comparison.elastic_figures import draw_density, draw_displacement
+from crazybilliards.kinetic import equilibrium, force_balance
+from crazybilliards.model import Chain
+from crazybilliards.particles import simulate
+
+
+@pytest.fixture(autouse=True)
+def close_figures():
+    yield
+    plt.close("all")
+
+
+def test_overlay_draws_symbols_with_errors_and_lines():
+    chain = Chain(size=10, amplitude=3)
+    run, exact = simulate(chain, duration=300, progress=False), equilibrium(chain)
+    ax = overlay({"rods": smooth(run), "exact": smooth(exact)})
+    assert len(ax.containers) == 1
+    symbols, line = ax.containers[0].lines[0], ax.lines[-1]
+    assert symbols.get_linestyle() == "None"
+    assert line.get_linestyle() == "-"
+    np.testing.assert_array_equal(line.get_ydata(), smooth(exact).density)
+    assert ax.get_xlabel() == "position x [R]"
+    assert ax.get_ylabel() == "particle density rho [1/R]"
+    assert ax.get_legend_handles_labels()[1] == ["exact", "rods"]
+
+
+def test_overlay_of_a_quantity_over_particles():
+    theory = force_balance(Chain(size=10))
+    ax = overlay({"theory": theory}, "mean_displacement")
+    assert ax.get_xlabel() == "normalized particle i_n"
+    assert ax.lines[0].get_xdata()[[0, -1]].tolist() == [-1, 1]
+    ax = overlay({"theory": theory}, "mean_displacement", along="mean_position")
+    assert ax.get_xlabel() == "mean position <x_i> [R]"
+    with pytest.raises(ValueError, match="no 'kinetic_energy'"):
+        overlay({"theory": theory}, "kinetic_energy")
+
+
+@pytest.mark.parametrize("amplitudes", [(2.0,), (1.0, 2.0, 5.0)])
+def test_the_figures_of_the_main_comparison(amplitudes):
+    tree = compare_elastic(Chain(size=8), amplitudes, duration=300, progress=False)
+    for figure in (draw_density(tree), draw_displacement(tree)):
+        axes = figure.get_axes()
+        assert len(axes) == 2 * len(amplitudes)
+        labels = [text.get_text() for text in figure.legends[0].get_texts()]
+        assert sorted(labels) == [
+            "exact",
+            "force balance, arctanh fit",
+            "force balance, by labels",
+            "simulation",
+        ]
+        assert all(ax.get_ylabel() for ax in axes)

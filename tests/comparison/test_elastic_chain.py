@@ -1,0 +1,75 @@
+"""The main comparison: what it promises about simulation and theory at e = 1."""
+
+import pytest
+from crazybilliards.comparison import compare_elastic
+from crazybilliards.comparison.elastic_chain import deviations, largest_width_error
+from crazybilliards.model import Chain, chain_of
+
+
+@pytest.fixture(scope="module")
+def tree():
+    return compare_elastic(Chain(), duration=100_000, seed=1, progress=False)
+
+
+def test_simulation_and_exact_density_agree(tree):
+    """Within 1 % of close packing, and within 5 standard errors everywhere."""
+    for by_theory in deviations(tree).values():
+        exact = by_theory["exact"]
+        assert exact.maximum < 0.01
+        assert exact.maximum_in_errors < 5
+        assert exact.rms_in_errors < 1.5
+
+
+def test_every_velocity_width_is_the_free_one(tree):
+    for group in tree.children.values():
+        assert largest_width_error(group) < 5
+
+
+def test_the_force_balance_is_as_good_as_it_was_measured(tree):
+    """Largest deviation from the simulation, in units of close packing; 0.003 of it is noise.
+
+    The fluid has no single rods: at small A its edge is off by the length of a rod or so.
+    """
+    measured = {
+        "1": (0.138, 0.150),
+        "3": (0.099, 0.110),
+        "10": (0.027, 0.032),
+        "30": (0.007, 0.014),
+    }
+    for name, by_theory in deviations(tree).items():
+        amplitude = name.removeprefix("amplitude_")
+        labels, arctanh = measured[amplitude]
+        assert by_theory["labels"].maximum == pytest.approx(labels, abs=0.004)
+        assert by_theory["arctanh"].maximum == pytest.approx(arctanh, abs=0.005)
+
+
+def test_the_tree_holds_everything_with_its_chain(tree):
+    assert tree.attrs["status"] == "completed"
+    assert list(tree.children) == [f"amplitude_{a}" for a in (1, 3, 10, 30)]
+    for group in tree.children.values():
+        assert list(group.children) == ["simulation", "exact", "labels", "arctanh"]
+        chains = {chain_of(each.to_dataset()) for each in group.children.values()}
+        assert len(chains) == 1
+    arctanh = tree["amplitude_10/arctanh"]
+    assert arctanh.attrs["scale"] > 0
+    assert arctanh.attrs["steepness_error"] > 0
+
+
+def test_amplitudes_have_random_numbers_of_their_own(tree):
+    one, three = (tree[f"amplitude_{a}/simulation"] for a in (1, 3))
+    assert (one.velocity_width * 3 != three.velocity_width).any()
+
+
+@pytest.mark.parametrize(
+    ("chain", "amplitudes", "message"),
+    [
+        (Chain(restitution=0.9), (1,), "elastic"),
+        (Chain(), (), "at least one"),
+        (Chain(), (1, 0), "amplitude must be"),
+        (Chain(), (1, 1.0), "differ"),
+        (Chain(damping=0), (1,), "no steady state"),
+    ],
+)
+def test_wrong_arguments_are_refused(chain, amplitudes, message):
+    with pytest.raises(ValueError, match=message):
+        compare_elastic(chain, amplitudes, progress=False)
