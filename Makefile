@@ -53,11 +53,11 @@ $(VENV)/created:
 	touch $@
 
 $(VENV)/installed: pyproject.toml $(VENV)/created
-	$(BIN)/python -m pip install --quiet --editable .
+	$(BIN)/python -m pip install -qq --editable .
 	touch $@
 
 $(VENV)/installed-%: pyproject.toml $(VENV)/created
-	$(BIN)/python -m pip install --quiet --editable ".[$*]"
+	$(BIN)/python -m pip install -qq --editable ".[$*]"
 	touch $@
 
 clean:
