@@ -7,7 +7,7 @@ BIN    := $(VENV)/bin
 OUTPUT ?= results
 ROOMS  := model particles kinetic comparison
 
-.PHONY: help run test check notebooks benchmark validate clean
+.PHONY: help run test check notebooks benchmark clean
 .DEFAULT_GOAL := help
 
 help:
@@ -16,17 +16,13 @@ help:
 	@echo "make check      lint, format and type checks"
 	@echo "make notebooks  execute the notebooks"
 	@echo "make benchmark  measure the speed"
-	@echo "make validate   run the long statistical tests"
 	@echo "make clean      remove the environment and everything built"
 
 run: $(VENV)/installed
 	$(BIN)/crazybilliards compare --output $(OUTPUT)
 
 test: $(VENV)/installed-test
-	$(BIN)/python -m pytest -n 2 -m "not validate"
-
-validate: $(VENV)/installed-test
-	$(BIN)/python -m pytest -n 2 -m validate
+	$(BIN)/python -m pytest -n 2
 
 check: $(VENV)/installed-check build/types
 	$(BIN)/ruff check .

@@ -170,6 +170,8 @@ def main() -> None:
     """Entry point: a user's mistake is one line on standard error and exit status 2."""
     try:
         status = app(standalone_mode=False)
+        if status == INTERRUPTED:
+            print("crazybilliards: interrupted", file=sys.stderr)
     except typer.TyperException as error:
         status = _complain(error.format_message())
     except ValueError as error:

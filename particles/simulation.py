@@ -19,7 +19,7 @@ from crazybilliards.model.vocabulary import result
 from crazybilliards.particles.observers import OBSERVERS, Variables
 from crazybilliards.particles.replica import Replica, replica_starts
 from crazybilliards.particles.schedule import Schedule, make_schedule
-from crazybilliards.particles.stepping import Step, Stepper, compile_kernels, make_step
+from crazybilliards.particles.stepping import Step, Stepper, make_step
 from numpy.typing import NDArray
 from tqdm import tqdm
 
@@ -96,7 +96,7 @@ def simulate(
     seed = check_integer("seed", seed, least=0)
     replicas = check_integer("replicas", replicas, least=1)
     if threads is None:
-        threads = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else 1
+        threads = _cores()
     threads = check_integer("threads", threads, least=1)
     names = _check_observers(observe)
     schedule = make_schedule(
@@ -120,6 +120,8 @@ def simulate(
         )
         for replica in range(replicas)
     ]
+    with _announced(progress):
+        _compile_kernels(names)
     interrupted = _run_all(runs, step, schedule, threads, progress)
     return _collect(chain, runs, names, schedule, stepper, seed, interrupted)
 
@@ -130,8 +132,6 @@ def _run_all(
     """Run the replicas in threads; return whether Ctrl-C stopped them."""
     stop = Event()
     total = (schedule.warmup + schedule.duration) * len(runs)
-    with _announced(progress):
-        compile_kernels()
     with (
         tqdm(
             total=total,
@@ -180,6 +180,26 @@ def _announced(progress: bool) -> Iterator[None]:
         yield
     finally:
         timer.cancel()
+
+
+def _compile_kernels(names: list[str]) -> None:
+    """Compile every kernel, or load it from numba's cache, by running a chain of two rods."""
+    chain = Chain(size=2)
+    schedule = Schedule(0.1, warmup_steps=1, stride=1, blocks=1, snapshots_per_block=1)
+    observers = [OBSERVERS[name](chain, schedule.blocks) for name in names]
+    generator = np.random.Generator(np.random.PCG64(0))
+    y, v = np.zeros((2, chain.size))
+    replica = Replica(
+        chain.reduced_anchors, y, v, generator, observers, np.zeros(1, dtype=np.int64)
+    )
+    for _ in replica.run(make_step(chain, schedule.time_step, "splitting"), schedule, Event()):
+        pass
+
+
+def _cores() -> int:
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
 
 
 def _check_observers(observe: Sequence[str]) -> list[str]:

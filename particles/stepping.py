@@ -20,11 +20,9 @@ from __future__ import annotations
 import math
 from typing import Literal, NamedTuple
 
-import numpy as np
 from crazybilliards.model import Chain
 from crazybilliards.particles import sort
 from numba import njit
-from numpy.typing import NDArray
 
 Stepper = Literal["splitting", "euler"]
 
@@ -90,12 +88,3 @@ def record(y, v, anchors, generator, step, stride, y_buffer, v_buffer):  # type:
         y_buffer[snapshot] = y
         v_buffer[snapshot] = v
     return collisions
-
-
-def compile_kernels() -> None:
-    """Compile the stepping kernels, or load them from numba's cache, by running them once."""
-    y = np.zeros(2)
-    step = make_step(Chain(size=2), 0.1, "splitting")
-    generator = np.random.Generator(np.random.PCG64(0))
-    buffer: NDArray[np.float64] = np.zeros((1, 2))
-    record(y, y.copy(), y.copy(), generator, step, 1, buffer, buffer.copy())

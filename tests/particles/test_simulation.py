@@ -2,6 +2,7 @@
 
 import signal
 import threading
+import tracemalloc
 
 import numpy as np
 import pytest
@@ -114,6 +115,18 @@ def test_ctrl_c_before_anything_was_measured_is_raised():
     timer.start()
     with pytest.raises(KeyboardInterrupt):
         simulate(Chain(size=50), duration=100, warmup=1e9, progress=False)
+
+
+def test_memory_does_not_grow_with_the_duration():
+    chain = Chain(size=20)
+    peaks = []
+    for duration in (1_000, 1_000, 50_000):  # the first one loads what stays loaded
+        tracemalloc.start()
+        simulate(chain, duration=duration, progress=False)
+        peaks.append(tracemalloc.get_traced_memory()[1])
+        tracemalloc.stop()
+    # A full buffer of snapshots is 2 MB; storing the longer run would take 16 MB.
+    assert peaks[2] < peaks[1] + 3e6
 
 
 def test_a_chain_that_blows_up_is_marked_diverged():
