@@ -71,7 +71,7 @@ def equilibrium(chain: Chain) -> xr.Dataset:
     mean, width, log_z = np.zeros((3, chain.size))
     for i in range(chain.size):
         d, log_p = recursion.log_density(i)
-        top = log_p.max()
+        top = np.max(log_p)
         p = np.exp(log_p - top)
         log_z[i] = top + np.log(p.sum())
         p /= p.sum()
@@ -216,7 +216,7 @@ def _log_cumulative(phi: Array, spacing: float) -> Array:
 
 def _add_rod(x: Array, centres: Array, p: Array, density: Array, label: Array) -> None:
     """Add one rod's probabilities ``p`` at positions ``centres`` to density and label on x."""
-    seen = np.flatnonzero(p > 1e-20 * p.max())
+    seen = np.flatnonzero(p > 1e-20 * np.max(p))
     kept = slice(max(seen[0] - 2, 0), seen[-1] + 3)
     positions = centres[kept]
     curve = CubicSpline(positions, p[kept] / (positions[1] - positions[0]))

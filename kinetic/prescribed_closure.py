@@ -39,7 +39,7 @@ def solve_prescribed_closure(chain: Chain, profile: Profile) -> xr.Dataset:
 
     # A chain without gap has rho_y = L/s at its centre, one with a wide gap 1/g.
     guess = np.log(min(chain.size / chain.thermal_length, 1 / max(chain.gap, 1e-60)))
-    bracket = elementwise.bracket_root(
+    bracket: Any = elementwise.bracket_root(
         np.vectorize(excess), guess, xmin=guess - _WIDEST, xmax=guess + _WIDEST
     )
     if not bracket.success:

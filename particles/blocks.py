@@ -22,7 +22,7 @@ def block_means(sums: Array, counts: NDArray[np.int64]) -> tuple[Array, Array]:
     block that an interruption cut short counts in the mean but not among the complete ones.
     """
     mean = sums.sum(axis=0) / counts.sum()
-    complete = counts == counts.max()
+    complete = counts == np.max(counts)
     shape = (-1,) + (1,) * (sums.ndim - 1)
     return mean, sums[complete] / counts[complete].reshape(shape)
 
