@@ -6,10 +6,12 @@ the particle steps in the group's name for the cost per particle and step.
 
 import numpy as np
 import pytest
+from numba import njit
+
 from crazybilliards.model import Chain
 from crazybilliards.particles import stepping
+from crazybilliards.particles.drift import make_law, make_scratch
 from crazybilliards.particles.schedule import default_time_step, relaxation_time
-from numba import njit
 
 PARTICLE_STEPS = 2_000_000
 
@@ -42,5 +44,7 @@ def test_step(benchmark, work, size, time_step, request):
     y, v, anchors = np.zeros((3, size))
     step = stepping.make_step(chain, time_step, "splitting")
     settle = int(5 * relaxation_time(chain) / time_step)
-    stepping.advance(y, v, anchors, generator, step, settle)
-    benchmark(stepping.advance, y, v, anchors, generator, step, PARTICLE_STEPS // size)
+    law = make_law(chain, time_step, "event-driven", 0.03, 1.0)
+    kernel = (y, v, anchors, generator, step, law, make_scratch(size), np.zeros(0, dtype=np.int64))
+    stepping.advance(*kernel, settle)
+    benchmark(stepping.advance, *kernel, PARTICLE_STEPS // size)

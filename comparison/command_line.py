@@ -116,13 +116,14 @@ def _write_comparison(tree: xr.DataTree, folder: Path, suffix: str) -> None:
 
 
 def _print_deviations(tree: xr.DataTree) -> None:
+    from rich.console import Console
+    from rich.table import Table
+
     from crazybilliards.comparison.elastic_chain import (
         THEORIES,
         deviations,
         largest_width_error,
     )
-    from rich.console import Console
-    from rich.table import Table
 
     table = Table(
         title="Density: simulation minus theory, in % of close packing 1/(2R)",

@@ -16,11 +16,12 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
+from scipy.ndimage import convolve1d
+
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.grid import deposit, position_grid
 from crazybilliards.model.vocabulary import require, result
-from numpy.typing import NDArray
-from scipy.ndimage import convolve1d
 
 Array = NDArray[np.float64]
 

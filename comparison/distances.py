@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
+
 from crazybilliards.model import chain_of
 from crazybilliards.model.vocabulary import require
 

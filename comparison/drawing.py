@@ -8,8 +8,9 @@ from typing import Any, Literal
 
 import matplotlib.pyplot as plt
 import xarray as xr
-from crazybilliards.model.vocabulary import require
 from matplotlib.axes import Axes
+
+from crazybilliards.model.vocabulary import require
 
 # Okabe and Ito's colours, told apart with any colour vision; line styles differ as well.
 _SYMBOL_COLOUR = "#000000"

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 
 import numpy as np
 import xarray as xr
+
 from crazybilliards.comparison.coverage import smooth
 from crazybilliards.comparison.distances import Deviation, deviation
 from crazybilliards.comparison.fits import fit_arctanh

@@ -10,12 +10,13 @@ import math
 
 import matplotlib.pyplot as plt
 import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
 from crazybilliards.comparison.coverage import smooth
 from crazybilliards.comparison.drawing import overlay
 from crazybilliards.comparison.elastic_chain import SIMULATION, THEORIES
 from crazybilliards.model import Chain, chain_of
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 
 def draw_density(tree: xr.DataTree) -> Figure:

@@ -7,10 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
-from crazybilliards.model import chain_of
-from crazybilliards.model.vocabulary import require
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import curve_fit
+
+from crazybilliards.model import chain_of
+from crazybilliards.model.vocabulary import require
 
 
 @dataclass(frozen=True)

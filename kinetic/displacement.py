@@ -13,10 +13,11 @@ from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
-from crazybilliards.model import Chain
-from crazybilliards.model.vocabulary import require
 from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import PchipInterpolator
+
+from crazybilliards.model import Chain
+from crazybilliards.model.vocabulary import require
 
 Displacement = (
     xr.Dataset | Sequence[ArrayLike] | NDArray[np.float64] | Callable[[ArrayLike], ArrayLike]

@@ -27,12 +27,13 @@ from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+
 from crazybilliards.model import Chain
 from crazybilliards.model.chain import check_integer
 from crazybilliards.model.grid import position_grid, thermal_reach
 from crazybilliards.model.vocabulary import result
-from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
 
 Array = NDArray[np.float64]
 

@@ -27,6 +27,7 @@ from __future__ import annotations
 import math
 
 import xarray as xr
+
 from crazybilliards.kinetic.displacement import Displacement, make_profile
 from crazybilliards.kinetic.label_closure import solve_label_closure
 from crazybilliards.kinetic.prescribed_closure import solve_prescribed_closure

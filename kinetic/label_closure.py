@@ -28,13 +28,14 @@ from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
-from crazybilliards.model import Chain
-from crazybilliards.model.grid import position_grid
-from crazybilliards.model.vocabulary import result
 from numpy.typing import NDArray
 from scipy.integrate import solve_bvp
 from scipy.special import gamma, gammaincc
 from scipy.stats import gennorm
+
+from crazybilliards.model import Chain
+from crazybilliards.model.grid import position_grid
+from crazybilliards.model.vocabulary import result
 
 Array = NDArray[np.float64]
 

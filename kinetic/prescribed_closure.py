@@ -11,13 +11,14 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq, elementwise
+
 from crazybilliards.kinetic.displacement import Profile
 from crazybilliards.model import Chain
 from crazybilliards.model.grid import position_grid
 from crazybilliards.model.vocabulary import result
-from numpy.typing import NDArray
-from scipy.integrate import solve_ivp
-from scipy.optimize import brentq, elementwise
 
 Array = NDArray[np.float64]
 

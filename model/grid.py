@@ -12,9 +12,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from crazybilliards.model.chain import Chain
 from numba import njit
 from numpy.typing import NDArray
+
+from crazybilliards.model.chain import Chain
 
 _BINS_PER_ROD = 21  # "bins much smaller than R": h = 0.095 R
 _MOST_NODES = 2**18

@@ -14,8 +14,9 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from crazybilliards.model.chain import Chain
 from numpy.typing import ArrayLike
+
+from crazybilliards.model.chain import Chain
 
 # name: (meaning, unit). R length, M mass, T = sqrt(M/k) time.
 VOCABULARY = {

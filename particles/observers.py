@@ -9,16 +9,27 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from typing import Self
+from typing import NamedTuple, Self
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
 from crazybilliards.model import Chain
 from crazybilliards.model.grid import deposit, position_grid, thermal_reach
 from crazybilliards.particles.blocks import block_means, jackknife
-from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
 Variables = dict[str, tuple[tuple[str, ...], ArrayLike]]
+
+
+class Snapshots(NamedTuple):
+    """What observers are handed: some successive snapshots, all of one block."""
+
+    block: int
+    first: int  # number of the first one within the replica, from 0
+    y: Array  # (snapshots, L), reduced coordinates
+    v: Array  # (snapshots, L)
+    collisions: NDArray[np.int64]  # since the last snapshots, by contact; empty if not counted
 
 
 class Observer(ABC):
@@ -30,8 +41,8 @@ class Observer(ABC):
     def __init__(self, chain: Chain, blocks: int) -> None: ...
 
     @abstractmethod
-    def observe(self, block: int, y: Array, v: Array) -> None:
-        """Take snapshots, shape (snapshots, L), in reduced coordinates, all of one block."""
+    def observe(self, seen: Snapshots) -> None:
+        """Take some snapshots."""
 
     @abstractmethod
     def join(self, others: Sequence[Self]) -> None:
@@ -52,12 +63,13 @@ class Widths(Observer):
         self.anchors = chain.reduced_anchors
         self.sums = np.zeros((blocks, 3, chain.size))
 
-    def observe(self, block: int, y: Array, v: Array) -> None:
+    def observe(self, seen: Snapshots) -> None:
         """Add snapshots to the sums of their block."""
-        d = y - self.anchors
-        self.sums[block, 0] += d.sum(axis=0)
-        self.sums[block, 1] += np.einsum("sp,sp->p", d, d)
-        self.sums[block, 2] += np.einsum("sp,sp->p", v, v)
+        d = seen.y - self.anchors
+        sums = self.sums[seen.block]
+        sums[0] += d.sum(axis=0)
+        sums[1] += np.einsum("sp,sp->p", d, d)
+        sums[2] += np.einsum("sp,sp->p", seen.v, seen.v)
 
     def join(self, others: Sequence[Self]) -> None:
         """Append the blocks of other replicas."""
@@ -101,10 +113,10 @@ class Density(Observer):
         self.weights = np.zeros((blocks, x.size))
         self.outside = 0
 
-    def observe(self, block: int, y: Array, v: Array) -> None:
+    def observe(self, seen: Snapshots) -> None:
         """Put every rod of every snapshot on the grid."""
-        points = (y + self.offsets).ravel()
-        self.outside += deposit(points, self.first, self.spacing, self.weights[block])
+        points = (seen.y + self.offsets).ravel()
+        self.outside += deposit(points, self.first, self.spacing, self.weights[seen.block])
 
     def join(self, others: Sequence[Self]) -> None:
         """Append the blocks of other replicas."""

@@ -5,15 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from threading import Event
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
+
 from crazybilliards.model import Chain
 from crazybilliards.model.vocabulary import require
-from crazybilliards.particles.observers import Observer
+from crazybilliards.particles.drift import HEAP, Law, make_scratch
+from crazybilliards.particles.observers import Observer, Snapshots
 from crazybilliards.particles.schedule import Schedule
-from crazybilliards.particles.stepping import Step, advance, record
-from numpy.typing import NDArray
+from crazybilliards.particles.stepping import Step, advance, bounded, record
 
 Array = NDArray[np.float64]
 
@@ -21,11 +24,19 @@ Array = NDArray[np.float64]
 _CHUNK = 2**20
 
 
+class Dynamics(NamedTuple):
+    """What moves a chain: the numbers its kernels need, the same for all replicas."""
+
+    anchors: Array
+    step: Step
+    law: Law
+    fastest: float  # a rod that is faster has left every steady state: the chain diverged
+
+
 @dataclass
 class Replica:
     """State and measurements of one copy of the chain."""
 
-    anchors: Array
     y: Array
     v: Array
     generator: np.random.Generator
@@ -34,35 +45,51 @@ class Replica:
     steps: int = 0
     diverged: bool = False
 
-    def run(self, step: Step, schedule: Schedule, stop: Event) -> Iterator[int]:
+    def run(self, dynamics: Dynamics, schedule: Schedule, stop: Event) -> Iterator[int]:
         """Warm up, then measure; yield the number of steps after every chunk."""
         size = self.y.size
+        anchors, step, law, fastest = dynamics
+        kernel = (self.y, self.v, anchors, self.generator, step, law, make_scratch(size))
+        unseen = np.zeros(0, dtype=np.int64)
         chunk = max(_CHUNK // size, 1)
         while self.steps < schedule.warmup_steps and not stop.is_set():
             steps = min(chunk, schedule.warmup_steps - self.steps)
-            advance(self.y, self.v, self.anchors, self.generator, step, steps)
+            met = advance(*kernel, unseen, steps)
+            self.diverged = met < 0 or not bounded(self.y, self.v, fastest)
+            if self.diverged:
+                return
             yield self._count(steps)
+        collisions = np.zeros(size - 1, dtype=np.int64) if law.operator == HEAP else unseen
         rows = min(max(chunk // schedule.stride, 1), schedule.snapshots_per_block)
         y_buffer, v_buffer = np.empty((2, rows, size))
         for block in range(schedule.blocks):
             while self.counts[block] < schedule.snapshots_per_block and not stop.is_set():
                 n = min(rows, schedule.snapshots_per_block - int(self.counts[block]))
-                buffers = y_buffer[:n], v_buffer[:n]
-                record(
-                    self.y, self.v, self.anchors, self.generator, step, schedule.stride, *buffers
+                collisions[:] = 0
+                good = record(
+                    *kernel, collisions, schedule.stride, fastest, y_buffer[:n], v_buffer[:n]
                 )
-                # NaN and inf reach every later state, so looking at the last one is enough.
-                self.diverged = not (np.isfinite(self.y).all() and np.isfinite(self.v).all())
+                first = block * schedule.snapshots_per_block + int(self.counts[block])
+                chunk_seen = Snapshots(block, first, y_buffer[:good], v_buffer[:good], collisions)
+                for observer in self.observers:
+                    observer.observe(chunk_seen)
+                self.counts[block] += good
+                yield self._count(good * schedule.stride)
+                self.diverged = good < n
                 if self.diverged:
                     return
-                for observer in self.observers:
-                    observer.observe(block, *buffers)
-                self.counts[block] += n
-                yield self._count(n * schedule.stride)
 
     def _count(self, steps: int) -> int:
         self.steps += steps
         return steps
+
+
+def typical_speed(chain: Chain, duration: float, y: Array, v: Array) -> float:
+    """Upper estimate of the speed that noise and the start's own energy give a rod [R/T]."""
+    heating = min(duration, chain.mass / (2 * chain.damping) if chain.damping else np.inf)
+    noise = chain.amplitude / chain.mass * np.sqrt(heating)
+    spring = np.sqrt(2 * chain.potential(y - chain.reduced_anchors).max() / chain.mass)
+    return float(noise + spring + np.abs(v).max())
 
 
 def replica_starts(

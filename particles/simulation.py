@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_EXCEPTION, Future, ThreadPoolExecutor, wait
 from contextlib import contextmanager
 from dataclasses import asdict
@@ -13,17 +13,21 @@ from typing import get_args
 
 import numpy as np
 import xarray as xr
-from crazybilliards.model import Chain
-from crazybilliards.model.chain import check_integer
-from crazybilliards.model.vocabulary import result
-from crazybilliards.particles.observers import OBSERVERS, Variables
-from crazybilliards.particles.replica import Replica, replica_starts
-from crazybilliards.particles.schedule import Schedule, make_schedule
-from crazybilliards.particles.stepping import Step, Stepper, make_step
 from numpy.typing import NDArray
 from tqdm import tqdm
 
+from crazybilliards.model import Chain
+from crazybilliards.model.chain import check_integer, check_real
+from crazybilliards.model.vocabulary import result
+from crazybilliards.particles.drift import Method, make_law
+from crazybilliards.particles.observers import OBSERVERS, Variables
+from crazybilliards.particles.replica import Dynamics, Replica, replica_starts, typical_speed
+from crazybilliards.particles.schedule import Schedule, make_schedule
+from crazybilliards.particles.stepping import Stepper, make_step
+
 Array = NDArray[np.float64]
+
+_DIVERGED = 1e6  # typical speeds: the steady states of e > 1 stay within some tens of them
 
 
 def simulate(
@@ -32,7 +36,9 @@ def simulate(
     duration: float = 5000.0,
     warmup: float | None = None,
     time_step: float | None = None,
+    method: Method = "event-driven",
     stepper: Stepper = "splitting",
+    merging: float = 0.03,
     seed: int = 0,
     observe: Sequence[str] = ("widths", "density"),
     start: xr.Dataset | None = None,
@@ -45,7 +51,7 @@ def simulate(
     Parameters
     ----------
     chain
-        The chain; this version simulates ``restitution=1``.
+        The chain, with any restitution.
     duration
         Time measured in each replica [T]; rounded up to whole blocks of snapshots. Good values
         are hundreds of relaxation times 2m/gamma (8.4 for the default chain).
@@ -53,8 +59,14 @@ def simulate(
         Time before measuring [T]; None: 12 relaxation times, or 0 with a ``start``.
     time_step
         None: 0.05 of the fastest of spring and damping (0.1 for the default chain).
+    method
+        ``"event-driven"``: every collision in its order. ``"contact-dynamics"``: all contacts of
+        a step at once, the paper's method; right only where a step sees few collisions.
     stepper
         ``"splitting"`` (second order in the time step) or ``"euler"`` (the paper's, first order).
+    merging
+        Restitution below 1: rods that would separate more slowly than this many velocity kicks
+        of one step's noise move as one until the end of the step. 0.01 to 0.1 give the same.
     seed
         Integer >= 0. The same seed gives the same result to the last bit, whatever ``threads``.
     observe
@@ -89,10 +101,10 @@ def simulate(
     >>> run.velocity_width.dims, run.attrs["status"]
     (('particle',), 'completed')
     """
-    if chain.restitution != 1:
-        raise ValueError(f"restitution must be 1 in this version, got {chain.restitution:g}")
-    if stepper not in get_args(Stepper):
-        raise ValueError(f"stepper must be one of {get_args(Stepper)}, got {stepper!r}")
+    for name, value, kinds in (("method", method, Method), ("stepper", stepper, Stepper)):
+        if value not in get_args(kinds):
+            raise ValueError(f"{name} must be one of {get_args(kinds)}, got {value!r}")
+    merging = check_real("merging", merging)
     seed = check_integer("seed", seed, least=0)
     replicas = check_integer("replicas", replicas, least=1)
     if threads is None:
@@ -108,26 +120,56 @@ def simulate(
         started=start is not None,
     )
     starts = replica_starts(chain, start, replicas)
+    dynamics = _dynamics(chain, schedule, method, stepper, merging, starts)
     streams = np.random.SeedSequence(seed).spawn(replicas)
-    step = make_step(chain, schedule.time_step, stepper)
     runs = [
-        Replica(
-            chain.reduced_anchors,
-            *starts[replica],
-            np.random.Generator(np.random.PCG64(streams[replica])),
-            [OBSERVERS[name](chain, schedule.blocks) for name in names],
-            np.zeros(schedule.blocks, dtype=np.int64),
-        )
-        for replica in range(replicas)
+        _replica(chain, *state, stream, names, schedule)
+        for state, stream in zip(starts, streams, strict=True)
     ]
     with _announced(progress):
         _compile_kernels(names)
-    interrupted = _run_all(runs, step, schedule, threads, progress)
-    return _collect(chain, runs, names, schedule, stepper, seed, interrupted)
+    interrupted = _run_all(runs, dynamics, schedule, threads, progress)
+    settings = {"method": method, "stepper": stepper, "merging": merging, "seed": seed}
+    return _collect(chain, runs, schedule, settings, interrupted)
+
+
+def _dynamics(
+    chain: Chain,
+    schedule: Schedule,
+    method: Method,
+    stepper: Stepper,
+    merging: float,
+    starts: list[tuple[Array, Array]],
+) -> Dynamics:
+    duration = schedule.warmup + schedule.duration
+    speed = max(typical_speed(chain, duration, y, v) for y, v in starts)
+    return Dynamics(
+        chain.reduced_anchors,
+        make_step(chain, schedule.time_step, stepper),
+        make_law(chain, schedule.time_step, method, merging, speed),
+        _DIVERGED * speed if speed > 0 else np.inf,
+    )
+
+
+def _replica(
+    chain: Chain,
+    y: Array,
+    v: Array,
+    stream: np.random.SeedSequence,
+    names: list[str],
+    schedule: Schedule,
+) -> Replica:
+    return Replica(
+        y,
+        v,
+        np.random.Generator(np.random.PCG64(stream)),
+        [OBSERVERS[name](chain, schedule.blocks) for name in names],
+        np.zeros(schedule.blocks, dtype=np.int64),
+    )
 
 
 def _run_all(
-    runs: list[Replica], step: Step, schedule: Schedule, threads: int, progress: bool
+    runs: list[Replica], dynamics: Dynamics, schedule: Schedule, threads: int, progress: bool
 ) -> bool:
     """Run the replicas in threads; return whether Ctrl-C stopped them."""
     stop = Event()
@@ -144,7 +186,7 @@ def _run_all(
     ):
 
         def work(replica: Replica) -> None:
-            for steps in replica.run(step, schedule, stop):
+            for steps in replica.run(dynamics, schedule, stop):
                 bar.update(steps * schedule.time_step)
 
         futures = [pool.submit(work, replica) for replica in runs]
@@ -186,13 +228,10 @@ def _compile_kernels(names: list[str]) -> None:
     """Compile every kernel, or load it from numba's cache, by running a chain of two rods."""
     chain = Chain(size=2)
     schedule = Schedule(0.1, warmup_steps=1, stride=1, blocks=1, snapshots_per_block=1)
-    observers = [OBSERVERS[name](chain, schedule.blocks) for name in names]
-    generator = np.random.Generator(np.random.PCG64(0))
-    y, v = np.zeros((2, chain.size))
-    replica = Replica(
-        chain.reduced_anchors, y, v, generator, observers, np.zeros(1, dtype=np.int64)
-    )
-    for _ in replica.run(make_step(chain, schedule.time_step, "splitting"), schedule, Event()):
+    starts = replica_starts(chain, None, 1)
+    replica = _replica(chain, *starts[0], np.random.SeedSequence(0), names, schedule)
+    dynamics = _dynamics(chain, schedule, "event-driven", "splitting", 0.03, starts)
+    for _ in replica.run(dynamics, schedule, Event()):
         pass
 
 
@@ -215,21 +254,23 @@ def _check_observers(observe: Sequence[str]) -> list[str]:
 def _collect(
     chain: Chain,
     runs: list[Replica],
-    names: list[str],
     schedule: Schedule,
-    stepper: str,
-    seed: int,
+    settings: Mapping[str, str | int | float],
     interrupted: bool,
 ) -> xr.Dataset:
+    """Join the replicas' measurements into one result."""
     counts = np.concatenate([run.counts for run in runs])
     diverged = any(run.diverged for run in runs)
     if counts.sum() == 0:
         if interrupted:
             raise KeyboardInterrupt("nothing was measured yet")
-        raise ValueError("the chain diverged before anything was measured; lower time_step")
+        reached = min(run.steps for run in runs) * schedule.time_step
+        raise ValueError(
+            f"the chain diverged at time {reached:g}, before anything was measured; warmup=0 "
+            "measures from the start"
+        )
     variables: Variables = {}
-    for index in range(len(names)):
-        first, *others = (run.observers[index] for run in runs)
+    for first, *others in zip(*(run.observers for run in runs), strict=True):
         first.join(others)
         variables |= first.report(counts)
     grids = [observer.x for observer in runs[0].observers if observer.x is not None]
@@ -241,8 +282,7 @@ def _collect(
         status="interrupted" if interrupted else "diverged" if diverged else "completed",
         end_time=min(run.steps for run in runs) * schedule.time_step,
         method={
-            "stepper": stepper,
-            "seed": seed,
+            **settings,
             "replicas": len(runs),
             "schedule": asdict(schedule),
             "duration": schedule.duration,

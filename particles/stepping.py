@@ -20,9 +20,11 @@ from __future__ import annotations
 import math
 from typing import Literal, NamedTuple
 
-from crazybilliards.model import Chain
-from crazybilliards.particles import sort
+import numpy as np
 from numba import njit
+
+from crazybilliards.model import Chain
+from crazybilliards.particles.drift import drift
 
 Stepper = Literal["splitting", "euler"]
 
@@ -61,11 +63,11 @@ def _spring_kick(y, v, anchors, kick, quadratic):  # type: ignore[no-untyped-def
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def advance(y, v, anchors, generator, step, steps):  # type: ignore[no-untyped-def] # pragma: no cover
-    """Take ``steps`` steps of the elastic chain in place; return the number of collisions.
+def advance(y, v, anchors, generator, step, law, scratch, counts, steps):  # type: ignore[no-untyped-def] # pragma: no cover
+    """Take ``steps`` steps of the chain in place; return the collisions, or -1 if diverged.
 
     ``y``, ``v``, ``anchors``: float arrays of shape (L,) in the reduced coordinate;
-    ``generator``: a numpy Generator of this thread's own; ``step``: a :class:`Step`.
+    ``generator``: a numpy Generator of this thread's own; ``counts``: see ``event_driven``.
     """
     collisions = 0
     for _ in range(steps):
@@ -73,18 +75,37 @@ def advance(y, v, anchors, generator, step, steps):  # type: ignore[no-untyped-d
             d = y[i] - anchors[i]
             pull = step.kick * (d * abs(d) if step.quadratic else d)
             v[i] = step.decay * v[i] + step.noise * generator.standard_normal() - pull
-        collisions += sort.drift(y, v, step.time_step)
+        met = drift(y, v, step.time_step, law, scratch, counts)
+        if met < 0:
+            return -1
+        collisions += met
         if step.verlet:
             _spring_kick(y, v, anchors, step.kick, step.quadratic)
     return collisions
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def record(y, v, anchors, generator, step, stride, y_buffer, v_buffer):  # type: ignore[no-untyped-def] # pragma: no cover
-    """Fill the buffers, shape (snapshots, L), with the state after every ``stride`` steps."""
-    collisions = 0
+def bounded(y, v, fastest):  # type: ignore[no-untyped-def] # pragma: no cover
+    """Whether the state is finite and no rod faster than ``fastest``; false for NaN."""
+    for i in range(y.size):
+        if not (abs(v[i]) <= fastest and abs(y[i]) < np.inf):
+            return False
+    return True
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def record(  # type: ignore[no-untyped-def] # pragma: no cover
+    y, v, anchors, generator, step, law, scratch, counts, stride, fastest, y_buffer, v_buffer
+):
+    """Fill the buffers, shape (snapshots, L), with the state after every ``stride`` steps.
+
+    Return how many snapshots are good: fewer than there is room for if the chain diverged, that
+    is, an operator gave up or a rod became faster than ``fastest``.
+    """
     for snapshot in range(y_buffer.shape[0]):
-        collisions += advance(y, v, anchors, generator, step, stride)
+        met = advance(y, v, anchors, generator, step, law, scratch, counts, stride)
+        if met < 0 or not bounded(y, v, fastest):
+            return snapshot
         y_buffer[snapshot] = y
         v_buffer[snapshot] = v
-    return collisions
+    return y_buffer.shape[0]

@@ -8,6 +8,7 @@ import time
 from pathlib import Path
 
 import pytest
+
 from crazybilliards.model import load
 
 COMMAND = [sys.executable, "-c", "from crazybilliards.comparison.command_line import main; main()"]

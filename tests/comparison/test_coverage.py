@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import xarray as xr
+
 from crazybilliards.comparison import coverage_density, smooth
 from crazybilliards.kinetic import equilibrium, equilibrium_states, force_balance
 from crazybilliards.model import Chain

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+
 from crazybilliards.comparison import deviation, fit_arctanh
 from crazybilliards.kinetic import equilibrium, force_balance
 from crazybilliards.model import Chain

@@ -3,6 +3,7 @@
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
+
 from crazybilliards.comparison import compare_elastic, overlay, smooth
 from crazybilliards.comparison.elastic_figures import draw_density, draw_displacement
 from crazybilliards.kinetic import equilibrium, force_balance

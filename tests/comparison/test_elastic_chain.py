@@ -1,6 +1,7 @@
 """The main comparison: what it promises about simulation and theory at e = 1."""
 
 import pytest
+
 from crazybilliards.comparison import compare_elastic
 from crazybilliards.comparison.elastic_chain import deviations, largest_width_error
 from crazybilliards.model import Chain, chain_of

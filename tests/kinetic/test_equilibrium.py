@@ -4,11 +4,12 @@ import math
 
 import numpy as np
 import pytest
-from crazybilliards.kinetic import equilibrium, equilibrium_states
-from crazybilliards.model import Chain
 from scipy.integrate import quad
 from scipy.special import betainc
 from scipy.stats import beta, gennorm, truncnorm
+
+from crazybilliards.kinetic import equilibrium, equilibrium_states
+from crazybilliards.model import Chain
 
 
 def free_displacement(chain):

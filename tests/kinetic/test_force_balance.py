@@ -4,11 +4,12 @@ import math
 
 import numpy as np
 import pytest
-from crazybilliards.kinetic import equilibrium, force_balance
-from crazybilliards.model import Chain
 from scipy.interpolate import CubicSpline
 from scipy.special import wrightomega
 from scipy.stats import gennorm
+
+from crazybilliards.kinetic import equilibrium, force_balance
+from crazybilliards.model import Chain
 
 
 def closed_form(chain, quantiles):

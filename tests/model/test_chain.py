@@ -4,9 +4,10 @@ import math
 
 import numpy as np
 import pytest
-from crazybilliards.model import Chain
 from hypothesis import given
 from hypothesis import strategies as st
+
+from crazybilliards.model import Chain
 
 positive = st.floats(min_value=1e-6, max_value=1e6)
 gaps = st.floats(0, 10).map(lambda gap: round(gap, 6))

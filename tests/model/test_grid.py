@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
-from crazybilliards.model import Chain
-from crazybilliards.model.grid import bins_per_rod, deposit, position_grid, thermal_reach
 from hypothesis import given
 from hypothesis import strategies as st
+
+from crazybilliards.model import Chain
+from crazybilliards.model.grid import bins_per_rod, deposit, position_grid, thermal_reach
 
 
 @pytest.mark.parametrize("amplitude", [0.1, 1, 100])

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import xarray as xr
+
 from crazybilliards.model import Chain, chain_of, load, save
 from crazybilliards.model.vocabulary import result
 

@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
-from crazybilliards.particles.sort import drift
 from hypothesis import given
 from hypothesis import strategies as st
+
+from crazybilliards.particles.sort import drift
 
 
 def drift_slowly(y, v, dt):
