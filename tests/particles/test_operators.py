@@ -1,0 +1,150 @@
+"""What every collision operator must keep, and where they must agree with one another."""
+
+import numpy as np
+import pytest
+from gauss_seidel import solve
+from hypothesis import given
+from hypothesis import strategies as st
+
+from crazybilliards.particles.drift import CONTACTS, HEAP, ISOTONIC, SORT, Law, drift, make_scratch
+
+UNSEEN = np.zeros(0, dtype=np.int64)
+OPERATORS = {"sort": SORT, "isotonic": ISOTONIC, "heap": HEAP, "contacts": CONTACTS}
+
+
+def drifted(operator, y, v, dt, restitution, merge_speed=1e-9, counts=UNSEEN):
+    """Positions and velocities after the drift, and what the operator returned."""
+    y, v = y.copy(), v.copy()
+    law = Law(operator, restitution, merge_speed, 10**6)
+    collisions = drift(y, v, dt, law, make_scratch(y.size), counts)
+    return y, v, collisions
+
+
+@st.composite
+def states(draw, touching=True):
+    """Draw a chain of up to 15 points, some of them possibly in contact, and a time step."""
+    generator = np.random.default_rng(draw(st.integers(0, 2**32)))
+    size = draw(st.integers(1, 15))
+    gaps = generator.exponential(size=size) / size
+    if touching and draw(st.booleans()):
+        gaps[generator.random(size) < 0.5] = 0
+    return np.cumsum(gaps), generator.normal(size=size), draw(st.floats(1e-3, 2))
+
+
+restitutions = st.sampled_from([0.0, 0.3, 0.8, 0.95, 1.0, 1.05])
+
+
+@given(state=states(), e=restitutions, operator=st.sampled_from([HEAP, CONTACTS]))
+def test_order_momentum_and_centre_of_mass(state, e, operator):
+    y, v, dt = state
+    after_y, after_v, _ = drifted(operator, y, v, dt, e)
+    assert (np.diff(after_y) >= 0).all()
+    assert after_v.sum() == pytest.approx(v.sum(), abs=1e-10 / dt)
+    assert after_y.sum() == pytest.approx((y + dt * v).sum(), abs=1e-10)
+
+
+@given(state=states(), e=st.sampled_from([0.0, 0.3, 0.8, 0.95, 1.0]))
+def test_energy_never_grows_below_or_at_restitution_one(state, e):
+    y, v, dt = state
+    _, after, _ = drifted(HEAP, y, v, dt, e)
+    assert (after**2).sum() <= (v**2).sum() * (1 + 1e-12)
+
+
+@given(e=st.floats(0, 1.5), closing=st.floats(0.1, 10), drift_speed=st.floats(-3, 3))
+def test_energy_loss_of_a_binary_collision(e, closing, drift_speed):
+    """(1 - e^2) m dv^2 / 4, and the relative velocity reversed by e."""
+    v = np.array([drift_speed + closing, drift_speed])
+    _, after, collisions = drifted(HEAP, np.array([0.0, 0.01]), v, 1.0, e, merge_speed=0.0)
+    assert collisions == 1
+    assert after[1] - after[0] == pytest.approx(e * closing)
+    lost = (v**2).sum() / 2 - (after**2).sum() / 2
+    assert lost == pytest.approx((1 - e**2) * closing**2 / 4, abs=1e-9)
+
+
+@given(state=states())
+def test_isotonic_is_event_driven_without_restitution(state):
+    y, v, dt = state
+    for ours, theirs in zip(
+        drifted(ISOTONIC, y, v, dt, 0.0)[:2], drifted(HEAP, y, v, dt, 0.0)[:2], strict=True
+    ):
+        np.testing.assert_allclose(ours, theirs, atol=1e-11)
+
+
+@given(state=states(touching=False))
+def test_sort_is_event_driven_at_restitution_one(state):
+    y, v, dt = state
+    sort, heap = drifted(SORT, y, v, dt, 1.0), drifted(HEAP, y, v, dt, 1.0)
+    np.testing.assert_allclose(sort[0], heap[0], atol=1e-11)
+    np.testing.assert_allclose(sort[1], heap[1], atol=1e-11)
+    assert sort[2] == heap[2]
+
+
+@given(state=states(), e=restitutions)
+def test_contact_dynamics_is_what_gauss_seidel_converges_to(state, e):
+    y, v, dt = state
+    _, exact, _ = drifted(CONTACTS, y, v, dt, e)
+    swept = v.copy()
+    solve(y, swept, dt, e, 1e-14, np.zeros(v.size - 1), np.zeros(v.size - 1))
+    np.testing.assert_allclose(exact, swept, atol=1e-9)
+
+
+@given(state=states(), e=restitutions, name=st.sampled_from(sorted(OPERATORS)))
+def test_reflection_symmetry(state, e, name):
+    y, v, dt = state
+    one = drifted(OPERATORS[name], y, v, dt, e)
+    other = drifted(OPERATORS[name], -y[::-1], -v[::-1], dt, e)
+    np.testing.assert_allclose(-other[0][::-1], one[0], atol=1e-10)
+    np.testing.assert_allclose(-other[1][::-1], one[1], atol=1e-9 / dt)
+
+
+@given(state=states(), e=restitutions, name=st.sampled_from(sorted(OPERATORS)))
+def test_galilean_invariance(state, e, name):
+    y, v, dt = state
+    one = drifted(OPERATORS[name], y, v, dt, e)
+    moving = drifted(OPERATORS[name], y, v + 1.5, dt, e)
+    np.testing.assert_allclose(moving[0], one[0] + 1.5 * dt, atol=1e-9)
+    np.testing.assert_allclose(moving[1], one[1] + 1.5, atol=1e-9 / dt)
+
+
+@given(state=states(), e=restitutions)
+def test_collisions_are_counted_at_their_contacts(state, e):
+    y, v, dt = state
+    counts = np.zeros(y.size - 1, dtype=np.int64)
+    _, _, collisions = drifted(HEAP, y, v, dt, e, counts=counts)
+    if y.size > 1:
+        assert counts.sum() == collisions
+
+
+@pytest.mark.parametrize("rods", [3, 5])
+def test_newtons_cradle_sends_off_the_last_rod(rods):
+    y = np.zeros(rods)
+    y[0] = -1.0
+    v = np.zeros(rods)
+    v[0] = 1.0
+    for operator in (SORT, HEAP):
+        np.testing.assert_array_equal(drifted(operator, y, v, 1.5, 1.0)[1], v[::-1])
+
+
+def test_contact_dynamics_shares_the_impulse_of_the_cradle():
+    v = np.array([1.0, 0, 0])
+    after = drifted(CONTACTS, np.zeros(3), v, 0.1, 1.0)[1]
+    np.testing.assert_allclose(after, [-1 / 3, 2 / 3, 2 / 3])
+
+
+def test_inelastic_collapse_takes_a_bounded_number_of_collisions():
+    """A hundred rods thrown at one another at e = 0.5 end in clusters that fly apart."""
+    generator = np.random.default_rng(4)
+    y = np.sort(generator.random(100))
+    v = 0.5 - y + 0.1 * generator.normal(size=100)
+    _, after, collisions = drifted(HEAP, y, v, 100.0, 0.5, merge_speed=1e-3)
+    assert 100 < collisions < 10_000
+    assert (np.diff(after) >= 0).all()
+    assert len(np.unique(after)) < 60
+    # Without clusters the same drift does not end.
+    assert drift(y, v, 100.0, Law(HEAP, 0.5, 0.0, 100_000), make_scratch(100), UNSEEN) == -1
+
+
+def test_too_many_collisions_are_given_up_not_endured():
+    y, v = np.linspace(0, 1, 100), np.linspace(1, -1, 100)
+    law = Law(HEAP, 0.99, 0.0, 50)
+    assert drift(y, v, 10.0, law, make_scratch(100), UNSEEN) == -1

@@ -1,0 +1,37 @@
+"""Contact Dynamics as it is usually solved: sweep over the contacts until nothing changes.
+
+The independent twin of the exact solve: projected Gauss-Seidel on the impulses of all contacts,
+which converges to the same velocities at a cost that grows with the square of the chain.
+"""
+
+from numba import njit
+
+
+@njit(cache=True, nogil=True)
+def solve(y, v, dt, restitution, tolerance, impulses, bounds):
+    """Velocities after contact, in place; return the number of sweeps.
+
+    ``impulses`` (L - 1) is the starting guess and the result, per mass; ``bounds`` is scratch.
+    """
+    n = y.size
+    for i in range(n - 1):
+        closing = v[i] - v[i + 1]
+        gap = y[i + 1] - y[i]
+        bounces = restitution > 0 and gap < dt * closing
+        bounds[i] = restitution * closing if bounces else -gap / dt
+    for i in range(n - 1):
+        v[i] -= impulses[i]
+        v[i + 1] += impulses[i]
+    sweeps, largest = 0, tolerance + 1.0
+    while largest > tolerance:
+        largest = 0.0
+        for i in range(n - 1):
+            missing = (bounds[i] - (v[i + 1] - v[i])) / 2
+            new = max(impulses[i] + missing, 0.0)
+            change = new - impulses[i]
+            impulses[i] = new
+            v[i] -= change
+            v[i + 1] += change
+            largest = max(largest, abs(change))
+        sweeps += 1
+    return sweeps
