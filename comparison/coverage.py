@@ -86,7 +86,7 @@ def _hat_density_of_states(chain: Chain, source: xr.Dataset) -> xr.Dataset:
     if outside:
         raise ValueError("the states hold positions that are not finite")
     density = weights / (x[1] - x[0]) / (positions.size / chain.size)
-    return result(chain, {"density": ("x", density)}, x=x, **_origin(source))
+    return result(chain, {"density": ("x", density)}, coordinates={"x": x}, **_origin(source))
 
 
 def _hat_density_of_theory(source: xr.Dataset) -> xr.Dataset:

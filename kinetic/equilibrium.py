@@ -88,7 +88,7 @@ def equilibrium(chain: Chain) -> xr.Dataset:
             "displacement_width": ("particle", width),
             "velocity_width": ("particle", np.full(chain.size, chain.free_velocity_width)),
         },
-        x=x,
+        coordinates={"x": x},
         source="theory",
         method={"theory": "exact equilibrium"},
         residual=float(np.ptp(log_z)),

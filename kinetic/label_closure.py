@@ -74,7 +74,7 @@ def solve_label_closure(chain: Chain) -> xr.Dataset:
             "mean_displacement": ("particle", mean),
             "velocity_width": ("particle", np.full(L, chain.free_velocity_width)),
         },
-        x=x,
+        coordinates={"x": x},
         source="theory",
         method={"theory": "force balance, by labels"},
         residual=edge.residual,

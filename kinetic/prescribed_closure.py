@@ -119,7 +119,7 @@ def _assemble(chain: Chain, profile: Profile, centre: float) -> xr.Dataset:
             "label": ("x", label + passed[-1]),
             "displacement": ("x", displacement),
         },
-        x=x,
+        coordinates={"x": x},
         source="theory",
         method={"theory": "force balance, prescribed displacement"},
         residual=abs(passed[-1] + passed[1] - chain.size) / chain.size,

@@ -26,10 +26,16 @@ VOCABULARY = {
     "mean_displacement": ("mean displacement <x_i - x0_i>", "R"),
     "displacement_width": ("displacement width W_x", "R"),
     "velocity_width": ("velocity width W_v", "R/T"),
+    "velocity_density": ("probability density of v_i", "T/R"),
+    "velocity_outside": ("share of velocities beyond the bins", "1"),
+    "kinetic_energy": ("kinetic energy sum m v^2/2", "M R^2/T^2"),
+    "collision_rate": ("collisions with the right neighbour per time", "1/T"),
+    "autocorrelation_time": ("autocorrelation time of the displacement", "T"),
     "displacement": ("mean displacement <dx>(x)", "R"),
     "label": ("number of rods to the left N", "1"),
     "position": ("rod centres x_i", "R"),
-    "velocity": ("rod velocities v_i", "R/T"),
+    "velocity": ("velocity v", "R/T"),
+    "time": ("time t", "T"),
     "x": ("position x", "R"),
     "particle": ("particle i", "1"),
     "mean_position": ("mean position <x_i>", "R"),
@@ -45,7 +51,7 @@ def result(
     *,
     source: str,
     method: Mapping[str, Any],
-    x: ArrayLike | None = None,
+    coordinates: Mapping[str, ArrayLike] | None = None,
     status: str = "completed",
     end_time: float | None = None,
     residual: float | None = None,
@@ -62,24 +68,26 @@ def result(
         ``"simulation"`` or ``"theory"``.
     method
         How it was computed, for the provenance: anything JSON can hold.
-    x
-        Position grid, if there is one.
+    coordinates
+        Values along the dimensions x, time and velocity, where there are any; the particles
+        number themselves.
     status, end_time
         ``completed``, ``diverged`` or ``interrupted``, and the time reached.
     residual
         How well a theory's equations are satisfied; what it measures its function says.
     """
-    coordinates: dict[str, Any] = {}
-    if x is not None:
-        coordinates["x"] = ("x", np.asarray(x, dtype=float))
+    along: dict[str, Any] = {
+        name: (name, np.asarray(values, dtype=float))
+        for name, values in (coordinates or {}).items()
+    }
     if any("particle" in dims for dims, _ in variables.values()):
         ends = max(chain.size - 1, 1)
-        coordinates["particle"] = ("particle", np.arange(1, chain.size + 1))
-        coordinates["normalized_particle"] = ("particle", 2 * chain.rank / ends)
+        along["particle"] = ("particle", np.arange(1, chain.size + 1))
+        along["normalized_particle"] = ("particle", 2 * chain.rank / ends)
     if "mean_displacement" in variables:
         mean = np.asarray(variables["mean_displacement"][1])
-        coordinates["mean_position"] = ("particle", chain.anchors + mean)
-    dataset = xr.Dataset(dict(variables), coords=coordinates)
+        along["mean_position"] = ("particle", chain.anchors + mean)
+    dataset = xr.Dataset(dict(variables), coords=along)
     for name in (*dataset.data_vars, *dataset.coords):
         meaning, unit = VOCABULARY[str(name).removesuffix("_error")]
         if str(name).endswith("_error"):

@@ -3,8 +3,8 @@
 An operator advances y and v over one step of free flight with collisions and returns how many
 there were, or -1 if it gave up. ``method="event-driven"`` takes collisions one at a time: by
 sorting at e = 1, by isotonic regression at e = 0 (both give the event-driven result in O(L)), by a
-heap otherwise. ``method="contact-dynamics"`` solves all
-contacts of a step at once.
+heap otherwise, or if every collision is to be counted at its contact.
+``method="contact-dynamics"`` solves all contacts of a step at once.
 """
 
 from __future__ import annotations
@@ -50,14 +50,24 @@ def make_scratch(size: int) -> Scratch:
     )
 
 
-def make_law(chain: Chain, time_step: float, method: Method, merging: float, speed: float) -> Law:
+def make_law(
+    chain: Chain,
+    time_step: float,
+    method: Method,
+    merging: float,
+    speed: float,
+    *,
+    counted: bool = False,
+) -> Law:
     """Choose the operator for the chain.
 
     ``merging`` is in velocity kicks of one step's noise; with little or no noise 1e-9 of the
-    typical ``speed`` keeps inelastic collapse finite.
+    typical ``speed`` keeps inelastic collapse finite. ``counted``: every collision is to be seen.
     """
     if method == "contact-dynamics":
         operator = CONTACTS
+    elif counted:
+        operator = HEAP
     else:
         operator = {1.0: SORT, 0.0: ISOTONIC}.get(chain.restitution, HEAP)
     kick = chain.amplitude / chain.mass * math.sqrt(time_step)

@@ -70,8 +70,10 @@ def simulate(
     seed
         Integer >= 0. The same seed gives the same result to the last bit, whatever ``threads``.
     observe
-        Any of ``"widths"`` (velocity_width, mean_displacement, displacement_width) and
-        ``"density"``.
+        Any of ``"widths"`` (velocity_width, mean_displacement, displacement_width and the
+        autocorrelation_time that tells whether warm-up and duration were long enough),
+        ``"density"``, ``"velocities"`` (velocity_density), ``"energy"`` (kinetic_energy in time)
+        and ``"collisions"`` (collision_rate).
     start
         A result with ``position`` and ``velocity`` over (replica, particle), such as
         ``equilibrium_states(chain, replicas)``; None: every rod at rest at its anchor.
@@ -120,7 +122,10 @@ def simulate(
         started=start is not None,
     )
     starts = replica_starts(chain, start, replicas)
-    dynamics = _dynamics(chain, schedule, method, stepper, merging, starts)
+    counted = "collisions" in names
+    if counted and method != "event-driven":
+        raise ValueError("observe: 'collisions' are only seen by method='event-driven'")
+    dynamics = _dynamics(chain, schedule, method, stepper, merging, counted, starts)
     streams = np.random.SeedSequence(seed).spawn(replicas)
     runs = [
         _replica(chain, *state, stream, names, schedule)
@@ -139,6 +144,7 @@ def _dynamics(
     method: Method,
     stepper: Stepper,
     merging: float,
+    counted: bool,
     starts: list[tuple[Array, Array]],
 ) -> Dynamics:
     duration = schedule.warmup + schedule.duration
@@ -146,7 +152,7 @@ def _dynamics(
     return Dynamics(
         chain.reduced_anchors,
         make_step(chain, schedule.time_step, stepper),
-        make_law(chain, schedule.time_step, method, merging, speed),
+        make_law(chain, schedule.time_step, method, merging, speed, counted=counted),
         _DIVERGED * speed if speed > 0 else np.inf,
     )
 
@@ -163,7 +169,7 @@ def _replica(
         y,
         v,
         np.random.Generator(np.random.PCG64(stream)),
-        [OBSERVERS[name](chain, schedule.blocks) for name in names],
+        [OBSERVERS[name](chain, schedule) for name in names],
         np.zeros(schedule.blocks, dtype=np.int64),
     )
 
@@ -230,7 +236,7 @@ def _compile_kernels(names: list[str]) -> None:
     schedule = Schedule(0.1, warmup_steps=1, stride=1, blocks=1, snapshots_per_block=1)
     starts = replica_starts(chain, None, 1)
     replica = _replica(chain, *starts[0], np.random.SeedSequence(0), names, schedule)
-    dynamics = _dynamics(chain, schedule, "event-driven", "splitting", 0.03, starts)
+    dynamics = _dynamics(chain, schedule, "event-driven", "splitting", 0.03, True, starts)
     for _ in replica.run(dynamics, schedule, Event()):
         pass
 
@@ -270,14 +276,15 @@ def _collect(
             "measures from the start"
         )
     variables: Variables = {}
+    coordinates: dict[str, Array] = {}
     for first, *others in zip(*(run.observers for run in runs), strict=True):
         first.join(others)
         variables |= first.report(counts)
-    grids = [observer.x for observer in runs[0].observers if observer.x is not None]
+        coordinates |= first.coordinates()
     return result(
         chain,
         variables,
-        x=grids[0] if grids else None,
+        coordinates=coordinates,
         source="simulation",
         status="interrupted" if interrupted else "diverged" if diverged else "completed",
         end_time=min(run.steps for run in runs) * schedule.time_step,

@@ -14,7 +14,7 @@ def flat(chain, height, width, error=None, spacing=0.5):
     variables = {"density": ("x", np.full(x.size, height))}
     if error is not None:
         variables["density_error"] = ("x", np.full(x.size, error))
-    return result(chain, variables, source="theory", method={}, x=x)
+    return result(chain, variables, source="theory", method={}, coordinates={"x": x})
 
 
 def test_deviation_in_both_units():
