@@ -16,12 +16,11 @@ sending the last rod off: a property of every such law, and the reason why event
 are the default.
 """
 
-from numba import njit
-
 from crazybilliards.particles.isotonic import pool
+from crazybilliards.particles.kernel import kernel
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def bound(gap, closing, restitution, dt):  # type: ignore[no-untyped-def] # pragma: no cover
     """Least relative velocity u_{i+1} - u_i of a contact; ``closing`` is v_i - v_{i+1}."""
     if restitution > 0 and gap < dt * closing:
@@ -29,7 +28,7 @@ def bound(gap, closing, restitution, dt):  # type: ignore[no-untyped-def] # prag
     return -gap / dt
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def drift(y, v, dt, restitution, starts, means, shifted):  # type: ignore[no-untyped-def] # pragma: no cover
     """Advance ``y`` and ``v`` in place by ``dt``; return the contacts that carried an impulse.
 

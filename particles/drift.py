@@ -13,11 +13,11 @@ import math
 from typing import Literal, NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from crazybilliards.model import Chain
 from crazybilliards.particles import contact_dynamics, event_driven, isotonic, sort
+from crazybilliards.particles.kernel import kernel
 
 Method = Literal["event-driven", "contact-dynamics"]
 
@@ -75,7 +75,7 @@ def make_law(
     return Law(operator, chain.restitution, merge_speed, 1_000 * chain.size + 1_000_000)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def drift(y, v, dt, law, scratch, counts):  # type: ignore[no-untyped-def] # pragma: no cover
     """Advance ``y`` and ``v`` in place by ``dt`` with the operator that ``law`` names."""
     if law.operator == SORT:

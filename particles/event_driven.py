@@ -15,22 +15,24 @@ Every collision that does not merge then costs at least (1 - e^2)/(4 e^2) m merg
 energy: the number of events is finite for certain. ``merge_speed`` is a small fraction of the
 velocity kick that the noise gives in one step; results do not depend on it.
 
+**Resting contacts.** For e > 1 rods that touch at the beginning of a step collide as at e = 1.
+
 **Velocities referred to the step's beginning.** y holds where a point would have been at t = 0, so
 that nothing has to be moved before the end: a collision at t changes it by (v_before - v_after) t.
 
 A cluster's state stands at its outermost members, the only ones with contacts to others.
 """
 
-from numba import njit
+from crazybilliards.particles.kernel import kernel
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def _before(a, b, due, speed):  # type: ignore[no-untyped-def] # pragma: no cover
     """Whether contact a is to be taken before contact b."""
     return due[a] < due[b] or (due[a] == due[b] and speed[a] > speed[b])
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def _sift(place, heap, places, size, due, speed):  # type: ignore[no-untyped-def] # pragma: no cover
     """Move the contact at ``place`` of the heap up or down to where it belongs."""
     contact = heap[place]
@@ -56,7 +58,7 @@ def _sift(place, heap, places, size, due, speed):  # type: ignore[no-untyped-def
     places[contact] = place
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def _schedule(contact, now, dt, y, v, heap, places, size, due, speed):  # type: ignore[no-untyped-def] # pragma: no cover
     """Work out when the contact closes next, if within the step; return the heap's size."""
     closing = v[contact] - v[contact + 1]
@@ -82,7 +84,7 @@ def _schedule(contact, now, dt, y, v, heap, places, size, due, speed):  # type: 
     return size
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def drift(y, v, dt, restitution, merge_speed, most, integers, floats, counts):  # type: ignore[no-untyped-def] # pragma: no cover
     """Advance ``y`` and ``v`` in place by ``dt``; return the collisions, or -1 if too many.
 
@@ -114,7 +116,9 @@ def drift(y, v, dt, restitution, merge_speed, most, integers, floats, counts):  
         v_left, v_right = v[contact], v[contact + 1]
         # The cluster's or the pair's common velocity, by its smaller change.
         common = v_left + (v_right - v_left) * right / (left + right)
-        rebound = restitution * (v_left - v_right)
+        # Flippers act when rods meet. Rods at rest against one another would otherwise pass one
+        # kick back and forth at no time and ever more energy: the start at the anchors, say.
+        rebound = (min(restitution, 1.0) if now == 0.0 else restitution) * (v_left - v_right)
         if rebound <= merge_speed:
             y_common = y[contact] + (v_left - common) * now
             first[b] = a

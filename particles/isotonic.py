@@ -6,10 +6,10 @@ of one block have met; by conservation of momentum a block moves with the mean v
 members, and lies at the mean of their free positions.
 """
 
-from numba import njit
+from crazybilliards.particles.kernel import kernel
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def pool(values, starts, means):  # type: ignore[no-untyped-def] # pragma: no cover
     """Isotonic regression of ``values`` with equal weights; return the number of blocks.
 
@@ -32,7 +32,7 @@ def pool(values, starts, means):  # type: ignore[no-untyped-def] # pragma: no co
     return blocks
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def drift(y, v, dt, starts, means):  # type: ignore[no-untyped-def] # pragma: no cover
     """Advance ``y`` and ``v`` in place by ``dt``; return the contacts that ended up closed.
 

@@ -87,7 +87,9 @@ def simulate(
     xarray.Dataset
         In the common vocabulary. ``attrs["status"]`` is ``completed``, ``interrupted`` (Ctrl-C:
         everything measured until then) or ``diverged`` (everything before the chain blew up);
-        ``attrs["end_time"]`` is the shortest time any replica reached, warm-up included.
+        ``attrs["end_time"]`` is the shortest time any replica reached, warm-up included. A chain
+        that diverged before anything was measured (``warmup=0`` measures from the start) has no
+        variables.
 
     Raises
     ------
@@ -267,17 +269,13 @@ def _collect(
     """Join the replicas' measurements into one result."""
     counts = np.concatenate([run.counts for run in runs])
     diverged = any(run.diverged for run in runs)
-    if counts.sum() == 0:
-        if interrupted:
-            raise KeyboardInterrupt("nothing was measured yet")
-        reached = min(run.steps for run in runs) * schedule.time_step
-        raise ValueError(
-            f"the chain diverged at time {reached:g}, before anything was measured; warmup=0 "
-            "measures from the start"
-        )
+    if interrupted and counts.sum() == 0:
+        raise KeyboardInterrupt("nothing was measured yet")
     variables: Variables = {}
     coordinates: dict[str, Array] = {}
-    for first, *others in zip(*(run.observers for run in runs), strict=True):
+    # A chain that diverged before its first snapshot has a status and a time, but no averages.
+    observed = zip(*(run.observers for run in runs), strict=True) if counts.sum() else ()
+    for first, *others in observed:
         first.join(others)
         variables |= first.report(counts)
         coordinates |= first.coordinates()

@@ -8,10 +8,10 @@ of collisions; each inversion that the sort removes is one collision.
 Insertion sort on a nearly sorted chain costs O(L + collisions).
 """
 
-from numba import njit
+from crazybilliards.particles.kernel import kernel
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def drift(y, v, dt):  # type: ignore[no-untyped-def] # pragma: no cover
     """Advance reduced coordinates ``y`` and velocities ``v`` by ``dt``; return the collisions.
 

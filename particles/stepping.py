@@ -21,10 +21,10 @@ import math
 from typing import Literal, NamedTuple
 
 import numpy as np
-from numba import njit
 
 from crazybilliards.model import Chain
 from crazybilliards.particles.drift import drift
+from crazybilliards.particles.kernel import kernel
 
 Stepper = Literal["splitting", "euler"]
 
@@ -55,14 +55,14 @@ def make_step(chain: Chain, time_step: float, stepper: Stepper) -> Step:
     return Step(time_step, math.exp(-rate / 2), noise, full_kick / 2, quadratic, True)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def _spring_kick(y, v, anchors, kick, quadratic):  # type: ignore[no-untyped-def] # pragma: no cover
     for i in range(y.size):
         d = y[i] - anchors[i]
         v[i] -= kick * (d * abs(d) if quadratic else d)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def advance(y, v, anchors, generator, step, law, scratch, counts, steps):  # type: ignore[no-untyped-def] # pragma: no cover
     """Take ``steps`` steps of the chain in place; return the collisions, or -1 if diverged.
 
@@ -84,7 +84,7 @@ def advance(y, v, anchors, generator, step, law, scratch, counts, steps):  # typ
     return collisions
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def bounded(y, v, fastest):  # type: ignore[no-untyped-def] # pragma: no cover
     """Whether the state is finite and no rod faster than ``fastest``; false for NaN."""
     for i in range(y.size):
@@ -93,7 +93,7 @@ def bounded(y, v, fastest):  # type: ignore[no-untyped-def] # pragma: no cover
     return True
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def record(  # type: ignore[no-untyped-def] # pragma: no cover
     y, v, anchors, generator, step, law, scratch, counts, stride, fastest, y_buffer, v_buffer
 ):

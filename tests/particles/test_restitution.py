@@ -1,0 +1,158 @@
+"""Chains off restitution 1: the paper's widths, flippers, and what must not matter."""
+
+import numpy as np
+import pytest
+
+from crazybilliards.kinetic import equilibrium_states
+from crazybilliards.model import Chain
+from crazybilliards.particles import simulate
+from crazybilliards.particles.schedule import centre_width, default_time_step
+
+
+def centre_and_border(run):
+    """W_v of the middle tenth of the chain and of its two outermost rods, with errors."""
+    width, error = run.velocity_width.values, run.velocity_width_error.values
+    half = max(width.size // 20, 1)
+    middle = slice(width.size // 2 - half, width.size // 2 + half)
+    return (
+        np.sqrt(np.mean(width[middle] ** 2)),
+        error[middle].mean() / np.sqrt(half),
+        np.sqrt((width[0] ** 2 + width[-1] ** 2) / 2),
+        error[[0, -1]].mean() / np.sqrt(2),
+    )
+
+
+@pytest.mark.parametrize(("size", "found", "duration"), [(30, 0.116, 4000), (100, 0.0735, 1500)])
+def test_the_centre_of_the_inelastic_chain_is_as_cold_as_it_was_found(size, found, duration):
+    chain = Chain(size=size, restitution=0)
+    run = simulate(chain, duration=duration, replicas=2, observe="widths", progress=False)
+    centre, error, border, _ = centre_and_border(run)
+    assert error < 0.008 * centre
+    assert centre == pytest.approx(found, rel=0.03)
+    assert 0.2 < border < 0.25
+    assert centre_width(chain) * chain.free_velocity_width == pytest.approx(centre, rel=0.2)
+
+
+def test_flippers_heat_the_centre_of_short_chains_and_the_border_of_long_ones():
+    shapes = {}
+    for size in (50, 100):
+        chain = Chain(size=size, restitution=1.05, damping=4)
+        run = simulate(chain, duration=1000, replicas=2, observe="widths", progress=False)
+        assert run.attrs["status"] == "completed"
+        shapes[size] = centre_and_border(run)
+    centre, error, border, border_error = shapes[50]
+    assert centre - border > 5 * np.hypot(error, border_error)
+    centre, error, border, border_error = shapes[100]
+    assert border - centre > 5 * np.hypot(error, border_error)
+
+
+def test_a_supercritical_chain_diverges_and_keeps_what_was_measured():
+    chain = Chain(size=150, restitution=1.05, damping=4)
+    run = simulate(
+        chain,
+        duration=30,
+        start=equilibrium_states(chain.replace(restitution=1), 2),
+        replicas=2,
+        observe=("widths", "energy"),
+        progress=False,
+    )
+    assert run.attrs["status"] == "diverged"
+    assert 0.1 < run.attrs["end_time"] < 30
+    assert 0 < run.time[-1] <= run.attrs["end_time"]
+    assert (run.kinetic_energy[-1] > 10 * run.kinetic_energy[0]).item()
+    for name in run.data_vars:
+        assert np.isfinite(run[name]).all() or name.endswith("_error"), name
+
+
+def test_a_chain_that_explodes_at_once_has_a_status_and_no_averages():
+    """150 flippers released in contact amplify their first kick without end."""
+    chain = Chain(size=150, restitution=1.05, damping=4)
+    run = simulate(chain, duration=100, progress=False)
+    assert run.attrs["status"] == "diverged"
+    assert run.attrs["end_time"] < 1
+    assert len(run.data_vars) == 0
+
+
+def test_quadratic_springs_diverge_as_well():
+    chain = Chain(size=100, restitution=1.01, damping=0.4, spring="quadratic")
+    run = simulate(chain, duration=500, warmup=0, observe="energy", progress=False)
+    assert run.attrs["status"] == "diverged"
+    assert np.isfinite(run.kinetic_energy).all()
+
+
+@pytest.mark.parametrize("e", [0.5, 0.75, 0.95])
+def test_the_merging_threshold_does_not_matter(e):
+    chain = Chain(size=20, restitution=e)
+    results = [
+        centre_and_border(
+            simulate(
+                chain,
+                duration=5000,
+                replicas=2,
+                merging=merging,
+                seed=seed,
+                observe="widths",
+                progress=False,
+            )
+        )
+        for seed, merging in enumerate((0.01, 0.1))
+    ]
+    (centre, error, border, border_error), (other, other_error, edge, edge_error) = results
+    assert abs(centre - other) < 3 * np.hypot(error, other_error)
+    assert abs(border - edge) < 3 * np.hypot(border_error, edge_error)
+    assert error < 0.01 * centre
+
+
+def test_contact_dynamics_agrees_without_restitution():
+    chain = Chain(size=20, restitution=0)
+    one, other = (
+        centre_and_border(
+            simulate(
+                chain,
+                duration=3000,
+                time_step=0.003,
+                method=method,
+                replicas=2,
+                seed=seed,
+                observe="widths",
+                progress=False,
+            )
+        )
+        for seed, method in enumerate(("event-driven", "contact-dynamics"))
+    )
+    assert abs(one[0] - other[0]) < 5 * np.hypot(one[1], other[1])
+    assert abs(one[2] - other[2]) < 5 * np.hypot(one[3], other[3])
+    assert one[1] < 0.01 * one[0]
+
+
+@pytest.mark.parametrize("e", [0.0, 0.5, 0.95, 1.05])
+def test_rescaling_the_amplitude_rescales_everything_exactly(e):
+    one, four = (
+        simulate(
+            Chain(size=10, amplitude=amplitude, restitution=e, damping=3),
+            duration=20,
+            observe="widths",
+            progress=False,
+        )
+        for amplitude in (1.0, 4.0)
+    )
+    np.testing.assert_array_equal(four.velocity_width, 4 * one.velocity_width)
+    np.testing.assert_array_equal(four.mean_displacement, 4 * one.mean_displacement)
+
+
+def test_the_heap_and_the_sort_move_the_elastic_chain_alike():
+    chain = Chain(size=30, gap=0.1)
+    plain, counted = (
+        simulate(chain, duration=100, observe=observe, progress=False)
+        for observe in (("widths",), ("widths", "collisions"))
+    )
+    np.testing.assert_allclose(plain.velocity_width, counted.velocity_width, rtol=1e-9)
+
+
+def test_the_time_step_follows_what_has_to_be_resolved():
+    assert default_time_step(Chain()) == pytest.approx(0.05 * np.sqrt(4 * np.pi / 3))
+    steps = [default_time_step(Chain(size=size, restitution=0)) for size in (1, 10, 100, 1000)]
+    assert steps == sorted(steps, reverse=True)
+    # Rods too far apart to meet need no finer step than free ones.
+    far = Chain(size=1000, restitution=0, gap=100)
+    assert default_time_step(far) > 10 * steps[-1]
