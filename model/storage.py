@@ -15,7 +15,7 @@ from pathlib import Path
 
 import xarray as xr
 
-_MARK = b"\ncrazybilliards-result-1 sha256 "
+_MARK = b"\ncrazybilliards-1 sha256 "
 _TRAILER = len(_MARK) + 64 + 1  # hexadecimal digest and a newline
 
 
@@ -35,9 +35,7 @@ def save(result: xr.Dataset | xr.DataTree, path: str | os.PathLike[str]) -> Path
     path = Path(path)
     if path.suffix != ".nc":
         raise ValueError(f"results are NetCDF files: the name must end in .nc, got {str(path)!r}")
-    content = bytes(result.to_netcdf(engine="h5netcdf"))
-    digest = hashlib.sha256(content).hexdigest().encode()
-    write_atomically(path, content + _MARK + digest + b"\n")
+    write_sealed(path, bytes(result.to_netcdf(engine="h5netcdf")))
     return path
 
 
@@ -51,15 +49,30 @@ def load(path: str | os.PathLike[str]) -> xr.Dataset | xr.DataTree:
     ValueError
         If the file is damaged, truncated, or was not written by :func:`save`.
     """
-    raw = Path(path).read_bytes()
+    content = read_sealed(Path(path))
+    try:
+        tree = xr.open_datatree(io.BytesIO(content), engine="h5netcdf").load()
+    except (OSError, ValueError) as error:
+        raise ValueError(f"{path}: not a result, though crazybilliards wrote it") from error
+    tree.close()
+    return tree if tree.children else tree.to_dataset()
+
+
+def write_sealed(path: Path, content: bytes) -> None:
+    """Write ``content`` and its checksum atomically."""
+    digest = hashlib.sha256(content).hexdigest().encode()
+    write_atomically(path, content + _MARK + digest + b"\n")
+
+
+def read_sealed(path: Path) -> bytes:
+    """Return what :func:`write_sealed` wrote, or raise a ValueError if it is not as it was."""
+    raw = path.read_bytes()
     content, trailer = raw[:-_TRAILER], raw[-_TRAILER:]
     if not trailer.startswith(_MARK):
         raise ValueError(f"{path}: truncated, or not a file that crazybilliards saved")
     if trailer[len(_MARK) : -1] != hashlib.sha256(content).hexdigest().encode():
         raise ValueError(f"{path}: damaged, its content does not match its checksum")
-    tree = xr.open_datatree(io.BytesIO(content), engine="h5netcdf").load()
-    tree.close()
-    return tree if tree.children else tree.to_dataset()
+    return content
 
 
 def write_atomically(path: Path, content: bytes) -> None:

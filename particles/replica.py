@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
-from threading import Event
-from typing import NamedTuple
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from threading import Event, Lock
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from crazybilliards.model import Chain
 from crazybilliards.model.vocabulary import require
@@ -22,6 +22,8 @@ Array = NDArray[np.float64]
 
 # Between two looks at Ctrl-C a replica takes about this many particle steps (some 20 ms).
 _CHUNK = 2**20
+
+_CHANGING = ("y", "v", "counts", "steps", "diverged")
 
 
 class Dynamics(NamedTuple):
@@ -44,9 +46,38 @@ class Replica:
     counts: NDArray[np.int64]  # snapshots taken, block by block
     steps: int = 0
     diverged: bool = False
+    lock: Any = field(default_factory=Lock)  # held while a chunk is under way
+
+    def state(self) -> dict[str, ArrayLike]:
+        """Return all that changes while running, but the generator's state."""
+        state: dict[str, ArrayLike] = {name: getattr(self, name) for name in _CHANGING}
+        for number, observer in enumerate(self.observers):
+            for name in observer.accumulated:
+                state[f"observer {number} {name}"] = getattr(observer, name)
+        return state
+
+    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
+        """Take over what :meth:`state` returned."""
+        for name in _CHANGING:
+            _put(self, name, state[name])
+        for number, observer in enumerate(self.observers):
+            for name in observer.accumulated:
+                _put(observer, name, state[f"observer {number} {name}"])
+
+    def work(self, dynamics: Dynamics, schedule: Schedule, stop: Event) -> Iterator[int]:
+        """Run, holding the lock during each chunk; yield the steps of every chunk."""
+        chunks = self.run(dynamics, schedule, stop)
+        while True:
+            with self.lock:
+                steps = next(chunks, None)
+            if steps is None:
+                return
+            yield steps
 
     def run(self, dynamics: Dynamics, schedule: Schedule, stop: Event) -> Iterator[int]:
         """Warm up, then measure; yield the number of steps after every chunk."""
+        if self.diverged:
+            return
         size = self.y.size
         anchors, step, law, fastest = dynamics
         kernel = (self.y, self.v, anchors, self.generator, step, law, make_scratch(size))
@@ -82,6 +113,17 @@ class Replica:
     def _count(self, steps: int) -> int:
         self.steps += steps
         return steps
+
+
+def _put(owner: object, name: str, value: NDArray[Any]) -> None:
+    """Set an attribute to a restored value, keeping its kind: an array or a plain number."""
+    current = getattr(owner, name)
+    if isinstance(current, np.ndarray):
+        if current.shape != value.shape or current.dtype != value.dtype:
+            raise ValueError(f"the checkpoint's {name} does not fit this run")
+        current[...] = value
+    else:
+        setattr(owner, name, type(current)(value))
 
 
 def typical_speed(chain: Chain, duration: float, y: Array, v: Array) -> float:

@@ -3,25 +3,24 @@
 from __future__ import annotations
 
 import os
-import sys
-from collections.abc import Iterator, Mapping, Sequence
-from concurrent.futures import FIRST_EXCEPTION, Future, ThreadPoolExecutor, wait
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
-from threading import Event, Timer
+from pathlib import Path
+from threading import Event
 from typing import get_args
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
-from tqdm import tqdm
 
 from crazybilliards.model import Chain
 from crazybilliards.model.chain import check_integer, check_real
 from crazybilliards.model.vocabulary import result
+from crazybilliards.particles.checkpoint import Checkpoint, run_identity
 from crazybilliards.particles.drift import Method, make_law
 from crazybilliards.particles.observers import OBSERVERS, Variables
 from crazybilliards.particles.replica import Dynamics, Replica, replica_starts, typical_speed
+from crazybilliards.particles.running import announced, run_all
 from crazybilliards.particles.schedule import Schedule, make_schedule
 from crazybilliards.particles.stepping import Stepper, make_step
 
@@ -44,6 +43,8 @@ def simulate(
     start: xr.Dataset | None = None,
     replicas: int = 1,
     threads: int | None = None,
+    checkpoint: str | os.PathLike[str] | None = None,
+    checkpoint_interval: float = 30.0,
     progress: bool = True,
 ) -> xr.Dataset:
     """Simulate the chain and return what was measured, with standard errors.
@@ -79,6 +80,10 @@ def simulate(
         ``equilibrium_states(chain, replicas)``; None: every rod at rest at its anchor.
     replicas
         Independent copies, averaged. ``threads`` of them (None: one per core) run at a time.
+    checkpoint
+        File to keep the state of the run in, written every ``checkpoint_interval`` seconds and
+        at Ctrl-C or SIGTERM. The same call again goes on from there, to the same bits; a
+        checkpoint of another run is refused.
     progress
         Show a progress bar with the time left, if standard error is a terminal.
 
@@ -109,6 +114,7 @@ def simulate(
         if value not in get_args(kinds):
             raise ValueError(f"{name} must be one of {get_args(kinds)}, got {value!r}")
     merging = check_real("merging", merging)
+    checkpoint_interval = check_real("checkpoint_interval", checkpoint_interval)
     seed = check_integer("seed", seed, least=0)
     replicas = check_integer("replicas", replicas, least=1)
     if threads is None:
@@ -133,10 +139,15 @@ def simulate(
         _replica(chain, *state, stream, names, schedule)
         for state, stream in zip(starts, streams, strict=True)
     ]
-    with _announced(progress):
+    with announced(progress):
         _compile_kernels(names)
-    interrupted = _run_all(runs, dynamics, schedule, threads, progress)
+    keeper = None
     settings = {"method": method, "stepper": stepper, "merging": merging, "seed": seed}
+    if checkpoint is not None:
+        identity = run_identity(chain, asdict(schedule), settings, names, starts)
+        keeper = Checkpoint(Path(checkpoint), identity, checkpoint_interval)
+        keeper.resume(runs)
+    interrupted = run_all(runs, dynamics, schedule, threads, keeper, progress)
     return _collect(chain, runs, schedule, settings, interrupted)
 
 
@@ -174,62 +185,6 @@ def _replica(
         [OBSERVERS[name](chain, schedule) for name in names],
         np.zeros(schedule.blocks, dtype=np.int64),
     )
-
-
-def _run_all(
-    runs: list[Replica], dynamics: Dynamics, schedule: Schedule, threads: int, progress: bool
-) -> bool:
-    """Run the replicas in threads; return whether Ctrl-C stopped them."""
-    stop = Event()
-    total = (schedule.warmup + schedule.duration) * len(runs)
-    with (
-        tqdm(
-            total=total,
-            desc="simulating",
-            unit=" time units",
-            unit_scale=True,
-            disable=None if progress else True,
-        ) as bar,
-        ThreadPoolExecutor(min(threads, len(runs))) as pool,
-    ):
-
-        def work(replica: Replica) -> None:
-            for steps in replica.run(dynamics, schedule, stop):
-                bar.update(steps * schedule.time_step)
-
-        futures = [pool.submit(work, replica) for replica in runs]
-        try:
-            _finish(futures)
-        except BaseException as error:
-            stop.set()
-            if not isinstance(error, KeyboardInterrupt):
-                raise
-            _finish(futures)
-            return True
-    return False
-
-
-def _finish(futures: list[Future[None]]) -> None:
-    """Wait for all, or for the first that fails; look at Ctrl-C twice a second."""
-    while True:
-        done, pending = wait(futures, timeout=0.5, return_when=FIRST_EXCEPTION)
-        for future in done:
-            future.result()
-        if not pending:
-            return
-
-
-@contextmanager
-def _announced(progress: bool) -> Iterator[None]:
-    """Say that kernels are being compiled, if it takes long enough to wonder."""
-    message = "crazybilliards: compiling the kernels, once (they are cached) ..."
-    timer = Timer(0.7, lambda: print(message, file=sys.stderr, flush=True))
-    if progress:
-        timer.start()
-    try:
-        yield
-    finally:
-        timer.cancel()
 
 
 def _compile_kernels(names: list[str]) -> None:

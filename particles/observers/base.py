@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from typing import NamedTuple, Self
+from typing import ClassVar, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -31,7 +31,13 @@ class Snapshots(NamedTuple):
 
 
 class Observer(ABC):
-    """What the simulation asks of a measurement; made anew, with (chain, schedule), per replica."""
+    """What the simulation asks of a measurement; made anew, with (chain, schedule), per replica.
+
+    ``accumulated`` names the attributes that change while observing: arrays and plain numbers.
+    They are what a checkpoint keeps.
+    """
+
+    accumulated: ClassVar[tuple[str, ...]]
 
     @abstractmethod
     def __init__(self, chain: Chain, schedule: Schedule) -> None: ...

@@ -21,6 +21,8 @@ class Collisions(Observer):
     the next step: below e = 1 the rate depends on the time step, as it is infinite without one.
     """
 
+    accumulated = ("sums",)
+
     def __init__(self, chain: Chain, schedule: Schedule) -> None:
         self.interval = schedule.stride * schedule.time_step
         self.sums = np.zeros((schedule.blocks, chain.size))

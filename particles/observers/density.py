@@ -23,6 +23,8 @@ class Density(Observer):
     follow from the errors of the bins. 8 bytes per node and block.
     """
 
+    accumulated = ("weights", "outside")
+
     def __init__(self, chain: Chain, schedule: Schedule) -> None:
         if not np.isfinite(thermal_reach(chain)):
             raise ValueError(

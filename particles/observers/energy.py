@@ -23,6 +23,8 @@ class Energy(Observer):
     replica reached are left out.
     """
 
+    accumulated = ("sums", "counts")
+
     def __init__(self, chain: Chain, schedule: Schedule) -> None:
         snapshots = schedule.blocks * schedule.snapshots_per_block
         self.together = -(-snapshots // _MOST_TIMES)

@@ -26,6 +26,8 @@ class Velocities(Observer):
     anti-dissipative one alike, without a pilot run. 3.2 kB a particle.
     """
 
+    accumulated = ("counts", "outside")
+
     def __init__(self, chain: Chain, schedule: Schedule) -> None:
         scale = chain.free_velocity_width
         if not 0 < scale < np.inf:

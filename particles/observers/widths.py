@@ -24,6 +24,8 @@ class Widths(Observer):
     Keeps the sums of d, d^2 and v^2: 24 L bytes per block.
     """
 
+    accumulated = ("sums",)
+
     def __init__(self, chain: Chain, schedule: Schedule) -> None:
         self.anchors = chain.reduced_anchors
         self.interval = schedule.stride * schedule.time_step

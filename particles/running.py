@@ -1,0 +1,99 @@
+"""Running replicas in threads: progress, Ctrl-C and SIGTERM, checkpoints on the way."""
+
+from __future__ import annotations
+
+import signal
+import sys
+import threading
+from collections.abc import Iterator
+from concurrent.futures import FIRST_EXCEPTION, Future, ThreadPoolExecutor, wait
+from contextlib import contextmanager
+from threading import Event, Timer
+
+from tqdm import tqdm
+
+from crazybilliards.particles.checkpoint import Checkpoint
+from crazybilliards.particles.replica import Dynamics, Replica
+from crazybilliards.particles.schedule import Schedule
+
+
+def run_all(
+    runs: list[Replica],
+    dynamics: Dynamics,
+    schedule: Schedule,
+    threads: int,
+    keeper: Checkpoint | None,
+    progress: bool,
+) -> bool:
+    """Run the replicas in threads; return whether Ctrl-C or SIGTERM stopped them."""
+    stop = Event()
+    done = sum(run.steps for run in runs) * schedule.time_step
+    with (
+        tqdm(
+            total=(schedule.warmup + schedule.duration) * len(runs),
+            initial=done,
+            desc="simulating",
+            unit=" time units",
+            unit_scale=True,
+            disable=None if progress else True,
+        ) as bar,
+        ThreadPoolExecutor(min(threads, len(runs))) as pool,
+        _terminated_like_interrupted(),
+    ):
+
+        def work(replica: Replica) -> None:
+            for steps in replica.work(dynamics, schedule, stop):
+                bar.update(steps * schedule.time_step)
+
+        futures = [pool.submit(work, replica) for replica in runs]
+        interrupted = False
+        try:
+            _finish(futures, runs, keeper)
+        except KeyboardInterrupt:
+            interrupted = True
+            stop.set()
+            _finish(futures, runs, None)
+        except BaseException:
+            stop.set()
+            raise
+        if keeper is not None:
+            keeper.save(runs)
+    return interrupted
+
+
+def _finish(futures: list[Future[None]], runs: list[Replica], keeper: Checkpoint | None) -> None:
+    """Wait for all, or for the first that fails; look at signals twice a second."""
+    while True:
+        done, pending = wait(futures, timeout=0.5, return_when=FIRST_EXCEPTION)
+        for future in done:
+            future.result()
+        if not pending:
+            return
+        if keeper is not None:
+            keeper.save_if_due(runs)
+
+
+@contextmanager
+def _terminated_like_interrupted() -> Iterator[None]:
+    """Let SIGTERM, which batch systems send before they kill, act like Ctrl-C meanwhile."""
+    if threading.current_thread() is not threading.main_thread():
+        yield  # only the main thread may change handlers, and only it receives signals
+        return
+    before = signal.signal(signal.SIGTERM, signal.default_int_handler)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
+@contextmanager
+def announced(progress: bool) -> Iterator[None]:
+    """Say that kernels are being compiled, if it takes long enough to wonder."""
+    message = "crazybilliards: compiling the kernels, once (they are cached) ..."
+    timer = Timer(0.7, lambda: print(message, file=sys.stderr, flush=True))
+    if progress:
+        timer.start()
+    try:
+        yield
+    finally:
+        timer.cancel()

@@ -1,0 +1,102 @@
+"""Checkpoints: a run that is killed and resumed gives the bits of an undisturbed one."""
+
+import signal
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from crazybilliards.model import Chain, load
+from crazybilliards.particles import simulate
+
+SCRIPT = """
+import sys
+from crazybilliards.model import Chain, save
+from crazybilliards.particles import simulate
+checkpoint, output = sys.argv[1:]
+run = simulate(
+    Chain(size=40, restitution={e}, gap=0.1), duration={duration}, replicas=3, seed=4,
+    observe=("widths", "density", "energy", "velocities"), progress=False,
+    checkpoint=checkpoint or None, checkpoint_interval=0.05,
+)
+save(run, output)
+"""
+
+
+def run(script, *arguments, stop_after=None, how=None):
+    """Run the script; after ``stop_after`` seconds send it a signal."""
+    command = [sys.executable, "-c", script, *map(str, arguments)]
+    with subprocess.Popen(command) as process:
+        if stop_after is not None:
+            time.sleep(stop_after)
+            process.send_signal(how)
+        return process.wait(120)
+
+
+@pytest.mark.parametrize("e", [1.0, 0.7])
+def test_killed_at_random_moments_and_resumed_it_is_the_undisturbed_run(e, tmp_path):
+    script = SCRIPT.format(e=e, duration=800_000 if e == 1 else 12_000)
+    undisturbed, output = tmp_path / "undisturbed.nc", tmp_path / "run.nc"
+    checkpoint = tmp_path / "state"
+    assert run(script, "", undisturbed) == 0
+    generator = np.random.default_rng(int(10 * e))
+    for how in (signal.SIGTERM, signal.SIGKILL, signal.SIGKILL, signal.SIGINT):
+        # Of which some two seconds go into importing and compiling.
+        run(script, checkpoint, output, stop_after=2.0 + generator.random(), how=how)
+        if how == signal.SIGTERM:
+            assert load(output).attrs["status"] == "interrupted"
+    # However far it came, now to the end.
+    assert run(script, checkpoint, output) == 0
+    resumed = load(output)
+    assert resumed.attrs["status"] == "completed"
+    xr.testing.assert_identical(resumed, load(undisturbed))
+
+
+def test_a_finished_run_is_not_done_again(tmp_path):
+    chain = Chain(size=10)
+    arguments = {"duration": 500, "progress": False, "checkpoint": tmp_path / "state"}
+    first = simulate(chain, **arguments)
+    xr.testing.assert_identical(simulate(chain, **arguments), first)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["state"]
+
+
+def test_the_checkpoint_of_another_run_is_refused_with_the_reason(tmp_path):
+    arguments = {"duration": 500, "progress": False, "checkpoint": tmp_path / "state"}
+    simulate(Chain(size=10), **arguments)
+    before = (tmp_path / "state").read_bytes()
+    for chain, change, reason in (
+        (Chain(size=11), {}, "size is 10 there and 11 here"),
+        (Chain(size=10, gap=1), {}, "gap is 0.0 there and 1.0 here"),
+        (Chain(size=10), {"seed": 5}, "seed is 0 there and 5 here"),
+        (Chain(size=10), {"duration": 900}, "snapshots_per_block is 8 there and 14 here"),
+        (Chain(size=10), {"observe": "widths"}, "observe is"),
+        (Chain(size=10), {"replicas": 2}, "is 64 there and 32 here"),
+    ):
+        with pytest.raises(ValueError, match=reason):
+            simulate(chain, **(arguments | change))
+    assert (tmp_path / "state").read_bytes() == before
+
+
+def test_a_damaged_or_foreign_checkpoint_is_refused(tmp_path):
+    path = tmp_path / "state"
+    arguments = {"duration": 500, "progress": False, "checkpoint": path}
+    simulate(Chain(size=10), **arguments)
+    whole = path.read_bytes()
+    for content in (whole[:-1], whole[:100], b"", bytes([whole[0] ^ 1]) + whole[1:]):
+        path.write_bytes(content)
+        with pytest.raises(ValueError, match=r"truncated|damaged"):
+            simulate(Chain(size=10), **arguments)
+    path.write_bytes(whole)
+    with pytest.raises(ValueError, match="not a result"):
+        load(path)
+
+
+def test_a_checkpoint_that_cannot_be_written_is_an_error_before_any_work(tmp_path):
+    (tmp_path / "file").write_text("")
+    begin = time.monotonic()
+    with pytest.raises(OSError, match="file"):
+        simulate(Chain(size=100), duration=1e8, checkpoint=tmp_path / "file" / "state")
+    assert time.monotonic() - begin < 20
