@@ -29,26 +29,27 @@ def bound(gap, closing, restitution, dt):  # type: ignore[no-untyped-def] # prag
 
 
 @kernel
-def drift(y, v, dt, restitution, starts, means, shifted):  # type: ignore[no-untyped-def] # pragma: no cover
+def drift(y, v, dt, restitution, starts, totals, shifted):  # type: ignore[no-untyped-def] # pragma: no cover
     """Advance ``y`` and ``v`` in place by ``dt``; return the contacts that carried an impulse.
 
-    ``starts`` (integers, one longer than y), ``means`` and ``shifted`` (floats) are scratch.
+    ``starts`` (integers, one longer than y), ``totals`` and ``shifted`` (floats) are scratch.
     """
     total = 0.0
     shifted[0] = v[0]
     for i in range(y.size - 1):
         total += bound(y[i + 1] - y[i], v[i] - v[i + 1], restitution, dt)
         shifted[i + 1] = v[i + 1] - total
-    blocks = pool(shifted, starts, means)
-    block, total = 0, 0.0
+    blocks = pool(shifted, starts, totals)
+    block, total, mean = -1, 0.0, 0.0
     for i in range(y.size):
         if i == starts[block + 1]:
             block += 1
+            mean = totals[block] / (starts[block + 1] - starts[block])
         # The bound of the next contact needs this rod's state before it is overwritten.
         here = total
         if i < y.size - 1:
             total += bound(y[i + 1] - y[i], v[i] - v[i + 1], restitution, dt)
-        v[i] = means[block] + here
+        v[i] = mean + here
         y[i] += dt * v[i]
         # Bounds sum to rounding errors only: keep the order exact.
         if i > 0 and y[i] < y[i - 1]:

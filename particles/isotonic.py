@@ -10,45 +10,62 @@ from crazybilliards.particles.kernel import kernel
 
 
 @kernel
-def pool(values, starts, means):  # type: ignore[no-untyped-def] # pragma: no cover
+def pool(values, starts, totals):  # type: ignore[no-untyped-def] # pragma: no cover
     """Isotonic regression of ``values`` with equal weights; return the number of blocks.
 
-    Block b reaches from ``starts[b]`` to ``starts[b + 1]``, at its ``means[b]``; the means
-    ascend. ``starts`` needs one place more than there are values.
+    Block b reaches from ``starts[b]`` to ``starts[b + 1]``; its values add up to ``totals[b]``.
+    The blocks' means ascend. ``starts`` needs one place more than there are values.
     """
     blocks = 0
-    for i in range(values.size):
-        start, mean = i, values[i]
-        while blocks > 0 and means[blocks - 1] > mean:
+    # The last block is kept in registers: most values begin a block of their own.
+    start, count, total, mean = 0, 1.0, values[0], values[0]
+    for i in range(1, values.size):
+        value = values[i]
+        if value >= mean:
+            starts[blocks] = start
+            totals[blocks] = total
+            blocks += 1
+            start, count, total, mean = i, 1.0, value, value
+            continue
+        total += value
+        count += 1.0
+        while blocks > 0:
+            before = float(start - starts[blocks - 1])
+            if totals[blocks - 1] * count <= total * before:
+                break
             blocks -= 1
-            left = start - starts[blocks]
-            right = i + 1 - start
-            mean += (means[blocks] - mean) * left / (left + right)
             start = starts[blocks]
-        starts[blocks] = start
-        means[blocks] = mean
-        blocks += 1
-    starts[blocks] = values.size
-    return blocks
+            total += totals[blocks]
+            count += before
+        mean = total / count
+    starts[blocks] = start
+    totals[blocks] = total
+    starts[blocks + 1] = values.size
+    return blocks + 1
 
 
 @kernel
-def drift(y, v, dt, starts, means):  # type: ignore[no-untyped-def] # pragma: no cover
+def drift(y, v, dt, starts, totals):  # type: ignore[no-untyped-def] # pragma: no cover
     """Advance ``y`` and ``v`` in place by ``dt``; return the contacts that ended up closed.
 
-    ``starts`` (integers, one longer than y) and ``means`` (floats) are scratch space.
+    ``starts`` (integers, one longer than y) and ``totals`` (floats) are scratch space.
     """
     for i in range(y.size):
         y[i] += dt * v[i]
-    blocks = pool(y, starts, means)
+    blocks = pool(y, starts, totals)
     for b in range(blocks):
         first, last = starts[b], starts[b + 1]
         if last == first + 1:
             continue
-        total = 0.0
+        momentum = 0.0
         for i in range(first, last):
-            total += v[i]
+            momentum += v[i]
+        share = 1.0 / (last - first)
+        position, velocity = totals[b] * share, momentum * share
+        # Means of neighbouring blocks that touch may come out of order by rounding.
+        if first > 0 and position < y[first - 1]:
+            position = y[first - 1]
         for i in range(first, last):
-            y[i] = means[b]
-            v[i] = total / (last - first)
+            y[i] = position
+            v[i] = velocity
     return y.size - blocks
