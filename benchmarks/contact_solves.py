@@ -1,0 +1,58 @@
+"""One contact solve: the exact one in O(L) against Gauss-Seidel stopped at two tolerances.
+
+A settled chain at e = 0, L = 1000, dt = 1e-3; Gauss-Seidel is warm-started from the last step's
+impulses, as Contact Dynamics codes do.
+"""
+
+import numpy as np
+import pytest
+from gauss_seidel import solve
+
+from crazybilliards.model import Chain
+from crazybilliards.particles import stepping
+from crazybilliards.particles.drift import drift, make_law, make_scratch
+
+SIZE, TIME_STEP = 1000, 1e-3
+UNSEEN = np.zeros(0, dtype=np.int64)
+
+
+@pytest.fixture(scope="module")
+def solver():
+    """Return a settled chain's law and fifty successive states, the next kick already given."""
+    chain = Chain(size=SIZE, restitution=0)
+    law = make_law(chain, TIME_STEP, "contact-dynamics", 0.03, speed=1.0)
+    step = stepping.make_step(chain, TIME_STEP, "splitting")
+    generator = np.random.Generator(np.random.PCG64(0))
+    scratch = make_scratch(SIZE)
+    y, v, anchors = np.zeros((3, SIZE))
+    kernel = (y, v, anchors, generator, step, law, scratch, UNSEEN)
+    stepping.advance(*kernel, 30_000)
+    states = []
+    for _ in range(50):
+        stepping.advance(*kernel, 1)
+        states.append((y.copy(), v + step.noise * generator.standard_normal(SIZE)))
+    return law, scratch, states
+
+
+@pytest.mark.benchmark(group=f"50 contact solves of {SIZE} rods")
+def test_exact(benchmark, solver):
+    law, scratch, states = solver
+
+    def solve_all():
+        for y, v in states:
+            drift(y.copy(), v.copy(), TIME_STEP, law, scratch, UNSEEN)
+
+    benchmark(solve_all)
+
+
+@pytest.mark.benchmark(group=f"50 contact solves of {SIZE} rods")
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-10])
+def test_gauss_seidel(benchmark, solver, tolerance):
+    _, _, states = solver
+
+    def solve_all():
+        impulses, bounds = np.zeros((2, SIZE - 1))
+        for y, v in states:
+            solve(y, v.copy(), TIME_STEP, 0.0, tolerance, impulses, bounds)
+
+    benchmark.pedantic(solve_all, rounds=3, warmup_rounds=1)
