@@ -10,10 +10,11 @@ from gauss_seidel import solve
 
 from crazybilliards.model import Chain
 from crazybilliards.particles import stepping
+from crazybilliards.particles.avalanche import make_tally
 from crazybilliards.particles.drift import drift, make_law, make_scratch
 
 SIZE, TIME_STEP = 1000, 1e-3
-UNSEEN = np.zeros(0, dtype=np.int64)
+UNSEEN = make_tally(2, contacts=False, waves=False)
 
 
 @pytest.fixture(scope="module")

@@ -11,6 +11,7 @@ from numba import njit
 
 from crazybilliards.model import Chain
 from crazybilliards.particles import stepping
+from crazybilliards.particles.avalanche import make_tally
 from crazybilliards.particles.drift import make_law, make_scratch
 from crazybilliards.particles.schedule import default_time_step
 
@@ -47,6 +48,15 @@ def test_step(benchmark, work, size):
     y, v, anchors = np.zeros((3, size))
     law = make_law(chain, time_step, method, 0.03, speed=1.0)
     step = stepping.make_step(chain, time_step, "splitting")
-    kernel = (y, v, anchors, generator, step, law, make_scratch(size), np.zeros(0, dtype=np.int64))
+    kernel = (
+        y,
+        v,
+        anchors,
+        generator,
+        step,
+        law,
+        make_scratch(size),
+        make_tally(size, contacts=False, waves=False),
+    )
     stepping.advance(*kernel, max(20_000_000 // size, 1000))
     benchmark(stepping.advance, *kernel, PARTICLE_STEPS // size)

@@ -30,6 +30,8 @@ VOCABULARY = {
     "velocity_outside": ("share of velocities beyond the bins", "1"),
     "kinetic_energy": ("kinetic energy sum m v^2/2", "M R^2/T^2"),
     "collision_rate": ("collisions with the right neighbour per time", "1/T"),
+    "avalanche_count": ("waves started by the particle that triggered N_c collisions", "1"),
+    "avalanche_size": ("collisions triggered N_c", "1"),
     "autocorrelation_time": ("autocorrelation time of the displacement", "T"),
     "displacement": ("mean displacement <dx>(x)", "R"),
     "label": ("number of rods to the left N", "1"),

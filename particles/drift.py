@@ -76,7 +76,7 @@ def make_law(
 
 
 @kernel
-def drift(y, v, dt, law, scratch, counts):  # type: ignore[no-untyped-def] # pragma: no cover
+def drift(y, v, dt, law, scratch, tally):  # type: ignore[no-untyped-def] # pragma: no cover
     """Advance ``y`` and ``v`` in place by ``dt`` with the operator that ``law`` names."""
     if law.operator == SORT:
         return sort.drift(y, v, dt)
@@ -95,5 +95,5 @@ def drift(y, v, dt, law, scratch, counts):  # type: ignore[no-untyped-def] # pra
         law.most,
         scratch.integers,
         scratch.floats,
-        counts,
+        tally,
     )

@@ -23,6 +23,7 @@ that nothing has to be moved before the end: a collision at t changes it by (v_b
 A cluster's state stands at its outermost members, the only ones with contacts to others.
 """
 
+from crazybilliards.particles.avalanche import note
 from crazybilliards.particles.kernel import kernel
 
 
@@ -85,11 +86,11 @@ def _schedule(contact, now, dt, y, v, heap, places, size, due, speed):  # type: 
 
 
 @kernel
-def drift(y, v, dt, restitution, merge_speed, most, integers, floats, counts):  # type: ignore[no-untyped-def] # pragma: no cover
+def drift(y, v, dt, restitution, merge_speed, most, integers, floats, tally):  # type: ignore[no-untyped-def] # pragma: no cover
     """Advance ``y`` and ``v`` in place by ``dt``; return the collisions, or -1 if too many.
 
-    ``integers`` (4, L) and ``floats`` (2, L) are scratch space. ``counts`` (L - 1, or 0 not to
-    count) is increased at each contact by its collisions. After ``most`` collisions the drift
+    ``integers`` (4, L) and ``floats`` (2, L) are scratch space. ``tally`` (an
+    ``avalanche.Tally``) takes down every collision. After ``most`` collisions the drift
     gives up: the state is then worthless, the chain has diverged.
     """
     n = y.size
@@ -109,11 +110,10 @@ def drift(y, v, dt, restitution, merge_speed, most, integers, floats, counts):  
         collisions += 1
         if collisions > most:
             return -1
-        if counts.size > 0:
-            counts[contact] += 1
         a, b = first[contact], last[contact + 1]
         left, right = contact - a + 1, b - contact
         v_left, v_right = v[contact], v[contact + 1]
+        note(contact, v_left + v_right, tally)
         # The cluster's or the pair's common velocity, by its smaller change.
         common = v_left + (v_right - v_left) * right / (left + right)
         # Flippers act when rods meet. Rods at rest against one another would otherwise pass one

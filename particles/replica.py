@@ -13,8 +13,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from crazybilliards.model import Chain
 from crazybilliards.model.vocabulary import require
+from crazybilliards.particles.avalanche import Tally, make_tally
 from crazybilliards.particles.drift import HEAP, Law, make_scratch
-from crazybilliards.particles.observers import Observer, Snapshots
+from crazybilliards.particles.observers import Avalanches, Observer, Snapshots
 from crazybilliards.particles.schedule import Schedule
 from crazybilliards.particles.stepping import Step, advance, bounded, record
 
@@ -81,7 +82,7 @@ class Replica:
         size = self.y.size
         anchors, step, law, fastest = dynamics
         kernel = (self.y, self.v, anchors, self.generator, step, law, make_scratch(size))
-        unseen = np.zeros(0, dtype=np.int64)
+        unseen = make_tally(size, contacts=False, waves=False)
         chunk = max(_CHUNK // size, 1)
         while self.steps < schedule.warmup_steps and not stop.is_set():
             steps = min(chunk, schedule.warmup_steps - self.steps)
@@ -90,18 +91,18 @@ class Replica:
             if self.diverged:
                 return
             yield self._count(steps)
-        collisions = np.zeros(size - 1, dtype=np.int64) if law.operator == HEAP else unseen
+        tally = self._tally(counted=law.operator == HEAP)
         rows = min(max(chunk // schedule.stride, 1), schedule.snapshots_per_block)
         y_buffer, v_buffer = np.empty((2, rows, size))
         for block in range(schedule.blocks):
             while self.counts[block] < schedule.snapshots_per_block and not stop.is_set():
                 n = min(rows, schedule.snapshots_per_block - int(self.counts[block]))
-                collisions[:] = 0
-                good = record(
-                    *kernel, collisions, schedule.stride, fastest, y_buffer[:n], v_buffer[:n]
-                )
+                tally.contacts[:] = 0
+                good = record(*kernel, tally, schedule.stride, fastest, y_buffer[:n], v_buffer[:n])
                 first = block * schedule.snapshots_per_block + int(self.counts[block])
-                chunk_seen = Snapshots(block, first, y_buffer[:good], v_buffer[:good], collisions)
+                chunk_seen = Snapshots(
+                    block, first, y_buffer[:good], v_buffer[:good], tally.contacts
+                )
                 for observer in self.observers:
                     observer.observe(chunk_seen)
                 self.counts[block] += good
@@ -109,6 +110,15 @@ class Replica:
                 self.diverged = good < n
                 if self.diverged:
                     return
+
+    def _tally(self, *, counted: bool) -> Tally:
+        """Collisions at each contact if they are counted at all; waves if they are observed."""
+        tally = make_tally(self.y.size, contacts=counted, waves=False)
+        for observer in self.observers:
+            if isinstance(observer, Avalanches):
+                waves = {name: getattr(observer, name) for name in observer.accumulated}
+                tally = tally._replace(**waves)
+        return tally
 
     def _count(self, steps: int) -> int:
         self.steps += steps

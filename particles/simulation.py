@@ -73,8 +73,8 @@ def simulate(
     observe
         Any of ``"widths"`` (velocity_width, mean_displacement, displacement_width and the
         autocorrelation_time that tells whether warm-up and duration were long enough),
-        ``"density"``, ``"velocities"`` (velocity_density), ``"energy"`` (kinetic_energy in time)
-        and ``"collisions"`` (collision_rate).
+        ``"density"``, ``"velocities"`` (velocity_density), ``"energy"`` (kinetic_energy in time),
+        ``"collisions"`` (collision_rate) and ``"avalanches"`` (avalanche_count).
     start
         A result with ``position`` and ``velocity`` over (replica, particle), such as
         ``equilibrium_states(chain, replicas)``; None: every rod at rest at its anchor.
@@ -130,9 +130,10 @@ def simulate(
         started=start is not None,
     )
     starts = replica_starts(chain, start, replicas)
-    counted = "collisions" in names
-    if counted and method != "event-driven":
-        raise ValueError("observe: 'collisions' are only seen by method='event-driven'")
+    single = {"collisions", "avalanches"} & set(names)
+    if single and method != "event-driven":
+        raise ValueError(f"observe: {min(single)!r} are only seen by method='event-driven'")
+    counted = bool(single)
     dynamics = _dynamics(chain, schedule, method, stepper, merging, counted, starts)
     streams = np.random.SeedSequence(seed).spawn(replicas)
     runs = [

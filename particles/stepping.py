@@ -63,11 +63,11 @@ def _spring_kick(y, v, anchors, kick, quadratic):  # type: ignore[no-untyped-def
 
 
 @kernel
-def advance(y, v, anchors, generator, step, law, scratch, counts, steps):  # type: ignore[no-untyped-def] # pragma: no cover
+def advance(y, v, anchors, generator, step, law, scratch, tally, steps):  # type: ignore[no-untyped-def] # pragma: no cover
     """Take ``steps`` steps of the chain in place; return the collisions, or -1 if diverged.
 
     ``y``, ``v``, ``anchors``: float arrays of shape (L,) in the reduced coordinate;
-    ``generator``: a numpy Generator of this thread's own; ``counts``: see ``event_driven``.
+    ``generator``: a numpy Generator of this thread's own; ``tally``: see ``avalanche``.
     """
     collisions = 0
     for _ in range(steps):
@@ -75,7 +75,7 @@ def advance(y, v, anchors, generator, step, law, scratch, counts, steps):  # typ
             d = y[i] - anchors[i]
             pull = step.kick * (d * abs(d) if step.quadratic else d)
             v[i] = step.decay * v[i] + step.noise * generator.standard_normal() - pull
-        met = drift(y, v, step.time_step, law, scratch, counts)
+        met = drift(y, v, step.time_step, law, scratch, tally)
         if met < 0:
             return -1
         collisions += met
@@ -95,7 +95,7 @@ def bounded(y, v, fastest):  # type: ignore[no-untyped-def] # pragma: no cover
 
 @kernel
 def record(  # type: ignore[no-untyped-def] # pragma: no cover
-    y, v, anchors, generator, step, law, scratch, counts, stride, fastest, y_buffer, v_buffer
+    y, v, anchors, generator, step, law, scratch, tally, stride, fastest, y_buffer, v_buffer
 ):
     """Fill the buffers, shape (snapshots, L), with the state after every ``stride`` steps.
 
@@ -103,7 +103,7 @@ def record(  # type: ignore[no-untyped-def] # pragma: no cover
     is, an operator gave up or a rod became faster than ``fastest``.
     """
     for snapshot in range(y_buffer.shape[0]):
-        met = advance(y, v, anchors, generator, step, law, scratch, counts, stride)
+        met = advance(y, v, anchors, generator, step, law, scratch, tally, stride)
         if met < 0 or not bounded(y, v, fastest):
             return snapshot
         y_buffer[snapshot] = y

@@ -3,6 +3,7 @@
 No kernel changes for it: the kernels fill buffers of snapshots, observers consume them.
 """
 
+from crazybilliards.particles.observers.avalanches import Avalanches
 from crazybilliards.particles.observers.base import Observer, Snapshots, Variables
 from crazybilliards.particles.observers.collisions import Collisions
 from crazybilliards.particles.observers.density import Density
@@ -16,6 +17,7 @@ OBSERVERS: dict[str, type[Observer]] = {
     "velocities": Velocities,
     "energy": Energy,
     "collisions": Collisions,
+    "avalanches": Avalanches,
 }
 
-__all__ = ["OBSERVERS", "Observer", "Snapshots", "Variables"]
+__all__ = ["OBSERVERS", "Avalanches", "Observer", "Snapshots", "Variables"]

@@ -119,7 +119,7 @@ def test_ctrl_c_saves_what_was_computed_beside_a_finished_result(tmp_path):
         stderr=subprocess.PIPE,
         text=True,
     )
-    time.sleep(6)
+    time.sleep(8)  # of which importing takes some
     process.send_signal(signal.SIGINT)
     output, errors = process.communicate(timeout=60)
     assert process.returncode == 130, errors

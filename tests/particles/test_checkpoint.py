@@ -26,12 +26,15 @@ save(run, output)
 """
 
 
-def run(script, *arguments, stop_after=None, how=None):
-    """Run the script; after ``stop_after`` seconds send it a signal."""
-    command = [sys.executable, "-c", script, *map(str, arguments)]
-    with subprocess.Popen(command) as process:
-        if stop_after is not None:
-            time.sleep(stop_after)
+def run(script, checkpoint, output, how=None, after=0.0):
+    """Run the script; send it a signal some time ``after`` it has first written its checkpoint."""
+    before = checkpoint.stat().st_mtime_ns if how and checkpoint.exists() else None
+    with subprocess.Popen([sys.executable, "-c", script, str(checkpoint), str(output)]) as process:
+        if how is not None:
+            while not checkpoint.exists() or checkpoint.stat().st_mtime_ns == before:
+                time.sleep(0.01)
+                assert process.poll() is None
+            time.sleep(after)
             process.send_signal(how)
         return process.wait(120)
 
@@ -44,8 +47,7 @@ def test_killed_at_random_moments_and_resumed_it_is_the_undisturbed_run(e, tmp_p
     assert run(script, "", undisturbed) == 0
     generator = np.random.default_rng(int(10 * e))
     for how in (signal.SIGTERM, signal.SIGKILL, signal.SIGKILL, signal.SIGINT):
-        # Of which some two seconds go into importing and compiling.
-        run(script, checkpoint, output, stop_after=2.0 + generator.random(), how=how)
+        run(script, checkpoint, output, how, after=generator.random())
         if how == signal.SIGTERM:
             assert load(output).attrs["status"] == "interrupted"
     # However far it came, now to the end.

@@ -7,6 +7,7 @@ from scipy.linalg import solve_discrete_lyapunov
 from crazybilliards.kinetic import equilibrium
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
+from crazybilliards.particles.avalanche import make_tally
 from crazybilliards.particles.drift import make_law, make_scratch
 from crazybilliards.particles.stepping import advance, make_step
 
@@ -14,9 +15,9 @@ from crazybilliards.particles.stepping import advance, make_step
 def take_steps(chain, y, v, generator, step, steps):
     """Advance an elastic chain in place."""
     law = make_law(chain, step.time_step, "event-driven", 0.03, 1.0)
-    counts = np.zeros(0, dtype=np.int64)
+    tally = make_tally(chain.size, contacts=False, waves=False)
     scratch = make_scratch(chain.size)
-    return advance(y, v, chain.reduced_anchors, generator, step, law, scratch, counts, steps)
+    return advance(y, v, chain.reduced_anchors, generator, step, law, scratch, tally, steps)
 
 
 def stationary_widths(stepper, time_step, **parameters):

@@ -1,0 +1,50 @@
+"""Avalanche sizes by origin."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crazybilliards.model import Chain
+from crazybilliards.particles.avalanche import make_tally
+from crazybilliards.particles.observers.base import Array, Observer, Snapshots, Variables
+from crazybilliards.particles.schedule import Schedule
+
+_LARGEST_SIZE = 5000
+
+
+class Avalanches(Observer):
+    """avalanche_count: rightward waves started by each particle that triggered N_c collisions.
+
+    Counted by the collision kernel itself (see ``particles/avalanche.py``), while measuring; by
+    symmetry leftward waves are those of the mirrored particles. 16 L^2 bytes.
+    """
+
+    accumulated = ("heads", "following", "origins", "unused", "sizes")
+
+    def __init__(self, chain: Chain, schedule: Schedule) -> None:
+        if chain.size > _LARGEST_SIZE:
+            raise ValueError(
+                f"observe: 'avalanches' of {chain.size} particles would take "
+                f"{16e-9 * chain.size**2:.0f} GB; at most {_LARGEST_SIZE}"
+            )
+        tally = make_tally(chain.size, contacts=False, waves=True)
+        _, self.heads, self.following, self.origins, self.unused, self.sizes = tally
+
+    def observe(self, seen: Snapshots) -> None:
+        """Nothing: the kernel has counted already."""
+
+    def join(self, others: Sequence[Self]) -> None:
+        """Add the counts of other replicas."""
+        self.sizes = self.sizes + sum(other.sizes for other in others)
+
+    def report(self, counts: NDArray[np.int64]) -> Variables:
+        """Return avalanche_count."""
+        return {"avalanche_count": (("particle", "avalanche_size"), self.sizes)}
+
+    def coordinates(self) -> dict[str, Array]:
+        """Return the sizes N_c."""
+        return {"avalanche_size": np.arange(1.0, len(self.sizes) + 1)}
