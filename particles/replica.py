@@ -8,11 +8,9 @@ from threading import Event, Lock
 from typing import Any, NamedTuple
 
 import numpy as np
-import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from crazybilliards.model import Chain
-from crazybilliards.model.vocabulary import require
 from crazybilliards.particles.avalanche import Tally, make_tally
 from crazybilliards.particles.drift import HEAP, Law, make_scratch
 from crazybilliards.particles.observers import Avalanches, Observer, Snapshots
@@ -142,28 +140,3 @@ def typical_speed(chain: Chain, duration: float, y: Array, v: Array) -> float:
     noise = chain.amplitude / chain.mass * np.sqrt(heating)
     spring = np.sqrt(2 * chain.potential(y - chain.reduced_anchors).max() / chain.mass)
     return float(noise + spring + np.abs(v).max())
-
-
-def replica_starts(
-    chain: Chain, start: xr.Dataset | None, replicas: int
-) -> list[tuple[Array, Array]]:
-    """Return each replica's own reduced positions and velocities, checked."""
-    if start is None:
-        rest = (chain.reduced_anchors, np.zeros(chain.size))
-        return [(rest[0].copy(), rest[1].copy()) for _ in range(replicas)]
-    require(start, ("position", "velocity"))
-    shape = (replicas, chain.size)
-    y = chain.reduced(start.position.transpose("replica", "particle").values)
-    v = start.velocity.transpose("replica", "particle").values
-    if y.shape != shape or v.shape != shape:
-        raise ValueError(
-            f"start must hold {replicas} replicas of {chain.size} particles, got {y.shape}"
-        )
-    if not (np.isfinite(y).all() and np.isfinite(v).all()):
-        raise ValueError("start must be finite")
-    # Rounding of x -> y may leave touching rods out of order by an ulp of x.
-    tolerance = 1e-12 * max(float(np.abs(start.position).max()), chain.radius)
-    if (np.diff(y, axis=1) < -tolerance).any():
-        raise ValueError("start must hold rods in order that do not overlap")
-    y = np.maximum.accumulate(y, axis=1)
-    return [(np.array(y[i]), np.array(v[i], dtype=float)) for i in range(replicas)]

@@ -19,9 +19,10 @@ from crazybilliards.model.vocabulary import result
 from crazybilliards.particles.checkpoint import Checkpoint, run_identity
 from crazybilliards.particles.drift import Method, make_law
 from crazybilliards.particles.observers import OBSERVERS, Variables
-from crazybilliards.particles.replica import Dynamics, Replica, replica_starts, typical_speed
+from crazybilliards.particles.replica import Dynamics, Replica, typical_speed
 from crazybilliards.particles.running import announced, run_all
 from crazybilliards.particles.schedule import Schedule, make_schedule
+from crazybilliards.particles.start import replica_starts
 from crazybilliards.particles.stepping import Stepper, make_step
 
 Array = NDArray[np.float64]
@@ -77,7 +78,8 @@ def simulate(
         ``"collisions"`` (collision_rate) and ``"avalanches"`` (avalanche_count).
     start
         A result with ``position`` and ``velocity`` over (replica, particle), such as
-        ``equilibrium_states(chain, replicas)``; None: every rod at rest at its anchor.
+        ``equilibrium_states(chain, replicas)`` or ``given_start(chain, position)``; None: every
+        rod at rest at its anchor.
     replicas
         Independent copies, averaged. ``threads`` of them (None: one per core) run at a time.
     checkpoint

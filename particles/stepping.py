@@ -9,7 +9,8 @@ r"""Time stepping: kicks (spring, damping, noise) alternating with drifts that h
 
 One force evaluation per kick, one noise draw per step. Steps 2-4 are the symplectic Verlet
 scheme and step 1 leaves every Maxwellian unchanged, so a linear chain without gap has exactly
-the right velocity width at any dt, and <d^2> = (T/k)/(1 - (w0 dt/2)^2): second order.
+the right velocity width at any dt, and <d^2> = (T/k)/(1 - (w0 dt/2)^2): second order. In a
+transient the damping runs half a step late: velocities are off by gamma dt/2m, first order.
 
 **euler** (the paper's). v <- v + (dt/m)(-F(d) - gamma v) + (A/m) sqrt(dt) xi, then the drift.
 First order: a free rod without spring has W^2 = (T/m)/(1 - gamma dt/2m).

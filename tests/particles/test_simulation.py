@@ -10,7 +10,7 @@ import xarray as xr
 
 from crazybilliards.kinetic import equilibrium, equilibrium_states
 from crazybilliards.model import Chain
-from crazybilliards.particles import simulate
+from crazybilliards.particles import given_start, simulate
 from crazybilliards.particles.schedule import make_schedule, relaxation_time
 
 QUANTITIES = ("velocity_width", "mean_displacement", "displacement_width")
@@ -187,6 +187,36 @@ def test_wrong_starts_are_refused():
         )
     with pytest.raises(ValueError, match="finite"):
         simulate(chain, start=start * np.nan, replicas=2, progress=False)
+
+
+def test_a_displaced_start_swings_back_like_one_damped_oscillator():
+    """A rigid shift of the chain never notices the collisions."""
+    chain = Chain(size=20, gap=0.3, amplitude=0)
+    start = given_start(chain, chain.anchors + 4.0)
+    run = simulate(
+        chain, start=start, duration=30, time_step=0.02, observe="energy", progress=False
+    )
+    rate, half = chain.stiffness / chain.mass, chain.damping / (2 * chain.mass)
+    swing = np.sqrt(rate - half**2)
+    # x = 4 exp(-half t) (cos + half/swing sin), hence:
+    velocity = -4 * rate / swing * np.exp(-half * run.time) * np.sin(swing * run.time)
+    energy = chain.size * chain.mass / 2 * velocity**2
+    np.testing.assert_allclose(run.kinetic_energy, energy, atol=0.01 * float(energy.max()))
+
+
+@pytest.mark.parametrize(
+    ("position", "velocity", "message"),
+    [
+        ([0, 1, 2], 0, "do not overlap"),
+        ([0, 3], 0, "must be numbers that fit"),
+        ([0, 3, np.nan], 0, "finite"),
+        ([0, 3, 6], [1, 2], "must be numbers that fit"),
+        ("abc", 0, "must be numbers that fit"),
+    ],
+)
+def test_a_given_start_is_checked(position, velocity, message):
+    with pytest.raises(ValueError, match=message):
+        given_start(Chain(size=3), position, velocity)
 
 
 def test_schedule_rounds_up_to_whole_blocks():
