@@ -29,6 +29,14 @@ def kernel(function: Callable[..., Any]) -> Any:
     return dispatcher
 
 
+def inlined(function: Callable[..., Any]) -> Any:
+    """Compile ``function`` into every kernel that calls it; a decorator.
+
+    For helpers that take many arrays, which cost more to hand over than to work on.
+    """
+    return njit(nogil=True, error_model="numpy", forceinline=True)(function)
+
+
 @cache
 def _fingerprint(folder: Path) -> str:
     sources = sorted(folder.glob("*.py"))
