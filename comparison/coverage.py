@@ -12,8 +12,6 @@ kept in hat weights: the bin around a node is covered by the mean of the n hats 
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
@@ -86,7 +84,13 @@ def _hat_density_of_states(chain: Chain, source: xr.Dataset) -> xr.Dataset:
     if outside:
         raise ValueError("the states hold positions that are not finite")
     density = weights / (x[1] - x[0]) / (positions.size / chain.size)
-    return result(chain, {"density": ("x", density)}, coordinates={"x": x}, **_origin(source))
+    return result(
+        chain,
+        {"density": ("x", density)},
+        source=source.attrs["source"],
+        method={"density": "of states"},
+        coordinates={"x": x},
+    )
 
 
 def _hat_density_of_theory(source: xr.Dataset) -> xr.Dataset:
@@ -103,7 +107,3 @@ def _hat_density_of_theory(source: xr.Dataset) -> xr.Dataset:
     weights = np.zeros(label.size)
     weights[1:-1] = np.diff(cells) / h**2
     return source.assign(density=source.density.copy(data=weights))
-
-
-def _origin(source: xr.Dataset) -> dict[str, Any]:
-    return {"source": source.attrs["source"], "method": {"density": "of states"}}

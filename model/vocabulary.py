@@ -44,8 +44,6 @@ VOCABULARY = {
     "normalized_particle": ("normalized particle i_n", "1"),
 }
 
-STATUSES = ("completed", "diverged", "interrupted")
-
 
 def result(
     chain: Chain,

@@ -50,19 +50,17 @@ def test_a_vanishing_density_deviates_by_nothing():
 
 
 def test_the_fit_recovers_an_arctanh():
-    chain = Chain(size=51, amplitude=5)
-    x = np.linspace(-60, 60, 51)
-    mean = 2.5 * np.arctanh(x / 66)
-    # Anchors are where they have to be for the mean positions to be x.
-    dataset = result(
-        Chain(size=51), {"mean_displacement": ("particle", mean)}, source="theory", method={}
-    )
-    fit = fit_arctanh(dataset)
-    positions = Chain(size=51).anchors + mean
-    np.testing.assert_allclose(fit(positions), mean, atol=0.25)
-    assert chain.size == 51
+    chain = Chain(size=51)
+    mean = np.zeros(51)
+    for _ in range(200):  # displacements that lie on the curve at the positions they lead to
+        mean = 2.5 * np.arctanh((chain.anchors + mean) / 66)
+    variables = {"mean_displacement": ("particle", mean)}
+    fit = fit_arctanh(result(chain, variables, source="theory", method={}))
+    assert fit.scale == pytest.approx(2.5, rel=1e-6)
+    assert 1 / fit.steepness == pytest.approx(66, rel=1e-6)
+    assert fit.misfit < 1e-6
     assert fit.support == (-1 / fit.steepness, 1 / fit.steepness)
-    assert fit.support[1] > np.abs(positions).max()
+    np.testing.assert_allclose(fit(chain.anchors + mean), mean, atol=1e-5)
 
 
 def test_the_fit_of_the_reference_chain():
