@@ -63,7 +63,7 @@ def overlay(
         values = dataset[quantity]
         abscissa = dataset["x" if "x" in values.dims else along]
         if dataset.attrs.get("source") == "simulation":
-            every = max(abscissa.size // _MOST_SYMBOLS, 1)
+            every = -(-abscissa.size // _MOST_SYMBOLS)
             error = dataset.get(f"{quantity}_error")
             ax.errorbar(
                 abscissa[::every],

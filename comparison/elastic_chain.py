@@ -7,6 +7,7 @@ the simulated displacements.
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 
 import numpy as np
@@ -133,10 +134,11 @@ def _theories(chain: Chain, run: xr.Dataset) -> dict[str, xr.Dataset]:
     theories = {"exact": equilibrium(chain), "labels": force_balance(chain)}
     try:
         fit = fit_arctanh(run)
-    except ValueError:
-        # Too few rods, or rods that do not touch: the paper's route does not exist here.
+        arctanh = force_balance(chain, displacement=fit)
+    except ValueError as error:
+        # Rods that hardly touch, say. The simulation must not be lost for it.
+        warnings.warn(f"A = {chain.amplitude:g} goes without the arctanh: {error}", stacklevel=2)
         return theories
-    arctanh = force_balance(chain, displacement=fit)
     # The fit at the simulated mean positions, to be drawn next to the displacements it fits.
     fitted = fit(chain.anchors + run.mean_displacement)
     arctanh["mean_displacement"] = run.mean_displacement.copy(data=fitted)

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
+import warnings
 from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
-from scipy.optimize import curve_fit
+from scipy.optimize import OptimizeWarning, curve_fit
 
 from crazybilliards.model import chain_of
 from crazybilliards.model.vocabulary import require
@@ -80,8 +81,11 @@ def fit_arctanh(source: xr.Dataset) -> ArctanhFit:
     slope = outward / float(x @ x)
     start = (slope * edge, -2.0)
     try:
-        (scale, q), covariance = curve_fit(model, x, displacement, p0=start, maxfev=10_000)
-    except RuntimeError as error:
+        with warnings.catch_warnings():
+            # Without a covariance the two parameters are not both determined: not a fit.
+            warnings.simplefilter("error", OptimizeWarning)
+            (scale, q), covariance = curve_fit(model, x, displacement, p0=start, maxfev=10_000)
+    except (RuntimeError, OptimizeWarning) as error:
         raise ValueError(f"no arctanh fits: {error}") from error
     steepness = 1 / (edge * (1 + math.exp(q)))
     scale_error, q_error = np.sqrt(np.diag(covariance))
