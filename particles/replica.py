@@ -104,8 +104,9 @@ class Replica:
                 for observer in self.observers:
                     observer.observe(chunk_seen)
                 self.counts[block] += good
-                yield self._count(good * schedule.stride)
+                # Before the yield, where a checkpoint may be taken.
                 self.diverged = good < n
+                yield self._count(good * schedule.stride)
                 if self.diverged:
                     return
 

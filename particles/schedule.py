@@ -5,9 +5,10 @@ the displacement d that ten times the temperature reaches, and the damping rate 
 
 * time step: 0.05 / max(w0, gamma/m), which gives the splitting scheme W_x right to 3e-4 (linear
   springs, no gap). Off e = 1 the noise must be resolved too: between two kicks rods that touch
-  lose the memory of the first one, and W_v in the centre comes out too small by a tenth of the
-  ratio of one step's velocity kick, A sqrt(dt)/m, to W_v itself. That ratio is held at 0.12, with
-  W_v in the centre estimated by :func:`centre_width`.
+  lose the memory of the first one, and W_v in the centre of a dissipative chain comes out too
+  small, by an amount that falls only like sqrt(dt). The velocity kick of one step, A sqrt(dt)/m,
+  is held at 0.12 of W_v there, estimated by :func:`centre_width`; compare with a smaller
+  ``time_step`` where a per cent matters.
 * warm-up: 12 relaxation times of the slowest mode, so the start has decayed to exp(-12).
 * snapshots: every 10 steps.
 """

@@ -60,7 +60,8 @@ def simulate(
     warmup
         Time before measuring [T]; None: 12 relaxation times, or 0 with a ``start``.
     time_step
-        None: 0.05 of the fastest of spring and damping (0.1 for the default chain).
+        None: 0.05 of the fastest of spring and damping (0.1 for the default chain), off
+        restitution 1 also short enough for the noise between collisions; see ``schedule``.
     method
         ``"event-driven"``: every collision in its order. ``"contact-dynamics"``: all contacts of
         a step at once, the paper's method; right only where a step sees few collisions.

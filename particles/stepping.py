@@ -101,12 +101,16 @@ def record(  # type: ignore[no-untyped-def] # pragma: no cover
     """Fill the buffers, shape (snapshots, L), with the state after every ``stride`` steps.
 
     Return how many snapshots are good: fewer than there is room for if the chain diverged, that
-    is, an operator gave up or a rod became faster than ``fastest``.
+    is, an operator gave up or a rod became faster than ``fastest``. Collisions at the contacts are
+    then those up to the last good one: the steps that blew up may have had a million.
     """
+    contacts = tally.contacts.copy()
     for snapshot in range(y_buffer.shape[0]):
         met = advance(y, v, anchors, generator, step, law, scratch, tally, stride)
         if met < 0 or not bounded(y, v, fastest):
+            tally.contacts[:] = contacts
             return snapshot
+        contacts[:] = tally.contacts
         y_buffer[snapshot] = y
         v_buffer[snapshot] = v
     return y_buffer.shape[0]
