@@ -2,15 +2,17 @@ r"""Time stepping: kicks (spring, damping, noise) alternating with drifts that h
 
 **splitting** (default). Per step of length dt
 
-1. exact Ornstein-Uhlenbeck update, v <- c v + sqrt((T/m)(1 - c^2)) xi with c = exp(-gamma dt/m),
+1. exact Ornstein-Uhlenbeck update over half the step, v <- c v + sqrt((T/m)(1 - c^2)) xi with
+   c = exp(-gamma dt/2m),
 2. half a spring kick, v <- v - (dt/2m) F(d),
 3. drift with collisions,
-4. half a spring kick.
+4. half a spring kick,
+5. as 1.
 
-One force evaluation per kick, one noise draw per step. Steps 2-4 are the symplectic Verlet
-scheme and step 1 leaves every Maxwellian unchanged, so a linear chain without gap has exactly
-the right velocity width at any dt, and <d^2> = (T/k)/(1 - (w0 dt/2)^2): second order. In a
-transient the damping runs half a step late: velocities are off by gamma dt/2m, first order.
+Symmetric in time, hence of second order, in transients too. Number 5 of a step and number 1 of
+the next are drawn as one, over dt: one noise draw per step. Steps 2-4 are the symplectic Verlet
+scheme and 1 and 5 leave every Maxwellian unchanged, so a linear chain without gap has exactly
+the right velocity width at any dt, and <d^2> = (T/k)/(1 - (w0 dt/2)^2).
 
 **euler** (the paper's). v <- v + (dt/m)(-F(d) - gamma v) + (A/m) sqrt(dt) xi, then the drift.
 First order: a free rod without spring has W^2 = (T/m)/(1 - gamma dt/2m).
@@ -36,9 +38,11 @@ class Step(NamedTuple):
     time_step: float
     decay: float  # factor on v from the damping
     noise: float  # standard deviation of the velocity kick
+    outer_decay: float  # the same for the first kick of successive steps (and the last one)
+    outer_noise: float
     kick: float  # velocity kick per unit of d or d|d|, one half of it for the splitting
     quadratic: bool
-    verlet: bool  # splitting: a second half kick after the drift
+    symmetric: bool  # splitting: half kicks of spring and noise after the drift
 
 
 def make_step(chain: Chain, time_step: float, stepper: Stepper) -> Step:
@@ -47,13 +51,19 @@ def make_step(chain: Chain, time_step: float, stepper: Stepper) -> Step:
     full_kick = chain.stiffness * time_step / m
     quadratic = chain.spring == "quadratic"
     if stepper == "euler":
+        decay = 1 - gamma * time_step / m
         noise = chain.amplitude / m * math.sqrt(time_step)
-        return Step(time_step, 1 - gamma * time_step / m, noise, full_kick, quadratic, False)
-    rate = 2 * gamma * time_step / m
+        return Step(time_step, decay, noise, decay, noise, full_kick, quadratic, False)
+    inner, outer = (_ornstein_uhlenbeck(chain, duration) for duration in (time_step, time_step / 2))
+    return Step(time_step, *inner, *outer, full_kick / 2, quadratic, True)
+
+
+def _ornstein_uhlenbeck(chain: Chain, duration: float) -> tuple[float, float]:
+    """Decay and noise of the velocity under damping and noise alone, exactly."""
+    rate = 2 * chain.damping * duration / chain.mass
     # (1 - c^2)/rate -> 1 without damping: the noise alone, variance A^2 dt/m^2.
     share = -math.expm1(-rate) / rate if rate > 0 else 1.0
-    noise = chain.amplitude / m * math.sqrt(time_step * share)
-    return Step(time_step, math.exp(-rate / 2), noise, full_kick / 2, quadratic, True)
+    return math.exp(-rate / 2), chain.amplitude / chain.mass * math.sqrt(duration * share)
 
 
 @kernel
@@ -71,17 +81,22 @@ def advance(y, v, anchors, generator, step, law, scratch, tally, steps):  # type
     ``generator``: a numpy Generator of this thread's own; ``tally``: see ``avalanche``.
     """
     collisions = 0
+    decay, noise = step.outer_decay, step.outer_noise
     for _ in range(steps):
         for i in range(y.size):
             d = y[i] - anchors[i]
             pull = step.kick * (d * abs(d) if step.quadratic else d)
-            v[i] = step.decay * v[i] + step.noise * generator.standard_normal() - pull
+            v[i] = decay * v[i] + noise * generator.standard_normal() - pull
+        decay, noise = step.decay, step.noise
         met = drift(y, v, step.time_step, law, scratch, tally)
         if met < 0:
             return -1
         collisions += met
-        if step.verlet:
+        if step.symmetric:
             _spring_kick(y, v, anchors, step.kick, step.quadratic)
+    if step.symmetric and steps > 0:
+        for i in range(y.size):
+            v[i] = step.outer_decay * v[i] + step.outer_noise * generator.standard_normal()
     return collisions
 
 
