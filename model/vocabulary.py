@@ -26,6 +26,7 @@ VOCABULARY = {
     "mean_displacement": ("mean displacement <x_i - x0_i>", "R"),
     "displacement_width": ("displacement width W_x", "R"),
     "velocity_width": ("velocity width W_v", "R/T"),
+    "mean_velocity": ("mean velocity <v_i>", "R/T"),
     "velocity_density": ("probability density of v_i", "T/R"),
     "velocity_outside": ("share of velocities beyond the bins", "1"),
     "kinetic_energy": ("kinetic energy sum m v^2/2", "M R^2/T^2"),
@@ -55,6 +56,7 @@ def result(
     status: str = "completed",
     end_time: float | None = None,
     residual: float | None = None,
+    particles: ArrayLike | None = None,
 ) -> xr.Dataset:
     """Build a result in the common vocabulary: coordinates, units, status and provenance.
 
@@ -75,6 +77,8 @@ def result(
         ``completed``, ``diverged`` or ``interrupted``, and the time reached.
     residual
         How well a theory's equations are satisfied; what it measures its function says.
+    particles
+        The particles, from 1, that variables over ``particle`` are given for; None: all.
     """
     along: dict[str, Any] = {
         name: (name, np.asarray(values, dtype=float))
@@ -82,11 +86,12 @@ def result(
     }
     if any("particle" in dims for dims, _ in variables.values()):
         ends = max(chain.size - 1, 1)
-        along["particle"] = ("particle", np.arange(1, chain.size + 1))
-        along["normalized_particle"] = ("particle", 2 * chain.rank / ends)
-    if "mean_displacement" in variables:
-        mean = np.asarray(variables["mean_displacement"][1])
-        along["mean_position"] = ("particle", chain.anchors + mean)
+        shown = np.arange(chain.size) if particles is None else np.asarray(particles) - 1
+        along["particle"] = ("particle", shown + 1)
+        along["normalized_particle"] = ("particle", 2 * chain.rank[shown] / ends)
+        if "mean_displacement" in variables:
+            dimensions, mean = variables["mean_displacement"]
+            along["mean_position"] = (dimensions, chain.anchors[shown] + np.asarray(mean))
     dataset = xr.Dataset(dict(variables), coords=along)
     for name in (*dataset.data_vars, *dataset.coords):
         meaning, unit = VOCABULARY[str(name).removesuffix("_error")]

@@ -1,13 +1,16 @@
-"""Averages with honest error bars: block means and the jackknife over blocks.
+"""Averages with honest error bars: the jackknife over blocks.
 
 Successive snapshots are correlated; means over blocks much longer than the correlation time are
-not. The jackknife leaves out one block at a time, which gives the standard error of any function
-of the averages (a width, say), not only of the averages themselves.
+not. Neither are replicas, or groups of them. The jackknife leaves out one block at a time, which
+gives the standard error of any function of the averages (a width, say), not only of the averages
+themselves. Blocks may differ in length: the weights are those of the delete-m_j jackknife (Busing,
+Meijer and van der Leeden, Statistics and Computing 9, 3-8, 1999).
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,29 +18,38 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 
-def block_means(sums: Array, counts: NDArray[np.int64]) -> tuple[Array, Array]:
-    """Return the overall mean and the means of the complete blocks.
-
-    ``sums`` has shape (blocks, ...), ``counts`` (blocks,): how many snapshots went into each. A
-    block that an interruption cut short counts in the mean but not among the complete ones.
-    """
-    mean = sums.sum(axis=0) / counts.sum()
-    complete = counts == np.max(counts)
-    shape = (-1,) + (1,) * (sums.ndim - 1)
-    return mean, sums[complete] / counts[complete].reshape(shape)
-
-
 def jackknife(
-    function: Callable[[Array], Array], mean: Array, blocks: Array
+    function: Callable[[Array], Array], sums: Array, counts: NDArray[np.int64]
 ) -> tuple[Array, Array]:
-    """Value and standard error of ``function(averages)``, from the mean and the block means.
+    """Value and standard error of ``function(averages)``, from sums over blocks.
 
-    With fewer than two blocks nothing is known about the error: it is infinite.
+    ``counts``, shape (blocks, ...), says how many snapshots went into each block, ``sums`` has
+    that shape and further dimensions behind, on which ``function`` works. Blocks without snapshots
+    are no blocks; with fewer than two nothing is known about the error, and it is infinite.
     """
-    value = function(mean)
-    n = len(blocks)
-    if n < 2:
-        return value, np.full_like(value, np.inf)
-    total = blocks.sum(axis=0)
-    left_out = np.array([function((total - block) / (n - 1)) for block in blocks])
-    return value, np.sqrt((n - 1) * left_out.var(axis=0))
+    total, number = sums.sum(axis=0), counts.sum(axis=0)
+    value = function(total / _behind(number, total.ndim))
+    rest = number - counts
+    used = (counts > 0) & (rest > 0)
+    divisors = np.where(used, rest, 1)
+    left_out = np.array(
+        [
+            function((total - part) / _behind(divisor, total.ndim))
+            for part, divisor in zip(sums, divisors, strict=True)
+        ]
+    )
+    blocks = _behind(used.sum(axis=0), value.ndim)
+    used, ratio = (
+        _behind(each, left_out.ndim) for each in (used, number / np.where(used, counts, 1))
+    )
+    ratio = np.where(used, ratio, 2)
+    mean = blocks * value - (used * (1 - 1 / ratio) * left_out).sum(axis=0)
+    pseudovalues = ratio * value - (ratio - 1) * left_out
+    terms = used * (pseudovalues - mean) ** 2 / (ratio - 1)
+    variance = terms.sum(axis=0) / np.maximum(blocks, 1)
+    return value, np.where(blocks < 2, np.inf, np.sqrt(variance))
+
+
+def _behind(array: NDArray[Any], dimensions: int) -> NDArray[Any]:
+    """Add dimensions of length 1 behind those of ``array``."""
+    return array.reshape(array.shape + (1,) * (dimensions - array.ndim))

@@ -85,7 +85,6 @@ def run_identity(
     chain: Chain,
     schedule: Mapping[str, Any],
     settings: Mapping[str, Any],
-    observe: Sequence[str],
     starts: Sequence[tuple[np.ndarray, np.ndarray]],
 ) -> dict[str, Any]:
     """Everything that a run's bits depend on, by name; the start as a checksum."""
@@ -96,7 +95,6 @@ def run_identity(
         **schedule,
         **settings,
         "replicas": len(starts),
-        "observe": list(observe),
         "start": start,
     }
 

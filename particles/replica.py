@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from threading import Event, Lock
 from typing import Any, NamedTuple
@@ -22,7 +22,9 @@ Array = NDArray[np.float64]
 # Between two looks at Ctrl-C a replica takes about this many particle steps (some 20 ms).
 _CHUNK = 2**20
 
-_CHANGING = ("y", "v", "counts", "steps", "diverged")
+NEVER = 2**62
+
+_CHANGING = ("copy", "y", "v", "counts", "steps", "snapshots", "over", "reached")
 
 
 class Dynamics(NamedTuple):
@@ -36,16 +38,36 @@ class Dynamics(NamedTuple):
 
 @dataclass
 class Replica:
-    """State and measurements of one copy of the chain."""
+    """State and measurements of one copy of the chain, or of several, one after another.
 
-    y: Array
-    v: Array
-    generator: np.random.Generator
+    In an ensemble the replicas come in groups that share their observers, so that a thousand of
+    them take no more memory than a few.
+    """
+
+    starts: Sequence[tuple[Array, Array]]
+    streams: Sequence[np.random.SeedSequence]
     observers: list[Observer]
     counts: NDArray[np.int64]  # snapshots taken, block by block
-    steps: int = 0
-    diverged: bool = False
+    copy: int = 0  # the one under way
+    steps: int = 0  # that it has taken
+    snapshots: int = 0  # taken of it
+    over: bool = False  # it diverged
+    reached: int = NEVER  # the first block that a diverged copy did not fill
     lock: Any = field(default_factory=Lock)  # held while a chunk is under way
+
+    def __post_init__(self) -> None:
+        self._start()
+
+    def _start(self) -> None:
+        """Put the chain at the start of the present copy."""
+        self.y, self.v = (np.array(each) for each in self.starts[self.copy])
+        self.generator = np.random.Generator(np.random.PCG64(self.streams[self.copy]))
+        self.steps, self.snapshots, self.over = 0, 0, False
+
+    @property
+    def diverged(self) -> bool:
+        """Whether any copy diverged so far."""
+        return self.reached < NEVER
 
     def state(self) -> dict[str, ArrayLike]:
         """Return all that changes while running, but the generator's state."""
@@ -74,41 +96,70 @@ class Replica:
             yield steps
 
     def run(self, dynamics: Dynamics, schedule: Schedule, stop: Event) -> Iterator[int]:
-        """Warm up, then measure; yield the number of steps after every chunk."""
-        if self.diverged:
-            return
-        size = self.y.size
-        anchors, step, law, fastest = dynamics
-        kernel = (self.y, self.v, anchors, self.generator, step, law, make_scratch(size))
-        unseen = make_tally(size, contacts=False, waves=False)
-        chunk = max(_CHUNK // size, 1)
-        while self.steps < schedule.warmup_steps and not stop.is_set():
+        """Warm up and measure, copy by copy; yield the number of steps after every chunk."""
+        while True:
+            yield from self._warm_up(dynamics, schedule, stop)
+            yield from self._measure(dynamics, schedule, stop)
+            if stop.is_set() or self.copy + 1 == len(self.starts):
+                return
+            self.copy += 1
+            self._start()
+
+    def _kernel(self, dynamics: Dynamics) -> tuple[Any, ...]:
+        """Return what the kernels of ``stepping`` take first."""
+        scratch = make_scratch(self.y.size)
+        return (
+            self.y,
+            self.v,
+            dynamics.anchors,
+            self.generator,
+            dynamics.step,
+            dynamics.law,
+            scratch,
+        )
+
+    def _warm_up(self, dynamics: Dynamics, schedule: Schedule, stop: Event) -> Iterator[int]:
+        kernel = self._kernel(dynamics)
+        unseen = make_tally(self.y.size, contacts=False, waves=False)
+        chunk = max(_CHUNK // self.y.size, 1)
+        while self.steps < schedule.warmup_steps and not (self.over or stop.is_set()):
             steps = min(chunk, schedule.warmup_steps - self.steps)
             met = advance(*kernel, unseen, steps)
-            self.diverged = met < 0 or not bounded(self.y, self.v, fastest)
-            if self.diverged:
+            if met < 0 or not bounded(self.y, self.v, dynamics.fastest):
+                self._diverge(0)
                 return
-            yield self._count(steps)
-        tally = self._tally(counted=law.operator == HEAP)
-        rows = min(max(chunk // schedule.stride, 1), schedule.snapshots_per_block)
-        y_buffer, v_buffer = np.empty((2, rows, size))
-        for block in range(schedule.blocks):
-            while self.counts[block] < schedule.snapshots_per_block and not stop.is_set():
-                n = min(rows, schedule.snapshots_per_block - int(self.counts[block]))
-                tally.contacts[:] = 0
-                good = record(*kernel, tally, schedule.stride, fastest, y_buffer[:n], v_buffer[:n])
-                first = block * schedule.snapshots_per_block + int(self.counts[block])
-                chunk_seen = Snapshots(
-                    block, first, y_buffer[:good], v_buffer[:good], tally.contacts
-                )
-                for observer in self.observers:
-                    observer.observe(chunk_seen)
-                self.counts[block] += good
-                # Before the yield, where a checkpoint may be taken.
-                self.diverged = good < n
-                yield self._count(good * schedule.stride)
-                if self.diverged:
-                    return
+            self.steps += steps
+            yield steps
+
+    def _measure(self, dynamics: Dynamics, schedule: Schedule, stop: Event) -> Iterator[int]:
+        kernel = self._kernel(dynamics)
+        tally = self._tally(counted=dynamics.law.operator == HEAP)
+        per_block = schedule.snapshots_per_block
+        rows = max(_CHUNK // self.y.size // schedule.stride, 1)
+        y_buffer, v_buffer = np.empty((2, min(rows, per_block), self.y.size))
+        while self.snapshots < schedule.snapshots and not (self.over or stop.is_set()):
+            block, taken = divmod(self.snapshots, per_block)
+            n = min(len(y_buffer), per_block - taken)
+            tally.contacts[:] = 0
+            if schedule.ensemble and block == 0:
+                y_buffer[0], v_buffer[0], good, steps = self.y, self.v, 1, 0
+            else:
+                views = y_buffer[:n], v_buffer[:n]
+                good = record(*kernel, tally, schedule.stride, dynamics.fastest, *views)
+                steps = good * schedule.stride
+            seen = y_buffer[:good], v_buffer[:good], tally.contacts
+            for observer in self.observers:
+                observer.observe(Snapshots(block, self.snapshots, self.copy, *seen))
+            # All before the yield, where a checkpoint may be taken.
+            self.counts[block] += good
+            self.snapshots += good
+            self.steps += steps
+            if good < n:
+                self._diverge(block)
+            yield steps
+
+    def _diverge(self, block: int) -> None:
+        self.over, self.reached = True, min(self.reached, block)
 
     def _tally(self, *, counted: bool) -> Tally:
         """Collisions at each contact if they are counted at all; waves if they are observed."""
@@ -118,10 +169,6 @@ class Replica:
                 waves = {name: getattr(observer, name) for name in observer.accumulated}
                 tally = tally._replace(**waves)
         return tally
-
-    def _count(self, steps: int) -> int:
-        self.steps += steps
-        return steps
 
 
 def _put(owner: object, name: str, value: NDArray[Any]) -> None:
@@ -141,3 +188,12 @@ def typical_speed(chain: Chain, duration: float, y: Array, v: Array) -> float:
     noise = chain.amplitude / chain.mass * np.sqrt(heating)
     spring = np.sqrt(2 * chain.potential(y - chain.reduced_anchors).max() / chain.mass)
     return float(noise + spring + np.abs(v).max())
+
+
+def start_swing(chain: Chain, y: Array, v: Array) -> float:
+    """Largest displacement that the start's own energy takes a free rod to [R]."""
+    energy = chain.potential(y - chain.reduced_anchors) + chain.mass / 2 * v**2
+    if chain.stiffness == 0:
+        return 0.0  # no bound, and no grid asks for one
+    n = chain.potential_exponent
+    return float((n * energy.max() / chain.stiffness) ** (1 / n))

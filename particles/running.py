@@ -27,11 +27,11 @@ def run_all(
 ) -> bool:
     """Run the replicas in threads; return whether Ctrl-C or SIGTERM stopped them."""
     stop = Event()
-    done = sum(run.steps for run in runs) * schedule.time_step
+    done = sum(run.copy * schedule.steps + run.steps for run in runs)
     with (
         tqdm(
-            total=(schedule.warmup + schedule.duration) * len(runs),
-            initial=done,
+            total=sum(len(run.starts) for run in runs) * schedule.steps * schedule.time_step,
+            initial=done * schedule.time_step,
             desc="simulating",
             unit=" time units",
             unit_scale=True,

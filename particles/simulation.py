@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 from threading import Event
@@ -15,19 +15,21 @@ from numpy.typing import NDArray
 
 from crazybilliards.model import Chain
 from crazybilliards.model.chain import check_integer, check_real
-from crazybilliards.model.vocabulary import result
 from crazybilliards.particles.checkpoint import Checkpoint, run_identity
+from crazybilliards.particles.collecting import collect
 from crazybilliards.particles.drift import Method, make_law
-from crazybilliards.particles.observers import OBSERVERS, Variables
-from crazybilliards.particles.replica import Dynamics, Replica, typical_speed
+from crazybilliards.particles.observers import OBSERVERS, Integers, Plan
+from crazybilliards.particles.replica import Dynamics, Replica, start_swing, typical_speed
 from crazybilliards.particles.running import announced, run_all
-from crazybilliards.particles.schedule import Schedule, make_schedule
+from crazybilliards.particles.schedule import Average, Schedule, make_schedule
 from crazybilliards.particles.start import replica_starts
 from crazybilliards.particles.stepping import Stepper, make_step
 
 Array = NDArray[np.float64]
 
 _DIVERGED = 1e6  # typical speeds: the steady states of e > 1 stay within some tens of them
+_GROUPS = 32  # of an ensemble: enough for an error bar good to an eighth
+_MOST_BYTES = 8e9
 
 
 def simulate(
@@ -42,7 +44,10 @@ def simulate(
     seed: int = 0,
     observe: Sequence[str] = ("widths", "density"),
     start: xr.Dataset | None = None,
+    particles: Sequence[int] | None = None,
     replicas: int = 1,
+    average: Average = "time",
+    every: float | None = None,
     threads: int | None = None,
     checkpoint: str | os.PathLike[str] | None = None,
     checkpoint_interval: float = 30.0,
@@ -58,7 +63,8 @@ def simulate(
         Time measured in each replica [T]; rounded up to whole blocks of snapshots. Good values
         are hundreds of relaxation times 2m/gamma (8.4 for the default chain).
     warmup
-        Time before measuring [T]; None: 12 relaxation times, or 0 with a ``start``.
+        Time before measuring [T]; None: 12 relaxation times, or 0 with a ``start`` and for an
+        ensemble.
     time_step
         None: 0.05 of the fastest of spring and damping (0.1 for the default chain), off
         restitution 1 also short enough for the noise between collisions; see ``schedule``.
@@ -73,16 +79,27 @@ def simulate(
     seed
         Integer >= 0. The same seed gives the same result to the last bit, whatever ``threads``.
     observe
-        Any of ``"widths"`` (velocity_width, mean_displacement, displacement_width and the
-        autocorrelation_time that tells whether warm-up and duration were long enough),
+        Any of ``"widths"`` (velocity_width, mean_velocity, mean_displacement, displacement_width
+        and the autocorrelation_time that tells whether warm-up and duration were long enough),
         ``"density"``, ``"velocities"`` (velocity_density), ``"energy"`` (kinetic_energy in time),
-        ``"collisions"`` (collision_rate) and ``"avalanches"`` (avalanche_count).
+        ``"collisions"`` (collision_rate), ``"avalanches"`` (avalanche_count) and ``"snapshots"``
+        (position and velocity as they are).
     start
         A result with ``position`` and ``velocity`` over (replica, particle), such as
         ``equilibrium_states(chain, replicas)`` or ``given_start(chain, position)``; None: every
         rod at rest at its anchor.
+    particles
+        Numbers, from 1, of the particles to report; None: all. Velocity distributions and
+        snapshots of a long chain take much memory.
     replicas
         Independent copies, averaged. ``threads`` of them (None: one per core) run at a time.
+    average
+        ``"time"``: over the duration, for steady states. ``"ensemble"``: over the replicas at
+        equal times, for relaxation: widths, density, energy over (time, ...), the first time
+        being the start. Errors are then those of 32 groups of replicas.
+    every
+        Time between snapshots [T]; None: 10 steps, for an ensemble a hundredth of the duration.
+        The time step is shortened to a whole fraction of it.
     checkpoint
         File to keep the state of the run in, written every ``checkpoint_interval`` seconds and
         at Ctrl-C or SIGTERM. The same call again goes on from there, to the same bits; a
@@ -95,9 +112,11 @@ def simulate(
     xarray.Dataset
         In the common vocabulary. ``attrs["status"]`` is ``completed``, ``interrupted`` (Ctrl-C:
         everything measured until then) or ``diverged`` (everything before the chain blew up);
-        ``attrs["end_time"]`` is the shortest time any replica reached, warm-up included. A chain
-        that diverged before anything was measured (``warmup=0`` measures from the start) has no
-        variables.
+        ``attrs["end_time"]`` is the shortest time any replica reached, warm-up included, for an
+        ensemble the last time reported. A chain that diverged before anything was measured
+        (``warmup=0`` measures from the start) has no variables. Off restitution 1
+        ``attrs["time_step_error"]`` estimates the relative error of the smallest velocity width
+        that the time step causes.
 
     Raises
     ------
@@ -113,46 +132,46 @@ def simulate(
     >>> run.velocity_width.dims, run.attrs["status"]
     (('particle',), 'completed')
     """
-    for name, value, kinds in (("method", method, Method), ("stepper", stepper, Stepper)):
+    for name, value, kinds in (
+        ("method", method, Method),
+        ("stepper", stepper, Stepper),
+        ("average", average, Average),
+    ):
         if value not in get_args(kinds):
             raise ValueError(f"{name} must be one of {get_args(kinds)}, got {value!r}")
     merging = check_real("merging", merging)
     checkpoint_interval = check_real("checkpoint_interval", checkpoint_interval)
     seed = check_integer("seed", seed, least=0)
     replicas = check_integer("replicas", replicas, least=1)
-    if threads is None:
-        threads = _cores()
-    threads = check_integer("threads", threads, least=1)
-    names = _check_observers(observe)
+    threads = check_integer("threads", _cores() if threads is None else threads, least=1)
+    names = _check_observers(observe, method, average)
+    chosen = _check_particles(particles, chain)
     schedule = make_schedule(
         chain,
         duration=duration,
         warmup=warmup,
         time_step=time_step,
+        every=every,
+        average=average,
         replicas=replicas,
         started=start is not None,
     )
     starts = replica_starts(chain, start, replicas)
-    single = {"collisions", "avalanches"} & set(names)
-    if single and method != "event-driven":
-        raise ValueError(f"observe: {min(single)!r} are only seen by method='event-driven'")
-    counted = bool(single)
+    counted = bool({"collisions", "avalanches"} & set(names))
     dynamics = _dynamics(chain, schedule, method, stepper, merging, counted, starts)
-    streams = np.random.SeedSequence(seed).spawn(replicas)
-    runs = [
-        _replica(chain, *state, stream, names, schedule)
-        for state, stream in zip(starts, streams, strict=True)
-    ]
+    groups = min(replicas, _GROUPS) if schedule.ensemble else replicas
+    runs = _replicas(chain, schedule, names, chosen, starts, seed, groups)
     with announced(progress):
         _compile_kernels(names)
     keeper = None
     settings = {"method": method, "stepper": stepper, "merging": merging, "seed": seed}
     if checkpoint is not None:
-        identity = run_identity(chain, asdict(schedule), settings, names, starts)
+        measured = {"observe": names, "particles": (chosen + 1).tolist()}
+        identity = run_identity(chain, asdict(schedule), settings | measured, starts)
         keeper = Checkpoint(Path(checkpoint), identity, checkpoint_interval)
         keeper.resume(runs)
     interrupted = run_all(runs, dynamics, schedule, threads, keeper, progress)
-    return _collect(chain, runs, schedule, settings, interrupted)
+    return collect(chain, runs, schedule, settings, chosen, interrupted)
 
 
 def _dynamics(
@@ -174,21 +193,33 @@ def _dynamics(
     )
 
 
-def _replica(
+def _replicas(
     chain: Chain,
-    y: Array,
-    v: Array,
-    stream: np.random.SeedSequence,
-    names: list[str],
     schedule: Schedule,
-) -> Replica:
-    return Replica(
-        y,
-        v,
-        np.random.Generator(np.random.PCG64(stream)),
-        [OBSERVERS[name](chain, schedule) for name in names],
-        np.zeros(schedule.blocks, dtype=np.int64),
-    )
+    names: list[str],
+    chosen: Integers,
+    starts: list[tuple[Array, Array]],
+    seed: int,
+    groups: int,
+) -> list[Replica]:
+    """Deal the replicas out to ``groups``, each with observers of its own."""
+    swing = max(start_swing(chain, y, v) for y, v in starts)
+    plan = Plan(chain, schedule, chosen, swing, copies=-(-len(starts) // groups))
+    needed = groups * sum(OBSERVERS[name].memory(plan) for name in names)
+    if needed > _MOST_BYTES:
+        raise ValueError(
+            f"observe: {', '.join(names)} would take {needed / 1e9:.0f} GB; ask for fewer "
+            "particles, replicas or times"
+        )
+    streams = np.random.SeedSequence(seed).spawn(len(starts))
+    runs: list[Replica] = []
+    for members in np.array_split(np.arange(len(starts)), groups):
+        own = plan._replace(copies=members.size)
+        observers = [OBSERVERS[name](own) for name in names]
+        counts = np.zeros(schedule.blocks, dtype=np.int64)
+        mine = [starts[i] for i in members], [streams[i] for i in members]
+        runs.append(Replica(*mine, observers, counts))
+    return runs
 
 
 def _compile_kernels(names: list[str]) -> None:
@@ -196,7 +227,7 @@ def _compile_kernels(names: list[str]) -> None:
     chain = Chain(size=2)
     schedule = Schedule(0.1, warmup_steps=1, stride=1, blocks=1, snapshots_per_block=1)
     starts = replica_starts(chain, None, 1)
-    replica = _replica(chain, *starts[0], np.random.SeedSequence(0), names, schedule)
+    [replica] = _replicas(chain, schedule, names, np.arange(2), starts, 0, groups=1)
     dynamics = _dynamics(chain, schedule, "event-driven", "splitting", 0.03, True, starts)
     for _ in replica.run(dynamics, schedule, Event()):
         pass
@@ -208,48 +239,31 @@ def _cores() -> int:
     return os.cpu_count() or 1
 
 
-def _check_observers(observe: Sequence[str]) -> list[str]:
-    names = [observe] if isinstance(observe, str) else list(observe)
+def _check_observers(observe: Sequence[str], method: Method, average: Average) -> list[str]:
+    names = [observe] if isinstance(observe, str) else list(dict.fromkeys(observe))
     for name in names:
         if name not in OBSERVERS:
             raise ValueError(f"observe takes any of {sorted(OBSERVERS)}, got {name!r}")
+        if average == "ensemble" and not OBSERVERS[name].ensemble:
+            able = sorted(name for name, observer in OBSERVERS.items() if observer.ensemble)
+            raise ValueError(f"observe takes any of {able} for an ensemble, got {name!r}")
     if not names:
         raise ValueError(f"observe must name at least one of {sorted(OBSERVERS)}")
-    return list(dict.fromkeys(names))
+    single = {"collisions", "avalanches"} & set(names)
+    if single and method != "event-driven":
+        raise ValueError(f"observe: {min(single)!r} are only seen by method='event-driven'")
+    # Both would be called velocity, or have other times.
+    clash = {"velocities"} | ({"energy"} if average == "time" else set())
+    if "snapshots" in names and clash & set(names):
+        raise ValueError(f"observe: take {min(clash & set(names))!r} from the 'snapshots' or alone")
+    return names
 
 
-def _collect(
-    chain: Chain,
-    runs: list[Replica],
-    schedule: Schedule,
-    settings: Mapping[str, str | int | float],
-    interrupted: bool,
-) -> xr.Dataset:
-    """Join the replicas' measurements into one result."""
-    counts = np.concatenate([run.counts for run in runs])
-    diverged = any(run.diverged for run in runs)
-    if interrupted and counts.sum() == 0:
-        raise KeyboardInterrupt("nothing was measured yet")
-    variables: Variables = {}
-    coordinates: dict[str, Array] = {}
-    # A chain that diverged before its first snapshot has a status and a time, but no averages.
-    observed = zip(*(run.observers for run in runs), strict=True) if counts.sum() else ()
-    for first, *others in observed:
-        first.join(others)
-        variables |= first.report(counts)
-        coordinates |= first.coordinates()
-    return result(
-        chain,
-        variables,
-        coordinates=coordinates,
-        source="simulation",
-        status="interrupted" if interrupted else "diverged" if diverged else "completed",
-        end_time=min(run.steps for run in runs) * schedule.time_step,
-        method={
-            **settings,
-            "replicas": len(runs),
-            "schedule": asdict(schedule),
-            "duration": schedule.duration,
-            "snapshots": int(counts.sum()),
-        },
-    )
+def _check_particles(particles: Sequence[int] | None, chain: Chain) -> Integers:
+    """Return the chosen particles, counted from 0."""
+    if particles is None:
+        return np.arange(chain.size)
+    chosen = [check_integer("particles", particle, least=1) for particle in particles]
+    if not chosen or max(chosen) > chain.size or sorted(set(chosen)) != chosen:
+        raise ValueError(f"particles must ascend within 1..{chain.size}, got {particles!r}")
+    return np.array(chosen) - 1

@@ -4,10 +4,11 @@ No kernel changes for it: the kernels fill buffers of snapshots, observers consu
 """
 
 from crazybilliards.particles.observers.avalanches import Avalanches
-from crazybilliards.particles.observers.base import Observer, Snapshots, Variables
+from crazybilliards.particles.observers.base import Integers, Observer, Plan, Snapshots, Variables
 from crazybilliards.particles.observers.collisions import Collisions
 from crazybilliards.particles.observers.density import Density
 from crazybilliards.particles.observers.energy import Energy
+from crazybilliards.particles.observers.raw import Raw
 from crazybilliards.particles.observers.velocities import Velocities
 from crazybilliards.particles.observers.widths import Widths
 
@@ -18,6 +19,7 @@ OBSERVERS: dict[str, type[Observer]] = {
     "energy": Energy,
     "collisions": Collisions,
     "avalanches": Avalanches,
+    "snapshots": Raw,
 }
 
-__all__ = ["OBSERVERS", "Avalanches", "Observer", "Snapshots", "Variables"]
+__all__ = ["OBSERVERS", "Avalanches", "Integers", "Observer", "Plan", "Snapshots", "Variables"]

@@ -6,14 +6,16 @@ from collections.abc import Sequence
 from typing import Self
 
 import numpy as np
-from numpy.typing import NDArray
 
-from crazybilliards.model import Chain
 from crazybilliards.particles.avalanche import make_tally
-from crazybilliards.particles.observers.base import Array, Observer, Snapshots, Variables
-from crazybilliards.particles.schedule import Schedule
-
-_LARGEST_SIZE = 5000
+from crazybilliards.particles.observers.base import (
+    Array,
+    Integers,
+    Observer,
+    Plan,
+    Snapshots,
+    Variables,
+)
 
 
 class Avalanches(Observer):
@@ -24,15 +26,16 @@ class Avalanches(Observer):
     """
 
     accumulated = ("heads", "following", "origins", "unused", "sizes")
+    ensemble = False
 
-    def __init__(self, chain: Chain, schedule: Schedule) -> None:
-        if chain.size > _LARGEST_SIZE:
-            raise ValueError(
-                f"observe: 'avalanches' of {chain.size} particles would take "
-                f"{16e-9 * chain.size**2:.0f} GB; at most {_LARGEST_SIZE}"
-            )
-        tally = make_tally(chain.size, contacts=False, waves=True)
+    def __init__(self, plan: Plan) -> None:
+        tally = make_tally(plan.chain.size, contacts=False, waves=True)
         _, self.heads, self.following, self.origins, self.unused, self.sizes = tally
+
+    @staticmethod
+    def memory(plan: Plan) -> float:
+        """Return the bytes it keeps."""
+        return 16.0 * plan.chain.size**2
 
     def observe(self, seen: Snapshots) -> None:
         """Nothing: the kernel has counted already."""
@@ -41,7 +44,7 @@ class Avalanches(Observer):
         """Add the counts of other replicas."""
         self.sizes = self.sizes + sum(other.sizes for other in others)
 
-    def report(self, counts: NDArray[np.int64]) -> Variables:
+    def report(self, counts: Integers) -> Variables:
         """Return avalanche_count."""
         return {"avalanche_count": (("particle", "avalanche_size"), self.sizes)}
 

@@ -7,49 +7,61 @@ from collections.abc import Sequence
 from typing import Self
 
 import numpy as np
-from numpy.typing import NDArray
 
-from crazybilliards.model import Chain
 from crazybilliards.model.grid import deposit, position_grid, thermal_reach
-from crazybilliards.particles.blocks import block_means, jackknife
-from crazybilliards.particles.observers.base import Array, Observer, Snapshots, Variables
-from crazybilliards.particles.schedule import Schedule
+from crazybilliards.particles.observers.base import (
+    Array,
+    Averaged,
+    Integers,
+    Plan,
+    Snapshots,
+    Variables,
+)
 
 
-class Density(Observer):
+def _grid(plan: Plan) -> Array:
+    chain = plan.chain
+    if not np.isfinite(thermal_reach(chain)):
+        raise ValueError("observe: 'density' needs damping and stiffness above 0, to size its grid")
+    # Flippers (e > 1) drive a chain apart by several times the free reach.
+    thermal = thermal_reach(chain) * (5 if chain.restitution > 1 else 1)
+    # A start that is thermal itself, or tamer, needs no more room than that.
+    return position_grid(chain, thermal + max(0.0, plan.swing - 0.75 * thermal))
+
+
+class Density(Averaged):
     """Density of the rods' centres on the position grid, in hat weights, block by block.
 
     The block means are part of the result, because the error of a smoothed density does not
     follow from the errors of the bins. 8 bytes per node and block.
     """
 
-    accumulated = ("weights", "outside")
+    accumulated = ("sums", "outside")
 
-    def __init__(self, chain: Chain, schedule: Schedule) -> None:
-        if not np.isfinite(thermal_reach(chain)):
-            raise ValueError(
-                "observe: 'density' needs damping and stiffness above 0, to know "
-                "how far the rods can go"
-            )
-        # Flippers (e > 1) drive a chain apart by several times the free reach.
-        reach = thermal_reach(chain) * (5 if chain.restitution > 1 else 1)
-        self.x = position_grid(chain, reach)
+    def __init__(self, plan: Plan) -> None:
+        self.schedule = plan.schedule
+        self.x = _grid(plan)
         self.first, self.spacing = self.x[0], self.x[1] - self.x[0]
-        self.offsets = chain.physical(np.zeros(chain.size))
-        self.weights = np.zeros((schedule.blocks, self.x.size))
+        self.offsets = plan.chain.physical(np.zeros(plan.chain.size))
+        self.sums = np.zeros((plan.schedule.blocks, self.x.size))
         self.outside = 0
+
+    @staticmethod
+    def memory(plan: Plan) -> float:
+        """Return the bytes it keeps."""
+        return 8.0 * _grid(plan).size * plan.schedule.blocks
 
     def observe(self, seen: Snapshots) -> None:
         """Put every rod of every snapshot on the grid."""
         points = (seen.y + self.offsets).ravel()
-        self.outside += deposit(points, self.first, self.spacing, self.weights[seen.block])
+        self.outside += deposit(points, self.first, self.spacing, self.sums[seen.block])
 
     def join(self, others: Sequence[Self]) -> None:
-        """Append the blocks of other replicas."""
-        self.weights = np.concatenate([self.weights, *(other.weights for other in others)])
+        """Append what others measured."""
+        super().join(others)
         self.outside += sum(other.outside for other in others)
 
-    def report(self, counts: NDArray[np.int64]) -> Variables:
+    def report(self, counts: Integers) -> Variables:
         """Return density, density_error, density_block over x, and what lay outside x."""
         if self.outside:
             share = self.outside / counts.sum()
@@ -57,14 +69,19 @@ class Density(Observer):
                 f"density: {share:.3g} rods per snapshot lay outside the grid and are missing",
                 stacklevel=2,
             )
-        mean, blocks = block_means(self.weights / self.spacing, counts)
-        density, error = jackknife(lambda average: average, mean, blocks)
-        return {
-            "density": (("x",), density),
-            "density_error": (("x",), error),
-            "density_block": (("block", "x"), blocks),
-            "outside": ((), np.float64(self.outside / counts.sum())),
-        }
+        spacing = self.spacing
+        variables = self.averages({"density": lambda average: average / spacing}, counts, "x")
+        if self.schedule.ensemble:
+            # A group that has not come to a time yet, in an interrupted run, has no density: NaN.
+            known = np.where(counts > 0, counts, np.nan)[..., np.newaxis]
+            means = self.sums[:, : counts.shape[-1]] / (known * spacing)
+            variables["density_block"] = (("block", "time", "x"), means)
+        else:
+            complete = counts == counts.max()
+            means = self.sums[complete] / (counts.max() * spacing)
+            variables["density_block"] = (("block", "x"), means)
+        variables["outside"] = ((), np.float64(self.outside / counts.sum()))
+        return variables
 
     def coordinates(self) -> dict[str, Array]:
         """Return the position grid."""

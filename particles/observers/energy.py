@@ -6,11 +6,16 @@ from collections.abc import Sequence
 from typing import Self
 
 import numpy as np
-from numpy.typing import NDArray
 
-from crazybilliards.model import Chain
-from crazybilliards.particles.observers.base import Array, Observer, Snapshots, Variables
-from crazybilliards.particles.schedule import Schedule
+from crazybilliards.particles.blocks import jackknife
+from crazybilliards.particles.observers.base import (
+    Array,
+    Integers,
+    Observer,
+    Plan,
+    Snapshots,
+    Variables,
+)
 
 _MOST_TIMES = 1000
 
@@ -18,21 +23,25 @@ _MOST_TIMES = 1000
 class Energy(Observer):
     """kinetic_energy: sum over the rods of m v^2/2 against time, averaged over the replicas.
 
-    Successive snapshots are averaged so that at most 1000 times are kept. With two or more
-    replicas kinetic_energy_error is the standard error of their mean. Times that not every
-    replica reached are left out.
+    Successive snapshots are averaged so that at most 1000 times are kept (in an ensemble all
+    are). With two or more replicas kinetic_energy_error is the standard error of their mean.
+    Times that not every replica reached are left out.
     """
 
     accumulated = ("sums", "counts")
 
-    def __init__(self, chain: Chain, schedule: Schedule) -> None:
-        snapshots = schedule.blocks * schedule.snapshots_per_block
-        self.together = -(-snapshots // _MOST_TIMES)
-        self.mass = chain.mass
-        self.begin = schedule.warmup
-        self.interval = schedule.stride * schedule.time_step
-        times = -(-snapshots // self.together)
-        self.sums, self.counts = np.zeros((2, 1, times))
+    def __init__(self, plan: Plan) -> None:
+        self.schedule = plan.schedule
+        self.together = 1 if plan.schedule.ensemble else -(-plan.schedule.snapshots // _MOST_TIMES)
+        self.mass = plan.chain.mass
+        times = -(-plan.schedule.snapshots // self.together)
+        self.sums = np.zeros((1, times))
+        self.counts = np.zeros((1, times), dtype=np.int64)
+
+    @staticmethod
+    def memory(plan: Plan) -> float:
+        """Return the bytes it keeps."""
+        return 16.0 * (plan.schedule.snapshots if plan.schedule.ensemble else _MOST_TIMES)
 
     def observe(self, seen: Snapshots) -> None:
         """Add the energies of snapshots to their times."""
@@ -46,22 +55,27 @@ class Energy(Observer):
         self.sums = np.concatenate([self.sums, *(other.sums for other in others)])
         self.counts = np.concatenate([self.counts, *(other.counts for other in others)])
 
-    def report(self, counts: NDArray[np.int64]) -> Variables:
+    def report(self, counts: Integers) -> Variables:
         """Return kinetic_energy and, with replicas, its error."""
-        reached = self._reached()
-        energies = self.sums[:, reached] / self.counts[:, reached]
-        variables: Variables = {"kinetic_energy": (("time",), energies.mean(axis=0))}
-        n = len(energies)
-        if n > 1:
-            error = energies.std(axis=0, ddof=1) / np.sqrt(n)
+        if self.schedule.ensemble:
+            energies, seen = self.sums[:, : counts.shape[1]], counts
+        else:
+            reached = (self.counts > 0).all(axis=0)
+            energies, seen = self.sums[:, reached], self.counts[:, reached]
+        value, error = jackknife(lambda average: average, energies, seen)
+        variables: Variables = {"kinetic_energy": (("time",), value)}
+        if len(seen) > 1:
             variables["kinetic_energy_error"] = (("time",), error)
         return variables
 
     def coordinates(self) -> dict[str, Array]:
         """Return the mean time of the snapshots in each average."""
+        if self.schedule.ensemble:
+            return {}
         first = np.arange(self.counts.shape[1]) * self.together
-        last = first + np.mean(self.counts, axis=0)
-        return {"time": (self.begin + (first + last + 1) / 2 * self.interval)[self._reached()]}
-
-    def _reached(self) -> NDArray[np.bool_]:
-        return np.asarray((self.counts > 0).all(axis=0))
+        times = np.interp(
+            first + (np.mean(self.counts, axis=0) - 1) / 2,
+            np.arange(self.schedule.times.size),
+            self.schedule.times,
+        )
+        return {"time": times[(self.counts > 0).all(axis=0)]}

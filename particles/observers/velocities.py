@@ -1,4 +1,4 @@
-"""Velocity distributions of every particle."""
+"""Velocity distributions of the chosen particles."""
 
 from __future__ import annotations
 
@@ -6,20 +6,23 @@ from collections.abc import Sequence
 from typing import Self
 
 import numpy as np
-from numpy.typing import NDArray
 
-from crazybilliards.model import Chain
-from crazybilliards.particles.observers.base import Array, Observer, Snapshots, Variables
-from crazybilliards.particles.schedule import Schedule
+from crazybilliards.particles.observers.base import (
+    Array,
+    Integers,
+    Observer,
+    Plan,
+    Snapshots,
+    Variables,
+)
 
 _BINS = 401
 _FINEST = 0.05  # of the free width: bins are equal below, grow in proportion to v above
 _WIDEST = 1000.0
-_MOST_BYTES = 2**32
 
 
 class Velocities(Observer):
-    """velocity_density: probability density of each particle's velocity.
+    """velocity_density: probability density of each chosen particle's velocity.
 
     The 401 bins are equally wide in arsinh(v / 0.05 W): 0.0025 W near 0 and 5 % of v far out,
     up to 1000 W. They fit the narrow centre of a dissipative chain and the tails of an
@@ -27,28 +30,30 @@ class Velocities(Observer):
     """
 
     accumulated = ("counts", "outside")
+    ensemble = False
 
-    def __init__(self, chain: Chain, schedule: Schedule) -> None:
-        scale = chain.free_velocity_width
+    def __init__(self, plan: Plan) -> None:
+        scale = plan.chain.free_velocity_width
         if not 0 < scale < np.inf:
             raise ValueError(
                 "observe: 'velocities' needs amplitude and damping above 0, to size its bins"
             )
-        if chain.size * _BINS * 8 > _MOST_BYTES:
-            raise ValueError(
-                f"observe: 'velocities' of {chain.size} particles would take "
-                f"{chain.size * _BINS * 8 / 1e9:.0f} GB"
-            )
         last = np.arcsinh(_WIDEST / _FINEST)
         self.scale, self.last = _FINEST * scale, last
         self.edges = self.scale * np.sinh(np.linspace(-last, last, _BINS + 1))
-        self.rows = np.arange(chain.size) * _BINS
-        self.counts = np.zeros(chain.size * _BINS, dtype=np.int64)
+        self.chosen = plan.chosen
+        self.rows = np.arange(plan.chosen.size) * _BINS
+        self.counts = np.zeros(plan.chosen.size * _BINS, dtype=np.int64)
         self.outside = 0
+
+    @staticmethod
+    def memory(plan: Plan) -> float:
+        """Return the bytes it keeps."""
+        return 8.0 * _BINS * plan.chosen.size
 
     def observe(self, seen: Snapshots) -> None:
         """Count every velocity in its bin."""
-        place = (np.arcsinh(seen.v / self.scale) / self.last + 1) * (_BINS / 2)
+        place = (np.arcsinh(seen.v[:, self.chosen] / self.scale) / self.last + 1) * (_BINS / 2)
         inside = (place >= 0) & (place < _BINS)
         self.outside += int(inside.size - inside.sum())
         cells = (self.rows + place.astype(np.int64))[inside]
@@ -60,7 +65,7 @@ class Velocities(Observer):
             self.counts += other.counts
             self.outside += other.outside
 
-    def report(self, counts: NDArray[np.int64]) -> Variables:
+    def report(self, counts: Integers) -> Variables:
         """Return velocity_density, and the share of velocities beyond all bins."""
         snapshots = counts.sum()
         table = self.counts.reshape(-1, _BINS)

@@ -2,34 +2,51 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Self
-
 import numpy as np
-from numpy.typing import NDArray
 
-from crazybilliards.model import Chain
-from crazybilliards.particles.blocks import block_means, jackknife
-from crazybilliards.particles.observers.base import Observer, Snapshots, Variables
-from crazybilliards.particles.schedule import Schedule
+from crazybilliards.particles.observers.base import (
+    Array,
+    Averaged,
+    Integers,
+    Plan,
+    Snapshots,
+    Variables,
+)
 
 
-class Widths(Observer):
-    """velocity_width W_v = sqrt(<v^2>), mean_displacement and displacement_width, per particle.
+def _displacement_width(average: Array) -> Array:
+    # max: a rod that never moves has a variance of 0 up to rounding.
+    variance = average[..., 1, :] - average[..., 0, :] ** 2
+    return np.asarray(np.sqrt(np.maximum(variance, 0)))
 
-    The error of the mean displacement also tells its autocorrelation time: over a duration t the
-    mean of a fluctuating quantity of width W and integrated autocorrelation time tau has the
-    variance 2 tau W^2/t. One free rod on a linear spring has tau = gamma/k.
 
-    Keeps the sums of d, d^2 and v^2: 24 L bytes per block.
+_QUANTITIES = {
+    "mean_displacement": lambda average: average[..., 0, :],
+    "displacement_width": _displacement_width,
+    "mean_velocity": lambda average: average[..., 2, :],
+    "velocity_width": lambda average: np.sqrt(average[..., 3, :]),
+}
+
+
+class Widths(Averaged):
+    """mean_displacement, displacement_width, mean_velocity and velocity_width W_v = sqrt(<v^2>).
+
+    The error of a mean displacement averaged in time also tells its autocorrelation time: over a
+    duration t the mean of a fluctuating quantity of width W and integrated autocorrelation time
+    tau has the variance 2 tau W^2/t. One free rod on a linear spring has tau = gamma/k.
+
+    Keeps the sums of d, d^2, v and v^2: 32 L bytes per block.
     """
 
-    accumulated = ("sums",)
+    def __init__(self, plan: Plan) -> None:
+        self.schedule = plan.schedule
+        self.anchors = plan.chain.reduced_anchors
+        self.sums = np.zeros((plan.schedule.blocks, 4, plan.chain.size))
 
-    def __init__(self, chain: Chain, schedule: Schedule) -> None:
-        self.anchors = chain.reduced_anchors
-        self.interval = schedule.stride * schedule.time_step
-        self.sums = np.zeros((schedule.blocks, 3, chain.size))
+    @staticmethod
+    def memory(plan: Plan) -> float:
+        """Return the bytes it keeps."""
+        return 32.0 * plan.chain.size * plan.schedule.blocks
 
     def observe(self, seen: Snapshots) -> None:
         """Add snapshots to the sums of their block."""
@@ -37,31 +54,17 @@ class Widths(Observer):
         sums = self.sums[seen.block]
         sums[0] += d.sum(axis=0)
         sums[1] += np.einsum("sp,sp->p", d, d)
-        sums[2] += np.einsum("sp,sp->p", seen.v, seen.v)
+        sums[2] += seen.v.sum(axis=0)
+        sums[3] += np.einsum("sp,sp->p", seen.v, seen.v)
 
-    def join(self, others: Sequence[Self]) -> None:
-        """Append the blocks of other replicas."""
-        self.sums = np.concatenate([self.sums, *(other.sums for other in others)])
-
-    def report(self, counts: NDArray[np.int64]) -> Variables:
-        """Return the three quantities, their standard errors and the autocorrelation time."""
-        mean, blocks = block_means(self.sums, counts)
-        quantities = {
-            "mean_displacement": lambda average: average[0],
-            # max: a rod that never moves has a variance of 0 up to rounding.
-            "displacement_width": lambda average: np.sqrt(
-                np.maximum(average[1] - average[0] ** 2, 0)
-            ),
-            "velocity_width": lambda average: np.sqrt(average[2]),
-        }
-        variables: Variables = {}
-        for name, quantity in quantities.items():
-            value, error = jackknife(quantity, mean, blocks)
-            variables[name] = (("particle",), value)
-            variables[f"{name}_error"] = (("particle",), error)
-        variance = quantities["displacement_width"](mean) ** 2
+    def report(self, counts: Integers) -> Variables:
+        """Return the quantities, their standard errors and the autocorrelation time."""
+        variables = self.averages(_QUANTITIES, counts, "particle")
+        if self.schedule.ensemble:
+            return variables
+        variance = np.square(variables["displacement_width"][1])
         spread = np.square(variables["mean_displacement_error"][1])
-        duration = counts.sum() * self.interval
+        duration = counts.sum() * self.schedule.stride * self.schedule.time_step
         # A rod that never moves has no time of its own: 0.
         time = np.divide(spread * duration, 2 * variance, where=variance > 0, out=0 * variance)
         variables["autocorrelation_time"] = (("particle",), time)

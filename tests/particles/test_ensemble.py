@@ -1,0 +1,181 @@
+"""Ensembles: averages over replicas at equal times, against exact evolutions; raw snapshots."""
+
+import signal
+import threading
+
+import numpy as np
+import pytest
+import xarray as xr
+from scipy.linalg import expm
+
+from crazybilliards.comparison import smooth
+from crazybilliards.kinetic import equilibrium_states
+from crazybilliards.model import Chain
+from crazybilliards.particles import given_start, simulate
+
+
+def oscillator_covariance(chain, covariance, times):
+    """<d^2>, <dv>, <v^2> of one damped noisy oscillator; exact."""
+    m, gamma, k = chain.mass, chain.damping, chain.stiffness
+    drift = np.array([[0, 2, 0], [-k / m, -gamma / m, 1], [0, -2 * k / m, -2 * gamma / m]])
+    heat = np.array([0, 0, (chain.amplitude / m) ** 2])
+    rest = np.linalg.solve(drift, -heat)
+    return np.array([expm(drift * t) @ (covariance - rest) + rest for t in times])
+
+
+@pytest.fixture(scope="module")
+def compressed():
+    """Release an elastic chain from 0.3 of its thermal width with thermal velocities."""
+    chain = Chain(size=50)
+    start = equilibrium_states(chain, 300, seed=1)
+    position = 0.3 * chain.reduced(start.position.values)
+    start = start.assign(position=(("replica", "particle"), chain.physical(position)))
+    run = simulate(
+        chain,
+        start=start,
+        replicas=300,
+        average="ensemble",
+        duration=20,
+        every=0.25,
+        observe=("widths", "density", "energy"),
+        progress=False,
+    )
+    return chain, start, run
+
+
+def test_elastic_relaxation_is_that_of_independent_oscillators(compressed):
+    chain, _, run = compressed
+    W = chain.free_velocity_width
+    first = np.array([(0.3 * chain.thermal_length) ** 2, 0, W**2])
+    exact = oscillator_covariance(chain, first, run.time.values)
+    square = (run.mean_displacement**2 + run.displacement_width**2).mean("particle")
+    # A mean of 50 x 300 independent squares of a Gaussian.
+    np.testing.assert_allclose(square, exact[:, 0], rtol=5 * np.sqrt(2 / 15_000))
+    energy = chain.size * chain.mass / 2 * exact[:, 2]
+    assert float(np.abs((run.kinetic_energy - energy) / run.kinetic_energy_error).max()) < 5
+    np.testing.assert_allclose(
+        chain.mass / 2 * (run.velocity_width**2).sum("particle"), run.kinetic_energy
+    )
+    # The cloud contracts and expands: the flow at the border is far from thermal.
+    assert run.mean_velocity[:, -1].max() > 20 * run.mean_velocity_error[:, -1].mean()
+
+
+def test_the_first_time_is_the_start_and_the_times_are_those_asked_for(compressed):
+    chain, start, run = compressed
+    np.testing.assert_allclose(run.time, np.arange(81) / 4)
+    displacement = (start.position - chain.anchors).mean("replica")
+    np.testing.assert_allclose(run.mean_displacement[0], displacement, atol=1e-12)
+    assert run.attrs["end_time"] == 20
+    assert run.attrs["status"] == "completed"
+
+
+def test_the_density_in_time_holds_every_rod_and_can_be_smoothed(compressed):
+    chain, _, run = compressed
+    spacing = float(run.x[1] - run.x[0])
+    np.testing.assert_allclose(run.density.sum("x") * spacing, chain.size)
+    smoothed = smooth(run)
+    assert smoothed.density_error.dims == ("time", "x")
+    np.testing.assert_allclose(
+        smoothed.density_block.mean("block"), smoothed.density, atol=0.01
+    )  # groups of 9 and of 10 replicas
+    assert float(smoothed.density.max()) < 1.001 * chain.close_packed_density
+
+
+def test_error_bars_are_those_of_independent_replicas(compressed):
+    """Of d of the middle particle, from 32 groups: right to 13 %."""
+    _, _, run = compressed
+    middle = run.isel(particle=25, time=slice(10, None, 5))
+    expected = middle.displacement_width / np.sqrt(300)
+    np.testing.assert_allclose(middle.mean_displacement_error / expected, 1, atol=0.6)
+
+
+SMALL = {"replicas": 5, "average": "ensemble", "duration": 3, "every": 1, "progress": False}
+
+
+@pytest.mark.parametrize("e", [1.0, 0.5])
+def test_replicas_are_the_same_whatever_the_threads_and_however_cut(e, tmp_path):
+    chain = Chain(size=7, restitution=e)
+    observe = ("widths", "density", "energy", "snapshots")
+    whole = simulate(chain, observe=observe, threads=1, **SMALL)
+    threaded = simulate(chain, observe=observe, threads=3, **SMALL)
+    xr.testing.assert_identical(whole, threaded)
+    positions = whole.position
+    np.testing.assert_allclose((positions - chain.anchors).mean("replica"), whole.mean_displacement)
+    assert positions.sizes == {"replica": 5, "time": 4, "particle": 7}
+    # The end of one is a start of another.
+    again = simulate(chain, start=whole.isel(time=-1), observe=observe, **SMALL)
+    np.testing.assert_allclose(again.position[:, 0], positions[:, -1], atol=1e-12)
+
+
+def test_ctrl_c_keeps_the_replicas_that_were_done_and_a_checkpoint_the_rest(tmp_path):
+    chain = Chain(size=40)
+    arguments = SMALL | {"replicas": 200, "duration": 200, "every": 20}
+    undisturbed = simulate(chain, **arguments)
+    timer = threading.Timer(0.4, signal.raise_signal, [signal.SIGINT])
+    timer.start()
+    checkpoint = tmp_path / "state"
+    partial = simulate(chain, checkpoint=checkpoint, **arguments)
+    timer.cancel()
+    for name in ("mean_displacement", "velocity_width", "density"):
+        assert np.isfinite(partial[name]).all()
+    finished = simulate(chain, checkpoint=checkpoint, **arguments)
+    xr.testing.assert_identical(finished, undisturbed)
+    assert partial.attrs["status"] in ("interrupted", "completed")
+
+
+def test_times_after_the_first_replica_blew_up_are_left_out():
+    chain = Chain(size=150, restitution=1.05, damping=4)
+    start = equilibrium_states(chain.replace(restitution=1, amplitude=10), 3)
+    arguments = SMALL | {"duration": 50, "every": 0.5, "replicas": 3, "observe": "widths"}
+    run = simulate(chain, start=start, **arguments)
+    assert run.attrs["status"] == "diverged"
+    assert 0 < run.attrs["end_time"] < 50
+    assert run.time[-1] == run.attrs["end_time"]
+    assert np.isfinite(run.velocity_width).all()
+
+
+def test_snapshots_in_a_steady_state_are_what_the_averages_are_of():
+    chain = Chain(size=6, gap=0.5)
+    run = simulate(chain, duration=100, every=0.5, observe=("widths", "snapshots"), progress=False)
+    displacement = (run.position - chain.anchors).mean(("replica", "time"))
+    np.testing.assert_allclose(displacement, run.mean_displacement)
+    np.testing.assert_allclose(np.diff(run.time), 0.5)
+    assert run.sizes["time"] == 256  # 100 time units, rounded up to 64 blocks of equal length
+
+
+def test_only_chosen_particles_are_reported():
+    chain = Chain(size=30)
+    arguments = {"duration": 100, "progress": False}
+    for observe in (("widths", "velocities", "collisions"), ("widths", "snapshots")):
+        arguments["observe"] = observe
+        some, whole = simulate(chain, particles=(1, 15), **arguments), simulate(chain, **arguments)
+        xr.testing.assert_identical(
+            some.drop_attrs(deep=False), whole.sel(particle=[1, 15]).drop_attrs(deep=False)
+        )
+    for wrong in ((0,), (31,), (3, 2), (), (1.5,)):
+        with pytest.raises(ValueError, match="particles must"):
+            simulate(chain, particles=wrong, **arguments)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"observe": "velocities"}, "for an ensemble"),
+        ({"every": 5}, "every must be at most the duration"),
+        ({"every": 0}, "every must be"),
+        ({"average": "both"}, "average must be one of"),
+        ({"observe": "snapshots", "duration": 1e6, "every": 1e-3}, "would take 560 GB"),
+        ({"observe": "snapshots", "every": 1e-30}, "too small"),
+    ],
+)
+def test_what_an_ensemble_cannot_be_is_refused(arguments, message):
+    with pytest.raises(ValueError, match=message) as caught:
+        simulate(Chain(size=7), **(SMALL | arguments))
+    assert "\n" not in str(caught.value)
+
+
+def test_a_far_start_fits_on_the_grid():
+    chain = Chain(size=5, amplitude=0.1)
+    start = given_start(chain, chain.anchors + 40.0, replicas=2)
+    run = simulate(chain, start=start, **(SMALL | {"replicas": 2}))
+    assert run.outside == 0
