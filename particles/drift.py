@@ -79,7 +79,7 @@ def make_law(
 def drift(y, v, dt, law, scratch, tally):  # type: ignore[no-untyped-def] # pragma: no cover
     """Advance ``y`` and ``v`` in place by ``dt`` with the operator that ``law`` names."""
     if law.operator == SORT:
-        return sort.drift(y, v, dt)
+        return sort.drift(y, v, dt, scratch.floats[0], scratch.floats[1])
     if law.operator == ISOTONIC:
         return isotonic.drift(y, v, dt, scratch.starts, scratch.floats[0])
     if law.operator == CONTACTS:

@@ -5,7 +5,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from crazybilliards.particles.sort import drift
+from crazybilliards.particles import sort
+
+
+def drift(y, v, dt):
+    return sort.drift(y, v, dt, np.empty(y.size), np.empty(y.size))
 
 
 def drift_slowly(y, v, dt):
@@ -70,3 +74,18 @@ def test_newtons_cradle():
     assert drift(y, v, 2.0) == 3
     np.testing.assert_array_equal(v, [0, 0, 0, 1])
     np.testing.assert_array_equal(y, [0, 0, 0, 1])
+
+
+@pytest.mark.parametrize("size", [63, 64, 65, 128, 200, 1000])
+@pytest.mark.parametrize("dt", [0.0, 1e-3, 0.1, 10.0])
+def test_long_chains_are_sorted_and_every_inversion_is_counted(size, dt):
+    """Beyond 64 rods runs are merged: the same as sorting, inversions counted by brute force."""
+    generator = np.random.default_rng(size)
+    y, v = np.sort(generator.normal(size=size)), generator.normal(size=size)
+    free = y + dt * v
+    order = np.argsort(free)
+    inversions = np.triu(free[:, np.newaxis] > free[np.newaxis, :]).sum()
+    velocities = v.copy()
+    assert drift(y, v, dt) == inversions
+    np.testing.assert_array_equal(y, free[order])
+    np.testing.assert_array_equal(v, velocities[order])
