@@ -15,15 +15,19 @@ if TYPE_CHECKING:
     from crazybilliards.comparison.drawing import overlay as overlay
     from crazybilliards.comparison.elastic_chain import compare_elastic as compare_elastic
     from crazybilliards.comparison.fits import ArctanhFit as ArctanhFit
+    from crazybilliards.comparison.fits import PowerLawFit as PowerLawFit
     from crazybilliards.comparison.fits import fit_arctanh as fit_arctanh
+    from crazybilliards.comparison.fits import fit_border_power_law as fit_border_power_law
 
 _HOMES = {
     "ArctanhFit": "fits",
     "Deviation": "distances",
+    "PowerLawFit": "fits",
     "compare_elastic": "elastic_chain",
     "coverage_density": "coverage",
     "deviation": "distances",
     "fit_arctanh": "fits",
+    "fit_border_power_law": "fits",
     "overlay": "drawing",
     "smooth": "coverage",
 }

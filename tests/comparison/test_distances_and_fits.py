@@ -1,12 +1,13 @@
-"""Deviations in both units, and the arctanh fit."""
+"""Deviations in both units, and the two fits."""
 
 import numpy as np
 import pytest
 
-from crazybilliards.comparison import deviation, fit_arctanh
+from crazybilliards.comparison import deviation, fit_arctanh, fit_border_power_law
 from crazybilliards.kinetic import equilibrium, force_balance
 from crazybilliards.model import Chain
 from crazybilliards.model.vocabulary import result
+from crazybilliards.particles import simulate
 
 
 def flat(chain, height, width, error=None, spacing=0.5):
@@ -79,3 +80,28 @@ def test_chains_that_no_arctanh_fits_are_refused():
     inward = equilibrium(Chain(size=5))
     with pytest.raises(ValueError, match="not displaced outward"):
         fit_arctanh(inward.assign(mean_displacement=-0.1 * inward.mean_displacement))
+
+
+def test_the_power_law_fit_recovers_a_sum_of_two_power_laws():
+    chain = Chain(size=60, restitution=0)
+    i = np.arange(1, 61)
+    width = 0.3 * (i**-0.46 + (61.0 - i) ** -0.46)
+    width[[0, -1]] *= 2  # what the border does is skipped
+    source = result(chain, {"velocity_width": ("particle", width)}, source="theory", method={})
+    fit = fit_border_power_law(source)
+    assert (fit.scale, fit.exponent) == pytest.approx((0.3, -0.46))
+    assert fit.misfit < 1e-8
+    np.testing.assert_allclose(fit(i[2:-2]), width[2:-2])
+    with pytest.raises(ValueError, match="at least 4"):
+        fit_border_power_law(source, skip=29)
+    with pytest.raises(ValueError, match="all particles"):
+        fit_border_power_law(source.isel(particle=[1, 2]))
+
+
+def test_the_dissipative_chain_follows_a_power_law_from_its_borders():
+    """L = 300, e = 0: nu = -0.46, as in the paper."""
+    chain = Chain(size=300, restitution=0)
+    run = simulate(chain, duration=600, time_step=1e-3, observe="widths", progress=False)
+    fit = fit_border_power_law(run)
+    assert fit.exponent == pytest.approx(-0.46, abs=0.015)
+    assert fit.misfit < 0.03
