@@ -45,44 +45,29 @@ _EDGE_DEPTH = {2: 40.0, 3: 1e4}  # where the plateau is reached, by exponent n
 
 def solve_label_closure(chain: Chain) -> xr.Dataset:
     """Solve the force balance closed by labels; see ``force_balance``, which checks the chain."""
-    edge = _solve_edge(chain.potential_exponent, chain.gap * chain.size / chain.thermal_length)
-    s, L, R = chain.thermal_length, chain.size, chain.radius
-
-    def position(zeta: Array) -> tuple[Array, Array]:
-        log_density, share = edge.evaluate(zeta)
-        x = s * (zeta + edge.lam / 2) + 2 * R * L * (0.5 - share)
-        return x, s + 2 * R * L * np.exp(log_density)
-
-    def label(zeta: Array) -> tuple[Array, Array]:
-        log_density, share = edge.evaluate(zeta)
-        return L * (1 - share), L * np.exp(log_density)
-
+    state = stationary(chain)
     x = position_grid(chain)
-    side = np.sign(x)
-    zeta = edge.invert(position, np.abs(x))
-    log_density, share = edge.evaluate(zeta)
-    reduced_density = L / s * np.exp(log_density)
+    density, label = state.fields(chain, x)
     # The middle of rod i has the label i - 1/2.
-    rods = edge.invert(label, L / 2 + np.abs(chain.rank))
-    mean = np.sign(chain.rank) * s * (rods + edge.lam * edge.evaluate(rods)[1])
+    rods = chain.thermal_length * state.at(chain.rank / chain.size)[0]
     return result(
         chain,
         {
-            "density": ("x", reduced_density / (1 + 2 * R * reduced_density)),
-            "label": ("x", L / 2 + side * L * (0.5 - share)),
-            "displacement": ("x", side * s * (zeta + edge.lam * share)),
-            "mean_displacement": ("particle", mean),
-            "velocity_width": ("particle", np.full(L, chain.free_velocity_width)),
+            "density": ("x", density),
+            "label": ("x", label),
+            "displacement": ("x", x - (2 * chain.radius + chain.gap) * (label - chain.size / 2)),
+            "mean_displacement": ("particle", rods - chain.reduced_anchors),
+            "velocity_width": ("particle", np.full(chain.size, chain.free_velocity_width)),
         },
         coordinates={"x": x},
         source="theory",
         method={"theory": "force balance, by labels"},
-        residual=edge.residual,
+        residual=state.edge.residual,
     )
 
 
 @dataclass(frozen=True)
-class _Edge:
+class Edge:
     """The solution on zeta: plateau up to ``left``, computed up to ``right``, vacuum beyond."""
 
     lam: float
@@ -113,7 +98,7 @@ class _Edge:
         return zeta
 
 
-def _solve_edge(n: int, lam: float) -> _Edge:
+def solve_edge(n: int, lam: float) -> Edge:
     depth = _EDGE_DEPTH[n]
     left, right = -min(lam / 2, depth), (n * _TAIL) ** (1 / n)
     share_left = 0.5 if lam <= 2 * depth else depth / lam
@@ -136,7 +121,7 @@ def _solve_edge(n: int, lam: float) -> _Edge:
         raise ValueError(f"the force balance found no solution: {solution.message}")
     P, u = solution.y[0], solution.x + lam / scale * solution.y[1]
     conserved = (lam * np.exp(P) - P - np.abs(u) ** n / n)[P.max() - 30 < P]
-    return _Edge(lam, left, right, scale, solution.sol, float(np.ptp(conserved)))
+    return Edge(lam, left, right, scale, solution.sol, float(np.ptp(conserved)))
 
 
 def _free_lattice(n: int, lam: float, zeta: Array) -> tuple[Array, Array]:
@@ -154,3 +139,49 @@ def _free_lattice(n: int, lam: float, zeta: Array) -> tuple[Array, Array]:
 
     density = (free.sf(zeta) - free.sf(zeta + lam)) / lam
     return np.maximum(density, 1e-17 / lam), (beyond(zeta) - beyond(zeta + lam)) / lam
+
+
+@dataclass(frozen=True)
+class Stationary:
+    """The scaled stationary state as a function of the label nu = N/L - 1/2 in (-1/2, 1/2).
+
+    eta = y/s; densities rho_y in L/s.
+    """
+
+    edge: Edge
+
+    def at(self, labels: Array) -> tuple[Array, Array]:
+        """Return eta and the density at labels."""
+
+        def inside(zeta: Array) -> tuple[Array, Array]:
+            log_density, share = self.edge.evaluate(zeta)
+            return 1 - share, np.exp(log_density)
+
+        zeta = self.edge.invert(inside, 0.5 + np.abs(labels))
+        density = np.exp(self.edge.evaluate(zeta)[0])
+        return np.sign(labels) * (zeta + self.edge.lam / 2), density
+
+    def profile(self, eta: Array) -> tuple[Array, Array]:
+        """Return label and log density at eta."""
+        log_density, share = self.edge.evaluate(np.abs(eta) - self.edge.lam / 2)
+        return np.sign(eta) * (0.5 - share), log_density
+
+    def fields(self, chain: Chain, x: Array, stretch: float = 1.0) -> tuple[Array, Array]:
+        """Return density and label at positions x, of the state stretched in y."""
+        s, L, R = stretch * chain.thermal_length, chain.size, chain.radius
+
+        def position(zeta: Array) -> tuple[Array, Array]:
+            log_density, share = self.edge.evaluate(zeta)
+            place = s * (zeta + self.edge.lam / 2) + 2 * R * L * (0.5 - share)
+            return place, s + 2 * R * L * np.exp(log_density)
+
+        log_density, share = self.edge.evaluate(self.edge.invert(position, np.abs(x)))
+        reduced_density = L / s * np.exp(log_density)
+        density = reduced_density / (1 + 2 * R * reduced_density)
+        return density, L / 2 + np.sign(x) * L * (0.5 - share)
+
+
+def stationary(chain: Chain) -> Stationary:
+    """Solve for the stationary state of ``chain`` at its temperature."""
+    lam = chain.gap * chain.size / chain.thermal_length
+    return Stationary(solve_edge(chain.potential_exponent, lam))

@@ -1,0 +1,138 @@
+r"""Starts of the hydrodynamics: reading any density and velocity profile, and making common ones.
+
+A start is a result with ``density`` over x (one time), and optionally ``label``, ``flow_velocity``
+and ``velocity_variance``. ``force_balance`` of another chain is a quench; the functions here make
+the other usual ones out of the stationary state.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
+from scipy.optimize import elementwise
+
+from crazybilliards.kinetic.label_closure import stationary
+from crazybilliards.model import Chain, chain_of
+from crazybilliards.model.chain import check_real
+from crazybilliards.model.grid import position_grid, thermal_reach
+from crazybilliards.model.vocabulary import require, result
+
+Array = NDArray[np.float64]
+
+_RODS_TOLERANCE = 1e-3
+
+
+def displaced(chain: Chain, shift: float) -> xr.Dataset:
+    """Return the stationary state, moved by ``shift`` [R] as a whole."""
+    return _stationary_image(chain, shift=check_real("shift", shift, signed=True))
+
+
+def compressed(chain: Chain, factor: float) -> xr.Dataset:
+    """Return the stationary state with its reduced coordinate y multiplied by ``factor`` > 0.
+
+    Rods never overlap: only the room between them shrinks (or grows, for a factor above 1).
+    """
+    return _stationary_image(chain, stretch=check_real("factor", factor, positive=True))
+
+
+def two_clumps(chain: Chain, distance: float, speed: float) -> xr.Dataset:
+    """Return the stationary state, cut in half, ``distance`` [R] apart, meeting at ``speed`` each."""
+    distance = check_real("distance", distance, positive=True)
+    speed = check_real("speed", speed)
+    grid = _grid(chain, distance / 2)
+    apart = np.maximum(np.abs(grid) - distance / 2, 0.0)
+    outside = np.abs(grid) >= distance / 2
+    density, label = stationary(chain).fields(chain, apart)
+    label = chain.size / 2 + np.sign(grid) * (label - chain.size / 2)
+    start = _start(chain, grid, np.where(outside, density, 0.0), label)
+    velocity = -np.sign(grid) * speed
+    return start.assign(flow_velocity=("x", velocity))
+
+
+def _stationary_image(chain: Chain, stretch: float = 1.0, shift: float = 0.0) -> xr.Dataset:
+    chain.require_steady_state()
+    grid = _grid(chain, abs(shift) + (max(stretch, 1.0) - 1) * thermal_reach(chain))
+    density, label = stationary(chain).fields(chain, grid - shift, stretch)
+    return _start(chain, grid, density, label)
+
+
+def _grid(chain: Chain, extra: float) -> Array:
+    return position_grid(chain, thermal_reach(chain) + extra)
+
+
+def _start(chain: Chain, x: Array, density: Array, label: Array) -> xr.Dataset:
+    return result(
+        chain,
+        {
+            "density": ("x", density),
+            "label": ("x", label),
+            "flow_velocity": ("x", np.zeros(x.size)),
+            "velocity_variance": ("x", np.full(x.size, chain.free_velocity_width**2)),
+        },
+        source="start",
+        method={"start": "hydrodynamics"},
+        coordinates={"x": x},
+    )
+
+
+class Start(NamedTuple):
+    """A start that was checked, as functions of x."""
+
+    x: Array
+    label: CubicHermiteSpline  # N
+    velocity: PchipInterpolator  # V
+    variance: PchipInterpolator  # W^2
+
+    def positions(self, labels: Array) -> Array:
+        """Return x where N(x) is ``labels``, which lie strictly inside (0, L)."""
+        known = np.maximum.accumulate(self.label(self.x))
+        cell = np.clip(np.searchsorted(known, labels, side="left") - 1, 0, self.x.size - 2)
+        low, high = self.x[cell], self.x[cell + 1]
+        root = elementwise.find_root(lambda x, wanted: self.label(x) - wanted, (low, high), args=(labels,))
+        # Where a cell is empty, any x in it has the label; a bracket may then have no sign change.
+        return np.asarray(np.where(root.success, root.x, (low + high) / 2))
+
+
+def read_start(chain: Chain, initial: xr.Dataset) -> Start:
+    """Check a start and make functions of it."""
+    require(initial, ("density",))
+    if initial.density.dims != ("x",):
+        raise ValueError(f"initial: density must be over x alone, got {initial.density.dims}")
+    x, density = initial.x.values, initial.density.values
+    if not (np.isfinite(density).all() and (np.diff(x) > 0).all() and (density >= 0).all()):
+        raise ValueError("initial: the density must be finite and not negative, over ascending x")
+    if density.max() >= chain.close_packed_density:
+        raise ValueError(
+            f"initial: rods overlap, the density reaches {density.max():.4g} and close packing is "
+            f"{chain.close_packed_density:.4g}"
+        )
+    if "label" in initial:
+        label = initial.label.values - initial.label.values[0]
+    else:
+        label = PchipInterpolator(x, density).antiderivative()(x)
+    if abs(label[-1] / chain.size - 1) > _RODS_TOLERANCE:
+        raise ValueError(
+            f"initial: the density must add up to the chain's {chain.size} rods, got {label[-1]:.6g}"
+        )
+    scale = chain.size / label[-1]
+    profiles = {}
+    free = _own_variance(chain, initial)
+    for name, default in (("flow_velocity", 0.0), ("velocity_variance", free)):
+        values = initial[name].values if name in initial else np.full(x.size, default)
+        if values.shape != x.shape or not np.isfinite(values).all():
+            raise ValueError(f"initial: {name} must be finite and over x alone")
+        profiles[name] = PchipInterpolator(x, values)
+    if (profiles["velocity_variance"](x) <= 0).any():
+        raise ValueError("initial: velocity_variance must be positive")
+    return Start(x, CubicHermiteSpline(x, scale * label, scale * density), *profiles.values())
+
+
+def _own_variance(chain: Chain, initial: xr.Dataset) -> float:
+    """Return the free W^2 of the chain the start belongs to: after a quench another one."""
+    if "provenance" in initial.attrs:
+        chain = chain_of(initial)
+    return chain.free_velocity_width**2
