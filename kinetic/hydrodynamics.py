@@ -34,6 +34,7 @@ import xarray as xr
 from numpy.typing import NDArray
 from scipy.integrate import trapezoid
 
+from crazybilliards.kinetic.eulerian_frame import solve_on_positions
 from crazybilliards.kinetic.flow_fields import FlowFields
 from crazybilliards.kinetic.label_frame import solve_on_labels
 from crazybilliards.kinetic.starts import read_start
@@ -117,8 +118,19 @@ def hydrodynamics(
         cells = check_integer("cells", cells, least=8)
     start = read_start(chain, initial)
     thermal = temperature == "evolving"
-    solve = solve_on_labels
-    fields = solve(chain, start, times, cells, thermal=thermal, progress=progress)
+    if frame == "label":
+        fields = solve_on_labels(chain, start, times, cells, thermal=thermal, progress=progress)
+    else:
+        fields = solve_on_positions(
+            chain,
+            start,
+            times,
+            cells,
+            theta=None,
+            displacement=None,
+            thermal=thermal,
+            progress=progress,
+        )
     method = {"frame": frame, "temperature": temperature, "cells": fields.cells}
     return _result(chain, fields, times, method)
 

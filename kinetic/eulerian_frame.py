@@ -1,0 +1,269 @@
+r"""Hydrodynamics on a grid of positions (Eulerian): the paper's two equations as they stand.
+
+With lengths in thermal lengths s, velocities in W, times in s/W, n = rho s/L and B = 2 R L/s, the
+conserved quantities n, n V and, with a temperature, E = n (V^2 + theta)/2 obey
+
+    n_t     + (n V)_x           = 0,
+    (n V)_t + (n V^2 + p)_x     = -n f - Gamma n V,                  p = n theta/(1 - B n),
+    E_t     + (V (E + p))_x     = -n V f - Gamma n (V^2 + theta - 1),
+
+f being the spring's force at the displacement u = x - (B + Lam) nu, nu = int n dx - 1/2, or at a
+frozen profile u(x).
+
+**Discretisation.** Finite volumes with the flux of Harten, Lax and van Leer between states that are
+reconstructed linearly in ln n, V and ln theta with the minmod limiter: second order, n positive and
+below close packing whatever happens. Walls far out, where there is nothing: no flux. Four-stage
+Runge-Kutta steps of fixed length; where the flow turns out faster than the step allows, all is done
+again with half of it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+
+from crazybilliards.kinetic.flow_fields import FlowFields
+from crazybilliards.kinetic.pde_solver import solve
+from crazybilliards.kinetic.starts import Start
+from crazybilliards.model import Chain
+from crazybilliards.model.grid import position_grid, thermal_reach
+
+Array = NDArray[np.float64]
+Profile = Callable[[Array], Array]
+
+_COURANT = 0.5
+_MOST_COURANT = 1.0  # beyond, four-stage Runge-Kutta with second-order fluxes is not stable
+_HALVINGS = 6
+_CELL = 0.1  # default width in thermal lengths
+_MOST_CELLS = 20_000
+_VACUUM = 1e-13
+_COLDEST = 1e-6
+_ROOM = 11.0  # beyond the lattice of anchors, in thermal lengths
+_MARGIN = 3.0  # beyond the farthest swing
+_AT_THE_WALL = 1e-6
+_MOST_WORK = 4e10
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _minmod(a, b):  # type: ignore[no-untyped-def] # pragma: no cover
+    if a * b <= 0:
+        return 0.0
+    return a if abs(a) < abs(b) else b
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _hll(left, right, crowd, stiffness):  # type: ignore[no-untyped-def] # pragma: no cover
+    """Flux of n, nV and E between two states (ln n, V, ln theta)."""
+    most = (1 - 1e-9) / crowd
+    n_l, n_r = min(np.exp(left[0]), most), min(np.exp(right[0]), most)
+    v_l, v_r, hot_l, hot_r = left[1], right[1], np.exp(left[2]), np.exp(right[2])
+    p_l, p_r = n_l * hot_l / (1 - crowd * n_l), n_r * hot_r / (1 - crowd * n_r)
+    e_l, e_r = n_l * (v_l**2 + hot_l) / 2, n_r * (v_r**2 + hot_r) / 2
+    c_l = stiffness * np.sqrt(hot_l) / (1 - crowd * n_l)
+    c_r = stiffness * np.sqrt(hot_r) / (1 - crowd * n_r)
+    slow, fast = min(v_l - c_l, v_r - c_r, 0.0), max(v_l + c_l, v_r + c_r, 0.0)
+    a, b, across = fast / (fast - slow), -slow / (fast - slow), slow * fast / (fast - slow)
+    return (
+        a * n_l * v_l + b * n_r * v_r + across * (n_r - n_l),
+        a * (n_l * v_l**2 + p_l) + b * (n_r * v_r**2 + p_r) + across * (n_r * v_r - n_l * v_l),
+        a * v_l * (e_l + p_l) + b * v_r * (e_r + p_r) + across * (e_r - e_l),
+    )
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _primitive(fields, theta):  # type: ignore[no-untyped-def] # pragma: no cover
+    """Return ln n, V and ln theta, (M, 3); with an energy, theta follows from it."""
+    cells = fields.shape[1]
+    state = np.empty((cells, 3))
+    for i in range(cells):
+        n = max(fields[0, i], _VACUUM)
+        v = fields[1, i] / n
+        hot = theta[i]
+        if fields.shape[0] == 3:
+            hot = max(2 * fields[2, i] / n - v**2, _COLDEST)
+        state[i, 0], state[i, 1], state[i, 2] = np.log(n), v, np.log(hot)
+    return state
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def eulerian_rate(fields, x, spacing, theta, frozen, crowd, lam, gamma, exponent):  # type: ignore[no-untyped-def] # pragma: no cover
+    """Rates of change of (n, nV) at the given ``theta`` (M,), or of (n, nV, E).
+
+    ``frozen``: u at the cells, (M,), or empty: carried labels. ``crowd``: B.
+    """
+    number, cells = fields.shape
+    state = _primitive(fields, theta)
+    stiffness = np.sqrt(3.0) if number == 3 else 1.0
+    rates = np.zeros_like(fields)
+    label = -0.5
+    for i in range(cells):
+        n, momentum = fields[0, i], fields[1, i]
+        label += 0.5 * n * spacing
+        u = frozen[i] if frozen.size > 0 else x[i] - (crowd + lam) * label
+        label += 0.5 * n * spacing
+        force = u if exponent == 2 else u * abs(u)
+        rates[1, i] -= n * force + gamma * momentum
+        if number == 3:
+            rates[2, i] -= momentum * force + gamma * (2 * fields[2, i] - n)
+    left, right, slope, following = np.zeros((4, 3))
+    for i in range(cells - 1):
+        slope[:] = following
+        for j in range(3):
+            following[j] = 0.0
+            if i + 2 < cells:
+                after = state[i + 2, j] - state[i + 1, j]
+                following[j] = _minmod(state[i + 1, j] - state[i, j], after)
+            left[j] = state[i, j] + slope[j] / 2
+            right[j] = state[i + 1, j] - following[j] / 2
+        flux = _hll(left, right, crowd, stiffness)
+        for j in range(number):
+            rates[j, i] -= flux[j] / spacing
+            rates[j, i + 1] += flux[j] / spacing
+    return rates
+
+
+def solve_on_positions(
+    chain: Chain,
+    start: Start,
+    times: Array,
+    number: int | None,
+    *,
+    theta: Profile | None,
+    displacement: Profile | None,
+    thermal: bool,
+    progress: bool,
+) -> FlowFields:
+    """Solve from a start with ``number`` cells, by Runge-Kutta steps of py-pde.
+
+    ``theta``: W^2(x)/W^2 if prescribed; ``displacement``: <dx>(x) if frozen.
+    """
+    s, W, L = chain.thermal_length, chain.free_velocity_width, chain.size
+    crowd, lam = 2 * chain.radius * L / s, chain.gap * L / s
+    gamma = chain.damping * s / (chain.mass * W)
+    faces = _faces(chain, start, number)
+    x, h = (faces[1:] + faces[:-1]) / 2, faces[1] - faces[0]
+    fields = _starting_fields(chain, start, faces, thermal=thermal)
+    fixed = np.ones(x.size) if theta is None else np.asarray(theta(s * x), dtype=float)
+    frozen = np.empty(0) if displacement is None else np.asarray(displacement(s * x)) / s
+    constants = (x, h, fixed, frozen, crowd, lam, gamma, chain.potential_exponent)
+
+    def rate(values: Array, time: float = 0.0) -> Array:
+        return np.asarray(eulerian_rate(values, *constants))
+
+    scaled = times * W / s
+    interval = scaled[1] - scaled[0]
+    fastest = _fastest(np.array(list(fields.values())), fixed, crowd)
+    for _ in range(_HALVINGS):
+        steps = math.ceil(interval * fastest / (_COURANT * h))
+        _refuse_endless(steps * (times.size - 1) * x.size)
+        solution = solve(
+            rate,
+            fields,
+            scaled,
+            progress=progress,
+            solver="runge-kutta",
+            backend="numpy",  # the rate is compiled already
+            dt=interval / steps,
+        )
+        if np.isfinite(solution).all():
+            seen = max(_fastest(each, fixed, crowd) for each in solution)
+            if seen * interval / steps < _MOST_COURANT * h:
+                break
+        fastest = max(2 * fastest, seen if np.isfinite(solution).all() else 0.0)
+    else:
+        raise ValueError("the flow gets too fast for the grid: give fewer cells or frame='label'")
+    if max(solution[:, 0, 0].max(), solution[:, 0, -1].max()) > _AT_THE_WALL:
+        raise ValueError("the rods reach the end of the grid of positions: use frame='label'")
+    unsteadiness = np.array([_unsteadiness(each, fixed, constants) for each in solution])
+    return _on_grid(chain, faces, solution, fixed, unsteadiness)
+
+
+def _faces(chain: Chain, start: Start, number: int | None) -> Array:
+    """Return the scaled positions of the cells' faces: room for the farthest swing and more."""
+    s, W, L = chain.thermal_length, chain.free_velocity_width, chain.size
+    there = start.label(start.x, 1) > 1e-12 * L
+    label = start.label(start.x)
+    u = (start.x - (2 * chain.radius + chain.gap) * (label - L / 2))[there] / s
+    swing = float(np.hypot(u, start.velocity(start.x)[there] / W).max())
+    half = (chain.radius + chain.gap / 2) * L / s + max(_ROOM, swing + _MARGIN)
+    if number is None:
+        number = min(math.ceil(2 * half / _CELL), _MOST_CELLS)
+    return np.linspace(-half, half, number + 1)
+
+
+def _starting_fields(
+    chain: Chain, start: Start, faces: Array, *, thermal: bool
+) -> dict[str, Array]:
+    s, W, L = chain.thermal_length, chain.free_velocity_width, chain.size
+    at = np.clip(s * faces, start.x[0], start.x[-1])
+    middle = np.clip(s * (faces[1:] + faces[:-1]) / 2, start.x[0], start.x[-1])
+    h = faces[1] - faces[0]
+    n = np.maximum(np.diff(start.label(at)) / (L * h), 0.0)
+    n[0] += start.label(at[0]) / (L * h)
+    v = start.velocity(middle) / W
+    fields = {"n": n, "nV": n * v}
+    if thermal:
+        fields["E"] = n * (v**2 + start.variance(middle) / W**2) / 2
+    return fields
+
+
+def _fastest(fields: Array, theta: Array, crowd: float) -> float:
+    """Largest speed of a signal."""
+    log_n, v, log_theta = _primitive(fields, theta).T
+    n = np.exp(log_n)
+    if (crowd * n >= 1).any():
+        return math.inf
+    here = n > 1e-9 * n.max()
+    stiffness = math.sqrt(3) if len(fields) == 3 else 1.0
+    speed = np.abs(v) + stiffness * np.exp(log_theta / 2) / (1 - crowd * n)
+    return float(speed[here].max())
+
+
+def _refuse_endless(work: float) -> None:
+    if work > _MOST_WORK:
+        raise ValueError(
+            f"frame='eulerian' would take {work:.1e} steps of cells, about "
+            f"{work * 1.5e-7 / 3600:.0f} hours; use frame='label'"
+        )
+
+
+def _unsteadiness(fields: Array, theta: Array, constants: tuple[Any, ...]) -> float:
+    """Rms of the velocity and of the acceleration over the rods."""
+    n = np.maximum(fields[0], _VACUUM)
+    v = fields[1] / n
+    rates = eulerian_rate(fields, *constants)
+    # d(nV)/dt = n dV/dt + V dn/dt
+    acceleration = (rates[1] - v * rates[0]) / n
+    here = n > 1e-9 * n.max()
+    share = fields[0][here] / fields[0][here].sum()
+    return float(np.sqrt(share @ (v[here] ** 2 + acceleration[here] ** 2)))
+
+
+def _on_grid(
+    chain: Chain, faces: Array, solution: Array, theta: Array, unsteadiness: Array
+) -> FlowFields:
+    """Put the cells' means onto the position grid and the particles, in the chain's units."""
+    s, W, L = chain.thermal_length, chain.free_velocity_width, chain.size
+    h, middle = faces[1] - faces[0], (faces[1:] + faces[:-1]) / 2
+    farthest = float(s * faces[-1] - chain.anchors[-1])
+    x = position_grid(chain, max(farthest, thermal_reach(chain)))
+    here = np.clip(x / s, faces[0], faces[-1])
+    density, label, velocity, variance = np.empty((4, len(solution), x.size))
+    rods, rod_velocities = np.empty((2, len(solution), L))
+    for i, fields in enumerate(solution):
+        _, v, log_theta = _primitive(fields, theta).T
+        count = CubicSpline(faces, np.concatenate([[0.0], np.cumsum(fields[0]) * h]))
+        label[i] = L * count(here)
+        density[i] = np.where(here == x / s, np.maximum(count(here, 1), 0.0) * L / s, 0.0)
+        velocity[i] = W * np.interp(here, middle, v)
+        variance[i] = W**2 * np.interp(here, middle, np.exp(log_theta))
+        rods[i] = np.interp(chain.rank + L / 2, np.maximum.accumulate(label[i]), x)
+        rod_velocities[i] = np.interp(rods[i], x, velocity[i])
+    fields = (density, label, velocity, variance, rods, rod_velocities)
+    return FlowFields(x, *fields, middle.size, unsteadiness)
