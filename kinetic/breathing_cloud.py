@@ -79,7 +79,13 @@ def breathing_cloud(
         ]
 
     times = np.asarray(times, dtype=float)
-    start = [shift, 0.0, stretch * chain.thermal_length, 0.0, free if variance is None else variance]
+    start = [
+        shift,
+        0.0,
+        stretch * chain.thermal_length,
+        0.0,
+        free if variance is None else variance,
+    ]
     solution = solve_ivp(
         equations, (0.0, times[-1]), start, "DOP853", times, rtol=1e-11, atol=1e-12
     )

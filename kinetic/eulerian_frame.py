@@ -20,8 +20,7 @@ again with half of it.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from typing import Any
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -30,12 +29,12 @@ from scipy.interpolate import CubicSpline
 
 from crazybilliards.kinetic.flow_fields import FlowFields
 from crazybilliards.kinetic.pde_solver import solve
+from crazybilliards.kinetic.profiles import Profile
 from crazybilliards.kinetic.starts import Start
 from crazybilliards.model import Chain
 from crazybilliards.model.grid import position_grid, thermal_reach
 
 Array = NDArray[np.float64]
-Profile = Callable[[Array], Array]
 
 _COURANT = 0.5
 _MOST_COURANT = 1.0  # beyond, four-stage Runge-Kutta with second-order fluxes is not stable
@@ -43,10 +42,12 @@ _HALVINGS = 6
 _CELL = 0.1  # default width in thermal lengths
 _MOST_CELLS = 20_000
 _VACUUM = 1e-13
+_JUST_INSIDE = 1 - 1e-9  # an arctanh is infinite at its end
+_THIN = 1e-10
 _COLDEST = 1e-6
 _ROOM = 11.0  # beyond the lattice of anchors, in thermal lengths
 _MARGIN = 3.0  # beyond the farthest swing
-_AT_THE_WALL = 1e-6
+_AT_THE_WALL = 1e-4  # rods per thermal length, as a share of all
 _MOST_WORK = 4e10
 
 
@@ -78,16 +79,20 @@ def _hll(left, right, crowd, stiffness):  # type: ignore[no-untyped-def] # pragm
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _primitive(fields, theta):  # type: ignore[no-untyped-def] # pragma: no cover
-    """Return ln n, V and ln theta, (M, 3); with an energy, theta follows from it."""
+    """Return ln n, V and ln theta, (M, 3); with an energy, theta follows from it.
+
+    In a vacuum, where the quotients would be of rounding errors, V = 0 and theta is the given one.
+    """
     cells = fields.shape[1]
     state = np.empty((cells, 3))
     for i in range(cells):
         n = max(fields[0, i], _VACUUM)
-        v = fields[1, i] / n
+        weight = n / (n**2 + _THIN**2)
+        v = fields[1, i] * weight
         hot = theta[i]
         if fields.shape[0] == 3:
-            hot = max(2 * fields[2, i] / n - v**2, _COLDEST)
-        state[i, 0], state[i, 1], state[i, 2] = np.log(n), v, np.log(hot)
+            hot += n * weight * (2 * fields[2, i] / n - v**2 - hot)
+        state[i, 0], state[i, 1], state[i, 2] = np.log(n), v, np.log(max(hot, _COLDEST))
     return state
 
 
@@ -134,64 +139,115 @@ def solve_on_positions(
     times: Array,
     number: int | None,
     *,
-    theta: Profile | None,
+    variance: Profile | None,
     displacement: Profile | None,
     thermal: bool,
     progress: bool,
 ) -> FlowFields:
     """Solve from a start with ``number`` cells, by Runge-Kutta steps of py-pde.
 
-    ``theta``: W^2(x)/W^2 if prescribed; ``displacement``: <dx>(x) if frozen.
+    ``variance``: W^2(x) if prescribed; ``displacement``: <dx>(x) if frozen.
     """
+    for wider in (1.0, 1.6, 2.5, 4.0):
+        faces = _faces(chain, start, number, wider)
+        fields = _starting_fields(chain, start, faces, thermal=thermal)
+        constants = _constants(chain, faces, variance, displacement)
+        scaled = times * chain.free_velocity_width / chain.thermal_length
+        solution = _integrate(fields, scaled, constants, progress=progress)
+        if max(solution[:, 0, 0].max(), solution[:, 0, -1].max()) < _AT_THE_WALL:
+            break
+    else:
+        raise ValueError("the rods spread without end on the grid of positions")
+    unsteadiness = np.array([_unsteadiness(each, constants) for each in solution])
+    return _on_grid(chain, faces, solution, constants.theta, unsteadiness)
+
+
+class _Constants(NamedTuple):
+    """What the rates depend on besides the fields; see ``eulerian_rate``."""
+
+    x: Array
+    spacing: float
+    theta: Array
+    frozen: Array
+    crowd: float
+    lam: float
+    gamma: float
+    exponent: int
+
+
+def _constants(
+    chain: Chain, faces: Array, variance: Profile | None, displacement: Profile | None
+) -> _Constants:
     s, W, L = chain.thermal_length, chain.free_velocity_width, chain.size
-    crowd, lam = 2 * chain.radius * L / s, chain.gap * L / s
-    gamma = chain.damping * s / (chain.mass * W)
-    faces = _faces(chain, start, number)
-    x, h = (faces[1:] + faces[:-1]) / 2, faces[1] - faces[0]
-    fields = _starting_fields(chain, start, faces, thermal=thermal)
-    fixed = np.ones(x.size) if theta is None else np.asarray(theta(s * x), dtype=float)
-    frozen = np.empty(0) if displacement is None else np.asarray(displacement(s * x)) / s
-    constants = (x, h, fixed, frozen, crowd, lam, gamma, chain.potential_exponent)
+    x = (faces[1:] + faces[:-1]) / 2
+    theta, frozen = np.ones(x.size), np.empty(0)
+    if variance is not None:
+        theta = np.asarray(variance.function(s * x), dtype=float) / W**2
+    if displacement is not None:
+        frozen = _frozen(displacement, s * x) / s
+    return _Constants(
+        x,
+        float(faces[1] - faces[0]),
+        theta,
+        frozen,
+        crowd=2 * chain.radius * L / s,
+        lam=chain.gap * L / s,
+        gamma=chain.damping * s / (chain.mass * W),
+        exponent=chain.potential_exponent,
+    )
+
+
+def _integrate(
+    fields: dict[str, Array], times: Array, constants: _Constants, *, progress: bool
+) -> Array:
+    """Take steps as short as the fastest signal asks for, which is known for certain afterwards."""
 
     def rate(values: Array, time: float = 0.0) -> Array:
         return np.asarray(eulerian_rate(values, *constants))
 
-    scaled = times * W / s
-    interval = scaled[1] - scaled[0]
-    fastest = _fastest(np.array(list(fields.values())), fixed, crowd)
+    h, interval = constants.spacing, times[1] - times[0]
+    fastest = _fastest(np.array(list(fields.values())), constants)
     for _ in range(_HALVINGS):
         steps = math.ceil(interval * fastest / (_COURANT * h))
-        _refuse_endless(steps * (times.size - 1) * x.size)
+        _refuse_endless(steps * (times.size - 1) * constants.x.size)
         solution = solve(
             rate,
             fields,
-            scaled,
+            times,
             progress=progress,
             solver="runge-kutta",
             backend="numpy",  # the rate is compiled already
             dt=interval / steps,
         )
+        seen = math.inf
         if np.isfinite(solution).all():
-            seen = max(_fastest(each, fixed, crowd) for each in solution)
-            if seen * interval / steps < _MOST_COURANT * h:
-                break
-        fastest = max(2 * fastest, seen if np.isfinite(solution).all() else 0.0)
-    else:
-        raise ValueError("the flow gets too fast for the grid: give fewer cells or frame='label'")
-    if max(solution[:, 0, 0].max(), solution[:, 0, -1].max()) > _AT_THE_WALL:
-        raise ValueError("the rods reach the end of the grid of positions: use frame='label'")
-    unsteadiness = np.array([_unsteadiness(each, fixed, constants) for each in solution])
-    return _on_grid(chain, faces, solution, fixed, unsteadiness)
+            seen = max(_fastest(each, constants) for each in solution)
+        if seen * interval / steps < _MOST_COURANT * h:
+            return solution
+        fastest = max(2 * fastest, seen if seen < math.inf else 0.0)
+    raise ValueError("the flow gets too fast for the grid: give fewer cells or frame='label'")
 
 
-def _faces(chain: Chain, start: Start, number: int | None) -> Array:
+def _frozen(profile: Profile, x: Array) -> Array:
+    """Return <dx> at x; beyond the end of a profile that ends, as at the end and with slope 1."""
+    middle, half = (profile.right + profile.left) / 2, (profile.right - profile.left) / 2
+    inside = x
+    if np.isfinite(half):
+        inside = middle + np.clip(x - middle, -half * _JUST_INSIDE, half * _JUST_INSIDE)
+    values = np.asarray(profile.function(inside), dtype=float) + (x - inside)
+    if not np.isfinite(values).all():
+        raise ValueError("closure: the displacement must be finite on the grid of positions")
+    return values
+
+
+def _faces(chain: Chain, start: Start, number: int | None, wider: float) -> Array:
     """Return the scaled positions of the cells' faces: room for the farthest swing and more."""
     s, W, L = chain.thermal_length, chain.free_velocity_width, chain.size
     there = start.label(start.x, 1) > 1e-12 * L
     label = start.label(start.x)
     u = (start.x - (2 * chain.radius + chain.gap) * (label - L / 2))[there] / s
     swing = float(np.hypot(u, start.velocity(start.x)[there] / W).max())
-    half = (chain.radius + chain.gap / 2) * L / s + max(_ROOM, swing + _MARGIN)
+    half = (chain.radius + chain.gap / 2) * L / s + wider * max(_ROOM, swing + _MARGIN)
     if number is None:
         number = min(math.ceil(2 * half / _CELL), _MOST_CELLS)
     return np.linspace(-half, half, number + 1)
@@ -213,10 +269,10 @@ def _starting_fields(
     return fields
 
 
-def _fastest(fields: Array, theta: Array, crowd: float) -> float:
+def _fastest(fields: Array, constants: _Constants) -> float:
     """Largest speed of a signal."""
-    log_n, v, log_theta = _primitive(fields, theta).T
-    n = np.exp(log_n)
+    log_n, v, log_theta = _primitive(fields, constants.theta).T
+    n, crowd = np.exp(log_n), constants.crowd
     if (crowd * n >= 1).any():
         return math.inf
     here = n > 1e-9 * n.max()
@@ -233,7 +289,7 @@ def _refuse_endless(work: float) -> None:
         )
 
 
-def _unsteadiness(fields: Array, theta: Array, constants: tuple[Any, ...]) -> float:
+def _unsteadiness(fields: Array, constants: _Constants) -> float:
     """Rms of the velocity and of the acceleration over the rods."""
     n = np.maximum(fields[0], _VACUUM)
     v = fields[1] / n

@@ -18,6 +18,12 @@ which stays accurate where 1 - 2 R rho is too small to be stored.
 the left belongs to the N-th anchor, so <dx> = x - (2R + g)(N - L/2) with N' = rho, see
 :mod:`crazybilliards.kinetic.label_closure`.
 
+**Temperature.** With a prescribed W^2(x), measured off restitution 1 for example, the balance is
+
+    (1/rho) d/dx [rho W^2/(1 - 2 R rho)] = -F(<dx>)/m,                                  (***)
+
+closed by labels in :mod:`crazybilliards.kinetic.variable_temperature`.
+
 **Boundary conditions.** rho -> 0 on both sides with L rods in between: N(-inf) = 0,
 N(+inf) = L.
 """
@@ -25,20 +31,23 @@ N(+inf) = L.
 from __future__ import annotations
 
 import math
+from numbers import Real
 
+import numpy as np
 import xarray as xr
 
-from crazybilliards.kinetic.displacement import Displacement, make_profile
 from crazybilliards.kinetic.label_closure import solve_label_closure
 from crazybilliards.kinetic.prescribed_closure import solve_prescribed_closure
+from crazybilliards.kinetic.profiles import Prescribed, displacement_profile, variance_profile
+from crazybilliards.kinetic.variable_temperature import solve_variable_temperature
 from crazybilliards.model import Chain
 from crazybilliards.model.chain import check_real
 
 
 def force_balance(
     chain: Chain,
-    displacement: Displacement | None = None,
-    velocity_variance: float | None = None,
+    displacement: Prescribed | None = None,
+    velocity_variance: float | Prescribed | None = None,
 ) -> xr.Dataset:
     """Density of the chain from the force balance (*) of this module.
 
@@ -50,7 +59,9 @@ def force_balance(
         None: by labels, nothing is put in. Otherwise <dx>(x) [R]: a table (x, <dx>), a result
         with ``mean_displacement``, or a callable of x (the paper: a fitted arctanh).
     velocity_variance
-        W^2 [R^2/T^2]; None: the free value, which is right for restitution 1 only.
+        W^2 [R^2/T^2]; None: the free value, which is right for restitution 1 only. A number, or a
+        profile W^2(x) in any of the forms of the displacement: a simulation's ``velocity_width``
+        is squared. A profile closed by labels needs linear springs.
 
     Returns
     -------
@@ -72,18 +83,23 @@ def force_balance(
     >>> round(theory.density.max().item(), 4)  # 0.5 is close packing
     0.4593
     """
+    profile = None
     if velocity_variance is None:
         if chain.restitution != 1:
             raise ValueError(
                 "the velocity variance is the free one for restitution=1 only; give "
                 f"velocity_variance for restitution={chain.restitution:g}"
             )
-    else:
+    elif isinstance(velocity_variance, float | Real | np.generic):
         # W^2 enters as T = m W^2 only: the elastic chain with that temperature is equivalent.
         variance = check_real("velocity_variance", velocity_variance, positive=True)
         amplitude = math.sqrt(2 * chain.damping * chain.mass * variance)
         chain = chain.replace(amplitude=amplitude, restitution=1)
+    else:
+        profile = variance_profile(chain, velocity_variance)
     chain.require_steady_state()
-    if displacement is None:
-        return solve_label_closure(chain)
-    return solve_prescribed_closure(chain, make_profile(chain, displacement))
+    if displacement is not None:
+        return solve_prescribed_closure(chain, displacement_profile(chain, displacement), profile)
+    if profile is not None:
+        return solve_variable_temperature(chain, profile)
+    return solve_label_closure(chain)

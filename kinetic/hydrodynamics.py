@@ -37,6 +37,12 @@ from scipy.integrate import trapezoid
 from crazybilliards.kinetic.eulerian_frame import solve_on_positions
 from crazybilliards.kinetic.flow_fields import FlowFields
 from crazybilliards.kinetic.label_frame import solve_on_labels
+from crazybilliards.kinetic.profiles import (
+    Prescribed,
+    Profile,
+    displacement_profile,
+    variance_profile,
+)
 from crazybilliards.kinetic.starts import read_start
 from crazybilliards.model import Chain
 from crazybilliards.model.chain import check_integer, check_real
@@ -48,6 +54,7 @@ Frame = Literal["label", "eulerian"]
 Temperature = Literal["isothermal", "evolving"]
 
 _OUTPUTS = 100
+_MOST_CELLS = 100_000
 
 
 def hydrodynamics(
@@ -56,7 +63,8 @@ def hydrodynamics(
     duration: float,
     *,
     frame: Frame = "label",
-    temperature: Temperature = "isothermal",
+    closure: Literal["label"] | Prescribed = "label",
+    temperature: Temperature | Prescribed = "isothermal",
     every: float | None = None,
     cells: int | None = None,
     progress: bool = True,
@@ -66,7 +74,7 @@ def hydrodynamics(
     Parameters
     ----------
     chain
-        The chain, with restitution 1; any gap, both springs.
+        The chain, any gap, both springs; with restitution 1 unless the temperature is prescribed.
     initial
         The start: a result with ``density`` over x and, if wanted, ``label``, ``flow_velocity``
         and ``velocity_variance``. ``force_balance`` of another chain (a quench), or ``displaced``,
@@ -76,8 +84,12 @@ def hydrodynamics(
     frame
         ``"label"``: exact mass, no grid of positions, milliseconds to a second. ``"eulerian"``:
         the paper's equations on a grid of positions, an independent check.
+    closure
+        ``"label"``: displacements carried by the flow. Or a frozen <dx>(x), in any form that
+        ``force_balance`` takes; in the eulerian frame.
     temperature
-        ``"isothermal"`` (the paper's; wrong in transients) or ``"evolving"``.
+        ``"isothermal"`` (the paper's; wrong in transients) or ``"evolving"``. Or a prescribed
+        W^2(x), in any form that ``force_balance`` takes; in the eulerian frame.
     every
         Time between outputs [T]; None: a hundredth of the duration.
     cells
@@ -107,17 +119,24 @@ def hydrodynamics(
     >>> flow.centre.values[[0, -1]].round(3) + 0.0
     array([3., 0.])
     """
-    for name, value, kinds in (("frame", frame, Frame), ("temperature", temperature, Temperature)):
-        if value not in get_args(kinds):
-            raise ValueError(f"{name} must be one of {get_args(kinds)}, got {value!r}")
+    if frame not in get_args(Frame):
+        raise ValueError(f"frame must be one of {get_args(Frame)}, got {frame!r}")
+    variance, frozen = _prescribed(chain, temperature, closure)
+    if frame == "label" and (variance or frozen):
+        raise ValueError("a prescribed closure or temperature needs frame='eulerian'")
     chain.require_steady_state()
-    if chain.restitution != 1:
-        raise ValueError(f"hydrodynamics holds for restitution=1, got {chain.restitution:g}")
+    if chain.restitution != 1 and variance is None:
+        raise ValueError(
+            "hydrodynamics holds for restitution=1 unless temperature is a profile W^2(x), got "
+            f"restitution={chain.restitution:g}"
+        )
     times = _output_times(duration, every)
     if cells is not None:
         cells = check_integer("cells", cells, least=8)
+        if cells > _MOST_CELLS:
+            raise ValueError(f"cells must be at most {_MOST_CELLS}, got {cells}")
     start = read_start(chain, initial)
-    thermal = temperature == "evolving"
+    thermal = isinstance(temperature, str) and temperature == "evolving"
     if frame == "label":
         fields = solve_on_labels(chain, start, times, cells, thermal=thermal, progress=progress)
     else:
@@ -126,13 +145,39 @@ def hydrodynamics(
             start,
             times,
             cells,
-            theta=None,
-            displacement=None,
+            variance=variance,
+            displacement=frozen,
             thermal=thermal,
             progress=progress,
         )
-    method = {"frame": frame, "temperature": temperature, "cells": fields.cells}
+    method = {
+        "frame": frame,
+        "closure": "prescribed" if frozen else "label",
+        "temperature": temperature if isinstance(temperature, str) else "prescribed",
+        "cells": fields.cells,
+    }
     return _result(chain, fields, times, method)
+
+
+def _prescribed(
+    chain: Chain, temperature: Temperature | Prescribed, closure: str | Prescribed
+) -> tuple[Profile | None, Profile | None]:
+    """Return the profiles of W^2 and <dx>, None where the equations find them themselves."""
+    variance = frozen = None
+    if isinstance(temperature, str):
+        if temperature not in get_args(Temperature):
+            raise ValueError(
+                f"temperature must be one of {get_args(Temperature)} or a profile W^2(x), got "
+                f"{temperature!r}"
+            )
+    else:
+        variance = variance_profile(chain, temperature)
+    if isinstance(closure, str):
+        if closure != "label":
+            raise ValueError(f"closure must be 'label' or a profile <dx>(x), got {closure!r}")
+    else:
+        frozen = displacement_profile(chain, closure)
+    return variance, frozen
 
 
 def _output_times(duration: float, every: float | None) -> Array:

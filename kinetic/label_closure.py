@@ -99,6 +99,7 @@ class Edge:
 
 
 def solve_edge(n: int, lam: float) -> Edge:
+    """Solve the boundary-value problem of this module for the exponent n and Lam."""
     depth = _EDGE_DEPTH[n]
     left, right = -min(lam / 2, depth), (n * _TAIL) ** (1 / n)
     share_left = 0.5 if lam <= 2 * depth else depth / lam

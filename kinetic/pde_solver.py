@@ -28,7 +28,7 @@ class Flow(PDEBase):
         super().__init__()
         self.rate = rate
 
-    def make_evolution_rate(self, state: Any, backend: Any) -> Rate:
+    def make_evolution_rate(self, state: Any, backend: Any) -> Any:
         """Return what py-pde's solvers call."""
         return self.rate
 

@@ -7,7 +7,7 @@ the other usual ones out of the stationary state.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -40,7 +40,10 @@ def compressed(chain: Chain, factor: float) -> xr.Dataset:
 
 
 def two_clumps(chain: Chain, distance: float, speed: float) -> xr.Dataset:
-    """Return the stationary state, cut in half, ``distance`` [R] apart, meeting at ``speed`` each."""
+    """Return the stationary state cut in half: two clumps, ``distance`` [R] apart.
+
+    They approach one another with ``speed`` [R/T] each.
+    """
     distance = check_real("distance", distance, positive=True)
     speed = check_real("speed", speed)
     grid = _grid(chain, distance / 2)
@@ -92,7 +95,8 @@ class Start(NamedTuple):
         known = np.maximum.accumulate(self.label(self.x))
         cell = np.clip(np.searchsorted(known, labels, side="left") - 1, 0, self.x.size - 2)
         low, high = self.x[cell], self.x[cell + 1]
-        root = elementwise.find_root(lambda x, wanted: self.label(x) - wanted, (low, high), args=(labels,))
+        find_root: Any = elementwise.find_root  # its stubs know no args
+        root = find_root(lambda x, wanted: self.label(x) - wanted, (low, high), args=(labels,))
         # Where a cell is empty, any x in it has the label; a bracket may then have no sign change.
         return np.asarray(np.where(root.success, root.x, (low + high) / 2))
 
@@ -116,7 +120,8 @@ def read_start(chain: Chain, initial: xr.Dataset) -> Start:
         label = PchipInterpolator(x, density).antiderivative()(x)
     if abs(label[-1] / chain.size - 1) > _RODS_TOLERANCE:
         raise ValueError(
-            f"initial: the density must add up to the chain's {chain.size} rods, got {label[-1]:.6g}"
+            f"initial: the density must add up to the chain's {chain.size} rods, got "
+            f"{label[-1]:.6g}"
         )
     scale = chain.size / label[-1]
     profiles = {}
