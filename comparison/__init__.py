@@ -18,12 +18,16 @@ if TYPE_CHECKING:
     from crazybilliards.comparison.fits import PowerLawFit as PowerLawFit
     from crazybilliards.comparison.fits import fit_arctanh as fit_arctanh
     from crazybilliards.comparison.fits import fit_border_power_law as fit_border_power_law
+    from crazybilliards.comparison.relaxation import compare_relaxation as compare_relaxation
+    from crazybilliards.comparison.relaxation_figures import animate as animate
 
 _HOMES = {
+    "animate": "relaxation_figures",
     "ArctanhFit": "fits",
     "Deviation": "distances",
     "PowerLawFit": "fits",
     "compare_elastic": "elastic_chain",
+    "compare_relaxation": "relaxation",
     "coverage_density": "coverage",
     "deviation": "distances",
     "fit_arctanh": "fits",

@@ -32,7 +32,7 @@ def coverage_density(source: xr.Dataset) -> xr.Dataset:
     source
         One of three kinds of result: *states* (``position`` over replica and particle), a
         *simulation* (``density``, ``density_error``, ``density_block`` over x), or a *theory*
-        (``density`` and ``label`` over x).
+        (``density`` and ``label`` over x). All but states may be over time as well.
 
     Returns
     -------
@@ -70,7 +70,7 @@ def _box(source: xr.Dataset) -> xr.Dataset:
         convolved[name] = convolved[name].copy(data=average(source[name].values))
     if "density_block" in convolved:
         blocks = convolved.density_block
-        error = blocks.std("block", ddof=1) / np.sqrt(blocks.sizes["block"])
+        error = blocks.std("block", ddof=1) / np.sqrt(blocks.count("block"))
         convolved["density_error"] = error.assign_attrs(source.density_error.attrs)
     return convolved
 
@@ -102,8 +102,8 @@ def _hat_density_of_theory(source: xr.Dataset) -> xr.Dataset:
     """
     h = float(source.x[1] - source.x[0])
     label, density = source.label.values, source.density.values
-    cells = h * (label[1:] + label[:-1]) / 2 - h**2 * np.diff(density) / 12
-    cells = np.clip(cells, h * label[:-1], h * label[1:])
-    weights = np.zeros(label.size)
-    weights[1:-1] = np.diff(cells) / h**2
+    left, right = label[..., :-1], label[..., 1:]
+    cells = np.clip(h * (right + left) / 2 - h**2 * np.diff(density) / 12, h * left, h * right)
+    weights = np.zeros(label.shape)
+    weights[..., 1:-1] = np.diff(cells) / h**2
     return source.assign(density=source.density.copy(data=weights))

@@ -38,7 +38,7 @@ def overlay(
         ``{label: result}``. Simulations are drawn as circles with their standard errors,
         theories as lines, in the order given.
     quantity
-        A variable over x or over particle. Densities should be smoothed alike first.
+        A variable over x, time or particle. Densities should be smoothed alike first.
     along
         Abscissa of a quantity over particle: i_n in -1..1, or the mean position of the rods.
     ax
@@ -61,7 +61,8 @@ def overlay(
     lines = cycle(_LINES)
     for label, dataset in results.items():
         values = dataset[quantity]
-        abscissa = dataset["x" if "x" in values.dims else along]
+        own = [name for name in ("x", "time") if name in values.dims]
+        abscissa = dataset[own[0] if own else along]
         if dataset.attrs.get("source") == "simulation":
             every = -(-abscissa.size // _MOST_SYMBOLS)
             error = dataset.get(f"{quantity}_error")

@@ -121,7 +121,7 @@ def label_rate(fields, labels, shares, kappa, stationary_distance, lam, gamma, e
             if jump < 0:
                 left = _minmod(v[i] - v[i - 1], jump) if i > 0 else 0.0
                 right = _minmod(v[i + 2] - v[i + 1], jump) if i < cells - 2 else 0.0
-                rest = min(jump - (left + right) / 2, 0.0)
+                rest = max(min(jump - (left + right) / 2, 0.0), -1e3)
                 viscous = kappa[i] / d * (2 * rest**2 - 0.5 * np.sqrt(theta) * rest)
                 pressure += viscous
             if thermal:
