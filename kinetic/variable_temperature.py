@@ -162,17 +162,20 @@ def _assemble(chain: Chain, basis: Basis, P: Array, label: Array, warmth: Warmth
     here = np.clip(x / s, vertices[0], vertices[-1])
     labels = L * np.clip(count(here), 0.0, 1.0)
     displacement = x - (2 * chain.radius + chain.gap) * (labels - L / 2)
-    rods = np.interp(chain.rank + L / 2, np.maximum.accumulate(labels), x)
+    # Displacements by label, not positions: positions of many rods drown them in rounding.
+    known, first = np.unique(label / label[-1] - 0.5, return_index=True)
+    at_vertices = vertices[first] - (crowd + chain.gap * L / s) * known
+    mean = s * PchipInterpolator(known, at_vertices)(chain.rank / L)
     return result(
         chain,
         {
             "density": ("x", np.where(here == x / s, share(here), 0.0) * L / s),
             "label": ("x", labels),
             "displacement": ("x", displacement),
-            "mean_displacement": ("particle", rods - chain.anchors),
+            "mean_displacement": ("particle", mean),
             "velocity_width": (
                 "particle",
-                chain.free_velocity_width * np.sqrt(warmth(rods / s)),
+                chain.free_velocity_width * np.sqrt(warmth((chain.anchors + mean) / s)),
             ),
         },
         coordinates={"x": x},

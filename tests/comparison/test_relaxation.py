@@ -1,0 +1,82 @@
+"""The relaxation of one chain in all descriptions."""
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+
+from crazybilliards.comparison import animate, compare_relaxation
+from crazybilliards.comparison.relaxation import cloud, label_distances
+from crazybilliards.comparison.relaxation_figures import draw_cloud, draw_profiles, draw_spacetime
+from crazybilliards.model import Chain
+
+
+@pytest.fixture(scope="module")
+def tree():
+    return compare_relaxation(
+        Chain(size=50, amplitude=20), "compressed", 0.3, duration=20, replicas=300, progress=False
+    )
+
+
+def test_the_ensemble_follows_the_exact_solution(tree):
+    """Every rod at every time within 5 standard errors, t-distributed of 31 degrees of freedom."""
+    rods, exact = tree["particles"].to_dataset(), tree["exact"].to_dataset()
+    off = (rods.mean_displacement - exact.mean_displacement) / rods.mean_displacement_error
+    assert float(np.abs(off.isel(time=slice(1, None))).max()) < 5
+    s = Chain(amplitude=20).thermal_length
+    np.testing.assert_allclose(cloud(rods)[1], exact.cloud_width, atol=0.04 * s)
+
+
+def test_the_isothermal_fluid_is_wrong_and_the_one_with_temperature_right(tree):
+    distances = label_distances(tree)
+    assert distances["isothermal"] > 0.5
+    assert distances["evolving"] < 0.05
+    assert distances["exact"] < 0.05
+
+
+@pytest.mark.parametrize(("release", "by"), [("displaced", 2.0), ("quenched", 3.0)])
+def test_with_a_gap_the_fluid_with_temperature_stays_close(release, by):
+    chain = Chain(size=50, gap=0.2, amplitude=5)
+    tree = compare_relaxation(chain, release, by, duration=20, replicas=100, progress=False)
+    assert "exact" not in tree
+    distances = label_distances(tree)
+    assert distances["evolving"] < 0.1
+    if release == "quenched":
+        assert distances["isothermal"] > 4 * distances["evolving"]
+
+
+def test_the_pictures_show_every_description(tree):
+    titles = [ax.get_title() for ax in draw_spacetime(tree).axes]
+    assert titles == ["particles", "isothermal fluid", "fluid with temperature", ""]
+    assert len(draw_profiles(tree).axes) == 4
+    labels = draw_cloud(tree).axes[0].get_legend_handles_labels()[1]
+    assert set(labels) == {"particles", "isothermal fluid", "fluid with temperature", "exact"}
+    plt.close("all")
+
+
+def test_the_animation_moves_symbols_and_lines(tree):
+    animation = animate(tree)
+    ax = animation._fig.axes[0]
+    before = [line.get_ydata().copy() for line in ax.lines]
+    animation._func(10)
+    moved = [
+        not np.array_equal(a, line.get_ydata()) for a, line in zip(before, ax.lines, strict=True)
+    ]
+    assert sum(moved) >= 3
+    animation._draw_was_started = True  # it need not be shown
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"release": "dropped"}, "release must be one of"),
+        ({"by": -1}, "by must be"),
+        ({"duration": -1}, "duration must be"),
+        ({"every": 1e3}, "every must be at most"),
+        ({"replicas": 1}, "replicas must be"),
+        ({"chain": Chain(restitution=0.5)}, "elastic chains"),
+    ],
+)
+def test_wrong_arguments_are_refused(arguments, message):
+    arguments = {"chain": Chain(size=5), "progress": False} | arguments
+    with pytest.raises(ValueError, match=message):
+        compare_relaxation(**arguments)
