@@ -33,7 +33,10 @@ notebooks: $(VENV)/installed-notebooks
 	$(BIN)/python -m pytest --nbmake --nbmake-timeout=300 notebooks
 
 benchmark: $(VENV)/installed-benchmark
-	$(BIN)/python -m pytest benchmarks -o python_files="*.py" --benchmark-columns=median,iqr,rounds
+	mkdir -p $(OUTPUT)
+	$(BIN)/python -m pytest benchmarks -o python_files="*.py" --benchmark-columns=median,iqr,rounds \
+	  --benchmark-max-time=0.3 --benchmark-min-rounds=3 --benchmark-json=$(OUTPUT)/benchmark.json
+	$(BIN)/python benchmarks/report.py $(OUTPUT)/benchmark.json $(OUTPUT)/cost.png
 
 # mypy does not see through an editable install: it reads the rooms through this farm of links.
 build/types: Makefile

@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from crazybilliards.kinetic.flow_fields import FlowFields
-from crazybilliards.kinetic.pde_solver import solve
+from crazybilliards.kinetic.pde_solver import Rate, solve
 from crazybilliards.kinetic.profiles import Profile
 from crazybilliards.kinetic.starts import Start
 from crazybilliards.model import Chain
@@ -49,6 +49,7 @@ _ROOM = 11.0  # beyond the lattice of anchors, in thermal lengths
 _MARGIN = 3.0  # beyond the farthest swing
 _AT_THE_WALL = 1e-4  # rods per thermal length, as a share of all
 _MOST_WORK = 4e10
+_MANY_STEPS = 25_000
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -149,9 +150,9 @@ def solve_on_positions(
     ``variance``: W^2(x) if prescribed; ``displacement``: <dx>(x) if frozen.
     """
     for wider in (1.0, 1.6, 2.5, 4.0):
-        faces = _faces(chain, start, number, wider)
-        fields = _starting_fields(chain, start, faces, thermal=thermal)
-        constants = _constants(chain, faces, variance, displacement)
+        faces = make_faces(chain, start, number, wider)
+        fields = starting_fields(chain, start, faces, thermal=thermal)
+        constants = make_constants(chain, faces, variance, displacement)
         scaled = times * chain.free_velocity_width / chain.thermal_length
         solution = _integrate(fields, scaled, constants, progress=progress)
         if max(solution[:, 0, 0].max(), solution[:, 0, -1].max()) < _AT_THE_WALL:
@@ -162,7 +163,7 @@ def solve_on_positions(
     return _on_grid(chain, faces, solution, constants.theta, unsteadiness)
 
 
-class _Constants(NamedTuple):
+class Constants(NamedTuple):
     """What the rates depend on besides the fields; see ``eulerian_rate``."""
 
     x: Array
@@ -175,9 +176,10 @@ class _Constants(NamedTuple):
     exponent: int
 
 
-def _constants(
+def make_constants(
     chain: Chain, faces: Array, variance: Profile | None, displacement: Profile | None
-) -> _Constants:
+) -> Constants:
+    """Return what the rates depend on, at the cells between ``faces``."""
     s, W, L = chain.thermal_length, chain.free_velocity_width, chain.size
     x = (faces[1:] + faces[:-1]) / 2
     theta, frozen = np.ones(x.size), np.empty(0)
@@ -185,7 +187,7 @@ def _constants(
         theta = np.asarray(variance.function(s * x), dtype=float) / W**2
     if displacement is not None:
         frozen = _frozen(displacement, s * x) / s
-    return _Constants(
+    return Constants(
         x,
         float(faces[1] - faces[0]),
         theta,
@@ -197,14 +199,21 @@ def _constants(
     )
 
 
+def make_rate(constants: Constants) -> Rate:
+    """Return the rates of change as a function that py-pde can compile its steps around."""
+    x, spacing, theta, frozen, crowd, lam, gamma, exponent = constants
+
+    def rate(values, time=0.0):  # type: ignore[no-untyped-def]
+        return eulerian_rate(values, x, spacing, theta, frozen, crowd, lam, gamma, exponent)
+
+    return rate
+
+
 def _integrate(
-    fields: dict[str, Array], times: Array, constants: _Constants, *, progress: bool
+    fields: dict[str, Array], times: Array, constants: Constants, *, progress: bool
 ) -> Array:
     """Take steps as short as the fastest signal asks for, which is known for certain afterwards."""
-
-    def rate(values: Array, time: float = 0.0) -> Array:
-        return np.asarray(eulerian_rate(values, *constants))
-
+    rate = make_rate(constants)
     h, interval = constants.spacing, times[1] - times[0]
     fastest = _fastest(np.array(list(fields.values())), constants)
     for _ in range(_HALVINGS):
@@ -216,7 +225,8 @@ def _integrate(
             times,
             progress=progress,
             solver="runge-kutta",
-            backend="numpy",  # the rate is compiled already
+            # The rate is compiled already; compiling the steps as well takes some seconds.
+            backend="numba" if steps * (times.size - 1) > _MANY_STEPS else "numpy",
             dt=interval / steps,
         )
         seen = math.inf
@@ -240,7 +250,7 @@ def _frozen(profile: Profile, x: Array) -> Array:
     return values
 
 
-def _faces(chain: Chain, start: Start, number: int | None, wider: float) -> Array:
+def make_faces(chain: Chain, start: Start, number: int | None, wider: float) -> Array:
     """Return the scaled positions of the cells' faces: room for the farthest swing and more."""
     s, W, L = chain.thermal_length, chain.free_velocity_width, chain.size
     there = start.label(start.x, 1) > 1e-12 * L
@@ -253,9 +263,8 @@ def _faces(chain: Chain, start: Start, number: int | None, wider: float) -> Arra
     return np.linspace(-half, half, number + 1)
 
 
-def _starting_fields(
-    chain: Chain, start: Start, faces: Array, *, thermal: bool
-) -> dict[str, Array]:
+def starting_fields(chain: Chain, start: Start, faces: Array, *, thermal: bool) -> dict[str, Array]:
+    """Return the means of n, nV and, if wanted, E over the cells."""
     s, W, L = chain.thermal_length, chain.free_velocity_width, chain.size
     at = np.clip(s * faces, start.x[0], start.x[-1])
     middle = np.clip(s * (faces[1:] + faces[:-1]) / 2, start.x[0], start.x[-1])
@@ -269,7 +278,7 @@ def _starting_fields(
     return fields
 
 
-def _fastest(fields: Array, constants: _Constants) -> float:
+def _fastest(fields: Array, constants: Constants) -> float:
     """Largest speed of a signal."""
     log_n, v, log_theta = _primitive(fields, constants.theta).T
     n, crowd = np.exp(log_n), constants.crowd
@@ -289,7 +298,7 @@ def _refuse_endless(work: float) -> None:
         )
 
 
-def _unsteadiness(fields: Array, constants: _Constants) -> float:
+def _unsteadiness(fields: Array, constants: Constants) -> float:
     """Rms of the velocity and of the acceleration over the rods."""
     n = np.maximum(fields[0], _VACUUM)
     v = fields[1] / n

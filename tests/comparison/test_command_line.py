@@ -21,7 +21,9 @@ def run(*arguments, **options):
     )
 
 
-@pytest.mark.parametrize("arguments", [["--help"], ["compare", "--help"], ["-h"]])
+@pytest.mark.parametrize(
+    "arguments", [["--help"], ["compare", "--help"], ["relax", "--help"], ["-h"]]
+)
 def test_help_shows_an_example_and_loads_nothing_heavy(arguments):
     script = (
         "import sys; sys.argv[1:] = sys.argv[1:]\n"
@@ -35,7 +37,7 @@ def test_help_shows_an_example_and_loads_nothing_heavy(arguments):
         [sys.executable, "-c", script, *arguments], capture_output=True, text=True, check=False
     )
     assert done.returncode == 0, done.stderr
-    assert "Example: crazybilliards compare" in done.stdout
+    assert "Example: crazybilliards " in done.stdout
 
 
 def test_compare_writes_both_figures_and_the_data(tmp_path):
@@ -96,6 +98,67 @@ def test_bad_input_is_one_line_exit_two_and_nothing_written(arguments, message, 
     assert done.stderr.count("\n") == 1
     assert done.stdout == ""
     assert not folder.exists()
+
+
+RELAX = ["relax", "--size", "10", "--duration", "4", "--replicas", "8", "--every", "1"]
+
+
+def test_relax_writes_pictures_animations_and_the_data(tmp_path):
+    done = run(*RELAX, "--release", "quenched", "--output", str(tmp_path))
+    assert done.returncode == 0, done.stderr
+    assert sorted(path.name for path in tmp_path.iterdir()) == [
+        "cloud.png",
+        "profiles.png",
+        "relaxation.gif",
+        "relaxation.html",
+        "relaxation.nc",
+        "spacetime.png",
+    ]
+    assert (tmp_path / "relaxation.gif").read_bytes().startswith(b"GIF8")
+    assert "<script" in (tmp_path / "relaxation.html").read_text()
+    tree = load(tmp_path / "relaxation.nc")
+    assert set(tree.children) == {"particles", "isothermal", "evolving", "exact"}
+    assert "rms distance" in done.stdout
+    assert "Nothing was written" in run(*RELAX, "--gap", "0.5", cwd=tmp_path).stdout
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["--release", "dropped"], "release must be one of"),
+        (["--by", "-1"], "by must be"),
+        (["--by", "nan"], "by must be"),
+        (["--every", "100"], "every must be at most"),
+        (["--replicas", "1"], "replicas must be"),
+        (["--amplitude", "0"], "no steady state"),
+        (["--seed", "-1"], "seed must be"),
+    ],
+)
+def test_relax_refuses_bad_input_in_one_line(arguments, message, tmp_path):
+    folder = tmp_path / "results"
+    done = run(*RELAX, *arguments, "--output", str(folder))
+    assert done.returncode == 2
+    assert message in done.stderr
+    assert done.stderr.count("\n") == 1
+    assert not folder.exists()
+
+
+@pytest.mark.skipif(os.name == "nt", reason="sends a POSIX signal")
+def test_ctrl_c_keeps_what_relaxed(tmp_path):
+    arguments = ["--size", "300", "--replicas", "10000", "--duration", "400", "--every", "40"]
+    process = subprocess.Popen(
+        [*COMMAND, "relax", *arguments, "--output", str(tmp_path)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    time.sleep(25)  # of which importing, the fluids and the starts take some
+    process.send_signal(signal.SIGINT)
+    _, errors = process.communicate(timeout=90)
+    assert process.returncode == 130, errors
+    assert "Traceback" not in errors
+    assert load(tmp_path / "relaxation-interrupted.nc").attrs["status"] == "interrupted"
+    assert (tmp_path / "cloud-interrupted.png").exists()
 
 
 def test_an_unknown_command_and_an_unusable_folder_are_one_line(tmp_path):
