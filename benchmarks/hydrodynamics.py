@@ -5,8 +5,6 @@ import pytest
 from crazybilliards.kinetic import compressed, hydrodynamics
 from crazybilliards.model import Chain
 
-STEPS = 2000
-
 
 @pytest.mark.benchmark(group="relaxation over 100 time units, label frame")
 @pytest.mark.parametrize("temperature", ["isothermal", "evolving"])

@@ -14,7 +14,7 @@ density of the reduced coordinate, rho_y = rho/(1 - 2 R rho), it reads
 which stays accurate where 1 - 2 R rho is too small to be stored.
 
 **Closures.** *Prescribed*, the paper's: <dx>(x) is measured (and fitted), see
-:mod:`crazybilliards.kinetic.prescribed_closure`. *By labels*, with no input: the N-th rod from
+:mod:`crazybilliards.kinetic.wright_closure`. *By labels*, with no input: the N-th rod from
 the left belongs to the N-th anchor, so <dx> = x - (2R + g)(N - L/2) with N' = rho, see
 :mod:`crazybilliards.kinetic.label_closure`.
 
@@ -40,6 +40,7 @@ from crazybilliards.kinetic.label_closure import solve_label_closure
 from crazybilliards.kinetic.prescribed_closure import solve_prescribed_closure
 from crazybilliards.kinetic.profiles import Prescribed, displacement_profile, variance_profile
 from crazybilliards.kinetic.variable_temperature import solve_variable_temperature
+from crazybilliards.kinetic.wright_closure import solve_wright_closure
 from crazybilliards.model import Chain
 from crazybilliards.model.chain import check_real
 
@@ -99,7 +100,15 @@ def force_balance(
         profile = variance_profile(chain, velocity_variance)
     chain.require_steady_state()
     if displacement is not None:
-        return solve_prescribed_closure(chain, displacement_profile(chain, displacement), profile)
+        prescribed = displacement_profile(chain, displacement)
+        if not prescribed.left < 0 < prescribed.right:
+            raise ValueError(
+                "displacement must be given on both sides of x = 0, got the interval "
+                f"({prescribed.left:g}, {prescribed.right:g})"
+            )
+        if profile is None:
+            return solve_wright_closure(chain, prescribed)
+        return solve_prescribed_closure(chain, prescribed, profile)
     if profile is not None:
         return solve_variable_temperature(chain, profile)
     return solve_label_closure(chain)

@@ -1,14 +1,13 @@
-"""The force balance with a prescribed displacement <dx>(x): the paper's route.
+"""The force balance with a prescribed displacement <dx>(x) and a prescribed W^2(x).
 
-In the log pressure P = ln(w rho_y), w = W^2(x)/W^2 being 1 unless a profile is given, equation
-(***) of :mod:`crazybilliards.kinetic.force_balance` reads
+In the log pressure P = ln(w rho_y), w = W^2(x)/W^2, equation (***) of
+:mod:`crazybilliards.kinetic.force_balance` reads
 
     P' = -(F(<dx>)/T) / (w + 2 R exp(P)),      N' = exp(P) / (w + 2 R exp(P)),
 
 without a derivative of w. It is integrated outward from x = 0 to both sides with
 ``scipy.integrate.solve_ivp``; the one free number, P(0), is the root of "L rods in all". (With
-w = 1 the solution is a Wright omega function, 2 R rho_y = omega(C - int F(<dx>) dx/T), which the
-tests compare with.)
+w = 1 there is a closed form, :mod:`crazybilliards.kinetic.wright_closure`.)
 """
 
 from __future__ import annotations
@@ -34,20 +33,12 @@ _TAIL = 40.0  # both sides are followed until the pressure has fallen by exp(-40
 _WIDEST = 60.0  # ln rho_y(0) is sought this far from its guess
 
 
-def solve_prescribed_closure(
-    chain: Chain, profile: Profile, variance: Profile | None = None
-) -> xr.Dataset:
+def solve_prescribed_closure(chain: Chain, profile: Profile, variance: Profile) -> xr.Dataset:
     """Solve the force balance for a given <dx>(x), and W^2(x); see ``force_balance``."""
     free = chain.free_velocity_width**2
 
     def warmth(x: float | Array) -> Array:
-        return np.asarray(variance.function(x)) / free if variance else np.ones(np.shape(x))
-
-    if not profile.left < 0 < profile.right:
-        raise ValueError(
-            "displacement must be given on both sides of x = 0, got the interval "
-            f"({profile.left:g}, {profile.right:g})"
-        )
+        return np.asarray(variance.function(x)) / free
 
     def excess(log_pressure: float) -> float:
         sides = [_integrate(chain, profile, warmth, log_pressure, side) for side in (-1, 1)]
@@ -139,6 +130,6 @@ def _assemble(chain: Chain, profile: Profile, warmth: Warmth, centre: float) -> 
         },
         coordinates={"x": x},
         source="theory",
-        method={"theory": "force balance, prescribed displacement"},
+        method={"theory": "force balance, prescribed displacement and velocity variance"},
         residual=abs(passed[-1] + passed[1] - chain.size) / chain.size,
     )

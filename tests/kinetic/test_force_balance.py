@@ -129,6 +129,18 @@ def test_the_arctanh_closure_is_a_wright_omega_function(amplitude):
     assert (theory.density.values[~inside] <= rho.min() + 1e-3).all()
 
 
+@pytest.mark.parametrize("amplitude", [0.3, 3.0, 30.0])
+def test_the_closed_form_is_what_integrating_outward_gives(amplitude):
+    """The Wright omega function against solve_ivp, which takes any W^2(x), also a constant one."""
+    chain = Chain(amplitude=amplitude, gap=0.1)
+    exact = equilibrium(chain)
+    free = chain.free_velocity_width**2
+    closed = force_balance(chain, exact)
+    integrated = force_balance(chain, exact, velocity_variance=lambda x: free + 0 * np.asarray(x))
+    np.testing.assert_allclose(closed.density, integrated.density, atol=1e-6)
+    np.testing.assert_allclose(closed.label, integrated.label, atol=2e-5)
+
+
 def test_a_result_or_a_table_can_be_prescribed():
     chain = Chain(amplitude=30)
     exact = equilibrium(chain)
@@ -158,7 +170,7 @@ def test_a_velocity_variance_replaces_the_temperature():
         (Chain(), {"displacement": ([0, 1], [1])}, "equally long"),
         (Chain(), {"displacement": ([1, 0], [1, 2])}, "ascending"),
         (Chain(), {"displacement": ([0, 1], [1, np.nan])}, "finite"),
-        (Chain(), {"displacement": lambda x: -x}, "displacement: no density"),
+        (Chain(), {"displacement": lambda x: -x}, "does not hold the rods together"),
         (Chain(), {"displacement": lambda x: 0 * x}, "displacement"),
         (Chain(), {"displacement": lambda x: np.arctanh(x)}, "not finite at x = "),
         (Chain(size=3), {"displacement": equilibrium(Chain(size=4))}, "4 particles"),
