@@ -74,7 +74,7 @@ def solve_wright_closure(chain: Chain, profile: Profile) -> xr.Dataset:
         chain,
         {
             "density": ("x", np.where(inside, values, 0.0)),
-            "label": ("x", PchipInterpolator(edges, np.append(0.0, rods))(here)),
+            "label": ("x", np.interp(here, edges, np.append(0.0, rods))),
             "displacement": ("x", _displacement(profile, grid, inside)),
         },
         coordinates={"x": grid},

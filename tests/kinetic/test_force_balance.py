@@ -137,8 +137,9 @@ def test_the_closed_form_is_what_integrating_outward_gives(amplitude):
     free = chain.free_velocity_width**2
     closed = force_balance(chain, exact)
     integrated = force_balance(chain, exact, velocity_variance=lambda x: free + 0 * np.asarray(x))
-    np.testing.assert_allclose(closed.density, integrated.density, atol=1e-6)
-    np.testing.assert_allclose(closed.label, integrated.label, atol=2e-5)
+    # The curvature of the interpolated displacements jumps at every rod.
+    np.testing.assert_allclose(closed.density, integrated.density, atol=1e-5)
+    np.testing.assert_allclose(closed.label, integrated.label, atol=5e-5)
 
 
 def test_a_result_or_a_table_can_be_prescribed():
