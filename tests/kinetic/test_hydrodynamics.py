@@ -105,19 +105,19 @@ def test_the_eulerian_frame_rests_in_the_force_balance(amplitude, gap):
     np.testing.assert_allclose(flow.rods, 10, rtol=1e-10)
 
 
-@pytest.mark.parametrize("temperature", ["isothermal", "evolving"])
-def test_the_eulerian_frame_is_of_second_order(temperature):
+@pytest.mark.parametrize(("temperature", "most"), [("isothermal", 1e-4), ("evolving", 3e-4)])
+def test_the_eulerian_frame_is_of_second_order(temperature, most):
     """L1 distance to the label frame, which is exact for a breathing cloud."""
     chain = Chain(size=100, amplitude=10)
     arguments = {"duration": 4, "every": 2, "temperature": temperature} | QUIET
     start = compressed(chain, 0.6)
     exact = hydrodynamics(chain, start, **arguments)
     errors = []
-    for cells in (200, 400):
+    for cells in (400, 800):
         flow = hydrodynamics(chain, start, frame="eulerian", cells=cells, **arguments)
         errors.append(l1_distance(flow, exact)[1:].max())
-    assert np.log2(errors[0] / errors[1]) > 1.6
-    assert errors[1] < 1.2e-3
+    assert np.log2(errors[0] / errors[1]) > 1.8
+    assert errors[1] < most
 
 
 @pytest.mark.parametrize("temperature", ["isothermal", "evolving"])
