@@ -11,10 +11,10 @@ f being the spring's force at the displacement u = x - (B + Lam) nu, nu = int n 
 frozen profile u(x).
 
 **Discretisation.** Finite volumes with the flux of Harten, Lax and van Leer between states that are
-reconstructed linearly in ln n, V and ln theta with the minmod limiter: second order, n positive and
-below close packing whatever happens. Walls far out, where there is nothing: no flux. Four-stage
-Runge-Kutta steps of fixed length; where the flow turns out faster than the step allows, all is done
-again with half of it.
+reconstructed linearly in ln n_y, V and ln theta with the minmod limiter, n_y = n/(1 - B n) being
+the density of the reduced coordinate: second order, n positive and below close packing whatever
+happens. Walls far out, where there is nothing: no flux. Four-stage Runge-Kutta steps of fixed
+length; where the flow turns out faster than the step allows, all is done again with half of it.
 """
 
 from __future__ import annotations
@@ -45,6 +45,7 @@ _VACUUM = 1e-13
 _JUST_INSIDE = 1 - 1e-9  # an arctanh is infinite at its end
 _THIN = 1e-10
 _COLDEST = 1e-6
+_LEAST_ROOM = 1e-12  # 1 - B n, at close packing
 _ROOM = 11.0  # beyond the lattice of anchors, in thermal lengths
 _MARGIN = 3.0  # beyond the farthest swing
 _AT_THE_WALL = 1e-4  # rods per thermal length, as a share of all
@@ -61,14 +62,14 @@ def _minmod(a, b):  # type: ignore[no-untyped-def] # pragma: no cover
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _hll(left, right, crowd, stiffness):  # type: ignore[no-untyped-def] # pragma: no cover
-    """Flux of n, nV and E between two states (ln n, V, ln theta)."""
-    most = (1 - 1e-9) / crowd
-    n_l, n_r = min(np.exp(left[0]), most), min(np.exp(right[0]), most)
+    """Flux of n, nV and E between two states (ln n_y, V, ln theta)."""
+    free_l, free_r = np.exp(left[0]), np.exp(right[0])
+    n_l, n_r = free_l / (1 + crowd * free_l), free_r / (1 + crowd * free_r)
     v_l, v_r, hot_l, hot_r = left[1], right[1], np.exp(left[2]), np.exp(right[2])
-    p_l, p_r = n_l * hot_l / (1 - crowd * n_l), n_r * hot_r / (1 - crowd * n_r)
+    p_l, p_r = free_l * hot_l, free_r * hot_r
     e_l, e_r = n_l * (v_l**2 + hot_l) / 2, n_r * (v_r**2 + hot_r) / 2
-    c_l = stiffness * np.sqrt(hot_l) / (1 - crowd * n_l)
-    c_r = stiffness * np.sqrt(hot_r) / (1 - crowd * n_r)
+    c_l = stiffness * np.sqrt(hot_l) * (1 + crowd * free_l)
+    c_r = stiffness * np.sqrt(hot_r) * (1 + crowd * free_r)
     slow, fast = min(v_l - c_l, v_r - c_r, 0.0), max(v_l + c_l, v_r + c_r, 0.0)
     a, b, across = fast / (fast - slow), -slow / (fast - slow), slow * fast / (fast - slow)
     return (
@@ -79,8 +80,8 @@ def _hll(left, right, crowd, stiffness):  # type: ignore[no-untyped-def] # pragm
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _primitive(fields, theta):  # type: ignore[no-untyped-def] # pragma: no cover
-    """Return ln n, V and ln theta, (M, 3); with an energy, theta follows from it.
+def _primitive(fields, theta, crowd):  # type: ignore[no-untyped-def] # pragma: no cover
+    """Return ln n_y, V and ln theta, (M, 3); with an energy, theta follows from it.
 
     In a vacuum, where the quotients would be of rounding errors, V = 0 and theta is the given one.
     """
@@ -93,7 +94,8 @@ def _primitive(fields, theta):  # type: ignore[no-untyped-def] # pragma: no cove
         hot = theta[i]
         if fields.shape[0] == 3:
             hot += n * weight * (2 * fields[2, i] / n - v**2 - hot)
-        state[i, 0], state[i, 1], state[i, 2] = np.log(n), v, np.log(max(hot, _COLDEST))
+        room = max(1 - crowd * n, _LEAST_ROOM)
+        state[i, 0], state[i, 1], state[i, 2] = np.log(n / room), v, np.log(max(hot, _COLDEST))
     return state
 
 
@@ -104,7 +106,7 @@ def eulerian_rate(fields, x, spacing, theta, frozen, crowd, lam, gamma, exponent
     ``frozen``: u at the cells, (M,), or empty: carried labels. ``crowd``: B.
     """
     number, cells = fields.shape
-    state = _primitive(fields, theta)
+    state = _primitive(fields, theta, crowd)
     stiffness = np.sqrt(3.0) if number == 3 else 1.0
     rates = np.zeros_like(fields)
     label = -0.5
@@ -280,13 +282,12 @@ def starting_fields(chain: Chain, start: Start, faces: Array, *, thermal: bool) 
 
 def _fastest(fields: Array, constants: Constants) -> float:
     """Largest speed of a signal."""
-    log_n, v, log_theta = _primitive(fields, constants.theta).T
-    n, crowd = np.exp(log_n), constants.crowd
-    if (crowd * n >= 1).any():
-        return math.inf
-    here = n > 1e-9 * n.max()
+    crowd = constants.crowd
+    log_free, v, log_theta = _primitive(fields, constants.theta, crowd).T
+    free = np.exp(log_free)
+    here = free > 1e-9 * free.max()
     stiffness = math.sqrt(3) if len(fields) == 3 else 1.0
-    speed = np.abs(v) + stiffness * np.exp(log_theta / 2) / (1 - crowd * n)
+    speed = np.abs(v) + stiffness * np.exp(log_theta / 2) * (1 + crowd * free)
     return float(speed[here].max())
 
 
@@ -322,7 +323,7 @@ def _on_grid(
     density, label, velocity, variance = np.empty((4, len(solution), x.size))
     rods, rod_velocities = np.empty((2, len(solution), L))
     for i, fields in enumerate(solution):
-        _, v, log_theta = _primitive(fields, theta).T
+        _, v, log_theta = _primitive(fields, theta, 2 * chain.radius * L / s).T
         count = CubicSpline(faces, np.concatenate([[0.0], np.cumsum(fields[0]) * h]))
         label[i] = L * count(here)
         density[i] = np.where(here == x / s, np.maximum(count(here, 1), 0.0) * L / s, 0.0)
