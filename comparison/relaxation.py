@@ -90,6 +90,8 @@ def compare_relaxation(
         )
         for temperature in ("isothermal", "evolving")
     }
+    if any(fluid.attrs["status"] == "interrupted" for fluid in results.values()):
+        raise KeyboardInterrupt("interrupted before the simulation")
     times = results["isothermal"].time.values
     if chain.gap == 0 and chain.spring == "linear":
         results["exact"] = _exact(chain, release, by, times)

@@ -23,16 +23,17 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from crazybilliards.kinetic.flow_fields import FlowFields
+from crazybilliards.kinetic.limiter import minmod
 from crazybilliards.kinetic.pde_solver import Rate, solve
 from crazybilliards.kinetic.profiles import Profile
 from crazybilliards.kinetic.starts import Start
 from crazybilliards.model import Chain
 from crazybilliards.model.grid import position_grid, thermal_reach
+from crazybilliards.model.kernel import kernel
 
 Array = NDArray[np.float64]
 
@@ -53,14 +54,7 @@ _MOST_WORK = 4e10
 _MANY_STEPS = 25_000
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
-def _minmod(a, b):  # type: ignore[no-untyped-def] # pragma: no cover
-    if a * b <= 0:
-        return 0.0
-    return a if abs(a) < abs(b) else b
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def _hll(left, right, crowd, stiffness):  # type: ignore[no-untyped-def] # pragma: no cover
     """Flux of n, nV and E between two states (ln n_y, V, ln theta)."""
     free_l, free_r = np.exp(left[0]), np.exp(right[0])
@@ -79,7 +73,7 @@ def _hll(left, right, crowd, stiffness):  # type: ignore[no-untyped-def] # pragm
     )
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def _primitive(fields, theta, crowd):  # type: ignore[no-untyped-def] # pragma: no cover
     """Return ln n_y, V and ln theta, (M, 3); with an energy, theta follows from it.
 
@@ -99,7 +93,7 @@ def _primitive(fields, theta, crowd):  # type: ignore[no-untyped-def] # pragma: 
     return state
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def eulerian_rate(fields, x, spacing, theta, frozen, crowd, lam, gamma, exponent):  # type: ignore[no-untyped-def] # pragma: no cover
     """Rates of change of (n, nV) at the given ``theta`` (M,), or of (n, nV, E).
 
@@ -126,7 +120,7 @@ def eulerian_rate(fields, x, spacing, theta, frozen, crowd, lam, gamma, exponent
             following[j] = 0.0
             if i + 2 < cells:
                 after = state[i + 2, j] - state[i + 1, j]
-                following[j] = _minmod(state[i + 1, j] - state[i, j], after)
+                following[j] = minmod(state[i + 1, j] - state[i, j], after)
             left[j] = state[i, j] + slope[j] / 2
             right[j] = state[i + 1, j] - following[j] / 2
         flux = _hll(left, right, crowd, stiffness)

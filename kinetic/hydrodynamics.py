@@ -103,7 +103,8 @@ def hydrodynamics(
         ``density``, ``flow_velocity``, ``velocity_variance``, ``displacement`` and ``label`` over
         (time, x); ``mean_displacement`` and ``mean_velocity`` over (time, particle); over time
         ``rods`` (their number), ``centre``, ``cloud_width`` and ``unsteadiness``,
-        whose last value is ``attrs["residual"]``.
+        whose last value is ``attrs["residual"]``. ``attrs["status"]`` is ``interrupted`` if Ctrl-C
+        ended it: the result then has the times before.
 
     Raises
     ------
@@ -196,6 +197,8 @@ def _result(
 ) -> xr.Dataset:
     """Put the fields into the common vocabulary, with the sums that tell how good they are."""
     along, particles = ("time", "x"), ("time", "particle")
+    reached = len(fields.density)
+    interrupted, times = reached < times.size, times[:reached]
     x, label = fields.x, fields.label
     rods = label[:, -1] - label[:, 0]
     reduced = x - 2 * chain.radius * (label - chain.size / 2)
@@ -218,6 +221,7 @@ def _result(
         coordinates={"x": x, "time": times},
         source="theory",
         method={"theory": "hydrodynamics", **method},
+        status="interrupted" if interrupted else "completed",
         end_time=times[-1],
         residual=fields.unsteadiness[-1],
     )

@@ -29,23 +29,25 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 from scipy.integrate import cumulative_trapezoid
 from scipy.interpolate import PchipInterpolator
 
 from crazybilliards.kinetic.flow_fields import FlowFields
 from crazybilliards.kinetic.label_closure import Stationary, stationary
+from crazybilliards.kinetic.limiter import minmod
 from crazybilliards.kinetic.pde_solver import solve
 from crazybilliards.kinetic.starts import Start
 from crazybilliards.model import Chain
 from crazybilliards.model.grid import position_grid, thermal_reach
+from crazybilliards.model.kernel import kernel
 
 Array = NDArray[np.float64]
 
 _EDGE_CELL = 0.045  # width of a cell at the edge, in thermal lengths
 _LAST_SHARE = 1e-5  # of the rods, beyond the outermost face
 _FEWEST_CELLS, _MOST_CELLS = 100, 4000
+_CLOSEST = 1e-3  # distance of cells, as a share of that at rest
 _SPACING = 0.05  # of the points that a solution is read out at, in thermal lengths
 
 
@@ -88,14 +90,7 @@ def _faces(state: Stationary, number: int | None) -> Array:
     return np.asarray(np.sign(count) * np.interp(np.abs(count), crowd, fine))
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
-def _minmod(a, b):  # type: ignore[no-untyped-def] # pragma: no cover
-    if a * b <= 0:
-        return 0.0
-    return a if abs(a) < abs(b) else b
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def label_rate(fields, labels, shares, kappa, stationary_distance, lam, gamma, exponent):  # type: ignore[no-untyped-def] # pragma: no cover
     """Rates of change of (eta, V) or, with a temperature, of (eta, V, S).
 
@@ -111,7 +106,7 @@ def label_rate(fields, labels, shares, kappa, stationary_distance, lam, gamma, e
         pressure = 0.0
         if i < cells - 1:
             # Trial stages of an integrator may cross cells: all stays finite and drives back.
-            d = max(eta[i + 1] - eta[i], 1e-3 * stationary_distance[i])
+            d = max(eta[i + 1] - eta[i], _CLOSEST * stationary_distance[i])
             theta = 1.0
             if thermal:
                 theta = min(max(fields[2, i], 0.0) / d**2, 1e6)
@@ -119,8 +114,8 @@ def label_rate(fields, labels, shares, kappa, stationary_distance, lam, gamma, e
             jump = v[i + 1] - v[i]
             viscous = 0.0
             if jump < 0:
-                left = _minmod(v[i] - v[i - 1], jump) if i > 0 else 0.0
-                right = _minmod(v[i + 2] - v[i + 1], jump) if i < cells - 2 else 0.0
+                left = minmod(v[i] - v[i - 1], jump) if i > 0 else 0.0
+                right = minmod(v[i + 2] - v[i + 1], jump) if i < cells - 2 else 0.0
                 rest = max(min(jump - (left + right) / 2, 0.0), -1e3)
                 viscous = kappa[i] / d * (2 * rest**2 - 0.5 * np.sqrt(theta) * rest)
                 pressure += viscous
@@ -161,6 +156,12 @@ def solve_on_labels(
         rtol=1e-7,
         atol=1e-7,
     )
+    closest = np.diff(solution[:, 0], axis=1) / np.diff(cells.eta)
+    if not (closest > _CLOSEST).all():
+        raise ValueError(
+            "the hydrodynamic equations could not be solved: the fluid collapses to less than "
+            f"{_CLOSEST:g} of its width at rest"
+        )
     rates = np.array([rate(values)[:2] for values in solution])
     unsteadiness = np.sqrt(np.sum(rates**2, axis=1) @ cells.shares)
     return _on_positions(chain, cells, state, solution, unsteadiness)

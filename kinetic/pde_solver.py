@@ -7,6 +7,7 @@ look at the clock would make two equal runs differ.
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -49,6 +50,8 @@ def solve(
 ) -> Array:
     """Solve from ``times[0]`` on; return the fields at all ``times``, (times, fields, cells).
 
+    py-pde ends a run at Ctrl-C without raising: the fields are then those of the first times only.
+
     ``fields`` are the initial values by name, in cells that py-pde knows by their number;
     ``solver`` are its own arguments: ``solver``, ``backend``, ``dt`` and those of the solver.
     """
@@ -57,12 +60,17 @@ def solve(
     scalars = [ScalarField(grid, values, label=name) for name, values in fields.items()]
     storage = MemoryStorage()
     trackers: list[Any] = [storage.tracker(list(times))]
-    if progress:
+    if progress and sys.stderr.isatty():
         trackers.append(ProgressTracker(list(times), leave=False))
-    Flow(rate).solve(
-        FieldCollection(scalars),
-        t_range=(float(times[0]), float(times[-1])),
-        tracker=trackers,
-        **solver,
-    )
+    try:
+        Flow(rate).solve(
+            FieldCollection(scalars),
+            t_range=(float(times[0]), float(times[-1])),
+            tracker=trackers,
+            **solver,
+        )
+    except RuntimeError as error:  # a step that became too small, or not a number
+        raise ValueError(f"the hydrodynamic equations could not be solved: {error}") from error
+    if not storage.data:
+        raise KeyboardInterrupt("nothing was computed yet")
     return np.array(storage.data)

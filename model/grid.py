@@ -12,10 +12,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from crazybilliards.model.chain import Chain
+from crazybilliards.model.kernel import kernel
 
 _BINS_PER_ROD = 21  # "bins much smaller than R": h = 0.095 R
 _MOST_NODES = 2**18
@@ -63,7 +63,7 @@ def _half_width(chain: Chain, reach: float | None) -> float:
     return float(chain.anchors[-1]) + (thermal_reach(chain) if reach is None else reach) + margin
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def deposit(points, first, spacing, weights):  # type: ignore[no-untyped-def] # pragma: no cover
     """Add each point's hat weights to ``weights`` in place; return how many points lay outside.
 

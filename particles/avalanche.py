@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crazybilliards.particles.kernel import kernel
+from crazybilliards.model.kernel import kernel
 
 Integers = NDArray[np.int64]
 

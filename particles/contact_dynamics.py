@@ -16,8 +16,8 @@ sending the last rod off: a property of every such law, and the reason why event
 are the default.
 """
 
+from crazybilliards.model.kernel import kernel
 from crazybilliards.particles.isotonic import pool
-from crazybilliards.particles.kernel import kernel
 
 
 @kernel

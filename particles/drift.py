@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crazybilliards.model import Chain
+from crazybilliards.model.kernel import kernel
 from crazybilliards.particles import contact_dynamics, event_driven, isotonic, sort
-from crazybilliards.particles.kernel import kernel
 
 Method = Literal["event-driven", "contact-dynamics"]
 

@@ -23,8 +23,8 @@ that nothing has to be moved before the end: a collision at t changes it by (v_b
 A cluster's state stands at its outermost members, the only ones with contacts to others.
 """
 
+from crazybilliards.model.kernel import inlined, kernel
 from crazybilliards.particles.avalanche import note
-from crazybilliards.particles.kernel import inlined, kernel
 
 
 @inlined

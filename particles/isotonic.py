@@ -6,7 +6,7 @@ of one block have met; by conservation of momentum a block moves with the mean v
 members, and lies at the mean of their free positions.
 """
 
-from crazybilliards.particles.kernel import kernel
+from crazybilliards.model.kernel import kernel
 
 
 @kernel

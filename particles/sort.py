@@ -10,7 +10,7 @@ which only the parts that overlap are touched. It costs O(L + collisions) where 
 rarely and never more than O(L log L), a million rods that meet thousands of others in a step.
 """
 
-from crazybilliards.particles.kernel import inlined, kernel
+from crazybilliards.model.kernel import inlined, kernel
 
 _RUN = 64
 

@@ -26,8 +26,8 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from crazybilliards.model import Chain
+from crazybilliards.model.kernel import kernel
 from crazybilliards.particles.drift import drift
-from crazybilliards.particles.kernel import kernel
 
 Stepper = Literal["splitting", "euler"]
 

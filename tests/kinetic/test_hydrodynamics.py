@@ -1,5 +1,8 @@
 """The hydrodynamics: against exact solutions, the stationary theory, and frame against frame."""
 
+import signal
+import threading
+
 import numpy as np
 import pytest
 
@@ -225,6 +228,26 @@ def test_wrong_starts_are_refused():
         hydrodynamics(chain.replace(damping=0), start, 10, **QUIET)
     with pytest.raises(ValueError, match="breathing cloud needs"):
         breathing_cloud(Chain(gap=1), [0, 1])
+
+
+def test_what_the_cells_cannot_hold_ends_with_a_reason():
+    chain = Chain(size=20)
+    with pytest.raises(ValueError, match="collapses to less than 0.001"):
+        hydrodynamics(chain, compressed(chain, 5e-4), 1, every=1, **QUIET)
+
+
+def test_ctrl_c_keeps_the_times_before():
+    chain = Chain(size=100)
+    start = force_balance(chain)
+    hydrodynamics(chain, start, 0.01, every=0.01, frame="eulerian", **QUIET)  # compiled
+    timer = threading.Timer(2.0, signal.raise_signal, [signal.SIGINT])
+    timer.start()
+    flow = hydrodynamics(chain, start, 20, every=0.02, frame="eulerian", cells=3000, **QUIET)
+    timer.cancel()
+    assert flow.attrs["status"] == "interrupted"
+    assert flow.attrs["end_time"] == flow.time[-1]
+    assert 1 <= flow.sizes["time"] < 1001
+    assert np.isfinite(flow.density).all()
 
 
 def test_a_plain_density_profile_is_a_start():

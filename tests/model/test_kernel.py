@@ -7,14 +7,14 @@ import sys
 def test_a_changed_callee_is_recompiled(tmp_path):
     caller = (
         "from callee import inner\n"
-        "from crazybilliards.particles.kernel import kernel\n"
+        "from crazybilliards.model.kernel import kernel\n"
         "@kernel\n"
         "def outer(x):\n"
         "    return inner(x) + 1\n"
         "print(outer(1))\n"
     )
     callee = (
-        "from crazybilliards.particles.kernel import kernel\n"
+        "from crazybilliards.model.kernel import kernel\n"
         "@kernel\n"
         "def inner(x):\n"
         "    return {} * x\n"
