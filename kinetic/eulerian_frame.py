@@ -20,20 +20,24 @@ length; where the flow turns out faster than the step allows, all is done again 
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
+from crazybilliards.kinetic.finite_volumes import (
+    VACUUM,
+    Constants,
+    eulerian_rate,
+    make_rate,
+    primitive,
+)
 from crazybilliards.kinetic.flow_fields import FlowFields
-from crazybilliards.kinetic.limiter import minmod
-from crazybilliards.kinetic.pde_solver import Rate, solve
+from crazybilliards.kinetic.pde_solver import solve
 from crazybilliards.kinetic.profiles import Profile
 from crazybilliards.kinetic.starts import Start
 from crazybilliards.model import Chain
 from crazybilliards.model.grid import position_grid, thermal_reach
-from crazybilliards.model.kernel import kernel
 
 Array = NDArray[np.float64]
 
@@ -42,92 +46,12 @@ _MOST_COURANT = 1.0  # beyond, four-stage Runge-Kutta with second-order fluxes i
 _HALVINGS = 6
 _CELL = 0.1  # default width in thermal lengths
 _MOST_CELLS = 50_000
-_VACUUM = 1e-13
 _JUST_INSIDE = 1 - 1e-9  # an arctanh is infinite at its end
-_THIN = 1e-10
-_COLDEST = 1e-6
-_LEAST_ROOM = 1e-12  # 1 - B n, at close packing
 _ROOM = 11.0  # beyond the lattice of anchors, in thermal lengths
 _MARGIN = 3.0  # beyond the farthest swing
 _AT_THE_WALL = 1e-4  # rods per thermal length, as a share of all
 _MOST_WORK = 4e10
 _MANY_STEPS = 25_000
-
-
-@kernel
-def _hll(left, right, crowd, stiffness):  # type: ignore[no-untyped-def] # pragma: no cover
-    """Flux of n, nV and E between two states (ln n_y, V, ln theta)."""
-    free_l, free_r = np.exp(left[0]), np.exp(right[0])
-    n_l, n_r = free_l / (1 + crowd * free_l), free_r / (1 + crowd * free_r)
-    v_l, v_r, hot_l, hot_r = left[1], right[1], np.exp(left[2]), np.exp(right[2])
-    p_l, p_r = free_l * hot_l, free_r * hot_r
-    e_l, e_r = n_l * (v_l**2 + hot_l) / 2, n_r * (v_r**2 + hot_r) / 2
-    c_l = stiffness * np.sqrt(hot_l) * (1 + crowd * free_l)
-    c_r = stiffness * np.sqrt(hot_r) * (1 + crowd * free_r)
-    slow, fast = min(v_l - c_l, v_r - c_r, 0.0), max(v_l + c_l, v_r + c_r, 0.0)
-    a, b, across = fast / (fast - slow), -slow / (fast - slow), slow * fast / (fast - slow)
-    return (
-        a * n_l * v_l + b * n_r * v_r + across * (n_r - n_l),
-        a * (n_l * v_l**2 + p_l) + b * (n_r * v_r**2 + p_r) + across * (n_r * v_r - n_l * v_l),
-        a * v_l * (e_l + p_l) + b * v_r * (e_r + p_r) + across * (e_r - e_l),
-    )
-
-
-@kernel
-def _primitive(fields, theta, crowd):  # type: ignore[no-untyped-def] # pragma: no cover
-    """Return ln n_y, V and ln theta, (M, 3); with an energy, theta follows from it.
-
-    In a vacuum, where the quotients would be of rounding errors, V = 0 and theta is the given one.
-    """
-    cells = fields.shape[1]
-    state = np.empty((cells, 3))
-    for i in range(cells):
-        n = max(fields[0, i], _VACUUM)
-        weight = n / (n**2 + _THIN**2)
-        v = fields[1, i] * weight
-        hot = theta[i]
-        if fields.shape[0] == 3:
-            hot += n * weight * (2 * fields[2, i] / n - v**2 - hot)
-        room = max(1 - crowd * n, _LEAST_ROOM)
-        state[i, 0], state[i, 1], state[i, 2] = np.log(n / room), v, np.log(max(hot, _COLDEST))
-    return state
-
-
-@kernel
-def eulerian_rate(fields, x, spacing, theta, frozen, crowd, lam, gamma, exponent):  # type: ignore[no-untyped-def] # pragma: no cover
-    """Rates of change of (n, nV) at the given ``theta`` (M,), or of (n, nV, E).
-
-    ``frozen``: u at the cells, (M,), or empty: carried labels. ``crowd``: B.
-    """
-    number, cells = fields.shape
-    state = _primitive(fields, theta, crowd)
-    stiffness = np.sqrt(3.0) if number == 3 else 1.0
-    rates = np.zeros_like(fields)
-    label = -0.5
-    for i in range(cells):
-        n, momentum = fields[0, i], fields[1, i]
-        label += 0.5 * n * spacing
-        u = frozen[i] if frozen.size > 0 else x[i] - (crowd + lam) * label
-        label += 0.5 * n * spacing
-        force = u if exponent == 2 else u * abs(u)
-        rates[1, i] -= n * force + gamma * momentum
-        if number == 3:
-            rates[2, i] -= momentum * force + gamma * (2 * fields[2, i] - n)
-    left, right, slope, following = np.zeros((4, 3))
-    for i in range(cells - 1):
-        slope[:] = following
-        for j in range(3):
-            following[j] = 0.0
-            if i + 2 < cells:
-                after = state[i + 2, j] - state[i + 1, j]
-                following[j] = minmod(state[i + 1, j] - state[i, j], after)
-            left[j] = state[i, j] + slope[j] / 2
-            right[j] = state[i + 1, j] - following[j] / 2
-        flux = _hll(left, right, crowd, stiffness)
-        for j in range(number):
-            rates[j, i] -= flux[j] / spacing
-            rates[j, i + 1] += flux[j] / spacing
-    return rates
 
 
 def solve_on_positions(
@@ -159,19 +83,6 @@ def solve_on_positions(
     return _on_grid(chain, faces, solution, constants.theta, unsteadiness)
 
 
-class Constants(NamedTuple):
-    """What the rates depend on besides the fields; see ``eulerian_rate``."""
-
-    x: Array
-    spacing: float
-    theta: Array
-    frozen: Array
-    crowd: float
-    lam: float
-    gamma: float
-    exponent: int
-
-
 def make_constants(
     chain: Chain, faces: Array, variance: Profile | None, displacement: Profile | None
 ) -> Constants:
@@ -193,16 +104,6 @@ def make_constants(
         gamma=chain.damping * s / (chain.mass * W),
         exponent=chain.potential_exponent,
     )
-
-
-def make_rate(constants: Constants) -> Rate:
-    """Return the rates of change as a function that py-pde can compile its steps around."""
-    x, spacing, theta, frozen, crowd, lam, gamma, exponent = constants
-
-    def rate(values, time=0.0):  # type: ignore[no-untyped-def]
-        return eulerian_rate(values, x, spacing, theta, frozen, crowd, lam, gamma, exponent)
-
-    return rate
 
 
 def _integrate(
@@ -277,7 +178,7 @@ def starting_fields(chain: Chain, start: Start, faces: Array, *, thermal: bool) 
 def _fastest(fields: Array, constants: Constants) -> float:
     """Largest speed of a signal."""
     crowd = constants.crowd
-    log_free, v, log_theta = _primitive(fields, constants.theta, crowd).T
+    log_free, v, log_theta = primitive(fields, constants.theta, crowd).T
     free = np.exp(log_free)
     here = free > 1e-9 * free.max()
     stiffness = math.sqrt(3) if len(fields) == 3 else 1.0
@@ -295,7 +196,7 @@ def _refuse_endless(work: float) -> None:
 
 def _unsteadiness(fields: Array, constants: Constants) -> float:
     """Rms of the velocity and of the acceleration over the rods."""
-    n = np.maximum(fields[0], _VACUUM)
+    n = np.maximum(fields[0], VACUUM)
     v = fields[1] / n
     rates = eulerian_rate(fields, *constants)
     # d(nV)/dt = n dV/dt + V dn/dt
@@ -317,7 +218,7 @@ def _on_grid(
     density, label, velocity, variance = np.empty((4, len(solution), x.size))
     rods, rod_velocities = np.empty((2, len(solution), L))
     for i, fields in enumerate(solution):
-        _, v, log_theta = _primitive(fields, theta, 2 * chain.radius * L / s).T
+        _, v, log_theta = primitive(fields, theta, 2 * chain.radius * L / s).T
         count = CubicSpline(faces, np.concatenate([[0.0], np.cumsum(fields[0]) * h]))
         label[i] = L * count(here)
         density[i] = np.where(here == x / s, np.maximum(count(here, 1), 0.0) * L / s, 0.0)
