@@ -221,7 +221,9 @@ def _on_grid(
         _, v, log_theta = primitive(fields, theta, 2 * chain.radius * L / s).T
         count = CubicSpline(faces, np.concatenate([[0.0], np.cumsum(fields[0]) * h]))
         label[i] = L * count(here)
-        density[i] = np.where(here == x / s, np.maximum(count(here, 1), 0.0) * L / s, 0.0)
+        # A spline through a shock may swing beyond vacuum and close packing.
+        there = np.clip(count(here, 1) * L / s, 0.0, (1 - 1e-9) * chain.close_packed_density)
+        density[i] = np.where(here == x / s, there, 0.0)
         velocity[i] = W * np.interp(here, middle, v)
         variance[i] = W**2 * np.interp(here, middle, np.exp(log_theta))
         rods[i] = np.interp(chain.rank + L / 2, np.maximum.accumulate(label[i]), x)
