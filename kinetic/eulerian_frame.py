@@ -10,11 +10,10 @@ conserved quantities n, n V and, with a temperature, E = n (V^2 + theta)/2 obey
 f being the spring's force at the displacement u = x - (B + Lam) nu, nu = int n dx - 1/2, or at a
 frozen profile u(x).
 
-**Discretisation.** Finite volumes with the flux of Harten, Lax and van Leer between states that are
-reconstructed linearly in ln n_y, V and ln theta with the minmod limiter, n_y = n/(1 - B n) being
-the density of the reduced coordinate: second order, n positive and below close packing whatever
-happens. Walls far out, where there is nothing: no flux. Four-stage Runge-Kutta steps of fixed
-length; where the flow turns out faster than the step allows, all is done again with half of it.
+**Discretisation.** Finite volumes (:mod:`crazybilliards.kinetic.finite_volumes`): second order,
+well balanced, n positive and below close packing whatever happens. Walls far out, where there is
+nothing: no flux. Four-stage Runge-Kutta steps of fixed length; where the flow turns out faster than
+the step allows, all is done again with half of it.
 """
 
 from __future__ import annotations
@@ -47,7 +46,7 @@ _HALVINGS = 6
 _CELL = 0.1  # default width in thermal lengths
 _MOST_CELLS = 50_000
 _JUST_INSIDE = 1 - 1e-9  # an arctanh is infinite at its end
-_ROOM = 11.0  # beyond the lattice of anchors, in thermal lengths
+_ROOM = 9.5  # beyond the lattice of anchors, in thermal lengths
 _MARGIN = 3.0  # beyond the farthest swing
 _AT_THE_WALL = 1e-4  # rods per thermal length, as a share of all
 _MOST_WORK = 4e10
@@ -178,8 +177,8 @@ def starting_fields(chain: Chain, start: Start, faces: Array, *, thermal: bool) 
 def _fastest(fields: Array, constants: Constants) -> float:
     """Largest speed of a signal."""
     crowd = constants.crowd
-    log_free, v, log_theta = primitive(fields, constants.theta, crowd).T
-    free = np.exp(log_free)
+    log_pressure, v, log_theta = primitive(fields, constants.theta, crowd).T
+    free = np.exp(log_pressure - log_theta)
     here = free > 1e-9 * free.max()
     stiffness = math.sqrt(3) if len(fields) == 3 else 1.0
     speed = np.abs(v) + stiffness * np.exp(log_theta / 2) * (1 + crowd * free)
