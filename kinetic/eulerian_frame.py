@@ -50,6 +50,7 @@ _ROOM = 9.5  # beyond the lattice of anchors, in thermal lengths
 _MARGIN = 3.0  # beyond the farthest swing
 _AT_THE_WALL = 1e-4  # rods per thermal length, as a share of all
 _MOST_WORK = 4e10
+_CELL_STEP = 2.6e-7  # seconds that a step of a cell takes
 _MANY_STEPS = 25_000
 
 
@@ -189,7 +190,7 @@ def _refuse_endless(work: float) -> None:
     if work > _MOST_WORK:
         raise ValueError(
             f"frame='eulerian' would take {work:.1e} steps of cells, about "
-            f"{work * 1.5e-7 / 3600:.0f} hours; use frame='label'"
+            f"{work * _CELL_STEP / 3600:.0f} hours; use frame='label'"
         )
 
 

@@ -46,6 +46,7 @@ def two_clumps(chain: Chain, distance: float, speed: float) -> xr.Dataset:
     """
     distance = check_real("distance", distance, positive=True)
     speed = check_real("speed", speed)
+    chain.require_steady_state()
     grid = _grid(chain, distance / 2)
     apart = np.maximum(np.abs(grid) - distance / 2, 0.0)
     outside = np.abs(grid) >= distance / 2

@@ -8,8 +8,8 @@ the displacement d that ten times the temperature reaches, and the damping rate 
   gave them before the next one, and W_v of a dissipative chain comes out too small where it is
   smallest, in the centre, by about 0.24 r^(3/2) with r = (A sqrt(dt)/m)/W_v, the velocity kick
   of one step over W_v. r is held at 0.12 (1 %), W_v being estimated by :func:`centre_width`,
-  but the step is not made shorter than 1/500 of the above, which is what 2000 rods need at
-  e = 0. Whatever the step, the result states this error (:func:`time_step_error`).
+  but the step is not made shorter than 1/500 of the above, which about 1000 rods
+  need at e = 0. Whatever the step, the result states this error (:func:`time_step_error`).
 * warm-up: 12 relaxation times of the slowest mode, so the start has decayed to exp(-12); none
   with a given start or for an ensemble, whose time begins with the start.
 * snapshots: every 10 steps; for an ensemble every hundredth of the duration.

@@ -226,6 +226,8 @@ def test_wrong_starts_are_refused():
         hydrodynamics(chain.replace(restitution=0.5), start, 10, **QUIET)
     with pytest.raises(ValueError, match="no steady state"):
         hydrodynamics(chain.replace(damping=0), start, 10, **QUIET)
+    with pytest.raises(ValueError, match="no steady state"):
+        two_clumps(chain.replace(damping=0), 1.0, 1.0)
     with pytest.raises(ValueError, match="breathing cloud needs"):
         breathing_cloud(Chain(gap=1), [0, 1])
 
