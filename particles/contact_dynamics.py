@@ -16,8 +16,10 @@ sending the last rod off: a property of every such law, and the reason why event
 are the default.
 """
 
+import numpy as np
+
 from crazybilliards.model.kernel import kernel
-from crazybilliards.particles.isotonic import pool
+from crazybilliards.particles.isotonic import INDEX, pool
 
 
 @kernel
@@ -29,29 +31,31 @@ def bound(gap, closing, restitution, dt):  # type: ignore[no-untyped-def] # prag
 
 
 @kernel
-def drift(y, v, dt, restitution, starts, totals, shifted):  # type: ignore[no-untyped-def] # pragma: no cover
+def drift(y, v, dt, restitution, integers, floats):  # type: ignore[no-untyped-def] # pragma: no cover
     """Advance ``y`` and ``v`` in place by ``dt``; return the contacts that carried an impulse.
 
-    ``starts`` (integers, one longer than y), ``totals`` and ``shifted`` (floats) are scratch.
+    ``integers`` and ``floats``, at least three rows of L each, are scratch space.
     """
-    total = 0.0
-    shifted[0] = v[0]
+    falls, firsts, lasts = integers[0], integers[1], integers[2]
+    shifted, sums, unused = floats[0], floats[1], floats[2]
+    count, total, before = INDEX(0), 0.0, v[0]
+    shifted[0] = before
     for i in range(y.size - 1):
         total += bound(y[i + 1] - y[i], v[i] - v[i + 1], restitution, dt)
-        shifted[i + 1] = v[i + 1] - total
-    blocks = pool(shifted, starts, totals)
-    block, total, mean = -1, 0.0, 0.0
+        free = v[i + 1] - total
+        shifted[i + 1] = free
+        falls[count] = i + 1
+        count += INDEX(free < before)
+        before = free
+    merged = pool(shifted, shifted, falls, count, firsts, lasts, sums, unused)
+    total, before = 0.0, -np.inf
     for i in range(y.size):
-        if i == starts[block + 1]:
-            block += 1
-            mean = totals[block] / (starts[block + 1] - starts[block])
         # The bound of the next contact needs this rod's state before it is overwritten.
         here = total
         if i < y.size - 1:
             total += bound(y[i + 1] - y[i], v[i] - v[i + 1], restitution, dt)
-        v[i] = mean + here
-        y[i] += dt * v[i]
-        # Bounds sum to rounding errors only: keep the order exact.
-        if i > 0 and y[i] < y[i - 1]:
-            y[i] = y[i - 1]
-    return y.size - blocks
+        v[i] = shifted[i] + here
+        # Bounds of touching rods agree but for rounding errors: keep the order exact.
+        before = max(y[i] + dt * v[i], before)
+        y[i] = before
+    return np.int64(merged)

@@ -37,7 +37,6 @@ class Scratch(NamedTuple):
     """Arrays the operators work in, made once for each replica."""
 
     integers: NDArray[np.int64]
-    starts: NDArray[np.int64]
     floats: NDArray[np.float64]
 
 
@@ -45,8 +44,7 @@ def make_scratch(size: int) -> Scratch:
     """Return the scratch space for ``size`` rods: 56 bytes a rod."""
     return Scratch(
         np.zeros((4, size), dtype=np.int64),
-        np.zeros(size + 1, dtype=np.int64),
-        np.zeros((2, size)),
+        np.zeros((3, size)),
     )
 
 
@@ -81,11 +79,9 @@ def drift(y, v, dt, law, scratch, tally):  # type: ignore[no-untyped-def] # prag
     if law.operator == SORT:
         return sort.drift(y, v, dt, scratch.floats[0], scratch.floats[1])
     if law.operator == ISOTONIC:
-        return isotonic.drift(y, v, dt, scratch.starts, scratch.floats[0])
+        return isotonic.drift(y, v, dt, scratch.integers, scratch.floats)
     if law.operator == CONTACTS:
-        return contact_dynamics.drift(
-            y, v, dt, law.restitution, scratch.starts, scratch.floats[0], scratch.floats[1]
-        )
+        return contact_dynamics.drift(y, v, dt, law.restitution, scratch.integers, scratch.floats)
     return event_driven.drift(
         y,
         v,

@@ -67,13 +67,6 @@ def _ornstein_uhlenbeck(chain: Chain, duration: float) -> tuple[float, float]:
 
 
 @kernel
-def _spring_kick(y, v, anchors, kick, quadratic):  # type: ignore[no-untyped-def] # pragma: no cover
-    for i in range(y.size):
-        d = y[i] - anchors[i]
-        v[i] -= kick * (d * abs(d) if quadratic else d)
-
-
-@kernel
 def advance(y, v, anchors, generator, step, law, scratch, tally, steps):  # type: ignore[no-untyped-def] # pragma: no cover
     """Take ``steps`` steps of the chain in place; return the collisions, or -1 if diverged.
 
@@ -82,21 +75,24 @@ def advance(y, v, anchors, generator, step, law, scratch, tally, steps):  # type
     """
     collisions = 0
     decay, noise = step.outer_decay, step.outer_noise
+    half_due = 0.0  # 1: half a spring kick of the last step, given with this one's in one pass
     for _ in range(steps):
         for i in range(y.size):
             d = y[i] - anchors[i]
             pull = step.kick * (d * abs(d) if step.quadratic else d)
-            v[i] = decay * v[i] + noise * generator.standard_normal() - pull
+            v[i] = decay * (v[i] - half_due * pull) + noise * generator.standard_normal() - pull
         decay, noise = step.decay, step.noise
         met = drift(y, v, step.time_step, law, scratch, tally)
         if met < 0:
             return -1
         collisions += met
-        if step.symmetric:
-            _spring_kick(y, v, anchors, step.kick, step.quadratic)
+        half_due = 1.0 if step.symmetric else 0.0
     if step.symmetric and steps > 0:
         for i in range(y.size):
-            v[i] = step.outer_decay * v[i] + step.outer_noise * generator.standard_normal()
+            d = y[i] - anchors[i]
+            pull = step.kick * (d * abs(d) if step.quadratic else d)
+            v[i] = step.outer_decay * (v[i] - pull)
+            v[i] += step.outer_noise * generator.standard_normal()
     return collisions
 
 
