@@ -38,14 +38,18 @@ VOCABULARY = {
     "label": ("number of rods to the left N", "1"),
     "flow_velocity": ("flow velocity V", "R/T"),
     "velocity_variance": ("velocity variance W^2", "R^2/T^2"),
+    "heat_flux": ("heat flux (m/2) int (v - V)^3 f dv", "M R^2/T^3"),
+    "phase_space_density": ("phase-space density f(y, v)", "T/R^2"),
     "rods": ("number of rods", "1"),
     "centre": ("mean position of all rods", "R"),
     "cloud_width": ("standard deviation of y over the rods", "R"),
+    "covariance": ("covariance of y and v over the rods", "R^2/T"),
     "unsteadiness": ("rms rate of change, in units of the free case", "1"),
     "position": ("rod centres x_i", "R"),
     "velocity": ("velocity v", "R/T"),
     "time": ("time t", "T"),
     "x": ("position x", "R"),
+    "y": ("reduced position y", "R"),
     "particle": ("particle i", "1"),
     "mean_position": ("mean position <x_i>", "R"),
     "normalized_particle": ("normalized particle i_n", "1"),
@@ -77,7 +81,7 @@ def result(
     method
         How it was computed, for the provenance: anything JSON can hold.
     coordinates
-        Values along the dimensions x, time and velocity, where there are any; the particles
+        Values along the dimensions x, y, time and velocity, where there are any; the particles
         number themselves.
     status, end_time
         ``completed``, ``diverged`` or ``interrupted``, and the time reached.

@@ -1,0 +1,55 @@
+"""The critical size: its closed form, its scaling, and where there is none."""
+
+import numpy as np
+import pytest
+
+from crazybilliards.kinetic import critical_damping, critical_restitution, critical_size
+from crazybilliards.model import Chain
+
+# gamma/sqrt(k m) = 0.1: weakly damped, where the answer is known.
+WEAK = Chain(restitution=1.05, damping=0.1 * np.sqrt(4 * np.pi / 3))
+
+
+def test_closed_form_for_weak_damping():
+    """Each pair meets once in half a period and gains (e^2 - 1) of its relative energy, while.
+
+    damping takes pi gamma/sqrt(k m) of all energy: to first order in e - 1 they balance at
+    |lambda| L = (pi/2) gamma/sqrt(k m).
+    """
+    value, error = critical_size(WEAK)
+    assert value == pytest.approx(np.pi * 0.1 / 0.05, rel=2e-3)
+    assert 0 < error < 0.01 * value
+
+
+def test_restitution_and_size_are_one_number():
+    value, _ = critical_size(WEAK)
+    chain = WEAK.replace(size=round(2 * value))
+    expected = 1 + 0.05 * value / chain.size
+    assert critical_restitution(chain).value == pytest.approx(expected, rel=1e-6)
+
+
+def test_units_do_not_matter():
+    other = WEAK.replace(stiffness=4.0, damping=2 * WEAK.damping, amplitude=7.0, gap=0.5)
+    assert critical_size(other).value == pytest.approx(critical_size(WEAK).value, rel=1e-9)
+
+
+def test_critical_damping_undoes_the_critical_size():
+    chain = WEAK.replace(size=30)
+    damping = critical_damping(chain).value
+    # Nearly linear: the closed form's 2 L (e - 1)/2 /pi.
+    assert damping / np.sqrt(chain.mass) == pytest.approx(30 * 0.05 / np.pi, rel=0.02)
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"restitution": 1.0}, "every size has a steady state"),
+        ({"restitution": 0.5}, "every size has a steady state"),
+        ({"spring": "quadratic"}, "quadratic"),
+        ({"damping": 0.0}, "damping=0"),
+        ({"stiffness": 0.0}, "stiffness=0"),
+    ],
+)
+def test_bad_input(changes, message):
+    with pytest.raises(ValueError, match=message):
+        critical_size(WEAK.replace(**changes))

@@ -1,0 +1,126 @@
+"""The kinetic equation in time: exact at e = 1, relaxing to the steady state otherwise."""
+
+import numpy as np
+import pytest
+
+from crazybilliards.kinetic import (
+    compressed,
+    displaced,
+    force_balance,
+    phase_space,
+    phase_space_relaxation,
+    relax_phase_space,
+)
+from crazybilliards.kinetic.breathing_cloud import breathing_cloud
+from crazybilliards.kinetic.continuation import continued, elastic_state
+from crazybilliards.model import Chain
+
+CHAIN = Chain(size=30)
+
+
+@pytest.mark.parametrize(("stretch", "shift"), [(1.0, 1.0), (0.4, 0.0), (1.5, 0.0)])
+def test_elastic_cloud_moves_as_the_exact_one(stretch, shift):
+    start = displaced(CHAIN, shift) if shift else compressed(CHAIN, stretch)
+    flow = relax_phase_space(CHAIN, start, 15.0, every=0.5, progress=False)
+    exact = breathing_cloud(CHAIN, flow.time.values, stretch=stretch, shift=shift)
+    s = CHAIN.thermal_length
+    assert float(np.abs(flow.centre - exact.centre).max()) < 1e-3 * s
+    assert float(np.abs(flow.cloud_width - exact.cloud_width).max()) < 1e-3 * s
+    drift = flow.mean_velocity.mean("particle")
+    energy = CHAIN.size * CHAIN.mass / 2 * (exact.velocity_variance + drift**2)
+    if shift:
+        np.testing.assert_allclose(flow.kinetic_energy, energy, rtol=2e-3)
+    assert float(np.abs(flow.rods - CHAIN.size).max()) < 1e-10 * CHAIN.size
+    assert float(flow.phase_space_density.min()) > -1e-3 * float(flow.phase_space_density.max())
+
+
+def test_error_is_of_second_order_in_the_time_step():
+    start = displaced(CHAIN, 1.0)
+
+    def centre(step):
+        return relax_phase_space(
+            CHAIN, start, 6.0, every=6.0, time_step=step, cells=12, progress=False
+        ).centre.values[-1]
+
+    exact = breathing_cloud(CHAIN, [0.0, 6.0], shift=1.0).centre.values[-1]
+    coarse, fine = (abs(centre(step) - exact) for step in (0.5, 0.25))
+    assert coarse / fine == pytest.approx(4, rel=0.1)
+
+
+@pytest.mark.parametrize(("restitution", "damping"), [(0.9, 1.0), (1.05, 6.0)])
+def test_it_relaxes_to_the_steady_state(restitution, damping):
+    chain = Chain(size=40, restitution=restitution, damping=damping)
+    order = 2 if restitution < 1 else 1
+    steady = continued(chain, elastic_state(chain, order, 20)).energy()
+    start = phase_space(chain.replace(amplitude=1.5), cells=20)
+    flow = relax_phase_space(chain, start, 25.0, time_step=0.2, cells=14, progress=False)
+    energy = flow.kinetic_energy / (chain.size * chain.temperature / 2)
+    assert float(energy[0]) == pytest.approx(1.5**2 * steady, rel=5e-3)
+    assert float(energy[-1]) == pytest.approx(steady, rel=5e-3)
+    assert float(np.abs(flow.rods - chain.size).max()) < 1e-10 * chain.size
+
+
+def test_with_a_gap_a_steady_state_stays():
+    chain = CHAIN.replace(gap=0.2)
+    flow = relax_phase_space(
+        chain, force_balance(chain), 4.0, time_step=0.2, cells=16, progress=False
+    )
+    s = chain.thermal_length
+    assert float(np.abs(flow.cloud_width / flow.cloud_width[0] - 1).max()) < 5e-3
+    assert float(np.abs(flow.mean_velocity).max()) < 0.02 * chain.free_velocity_width
+    assert float(np.abs(flow.centre).max()) < 1e-6 * s
+
+
+def test_divergence_is_a_result():
+    chain = Chain(size=160, restitution=1.05, damping=4.0)
+    flow = relax_phase_space(
+        chain, displaced(chain, 0.1), 20.0, every=0.2, time_step=0.1, cells=12, progress=False
+    )
+    assert flow.attrs["status"] == "diverged"
+    assert flow.attrs["end_time"] < 20
+    assert np.isfinite(flow.kinetic_energy).all()
+    assert float(flow.kinetic_energy[-1]) > float(flow.kinetic_energy[0])
+
+
+def test_interrupt_keeps_what_there_is(monkeypatch):
+    seen = []
+    original = phase_space_relaxation._output
+
+    def interrupt(*arguments):
+        seen.append(1)
+        if len(seen) > 3:
+            raise KeyboardInterrupt
+        return original(*arguments)
+
+    monkeypatch.setattr(phase_space_relaxation, "_output", interrupt)
+    flow = relax_phase_space(CHAIN, displaced(CHAIN, 1.0), 5.0, cells=8, progress=False)
+    assert flow.attrs["status"] == "interrupted"
+    assert flow.time.size == 3
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"duration": 0.0}, "duration"),
+        ({"every": 99.0}, "every"),
+        ({"every": 1e-9}, "every"),
+        ({"cells": 1}, "cells"),
+        ({"time_step": -1.0}, "time_step"),
+    ],
+)
+def test_bad_input(arguments, message):
+    start = displaced(CHAIN, 1.0)
+    with pytest.raises(ValueError, match=message):
+        relax_phase_space(CHAIN, start, **({"duration": 5.0, "progress": False} | arguments))
+
+
+def test_bad_starts():
+    theory = phase_space(CHAIN, cells=8)
+    with pytest.raises(ValueError, match="density"):
+        relax_phase_space(CHAIN, theory[["velocity_width"]], 5.0)
+    with pytest.raises(ValueError, match="over y and velocity"):
+        relax_phase_space(CHAIN, theory[["phase_space_density"]].transpose("velocity", "y"), 5.0)
+    with pytest.raises(ValueError, match="finite"):
+        relax_phase_space(CHAIN, theory[["phase_space_density"]] * np.nan, 5.0)
+    with pytest.raises(ValueError, match="no steady state"):
+        relax_phase_space(CHAIN.replace(damping=0.0), theory, 5.0)
