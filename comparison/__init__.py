@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from crazybilliards.comparison.fits import fit_border_power_law as fit_border_power_law
     from crazybilliards.comparison.relaxation import compare_relaxation as compare_relaxation
     from crazybilliards.comparison.relaxation_figures import animate as animate
+    from crazybilliards.comparison.restitutions import compare_restitutions as compare_restitutions
+    from crazybilliards.comparison.restitutions import width_deviations as width_deviations
 
 _HOMES = {
     "animate": "relaxation_figures",
@@ -28,12 +30,14 @@ _HOMES = {
     "PowerLawFit": "fits",
     "compare_elastic": "elastic_chain",
     "compare_relaxation": "relaxation",
+    "compare_restitutions": "restitutions",
     "coverage_density": "coverage",
     "deviation": "distances",
     "fit_arctanh": "fits",
     "fit_border_power_law": "fits",
     "overlay": "drawing",
     "smooth": "coverage",
+    "width_deviations": "restitutions",
 }
 
 __all__ = list(_HOMES)

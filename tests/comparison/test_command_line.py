@@ -22,7 +22,8 @@ def run(*arguments, **options):
 
 
 @pytest.mark.parametrize(
-    "arguments", [["--help"], ["compare", "--help"], ["relax", "--help"], ["-h"]]
+    "arguments",
+    [["--help"], ["compare", "--help"], ["relax", "--help"], ["theory", "--help"], ["-h"]],
 )
 def test_help_shows_an_example_and_loads_nothing_heavy(arguments):
     script = (
@@ -84,6 +85,10 @@ def test_without_output_nothing_is_written(tmp_path):
         (["--gap", "inf"], "gap must be"),
         (["--duration", "0"], "duration must be"),
         (["--duration", "1"], "duration must be at least"),
+        (["--restitution", "0.9,x"], "restitution takes numbers"),
+        (["--restitution", "-1"], "restitution must be"),
+        (["--restitution", "0.9", "--amplitudes", "1"], "give restitution or amplitudes"),
+        (["--restitution", "0.9", "--damping", "0"], "no steady state"),
         (["--seed", "-5"], "seed"),
         (["--threads", "0"], "threads must be"),
         (["--colour"], "No such option"),
@@ -97,6 +102,53 @@ def test_bad_input_is_one_line_exit_two_and_nothing_written(arguments, message, 
     assert message in done.stderr
     assert done.stderr.count("\n") == 1
     assert done.stdout == ""
+    assert not folder.exists()
+
+
+def test_compare_restitutions(tmp_path):
+    arguments = ["--restitution", "0.9,1", "--size", "10", "--duration", "200"]
+    done = run("compare", *arguments, "--output", str(tmp_path))
+    assert done.returncode == 0, done.stderr
+    assert sorted(path.name for path in tmp_path.iterdir()) == [
+        "comparison.nc",
+        "phase_space_restitution_0.9.png",
+        "phase_space_restitution_1.png",
+        "widths.png",
+    ]
+    assert set(load(tmp_path / "comparison.nc").children) == {"restitution_0.9", "restitution_1"}
+    assert "kinetic equation minus simulation" in " ".join(done.stdout.split())
+
+
+def test_theory(tmp_path):
+    done = run("theory", "--size", "20", "--restitution", "0.9", "--output", str(tmp_path))
+    assert done.returncode == 0, done.stderr
+    assert sorted(path.name for path in tmp_path.iterdir()) == [
+        "phase_space.png",
+        "profile.png",
+        "theory.nc",
+    ]
+    assert "W_v" in done.stdout
+    assert done.stderr == ""
+    assert "velocity_width" in load(tmp_path / "theory.nc")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["--spring", "cubic"], "spring must be"),
+        (["--size", "0"], "size must be"),
+        (["--tolerance", "0"], "tolerance must be"),
+        (["--amplitude", "0"], "no steady state"),
+        (["--critical"], "every size has a steady state"),
+        (["--restitution", "1.3", "--damping", "4"], "the energy grows without bound"),
+    ],
+)
+def test_theory_refuses_in_one_line(arguments, message, tmp_path):
+    folder = tmp_path / "results"
+    done = run("theory", *arguments, "--output", str(folder))
+    assert done.returncode == 2
+    assert message in done.stderr
+    assert done.stderr.count("\n") == 1
     assert not folder.exists()
 
 

@@ -1,0 +1,197 @@
+"""The command ``crazybilliards compare``.
+
+Only the standard library and typer are imported up here, so that ``--help`` answers at once.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from crazybilliards.comparison.command_output import (
+    check_folder,
+    exit_unless_completed,
+    numbers,
+    write_figures,
+)
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+def compare(
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            help="Folder for the figures and comparison.nc, made if missing; without it nothing is "
+            "written."
+        ),
+    ] = None,
+    size: Annotated[int, typer.Option(help="Number of rods L, at least 3.")] = 100,
+    amplitudes: Annotated[
+        str | None,
+        typer.Option(help="Driving amplitudes A, separated by commas; default: 1,3,10,30."),
+    ] = None,
+    restitution: Annotated[
+        str | None,
+        typer.Option(
+            help="Restitutions e, separated by commas: compare with the kinetic equation instead."
+        ),
+    ] = None,
+    damping: Annotated[float, typer.Option(help="Damping gamma [M/T].")] = 1.0,
+    gap: Annotated[float, typer.Option(help="Gap g between rods at their anchors [R].")] = 0.0,
+    duration: Annotated[
+        float | None,
+        typer.Option(
+            help="Simulated time of each of two replicas; default: 200000, with --restitution 5000."
+        ),
+    ] = None,
+    seed: Annotated[int, typer.Option(help="Seed of the random numbers.")] = 0,
+    threads: Annotated[
+        int | None, typer.Option(help="Threads to simulate in; default: one per core.")
+    ] = None,
+) -> None:
+    """Compare simulated chains with their theories.
+
+    Without --restitution: the elastic chain at several driving amplitudes, with its exact
+    equilibrium, the force balance closed by labels and the paper's force balance with a fitted
+    displacement. With it: chains of other restitutions, with the kinetic equation (good
+    for 0.9 to 1.05), into which nothing from the simulation goes.
+
+    Draws everything over one another and prints how far apart it is.
+
+    Ctrl-C stops early: what has been computed is written under names with "-interrupted".
+
+    Example: crazybilliards compare --output results --amplitudes 1,10 --gap 0.2
+
+    Example: crazybilliards compare --output results --restitution 0.9,0.95,0.98
+    """
+    from crazybilliards.model import Chain
+
+    if output is not None:
+        check_folder(output)
+    if restitution is None:
+        if size < 3:
+            raise ValueError(f"size must be at least 3 to compare with an arctanh fit, got {size}")
+        from crazybilliards.comparison.elastic_chain import compare_elastic
+
+        tree = compare_elastic(
+            Chain(size=size, gap=gap, damping=damping),
+            numbers("amplitudes", "1,3,10,30" if amplitudes is None else amplitudes),
+            duration=200_000.0 if duration is None else duration,
+            seed=seed,
+            threads=threads,
+        )
+        write, show = _write_comparison, _print_deviations
+    else:
+        if amplitudes is not None:
+            raise ValueError("amplitudes only set the scale here: give restitution or amplitudes")
+        from crazybilliards.comparison.restitutions import compare_restitutions
+
+        tree = compare_restitutions(
+            Chain(size=size, gap=gap, damping=damping),
+            numbers("restitution", restitution),
+            duration=5_000.0 if duration is None else duration,
+            seed=seed,
+            threads=threads,
+        )
+        write, show = _write_restitutions, _print_widths
+    status = tree.attrs["status"]
+    if output is not None:
+        write(tree, output, "" if status == "completed" else f"-{status}")
+    show(tree)
+    if output is None:
+        print("Nothing was written; --output FOLDER keeps the figures and the data.")
+    exit_unless_completed(status)
+
+
+def _write_comparison(tree: xr.DataTree, folder: Path, suffix: str) -> None:
+    import matplotlib
+
+    matplotlib.use("Agg")
+    from crazybilliards.comparison.elastic_figures import draw_density, draw_displacement
+    from crazybilliards.model import save
+
+    # The data first: a failing picture must not cost the computation.
+    print(f"wrote {save(tree, folder / f'comparison{suffix}.nc')}")
+    write_figures(folder, suffix, density=draw_density(tree), displacement=draw_displacement(tree))
+
+
+def _print_deviations(tree: xr.DataTree) -> None:
+    from rich.console import Console
+    from rich.table import Table
+
+    from crazybilliards.comparison.elastic_chain import (
+        THEORIES,
+        deviations,
+        largest_width_error,
+    )
+
+    table = Table(
+        title="Density: simulation minus theory, in % of close packing 1/(2R)",
+        caption="Smoothed as in the paper. sigma: one standard error of the simulation. The last "
+        "column is the velocity widths' largest distance from their exact value.",
+    )
+    table.add_column("A", justify="right")
+    for name in THEORIES.values():
+        table.add_column(f"{name}\nmax / rms", justify="right")
+    table.add_column("exact\nmax [sigma]", justify="right")
+    table.add_column("W_v\nmax [sigma]", justify="right")
+    for name, by_theory in deviations(tree).items():
+        exact = by_theory.get("exact")
+        table.add_row(
+            name.removeprefix("amplitude_"),
+            *(
+                f"{100 * by_theory[key].maximum:.2f} / {100 * by_theory[key].rms:.2f}"
+                if key in by_theory
+                else "-"
+                for key in THEORIES
+            ),
+            "-" if exact is None else f"{exact.maximum_in_errors or 0:.1f}",
+            f"{largest_width_error(tree.children[name]):.1f}",
+        )
+    Console().print(table)
+
+
+def _write_restitutions(tree: xr.DataTree, folder: Path, suffix: str) -> None:
+    import matplotlib
+
+    matplotlib.use("Agg")
+    from crazybilliards.comparison.restitution_figures import draw_phase_space, draw_widths
+    from crazybilliards.comparison.restitutions import THEORY
+    from crazybilliards.model import save
+
+    print(f"wrote {save(tree, folder / f'comparison{suffix}.nc')}")
+    write_figures(folder, suffix, widths=draw_widths(tree))
+    for name, group in tree.children.items():
+        if THEORY in group:
+            picture = draw_phase_space(group[THEORY].to_dataset())
+            write_figures(folder, suffix, **{f"phase_space_{name}": picture})
+
+
+def _print_widths(tree: xr.DataTree) -> None:
+    from rich.console import Console
+    from rich.table import Table
+
+    from crazybilliards.comparison.restitutions import width_deviations
+
+    table = Table(
+        title="Velocity widths: kinetic equation minus simulation, in %",
+        caption="Largest: of the particles 3 to L-2. Border: the first and the last. Error: a "
+        "rod's standard error in the simulation.",
+    )
+    for name in ("e", "largest", "centre", "border", "error"):
+        table.add_column(name, justify="right")
+    deviations = width_deviations(tree)
+    for name, group in tree.children.items():
+        values = (
+            [f"{100 * value:.2f}" for value in deviations[name]]
+            if name in deviations
+            else ["-"] * 4
+        )
+        status = group["simulation"].attrs["status"]
+        note = "" if status == "completed" else f" ({status})"
+        table.add_row(name.removeprefix("restitution_") + note, *values)
+    Console().print(table)

@@ -1,0 +1,132 @@
+"""The command ``crazybilliards relax``.
+
+Only the standard library and typer are imported up here, so that ``--help`` answers at once.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from crazybilliards.comparison.command_output import (
+    check_folder,
+    exit_unless_completed,
+    write_figures,
+)
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+def relax(
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            help="Folder for relaxation.nc, spacetime.png, profiles.png, cloud.png, "
+            "relaxation.html and relaxation.gif, made if missing; without it nothing is written."
+        ),
+    ] = None,
+    release: Annotated[
+        str, typer.Option(help="compressed (or stretched), displaced or quenched.")
+    ] = "compressed",
+    by: Annotated[
+        float | None,
+        typer.Option(
+            help="Factor of y (compressed), thermal lengths (displaced) or factor of the amplitude "
+            "before (quenched); default: 0.3, 2 or 3."
+        ),
+    ] = None,
+    size: Annotated[int, typer.Option(help="Number of rods L.")] = 100,
+    amplitude: Annotated[float, typer.Option(help="Driving amplitude A.")] = 30.0,
+    gap: Annotated[float, typer.Option(help="Gap g between rods at their anchors [R].")] = 0.0,
+    duration: Annotated[float, typer.Option(help="Time to follow.")] = 40.0,
+    every: Annotated[float, typer.Option(help="Time between outputs.")] = 0.5,
+    replicas: Annotated[int, typer.Option(help="Simulated chains to average over.")] = 300,
+    seed: Annotated[int, typer.Option(help="Seed of the random numbers.")] = 0,
+    threads: Annotated[
+        int | None, typer.Option(help="Threads to simulate in; default: one per core.")
+    ] = None,
+) -> None:
+    """Release an elastic chain and follow it: rods, two fluids, and the exact solution.
+
+    An ensemble of simulated chains, the isothermal hydrodynamics (the paper's), hydrodynamics
+    with a temperature, and without gap the exact motion start from the same state. Prints how far
+    the rods are from where each theory has them, in thermal lengths.
+
+    Ctrl-C stops early: what has been computed is written under names with "-interrupted".
+
+    Example: crazybilliards relax --output results --release displaced --by 2 --gap 0.2
+    """
+    from crazybilliards.comparison.relaxation import compare_relaxation
+    from crazybilliards.model import Chain
+
+    defaults = {"compressed": 0.3, "displaced": 2.0, "quenched": 3.0}
+    if release not in defaults:
+        raise ValueError(f"release must be one of {tuple(defaults)}, got {release!r}")
+    if output is not None:
+        check_folder(output)
+    tree = compare_relaxation(
+        Chain(size=size, amplitude=amplitude, gap=gap),
+        release,  # type: ignore[arg-type]
+        defaults[release] if by is None else by,
+        duration=duration,
+        every=every,
+        replicas=replicas,
+        seed=seed,
+        threads=threads,
+    )
+    status = tree.attrs["status"]
+    if output is not None:
+        _write_relaxation(tree, output, "" if status == "completed" else f"-{status}")
+    _print_distances(tree)
+    if output is None:
+        print("Nothing was written; --output FOLDER keeps the figures and the data.")
+    exit_unless_completed(status)
+
+
+def _write_relaxation(tree: xr.DataTree, folder: Path, suffix: str) -> None:
+    import tempfile
+
+    import matplotlib
+
+    matplotlib.use("Agg")
+    from crazybilliards.comparison import relaxation_figures as figures
+    from crazybilliards.model import save
+    from crazybilliards.model.storage import write_atomically
+
+    print(f"wrote {save(tree, folder / f'relaxation{suffix}.nc')}")
+    write_figures(
+        folder,
+        suffix,
+        spacetime=figures.draw_spacetime(tree),
+        profiles=figures.draw_profiles(tree),
+        cloud=figures.draw_cloud(tree),
+    )
+    animation = figures.animate(tree)
+    with tempfile.TemporaryDirectory() as scratch:  # matplotlib wants a name, not a stream
+        gif = Path(scratch, "relaxation.gif")
+        animation.save(gif, writer="pillow", dpi=80)
+        contents = {"html": animation.to_jshtml().encode(), "gif": gif.read_bytes()}
+    for kind, content in contents.items():
+        path = folder / f"relaxation{suffix}.{kind}"
+        write_atomically(path, content)
+        print(f"wrote {path}")
+
+
+def _print_distances(tree: xr.DataTree) -> None:
+    from rich.console import Console
+    from rich.table import Table
+
+    from crazybilliards.comparison.relaxation import THEORIES, label_distances
+
+    table = Table(
+        caption="Rms over the rods of their mean position in theory minus simulation, in thermal "
+        "lengths, at the time when it is largest.",
+    )
+    table.add_column("theory")
+    table.add_column("rms distance / s", justify="right")
+    for key, distance in label_distances(tree).items():
+        table.add_row(THEORIES[key], f"{distance:.3f}")
+    Console().print(table)

@@ -1,0 +1,82 @@
+"""Simulation against the kinetic equation: what comes out, and the pictures of it."""
+
+import warnings
+
+import matplotlib
+import numpy as np
+import pytest
+
+from crazybilliards.comparison import compare_restitutions, width_deviations
+from crazybilliards.comparison.restitution_figures import (
+    draw_phase_space,
+    draw_profile,
+    draw_widths,
+)
+from crazybilliards.comparison.restitutions import SIMULATION, THEORY, width_deviation
+from crazybilliards.kinetic import equilibrium, phase_space
+from crazybilliards.model import Chain
+
+matplotlib.use("Agg")
+CHAIN = Chain(size=20)
+QUIET = {"progress": False, "threads": 1}
+
+
+@pytest.fixture(scope="module")
+def tree():
+    return compare_restitutions(CHAIN, [0.9, 1.0], duration=500, **QUIET)
+
+
+def test_tree_holds_both(tree):
+    assert list(tree.children) == ["restitution_0.9", "restitution_1"]
+    assert tree.attrs["status"] == "completed"
+    for group in tree.children.values():
+        assert set(group.children) == {SIMULATION, THEORY}
+
+
+def test_deviations(tree):
+    for seen in width_deviations(tree).values():
+        assert abs(seen.centre) < 0.02 + 5 * seen.error
+        assert abs(seen.largest) < 0.02 + 5 * seen.error
+
+
+def test_width_deviation_of_a_known_difference():
+    theory = phase_space(CHAIN, cells=16)
+    wider = equilibrium(CHAIN)
+    wider["velocity_width"] = wider.velocity_width * 1.1
+    wider["velocity_width_error"] = wider.velocity_width * 0.01
+    seen = width_deviation(wider, theory)
+    for value in (seen.centre, seen.border):
+        assert value == pytest.approx(1 / 1.1 - 1, rel=1e-3)
+    assert seen.largest == pytest.approx(1 - 1 / 1.1, rel=1e-3)
+    assert seen.error == pytest.approx(0.01)
+
+
+def test_without_a_steady_state_there_is_a_warning_and_no_theory():
+    chain = Chain(size=60, damping=1.0)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        tree = compare_restitutions(chain, [1.1], duration=40, **QUIET)
+    assert any("no steady state" in str(each.message) for each in caught)
+    assert set(tree["restitution_1.1"].children) == {SIMULATION}
+    assert width_deviations(tree) == {}
+
+
+def test_pictures(tree):
+    widths = draw_widths(tree)
+    assert widths.axes[0].get_ylabel() == "velocity width $W_v/W$"
+    theory = tree[f"restitution_0.9/{THEORY}"].to_dataset()
+    image = draw_phase_space(theory)
+    assert "e = 0.9" in image.axes[0].get_title()
+    assert len(draw_profile(theory).axes) == 2
+    with pytest.raises(ValueError, match="phase_space_density"):
+        draw_phase_space(tree[f"restitution_0.9/{SIMULATION}"].to_dataset())
+    matplotlib.pyplot.close("all")
+
+
+@pytest.mark.parametrize(
+    ("restitutions", "message"),
+    [([], "at least one"), ([0.9, 0.9], "differ"), ([-1.0], "restitution"), ([np.nan], "restit")],
+)
+def test_bad_input(restitutions, message):
+    with pytest.raises(ValueError, match=message):
+        compare_restitutions(CHAIN, restitutions, **QUIET)
