@@ -16,21 +16,15 @@ import xarray as xr
 from crazybilliards.comparison.coverage import smooth
 from crazybilliards.comparison.distances import Deviation, deviation
 from crazybilliards.comparison.fits import fit_arctanh
+from crazybilliards.comparison.side_by_side import SIMULATION, simulate_beside, varied_chains
 from crazybilliards.kinetic import equilibrium, force_balance
 from crazybilliards.model import Chain, chain_of
-from crazybilliards.model.chain import check_integer, check_real
-from crazybilliards.particles import simulate
-from crazybilliards.particles.schedule import make_schedule
 
-SIMULATION = "simulation"
 THEORIES = {
     "exact": "exact",
     "labels": "force balance, by labels",
     "arctanh": "force balance, arctanh fit",
 }
-
-# Independent runs whatever the number of threads, enough for two cores.
-_REPLICAS = 2
 
 
 def compare_elastic(
@@ -65,34 +59,16 @@ def compare_elastic(
     ValueError
         For a wrong argument, before any work.
     """
-    chains = _chains(chain, amplitudes, duration)
-    seed = check_integer("seed", seed, least=0)
-    results: dict[str, xr.Dataset] = {}
-    status = "completed"
-    seeds = np.random.SeedSequence(seed).generate_state(len(chains))
-    try:
-        for driven, own_seed in zip(chains, seeds, strict=True):
-            run = simulate(
-                driven,
-                duration=duration,
-                seed=int(own_seed),
-                replicas=_REPLICAS,
-                threads=threads,
-                progress=progress,
-            )
-            name = f"amplitude_{driven.amplitude:g}"
-            results[f"{name}/{SIMULATION}"] = run
-            status = run.attrs["status"]
-            results |= {f"{name}/{key}": theory for key, theory in _theories(driven, run).items()}
-            if status != "completed":
-                break
-    except KeyboardInterrupt:
-        if not results:
-            raise
-        status = "interrupted"
-    tree = xr.DataTree.from_dict(results)
-    tree.attrs |= {"status": status, "source": "comparison"}
-    return tree
+    if chain.restitution != 1:
+        raise ValueError(f"the comparison is of elastic chains, got e={chain.restitution:g}")
+    return simulate_beside(
+        varied_chains(chain, "amplitude", amplitudes, duration),
+        _theories,
+        duration=duration,
+        seed=seed,
+        threads=threads,
+        progress=progress,
+    )
 
 
 def deviations(tree: xr.DataTree) -> dict[str, dict[str, Deviation]]:
@@ -112,22 +88,6 @@ def largest_width_error(group: xr.DataTree) -> float:
     run = group[SIMULATION].to_dataset()
     width = chain_of(run).free_velocity_width
     return float(np.abs((run.velocity_width - width) / run.velocity_width_error).max())
-
-
-def _chains(chain: Chain, amplitudes: Sequence[float], duration: float) -> list[Chain]:
-    """Return the chain at every amplitude, after all checks, so that none fails half-way."""
-    if chain.restitution != 1:
-        raise ValueError(f"the comparison is of elastic chains, got e={chain.restitution:g}")
-    if not amplitudes:
-        raise ValueError("amplitudes must hold at least one number")
-    positive = [check_real("amplitude", value, positive=True) for value in amplitudes]
-    if len(set(positive)) != len(positive):
-        raise ValueError(f"amplitudes must differ from one another, got {list(amplitudes)}")
-    chains = [chain.replace(amplitude=value) for value in positive]
-    for each in chains:
-        each.require_steady_state()
-        make_schedule(each, duration=duration, replicas=_REPLICAS)
-    return chains
 
 
 def _theories(chain: Chain, run: xr.Dataset) -> dict[str, xr.Dataset]:

@@ -15,7 +15,8 @@ from matplotlib.figure import Figure
 
 from crazybilliards.comparison.coverage import smooth
 from crazybilliards.comparison.drawing import overlay
-from crazybilliards.comparison.elastic_chain import SIMULATION, THEORIES
+from crazybilliards.comparison.elastic_chain import THEORIES
+from crazybilliards.comparison.side_by_side import SIMULATION
 from crazybilliards.model import Chain, chain_of
 
 

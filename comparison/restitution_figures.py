@@ -9,7 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
-from crazybilliards.comparison.restitutions import SIMULATION, THEORY
+from crazybilliards.comparison.restitutions import THEORY
+from crazybilliards.comparison.side_by_side import SIMULATION
 from crazybilliards.model import chain_of
 from crazybilliards.model.vocabulary import require
 

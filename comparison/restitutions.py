@@ -9,16 +9,12 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
+from crazybilliards.comparison.side_by_side import SIMULATION, simulate_beside, varied_chains
 from crazybilliards.kinetic import phase_space
 from crazybilliards.model import Chain, chain_of
-from crazybilliards.model.chain import check_integer, check_real
-from crazybilliards.particles import simulate
-from crazybilliards.particles.schedule import make_schedule
 
-SIMULATION = "simulation"
 THEORY = "kinetic_equation"
 
-_REPLICAS = 2
 _LEAST_INNER = 7  # rods from which on the two at each border are left out of the largest deviation
 
 
@@ -66,38 +62,23 @@ def compare_restitutions(
     ValueError
         For a wrong argument, before any work.
     """
-    chains = _chains(chain, restitutions, duration)
-    seed = check_integer("seed", seed, least=0)
-    seeds = np.random.SeedSequence(seed).generate_state(len(chains))
-    results: dict[str, xr.Dataset] = {}
-    status = "completed"
+    return simulate_beside(
+        varied_chains(chain, "restitution", restitutions, duration),
+        _kinetic_equation,
+        duration=duration,
+        seed=seed,
+        threads=threads,
+        progress=progress,
+    )
+
+
+def _kinetic_equation(chain: Chain, run: xr.Dataset) -> dict[str, xr.Dataset]:
     try:
-        for each, own_seed in zip(chains, seeds, strict=True):
-            run = simulate(
-                each,
-                duration=duration,
-                seed=int(own_seed),
-                replicas=_REPLICAS,
-                threads=threads,
-                progress=progress,
-            )
-            name = f"restitution_{each.restitution:g}"
-            results[f"{name}/{SIMULATION}"] = run
-            if run.attrs["status"] != "completed":
-                status = run.attrs["status"]
-            if status == "interrupted":
-                break
-            try:
-                results[f"{name}/{THEORY}"] = phase_space(each)
-            except ValueError as error:
-                warnings.warn(f"e = {each.restitution:g}: {error}", stacklevel=2)
-    except KeyboardInterrupt:
-        if not results:
-            raise
-        status = "interrupted"
-    tree = xr.DataTree.from_dict(results)
-    tree.attrs |= {"status": status, "source": "comparison"}
-    return tree
+        return {THEORY: phase_space(chain)}
+    except ValueError as error:
+        # No steady state, say. The simulation must not be lost for it.
+        warnings.warn(f"e = {chain.restitution:g} goes without theory: {error}", stacklevel=2)
+        return {}
 
 
 def width_deviations(tree: xr.DataTree) -> dict[str, WidthDeviation]:
@@ -132,17 +113,3 @@ def width_deviation(run: xr.Dataset, theory: xr.Dataset) -> WidthDeviation:
         border=relative([0, -1]),
         error=float((run.velocity_width_error / run.velocity_width).median()),
     )
-
-
-def _chains(chain: Chain, restitutions: Sequence[float], duration: float) -> list[Chain]:
-    """Return the chain at every restitution, after all checks, so that none fails half-way."""
-    if not restitutions:
-        raise ValueError("restitutions must hold at least one number")
-    checked = [check_real("restitution", value) for value in restitutions]
-    if len(set(checked)) != len(checked):
-        raise ValueError(f"restitutions must differ from one another, got {list(restitutions)}")
-    chains = [chain.replace(restitution=value) for value in checked]
-    for each in chains:
-        each.require_steady_state()
-        make_schedule(each, duration=duration, replicas=_REPLICAS)
-    return chains

@@ -78,7 +78,7 @@ def test_without_output_nothing_is_written(tmp_path):
         (["--size", "-1"], "size"),
         (["--amplitudes", "1,x"], "amplitudes takes numbers"),
         (["--amplitudes", ""], "amplitudes takes numbers"),
-        (["--amplitudes", "0"], "amplitude must be"),
+        (["--amplitudes", "0"], "no steady state: amplitude=0"),
         (["--amplitudes", "nan"], "amplitude must be"),
         (["--amplitudes", "1,1"], "differ"),
         (["--gap", "-1"], "gap must be"),

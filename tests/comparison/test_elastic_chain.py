@@ -82,7 +82,8 @@ def test_amplitudes_have_random_numbers_of_their_own(tree):
     [
         (Chain(restitution=0.9), (1,), "elastic"),
         (Chain(), (), "at least one"),
-        (Chain(), (1, 0), "amplitude must be"),
+        (Chain(), (1, 0), "no steady state: amplitude=0"),
+        (Chain(), (1, -1), "amplitude must be"),
         (Chain(), (1, 1.0), "differ"),
         (Chain(damping=0), (1,), "no steady state"),
     ],

@@ -12,7 +12,8 @@ from crazybilliards.comparison.restitution_figures import (
     draw_profile,
     draw_widths,
 )
-from crazybilliards.comparison.restitutions import SIMULATION, THEORY, width_deviation
+from crazybilliards.comparison.restitutions import THEORY, width_deviation
+from crazybilliards.comparison.side_by_side import SIMULATION
 from crazybilliards.kinetic import equilibrium, phase_space
 from crazybilliards.model import Chain
 
