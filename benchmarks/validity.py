@@ -21,6 +21,7 @@ from crazybilliards.particles import simulate
 
 RESTITUTIONS = (0.0, 0.5, 0.75, 0.9, 0.95, 0.98, 1.0)
 DURATIONS = {30: 40_000.0, 100: 20_000.0, 300: 2_000.0, 1000: 300.0}
+LONGER = 4.0  # times these for L >= 300 and e >= 0.9, where a step is longer
 DRIVEN = ((30, 20_000.0), (60, 20_000.0), (100, 50_000.0))  # e = 1.05, gamma = 4
 LOOKS = {30: ("#0072B2", "o"), 100: ("#E69F00", "s"), 300: ("#009E73", "D"), 1000: ("#CC79A7", "^")}
 
@@ -50,13 +51,13 @@ def row(chain: Chain, seen: WidthDeviation) -> str:
 
 def main(folder: Path, figure: Path) -> None:
     folder.mkdir(parents=True, exist_ok=True)
-    print("| e | L | centre, % | border, % | largest, 3 to L-2, % | error of a rod, % |")
-    print("|---|---|---|---|---|---|")
+    print("| e | L | centre, % | border, % | largest, 3 to L-2, % |\n|---|---|---|---|---|")
     results: dict[int, list[tuple[float, WidthDeviation]]] = {size: [] for size in DURATIONS}
     for size, duration in DURATIONS.items():
         for restitution in RESTITUTIONS:
             chain = Chain(size=size, restitution=restitution)
-            seen = compared(chain, duration, folder)
+            longer = LONGER if size >= 300 and restitution >= 0.9 else 1.0
+            seen = compared(chain, longer * duration, folder)
             results[size].append((restitution, seen))
             print(row(chain, seen), flush=True)
     driven = []
@@ -73,30 +74,40 @@ def draw(
     driven: list[tuple[int, WidthDeviation]],
     figure: Path,
 ) -> None:
-    drawing, axes = plt.subplots(1, 2, figsize=(9.2, 3.8), sharex=True, layout="constrained")
-    for ax, place in zip(axes, ("centre", "border"), strict=True):
-        for size, seen in results.items():
+    drawing, axes = plt.subplots(1, 2, figsize=(9.2, 4.2), sharex=True, layout="constrained")
+    shown = [*RESTITUTIONS, 1.05]  # evenly spaced: most of what happens lies close to 1
+    for ax, place, error in zip(axes, ("centre", "border"), ("error", "border_error"), strict=True):
+        for number, (size, seen) in enumerate(results.items()):
             colour, symbol = LOOKS[size]
-            line = {"color": colour, "marker": symbol, "markerfacecolor": "none", "linewidth": 1.2}
-            values = [100 * getattr(each, place) for _, each in seen]
-            ax.plot([e for e, _ in seen], values, label=f"L = {size}", **line)
+            ax.errorbar(
+                [shown.index(e) + 0.04 * (number - 1.5) for e, _ in seen],
+                [100 * getattr(each, place) for _, each in seen],
+                [100 * getattr(each, error) for _, each in seen],
+                label=f"L = {size}",
+                color=colour,
+                marker=symbol,
+                markerfacecolor="none",
+                linewidth=1.2,
+            )
         for number, (size, each) in enumerate(driven):
-            ax.plot(
-                1.05,
+            ax.errorbar(
+                len(shown) - 1 + 0.15 * (number - 1),
                 100 * getattr(each, place),
+                100 * getattr(each, error),
                 color="black",
-                marker="x+1"[number],
-                markersize=8,
+                marker="<^>"[number],
+                markerfacecolor="none",
                 linestyle="none",
                 label=rf"L = {size}, $\gamma = 4$",
             )
         ax.axhline(0, color="0.6", linewidth=0.8, zorder=0)
-        ax.set_yscale("symlog", linthresh=1)
+        ax.set_yscale("symlog", linthresh=2)
         ax.set_yticks([-50, -20, -10, -5, -2, -1, 0, 1, 2, 5])
         ax.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
+        ax.set_xticks(range(len(shown)), [f"{e:g}" for e in shown])
         ax.set(xlabel="restitution e", ylabel=f"error of $W_v$, {place} [%]")
     drawing.legend(
-        *axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=7, frameon=False
+        *axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=4, frameon=False
     )
     drawing.savefig(figure, dpi=150)
 

@@ -179,17 +179,17 @@ def _print_widths(tree: xr.DataTree) -> None:
 
     table = Table(
         title="Velocity widths: kinetic equation minus simulation, in %",
-        caption="Largest: of the particles 3 to L-2. Border: the first and the last. Error: a "
-        "rod's standard error in the simulation.",
+        caption="Largest: of the particles 3 to L-2. Border: the first and the last. Errors: the "
+        "simulation's standard errors, of one rod and of the border.",
     )
-    for name in ("e", "largest", "centre", "border", "error"):
+    for name in ("e", "largest", "centre", "border", "error", "border's"):
         table.add_column(name, justify="right")
     deviations = width_deviations(tree)
     for name, group in tree.children.items():
         values = (
             [f"{100 * value:.2f}" for value in deviations[name]]
             if name in deviations
-            else ["-"] * 4
+            else ["-"] * 5
         )
         status = group["simulation"].attrs["status"]
         note = "" if status == "completed" else f" ({status})"

@@ -25,6 +25,7 @@ class WidthDeviation(NamedTuple):
     centre: float  # of the middle tenth of the rods
     border: float  # of the first and the last rod
     error: float  # typical standard error of a rod's simulated width
+    border_error: float  # that of the border's
 
 
 def compare_restitutions(
@@ -107,9 +108,11 @@ def width_deviation(run: xr.Dataset, theory: xr.Dataset) -> WidthDeviation:
         return float(np.sqrt(expected[part].mean() / square[part].mean()) - 1)
 
     each = np.sqrt(expected / square) - 1
+    relative_error = (run.velocity_width_error / run.velocity_width).values
     return WidthDeviation(
         largest=float(np.abs(each[inner]).max()),
         centre=relative(middle),
         border=relative([0, -1]),
-        error=float((run.velocity_width_error / run.velocity_width).median()),
+        error=float(np.median(relative_error)),
+        border_error=float(np.hypot(relative_error[0], relative_error[-1]) / 2),
     )

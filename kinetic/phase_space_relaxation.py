@@ -45,6 +45,7 @@ Array = NDArray[np.float64]
 
 _STEP = 0.04  # in units of the spring's 1/w0
 _CELLS = 20
+_LARGEST_MESH = 80  # takes 1 GB
 _OUTPUTS = 50
 _CORE = 1.5
 _LOST = 2e-4  # share of the points on a line of the outermost cells at which the mesh is enlarged
@@ -115,6 +116,8 @@ def relax_phase_space(
     if every > duration * (1 + 1e-9) or count > _MOST_OUTPUTS:
         raise ValueError(f"every must lie between duration/{_MOST_OUTPUTS} and duration")
     cells = check_integer("cells", cells, least=4)
+    if cells > _LARGEST_MESH:
+        raise ValueError(f"cells must be at most {_LARGEST_MESH}, got {cells}")
     chain.require_steady_state()
     units = free_units(chain)
     unit_time = units.length / units.velocity

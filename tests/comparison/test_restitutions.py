@@ -50,6 +50,7 @@ def test_width_deviation_of_a_known_difference():
         assert value == pytest.approx(1 / 1.1 - 1, rel=1e-3)
     assert seen.largest == pytest.approx(1 - 1 / 1.1, rel=1e-3)
     assert seen.error == pytest.approx(0.01)
+    assert seen.border_error == pytest.approx(0.01 / 2**0.5)
 
 
 def test_without_a_steady_state_there_is_a_warning_and_no_theory():

@@ -91,6 +91,20 @@ def test_shape_of_the_profile():
         np.testing.assert_allclose(width, width[::-1], rtol=1e-10)
 
 
+def test_no_flow_and_heat_from_hot_to_cold():
+    """Points stay on average; heat comes in from the border, where fewer collisions cool."""
+    chain = Chain(restitution=0.9)
+    theory = phase_space(chain)
+    unit = chain.mass * chain.size * chain.free_velocity_width**3 / chain.thermal_length
+    right = (theory.x > 0) & (theory.density > 1e-2)
+    flow = float(np.abs(theory.flow_velocity.where(right)).max())
+    assert flow < 1e-9 * chain.free_velocity_width
+    assert float(theory.heat_flux.where(right).max()) < 0
+    assert float(theory.heat_flux.where(right).min()) < -4e-3 * unit
+    elastic = phase_space(chain.replace(restitution=1.0))
+    assert float(np.abs(elastic.heat_flux).max()) < 1e-4 * unit
+
+
 def test_amplitude_only_sets_the_scale():
     one, ten = (phase_space(Chain(size=30, restitution=0.9, amplitude=A)) for A in (1.0, 10.0))
     for name in ("velocity_width", "mean_displacement", "displacement_width"):
@@ -119,6 +133,8 @@ def test_too_many_flippers_have_no_steady_state():
         ({"stiffness": 0.0}, {}, "no steady state"),
         ({}, {"tolerance": 0.0}, "tolerance"),
         ({}, {"cells": 2}, "cells"),
+        ({}, {"cells": 100_000}, "cells must be at most"),
+        ({"size": 10**6}, {}, "size must be at most"),
         ({}, {"order": 3}, "order"),
         ({"restitution": 0.95}, {"tolerance": 1e-9}, "accurate to"),
     ],

@@ -105,6 +105,7 @@ def test_interrupt_keeps_what_there_is(monkeypatch):
         ({"every": 99.0}, "every"),
         ({"every": 1e-9}, "every"),
         ({"cells": 1}, "cells"),
+        ({"cells": 10**6}, "cells must be at most"),
         ({"time_step": -1.0}, "time_step"),
     ],
 )
