@@ -99,7 +99,7 @@ def phase_space(
     --------
     >>> theory = phase_space(Chain(size=100, restitution=0.95))
     >>> theory.velocity_width.values[[0, 24, 49]].round(3)
-    array([0.259, 0.166, 0.151])
+    array([0.259, 0.167, 0.151])
     """
     tolerance = check_real("tolerance", tolerance, positive=True)
     if cells is not None:
