@@ -43,10 +43,11 @@ def compared(chain: Chain, duration: float, folder: Path) -> WidthDeviation:
 def row(chain: Chain, seen: WidthDeviation) -> str:
     """Return a line of the table, in per cent."""
     name = f"{chain.restitution:g}" + (f", gamma = {chain.damping:g}" if chain.damping != 1 else "")
-    values = " | ".join(f"{100 * value:+.1f}" for value in (seen.centre, seen.border))
-    return (
-        f"| {name} | {chain.size} | {values} | {100 * seen.largest:.1f} | {100 * seen.error:.1f} |"
+    values = " | ".join(
+        f"{100 * value:+.1f} ± {100 * error:.1f}"
+        for value, error in ((seen.centre, seen.error), (seen.border, seen.border_error))
     )
+    return f"| {name} | {chain.size} | {values} | {100 * seen.largest:.1f} |"
 
 
 def main(folder: Path, figure: Path) -> None:

@@ -113,7 +113,7 @@ def phase_space(
     elif order not in (1, 2):
         raise ValueError(f"order must be 1 or 2, got {order!r}")
     chain.require_steady_state()
-    state = continued(chain, elastic_state(chain, order, min(cells or _CELLS, _CELLS)))
+    state = continued(chain, elastic_state(chain, order, _CELLS))
     state = refined(state, cells or _CELLS)
     seen = _rods(state)
     error = np.nan
