@@ -17,8 +17,22 @@ QUICK = ["compare", "--size", "10", "--duration", "1000", "--amplitudes", "1,5"]
 
 def run(*arguments, **options):
     return subprocess.run(
-        [*COMMAND, *arguments], capture_output=True, text=True, timeout=120, check=False, **options
+        [*COMMAND, *arguments], capture_output=True, text=True, timeout=300, check=False, **options
     )
+
+
+def interrupted_after(seconds, *arguments):
+    """Send Ctrl-C after some time; return exit status, output and errors. Leave nothing behind."""
+    process = subprocess.Popen(
+        [*COMMAND, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    try:
+        time.sleep(seconds)
+        process.send_signal(signal.SIGINT)
+        output, errors = process.communicate(timeout=200)
+    finally:
+        process.kill()
+    return process.returncode, output, errors
 
 
 @pytest.mark.parametrize(
@@ -197,17 +211,14 @@ def test_relax_refuses_bad_input_in_one_line(arguments, message, tmp_path):
 
 @pytest.mark.skipif(os.name == "nt", reason="sends a POSIX signal")
 def test_ctrl_c_keeps_what_relaxed(tmp_path):
+    begin = time.monotonic()
+    assert run(*RELAX).returncode == 0
+    started = 1.5 * (time.monotonic() - begin)  # importing, compiling, the fluids, on this machine
     arguments = ["--size", "300", "--replicas", "10000", "--duration", "400", "--every", "40"]
-    process = subprocess.Popen(
-        [*COMMAND, "relax", *arguments, "--output", str(tmp_path)],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
+    code, _, errors = interrupted_after(
+        20 + started, "relax", *arguments, "--output", str(tmp_path)
     )
-    time.sleep(25)  # of which importing, the fluids and the starts take some
-    process.send_signal(signal.SIGINT)
-    _, errors = process.communicate(timeout=90)
-    assert process.returncode == 130, errors
+    assert code == 130, errors
     assert "Traceback" not in errors
     assert load(tmp_path / "relaxation-interrupted.nc").attrs["status"] == "interrupted"
     assert (tmp_path / "cloud-interrupted.png").exists()
@@ -226,18 +237,14 @@ def test_an_unknown_command_and_an_unusable_folder_are_one_line(tmp_path):
 
 @pytest.mark.skipif(os.name == "nt", reason="sends a POSIX signal")
 def test_ctrl_c_saves_what_was_computed_beside_a_finished_result(tmp_path):
+    begin = time.monotonic()
     assert run(*QUICK, "--output", str(tmp_path)).returncode == 0
+    started = 1.5 * (time.monotonic() - begin)
     finished = (tmp_path / "comparison.nc").read_bytes()
-    process = subprocess.Popen(
-        [*COMMAND, *QUICK[:3], "--duration", "1e9", "--output", str(tmp_path)],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
+    code, output, errors = interrupted_after(
+        2 + started, *QUICK[:3], "--duration", "1e9", "--output", str(tmp_path)
     )
-    time.sleep(8)  # of which importing takes some
-    process.send_signal(signal.SIGINT)
-    output, errors = process.communicate(timeout=60)
-    assert process.returncode == 130, errors
+    assert code == 130, errors
     assert "Traceback" not in errors
     tree = load(tmp_path / "comparison-interrupted.nc")
     assert tree.attrs["status"] == "interrupted"
