@@ -15,26 +15,50 @@ if TYPE_CHECKING:
     from crazybilliards.comparison.drawing import overlay as overlay
     from crazybilliards.comparison.elastic_chain import compare_elastic as compare_elastic
     from crazybilliards.comparison.fits import ArctanhFit as ArctanhFit
+    from crazybilliards.comparison.fits import AvalancheFit as AvalancheFit
+    from crazybilliards.comparison.fits import ExponentialFit as ExponentialFit
+    from crazybilliards.comparison.fits import GrowthFit as GrowthFit
     from crazybilliards.comparison.fits import PowerLawFit as PowerLawFit
+    from crazybilliards.comparison.fits import ScalingFit as ScalingFit
+    from crazybilliards.comparison.fits import SingularityFit as SingularityFit
     from crazybilliards.comparison.fits import fit_arctanh as fit_arctanh
+    from crazybilliards.comparison.fits import fit_avalanches as fit_avalanches
     from crazybilliards.comparison.fits import fit_border_power_law as fit_border_power_law
+    from crazybilliards.comparison.fits import fit_exponential as fit_exponential
+    from crazybilliards.comparison.fits import fit_growth as fit_growth
+    from crazybilliards.comparison.fits import fit_scaling as fit_scaling
+    from crazybilliards.comparison.fits import fit_singularity as fit_singularity
+    from crazybilliards.comparison.fits import tail_length as tail_length
     from crazybilliards.comparison.relaxation import compare_relaxation as compare_relaxation
     from crazybilliards.comparison.relaxation_figures import animate as animate
     from crazybilliards.comparison.restitutions import compare_restitutions as compare_restitutions
     from crazybilliards.comparison.restitutions import width_deviations as width_deviations
+    from crazybilliards.comparison.sweeps import load_sweep as load_sweep
 
 _HOMES = {
-    "animate": "relaxation_figures",
     "ArctanhFit": "fits",
-    "Deviation": "distances",
+    "AvalancheFit": "fits",
+    "ExponentialFit": "fits",
+    "GrowthFit": "fits",
     "PowerLawFit": "fits",
+    "ScalingFit": "fits",
+    "SingularityFit": "fits",
+    "fit_arctanh": "fits",
+    "fit_avalanches": "fits",
+    "fit_border_power_law": "fits",
+    "fit_exponential": "fits",
+    "fit_growth": "fits",
+    "fit_scaling": "fits",
+    "fit_singularity": "fits",
+    "tail_length": "fits",
+    "animate": "relaxation_figures",
+    "Deviation": "distances",
     "compare_elastic": "elastic_chain",
     "compare_relaxation": "relaxation",
     "compare_restitutions": "restitutions",
     "coverage_density": "coverage",
     "deviation": "distances",
-    "fit_arctanh": "fits",
-    "fit_border_power_law": "fits",
+    "load_sweep": "sweeps",
     "overlay": "drawing",
     "smooth": "coverage",
     "width_deviations": "restitutions",

@@ -13,15 +13,16 @@ import io
 import json
 import time
 from collections.abc import Mapping, Sequence
+from dataclasses import asdict
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from crazybilliards.model import Chain
 from crazybilliards.model.storage import read_sealed, write_sealed
 from crazybilliards.particles.replica import Replica
+from crazybilliards.particles.request import Request
 
 
 class Checkpoint:
@@ -81,21 +82,18 @@ class Checkpoint:
             run.restore(state)
 
 
-def run_identity(
-    chain: Chain,
-    schedule: Mapping[str, Any],
-    settings: Mapping[str, Any],
-    starts: Sequence[tuple[np.ndarray, np.ndarray]],
-) -> dict[str, Any]:
+def run_identity(request: Request) -> dict[str, Any]:
     """Everything that a run's bits depend on, by name; the start as a checksum."""
-    start = hashlib.sha256(b"".join(y.tobytes() + v.tobytes() for y, v in starts)).hexdigest()
+    states = (state.tobytes() for start in request.starts for state in start)
     return {
         "version": version("crazybilliards"),
-        **chain.parameters(),
-        **schedule,
-        **settings,
-        "replicas": len(starts),
-        "start": start,
+        **request.chain.parameters(),
+        **asdict(request.schedule),
+        **request.settings,
+        "observe": request.observe,
+        "particles": (request.plan.chosen + 1).tolist(),
+        "replicas": len(request.starts),
+        "start": hashlib.sha256(b"".join(states)).hexdigest(),
     }
 
 

@@ -2,31 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import asdict
 
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
-from crazybilliards.model import Chain
 from crazybilliards.model.vocabulary import result
 from crazybilliards.particles.observers import Integers, Variables
 from crazybilliards.particles.replica import NEVER, Replica
-from crazybilliards.particles.schedule import Schedule, centre_width, time_step_error
+from crazybilliards.particles.request import Request
+from crazybilliards.particles.schedule import centre_width, time_step_error
 
 Array = NDArray[np.float64]
 
 
 def collect(
-    chain: Chain,
+    request: Request,
     runs: list[Replica],
-    schedule: Schedule,
-    settings: Mapping[str, str | int | float],
-    chosen: Integers,
     interrupted: bool,
 ) -> xr.Dataset:
     """Join the replicas' measurements into one result."""
+    chain, schedule, chosen = request.chain, request.schedule, request.plan.chosen
     reached = min(run.reached for run in runs)
     counts = np.array([run.counts for run in runs])
     if schedule.ensemble:
@@ -58,7 +55,7 @@ def collect(
         end_time=end_time,
         particles=chosen + 1,
         method={
-            **settings,
+            **request.settings,
             "replicas": sum(len(run.starts) for run in runs),
             "schedule": asdict(schedule),
             "duration": schedule.duration,

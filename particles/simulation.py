@@ -4,32 +4,26 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
-from dataclasses import asdict
 from pathlib import Path
 from threading import Event
-from typing import get_args
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 from crazybilliards.model import Chain
 from crazybilliards.model.chain import check_integer, check_real
 from crazybilliards.particles.checkpoint import Checkpoint, run_identity
 from crazybilliards.particles.collecting import collect
 from crazybilliards.particles.drift import Method, make_law
-from crazybilliards.particles.observers import OBSERVERS, Integers, Plan
-from crazybilliards.particles.replica import Dynamics, Replica, start_swing, typical_speed
-from crazybilliards.particles.running import announced, run_all
-from crazybilliards.particles.schedule import Average, Schedule, make_schedule
+from crazybilliards.particles.observers import OBSERVERS, Plan
+from crazybilliards.particles.replica import Dynamics, Replica, typical_speed
+from crazybilliards.particles.request import Request, make_request
+from crazybilliards.particles.running import announced, cores, run_all
+from crazybilliards.particles.schedule import Average, Schedule
 from crazybilliards.particles.start import replica_starts
 from crazybilliards.particles.stepping import Stepper, make_step
 
-Array = NDArray[np.float64]
-
 _DIVERGED = 1e6  # typical speeds: the steady states of e > 1 stay within some tens of them
-_GROUPS = 32  # of an ensemble: enough for an error bar good to an eighth
-_MOST_BYTES = 8e9
 
 
 def simulate(
@@ -132,91 +126,64 @@ def simulate(
     >>> run.velocity_width.dims, run.attrs["status"]
     (('particle',), 'completed')
     """
-    for name, value, kinds in (
-        ("method", method, Method),
-        ("stepper", stepper, Stepper),
-        ("average", average, Average),
-    ):
-        if value not in get_args(kinds):
-            raise ValueError(f"{name} must be one of {get_args(kinds)}, got {value!r}")
-    merging = check_real("merging", merging)
     checkpoint_interval = check_real("checkpoint_interval", checkpoint_interval)
-    seed = check_integer("seed", seed, least=0)
-    replicas = check_integer("replicas", replicas, least=1)
-    threads = check_integer("threads", _cores() if threads is None else threads, least=1)
-    names = _check_observers(observe, method, average)
-    chosen = _check_particles(particles, chain)
-    schedule = make_schedule(
+    threads = check_integer("threads", cores() if threads is None else threads, least=1)
+    request = make_request(
         chain,
         duration=duration,
         warmup=warmup,
         time_step=time_step,
-        every=every,
-        average=average,
+        method=method,
+        stepper=stepper,
+        merging=merging,
+        seed=seed,
+        observe=observe,
+        start=start,
+        particles=particles,
         replicas=replicas,
-        started=start is not None,
+        average=average,
+        every=every,
     )
-    starts = replica_starts(chain, start, replicas)
-    counted = bool({"collisions", "avalanches"} & set(names))
-    dynamics = _dynamics(chain, schedule, method, stepper, merging, counted, starts)
-    groups = min(replicas, _GROUPS) if schedule.ensemble else replicas
-    runs = _replicas(chain, schedule, names, chosen, starts, seed, groups)
+    schedule = request.schedule
+    dynamics, runs = _dynamics(request), _replicas(request)
     with announced(progress):
-        _compile_kernels(names)
+        _compile_kernels(request.observe)
     keeper = None
-    settings = {"method": method, "stepper": stepper, "merging": merging, "seed": seed}
     if checkpoint is not None:
-        measured = {"observe": names, "particles": (chosen + 1).tolist()}
-        identity = run_identity(chain, asdict(schedule), settings | measured, starts)
-        keeper = Checkpoint(Path(checkpoint), identity, checkpoint_interval)
+        keeper = Checkpoint(Path(checkpoint), run_identity(request), checkpoint_interval)
         keeper.resume(runs)
     interrupted = run_all(runs, dynamics, schedule, threads, keeper, progress)
-    return collect(chain, runs, schedule, settings, chosen, interrupted)
+    return collect(request, runs, interrupted)
 
 
-def _dynamics(
-    chain: Chain,
-    schedule: Schedule,
-    method: Method,
-    stepper: Stepper,
-    merging: float,
-    counted: bool,
-    starts: list[tuple[Array, Array]],
-) -> Dynamics:
+def _dynamics(request: Request) -> Dynamics:
+    chain, schedule, settings = request.chain, request.schedule, request.settings
     duration = schedule.warmup + schedule.duration
-    speed = max(typical_speed(chain, duration, y, v) for y, v in starts)
+    speed = max(typical_speed(chain, duration, y, v) for y, v in request.starts)
     return Dynamics(
         chain.reduced_anchors,
-        make_step(chain, schedule.time_step, stepper),
-        make_law(chain, schedule.time_step, method, merging, speed, counted=counted),
+        make_step(chain, schedule.time_step, settings["stepper"]),
+        make_law(
+            chain,
+            schedule.time_step,
+            settings["method"],
+            settings["merging"],
+            speed,
+            counted=request.counted,
+        ),
         _DIVERGED * speed if speed > 0 else np.inf,
     )
 
 
-def _replicas(
-    chain: Chain,
-    schedule: Schedule,
-    names: list[str],
-    chosen: Integers,
-    starts: list[tuple[Array, Array]],
-    seed: int,
-    groups: int,
-) -> list[Replica]:
-    """Deal the replicas out to ``groups``, each with observers of its own."""
-    swing = max(start_swing(chain, y, v) for y, v in starts)
-    plan = Plan(chain, schedule, chosen, swing, copies=-(-len(starts) // groups))
-    needed = groups * sum(OBSERVERS[name].memory(plan) for name in names)
-    if needed > _MOST_BYTES:
-        raise ValueError(
-            f"observe: {', '.join(names)} would take {needed / 1e9:.0f} GB; ask for fewer "
-            "particles, replicas or times"
-        )
-    streams = np.random.SeedSequence(seed).spawn(len(starts))
+def _replicas(request: Request) -> list[Replica]:
+    """Deal the replicas out to groups, each with observers of its own."""
+    starts = request.starts
+    streams = np.random.SeedSequence(request.settings["seed"]).spawn(len(starts))
     runs: list[Replica] = []
-    for members in np.array_split(np.arange(len(starts)), groups):
-        own = plan._replace(copies=members.size)
-        observers = [OBSERVERS[name](own) for name in names]
-        counts = np.zeros(schedule.blocks, dtype=np.int64)
+    for members in np.array_split(np.arange(len(starts)), request.groups):
+        own = request.plan._replace(copies=members.size)
+        observers = [OBSERVERS[name](own) for name in request.observe]
+        counts = np.zeros(request.schedule.blocks, dtype=np.int64)
         mine = [starts[i] for i in members], [streams[i] for i in members]
         runs.append(Replica(*mine, observers, counts))
     return runs
@@ -226,44 +193,12 @@ def _compile_kernels(names: list[str]) -> None:
     """Compile every kernel, or load it from numba's cache, by running a chain of two rods."""
     chain = Chain(size=2)
     schedule = Schedule(0.1, warmup_steps=1, stride=1, blocks=1, snapshots_per_block=1)
+    settings = {"method": "event-driven", "stepper": "splitting", "merging": 0.03, "seed": 0}
+    plan = Plan(chain, schedule, np.arange(2), swing=0.0, copies=1)
     starts = replica_starts(chain, None, 1)
-    [replica] = _replicas(chain, schedule, names, np.arange(2), starts, 0, groups=1)
-    dynamics = _dynamics(chain, schedule, "event-driven", "splitting", 0.03, True, starts)
+    request = Request(chain, schedule, names, plan, 1, starts, settings)
+    # Counting collisions compiles the heap, and with it all that the other operators need.
+    dynamics = _dynamics(request._replace(observe=["collisions"]))
+    [replica] = _replicas(request)
     for _ in replica.run(dynamics, schedule, Event()):
         pass
-
-
-def _cores() -> int:
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
-
-
-def _check_observers(observe: Sequence[str], method: Method, average: Average) -> list[str]:
-    names = [observe] if isinstance(observe, str) else list(dict.fromkeys(observe))
-    for name in names:
-        if name not in OBSERVERS:
-            raise ValueError(f"observe takes any of {sorted(OBSERVERS)}, got {name!r}")
-        if average == "ensemble" and not OBSERVERS[name].ensemble:
-            able = sorted(name for name, observer in OBSERVERS.items() if observer.ensemble)
-            raise ValueError(f"observe takes any of {able} for an ensemble, got {name!r}")
-    if not names:
-        raise ValueError(f"observe must name at least one of {sorted(OBSERVERS)}")
-    single = {"collisions", "avalanches"} & set(names)
-    if single and method != "event-driven":
-        raise ValueError(f"observe: {min(single)!r} are only seen by method='event-driven'")
-    # Both would be called velocity, or have other times.
-    clash = {"velocities"} | ({"energy"} if average == "time" else set())
-    if "snapshots" in names and clash & set(names):
-        raise ValueError(f"observe: take {min(clash & set(names))!r} from the 'snapshots' or alone")
-    return names
-
-
-def _check_particles(particles: Sequence[int] | None, chain: Chain) -> Integers:
-    """Return the chosen particles, counted from 0."""
-    if particles is None:
-        return np.arange(chain.size)
-    chosen = [check_integer("particles", particle, least=1) for particle in particles]
-    if not chosen or max(chosen) > chain.size or sorted(set(chosen)) != chosen:
-        raise ValueError(f"particles must ascend within 1..{chain.size}, got {particles!r}")
-    return np.array(chosen) - 1

@@ -11,7 +11,7 @@ import pytest
 
 from crazybilliards.model import load
 
-COMMAND = [sys.executable, "-c", "from crazybilliards.comparison.command_line import main; main()"]
+COMMAND = [sys.executable, "-c", "from crazybilliards.comparison.commands.main import main; main()"]
 QUICK = ["compare", "--size", "10", "--duration", "1000", "--amplitudes", "1,5"]
 
 
@@ -42,7 +42,7 @@ def interrupted_after(seconds, *arguments):
 def test_help_shows_an_example_and_loads_nothing_heavy(arguments):
     script = (
         "import sys; sys.argv[1:] = sys.argv[1:]\n"
-        "from crazybilliards.comparison.command_line import main\n"
+        "from crazybilliards.comparison.commands.main import main\n"
         "try:\n    main()\n"
         "finally:\n"
         "    heavy = {'numpy', 'numba', 'scipy', 'matplotlib', 'xarray'} & set(sys.modules)\n"

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from crazybilliards.comparison.command_output import (
+from crazybilliards.comparison.commands.output import (
     check_folder,
     exit_unless_completed,
     write_figures,

@@ -1,4 +1,4 @@
-"""Fits of the paper to what was measured, with uncertainties."""
+"""The paper's arctanh fit of the mean displacement."""
 
 from __future__ import annotations
 
@@ -12,7 +12,6 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import OptimizeWarning, curve_fit
 
 from crazybilliards.model import chain_of
-from crazybilliards.model.chain import check_integer
 from crazybilliards.model.vocabulary import require
 
 
@@ -97,82 +96,3 @@ def fit_arctanh(source: xr.Dataset) -> ArctanhFit:
         steepness_error=float(steepness * math.exp(q) / (1 + math.exp(q)) * q_error),
         misfit=float(np.sqrt(np.mean((model(x, scale, q) - displacement) ** 2))),
     )
-
-
-@dataclass(frozen=True)
-class PowerLawFit:
-    """W_v(i) = B [i^nu + (L + 1 - i)^nu], the paper's sum of two power laws from the borders.
-
-    Callable on particle numbers.
-
-    Attributes
-    ----------
-    size
-        L.
-    scale, exponent
-        B [R/T] and nu.
-    scale_error, exponent_error
-        Their standard errors, from the scatter about the fit.
-    misfit
-        Root mean square of the relative residuals.
-    """
-
-    size: int
-    scale: float
-    exponent: float
-    scale_error: float
-    exponent_error: float
-    misfit: float
-
-    def __call__(self, particle: ArrayLike) -> NDArray[np.float64]:
-        """Return B [i^nu + (L + 1 - i)^nu]."""
-        i = np.asarray(particle, dtype=float)
-        powers = i**self.exponent + (self.size + 1 - i) ** self.exponent
-        return np.asarray(self.scale * powers)
-
-
-def fit_border_power_law(source: xr.Dataset, *, skip: int | None = None) -> PowerLawFit:
-    """Fit the sum of two power laws to the velocity widths of a dissipative chain.
-
-    Relative deviations count, so that the narrow centre weighs as much as the wide border.
-
-    Parameters
-    ----------
-    source
-        A result with ``velocity_width`` of all particles.
-    skip
-        Rods at each border that are left out; None: L/30. The power law is that of the interior:
-        at L = 300, e = 0 the exponent is -0.445 with all rods, -0.461 without 10 at each end.
-
-    Raises
-    ------
-    ValueError
-        If fewer than 4 rods are left.
-
-    Examples
-    --------
-    >>> from crazybilliards.model import Chain
-    >>> from crazybilliards.particles import simulate
-    >>> run = simulate(Chain(size=30, restitution=0), duration=300, progress=False)
-    >>> bool(-0.6 < fit_border_power_law(run).exponent < -0.3)
-    True
-    """
-    require(source, ("velocity_width",))
-    size = chain_of(source).size
-    skip = size // 30 if skip is None else check_integer("skip", skip, least=0)
-    if source.sizes["particle"] != size or size - 2 * skip < 4:
-        raise ValueError(
-            "the fit needs the widths of all particles, at least 4 without the skipped"
-        )
-    i = np.arange(skip + 1.0, size - skip + 1)
-    width = source.velocity_width.values[skip : size - skip]
-
-    def model(i: NDArray[np.float64], scale: float, nu: float) -> NDArray[np.float64]:
-        return np.asarray(scale * (i**nu + (size + 1 - i) ** nu))
-
-    start = (float(width[0]), -0.5)
-    (scale, nu), covariance = curve_fit(model, i, width, p0=start, sigma=width, maxfev=10_000)
-    scale_error, nu_error = np.sqrt(np.diag(covariance))
-    misfit = np.sqrt(np.mean((model(i, scale, nu) / width - 1) ** 2))
-    numbers = map(float, (scale, nu, scale_error, nu_error, misfit))
-    return PowerLawFit(size, *numbers)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from crazybilliards.comparison.command_output import check_folder, write_figures
+from crazybilliards.comparison.commands.output import check_folder, write_figures
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -10,10 +10,11 @@ import sys
 
 import typer
 
-from crazybilliards.comparison.command_output import INTERRUPTED
-from crazybilliards.comparison.compare_command import compare
-from crazybilliards.comparison.relax_command import relax
-from crazybilliards.comparison.theory_command import theory
+from crazybilliards.comparison.commands.compare import compare
+from crazybilliards.comparison.commands.output import INTERRUPTED
+from crazybilliards.comparison.commands.relax import relax
+from crazybilliards.comparison.commands.sweep import sweep
+from crazybilliards.comparison.commands.theory import theory
 
 app = typer.Typer(
     add_completion=False,
@@ -34,7 +35,7 @@ def crazybilliards() -> None:
     """
 
 
-for command in (compare, relax, theory):
+for command in (compare, relax, theory, sweep):
     app.command()(command)
 
 

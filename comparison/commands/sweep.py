@@ -1,0 +1,110 @@
+"""The command ``crazybilliards sweep``.
+
+Only the standard library and typer are imported up here, so that ``--help`` answers at once.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from crazybilliards.comparison.commands.output import INTERRUPTED, check_folder
+
+if TYPE_CHECKING:
+    from concurrent.futures import Executor
+    from contextlib import AbstractContextManager
+
+    from crazybilliards.comparison.sweeps import Case
+
+
+def sweep(
+    file: Annotated[
+        Path,
+        typer.Argument(
+            help="TOML file with the tables [grid], [chain] and [simulate] (or another job).",
+            show_default=False,
+        ),
+    ],
+    output: Annotated[
+        Path, typer.Option(help="Folder for the results, one file a case; made if missing.")
+    ],
+    processes: Annotated[
+        int | None, typer.Option(help="Processes to compute in; default: one per core.")
+    ] = None,
+    dask: Annotated[
+        bool, typer.Option("--dask", help="Compute on a dask cluster of this machine instead.")
+    ] = False,
+    scheduler: Annotated[
+        str | None,
+        typer.Option(help="Compute on the dask cluster with this scheduler, tcp://HOST:PORT say."),
+    ] = None,
+) -> None:
+    """Compute every case of a grid of parameters, each into a file of its own.
+
+    The file says which: [grid] holds lists of values of parameters of the chain or settings of the
+    job, every combination of which is a case; [chain] and [simulate] (or [phase_space],
+    [equilibrium], [force_balance]) what is the same for all.
+
+    What the folder holds already is not computed again: after Ctrl-C, a crash, or with a larger
+    grid, the same command computes what is missing. In Python,
+    crazybilliards.comparison.load_sweep(FOLDER) reads all of it as one Dataset.
+
+    Example: crazybilliards sweep grid.toml --output results/grid
+    """
+    check_folder(output)
+    from crazybilliards.comparison.sweeps import read_sweep
+    from crazybilliards.comparison.sweeps.running import missing_cases
+
+    cases = read_sweep(file).cases()
+    missing = missing_cases(cases, output)
+    print(f"{len(cases)} cases, {len(cases) - len(missing)} of them in {output} already")
+    compute_missing(missing, output, engine(processes, dask, scheduler))
+
+
+def engine(
+    processes: int | None, dask: bool, scheduler: str | None
+) -> AbstractContextManager[Executor]:
+    """Return what computes cases, as the options say."""
+    from crazybilliards.comparison.sweeps import dask_cluster, process_pool
+    from crazybilliards.model.chain import check_integer
+
+    if dask or scheduler is not None:
+        if processes is not None:
+            raise ValueError("processes: a dask cluster decides that itself")
+        return dask_cluster(scheduler)
+    if processes is not None:
+        check_integer("processes", processes, least=1)
+    return process_pool(processes)
+
+
+def compute_missing(
+    missing: Sequence[Case], folder: Path, executor: AbstractContextManager[Executor]
+) -> None:
+    """Compute cases; end the command, saying what there is and why, unless all succeed."""
+    from crazybilliards.comparison.sweeps import run_cases
+
+    if not missing:
+        return
+    reason, status = "", 1
+    try:
+        with executor as running:
+            failed = run_cases(missing, folder, running)
+    except KeyboardInterrupt:
+        reason, status = "interrupted", INTERRUPTED
+    except RuntimeError as error:
+        reason = str(error)
+    else:
+        if failed:
+            case, first = next(iter(failed.items()))
+            reason = f"{len(failed)} cases failed, the first, {case.canonical}, with {first}"
+    kept = sum(case.file(folder).exists() for case in missing)
+    print(f"computed {kept} cases into {folder}")
+    if reason:
+        print(f"crazybilliards: {reason}", file=sys.stderr)
+        if kept < len(missing):
+            print("The same command computes what is missing.", file=sys.stderr)
+        raise typer.Exit(status)

@@ -1,0 +1,121 @@
+"""Tails by maximum likelihood: avalanche sizes, velocities; no line through log-log bins."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.optimize import minimize_scalar
+
+from crazybilliards.model.chain import check_integer
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class AvalancheFit:
+    """p(N) ~ N^-exponent for smallest <= N <= largest.
+
+    Attributes
+    ----------
+    exponent, exponent_error
+        By maximum likelihood, with the standard error of independent avalanches.
+    smallest, largest
+        The sizes it was fitted to.
+    count
+        Number of avalanches of those sizes.
+    distance
+        Largest difference between the measured and the fitted distribution function (Kolmogorov
+        and Smirnov's); compare with 1/sqrt(count).
+    """
+
+    exponent: float
+    exponent_error: float
+    smallest: int
+    largest: int
+    count: int
+    distance: float
+
+
+def fit_avalanches(
+    count: ArrayLike, *, smallest: int = 1, largest: int | None = None
+) -> AvalancheFit:
+    """Fit a power law to avalanche counts by maximum likelihood.
+
+    Parameters
+    ----------
+    count
+        Number of avalanches of size 1, 2, 3, ..., shape (sizes,).
+    smallest, largest
+        Sizes to fit, inclusive; ``largest`` None: all.
+
+    Raises
+    ------
+    ValueError
+        If there are fewer than two sizes or no avalanches in the range.
+
+    Examples
+    --------
+    >>> sizes = np.arange(1, 1001)
+    >>> round(fit_avalanches(np.round(1e9 * sizes**-2.2)).exponent, 3)
+    2.2
+    """
+    counts = np.asarray(count, dtype=float)
+    smallest = check_integer("smallest", smallest, least=1)
+    largest = counts.size if largest is None else check_integer("largest", largest, least=smallest)
+    sizes = np.arange(smallest, min(largest, counts.size) + 1, dtype=float)
+    counts = counts[smallest - 1 : largest]
+    total = float(counts.sum())
+    if sizes.size < 2 or not total > 0:
+        raise ValueError(f"no avalanches of sizes {smallest} to {largest} to fit")
+    logs = np.log(sizes)
+    mean = float(counts @ logs) / total
+
+    def cost(exponent: float) -> float:
+        return exponent * mean + float(np.log(np.sum(sizes**-exponent)))
+
+    exponent = float(minimize_scalar(cost, bracket=(1.0, 3.0)).x)
+    p = sizes**-exponent
+    p /= p.sum()
+    # Fisher's information of one avalanche is the variance of ln N.
+    information = float(p @ logs**2 - (p @ logs) ** 2)
+    distance = float(np.abs(np.cumsum(counts) / total - np.cumsum(p)).max())
+    return AvalancheFit(
+        exponent,
+        1 / float(np.sqrt(total * information)),
+        smallest,
+        int(sizes[-1]),
+        int(total),
+        distance,
+    )
+
+
+def tail_length(velocity: ArrayLike, density: ArrayLike, beyond: float) -> float:
+    """Length w of an exponential tail, p(v) ~ exp(-|v|/w) for |v| > ``beyond``, of both sides.
+
+    The maximum-likelihood estimate: the mean excess over ``beyond``.
+
+    Parameters
+    ----------
+    velocity, density
+        Bin centres [R/T] and probability density [T/R], shape (bins,). Bins are not equally wide.
+    beyond
+        Where the tail begins [R/T].
+
+    Raises
+    ------
+    ValueError
+        If nothing was measured beyond.
+
+    Examples
+    --------
+    >>> v = np.linspace(-60, 60, 4001)
+    >>> round(tail_length(v, np.exp(-np.abs(v) / 3) / 6, beyond=2.0), 2)
+    3.0
+    """
+    v, p = np.abs(np.asarray(velocity, dtype=float)), np.asarray(density, dtype=float)
+    weight = p * np.gradient(np.asarray(velocity, dtype=float)) * (v > beyond)
+    if not weight.sum() > 0:
+        raise ValueError(f"no velocities beyond {beyond:g}")
+    return float(np.average(v - beyond, weights=weight))

@@ -1,0 +1,154 @@
+"""Carrying out cases: on this machine's processes or on a dask cluster, a file for each at once.
+
+Workers send their results back as NetCDF bytes and the caller writes them, atomically, when they
+arrive: a kill at any moment loses the cases in flight and nothing else, and the workers of a
+cluster need no common file system.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import sys
+import threading
+from collections.abc import Iterable, Iterator
+from concurrent.futures import Executor, ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+from pathlib import Path
+
+from tqdm import tqdm
+
+from crazybilliards.comparison.sweeps.case import Case, compute
+from crazybilliards.model.storage import write_sealed
+from crazybilliards.particles.running import cores
+
+
+def missing_cases(cases: Iterable[Case], folder: Path) -> list[Case]:
+    """Return the cases, each once, that ``folder`` has no sound file of, the longest first."""
+    missing = []
+    for case in dict.fromkeys(cases):
+        try:
+            case.load(folder)
+        except FileNotFoundError:
+            missing.append(case)
+        except ValueError as error:
+            print(f"crazybilliards: {error}; computing it anew", file=sys.stderr)
+            missing.append(case)
+    return sorted(missing, key=lambda case: -case.work)
+
+
+def run_cases(
+    cases: Iterable[Case], folder: Path, executor: Executor, *, progress: bool = True
+) -> dict[Case, str]:
+    """Compute the cases that ``folder`` has no file of; return the reasons of those that failed.
+
+    Parameters
+    ----------
+    cases
+        Cases; equal ones are computed once.
+    folder
+        Where the files lie, one a case, named by its key; made if missing.
+    executor
+        What runs them: :func:`process_pool` or :func:`dask_cluster`, or any other.
+    progress
+        Show a progress bar with the time left, if standard error is a terminal.
+
+    Raises
+    ------
+    RuntimeError
+        If workers die under their cases; what was finished is kept.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    missing = missing_cases(cases, folder)
+    work = {case: case.work for case in missing}
+    failed: dict[Case, str] = {}
+    futures = {executor.submit(compute, case, case.canonical): case for case in missing}
+    with tqdm(
+        total=sum(work.values()),
+        desc=f"{len(missing)} cases",
+        unit=" steps",
+        unit_scale=True,
+        disable=None if progress else True,
+    ) as bar:
+        for future in as_completed(futures):
+            case = futures.pop(future)
+            try:
+                write_sealed(case.file(folder), future.result())
+            except BrokenProcessPool as error:
+                raise RuntimeError(
+                    "a worker process died (out of memory?); what was finished is kept, the same "
+                    "call computes the rest"
+                ) from error
+            except (ValueError, ArithmeticError, MemoryError) as error:
+                failed[case] = f"{type(error).__name__}: {error}"
+            bar.update(work[case])
+    return failed
+
+
+@contextmanager
+def process_pool(processes: int | None = None) -> Iterator[Executor]:
+    """Run cases in processes of this machine, one for each core unless told otherwise.
+
+    Leaving by an exception, Ctrl-C say, kills them.
+    """
+    before = set(multiprocessing.active_children())
+    pool = ProcessPoolExecutor(
+        processes or cores(),
+        mp_context=multiprocessing.get_context("spawn"),
+        initializer=_prepare_worker,
+    )
+    try:
+        yield pool
+    except BaseException:
+        for process in set(multiprocessing.active_children()) - before:
+            process.kill()
+        pool.shutdown(wait=False, cancel_futures=True)
+        raise
+    pool.shutdown()
+
+
+def _prepare_worker() -> None:
+    """Leave Ctrl-C to the parent, and do not outlive it however it dies."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_follow_parent, daemon=True).start()
+
+
+def _follow_parent() -> None:
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(1)
+
+
+@contextmanager
+def dask_cluster(address: str | None = None) -> Iterator[Executor]:
+    """Run cases on the dask cluster whose scheduler is at ``address``; None: one of this machine.
+
+    A case whose worker dies is given to another one.
+
+    Raises
+    ------
+    ValueError
+        If dask is not installed, or no scheduler answers there.
+    """
+    try:
+        from distributed import Client, LocalCluster
+    except ImportError as error:
+        raise ValueError(
+            "dask is not installed: python -m pip install 'crazybilliards[sweep]'"
+        ) from error
+    if address is None:
+        with (
+            LocalCluster(threads_per_worker=1, dashboard_address=None) as cluster,
+            Client(cluster) as client,
+        ):
+            yield client.get_executor(pure=False)
+        return
+    try:
+        client = Client(address)
+    except (OSError, ValueError) as error:
+        raise ValueError(f"no dask scheduler answers at {address}: {error}") from error
+    with client:
+        yield client.get_executor(pure=False)
