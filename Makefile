@@ -5,15 +5,17 @@ PYTHON ?= python3
 VENV   := .venv
 BIN    := $(VENV)/bin
 OUTPUT ?= results
+QUALITY ?= quick
 ROOMS  := model particles kinetic comparison
 
-.PHONY: help run test check notebooks benchmark clean
+.PHONY: help run test check reproduce notebooks benchmark clean
 .DEFAULT_GOAL := help
 
 help:
 	@echo "make run        compare simulation and theory at e = 1; figures into $(OUTPUT)/"
 	@echo "make test       run the tests"
 	@echo "make check      lint, format and type checks"
+	@echo "make reproduce  every figure and claim of the paper into reproduced/ (4 min; QUALITY=full 1 h)"
 	@echo "make notebooks  execute the notebooks"
 	@echo "make benchmark  measure the speed"
 	@echo "make clean      remove the environment and everything built"
@@ -28,6 +30,9 @@ check: $(VENV)/installed-check build/types
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	MYPYPATH=build/types $(BIN)/mypy $(ROOMS:%=-p crazybilliards.%)
+
+reproduce: $(VENV)/installed
+	$(BIN)/crazybilliards reproduce all --quality $(QUALITY)
 
 notebooks: $(VENV)/installed-notebooks
 	$(BIN)/python -m pytest --nbmake --nbmake-timeout=300 notebooks

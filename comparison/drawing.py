@@ -7,12 +7,15 @@ from itertools import cycle
 from typing import Any, Literal
 
 import matplotlib.pyplot as plt
+import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
 from crazybilliards.model.vocabulary import require
 
-# Okabe and Ito's colours, told apart with any colour vision; line styles differ as well.
+# Okabe and Ito's colours, told apart with any colour vision; symbols and line styles differ too.
+COLOURS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#D55E00", "#56B4E9", "#000000")
+SYMBOLS = "osD^v<>"
 _SYMBOL_COLOUR = "#000000"
 _LINES: tuple[dict[str, Any], ...] = (
     {"color": "#E69F00", "linestyle": "-", "linewidth": 2.2},
@@ -83,6 +86,49 @@ def overlay(
         ax.set_xlabel(_axis_label(abscissa))
         ax.set_ylabel(_axis_label(values))
     return ax
+
+
+def draw_rods(
+    ax: Axes,
+    run: xr.Dataset,
+    quantity: str,
+    *,
+    number: int,
+    label: str,
+    unit: float = 1.0,
+    along: str = "normalized_particle",
+) -> None:
+    """Draw a quantity of the rods as symbols with error bars, some of the rods of a long chain.
+
+    Parameters
+    ----------
+    number
+        Which of the colours and symbols to take.
+    unit
+        What to divide by.
+    along
+        Abscissa; over ``particle``, meant for a logarithmic axis, they are spaced like that.
+    """
+    spaced = np.geomspace if along == "particle" else np.linspace
+    last = run.particle.size
+    shown = np.unique(np.round(spaced(1, last, min(last, _MOST_SYMBOLS))).astype(int)) - 1
+    colour = COLOURS[number % len(COLOURS)]
+    ax.errorbar(
+        run[along][shown],
+        run[quantity][shown] / unit,
+        run[f"{quantity}_error"][shown] / unit,
+        fmt=SYMBOLS[number % len(SYMBOLS)],
+        markersize=4,
+        markerfacecolor="none",
+        linewidth=0.8,
+        color=colour,
+        label=label,
+    )
+
+
+def along_the_chain(ax: Axes) -> None:
+    """Label the abscissa i_n, the normalized particle number."""
+    ax.set(xlabel="normalized particle $i_n$", xticks=(-1, -0.5, 0, 0.5, 1))
 
 
 def _axis_label(variable: xr.DataArray) -> str:

@@ -63,7 +63,7 @@ def compare_elastic(
         raise ValueError(f"the comparison is of elastic chains, got e={chain.restitution:g}")
     return simulate_beside(
         varied_chains(chain, "amplitude", amplitudes, duration),
-        _theories,
+        elastic_theories,
         duration=duration,
         seed=seed,
         threads=threads,
@@ -90,7 +90,8 @@ def largest_width_error(group: xr.DataTree) -> float:
     return float(np.abs((run.velocity_width - width) / run.velocity_width_error).max())
 
 
-def _theories(chain: Chain, run: xr.Dataset) -> dict[str, xr.Dataset]:
+def elastic_theories(chain: Chain, run: xr.Dataset) -> dict[str, xr.Dataset]:
+    """Return the theories by the names in ``THEORIES``; the arctanh is fitted to the run."""
     theories = {"exact": equilibrium(chain), "labels": force_balance(chain)}
     try:
         fit = fit_arctanh(run)

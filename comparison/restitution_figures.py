@@ -5,19 +5,15 @@ from __future__ import annotations
 import matplotlib.pyplot as plt
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
+from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_rods
 from crazybilliards.comparison.restitutions import THEORY
 from crazybilliards.comparison.side_by_side import SIMULATION
 from crazybilliards.model import chain_of
 from crazybilliards.model.vocabulary import require
 
-# Okabe and Ito's colours, told apart with any colour vision; symbols differ as well.
-_COLOURS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#D55E00", "#56B4E9", "#000000")
-_SYMBOLS = "osD^v<>"
-_MOST_SYMBOLS = 50
 _DECADES = 5  # of f in the image
 
 
@@ -27,23 +23,20 @@ def draw_widths(tree: xr.DataTree) -> Figure:
     for number, group in enumerate(tree.children.values()):
         run = group[SIMULATION].to_dataset()
         chain = chain_of(run)
-        colour = _COLOURS[number % len(_COLOURS)]
-        symbol = _SYMBOLS[number % len(_SYMBOLS)]
+        colour = COLOURS[number % len(COLOURS)]
         units = (chain.free_velocity_width, chain.thermal_length)
         for ax, name, unit in zip(
             axes, ("velocity_width", "mean_displacement"), units, strict=True
         ):
-            _draw_rods(ax, run, name, unit, colour, symbol, f"e = {chain.restitution:g}")
+            draw_rods(ax, run, name, number=number, unit=unit, label=f"e = {chain.restitution:g}")
             if THEORY in group:
                 theory = group[THEORY].to_dataset()
                 ax.plot(theory.normalized_particle, theory[name] / unit, color=colour, zorder=3)
-    axes[0].set(xlabel="normalized particle $i_n$", ylabel="velocity width $W_v/W$")
+    along_the_chain(axes[0])
+    axes[0].set(ylabel="velocity width $W_v/W$")
     axes[0].set_ylim(bottom=0)
-    axes[1].set(
-        xlabel="normalized particle $i_n$", ylabel=r"displacement $\langle\Delta x\rangle/s$"
-    )
-    for ax in axes:
-        ax.set_xticks([-1, -0.5, 0, 0.5, 1])
+    along_the_chain(axes[1])
+    axes[1].set(ylabel=r"displacement $\langle\Delta x\rangle/s$")
     figure.legend(
         *axes[0].get_legend_handles_labels(),
         loc="outside upper center",
@@ -52,23 +45,6 @@ def draw_widths(tree: xr.DataTree) -> Figure:
         title="symbols: simulation, lines: kinetic equation",
     )
     return figure
-
-
-def _draw_rods(
-    ax: Axes, run: xr.Dataset, name: str, unit: float, colour: str, symbol: str, label: str
-) -> None:
-    every = -(-run.particle.size // _MOST_SYMBOLS)
-    ax.errorbar(
-        run.normalized_particle[::every],
-        run[name][::every] / unit,
-        run[f"{name}_error"][::every] / unit,
-        fmt=symbol,
-        markersize=4,
-        markerfacecolor="none",
-        linewidth=0.8,
-        color=colour,
-        label=label,
-    )
 
 
 def draw_phase_space(theory: xr.Dataset) -> Figure:
@@ -124,9 +100,10 @@ def draw_profile(theory: xr.Dataset) -> Figure:
         (axes[1], "mean_displacement", r"displacement $\langle\Delta x\rangle$ [R]"),
     ):
         ax.plot(
-            theory.normalized_particle, theory[name], color=_COLOURS[0], label="kinetic equation"
+            theory.normalized_particle, theory[name], color=COLOURS[0], label="kinetic equation"
         )
-        ax.set(xlabel="normalized particle $i_n$", ylabel=label)
+        along_the_chain(ax)
+        ax.set(ylabel=label)
     axes[0].axhline(
         chain.free_velocity_width, color="0.4", linestyle=":", label="free rod (and e = 1)"
     )

@@ -10,6 +10,9 @@ whole, so a collision costs O(1), and its waves' end what their starts have paid
 
     collision of c and c+1    rightward: waves on c+1 end, those on c move to c+1, one starts at c
                               otherwise: waves on c and on c+1 end
+
+Rods that stick together pass a push on from one to the next, in no time: when clusters meet, the
+collisions run on through the one that is pushed, to its far end.
 """
 
 from __future__ import annotations
@@ -66,19 +69,26 @@ def _end(front, tally):  # type: ignore[no-untyped-def] # pragma: no cover
 
 
 @kernel
-def note(contact, momentum, tally):  # type: ignore[no-untyped-def] # pragma: no cover
-    """Take down a collision of rods ``contact`` and ``contact + 1`` (counted from 0)."""
+def note(contact, first, last, momentum, tally):  # type: ignore[no-untyped-def] # pragma: no cover
+    """Take down a collision of rods ``contact`` and ``contact + 1`` (counted from 0).
+
+    ``first`` and ``last`` are the outermost rods of the two clusters that meet, ``momentum`` is
+    theirs together.
+    """
     if tally.contacts.size > 0:
         tally.contacts[contact] += 1
     if tally.heads.size == 0:
         return
-    _end(contact + 1, tally)
     if momentum <= 0:
-        _end(contact, tally)
+        for pushed in range(contact, first - 1, -1):
+            _end(pushed + 1, tally)
+            _end(pushed, tally)
         return
-    wave = tally.unused[0]
-    tally.unused[0] = tally.following[wave]
-    tally.origins[wave] = contact
-    tally.following[wave] = tally.heads[contact]
-    tally.heads[contact] = -1
-    tally.heads[contact + 1] = wave
+    for pushed in range(contact, last):
+        _end(pushed + 1, tally)
+        wave = tally.unused[0]
+        tally.unused[0] = tally.following[wave]
+        tally.origins[wave] = pushed
+        tally.following[wave] = tally.heads[pushed]
+        tally.heads[pushed] = -1
+        tally.heads[pushed + 1] = wave

@@ -13,6 +13,7 @@ import typer
 from crazybilliards.comparison.commands.compare import compare
 from crazybilliards.comparison.commands.output import INTERRUPTED
 from crazybilliards.comparison.commands.relax import relax
+from crazybilliards.comparison.commands.reproduce import reproduce
 from crazybilliards.comparison.commands.sweep import sweep
 from crazybilliards.comparison.commands.theory import theory
 
@@ -35,7 +36,7 @@ def crazybilliards() -> None:
     """
 
 
-for command in (compare, relax, theory, sweep):
+for command in (compare, relax, theory, reproduce, sweep):
     app.command()(command)
 
 

@@ -55,9 +55,7 @@ def fit_singularity(time: ArrayLike, energy: ArrayLike) -> SingularityFit:
     >>> round(fit.time, 6), round(fit.exponent, 6)
     (10.0, 6.0)
     """
-    t, log_energy = np.asarray(time, dtype=float), np.log(np.asarray(energy, dtype=float))
-    if t.size < 5 or not np.isfinite(log_energy).all():
-        raise ValueError("a singularity needs at least five positive energies")
+    t, log_energy = _logarithm(time, energy, least=5)
     last, span = float(t[-1]), float(t[-1] - t[0])
 
     # t_c = last + span exp(q) lies behind the data for every q.
@@ -122,11 +120,17 @@ def fit_growth(time: ArrayLike, energy: ArrayLike) -> GrowthFit:
     >>> round(fit_growth(t, 2 * np.exp(0.3 * t)).rate, 6)
     0.3
     """
-    t, log_energy = np.asarray(time, dtype=float), np.log(np.asarray(energy, dtype=float))
-    if t.size < 3 or not np.isfinite(log_energy).all():
-        raise ValueError("a growth rate needs at least three positive energies")
+    t, log_energy = _logarithm(time, energy, least=3)
     (rate, intercept), covariance = np.polyfit(t, log_energy, 1, cov="unscaled")
     residuals = log_energy - intercept - rate * t
     misfit = float(np.sqrt(np.mean(residuals**2)))
     spread = float(np.sqrt(covariance[0, 0] * (residuals @ residuals) / (t.size - 2)))
     return GrowthFit(float(np.exp(intercept)), float(rate), spread, misfit)
+
+
+def _logarithm(time: ArrayLike, energy: ArrayLike, least: int) -> tuple[Array, Array]:
+    """Return the times and ln E, if there are enough and all energies are positive."""
+    t, E = np.asarray(time, dtype=float), np.asarray(energy, dtype=float)
+    if t.size < least or not (np.isfinite(E).all() and E.min() > 0):
+        raise ValueError(f"the fit needs at least {least} energies, all of them positive")
+    return t, np.log(E)

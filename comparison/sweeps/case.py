@@ -11,8 +11,10 @@ from __future__ import annotations
 import hashlib
 import inspect
 import json
+import sys
 import time
 from collections.abc import Callable, Mapping
+from contextlib import nullcontext
 from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
@@ -23,6 +25,7 @@ import xarray as xr
 
 from crazybilliards.kinetic import equilibrium, force_balance, phase_space
 from crazybilliards.model import Chain, load
+from crazybilliards.model.storage import load_attributes
 from crazybilliards.particles import simulate
 from crazybilliards.particles.request import make_request
 
@@ -45,7 +48,7 @@ _LEFT_OUT = {
     "velocity_variance",
 }
 
-_THEORY_WORK = 1e9  # particle steps that take as long as a theory, roughly
+_THEORY_WORK = 3e9  # particle steps that take as long as a theory, roughly
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,11 +131,16 @@ class Case:
         """Return the name of its file in ``folder``."""
         return folder / f"{self.key}.nc"
 
-    def load(self, folder: Path) -> xr.Dataset:
-        """Read its result from ``folder``; raise if there is none, or none of this case."""
-        result = load(self.file(folder))
-        if not isinstance(result, xr.Dataset) or result.attrs.get("case") != self.canonical:
+    def check_file(self, folder: Path) -> None:
+        """Raise if its file in ``folder`` is missing, damaged or of another case."""
+        if load_attributes(self.file(folder)).get("case") != self.canonical:
             raise ValueError(f"{self.file(folder)}: not the case that its name says")
+
+    def load(self, folder: Path) -> xr.Dataset:
+        """Read its result from ``folder``; raises as :meth:`check_file`."""
+        self.check_file(folder)
+        result = load(self.file(folder))
+        assert isinstance(result, xr.Dataset)
         return result
 
 
@@ -154,7 +162,10 @@ def compute(case: Case, canonical: str) -> bytes:
     if result.attrs["status"] == "interrupted":
         raise KeyboardInterrupt
     result.attrs |= {"case": canonical, "seconds": time.perf_counter() - begin}
-    return bytes(result.to_netcdf(engine="h5netcdf"))
+    # On a dask worker xarray would lock the file all over the cluster; these are bytes in memory.
+    alone = sys.modules["dask"].config.set(scheduler="sync") if "dask" in sys.modules else None
+    with alone or nullcontext():
+        return bytes(result.to_netcdf(engine="h5netcdf"))
 
 
 def _plain_all(values: Mapping[str, Any]) -> dict[str, Any]:

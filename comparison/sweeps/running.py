@@ -18,11 +18,14 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from pathlib import Path
 
+from threadpoolctl import threadpool_limits
 from tqdm import tqdm
 
 from crazybilliards.comparison.sweeps.case import Case, compute
 from crazybilliards.model.storage import write_sealed
 from crazybilliards.particles.running import cores
+
+_PATIENCE = "20s"  # for a scheduler to answer
 
 
 def missing_cases(cases: Iterable[Case], folder: Path) -> list[Case]:
@@ -30,7 +33,7 @@ def missing_cases(cases: Iterable[Case], folder: Path) -> list[Case]:
     missing = []
     for case in dict.fromkeys(cases):
         try:
-            case.load(folder)
+            case.check_file(folder)
         except FileNotFoundError:
             missing.append(case)
         except ValueError as error:
@@ -110,7 +113,9 @@ def process_pool(processes: int | None = None) -> Iterator[Executor]:
 
 
 def _prepare_worker() -> None:
-    """Leave Ctrl-C to the parent, and do not outlive it however it dies."""
+    """Use one core, leave Ctrl-C to the parent, and do not outlive it however it dies."""
+    # A process for every core: linear algebra in threads would only make them wait.
+    threadpool_limits(1)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_follow_parent, daemon=True).start()
 
@@ -135,6 +140,7 @@ def dask_cluster(address: str | None = None) -> Iterator[Executor]:
     """
     try:
         from distributed import Client, LocalCluster
+        from distributed.comm import get_address_host_port
     except ImportError as error:
         raise ValueError(
             "dask is not installed: python -m pip install 'crazybilliards[sweep]'"
@@ -142,12 +148,13 @@ def dask_cluster(address: str | None = None) -> Iterator[Executor]:
     if address is None:
         with (
             LocalCluster(threads_per_worker=1, dashboard_address=None) as cluster,
-            Client(cluster) as client,
+            Client(cluster, set_as_default=False) as client,
         ):
             yield client.get_executor(pure=False)
         return
     try:
-        client = Client(address)
+        get_address_host_port(address, strict=True)
+        client = Client(address, set_as_default=False, timeout=_PATIENCE)
     except (OSError, ValueError) as error:
         raise ValueError(f"no dask scheduler answers at {address}: {error}") from error
     with client:

@@ -22,7 +22,8 @@ class Avalanches(Observer):
     """avalanche_count: rightward waves started by each particle that triggered N_c collisions.
 
     Counted by the collision kernel itself (see ``particles/avalanche.py``), while measuring; by
-    symmetry leftward waves are those of the mirrored particles. 16 L^2 bytes.
+    symmetry leftward waves are those of the mirrored particles. In a dissipative chain the counts
+    depend on the time step: rods in contact are kicked anew in every step. 16 L^2 bytes.
     """
 
     accumulated = ("heads", "following", "origins", "unused", "sizes")

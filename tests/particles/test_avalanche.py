@@ -27,24 +27,30 @@ def follow_every_wave(size, collisions):
 
 @given(size=st.integers(2, 8), seed=st.integers(0, 2**32), number=st.integers(0, 300))
 def test_waves_are_counted_like_the_slow_twin(size, seed, number):
+    """Clusters that meet pass the push on from rod to rod, to the far end of the one pushed."""
     generator = np.random.default_rng(seed)
     contacts = generator.integers(0, size - 1, number)
+    firsts = generator.integers(0, contacts + 1)
+    lasts = generator.integers(contacts + 1, size)
     momenta = generator.normal(0.3, 1, number)
     tally = make_tally(size, contacts=True, waves=True)
-    for contact, momentum in zip(contacts, momenta, strict=True):
-        note(contact, momentum, tally)
-    expected, under_way = follow_every_wave(size, zip(contacts, momenta, strict=True))
+    pushes = []
+    for contact, first, last, momentum in zip(contacts, firsts, lasts, momenta, strict=True):
+        note(contact, first, last, momentum, tally)
+        row = range(contact, last) if momentum > 0 else range(contact, first - 1, -1)
+        pushes += [(each, momentum) for each in row]
+    expected, under_way = follow_every_wave(size, pushes)
     np.testing.assert_array_equal(tally.sizes, expected)
     np.testing.assert_array_equal(tally.contacts, np.bincount(contacts, minlength=size - 1))
-    assert tally.sizes.sum() + len(under_way) == (momenta > 0).sum()
+    assert tally.sizes.sum() + len(under_way) == sum(momentum > 0 for _, momentum in pushes)
 
 
 def test_a_push_through_a_row_at_rest_is_one_wave_of_every_origin():
     """Contacts closing one after another from the left: the wave from 0 runs to the end."""
     tally = make_tally(6, contacts=False, waves=True)
     for contact in range(5):
-        note(contact, 1.0, tally)
-    note(4, -1.0, tally)  # the last front is thrown back: all waves end there
+        note(contact, contact, contact + 1, 1.0, tally)
+    note(4, 4, 5, -1.0, tally)  # the last front is thrown back: all waves end there
     expected = np.zeros((6, 6), dtype=int)
     for origin in range(5):
         expected[origin, 5 - origin - 1] = 1

@@ -1,0 +1,73 @@
+"""Velocity distributions: their moments, and the panel that several figures draw."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+
+from crazybilliards.comparison.drawing import COLOURS, SYMBOLS
+
+_LEAST = 1e-5  # of the largest density: below, counts are too few to draw
+_SYMBOLS_DRAWN = 41
+
+
+def moment(run: xr.Dataset, particles: Sequence[int], order: int) -> float:
+    """Mean over the particles of their standardized central moment: 3 skewness, 4 kurtosis."""
+    density = run.velocity_density.sel(particle=list(particles))
+    v = run.velocity
+    weight = np.gradient(v.values)
+    values = []
+    for p in density.values:
+        share = p * weight
+        share /= share.sum()
+        mean = share @ v.values
+        deviation = v.values - mean
+        variance = share @ deviation**2
+        values.append(share @ deviation**order / variance ** (order / 2))
+    return float(np.mean(values))
+
+
+def draw_distributions(
+    ax: Axes, run: xr.Dataset, particles: Sequence[int], unit: float, free: bool = True
+) -> None:
+    """Draw p(v) of some particles on a logarithmic scale, v in units of ``unit``, and Gaussians.
+
+    The lines are Gaussians of the same width; with ``free`` the free rod's is drawn too.
+    """
+    v = run.velocity.values / unit
+    reach = 0.0
+    for number, particle in enumerate(particles):
+        p = run.velocity_density.sel(particle=particle).values * unit
+        width = float(run.velocity_width.sel(particle=particle)) / unit
+        seen = p > _LEAST * p.max()
+        reach = max(reach, float(np.abs(v[seen]).max()))
+        colour = COLOURS[number]
+        # Bins grow with v: draw those nearest to equally spaced velocities.
+        inside = v[seen]
+        spaced = np.linspace(inside[0], inside[-1], _SYMBOLS_DRAWN)
+        shown = np.unique(np.abs(v[:, None] - spaced).argmin(axis=0))
+        ax.semilogy(
+            v[shown],
+            p[shown],
+            SYMBOLS[number],
+            color=colour,
+            markersize=3.5,
+            markerfacecolor="none",
+            label=f"i = {particle}",
+        )
+        fine = np.linspace(-5 * width, 5 * width, 201)
+        ax.semilogy(fine, _gauss(fine, width), color=colour, linewidth=1.0)
+    if free:
+        fine = np.linspace(-5, 5, 201)
+        ax.semilogy(fine, _gauss(fine, 1.0), "k:", linewidth=1.2, label="free rod")
+    top = ax.get_ylim()[1]
+    ax.set(ylim=(3e-6, top), xlim=(-1.05 * reach, 1.05 * reach))
+    ax.set(xlabel="velocity $v/W$", ylabel="probability density $W p(v)$")
+    ax.legend(frameon=False, fontsize=8)
+
+
+def _gauss(v: np.ndarray, width: float) -> np.ndarray:
+    return np.asarray(np.exp(-((v / width) ** 2) / 2) / (width * np.sqrt(2 * np.pi)))

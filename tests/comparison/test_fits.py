@@ -1,0 +1,152 @@
+"""Fits find the parameters that data were made with, and their errors are those of the scatter."""
+
+import numpy as np
+import pytest
+
+from crazybilliards.comparison import (
+    fit_avalanches,
+    fit_border_power_law,
+    fit_exponential,
+    fit_growth,
+    fit_scaling,
+    fit_singularity,
+    tail_length,
+)
+from crazybilliards.model import Chain
+from crazybilliards.model.vocabulary import result
+
+TRIALS = 200
+
+
+def calibrated(values, errors, true):
+    """Mean within 5 standard errors of the truth, and the errors quoted are the scatter."""
+    values, errors = np.array(values), np.array(errors)
+    scatter = values.std(ddof=1)
+    assert abs(values.mean() - true) < 5 * scatter / TRIALS**0.5
+    # The scatter of 200 values is itself good to 5 %.
+    assert abs(np.mean(errors) / scatter - 1) < 0.25
+
+
+def test_avalanche_exponents_are_unbiased_and_their_errors_right():
+    generator = np.random.default_rng(1)
+    sizes = np.arange(1, 201)
+    p = sizes**-2.2
+    fits = [
+        fit_avalanches(generator.multinomial(2000, p / p.sum()), smallest=5, largest=100)
+        for _ in range(TRIALS)
+    ]
+    calibrated([fit.exponent for fit in fits], [fit.exponent_error for fit in fits], 2.2)
+    assert all(fit.distance < 3 / fit.count**0.5 for fit in fits)
+    assert (fits[0].smallest, fits[0].largest) == (5, 100)
+
+
+def test_an_exponential_distribution_is_seen_not_to_be_a_power_law():
+    counts = np.round(1e6 * np.exp(-np.arange(1, 60) / 3))
+    fit = fit_avalanches(counts)
+    assert fit.distance > 30 / fit.count**0.5
+
+
+@pytest.mark.parametrize(
+    ("counts", "options", "message"),
+    [
+        ([5], {}, "no avalanches"),
+        ([0, 0, 0], {}, "no avalanches"),
+        ([5, 3], {"smallest": 0}, "smallest"),
+        ([5, 3], {"smallest": 2, "largest": 1}, "largest"),
+        ([5, 3, 1], {"smallest": 7}, "no avalanches"),
+    ],
+)
+def test_avalanches_that_cannot_be_fitted(counts, options, message):
+    with pytest.raises(ValueError, match=message):
+        fit_avalanches(counts, **options)
+
+
+def test_scaling_exponents_are_unbiased_and_their_errors_right():
+    generator = np.random.default_rng(2)
+    x = np.geomspace(10, 1e4, 8)
+    error = 0.05 * 3 * x**-0.38
+    fits = [fit_scaling(x, generator.normal(3 * x**-0.38, error), error) for _ in range(TRIALS)]
+    calibrated([f.exponent for f in fits], [f.exponent_error for f in fits], -0.38)
+    calibrated([f.scale for f in fits], [f.scale_error for f in fits], 3.0)
+    assert abs(np.mean([f.chi_square for f in fits]) - 1) < 0.2
+
+
+def test_scaling_errors_grow_where_the_points_scatter_more_than_they_say():
+    x = np.geomspace(1, 100, 6)
+    y = x**0.5 * [1, 1.2, 0.8, 1.2, 0.8, 1.0]
+    honest, wrong = fit_scaling(x, y, 0.2 * y), fit_scaling(x, y, 0.01 * y)
+    assert wrong.chi_square > 100
+    assert wrong.exponent_error > 0.7 * honest.exponent_error
+
+
+def test_exponential_of_the_restitution():
+    generator = np.random.default_rng(3)
+    e = np.array([0.0, 0.5, 0.75, 0.85, 0.92, 0.95])
+    true = 0.3 * np.exp(-5 * (1 - e)) + 0.45
+    fits = [
+        fit_exponential(e, generator.normal(true, 0.003), np.full(6, 0.003)) for _ in range(TRIALS)
+    ]
+    # The errors include the enlargement by chi-square, so they are on the large side.
+    assert abs(np.mean([f.rate for f in fits]) - 5) < 0.1
+    assert 0.7 < np.mean([f.rate_error for f in fits]) / np.std([f.rate for f in fits]) < 1.8
+    np.testing.assert_allclose(fits[0](e), true, atol=0.01)
+
+
+def test_singularity_is_found_under_noise():
+    generator = np.random.default_rng(4)
+    t = np.linspace(30, 39.8, 200)
+    for _ in range(5):
+        energy = 1e5 * (40 - t) ** -6.0 * np.exp(generator.normal(0, 0.1, t.size))
+        fit = fit_singularity(t, energy)
+        assert abs(fit.time - 40) < 5 * fit.time_error
+        assert abs(fit.exponent - 6) < 5 * fit.exponent_error
+        assert abs(fit.misfit - 0.1) < 0.02
+        assert fit.exponent_error < 0.2
+
+
+def test_exponential_growth_is_no_singularity():
+    t = np.linspace(0, 10, 50)
+    with pytest.raises(ValueError, match="no finite-time singularity"):
+        fit_singularity(t, np.exp(t))
+    fit = fit_growth(t, 2 * np.exp(0.7 * t))
+    assert (fit.rate, fit.scale) == pytest.approx((0.7, 2.0))
+    with pytest.raises(ValueError, match="at least 3 energies"):
+        fit_growth([0, 1, 2], [1, -1, 1])
+    with pytest.raises(ValueError, match="at least 5 energies"):
+        fit_singularity([0, 1], [1, 2])
+
+
+def test_tail_lengths_tell_an_exponential_from_a_gaussian():
+    v = np.linspace(-40, 40, 8001)
+    exponential, gauss = np.exp(-np.abs(v)), np.exp(-(v**2) / 2)
+    assert tail_length(v, exponential, 5.0) == pytest.approx(tail_length(v, exponential, 3.0), 1e-2)
+    assert tail_length(v, gauss, 5.0) == pytest.approx(0.65 * tail_length(v, gauss, 3.0), 0.05)
+    with pytest.raises(ValueError, match="no velocities"):
+        tail_length(v, exponential, 50.0)
+
+
+def profile(width, error=None):
+    chain = Chain(size=len(width), restitution=0)
+    variables = {"velocity_width": ("particle", width)}
+    if error is not None:
+        variables["velocity_width_error"] = ("particle", error)
+    return result(chain, variables, source="simulation", method={})
+
+
+def test_border_power_law_with_offset():
+    i = np.arange(1.0, 101)
+    width = 0.3 * (i**-0.6 + (101 - i) ** -0.6) + 0.05
+    fit = fit_border_power_law(profile(width), offset=True, skip=0)
+    assert (fit.exponent, fit.offset, fit.scale) == pytest.approx((-0.6, 0.05, 0.3), rel=1e-4)
+    np.testing.assert_allclose(fit(i), width, rtol=1e-6)
+    assert fit_border_power_law(profile(width), skip=0).offset == 0
+
+
+def test_border_power_law_counts_widths_by_their_errors():
+    """One wrong rod with a large error bar does no harm."""
+    i = np.arange(1.0, 101)
+    width = 0.3 * (i**-0.5 + (101 - i) ** -0.5)
+    error = 0.01 * width
+    width[0], error[0] = width[0] / 3, 1e4 * width[0]
+    assert fit_border_power_law(profile(width, error), skip=0).exponent == pytest.approx(-0.5, 1e-3)
+    assert abs(fit_border_power_law(profile(width), skip=0).exponent + 0.5) > 0.01
