@@ -12,7 +12,13 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from crazybilliards.comparison.commands.output import check_folder
-from crazybilliards.comparison.commands.sweep import compute_missing, engine
+from crazybilliards.comparison.commands.sweep import (
+    Dask,
+    Processes,
+    Scheduler,
+    compute_missing,
+    engine,
+)
 
 if TYPE_CHECKING:
     from crazybilliards.comparison.figures.figure import PaperFigure
@@ -38,16 +44,9 @@ def reproduce(
     output: Annotated[
         Path, typer.Option(help="Folder for pictures, report and results; made if missing.")
     ] = Path("reproduced"),
-    processes: Annotated[
-        int | None, typer.Option(help="Processes to compute in; default: one per core.")
-    ] = None,
-    dask: Annotated[
-        bool, typer.Option("--dask", help="Compute on a dask cluster of this machine instead.")
-    ] = False,
-    scheduler: Annotated[
-        str | None,
-        typer.Option(help="Compute on the dask cluster with this scheduler, tcp://HOST:PORT say."),
-    ] = None,
+    processes: Processes = None,
+    dask: Dask = False,
+    scheduler: Scheduler = None,
 ) -> None:
     """Reproduce the figures of arXiv:1404.7460, and check what the paper claims.
 

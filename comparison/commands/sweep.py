@@ -20,6 +20,17 @@ if TYPE_CHECKING:
 
     from crazybilliards.comparison.sweeps import Case
 
+Processes = Annotated[
+    int | None, typer.Option(help="Processes to compute in; default: one per core.")
+]
+Dask = Annotated[
+    bool, typer.Option("--dask", help="Compute on a dask cluster of this machine instead.")
+]
+Scheduler = Annotated[
+    str | None,
+    typer.Option(help="Compute on the dask cluster with this scheduler, tcp://HOST:PORT say."),
+]
+
 
 def sweep(
     file: Annotated[
@@ -32,16 +43,9 @@ def sweep(
     output: Annotated[
         Path, typer.Option(help="Folder for the results, one file a case; made if missing.")
     ],
-    processes: Annotated[
-        int | None, typer.Option(help="Processes to compute in; default: one per core.")
-    ] = None,
-    dask: Annotated[
-        bool, typer.Option("--dask", help="Compute on a dask cluster of this machine instead.")
-    ] = False,
-    scheduler: Annotated[
-        str | None,
-        typer.Option(help="Compute on the dask cluster with this scheduler, tcp://HOST:PORT say."),
-    ] = None,
+    processes: Processes = None,
+    dask: Dask = False,
+    scheduler: Scheduler = None,
 ) -> None:
     """Compute every case of a grid of parameters, each into a file of its own.
 

@@ -1,51 +1,14 @@
-"""The figures of arXiv:1404.7460, one module each, in the paper's order; here is their list."""
+"""The figures of arXiv:1404.7460, one module each: ``figNN_name.py`` with a ``FIGURE`` in it."""
 
-from crazybilliards.comparison.figures import (
-    fig01_model,
-    fig02_velocities_inelastic,
-    fig03_widths_inelastic,
-    fig04_central_width,
-    fig05_displacements_inelastic,
-    fig06_avalanches_inelastic,
-    fig07_widths_restitution,
-    fig08_velocities_elastic,
-    fig09_displacements_restitution,
-    fig10_velocities_flippers,
-    fig11_velocities_flippers_damped,
-    fig12_widths_damping,
-    fig13_avalanches_flippers,
-    fig14_widths_size,
-    fig15_energy,
-    fig16_arctanh,
-    fig17_density,
-    fig18_amplitude,
-    fig19_gap,
-)
+from importlib import import_module
+from pkgutil import iter_modules
+
 from crazybilliards.comparison.figures.figure import PaperFigure
 
 FIGURES: tuple[PaperFigure, ...] = tuple(
-    module.FIGURE
-    for module in (
-        fig01_model,
-        fig02_velocities_inelastic,
-        fig03_widths_inelastic,
-        fig04_central_width,
-        fig05_displacements_inelastic,
-        fig06_avalanches_inelastic,
-        fig07_widths_restitution,
-        fig08_velocities_elastic,
-        fig09_displacements_restitution,
-        fig10_velocities_flippers,
-        fig11_velocities_flippers_damped,
-        fig12_widths_damping,
-        fig13_avalanches_flippers,
-        fig14_widths_size,
-        fig15_energy,
-        fig16_arctanh,
-        fig17_density,
-        fig18_amplitude,
-        fig19_gap,
-    )
+    import_module(f"{__name__}.{module.name}").FIGURE
+    for module in iter_modules(__path__)  # in the order of their names
+    if module.name.startswith("fig") and module.name != "figure"
 )
 
 

@@ -1,4 +1,4 @@
-"""Velocity distributions: their moments, and the panel that several figures draw."""
+"""Distributions of velocities and avalanche sizes, as several figures draw them."""
 
 from __future__ import annotations
 
@@ -67,6 +67,25 @@ def draw_distributions(
     ax.set(ylim=(3e-6, top), xlim=(-1.05 * reach, 1.05 * reach))
     ax.set(xlabel="velocity $v/W$", ylabel="probability density $W p(v)$")
     ax.legend(frameon=False, fontsize=8)
+
+
+def draw_sizes(
+    ax: Axes, sizes: np.ndarray, p: np.ndarray, counts: np.ndarray, *, number: int, label: str
+) -> None:
+    """Draw the probability of avalanche sizes, with error bars of counting statistics."""
+    seen = counts > 0
+    ax.errorbar(
+        sizes[seen],
+        p[seen],
+        p[seen] / np.sqrt(counts[seen]),
+        fmt=SYMBOLS[number],
+        color=COLOURS[number],
+        markerfacecolor="none",
+        markersize=4,
+        linewidth=0.8,
+        label=label,
+    )
+    ax.set(xscale="log", yscale="log", xlabel="avalanche size $N_c$")
 
 
 def _gauss(v: np.ndarray, width: float) -> np.ndarray:

@@ -8,9 +8,9 @@ import xarray as xr
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from crazybilliards.comparison.drawing import COLOURS, SYMBOLS
 from crazybilliards.comparison.figures.chains import LARGE
 from crazybilliards.comparison.figures.claims import Claim, Estimate, number_claim, positive_claim
+from crazybilliards.comparison.figures.distributions import draw_sizes
 from crazybilliards.comparison.figures.figure import Cases, PaperFigure, Quality, Results
 from crazybilliards.comparison.figures.runs import estimate, pooled, runs
 from crazybilliards.comparison.fits import fit_avalanches
@@ -92,24 +92,14 @@ def draw(results: Results) -> Figure:
             edges = np.unique(np.round(np.geomspace(1, LARGE, 28)).astype(int))
             total = np.add.reduceat(counts, edges[:-1] - 1)
             p = total / counts.sum() / np.diff(edges)
-            seen = total > 0
             middle = np.sqrt(edges[:-1] * (edges[1:] - 1.0))
             at = _ORIGINS[origin]
-            ax.errorbar(
-                middle[seen],
-                p[seen],
-                p[seen] / np.sqrt(total[seen]),
-                fmt=SYMBOLS[number],
-                color=COLOURS[number],
-                markerfacecolor="none",
-                markersize=4,
-                label=f"origins {at.start} to {at.stop}",
-            )
+            label = f"origins {at.start} to {at.stop}"
+            draw_sizes(ax, middle, p, total, number=number, label=label)
         line = np.array([3.0, 400.0])
         anchor = np.interp(30, middle, p)
         ax.plot(line, anchor * (line / 30) ** _PAPER, "k--", linewidth=1, label="$N_c^{-2.2}$")
-        ax.set(xscale="log", yscale="log", xlabel="avalanche size $N_c$", title=f"dt = {step:g}")
-        ax.set_ylim(1e-9, 1)
+        ax.set(title=f"dt = {step:g}", ylim=(1e-9, 1))
     axes[0].set_ylabel("probability $p(N_c)$")
     axes[0].legend(frameon=False, fontsize=8)
     return figure

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import matplotlib.pyplot as plt
-import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from crazybilliards.comparison.drawing import COLOURS, SYMBOLS
 from crazybilliards.comparison.figures.chains import flippers, flippers_name
 from crazybilliards.comparison.figures.claims import Claim, positive_claim
+from crazybilliards.comparison.figures.distributions import draw_sizes
 from crazybilliards.comparison.figures.figure import Cases, PaperFigure, Quality, Results
 from crazybilliards.comparison.figures.runs import estimate, pooled
 
@@ -56,23 +55,11 @@ def draw(results: Results) -> Figure:
         run = pooled(results, flippers_name(_SIZE, damping))
         counts = run.avalanche_count.sel(particle=_ORIGINS).sum("particle").values.astype(float)
         sizes = run.avalanche_size.values
-        seen = counts > 0
         p = counts / counts.sum()
-        ax.errorbar(
-            sizes[seen],
-            p[seen],
-            p[seen] / np.sqrt(counts[seen]),
-            fmt=SYMBOLS[number],
-            color=COLOURS[number],
-            markerfacecolor="none",
-            markersize=4,
-            linewidth=0.8,
-            label=rf"$\gamma$ = {damping:g}",
-        )
+        draw_sizes(ax, sizes, p, counts, number=number, label=rf"$\gamma$ = {damping:g}")
     ax.axvspan(_SPANNING, _SIZE, color="0.9", zorder=0)
     ax.text(_SPANNING, ax.get_ylim()[1], "spanning ", va="top", ha="right", fontsize=8)
-    ax.set(xscale="log", yscale="log")
-    ax.set(xlabel="avalanche size $N_c$", ylabel="probability $p(N_c)$")
+    ax.set_ylabel("probability $p(N_c)$")
     ax.legend(frameon=False)
     return figure
 
