@@ -9,6 +9,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cache
+from html import escape
 from importlib.metadata import version
 from importlib.resources import files
 from pathlib import Path
@@ -113,7 +114,7 @@ def describe(cases: Iterable[Case]) -> list[str]:
 
 
 def markdown(reproduced: list[Reproduced], quality: Quality) -> str:
-    """Return the table of claims as a page of Markdown."""
+    """Return the table of claims, and the figures, as a page of Markdown beside the pictures."""
     numbers = _versions()
     rows = [
         "# What the paper claims, and what was found",
@@ -135,7 +136,13 @@ def markdown(reproduced: list[Reproduced], quality: Quality) -> str:
                 claim.theory,
                 verdict,
             )
-            rows.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
+            # <dx> must not be taken for a tag, nor |x| for a column.
+            plain = (escape(cell, quote=False).replace("|", "\\|") for cell in cells)
+            rows.append("| " + " | ".join(plain) + " |")
+    for each in reproduced:
+        figure = each.figure
+        rows += ["", f"## {figure.number}. {figure.title}", ""]
+        rows += [f"![{figure.title}]({each.file_name})", "", figure.caption]
     return "\n".join(rows) + "\n"
 
 

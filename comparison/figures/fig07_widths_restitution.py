@@ -92,7 +92,7 @@ def _theory_claims(results: Results) -> list[Claim]:
         deviation = width_deviation(pooled(results, dissipative_name(LARGE, e)), theory)
         claims.append(
             small_claim(
-                f"(beyond the paper) kinetic equation, e = {e:g}: W_v in the centre",
+                f"(beyond the paper) the kinetic equation gives W_v in the centre, e = {e:g}",
                 "relative deviation",
                 Estimate(deviation.centre, deviation.error / np.sqrt(LARGE / 10)),
                 0.05,

@@ -71,7 +71,8 @@ def claims(results: Results) -> list[Claim]:
             theory="exact: 1",
         ),
         small_claim(
-            f"(beyond the paper) Contact Dynamics at e = 1, L = {LARGE}, dt = {_STEPS[-1]:g}",
+            f"(beyond the paper) Contact Dynamics is right at e = 1, L = {LARGE}, "
+            f"dt = {_STEPS[-1]:g}",
             "1 - W_v/W in the centre",
             Estimate(1 - wrong[-1], estimate(results, _contact(_STEPS[-1]), centre_width).error),
             0.02,

@@ -57,6 +57,7 @@ def draw(results: Results) -> Figure:
             theory = predicted[e]
             ax.plot(theory.normalized_particle, theory.mean_displacement / s, color=COLOURS[number])
     along_the_chain(ax)
+    ax.set_ylim(-0.7, 0.7)
     ax.set(ylabel=r"mean displacement $\langle\Delta x\rangle/s$")
     ax.legend(frameon=False, title="symbols: simulation\nlines: kinetic equation")
     return figure
@@ -67,7 +68,7 @@ FIGURE = PaperFigure(
     name="displacements-restitution",
     title="Mean displacements for several restitutions",
     caption="Mean displacement against the normalized particle number, L = 1000, in units of the "
-    "thermal length s. Lines: the kinetic equation.",
+    "thermal length s. Lines: the kinetic equation. The outermost rods lie beyond the frame.",
     cases=cases,
     draw=draw,
     claims=claims,

@@ -58,8 +58,8 @@ def claims(results: Results) -> list[Claim]:
         ),
         positive_claim(
             f"without a steady state at L = {_UNSTEADY}",
-            f"diverged within {max(times, default=math.nan):.2g} T of the release; share of the "
-            "runs:",
+            f"{len(times)} of {len(diverged)} runs diverged, released from rest, the last after "
+            f"{max(times, default=math.nan):.2g} T; their share:",
             everyone,
             theory=f"no steady state beyond L = {_critical_size():.0f} (weak damping)",
         ),

@@ -58,7 +58,7 @@ def claims(results: Results) -> list[Claim]:
         )
         claims.append(
             same_claim(
-                f"(beyond the paper) the exact density at A = {amplitude}",
+                f"(beyond the paper) the exact density is the simulated one, A = {amplitude}",
                 f"off by at most {by_theory['exact'].maximum:.4f} of close packing",
                 by_theory["exact"].maximum_in_errors or 0.0,
                 theory="exact",
