@@ -1,5 +1,6 @@
 """The theory: exact equilibrium, force balance, hydrodynamics, kinetic equation."""
 
+from crazybilliards.kinetic.breathing_cloud import breathing_cloud
 from crazybilliards.kinetic.critical_size import (
     critical_damping,
     critical_restitution,
@@ -13,6 +14,7 @@ from crazybilliards.kinetic.phase_space_relaxation import relax_phase_space
 from crazybilliards.kinetic.starts import compressed, displaced, two_clumps
 
 __all__ = [
+    "breathing_cloud",
     "compressed",
     "critical_damping",
     "critical_restitution",
