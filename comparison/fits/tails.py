@@ -20,7 +20,8 @@ class AvalancheFit:
     Attributes
     ----------
     exponent, exponent_error
-        By maximum likelihood, with the standard error of independent avalanches.
+        By maximum likelihood, with the standard error of independent avalanches. Those of one
+        run share their future: the scatter between runs is some three times larger.
     smallest, largest
         The sizes it was fitted to.
     count
