@@ -1,4 +1,4 @@
-"""Draw the four rooms: ``python docs/figures/architecture.py`` writes architecture.svg beside it."""
+"""Draw the four rooms: run it, and it writes architecture.svg beside itself."""
 
 from pathlib import Path
 
