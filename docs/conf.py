@@ -54,10 +54,6 @@ nb_merge_streams = True
 linkcheck_timeout = 20
 linkcheck_retries = 2
 
-if not (HERE / "paper" / "claims.md").exists():
-    # The page that a full reproduction writes is not there yet; until it is, links are not checked.
-    suppress_warnings = ["myst.xref_missing", "toc.not_readable"]
-
 # -- reference ---------------------------------------------------------------------------------
 
 autosummary_generate = False
@@ -137,17 +133,22 @@ _SAME = (
 )
 
 
+_TAG = re.compile(r"\\tag\{(.*?)\}")
+
+
 def mathml(node, **options) -> str:
     """Return a formula as MathML, which browsers set themselves, without a script from outside."""
-    formula = node.astext().strip()
+    formula = _TAG.sub("", node.astext()).strip()
     for pattern, replacement in _SAME:
         formula = pattern.sub(replacement, formula)
     try:
-        # Averages keep the height of the line; \\left and \\right are for brackets that grow.
-        return re.sub(r"<mo>(?=[⟨⟩]</mo>)", '<mo stretchy="false">', tex2mathml(formula, **options))
+        text = tex2mathml(formula, **options)
     except MathError as error:
         logger.warning("formula %r: %s", formula, error, location=node)
         return f"<code>{escape(formula)}</code>"
+    # Bars are brackets, not signs between two things; averages keep the height of the line.
+    text = re.sub(r'<mo( class="math\w+")?>(?=[|∣]</mo>)', '<mo lspace="0" rspace="0">', text)
+    return re.sub(r"<mo>(?=[⟨⟩]</mo>)", '<mo stretchy="false">', text)
 
 
 def write_inline_formula(translator, node) -> None:
@@ -160,8 +161,9 @@ def write_formula(translator, node) -> None:
     """Write a formula on a line of its own, with its number if it has one."""
     translator.body.append(translator.starttag(node, "div", CLASS="math"))
     translator.body.append(mathml(node, as_block=True))
-    if node.get("number"):
-        translator.body.append(f'<span class="eqno">({node["number"]})</span>')
+    tag = _TAG.search(node.astext())
+    if number := tag[1] if tag else node.get("number"):
+        translator.body.append(f'<span class="eqno">({number})</span>')
     translator.body.append("</div>\n")
     raise SkipNode
 
