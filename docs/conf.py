@@ -147,7 +147,7 @@ def mathml(node, **options) -> str:
         logger.warning("formula %r: %s", formula, error, location=node)
         return f"<code>{escape(formula)}</code>"
     # Bars are brackets, not signs between two things; averages keep the height of the line.
-    text = re.sub(r'<mo( class="math\w+")?>(?=[|∣]</mo>)', '<mo lspace="0" rspace="0">', text)
+    text = re.sub(r'<mo( class="math\w+")?>(?=[|\u2223]</mo>)', '<mo lspace="0" rspace="0">', text)
     return re.sub(r"<mo>(?=[⟨⟩]</mo>)", '<mo stretchy="false">', text)
 
 
