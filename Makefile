@@ -8,7 +8,7 @@ OUTPUT ?= results
 QUALITY ?= quick
 ROOMS  := model particles kinetic comparison
 
-.PHONY: help run test check reproduce notebooks benchmark clean
+.PHONY: help run test check reproduce notebooks docs linkcheck benchmark clean
 .DEFAULT_GOAL := help
 
 help:
@@ -17,6 +17,8 @@ help:
 	@echo "make check      lint, format and type checks"
 	@echo "make reproduce  every figure and claim of the paper into reproduced/ (4 min; QUALITY=full 1 h)"
 	@echo "make notebooks  execute the notebooks"
+	@echo "make docs       the documentation as a web site, into build/docs/; notebooks and examples are executed"
+	@echo "make linkcheck  look up every address the pages point to (needs the network)"
 	@echo "make benchmark  measure the speed"
 	@echo "make clean      remove the environment and everything built"
 
@@ -36,6 +38,14 @@ reproduce: $(VENV)/installed
 
 notebooks: $(VENV)/installed-notebooks
 	$(BIN)/python -m pytest --nbmake --nbmake-timeout=300 notebooks
+
+# Warnings are errors: links and anchors that lead nowhere, examples that fail.
+docs: $(VENV)/installed-docs
+	$(BIN)/python -m sphinx -W --keep-going -b html docs build/docs
+	@echo "open build/docs/index.html"
+
+linkcheck: $(VENV)/installed-docs
+	$(BIN)/python -m sphinx -b linkcheck docs build/linkcheck
 
 benchmark: $(VENV)/installed-benchmark
 	mkdir -p $(OUTPUT)
@@ -65,5 +75,5 @@ $(VENV)/installed-%: pyproject.toml $(VENV)/created
 	touch $@
 
 clean:
-	rm -rf $(VENV) build *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks
+	rm -rf $(VENV) build docs/notebooks *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +

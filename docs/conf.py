@@ -1,0 +1,176 @@
+"""How the documentation is built: ``make docs``."""
+
+import re
+import shutil
+from html import escape
+from importlib.metadata import version as version_of
+from pathlib import Path
+
+from docutils.nodes import SkipNode
+from docutils.utils.math import MathError
+from docutils.utils.math.latex2mathml import tex2mathml
+from sphinx.util import logging
+
+logger = logging.getLogger(__name__)
+
+HERE = Path(__file__).parent
+ROOT = HERE.parent
+
+project = "crazybilliards"
+author = "The crazybilliards developers"
+project_copyright = "The crazybilliards developers"
+release = version = version_of(project)
+
+extensions = [
+    "myst_nb",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.autosummary",
+    "sphinx.ext.napoleon",
+    "sphinx.ext.viewcode",
+]
+exclude_patterns = ["_static", "**.ipynb_checkpoints"]
+html_theme = "furo"
+html_title = f"{project} {release}"
+html_theme_options = {"navigation_with_keys": True}
+html_static_path = ["_static"]
+html_css_files = ["style.css"]
+html_math_renderer = "mathml"
+highlight_language = "none"  # of blocks that do not name one: equations, commands
+
+# -- pages -------------------------------------------------------------------------------------
+
+myst_enable_extensions = ["dollarmath", "amsmath", "deflist"]
+myst_heading_anchors = 3
+myst_dmath_double_inline = True
+
+# Notebooks, and the examples in the how-to pages, run; what fails fails the build.
+nb_execution_mode = "cache"
+nb_execution_cache_path = str(ROOT / "build" / "executed")
+nb_execution_timeout = 300
+nb_execution_raise_on_error = True
+nb_merge_streams = True
+
+# Addresses outside are looked at by `sphinx-build -b linkcheck`, links inside by every build.
+linkcheck_timeout = 20
+linkcheck_retries = 2
+
+# -- reference ---------------------------------------------------------------------------------
+
+autosummary_generate = False
+autodoc_member_order = "bysource"
+autodoc_typehints = "none"  # types stand in the signatures
+autodoc_typehints_format = "short"
+autodoc_preserve_defaults = True
+napoleon_google_docstring = False
+napoleon_use_rtype = False
+napoleon_use_ivar = True
+
+
+def copy_notebooks() -> None:
+    """Bring the notebooks of the repository below docs/, where Sphinx looks for pages.
+
+    Links to ../docs/ become links to pages. A file that has not changed is left alone, for Sphinx
+    not to read it again.
+    """
+    there = HERE / "notebooks"
+    there.mkdir(exist_ok=True)
+    sources = {path.name: path for path in (ROOT / "notebooks").glob("*.ipynb")}
+    for stale in there.iterdir():
+        if stale.name not in sources:
+            shutil.rmtree(stale) if stale.is_dir() else stale.unlink()
+    for name, source in sources.items():
+        text = source.read_text(encoding="utf-8").replace("](../docs/", "](../")
+        copy = there / name
+        if not copy.exists() or copy.read_text(encoding="utf-8") != text:
+            copy.write_text(text, encoding="utf-8")
+
+
+def as_restructured_text(app, what, name, thing, options, lines) -> None:
+    """Docstrings are plain text: set equations apart, and let no bar or star have a meaning."""
+    if what == "property":
+        # Otherwise napoleon takes what stands before a colon in the first line for a type.
+        lines.insert(0, "")
+    if what == "module":
+        lines[:] = _equations_as_code(lines)
+    quoted = False
+    for number, line in enumerate(lines):
+        quoted = quoted and (not line or line.startswith(" "))
+        if not quoted and not line.lstrip().startswith(">>>"):
+            # Not within ``literals``.
+            parts = re.split(r"(``.*?``)", line)
+            parts[::2] = [re.sub(r"\||(?<=\()\*+(?=\))", _escaped, part) for part in parts[::2]]
+            lines[number] = "".join(parts)
+        quoted = quoted or line.startswith(".. code-block::")
+
+
+def _equations_as_code(lines: list[str]) -> list[str]:
+    """Mark indented blocks after a paragraph, equations or tables, to stay as they are."""
+    marked: list[str] = []
+    paragraph = ""  # the last line that is not indented
+    for number, line in enumerate(lines):
+        begins = line.startswith("    ") and number > 0 and not lines[number - 1]
+        after_list = re.match(r"\* |\d+\. ", paragraph)
+        if begins and paragraph and not after_list:
+            marked += [".. code-block:: text", ""]
+            paragraph = ""
+        elif line and not line.startswith(" "):
+            paragraph = line if not (number and lines[number - 1] and paragraph) else paragraph
+        marked.append(line)
+    return marked
+
+
+def _escaped(match: re.Match[str]) -> str:
+    return "".join(f"\\{sign}" for sign in match[0])
+
+
+# What docutils does not know, and stands in notebooks: short fractions, sizes of brackets, names of
+# dots and of aligned equations.
+_SAME = (
+    (re.compile(r"\\frac\s*(\d)\s*(\d)"), r"\\frac{\1}{\2}"),
+    (re.compile(r"\\[bB]igg?(?![a-zA-Z])"), ""),
+    (re.compile(r"\\dots(?![a-zA-Z])"), r"\\ldots"),
+    (re.compile(r"\\(begin|end)\{align\*?\}"), r"\\\1{aligned}"),
+)
+
+
+_TAG = re.compile(r"\\tag\{(.*?)\}")
+
+
+def mathml(node, **options) -> str:
+    """Return a formula as MathML, which browsers set themselves, without a script from outside."""
+    formula = _TAG.sub("", node.astext()).strip()
+    for pattern, replacement in _SAME:
+        formula = pattern.sub(replacement, formula)
+    try:
+        text = tex2mathml(formula, **options)
+    except MathError as error:
+        logger.warning("formula %r: %s", formula, error, location=node)
+        return f"<code>{escape(formula)}</code>"
+    # Bars are brackets, not signs between two things; averages keep the height of the line.
+    text = re.sub(r'<mo( class="math\w+")?>(?=[|\u2223]</mo>)', '<mo lspace="0" rspace="0">', text)
+    return re.sub(r"<mo>(?=[⟨⟩]</mo>)", '<mo stretchy="false">', text)
+
+
+def write_inline_formula(translator, node) -> None:
+    """Write a formula within a line."""
+    translator.body.append(mathml(node))
+    raise SkipNode
+
+
+def write_formula(translator, node) -> None:
+    """Write a formula on a line of its own, with its number if it has one."""
+    translator.body.append(translator.starttag(node, "div", CLASS="math"))
+    translator.body.append(mathml(node, as_block=True))
+    tag = _TAG.search(node.astext())
+    if number := tag[1] if tag else node.get("number"):
+        translator.body.append(f'<span class="eqno">({number})</span>')
+    translator.body.append("</div>\n")
+    raise SkipNode
+
+
+def setup(app) -> None:
+    """Let Sphinx know of the above."""
+    copy_notebooks()
+    app.add_html_math_renderer("mathml", (write_inline_formula, None), (write_formula, None))
+    # Before napoleon, which turns the sections of docstrings into fields.
+    app.connect("autodoc-process-docstring", as_restructured_text, priority=400)
