@@ -37,7 +37,7 @@ reproduce: $(VENV)/installed
 	$(BIN)/crazybilliards reproduce all --quality $(QUALITY)
 
 notebooks: $(VENV)/installed-notebooks
-	$(BIN)/python -m pytest --nbmake --nbmake-timeout=300 notebooks
+	$(BIN)/python -m pytest -n 2 --nbmake --nbmake-timeout=300 notebooks
 
 # Warnings are errors: links and anchors that lead nowhere, examples that fail.
 docs: $(VENV)/installed-docs
