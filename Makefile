@@ -8,7 +8,7 @@ OUTPUT ?= results
 QUALITY ?= quick
 ROOMS  := model particles kinetic comparison
 
-.PHONY: help run test check reproduce notebooks docs linkcheck benchmark clean
+.PHONY: help run test check reproduce notebooks browser docs linkcheck benchmark clean
 .DEFAULT_GOAL := help
 
 help:
@@ -38,6 +38,13 @@ reproduce: $(VENV)/installed
 
 notebooks: $(VENV)/installed-notebooks
 	$(BIN)/python -m pytest -n 2 --nbmake --nbmake-timeout=300 notebooks
+
+# A browser for the test of the page, which is skipped without: Debian's, where one may install it.
+browser:
+	@command -v chromium >/dev/null && command -v chromedriver >/dev/null || \
+	  { command -v apt-get >/dev/null && [ "$$(id -u)" = 0 ] && apt-get update -qq && \
+	    apt-get install -y -qq --no-install-recommends chromium chromium-driver >/dev/null; } || \
+	  echo "install chromium and chromedriver to test the page of crazybilliards explore"
 
 # Warnings are errors: links and anchors that lead nowhere, examples that fail.
 docs: $(VENV)/installed-docs

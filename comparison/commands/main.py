@@ -11,6 +11,7 @@ import sys
 import typer
 
 from crazybilliards.comparison.commands.compare import compare
+from crazybilliards.comparison.commands.explore import explore
 from crazybilliards.comparison.commands.output import INTERRUPTED
 from crazybilliards.comparison.commands.relax import relax
 from crazybilliards.comparison.commands.reproduce import reproduce
@@ -36,7 +37,7 @@ def crazybilliards() -> None:
     """
 
 
-for command in (compare, relax, theory, reproduce, sweep):
+for command in (compare, relax, theory, reproduce, sweep, explore):
     app.command()(command)
 
 

@@ -37,7 +37,14 @@ def interrupted_after(seconds, *arguments):
 
 @pytest.mark.parametrize(
     "arguments",
-    [["--help"], ["compare", "--help"], ["relax", "--help"], ["theory", "--help"], ["-h"]],
+    [
+        ["--help"],
+        ["compare", "--help"],
+        ["relax", "--help"],
+        ["theory", "--help"],
+        ["explore", "--help"],
+        ["-h"],
+    ],
 )
 def test_help_shows_an_example_and_loads_nothing_heavy(arguments):
     script = (
@@ -45,7 +52,8 @@ def test_help_shows_an_example_and_loads_nothing_heavy(arguments):
         "from crazybilliards.comparison.commands.main import main\n"
         "try:\n    main()\n"
         "finally:\n"
-        "    heavy = {'numpy', 'numba', 'scipy', 'matplotlib', 'xarray'} & set(sys.modules)\n"
+        "    heavy = {'numpy', 'numba', 'scipy', 'matplotlib', 'xarray', 'panel'}\n"
+        "    heavy &= set(sys.modules)\n"
         "    assert not heavy, heavy\n"
     )
     done = subprocess.run(
