@@ -352,6 +352,18 @@ def test_a_number_typed_changes_theory_and_address_and_opens_again(browser, addr
     assert errors(browser) == []
 
 
+def test_a_slider_that_is_moved_changes_the_chain(browser, address):
+    from selenium.webdriver.common.keys import Keys
+
+    visit(browser, address)
+    handles = browser.execute_script(DEEP, ".noUi-handle")
+    assert len(handles) == 5
+    handles[0].send_keys(*[Keys.ARROW_RIGHT] * 3)
+    until(lambda: "size=103" in browser.current_url)
+    until(lambda: len(column(browser, "rods", "x")) == 103)
+    assert errors(browser) == []
+
+
 def test_a_preset_and_the_kinetic_equation(browser, address):
     from selenium.webdriver.support.ui import Select
 
