@@ -67,6 +67,26 @@ def _ornstein_uhlenbeck(chain: Chain, duration: float) -> tuple[float, float]:
 
 
 @kernel
+def kick(y, v, anchors, step, decay, before, after):  # type: ignore[no-untyped-def] # pragma: no cover
+    """Damp the velocities by ``decay``, with ``before`` and ``after`` spring kicks around it."""
+    for i in range(y.size):
+        d = y[i] - anchors[i]
+        pull = step.kick * (d * abs(d) if step.quadratic else d)
+        v[i] = decay * (v[i] - before * pull) - after * pull
+
+
+@kernel
+def shake(v, noise, generator):  # type: ignore[no-untyped-def] # pragma: no cover
+    """Add white noise of standard deviation ``noise`` to the velocities.
+
+    Not one loop with :func:`kick`: the call of the generator would keep that from working on
+    several rods at a time, as vector instructions do.
+    """
+    for i in range(v.size):
+        v[i] += noise * generator.standard_normal()
+
+
+@kernel
 def advance(y, v, anchors, generator, step, law, scratch, tally, steps):  # type: ignore[no-untyped-def] # pragma: no cover
     """Take ``steps`` steps of the chain in place; return the collisions, or -1 if diverged.
 
@@ -77,10 +97,8 @@ def advance(y, v, anchors, generator, step, law, scratch, tally, steps):  # type
     decay, noise = step.outer_decay, step.outer_noise
     half_due = 0.0  # 1: half a spring kick of the last step, given with this one's in one pass
     for _ in range(steps):
-        for i in range(y.size):
-            d = y[i] - anchors[i]
-            pull = step.kick * (d * abs(d) if step.quadratic else d)
-            v[i] = decay * (v[i] - half_due * pull) + noise * generator.standard_normal() - pull
+        kick(y, v, anchors, step, decay, half_due, 1.0)
+        shake(v, noise, generator)
         decay, noise = step.decay, step.noise
         met = drift(y, v, step.time_step, law, scratch, tally)
         if met < 0:
@@ -88,11 +106,8 @@ def advance(y, v, anchors, generator, step, law, scratch, tally, steps):  # type
         collisions += met
         half_due = 1.0 if step.symmetric else 0.0
     if step.symmetric and steps > 0:
-        for i in range(y.size):
-            d = y[i] - anchors[i]
-            pull = step.kick * (d * abs(d) if step.quadratic else d)
-            v[i] = step.outer_decay * (v[i] - pull)
-            v[i] += step.outer_noise * generator.standard_normal()
+        kick(y, v, anchors, step, step.outer_decay, 1.0, 0.0)
+        shake(v, step.outer_noise, generator)
     return collisions
 
 
