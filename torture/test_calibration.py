@@ -34,9 +34,7 @@ def collision_rates(chain):
         return pairs * places.pdf(x) ** 2 * rest
 
     reach = 8 * chain.thermal_length
-    density = [
-        integrate.quad(together, -reach, reach, args=(i,))[0] for i in range(chain.size - 1)
-    ]
+    density = [integrate.quad(together, -reach, reach, args=(i,))[0] for i in range(chain.size - 1)]
     return np.array([*density, 0.0]) * chain.free_velocity_width / np.sqrt(np.pi)
 
 

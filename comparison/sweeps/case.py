@@ -22,6 +22,7 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from threadpoolctl import threadpool_limits
 
 from crazybilliards.kinetic import equilibrium, force_balance, phase_space
 from crazybilliards.model import Chain, load
@@ -158,7 +159,9 @@ def compute(case: Case, canonical: str) -> bytes:
         text = json.dumps(case.parameters, sort_keys=True)
         own_seed = int(hashlib.sha256(text.encode()).hexdigest()[:15], 16)
         settings |= {"seed": own_seed, "threads": 1, "progress": False}
-    result = JOBS[case.job](case.chain, **settings)
+    # Linear algebra in threads sums in another order, and workers beside it would only wait.
+    with threadpool_limits(1):
+        result = JOBS[case.job](case.chain, **settings)
     if result.attrs["status"] == "interrupted":
         raise KeyboardInterrupt
     result.attrs |= {"case": canonical, "seconds": time.perf_counter() - begin}

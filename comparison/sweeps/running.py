@@ -18,7 +18,6 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from pathlib import Path
 
-from threadpoolctl import threadpool_limits
 from tqdm import tqdm
 
 from crazybilliards.comparison.sweeps.case import Case, compute
@@ -113,9 +112,7 @@ def process_pool(processes: int | None = None) -> Iterator[Executor]:
 
 
 def _prepare_worker() -> None:
-    """Use one core, leave Ctrl-C to the parent, and do not outlive it however it dies."""
-    # A process for every core: linear algebra in threads would only make them wait.
-    threadpool_limits(1)
+    """Leave Ctrl-C to the parent, and do not outlive it however it dies."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_follow_parent, daemon=True).start()
 

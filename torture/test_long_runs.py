@@ -1,0 +1,146 @@
+"""Long runs neither drift nor grow, and nothing but the seed decides about a result.
+
+Ten thousand million particle steps of an elastic chain without gap, whose energies are known
+exactly: L m v^2/T summed has the chi-squared distribution with L degrees of freedom, and so has the
+sum of k d^2/T', as the rods' places are L independent Gaussian draws in order. T' is the
+temperature that the splitting scheme gives the displacements at a finite time step.
+"""
+
+import os
+import threading
+from concurrent.futures import Executor, Future
+from contextlib import nullcontext
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from crazybilliards.comparison.sweeps import Case, dask_cluster, process_pool, run_cases
+from crazybilliards.model import Chain
+from crazybilliards.particles import simulate
+
+PARTICLE_STEPS = 1e10
+REPLICAS = 2
+MEGABYTE = 2**20
+SIGNIFICANCE = 1e-6  # of a Gaussian, 5 standard errors
+
+
+class Memory(threading.Thread):
+    """Looks at this process's resident memory every tenth of a second."""
+
+    def __init__(self):
+        super().__init__(daemon=True)
+        self.seen, self.over = [], threading.Event()
+
+    def run(self):
+        while not self.over.wait(0.1):
+            with open("/proc/self/statm") as file:
+                self.seen.append(int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE"))
+
+    def __enter__(self):
+        self.start()
+        return self
+
+    def __exit__(self, *exception):
+        self.over.set()
+        self.join()
+
+
+def test_ten_thousand_million_particle_steps():
+    chain = Chain(size=100)
+    time_step = 0.1
+    duration = PARTICLE_STEPS / chain.size / REPLICAS * time_step
+    with Memory() as memory:
+        run = simulate(
+            chain,
+            duration=duration,
+            time_step=time_step,
+            every=duration / 5000,
+            observe=("snapshots", "widths", "density"),
+            replicas=REPLICAS,
+            progress=False,
+        )
+    method = run.attrs["provenance"]
+    print(method)
+    # While the run went on: at the end the replicas' snapshots are joined, at first compiled code
+    # is loaded.
+    early, late = np.quantile(np.arange(len(memory.seen)), [0.2, 0.9]).astype(int)
+    growth = (memory.seen[late] - memory.seen[early]) / MEGABYTE
+    print(f"memory grew by {growth:.2f} MiB over {late - early} looks")
+    assert growth < 1
+
+    y = run.position.values  # no gap: the rods' places are the points'
+    assert (np.diff(y, axis=-1) >= 0).all()
+    assert np.isfinite(run.velocity.values).all()
+    kinetic = (chain.mass * run.velocity.values**2).sum(axis=-1) / chain.temperature
+    displacement = y - chain.anchors
+    rate = np.sqrt(chain.stiffness / chain.mass)
+    spring_temperature = chain.temperature / (1 - (rate * time_step / 2) ** 2)
+    potential = (chain.stiffness * displacement**2).sum(axis=-1) / spring_temperature
+    for name, energy in {"kinetic": kinetic, "spring": potential}.items():
+        halves = np.array_split(energy, 2, axis=1)
+        for part, seen in {"whole": energy, "first half": halves[0], "second": halves[1]}.items():
+            test = stats.kstest(seen.ravel(), stats.chi2(chain.size).cdf)
+            print(f"{name}, {part}: D = {test.statistic:.4f}, p = {test.pvalue:.3f}")
+            assert test.pvalue > SIGNIFICANCE
+        assert stats.ks_2samp(*(half.ravel() for half in halves)).pvalue > SIGNIFICANCE
+
+
+CASES = [
+    Case(
+        "simulate",
+        Chain(size=30, restitution=restitution, damping=damping),
+        {"duration": 500, "replicas": 2, "observe": ["widths", "density", "energy"], **settings},
+    )
+    for restitution, damping, settings in (
+        (0, 1, {}),
+        (0.9, 1, {}),
+        (1, 1, {"stepper": "euler"}),
+        (1.05, 4, {}),
+        (0.5, 1, {"method": "contact-dynamics"}),
+    )
+] + [
+    Case("equilibrium", Chain(size=30, gap=0.2), {}),
+    Case("phase_space", Chain(size=30, restitution=0.95), {}),
+]
+
+
+class AtOnce(Executor):
+    """Carries out what is submitted, here and now."""
+
+    def submit(self, function, /, *arguments):
+        future = Future()
+        future.set_result(function(*arguments))
+        return future
+
+
+def test_same_seed_same_result_in_one_process_in_a_pool_and_on_a_cluster(tmp_path):
+    results = []
+    for name, engine in {
+        "here": nullcontext(AtOnce()),
+        "pool": process_pool(2),
+        "cluster": dask_cluster(),
+    }.items():
+        with engine as executor:
+            assert run_cases(CASES, tmp_path / name, executor, progress=False) == {}
+        results.append([case.load(tmp_path / name) for case in CASES])
+    for here, *others in zip(*results, strict=True):
+        for other in others:
+            assert other.equals(here)
+
+
+@pytest.mark.parametrize(("restitution", "damping"), [(0, 1), (0.9, 1), (1, 1), (1.05, 4)])
+def test_same_seed_same_result_in_one_thread_and_in_two(restitution, damping):
+    chain = Chain(size=50, restitution=restitution, damping=damping)
+    runs = [
+        simulate(
+            chain,
+            duration=1000,
+            replicas=5,
+            threads=threads,
+            observe=("widths", "density", "velocities", "energy"),
+            progress=False,
+        )
+        for threads in (1, 2)
+    ]
+    assert runs[0].equals(runs[1])
