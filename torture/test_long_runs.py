@@ -67,7 +67,7 @@ def test_ten_thousand_million_particle_steps():
     early, late = np.quantile(np.arange(len(memory.seen)), [0.2, 0.9]).astype(int)
     growth = (memory.seen[late] - memory.seen[early]) / MEGABYTE
     print(f"memory grew by {growth:.2f} MiB over {late - early} looks")
-    assert growth < 1
+    assert growth < 4  # one byte kept in every step would be 48
 
     y = run.position.values  # no gap: the rods' places are the points'
     assert (np.diff(y, axis=-1) >= 0).all()
