@@ -36,6 +36,7 @@ from crazybilliards.kinetic.velocity_space import moments
 from crazybilliards.model import Chain
 from crazybilliards.model.chain import check_integer, check_real
 from crazybilliards.model.grid import position_grid
+from crazybilliards.model.memory import require_memory
 from crazybilliards.model.vocabulary import result
 
 Array = NDArray[np.float64]
@@ -44,6 +45,7 @@ _CELLS = 22
 _FINER = 1.5
 _MOST_CELLS = 60
 _LARGEST_MESH = 150
+_BYTES_PER_CELL = 9e4
 _MOST_RODS = 100_000
 
 
@@ -68,7 +70,7 @@ def phase_space(
         The mesh is refined until no velocity width changes by more, relatively.
     cells
         Cells from the centre to the end of the mesh, in each direction, instead of that; up to
-        150, which takes 2 GB.
+        150, which takes 2 GB: 90 kB times their square.
 
     Returns
     -------
@@ -106,6 +108,7 @@ def phase_space(
         cells = check_integer("cells", cells, least=4)
         if cells > _LARGEST_MESH:
             raise ValueError(f"cells must be at most {_LARGEST_MESH}, got {cells}")
+    require_memory(f"cells={cells or _MOST_CELLS}", _BYTES_PER_CELL * (cells or _MOST_CELLS) ** 2)
     if chain.size > _MOST_RODS:
         raise ValueError(f"size must be at most {_MOST_RODS}, got {chain.size}")
     if order is None:

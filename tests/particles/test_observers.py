@@ -71,3 +71,12 @@ def test_collisions_are_only_seen_one_at_a_time():
         simulate(Chain(damping=0), observe="velocities", progress=False)
     with pytest.raises(ValueError, match="would take"):
         simulate(Chain(size=10**7), observe="velocities", progress=False)
+
+
+def test_observe_and_particles_take_lists():
+    for wrong in (5, None, True, [["widths"]], [3]):
+        with pytest.raises(ValueError, match="observe takes"):
+            simulate(Chain(), observe=wrong, progress=False)
+    for wrong in (5, "12", True):
+        with pytest.raises(ValueError, match="particles must be a list"):
+            simulate(Chain(), particles=wrong, progress=False)
