@@ -93,8 +93,10 @@ def breathing_cloud(
 
     s, W = chain.thermal_length, chain.free_velocity_width
     start = [shift, 0.0, stretch * s, 0.0, heat]
-    exact = {"rtol": 1e-11, "atol": 1e-12 * np.array([s, W, s, W, W**2])}
-    solution = solve_ivp(equations, (0.0, times[-1]), start, "DOP853", times, **exact)
+    smallest = 1e-12 * np.array([s, W, s, W, W**2])
+    solution = solve_ivp(
+        equations, (0.0, times[-1]), start, "DOP853", times, rtol=1e-11, atol=smallest
+    )
     if not solution.success:
         raise ValueError(f"the cloud could not be followed: {solution.message}")
     place, _, width, _, heat = solution.y
