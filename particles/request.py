@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from crazybilliards.model import Chain
 from crazybilliards.model.chain import check_choice, check_integer, check_real, shown
+from crazybilliards.model.grid import require_resolved
 from crazybilliards.model.memory import require_memory
 from crazybilliards.particles.drift import Method
 from crazybilliards.particles.observers import OBSERVERS, Plan
@@ -100,6 +101,7 @@ def make_request(
         replicas=replicas,
         started=start is not None,
     )
+    require_resolved(chain, float(chain.reduced_anchors[-1]))
     starts = replica_starts(chain, start, replicas)
     groups = min(replicas, _GROUPS) if schedule.ensemble else replicas
     swing = max(start_swing(chain, y, v) for y, v in starts)
