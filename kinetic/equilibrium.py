@@ -32,7 +32,7 @@ from scipy.interpolate import CubicSpline
 
 from crazybilliards.model import Chain
 from crazybilliards.model.chain import check_integer
-from crazybilliards.model.grid import position_grid, thermal_reach
+from crazybilliards.model.grid import position_grid, require_resolved, thermal_reach
 from crazybilliards.model.memory import require_memory
 from crazybilliards.model.vocabulary import result
 
@@ -177,6 +177,7 @@ def _recursion(chain: Chain) -> _Recursion:
             f"got {chain.restitution:g}"
         )
     chain.require_steady_state()
+    require_resolved(chain, float(chain.reduced_anchors[-1]))
     reach = thermal_reach(chain)
     # Width of the middle order statistic, 1/(2 p(0) sqrt(L)), or of one free rod if smaller.
     narrowest = chain.thermal_length * min(1.0, 1.25 / np.sqrt(chain.size))

@@ -35,6 +35,15 @@ def thermal_reach(chain: Chain) -> float:
     return chain.thermal_length * (n * _TAIL) ** (1 / n)
 
 
+def require_resolved(chain: Chain, extent: float) -> None:
+    """Raise a ValueError if thermal displacements are lost in the rounding of such positions."""
+    if 0 < thermal_reach(chain) < _SMALLEST_REACH * extent:
+        raise ValueError(
+            f"the thermal length {chain.thermal_length:.3g} is lost in the rounding of positions "
+            f"up to {extent:.3g}: amplitude is too small for this chain"
+        )
+
+
 def bins_per_rod(chain: Chain, reach: float | None = None) -> int:
     """Return the odd number n of grid spacings in one rod length 2R.
 
@@ -64,11 +73,7 @@ def position_grid(chain: Chain, reach: float | None = None) -> NDArray[np.float6
         chain is so long that displacements are lost in the rounding of positions.
     """
     half_width = _half_width(chain, reach)
-    if thermal_reach(chain) < _SMALLEST_REACH * half_width:
-        raise ValueError(
-            f"the thermal length {chain.thermal_length:.3g} is lost in the rounding of positions "
-            f"up to {half_width:.3g}: amplitude is too small for this chain"
-        )
+    require_resolved(chain, half_width)
     spacing = 2 * chain.radius / bins_per_rod(chain, reach)
     half = math.ceil(half_width / spacing)
     require_memory(
