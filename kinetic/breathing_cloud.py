@@ -75,7 +75,7 @@ def breathing_cloud(
     stretch = check_real("stretch", stretch, positive=True)
     shift = check_real("shift", shift, signed=True)
     free = chain.free_velocity_width**2
-    heat = free if variance is None else check_real("variance", variance, positive=True)
+    hot = free if variance is None else check_real("variance", variance, positive=True)
     require_memory("times", 32.0 * times.size * chain.size)
     order_statistics = equilibrium(chain).mean_displacement.values / chain.thermal_length
     damping, pull = chain.damping / chain.mass, chain.stiffness / chain.mass
@@ -92,7 +92,7 @@ def breathing_cloud(
         ]
 
     s, W = chain.thermal_length, chain.free_velocity_width
-    start = [shift, 0.0, stretch * s, 0.0, heat]
+    start = [shift, 0.0, stretch * s, 0.0, hot]
     smallest = 1e-12 * np.array([s, W, s, W, W**2])
     solution = solve_ivp(
         equations, (0.0, times[-1]), start, "DOP853", times, rtol=1e-11, atol=smallest

@@ -298,7 +298,7 @@ def starts(chain):
     ]
 
 
-@explored()
+@explored(150)
 @given(
     chains(ELASTIC),
     arguments(
