@@ -22,7 +22,7 @@ from crazybilliards.kinetic import (
 )
 from crazybilliards.kinetic.breathing_cloud import breathing_cloud
 from crazybilliards.model import Chain, chain_of
-from crazybilliards.model.chain import check_integer, check_real
+from crazybilliards.model.chain import check_choice, check_integer, check_real
 from crazybilliards.particles import simulate
 
 Array = NDArray[np.float64]
@@ -74,8 +74,7 @@ def compare_relaxation(
     ValueError
         For a wrong argument, before any work.
     """
-    if release not in get_args(Release):
-        raise ValueError(f"release must be one of {get_args(Release)}, got {release!r}")
+    check_choice("release", release, get_args(Release))
     if chain.restitution != 1:
         raise ValueError(f"the comparison is of elastic chains, got e={chain.restitution:g}")
     chain.require_steady_state()

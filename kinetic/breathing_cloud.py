@@ -23,6 +23,8 @@ from scipy.integrate import solve_ivp
 
 from crazybilliards.kinetic.equilibrium import equilibrium
 from crazybilliards.model import Chain
+from crazybilliards.model.chain import check_real, shown
+from crazybilliards.model.memory import require_memory
 from crazybilliards.model.vocabulary import result
 
 Array = NDArray[np.float64]
@@ -44,7 +46,7 @@ def breathing_cloud(
     chain
         A chain with linear springs, no gap and restitution 1.
     times
-        Output times [T], ascending from 0.
+        Output times [T], at least two, ascending from 0.
     stretch, shift
         Of the stationary cloud at the start: sigma(0) = stretch s, Y(0) = shift [R].
     variance
@@ -57,6 +59,11 @@ def breathing_cloud(
     xarray.Dataset
         ``centre``, ``cloud_width`` and ``velocity_variance`` over time, ``mean_displacement``
         over (time, particle): of rods if ``evolving`` (expected order statistics).
+
+    Raises
+    ------
+    ValueError
+        For another chain or a wrong argument, before any work; if the cloud collapses.
     """
     if chain.gap or chain.spring != "linear" or chain.restitution != 1:
         raise ValueError(
@@ -64,7 +71,13 @@ def breathing_cloud(
             f"{chain.spring}, {chain.gap:g}, {chain.restitution:g}"
         )
     chain.require_steady_state()
+    times = _check_times(times)
+    stretch = check_real("stretch", stretch, positive=True)
+    shift = check_real("shift", shift, signed=True)
     free = chain.free_velocity_width**2
+    hot = free if variance is None else check_real("variance", variance, positive=True)
+    require_memory("times", 32.0 * times.size * chain.size)
+    order_statistics = equilibrium(chain).mean_displacement.values / chain.thermal_length
     damping, pull = chain.damping / chain.mass, chain.stiffness / chain.mass
 
     def equations(time: float, state: Array) -> list[float]:
@@ -78,19 +91,15 @@ def breathing_cloud(
             warming,
         ]
 
-    times = np.asarray(times, dtype=float)
-    start = [
-        shift,
-        0.0,
-        stretch * chain.thermal_length,
-        0.0,
-        free if variance is None else variance,
-    ]
+    s, W = chain.thermal_length, chain.free_velocity_width
+    start = [shift, 0.0, stretch * s, 0.0, hot]
+    smallest = 1e-12 * np.array([s, W, s, W, W**2])
     solution = solve_ivp(
-        equations, (0.0, times[-1]), start, "DOP853", times, rtol=1e-11, atol=1e-12
+        equations, (0.0, times[-1]), start, "DOP853", times, rtol=1e-11, atol=smallest
     )
+    if not solution.success:
+        raise ValueError(f"the cloud could not be followed: {solution.message}")
     place, _, width, _, heat = solution.y
-    order_statistics = equilibrium(chain).mean_displacement.values / chain.thermal_length
     mean = place[:, np.newaxis] + width[:, np.newaxis] * order_statistics
     return result(
         chain,
@@ -105,3 +114,14 @@ def breathing_cloud(
         method={"theory": "breathing cloud", "evolving": str(evolving)},
         end_time=times[-1],
     )
+
+
+def _check_times(times: ArrayLike) -> Array:
+    try:
+        checked = np.asarray(times, dtype=float)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise ValueError(f"times must be numbers, got {shown(times)}") from error
+    if checked.ndim != 1 or checked.size < 2 or checked[0] != 0 or not (np.diff(checked) > 0).all():
+        raise ValueError(f"times must ascend from 0, at least two, got {shown(times)}")
+    check_real("times", checked[-1], positive=True)
+    return checked

@@ -32,14 +32,14 @@ from scipy.interpolate import CubicSpline
 
 from crazybilliards.model import Chain
 from crazybilliards.model.chain import check_integer
-from crazybilliards.model.grid import position_grid, thermal_reach
+from crazybilliards.model.grid import position_grid, require_resolved, thermal_reach
+from crazybilliards.model.memory import require_memory
 from crazybilliards.model.vocabulary import result
 
 Array = NDArray[np.float64]
 
 # Grid nodes in the width of the most confined rod, the middle one without gap.
 _NODES_PER_WIDTH = 10
-_MOST_VALUES = 2 * 10**8  # of log F, 8 bytes each
 
 
 def equilibrium(chain: Chain) -> xr.Dataset:
@@ -58,7 +58,8 @@ def equilibrium(chain: Chain) -> xr.Dataset:
     ------
     ValueError
         If the restitution is not 1, if there is no steady state, or if L is so large (above
-        some 10^4) that the recursion would not fit into memory.
+        some 10^4) that the recursion would not fit into memory: 8 bytes for each rod and each of
+        its 150 sqrt(L) nodes.
 
     Examples
     --------
@@ -105,6 +106,7 @@ def equilibrium_states(chain: Chain, n: int, seed: int = 0) -> xr.Dataset:
     -------
     xarray.Dataset
         ``position`` and ``velocity`` over (replica, particle): the ``start`` of a simulation.
+        Takes 40 bytes for each rod of each state.
 
     Raises
     ------
@@ -113,6 +115,7 @@ def equilibrium_states(chain: Chain, n: int, seed: int = 0) -> xr.Dataset:
     """
     n = check_integer("n", n, least=1)
     generator = np.random.default_rng(check_integer("seed", seed, least=0))
+    require_memory(f"n={n} states of {chain.size} rods", 40.0 * n * chain.size)
     recursion = _recursion(chain)
     y = np.empty((n, chain.size))
     below = np.full(n, np.inf)
@@ -174,16 +177,15 @@ def _recursion(chain: Chain) -> _Recursion:
             f"got {chain.restitution:g}"
         )
     chain.require_steady_state()
+    require_resolved(chain, float(chain.reduced_anchors[-1]))
     reach = thermal_reach(chain)
     # Width of the middle order statistic, 1/(2 p(0) sqrt(L)), or of one free rod if smaller.
     narrowest = chain.thermal_length * min(1.0, 1.25 / np.sqrt(chain.size))
     half = int(np.ceil(reach / narrowest * _NODES_PER_WIDTH))
-    if chain.size * (2 * half + 1) > _MOST_VALUES:
-        needed = chain.size * (2 * half + 1) * 8e-9
-        raise ValueError(
-            f"the exact equilibrium of size={chain.size} would take {needed:.1f} GB; "
-            "force_balance takes any size"
-        )
+    require_memory(
+        f"size={chain.size} (force_balance takes more): the exact equilibrium",
+        8.0 * chain.size * (2 * half + 1),
+    )
     spacing = reach / half
     # Rounding halves to even keeps the centres antisymmetric, as log_density needs.
     centres = np.rint(chain.reduced_anchors / spacing).astype(np.int64)

@@ -45,7 +45,9 @@ from crazybilliards.kinetic.profiles import (
 )
 from crazybilliards.kinetic.starts import read_start
 from crazybilliards.model import Chain
-from crazybilliards.model.chain import check_integer, check_real
+from crazybilliards.model.chain import check_choice, check_integer, check_real, shown
+from crazybilliards.model.grid import position_grid
+from crazybilliards.model.memory import require_memory
 from crazybilliards.model.vocabulary import result
 
 Array = NDArray[np.float64]
@@ -55,6 +57,7 @@ Temperature = Literal["isothermal", "evolving"]
 
 _OUTPUTS = 100
 _MOST_CELLS = 100_000
+_BYTES_PER_NODE = 100  # and output: the fields while they are computed, and in the result
 
 
 def hydrodynamics(
@@ -91,7 +94,8 @@ def hydrodynamics(
         ``"isothermal"`` (the paper's; wrong in transients) or ``"evolving"``. Or a prescribed
         W^2(x), in any form that ``force_balance`` takes; in the eulerian frame.
     every
-        Time between outputs [T]; None: a hundredth of the duration.
+        Time between outputs [T]; None: a hundredth of the duration. Each output takes 100 bytes
+        for each node of its grid x (21 or more in a rod length) and for each rod.
     cells
         Number of cells; None: chosen from the chain's scales.
     progress
@@ -120,8 +124,7 @@ def hydrodynamics(
     >>> flow.centre.values[[0, -1]].round(3) + 0.0
     array([3., 0.])
     """
-    if frame not in get_args(Frame):
-        raise ValueError(f"frame must be one of {get_args(Frame)}, got {frame!r}")
+    check_choice("frame", frame, get_args(Frame))
     variance, frozen = _prescribed(chain, temperature, closure)
     if frame == "label" and (variance or frozen):
         raise ValueError("a prescribed closure or temperature needs frame='eulerian'")
@@ -137,6 +140,8 @@ def hydrodynamics(
         if cells > _MOST_CELLS:
             raise ValueError(f"cells must be at most {_MOST_CELLS}, got {cells}")
     start = read_start(chain, initial)
+    nodes = position_grid(chain, float(np.abs(start.x).max())).size + chain.size
+    require_memory(f"every: {times.size} outputs", _BYTES_PER_NODE * float(nodes) * times.size)
     thermal = isinstance(temperature, str) and temperature == "evolving"
     if frame == "label":
         fields = solve_on_labels(chain, start, times, cells, thermal=thermal, progress=progress)
@@ -169,13 +174,13 @@ def _prescribed(
         if temperature not in get_args(Temperature):
             raise ValueError(
                 f"temperature must be one of {get_args(Temperature)} or a profile W^2(x), got "
-                f"{temperature!r}"
+                f"{shown(temperature)}"
             )
     else:
         variance = variance_profile(chain, temperature)
     if isinstance(closure, str):
         if closure != "label":
-            raise ValueError(f"closure must be 'label' or a profile <dx>(x), got {closure!r}")
+            raise ValueError(f"closure must be 'label' or a profile <dx>(x), got {shown(closure)}")
     else:
         frozen = displacement_profile(chain, closure)
     return variance, frozen

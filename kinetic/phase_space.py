@@ -36,6 +36,7 @@ from crazybilliards.kinetic.velocity_space import moments
 from crazybilliards.model import Chain
 from crazybilliards.model.chain import check_integer, check_real
 from crazybilliards.model.grid import position_grid
+from crazybilliards.model.memory import require_memory
 from crazybilliards.model.vocabulary import result
 
 Array = NDArray[np.float64]
@@ -44,6 +45,7 @@ _CELLS = 22
 _FINER = 1.5
 _MOST_CELLS = 60
 _LARGEST_MESH = 150
+_BYTES_PER_CELL = 9e4
 _MOST_RODS = 100_000
 
 
@@ -68,7 +70,7 @@ def phase_space(
         The mesh is refined until no velocity width changes by more, relatively.
     cells
         Cells from the centre to the end of the mesh, in each direction, instead of that; up to
-        150, which takes 2 GB.
+        150, which takes 2 GB: 90 kB times their square.
 
     Returns
     -------
@@ -101,18 +103,7 @@ def phase_space(
     >>> theory.velocity_width.values[[0, 24, 49]].round(3)
     array([0.259, 0.167, 0.151])
     """
-    tolerance = check_real("tolerance", tolerance, positive=True)
-    if cells is not None:
-        cells = check_integer("cells", cells, least=4)
-        if cells > _LARGEST_MESH:
-            raise ValueError(f"cells must be at most {_LARGEST_MESH}, got {cells}")
-    if chain.size > _MOST_RODS:
-        raise ValueError(f"size must be at most {_MOST_RODS}, got {chain.size}")
-    if order is None:
-        order = 2 if chain.restitution <= 1 else 1
-    elif order not in (1, 2):
-        raise ValueError(f"order must be 1 or 2, got {order!r}")
-    chain.require_steady_state()
+    order = check_phase_space(chain, order=order, tolerance=tolerance, cells=cells)
     state = continued(chain, elastic_state(chain, order, _CELLS))
     state = refined(state, cells or _CELLS)
     seen = _rods(state)
@@ -129,6 +120,22 @@ def phase_space(
                 f"tolerance={tolerance:g}; give cells to accept that"
             )
     return _assemble(state, seen, error)
+
+
+def check_phase_space(
+    chain: Chain, *, order: Literal[1, 2] | None, tolerance: float, cells: int | None
+) -> Literal[1, 2]:
+    """Raise for what ``phase_space`` does not take; return the order."""
+    check_real("tolerance", tolerance, positive=True)
+    if cells is not None:
+        check_integer("cells", cells, least=4, most=_LARGEST_MESH)
+    require_memory(f"cells={cells or _MOST_CELLS}", _BYTES_PER_CELL * (cells or _MOST_CELLS) ** 2)
+    if chain.size > _MOST_RODS:
+        raise ValueError(f"size must be at most {_MOST_RODS}, got {chain.size}")
+    if order is not None:
+        check_integer("order", order, least=1, most=2)
+    chain.require_steady_state()
+    return order or (2 if chain.restitution <= 1 else 1)
 
 
 def _rods(state: State) -> Rods:

@@ -39,13 +39,16 @@ from crazybilliards.kinetic.rods_of_points import points
 from crazybilliards.kinetic.velocity_space import Box, VelocitySpace, moments
 from crazybilliards.model import Chain
 from crazybilliards.model.chain import check_integer, check_real
+from crazybilliards.model.memory import require_memory
 from crazybilliards.model.vocabulary import result
 
 Array = NDArray[np.float64]
 
 _STEP = 0.04  # in units of the spring's 1/w0
 _CELLS = 20
-_LARGEST_MESH = 80  # takes 1 GB
+_LARGEST_MESH = 80
+_BYTES_PER_CELL = 1.6e5
+_BYTES_PER_OUTPUT = 600  # and cell: f at six points in each direction, twice
 _OUTPUTS = 50
 _CORE = 1.5
 _LOST = 2e-4  # share of the points on a line of the outermost cells at which the mesh is enlarged
@@ -84,7 +87,8 @@ def relax_phase_space(
         Longest step [T]; None: 0.04 of the spring's s/W. The error of the moments is a quarter of
         its square in these units, 4e-4.
     cells
-        Of the mesh, from the centre to the end in each direction.
+        Of the mesh, from the centre to the end in each direction. Their square takes 160 kB, and
+        600 bytes for each output.
     progress
         Show a progress bar, if standard error is a terminal.
 
@@ -118,6 +122,8 @@ def relax_phase_space(
     cells = check_integer("cells", cells, least=4)
     if cells > _LARGEST_MESH:
         raise ValueError(f"cells must be at most {_LARGEST_MESH}, got {cells}")
+    bytes_per_cell = _BYTES_PER_CELL + _BYTES_PER_OUTPUT * float(count)
+    require_memory(f"{count} outputs on cells={cells}", bytes_per_cell * cells**2)
     chain.require_steady_state()
     units = free_units(chain)
     unit_time = units.length / units.velocity

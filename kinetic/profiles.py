@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import PchipInterpolator
 
 from crazybilliards.model import Chain
+from crazybilliards.model.chain import shown
 from crazybilliards.model.vocabulary import require
 
 Prescribed = (
@@ -41,7 +42,7 @@ def displacement_profile(chain: Chain, displacement: Prescribed) -> Profile:
     """
     if callable(displacement):
         left, right = getattr(displacement, "support", (-math.inf, math.inf))
-        return Profile(displacement, float(left), float(right))
+        return Profile(_numbers("displacement", displacement), float(left), float(right))
     table = _table("displacement", "mean_displacement", chain, displacement)
     return Profile(_interpolated(*table, slope=1.0), -math.inf, math.inf)
 
@@ -49,7 +50,7 @@ def displacement_profile(chain: Chain, displacement: Prescribed) -> Profile:
 def variance_profile(chain: Chain, variance: Prescribed) -> Profile:
     """Turn any accepted form of W^2(x) into a :class:`Profile`; a table goes on as it ends."""
     if callable(variance):
-        function = variance
+        function = _numbers("velocity_variance", variance)
     else:
         x, values = _table("velocity_variance", "velocity_width", chain, variance)
         if isinstance(variance, xr.Dataset):
@@ -57,13 +58,30 @@ def variance_profile(chain: Chain, variance: Prescribed) -> Profile:
         function = _interpolated(x, values, slope=0.0)
 
     def positive(x: ArrayLike) -> NDArray[np.float64]:
-        values = np.asarray(function(x), dtype=float)
+        values = np.asarray(function(x))
         if not (np.isfinite(values).all() and (values > 0).all()):
             raise ValueError("velocity_variance must be finite and positive everywhere")
-        return np.broadcast_to(values, np.shape(x))
+        return values
 
     positive(chain.anchors)
     return Profile(positive, -math.inf, math.inf)
+
+
+def _numbers(
+    name: str, function: Callable[[ArrayLike], ArrayLike]
+) -> Callable[[ArrayLike], NDArray[np.float64]]:
+    """Return a user's function, checked at each call: numbers, as many as positions."""
+
+    def checked(x: ArrayLike) -> NDArray[np.float64]:
+        values = function(x)
+        try:
+            return np.broadcast_to(np.asarray(values, dtype=float), np.shape(x))
+        except (TypeError, ValueError) as error:
+            raise ValueError(
+                f"{name}: the callable must return a number for each x, got {shown(values)}"
+            ) from error
+
+    return checked
 
 
 def _table(
@@ -80,7 +98,7 @@ def _table(
         return chain.anchors + source.mean_displacement.values, source[variable].values
     try:
         x, values = (np.asarray(column, dtype=float) for column in source)
-    except (TypeError, ValueError) as error:
+    except (TypeError, ValueError, OverflowError) as error:
         raise ValueError(
             f"{name} takes a table (x, values), a result with {variable}, or a callable of x, got "
             f"{type(source).__name__}"

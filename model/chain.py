@@ -21,6 +21,7 @@ Units: length R, mass M, time sqrt(M/k).
 from __future__ import annotations
 
 import math
+import reprlib
 from dataclasses import asdict, dataclass, fields, replace
 from numbers import Integral, Real
 from typing import Any, Literal, Self, get_args
@@ -32,6 +33,15 @@ Spring = Literal["linear", "quadratic"]
 
 # Squares and ratios of parameters must neither overflow nor underflow.
 _SMALLEST, _LARGEST = 1e-60, 1e60
+_MOST_RODS = 10**9  # 8 GB an array
+
+_SHORTLY = reprlib.Repr()
+_SHORTLY.maxstring = _SHORTLY.maxother = _SHORTLY.maxlong = 80
+
+
+def shown(value: object) -> str:
+    """Return a wrong value as an error shows it: on one line, long ones cut in the middle."""
+    return " ".join(_SHORTLY.repr(value).split())
 
 
 def check_real(name: str, value: object, *, positive: bool = False, signed: bool = False) -> float:
@@ -45,20 +55,34 @@ def check_real(name: str, value: object, *, positive: bool = False, signed: bool
     if not positive:
         wanted += " (or 0)"
     if isinstance(value, bool | np.bool_) or not isinstance(value, Real):
-        raise ValueError(f"{wanted}, got {value!r}")
-    number = float(value)
+        raise ValueError(f"{wanted}, got {shown(value)}")
+    try:
+        number = float(value)
+    except OverflowError:  # a whole number of more than 308 digits
+        number = math.inf
     in_range = _SMALLEST <= abs(number) <= _LARGEST or (number == 0 and not positive)
     if not in_range or (number < 0 and not signed):
-        raise ValueError(f"{wanted}, got {value!r}")
+        raise ValueError(f"{wanted}, got {shown(value)}")
     return number
 
 
-def check_integer(name: str, value: object, *, least: int) -> int:
+def check_integer(name: str, value: object, *, least: int, most: int | None = None) -> int:
     """Return ``value`` as an int, or raise the one ValueError that says what ``name`` takes."""
-    wrong_type = isinstance(value, bool | np.bool_) or not isinstance(value, Integral)
-    if wrong_type or int(value) < least:  # type: ignore[call-overload]
-        raise ValueError(f"{name} must be an integer >= {least}, got {value!r}")
-    return int(value)  # type: ignore[call-overload]
+    wanted = f"an integer >= {least}" if most is None else f"an integer from {least} to {most}"
+    if (
+        isinstance(value, bool | np.bool_)
+        or not isinstance(value, Integral)
+        or int(value) < least
+        or (most is not None and int(value) > most)
+    ):
+        raise ValueError(f"{name} must be {wanted}, got {shown(value)}")
+    return int(value)
+
+
+def check_choice(name: str, value: object, choices: tuple[str, ...]) -> None:
+    """Raise a ValueError unless ``value`` is one of the words that ``name`` takes."""
+    if not isinstance(value, str) or value not in choices:
+        raise ValueError(f"{name} must be one of {choices}, got {shown(value)}")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -68,7 +92,7 @@ class Chain:
     Parameters
     ----------
     size
-        Number of rods L, at least 1.
+        Number of rods L, 1 to 10^9.
     restitution
         e >= 0: below 1 dissipative, 1 elastic, above 1 anti-dissipative (flippers).
     amplitude
@@ -109,13 +133,13 @@ class Chain:
     spring: Spring = "linear"
 
     def __post_init__(self) -> None:
-        checked: dict[str, Any] = {"size": check_integer("size", self.size, least=1)}
+        size = check_integer("size", self.size, least=1, most=_MOST_RODS)
+        checked: dict[str, Any] = {"size": size}
         for name in ("restitution", "amplitude", "damping", "stiffness", "gap"):
             checked[name] = check_real(name, getattr(self, name))
         for name in ("radius", "mass"):
             checked[name] = check_real(name, getattr(self, name), positive=True)
-        if self.spring not in get_args(Spring):
-            raise ValueError(f"spring must be 'linear' or 'quadratic', got {self.spring!r}")
+        check_choice("spring", self.spring, get_args(Spring))
         for name, value in checked.items():
             object.__setattr__(self, name, value)
 

@@ -16,9 +16,14 @@ from numpy.typing import NDArray
 
 from crazybilliards.model.chain import Chain
 from crazybilliards.model.kernel import kernel
+from crazybilliards.model.memory import require_memory
 
 _BINS_PER_ROD = 21  # "bins much smaller than R": h = 0.095 R
 _MOST_NODES = 2**18
+_BYTES_PER_NODE = 200  # some 25 arrays of a theory
+
+# Of the chain's length: displacements of this size keep seven digits in a position.
+_SMALLEST_REACH = 1e-9
 
 # exp(-40) = 4e-18: nothing that double precision sees lies further out than U(d) = 40 T.
 _TAIL = 40.0
@@ -28,6 +33,15 @@ def thermal_reach(chain: Chain) -> float:
     """Displacement whose spring energy is 40 T, beyond which no thermal rod is found [R]."""
     n = chain.potential_exponent
     return chain.thermal_length * (n * _TAIL) ** (1 / n)
+
+
+def require_resolved(chain: Chain, extent: float) -> None:
+    """Raise a ValueError if thermal displacements are lost in the rounding of such positions."""
+    if 0 < thermal_reach(chain) < _SMALLEST_REACH * extent:
+        raise ValueError(
+            f"the thermal length {chain.thermal_length:.3g} is lost in the rounding of positions "
+            f"up to {extent:.3g}: amplitude is too small for this chain"
+        )
 
 
 def bins_per_rod(chain: Chain, reach: float | None = None) -> int:
@@ -51,9 +65,20 @@ def position_grid(chain: Chain, reach: float | None = None) -> NDArray[np.float6
         The chain; its outer anchors set the extent.
     reach
         Largest displacement from the anchor to make room for; ``thermal_reach(chain)`` if None.
+
+    Raises
+    ------
+    ValueError
+        If 200 bytes for each node are not available, which the solution of a theory takes; if the
+        chain is so long that displacements are lost in the rounding of positions.
     """
+    half_width = _half_width(chain, reach)
+    require_resolved(chain, half_width)
     spacing = 2 * chain.radius / bins_per_rod(chain, reach)
-    half = math.ceil(_half_width(chain, reach) / spacing)
+    half = math.ceil(half_width / spacing)
+    require_memory(
+        f"size={chain.size}: a grid of {2.0 * half:.3g} positions", 2.0 * half * _BYTES_PER_NODE
+    )
     return spacing * np.arange(-half, half + 1.0)
 
 

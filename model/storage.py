@@ -54,7 +54,8 @@ def load(path: str | os.PathLike[str]) -> xr.Dataset | xr.DataTree:
     content = read_sealed(Path(path))
     try:
         tree = xr.open_datatree(io.BytesIO(content), engine="h5netcdf").load()
-    except (OSError, ValueError) as error:
+    # Whatever the libraries make of bytes that are sealed but no NetCDF.
+    except Exception as error:
         raise ValueError(f"{path}: not a result, though crazybilliards wrote it") from error
     tree.close()
     return tree if tree.children else tree.to_dataset()
@@ -69,7 +70,7 @@ def load_attributes(path: str | os.PathLike[str]) -> dict[str, Any]:
     try:
         with h5py.File(io.BytesIO(content)) as file:
             return dict(file.attrs)
-    except OSError as error:
+    except Exception as error:
         raise ValueError(f"{path}: not a result, though crazybilliards wrote it") from error
 
 
@@ -81,6 +82,8 @@ def write_sealed(path: Path, content: bytes) -> None:
 
 def read_sealed(path: Path) -> bytes:
     """Return what :func:`write_sealed` wrote, or raise a ValueError if it is not as it was."""
+    if path.exists() and not path.is_file():
+        raise ValueError(f"{path}: a folder or a device, not a file")
     raw = path.read_bytes()
     content, trailer = raw[:-_TRAILER], raw[-_TRAILER:]
     if not trailer.startswith(_MARK):

@@ -60,26 +60,27 @@ class Checkpoint:
         self.saved = time.monotonic()
 
     def _restore(self, runs: Sequence[Replica]) -> None:
+        content = read_sealed(self.path)
         try:
-            arrays = dict(np.load(io.BytesIO(read_sealed(self.path)), allow_pickle=False))
-            found = json.loads(bytes(arrays["header"]))["identity"]
-        except (KeyError, OSError, json.JSONDecodeError) as error:
+            arrays = dict(np.load(io.BytesIO(content), allow_pickle=False))
+            found = dict(json.loads(bytes(arrays["header"]))["identity"])
+        # Whatever numpy makes of a sealed file of another kind, a result for example.
+        except Exception as error:
             raise ValueError(f"{self.path}: not a checkpoint") from error
+        self._require_same_run(found)
+        try:
+            for number, run in enumerate(runs):
+                _restore_replica(run, number, arrays)
+        except (KeyError, TypeError, ValueError) as error:
+            raise ValueError(f"{self.path}: a checkpoint without a part of the run") from error
+
+    def _require_same_run(self, found: Mapping[str, Any]) -> None:
         for name, wanted in self.identity.items():
             if found.get(name) != wanted:
                 raise ValueError(
                     f"{self.path}: a checkpoint of another run: {name} is {found.get(name)} there "
                     f"and {wanted} here; remove the file to start anew"
                 )
-        for number, run in enumerate(runs):
-            prefix = f"{number}/"
-            state = {
-                name.removeprefix(prefix): value
-                for name, value in arrays.items()
-                if name.startswith(prefix)
-            }
-            run.generator.bit_generator.state = json.loads(bytes(state.pop("generator")))
-            run.restore(state)
 
 
 def run_identity(request: Request) -> dict[str, Any]:
@@ -95,6 +96,17 @@ def run_identity(request: Request) -> dict[str, Any]:
         "replicas": len(request.starts),
         "start": hashlib.sha256(b"".join(states)).hexdigest(),
     }
+
+
+def _restore_replica(run: Replica, number: int, arrays: Mapping[str, np.ndarray]) -> None:
+    prefix = f"{number}/"
+    state = {
+        name.removeprefix(prefix): value
+        for name, value in arrays.items()
+        if name.startswith(prefix)
+    }
+    run.generator.bit_generator.state = json.loads(bytes(state.pop("generator")))
+    run.restore(state)
 
 
 def _text(content: Any) -> np.ndarray:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from typing import Any, NamedTuple, get_args
 
 import numpy as np
@@ -10,7 +10,9 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from crazybilliards.model import Chain
-from crazybilliards.model.chain import check_integer, check_real
+from crazybilliards.model.chain import check_choice, check_integer, check_real, shown
+from crazybilliards.model.grid import require_resolved
+from crazybilliards.model.memory import require_memory
 from crazybilliards.particles.drift import Method
 from crazybilliards.particles.observers import OBSERVERS, Plan
 from crazybilliards.particles.replica import start_swing
@@ -21,7 +23,12 @@ from crazybilliards.particles.stepping import Stepper
 Array = NDArray[np.float64]
 
 _GROUPS = 32  # of an ensemble: enough for an error bar good to an eighth
-_MOST_BYTES = 8e9
+
+# Peak memory, measured: observers are joined and averaged in copies; chunks of snapshots.
+_COPIES = 7
+_BYTES_PER_ROD = 100
+_BYTES_PER_REPLICA = 10_000
+_CHUNKS = 4e7
 
 
 class Request(NamedTuple):
@@ -63,15 +70,16 @@ def make_request(
     Raises
     ------
     ValueError
-        For a wrong argument, or if the measurements would not fit into memory.
+        For a wrong argument, or if the run would not fit into memory: it takes 100 bytes a rod
+        and 10 kB a replica, 40 MB for the snapshots under way, and seven times what the
+        observers keep, while they are joined and averaged.
     """
     for name, value, kinds in (
         ("method", method, Method),
         ("stepper", stepper, Stepper),
         ("average", average, Average),
     ):
-        if value not in get_args(kinds):
-            raise ValueError(f"{name} must be one of {get_args(kinds)}, got {value!r}")
+        check_choice(name, value, get_args(kinds))
     settings = {
         "method": method,
         "stepper": stepper,
@@ -79,6 +87,8 @@ def make_request(
         "seed": check_integer("seed", seed, least=0),
     }
     replicas = check_integer("replicas", replicas, least=1)
+    own = replicas * (_BYTES_PER_ROD * float(chain.size) + _BYTES_PER_REPLICA) + _CHUNKS
+    require_memory(f"replicas={replicas} of {chain.size} rods", own)
     names = _check_observers(observe, method, average)
     chosen = _check_particles(particles, chain)
     schedule = make_schedule(
@@ -91,27 +101,29 @@ def make_request(
         replicas=replicas,
         started=start is not None,
     )
+    require_resolved(chain, float(chain.reduced_anchors[-1]))
     starts = replica_starts(chain, start, replicas)
     groups = min(replicas, _GROUPS) if schedule.ensemble else replicas
     swing = max(start_swing(chain, y, v) for y, v in starts)
     plan = Plan(chain, schedule, chosen, swing, copies=-(-replicas // groups))
-    needed = groups * sum(OBSERVERS[name].memory(plan) for name in names)
-    if needed > _MOST_BYTES:
-        raise ValueError(
-            f"observe: {', '.join(names)} would take {needed / 1e9:.0f} GB; ask for fewer "
-            "particles, replicas or times"
-        )
+    kept = groups * sum(OBSERVERS[name].memory(plan) for name in names)
+    few = "ask for fewer particles, replicas or times"
+    require_memory(f"observe ({few}): {', '.join(names)}", own + _COPIES * kept)
     return Request(chain, schedule, names, plan, groups, starts, settings)
 
 
 def _check_observers(observe: Sequence[str], method: Method, average: Average) -> list[str]:
-    names = [observe] if isinstance(observe, str) else list(dict.fromkeys(observe))
-    for name in names:
-        if name not in OBSERVERS:
-            raise ValueError(f"observe takes any of {sorted(OBSERVERS)}, got {name!r}")
+    if isinstance(observe, str):
+        observe = [observe]
+    elif not isinstance(observe, Collection):
+        raise ValueError(f"observe takes a list of {sorted(OBSERVERS)}, got {shown(observe)}")
+    for name in observe:
+        if not isinstance(name, str) or name not in OBSERVERS:
+            raise ValueError(f"observe takes any of {sorted(OBSERVERS)}, got {shown(name)}")
         if average == "ensemble" and not OBSERVERS[name].ensemble:
             able = sorted(name for name, observer in OBSERVERS.items() if observer.ensemble)
             raise ValueError(f"observe takes any of {able} for an ensemble, got {name!r}")
+    names = list(dict.fromkeys(observe))
     if not names:
         raise ValueError(f"observe must name at least one of {sorted(OBSERVERS)}")
     single = {"collisions", "avalanches"} & set(names)
@@ -128,7 +140,9 @@ def _check_particles(particles: Sequence[int] | None, chain: Chain) -> NDArray[n
     """Return the chosen particles, counted from 0."""
     if particles is None:
         return np.arange(chain.size)
+    if isinstance(particles, str) or not isinstance(particles, Collection):
+        raise ValueError(f"particles must be a list of numbers, got {shown(particles)}")
     chosen = [check_integer("particles", particle, least=1) for particle in particles]
     if not chosen or max(chosen) > chain.size or sorted(set(chosen)) != chosen:
-        raise ValueError(f"particles must ascend within 1..{chain.size}, got {particles!r}")
+        raise ValueError(f"particles must ascend within 1..{chain.size}, got {shown(particles)}")
     return np.array(chosen) - 1

@@ -76,8 +76,12 @@ class Schedule:
     @property
     def times(self) -> NDArray[np.float64]:
         """Time of every snapshot of a replica, shape (snapshots,)."""
-        count = np.arange(self.snapshots) + (not self.ensemble)
-        return np.asarray(self.warmup + count * (self.stride * self.time_step), dtype=float)
+        return self.time(np.arange(float(self.snapshots)))
+
+    def time(self, snapshot: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Time of snapshots by their numbers, from 0; of a half, the middle of two."""
+        count = snapshot + (not self.ensemble)
+        return np.asarray(self.warmup + count * (self.stride * self.time_step))
 
 
 def spring_rate(chain: Chain) -> float:

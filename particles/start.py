@@ -7,6 +7,8 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from crazybilliards.model import Chain
+from crazybilliards.model.chain import check_integer
+from crazybilliards.model.memory import require_memory
 from crazybilliards.model.vocabulary import require, result
 
 Array = NDArray[np.float64]
@@ -39,6 +41,8 @@ def given_start(
     >>> compressed.position.values[0]
     array([-2.2,  0. ,  2.2])
     """
+    replicas = check_integer("replicas", replicas, least=1)
+    require_memory(f"replicas={replicas} of {chain.size} rods", 40.0 * replicas * chain.size)
     shape, dims = (replicas, chain.size), ("replica", "particle")
     try:
         states = {

@@ -22,7 +22,10 @@ def numbers(name: str, text: str) -> list[float]:
     try:
         return [float(part) for part in text.split(",")]
     except ValueError as error:
-        raise ValueError(f"{name} takes numbers separated by commas, got {text!r}") from error
+        from crazybilliards.model.chain import shown
+
+        message = f"{name} takes numbers separated by commas, got {shown(text)}"
+        raise ValueError(message) from error
 
 
 def check_folder(path: Path) -> None:

@@ -61,10 +61,10 @@ def relax(
     """
     from crazybilliards.comparison.relaxation import compare_relaxation
     from crazybilliards.model import Chain
+    from crazybilliards.model.chain import check_choice
 
     defaults = {"compressed": 0.3, "displaced": 2.0, "quenched": 3.0}
-    if release not in defaults:
-        raise ValueError(f"release must be one of {tuple(defaults)}, got {release!r}")
+    check_choice("release", release, tuple(defaults))
     if output is not None:
         check_folder(output)
     tree = compare_relaxation(

@@ -25,6 +25,7 @@ import xarray as xr
 from threadpoolctl import threadpool_limits
 
 from crazybilliards.kinetic import equilibrium, force_balance, phase_space
+from crazybilliards.kinetic.phase_space import check_phase_space
 from crazybilliards.model import Chain, load
 from crazybilliards.model.storage import load_attributes
 from crazybilliards.particles import simulate
@@ -96,8 +97,12 @@ class Case:
         object.__setattr__(self, "settings", {**_plain_all(defaults), **settings})
         if self.job == "simulate":
             make_request(self.chain, start=None, **self.settings)
+        elif self.job == "phase_space":
+            check_phase_space(self.chain, **self.settings)
         else:
             self.chain.require_steady_state()
+            if self.chain.restitution != 1:
+                raise ValueError(f"{self.job} takes restitution=1, got {self.chain.restitution:g}")
 
     @property
     def parameters(self) -> dict[str, Any]:

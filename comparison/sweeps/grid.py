@@ -94,7 +94,9 @@ def read_sweep(path: Path) -> Sweep:
     """
     try:
         tables = tomllib.loads(path.read_text(encoding="utf-8"))
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+    except IsADirectoryError as error:
+        raise ValueError(f"{path}: a folder, not a TOML file") from error
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
         raise ValueError(f"{path}: not a TOML file: {error}") from error
     for name, table in tables.items():
         if name not in {"grid", "chain", *JOBS}:
@@ -126,14 +128,12 @@ def load_sweep(folder: Path) -> xr.Dataset:
     ValueError
         If a file is damaged, or there are none, or they are not cases of a sweep.
     """
-    runs: list[xr.Dataset] = []
+    runs: list[Any] = []
     points: list[dict[str, Any]] = []
     for path in sorted(Path(folder).glob("*.nc")):
         run = load(path)
-        if not isinstance(run, xr.Dataset) or "case" not in run.attrs:
-            raise ValueError(f"{path}: not a case of a sweep")
+        points.append(_point(path, run))
         runs.append(run)
-        points.append(json.loads(run.attrs["case"]))
     if not runs:
         raise ValueError(f"{folder}: holds no case of a sweep")
     if len({point["job"] for point in points}) > 1:
@@ -164,6 +164,18 @@ def load_sweep(folder: Path) -> xr.Dataset:
     return joined.assign_attrs(parameters=json.dumps(fixed, sort_keys=True))
 
 
+def _point(path: Path, run: xr.Dataset | xr.DataTree) -> dict[str, Any]:
+    """Return the parameters of a case, which its file names, or raise if it is none."""
+    try:
+        point = dict(json.loads(run.attrs["case"]))
+    except (KeyError, TypeError, ValueError):
+        point = {}
+    complete = {"job", *_CHAIN} <= point.keys() and {"status", "provenance"} <= run.attrs.keys()
+    if not complete or isinstance(run, xr.DataTree):
+        raise ValueError(f"{path}: not a case of a sweep")
+    return point
+
+
 def _scalar(value: Any) -> Any:
     """Return what can stand along a dimension: a list as text."""
     return json.dumps(value) if isinstance(value, list) else value
@@ -171,8 +183,8 @@ def _scalar(value: Any) -> Any:
 
 def _with_status(run: xr.Dataset) -> xr.Dataset:
     """Turn what differs from case to case into variables."""
-    kept = {name: ((), run.attrs[name]) for name in ("status", "end_time", "provenance")}
-    return run.assign(kept)
+    names = ("status", "end_time", "provenance")  # a theory has no end_time
+    return run.assign({name: ((), run.attrs[name]) for name in names if name in run.attrs})
 
 
 def _alike(runs: list[xr.Dataset]) -> list[xr.Dataset]:

@@ -73,9 +73,6 @@ class Energy(Observer):
         if self.schedule.ensemble:
             return {}
         first = np.arange(self.counts.shape[1]) * self.together
-        times = np.interp(
-            first + (np.mean(self.counts, axis=0) - 1) / 2,
-            np.arange(self.schedule.times.size),
-            self.schedule.times,
-        )
+        # Not from schedule.times, which a long run has too many of.
+        times = self.schedule.time(first + (np.mean(self.counts, axis=0) - 1) / 2)
         return {"time": times[(self.counts > 0).all(axis=0)]}

@@ -11,6 +11,7 @@ from concurrent.futures import Executor, Future
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from crazybilliards.comparison import load_sweep
 from crazybilliards.comparison.sweeps import (
@@ -24,6 +25,7 @@ from crazybilliards.comparison.sweeps import (
 from crazybilliards.comparison.sweeps.case import compute
 from crazybilliards.comparison.sweeps.running import missing_cases
 from crazybilliards.model import Chain, load, save
+from crazybilliards.model.storage import write_sealed
 
 COMMAND = [sys.executable, "-c", "from crazybilliards.comparison.commands.main import main; main()"]
 GRID = """
@@ -152,10 +154,10 @@ def test_another_case_under_a_cases_name_is_found_out(tmp_path):
 
 def test_cases_that_fail_are_named_and_the_others_kept(tmp_path):
     good = Case("equilibrium", Chain(size=3), {})
-    bad = Case("equilibrium", Chain(size=3, restitution=0.5), {})
+    bad = Case("phase_space", Chain(size=1000, restitution=1.5), {"cells": 6})
     failed = run_cases([bad, good], tmp_path, AtOnce(), progress=False)
     assert list(failed) == [bad]
-    assert "restitution" in failed[bad]
+    assert "no steady state" in failed[bad]
     assert missing_cases([bad, good], tmp_path) == [bad]
 
 
@@ -406,3 +408,33 @@ def test_a_sweep_that_is_killed_keeps_what_is_finished_and_leaves_no_workers(
         time.sleep(0.1)
     assert not any(os.path.exists(f"/proc/{pid}") for pid in workers)
     assert load_sweep(folder).status.size >= 1
+
+
+def test_settings_of_a_theory_are_checked_before_any_work():
+    for settings in ({"cells": "x"}, {"cells": 10**6}, {"tolerance": -1}, {"order": 3}):
+        with pytest.raises(ValueError, match=next(iter(settings))):
+            Case("phase_space", Chain(size=3), settings)
+    for job in ("equilibrium", "force_balance"):
+        with pytest.raises(ValueError, match=f"{job} takes restitution=1"):
+            Case(job, Chain(restitution=0.5), {})
+
+
+def test_a_sweep_of_a_theory_is_read_back(tmp_path):
+    cases = [Case("force_balance", Chain(size=size), {}) for size in (3, 4)]
+    for case in cases:
+        write_sealed(case.file(tmp_path), compute(case, case.canonical))
+    grid = load_sweep(tmp_path)
+    assert grid.sizes["size"] == 2
+    assert (grid.status == "completed").all()
+
+
+@pytest.mark.parametrize("case", ["{", "[]", "{}", 3, '{"job": "simulate"}'])
+def test_a_file_without_parameters_is_no_case(case, tmp_path):
+    save(xr.Dataset(attrs={"case": case, "status": "", "provenance": ""}), tmp_path / "a.nc")
+    with pytest.raises(ValueError, match=r"a\.nc: not a case of a sweep"):
+        load_sweep(tmp_path)
+
+
+def test_a_folder_is_no_description_of_a_sweep(tmp_path):
+    with pytest.raises(ValueError, match="a folder, not a TOML file"):
+        read_sweep(tmp_path)

@@ -181,3 +181,10 @@ def test_bad_input_is_refused_in_one_line(chain, arguments, message):
     with pytest.raises(ValueError, match=message) as caught:
         force_balance(chain, **arguments)
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("function", [lambda x: "one", lambda x: [1.0, 2.0]])
+@pytest.mark.parametrize("name", ["displacement", "velocity_variance"])
+def test_a_function_that_gives_no_numbers_is_refused(name, function):
+    with pytest.raises(ValueError, match=f"{name}: the callable must return a number for each x"):
+        force_balance(Chain(size=10), **{name: function})

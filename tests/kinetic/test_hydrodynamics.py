@@ -263,3 +263,26 @@ def test_a_plain_density_profile_is_a_start():
     flow = hydrodynamics(chain, own, 5, every=1, **QUIET)
     reference = hydrodynamics(chain, displaced(chain, 3.0), 5, every=1, **QUIET)
     np.testing.assert_allclose(flow.centre, reference.centre, atol=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"times": []}, "times must ascend from 0"),
+        ({"times": [0.0, 2.0, 1.0]}, "times must ascend from 0"),
+        ({"times": [0.0, np.nan]}, "times must ascend from 0"),
+        ({"times": "ab"}, "times must be numbers"),
+        ({"stretch": 0.0}, "stretch must be"),
+        ({"shift": np.inf}, "shift must be"),
+        ({"variance": -1.0}, "variance must be"),
+    ],
+)
+def test_a_wrong_breathing_cloud_is_refused(arguments, message):
+    with pytest.raises(ValueError, match=message):
+        breathing_cloud(Chain(size=5), **{"times": [0.0, 1.0], **arguments})
+
+
+def test_more_outputs_than_memory_holds_are_refused_before_any_work():
+    chain = Chain(size=10**6)
+    with pytest.raises(ValueError, match=r"would take .* GiB of memory"):
+        hydrodynamics(chain, displaced(chain, 1.0), 1.0, every=1e-6, **QUIET)

@@ -133,7 +133,7 @@ def test_too_many_flippers_have_no_steady_state():
         ({"stiffness": 0.0}, {}, "no steady state"),
         ({}, {"tolerance": 0.0}, "tolerance"),
         ({}, {"cells": 2}, "cells"),
-        ({}, {"cells": 100_000}, "cells must be at most"),
+        ({}, {"cells": 100_000}, "cells must be"),
         ({"size": 10**6}, {}, "size must be at most"),
         ({}, {"order": 3}, "order"),
         ({"restitution": 0.95}, {"tolerance": 1e-9}, "accurate to"),

@@ -36,6 +36,8 @@ gaps = st.floats(0, 10).map(lambda gap: round(gap, 6))
         ("stiffness", 1j),
         ("spring", "cubic"),
         ("spring", 3),
+        ("spring", ["linear"]),
+        ("size", 10**10),
     ],
 )
 def test_a_wrong_parameter_is_named_with_what_it_got(name, value):
@@ -43,6 +45,15 @@ def test_a_wrong_parameter_is_named_with_what_it_got(name, value):
         Chain(**{name: value})
     assert repr(value) in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("value", [np.zeros((9, 9)), np.array(["linear"] * 2), 10**400, "x" * 999])
+def test_a_huge_wrong_parameter_is_still_one_short_line(value):
+    for name in ("size", "amplitude", "spring"):
+        with pytest.raises(ValueError, match=f"^{name} must be .*, got ") as caught:
+            Chain(**{name: value})
+        assert "\n" not in str(caught.value)
+        assert len(str(caught.value)) < 250
 
 
 def test_zero_amplitude_damping_and_stiffness_are_chains_without_a_steady_state():

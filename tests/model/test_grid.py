@@ -46,3 +46,10 @@ def test_points_outside_and_nan_are_counted_not_lost():
     points = np.array([-0.1, 0.0, 5.5, 10.0, 1e300, np.nan, -np.inf])
     assert deposit(points, 0.0, 1.0, weights) == 5
     assert weights.sum() == 2
+
+
+def test_a_grid_that_cannot_be_is_refused():
+    with pytest.raises(ValueError, match="lost in the rounding of positions"):
+        position_grid(Chain(size=10, amplitude=1e-9, gap=1.0))
+    with pytest.raises(ValueError, match=r"would take .* GiB of memory"):
+        position_grid(Chain(amplitude=1e20))

@@ -1,5 +1,6 @@
 """Checkpoints: a run that is killed and resumed gives the bits of an undisturbed one."""
 
+import io
 import signal
 import subprocess
 import sys
@@ -9,7 +10,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from crazybilliards.model import Chain, load
+from crazybilliards.model import Chain, load, save
+from crazybilliards.model.storage import read_sealed, write_sealed
 from crazybilliards.particles import simulate
 
 SCRIPT = """
@@ -102,3 +104,30 @@ def test_a_checkpoint_that_cannot_be_written_is_an_error_before_any_work(tmp_pat
     with pytest.raises(OSError, match="file"):
         simulate(Chain(size=100), duration=1e8, checkpoint=tmp_path / "file" / "state")
     assert time.monotonic() - begin < 20
+
+
+def test_a_sealed_file_that_is_no_checkpoint_is_refused_and_kept(tmp_path):
+    """A result given by mistake, and what numpy would take for something else."""
+    chain, options = Chain(size=2), {"duration": 200.0, "progress": False}
+    path = save(simulate(chain, **options), tmp_path / "run.nc")
+    contents = [read_sealed(path), b"", b"PK\x03\x04", b"\x93NUMPY", b'{"identity": 3}']
+    for content in contents:
+        write_sealed(path, content)
+        with pytest.raises(ValueError, match=r"run\.nc: not a checkpoint"):
+            simulate(chain, checkpoint=path, **options)
+        assert read_sealed(path) == content
+    with pytest.raises(ValueError, match="a folder"):
+        simulate(chain, checkpoint=tmp_path, **options)
+
+
+def test_a_checkpoint_without_a_part_is_refused(tmp_path):
+    chain, options = Chain(size=2), {"duration": 200.0, "progress": False}
+    path = tmp_path / "state"
+    simulate(chain, checkpoint=path, **options)
+    whole = dict(np.load(io.BytesIO(read_sealed(path))))
+    for missing in ("0/y", "0/generator", "0/observer 0 sums"):
+        buffer = io.BytesIO()
+        np.savez(buffer, **{name: value for name, value in whole.items() if name != missing})
+        write_sealed(path, buffer.getvalue())
+        with pytest.raises(ValueError, match="without a part of the run"):
+            simulate(chain, checkpoint=path, **options)

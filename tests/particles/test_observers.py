@@ -6,6 +6,9 @@ from scipy.stats import norm
 
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
+from crazybilliards.particles.observers import Plan
+from crazybilliards.particles.observers.energy import Energy
+from crazybilliards.particles.schedule import Schedule
 
 
 def test_kinetic_energy_is_half_a_temperature_a_rod():
@@ -71,3 +74,19 @@ def test_collisions_are_only_seen_one_at_a_time():
         simulate(Chain(damping=0), observe="velocities", progress=False)
     with pytest.raises(ValueError, match="would take"):
         simulate(Chain(size=10**7), observe="velocities", progress=False)
+
+
+def test_observe_and_particles_take_lists():
+    for wrong in (5, None, True, [["widths"]], [3]):
+        with pytest.raises(ValueError, match="observe takes"):
+            simulate(Chain(), observe=wrong, progress=False)
+    for wrong in (5, "12", True):
+        with pytest.raises(ValueError, match="particles must be a list"):
+            simulate(Chain(), particles=wrong, progress=False)
+
+
+def test_the_energy_of_a_run_of_a_billion_snapshots_takes_no_memory_for_their_times():
+    schedule = Schedule(0.1, warmup_steps=0, stride=10, blocks=64, snapshots_per_block=10**8)
+    energy = Energy(Plan(Chain(), schedule, np.arange(100), swing=0.0, copies=1))
+    energy.counts[:] = energy.together
+    assert energy.coordinates()["time"][[0, -1]] == pytest.approx([3.2e6, 6.4e9 - 3.2e6], rel=1e-6)
