@@ -35,8 +35,7 @@ def locked(path: Path) -> Iterator[None]:
     try:
         descriptor = open_locked(lock)
     except BlockingIOError as error:
-        owner = lock.read_text(errors="replace") if lock.exists() else "another process"
-        message = f"in use by {owner}; wait until it has ended, or take another name"
+        message = f"in use by {_owner(lock)}; wait until it has ended, or take another name"
         raise BlockingIOError(error.errno, message, str(path)) from error
     if descriptor is None:
         yield
@@ -83,6 +82,13 @@ def _is_named(descriptor: int, path: Path) -> bool:
         return os.path.samestat(os.fstat(descriptor), path.lstat())
     except FileNotFoundError:
         return False
+
+
+def _owner(lock: Path) -> str:
+    try:
+        return lock.read_text(errors="replace") or "another process"
+    except FileNotFoundError:
+        return "another process"  # which has just ended
 
 
 def _sign(descriptor: int, lock: Path) -> None:
