@@ -156,6 +156,8 @@ def _prepare_worker() -> None:
     # A process for every core: linear algebra in threads would only make them wait.
     threadpool_limits(1)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    # Its own lock is one for processes, of which a worker that is killed leaves something behind.
+    tqdm.set_lock(threading.RLock())
     threading.Thread(target=_follow_parent, daemon=True).start()
 
 

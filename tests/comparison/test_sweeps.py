@@ -464,6 +464,8 @@ def test_a_sweep_that_is_killed_keeps_what_is_finished_and_leaves_no_workers(
         assert process.returncode == 130
         assert "interrupted" in errors
         assert "Traceback" not in errors
+        assert "leaked" not in errors
+        assert errors.count("interrupted") == 1
     else:
         assert process.returncode == -how
     cases = read_sweep(long_grid).cases()
