@@ -51,18 +51,18 @@ def mount(*arguments):
 
 @pytest.fixture
 def small(tmp_path):
-    """Give a file system of 300 kB."""
+    """Give a file system of 1 MB."""
     folder = tmp_path / "small"
     folder.mkdir()
-    mount("-t", "tmpfs", "-o", "size=300k", "tmpfs", folder)
+    mount("-t", "tmpfs", "-o", "size=1m", "tmpfs", folder)
     yield folder
     subprocess.run(["umount", "--lazy", str(folder)], check=True)
 
 
 @pytest.fixture(scope="module")
 def results():
-    """Two results, of 40 and of 150 kB or so."""
-    return [simulate(Chain(size=size), **RUN) for size in (3, 100)]
+    """Two results, the second of some 100 kB."""
+    return [simulate(Chain(size=size), observe="widths", **RUN) for size in (3, 300)]
 
 
 @pytest.fixture(params=["no room", "file too large"])
@@ -96,9 +96,10 @@ def squeeze(request, tmp_path):
 def test_wherever_the_room_ends_the_old_file_stays(squeeze, results, tmp_path):
     folder, leave = squeeze
     old, new = results
+    most = save(new, folder / "run.nc").stat().st_size
     path = save(old, folder / "run.nc")
     failures = []
-    for room in [0, *np.random.default_rng(1).integers(0, 120_000, 99)]:
+    for room in [0, *np.random.default_rng(1).integers(0, 1.2 * most, 99)]:
         leave(int(room))
         try:
             save(new, path)
@@ -140,12 +141,14 @@ def test_a_disk_full_in_the_middle_of_a_run(squeeze, e, monkeypatch):
 
 
 def test_a_sweep_on_a_full_disk_keeps_what_fits_and_goes_on_with_more_room(small, tmp_path):
+    (small / "filler").write_bytes(b"x" * 500_000)
     grid = tmp_path / "grid.toml"
     grid.write_text(GRID.format(duration=300))
     full = run("sweep", grid, "--output", small)
     assert (full.returncode, full.stderr.count("\n")) == (2, 1), full.stderr
     assert f"error: {small}" in full.stderr
     assert "No space left on device; what was finished is kept" in full.stderr
+    (small / "filler").unlink()
     kept = {path: path.read_bytes() for path in small.iterdir()}
     assert 0 < len(kept) < 6
     mount("-o", "remount,size=10m", small)
@@ -166,7 +169,7 @@ def test_a_sweep_on_a_full_disk_keeps_what_fits_and_goes_on_with_more_room(small
     ids=lambda arguments: arguments[0],
 )
 def test_commands_on_a_full_disk_say_so_and_show_what_they_can(arguments, small):
-    (small / "filler").write_bytes(b"x" * 290_000)
+    (small / "filler").write_bytes(b"x" * 1_040_000)
     done = run(*arguments, "--output", small)
     assert (done.returncode, done.stderr.count("\n")) == (2, 1), done.stderr
     assert f"error: {small}" in done.stderr
