@@ -10,6 +10,7 @@ import xarray as xr
 from crazybilliards.model import Chain
 from crazybilliards.model.chain import check_integer, check_real
 from crazybilliards.particles import simulate
+from crazybilliards.particles.running import terminated_like_interrupted
 from crazybilliards.particles.schedule import make_schedule
 
 SIMULATION = "simulation"
@@ -51,30 +52,31 @@ def simulate_beside(
     -------
     xarray.DataTree
         ``tree["NAME/simulation"]`` and ``tree["NAME/THEORY"]``. ``attrs["status"]`` is
-        ``interrupted`` if Ctrl-C ended it early (the tree then holds what was finished, and the
-        run cut short), ``diverged`` if a simulation did.
+        ``interrupted`` if Ctrl-C or SIGTERM ended it early (the tree then holds what was finished,
+        and the run cut short), ``diverged`` if a simulation did.
     """
     seeds = np.random.SeedSequence(check_integer("seed", seed, least=0))
     results: dict[str, xr.Dataset] = {}
     status = "completed"
     try:
-        for (name, chain), own_seed in zip(
-            chains.items(), seeds.generate_state(len(chains)), strict=True
-        ):
-            run = simulate(
-                chain,
-                duration=duration,
-                seed=int(own_seed),
-                replicas=_REPLICAS,
-                threads=threads,
-                progress=progress,
-            )
-            results[f"{name}/{SIMULATION}"] = run
-            if run.attrs["status"] != "completed":
-                status = run.attrs["status"]
-            results |= {f"{name}/{key}": theory for key, theory in theories(chain, run).items()}
-            if status == "interrupted":
-                break
+        with terminated_like_interrupted():
+            for (name, chain), own_seed in zip(
+                chains.items(), seeds.generate_state(len(chains)), strict=True
+            ):
+                run = simulate(
+                    chain,
+                    duration=duration,
+                    seed=int(own_seed),
+                    replicas=_REPLICAS,
+                    threads=threads,
+                    progress=progress,
+                )
+                results[f"{name}/{SIMULATION}"] = run
+                if run.attrs["status"] != "completed":
+                    status = run.attrs["status"]
+                results |= {f"{name}/{key}": theory for key, theory in theories(chain, run).items()}
+                if status == "interrupted":
+                    break
     except KeyboardInterrupt:
         if not results:
             raise

@@ -7,15 +7,20 @@ NetCDF library sees the bytes, so a damaged or truncated file can never give a w
 
 from __future__ import annotations
 
+import errno
 import hashlib
 import io
 import os
-import tempfile
+import secrets
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import h5py
 import xarray as xr
+
+from crazybilliards.model.locks import open_locked
 
 _MARK = b"\ncrazybilliards-1 sha256 "
 _TRAILER = len(_MARK) + 64 + 1  # hexadecimal digest and a newline
@@ -94,19 +99,52 @@ def read_sealed(path: Path) -> bytes:
 
 
 def write_atomically(path: Path, content: bytes) -> None:
-    """Write ``content`` beside ``path``, then rename: readers see the old file or the new one."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    handle, temporary = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".part", dir=path.parent)
+    """Write ``content`` beside ``path``, then rename: readers see the old file or the new one.
+
+    Raises
+    ------
+    OSError
+        If it cannot be written, naming ``path``; a former file stays as it was.
+    """
     try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(content)
-            file.flush()
-            os.fsync(file.fileno())
-        # mkstemp makes files private; results are as readable as any other new file.
-        umask = os.umask(0)
-        os.umask(umask)
-        os.chmod(temporary, 0o666 & ~umask)
-        os.replace(temporary, path)
+        make_folder(path.parent)
+        with _unfinished(path) as name:
+            with open(name, "wb") as file:
+                file.write(content)
+                file.flush()
+                os.fsync(file.fileno())
+            os.replace(name, path)
+    except OSError as error:
+        raise OSError(error.errno, error.strerror or str(error), str(path)) from error
+
+
+def make_folder(path: Path) -> None:
+    """Make a folder, and those it lies in, unless it is there."""
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except FileExistsError as error:
+        raise NotADirectoryError(errno.ENOTDIR, os.strerror(errno.ENOTDIR), str(path)) from error
+
+
+@contextmanager
+def _unfinished(path: Path) -> Iterator[Path]:
+    """Give the name of the file that becomes ``path`` when it is complete, and remove it if not.
+
+    It is always the same, so that the next writing takes over what a kill left. Where somebody
+    else is writing just then, or nothing can be locked, it is one of its own.
+    """
+    name = path.with_name(f".{path.name}.part")
+    try:
+        lock = open_locked(name)
+    except OSError:
+        lock = None
+    if lock is None:
+        name = path.with_name(f".{path.name}.{secrets.token_hex(4)}.part")
+    try:
+        yield name
     except BaseException:
-        Path(temporary).unlink(missing_ok=True)
+        name.unlink(missing_ok=True)
         raise
+    finally:
+        if lock is not None:
+            os.close(lock)

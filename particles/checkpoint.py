@@ -2,8 +2,9 @@
 
 A checkpoint holds, for every replica, positions, velocities, the random generator and what its
 observers have summed up; and the identity of the run: parameters, schedule, seed, version. It is
-written atomically and sealed with a checksum. Replicas are caught between two chunks, whose
-boundaries do not depend on when that is: a resumed run gives the same bits as an undisturbed one.
+written atomically, sealed with a checksum, and kept by one process at a time. Replicas are caught
+between two chunks, whose boundaries do not depend on when that is: a resumed run gives the same
+bits as an undisturbed one.
 """
 
 from __future__ import annotations
@@ -12,7 +13,9 @@ import hashlib
 import io
 import json
 import time
-from collections.abc import Mapping, Sequence
+import warnings
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import asdict
 from importlib.metadata import version
 from pathlib import Path
@@ -20,7 +23,8 @@ from typing import Any
 
 import numpy as np
 
-from crazybilliards.model.storage import read_sealed, write_sealed
+from crazybilliards.model.locks import locked
+from crazybilliards.model.storage import make_folder, read_sealed, write_sealed
 from crazybilliards.particles.replica import Replica
 from crazybilliards.particles.request import Request
 
@@ -34,11 +38,23 @@ class Checkpoint:
         self.interval = interval
         self.saved = time.monotonic()
 
-    def resume(self, runs: Sequence[Replica]) -> None:
-        """Bring the replicas to the state in the file, if there is one; then write it."""
-        if self.path.exists():
-            self._restore(runs)
-        self.save(runs)  # shows before any work that the file can be written
+    @contextmanager
+    def resumed(self, runs: Sequence[Replica]) -> Iterator[None]:
+        """Bring the replicas to the state in the file, if there is one, and keep others off it.
+
+        Raises
+        ------
+        OSError
+            If the file cannot be read or written, or another run is keeping it.
+        ValueError
+            If it is damaged, or not a checkpoint of this run.
+        """
+        make_folder(self.path.parent)
+        with locked(self.path):
+            if self.path.exists():
+                self._restore(runs)
+            self._write(runs)  # shows before any work that the file can be written
+            yield
 
     def save_if_due(self, runs: Sequence[Replica]) -> None:
         """Save if the interval has passed since the last time."""
@@ -46,6 +62,19 @@ class Checkpoint:
             self.save(runs)
 
     def save(self, runs: Sequence[Replica]) -> None:
+        """Write the state of all replicas, or warn: a full disk must not cost the run."""
+        try:
+            self._write(runs)
+        except OSError as error:
+            warnings.warn(
+                f"{self.path}: no checkpoint written: {error.strerror}; the run goes on, and what "
+                "was written before stays valid",
+                RuntimeWarning,
+                stacklevel=2,
+            )
+            self.saved = time.monotonic()
+
+    def _write(self, runs: Sequence[Replica]) -> None:
         """Write the state of all replicas, each at the end of its chunk."""
         arrays: dict[str, np.ndarray] = {"header": _text({"identity": self.identity})}
         for number, run in enumerate(runs):

@@ -39,43 +39,44 @@ def run_all(
             disable=None if progress else True,
         ) as bar,
         ThreadPoolExecutor(min(threads, len(runs))) as pool,
-        _terminated_like_interrupted(),
+        terminated_like_interrupted(),
     ):
 
         def work(replica: Replica) -> None:
             for steps in replica.work(dynamics, schedule, stop):
                 bar.update(steps * schedule.time_step)
 
-        futures = [pool.submit(work, replica) for replica in runs]
+        futures: list[Future[None]] = []
         interrupted = False
         try:
+            futures.extend(pool.submit(work, replica) for replica in runs)
             _finish(futures, runs, keeper)
         except KeyboardInterrupt:
             interrupted = True
             stop.set()
-            _finish(futures, runs, None)
-        except BaseException:
-            stop.set()
-            raise
-        if keeper is not None:
-            keeper.save(runs)
+            _finish(futures, runs, keeper)
+        finally:
+            stop.set()  # or leaving would wait for the end of the run
     return interrupted
 
 
 def _finish(futures: list[Future[None]], runs: list[Replica], keeper: Checkpoint | None) -> None:
-    """Wait for all, or for the first that fails; look at signals twice a second."""
+    """Wait for all, or for the first that fails, and keep the checkpoint; see signals soon."""
+    timeout = 0.5 if keeper is None else min(0.5, keeper.interval)
     while True:
-        done, pending = wait(futures, timeout=0.5, return_when=FIRST_EXCEPTION)
+        done, pending = wait(futures, timeout=timeout, return_when=FIRST_EXCEPTION)
         for future in done:
             future.result()
         if not pending:
-            return
+            break
         if keeper is not None:
             keeper.save_if_due(runs)
+    if keeper is not None:
+        keeper.save(runs)
 
 
 @contextmanager
-def _terminated_like_interrupted() -> Iterator[None]:
+def terminated_like_interrupted() -> Iterator[None]:
     """Let SIGTERM, which batch systems send before they kill, act like Ctrl-C meanwhile."""
     if threading.current_thread() is not threading.main_thread():
         yield  # only the main thread may change handlers, and only it receives signals

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
+from contextlib import nullcontext
 from pathlib import Path
 from threading import Event
 
@@ -97,7 +98,7 @@ def simulate(
     checkpoint
         File to keep the state of the run in, written every ``checkpoint_interval`` seconds and
         at Ctrl-C or SIGTERM. The same call again goes on from there, to the same bits; a
-        checkpoint of another run is refused.
+        checkpoint of another run, or one that another process is keeping, is refused.
     progress
         Show a progress bar with the time left, if standard error is a terminal.
 
@@ -116,6 +117,8 @@ def simulate(
     ------
     ValueError
         For a wrong argument, before any work.
+    OSError
+        If the checkpoint cannot be written, before any work. Later on that is a warning.
     KeyboardInterrupt
         On Ctrl-C before anything was measured.
 
@@ -151,8 +154,8 @@ def simulate(
     keeper = None
     if checkpoint is not None:
         keeper = Checkpoint(Path(checkpoint), run_identity(request), checkpoint_interval)
-        keeper.resume(runs)
-    interrupted = run_all(runs, dynamics, schedule, threads, keeper, progress)
+    with nullcontext() if keeper is None else keeper.resumed(runs):
+        interrupted = run_all(runs, dynamics, schedule, threads, keeper, progress)
     return collect(request, runs, interrupted)
 
 

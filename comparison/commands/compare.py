@@ -99,9 +99,11 @@ def compare(
         )
         write, show = _write_restitutions, _print_widths
     status = tree.attrs["status"]
-    if output is not None:
-        write(tree, output, "" if status == "completed" else f"-{status}")
-    show(tree)
+    try:
+        if output is not None:
+            write(tree, output, "" if status == "completed" else f"-{status}")
+    finally:
+        show(tree)  # where nothing can be written any more, this is all there is
     if output is None:
         print("Nothing was written; --output FOLDER keeps the figures and the data.")
     exit_unless_completed(status)

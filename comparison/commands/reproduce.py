@@ -69,13 +69,18 @@ def reproduce(
     check_folder(output)
     from crazybilliards.comparison.reproduction import all_cases
     from crazybilliards.comparison.sweeps.running import missing_cases
+    from crazybilliards.model.locks import locked
+    from crazybilliards.model.storage import make_folder
 
-    kept = output / "cases"
-    cases = all_cases(wanted, quality.value)
-    missing = missing_cases(cases, kept)
-    print(f"{len(cases)} cases, {len(cases) - len(missing)} of them in {kept} already")
-    compute_missing(missing, kept, engine(processes, dask, scheduler))
-    _write(wanted, quality, output)
+    computing = engine(processes, dask, scheduler)
+    make_folder(output)
+    with locked(output):
+        kept = output / "cases"
+        cases = all_cases(wanted, quality.value)
+        missing = missing_cases(cases, kept)
+        print(f"{len(cases)} cases, {len(cases) - len(missing)} of them in {kept} already")
+        compute_missing(missing, kept, computing)
+        _write(wanted, quality, output)
 
 
 def _write(figures: list[PaperFigure], quality: Quality, output: Path) -> None:

@@ -93,22 +93,24 @@ def compute_missing(
 
     if not missing:
         return
-    reason, status = "", 1
+    reason, status = "", 0
     try:
         with executor as running:
             failed = run_cases(missing, folder, running)
     except KeyboardInterrupt:
-        reason, status = "interrupted", INTERRUPTED
+        status = INTERRUPTED  # which says so itself
     except RuntimeError as error:
-        reason = str(error)
+        reason, status = str(error), 1
     else:
         if failed:
             case, first = next(iter(failed.items()))
             reason = f"{len(failed)} cases failed, the first, {case.canonical}, with {first}"
+            status = 1
     kept = sum(case.file(folder).exists() for case in missing)
     print(f"computed {kept} cases into {folder}")
     if reason:
         print(f"crazybilliards: {reason}", file=sys.stderr)
+    if status:
         if kept < len(missing):
             print("The same command computes what is missing.", file=sys.stderr)
         raise typer.Exit(status)

@@ -21,7 +21,8 @@ from pathlib import Path
 from tqdm import tqdm
 
 from crazybilliards.comparison.sweeps.case import Case, compute
-from crazybilliards.model.storage import write_sealed
+from crazybilliards.model.locks import locked
+from crazybilliards.model.storage import make_folder, write_sealed
 from crazybilliards.particles.running import cores
 
 _PATIENCE = "20s"  # for a scheduler to answer
@@ -61,12 +62,25 @@ def run_cases(
     ------
     RuntimeError
         If workers die under their cases; what was finished is kept.
+    OSError
+        If the folder cannot be written to, or another process is filling it.
     """
-    folder.mkdir(parents=True, exist_ok=True)
-    missing = missing_cases(cases, folder)
+    make_folder(folder)
+    with locked(folder):
+        return _run_missing(missing_cases(cases, folder), folder, executor, progress)
+
+
+def _run_missing(
+    missing: list[Case], folder: Path, executor: Executor, progress: bool
+) -> dict[Case, str]:
+    """Compute cases and write each when it arrives; return the reasons of those that failed."""
     work = {case: case.work for case in missing}
     failed: dict[Case, str] = {}
-    futures = {executor.submit(compute, case, case.canonical): case for case in missing}
+    broken: BrokenProcessPool | None = None
+    futures = {}
+    for case in missing:
+        with _ctrl_c_held_back():
+            futures[executor.submit(compute, case, case.canonical)] = case
     with tqdm(
         total=sum(work.values()),
         desc=f"{len(missing)} cases",
@@ -77,16 +91,28 @@ def run_cases(
         for future in as_completed(futures):
             case = futures.pop(future)
             try:
-                write_sealed(case.file(folder), future.result())
+                content = future.result()
             except BrokenProcessPool as error:
-                raise RuntimeError(
-                    "a worker process died (out of memory?); what was finished is kept, the same "
-                    "call computes the rest"
-                ) from error
-            except (ValueError, ArithmeticError, MemoryError) as error:
+                broken = error  # others may have been finished before
+            except Exception as error:  # whatever is wrong with one must not cost the others
                 failed[case] = f"{type(error).__name__}: {error}"
+            else:
+                _write(case.file(folder), content)
             bar.update(work[case])
+    if broken is not None:
+        raise RuntimeError(
+            "a worker process died (out of memory?); what was finished is kept, the same call "
+            "computes the rest"
+        ) from broken
     return failed
+
+
+def _write(path: Path, content: bytes) -> None:
+    try:
+        write_sealed(path, content)
+    except OSError as error:
+        what = f"{error.strerror}; what was finished is kept, the same call computes the rest"
+        raise OSError(error.errno, what, str(path)) from error
 
 
 @contextmanager
@@ -111,9 +137,24 @@ def process_pool(processes: int | None = None) -> Iterator[Executor]:
     pool.shutdown()
 
 
+@contextmanager
+def _ctrl_c_held_back() -> Iterator[None]:
+    """Start workers that Ctrl-C does not reach, from their first moment on; here it comes later."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
 def _prepare_worker() -> None:
     """Leave Ctrl-C to the parent, and do not outlive it however it dies."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    # Its own lock is one for processes, of which a worker that is killed leaves something behind.
+    tqdm.set_lock(threading.RLock())
     threading.Thread(target=_follow_parent, daemon=True).start()
 
 

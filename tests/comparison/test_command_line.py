@@ -85,6 +85,16 @@ def test_compare_writes_both_figures_and_the_data(tmp_path):
     assert load(folder / "comparison.nc").identical(tree)
 
 
+def test_what_cannot_be_written_is_shown_at_least(tmp_path):
+    (tmp_path / "comparison.nc").mkdir()
+    done = run(*QUICK, "--output", str(tmp_path))
+    assert done.returncode == 2
+    assert "close packing" in done.stdout
+    assert done.stderr.count("\n") == 1
+    assert f"{tmp_path / 'comparison.nc'}: Is a directory" in done.stderr
+    assert [path.name for path in tmp_path.iterdir()] == ["comparison.nc"]
+
+
 def test_without_output_nothing_is_written(tmp_path):
     done = run(*QUICK, cwd=tmp_path)
     assert done.returncode == 0

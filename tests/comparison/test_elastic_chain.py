@@ -1,10 +1,17 @@
 """The main comparison: what it promises about simulation and theory at e = 1."""
 
+import os
+import signal
+
 import numpy as np
 import pytest
 
 from crazybilliards.comparison import compare_elastic, smooth
-from crazybilliards.comparison.elastic_chain import deviations, largest_width_error
+from crazybilliards.comparison.elastic_chain import (
+    deviations,
+    elastic_theories,
+    largest_width_error,
+)
 from crazybilliards.model import Chain, chain_of
 
 
@@ -91,3 +98,18 @@ def test_amplitudes_have_random_numbers_of_their_own(tree):
 def test_wrong_arguments_are_refused(chain, amplitudes, message):
     with pytest.raises(ValueError, match=message):
         compare_elastic(chain, amplitudes, progress=False)
+
+
+def test_sigterm_between_simulations_keeps_what_was_computed(monkeypatch):
+    """As simulate itself takes it: batch systems send it before they kill."""
+
+    def theories(chain, run):
+        os.kill(os.getpid(), signal.SIGTERM)
+        return elastic_theories(chain, run)
+
+    monkeypatch.setattr("crazybilliards.comparison.elastic_chain.elastic_theories", theories)
+    tree = compare_elastic(Chain(size=5), (1.0, 2.0), duration=500, progress=False)
+    assert tree.attrs["status"] == "interrupted"
+    assert tree["amplitude_1/simulation"].attrs["status"] == "completed"
+    assert "amplitude_2" not in tree
+    assert signal.getsignal(signal.SIGTERM) == signal.SIG_DFL

@@ -1,5 +1,6 @@
 """Sweeps: the same case the same file, nothing computed twice, nothing lost, any engine."""
 
+import errno
 import json
 import os
 import signal
@@ -8,6 +9,7 @@ import sys
 import threading
 import time
 from concurrent.futures import Executor, Future
+from concurrent.futures.process import BrokenProcessPool
 
 import numpy as np
 import pytest
@@ -22,9 +24,10 @@ from crazybilliards.comparison.sweeps import (
     read_sweep,
     run_cases,
 )
-from crazybilliards.comparison.sweeps.case import compute
+from crazybilliards.comparison.sweeps.case import JOBS, compute
 from crazybilliards.comparison.sweeps.running import missing_cases
 from crazybilliards.model import Chain, load, save
+from crazybilliards.model.locks import locked
 from crazybilliards.model.storage import write_sealed
 
 COMMAND = [sys.executable, "-c", "from crazybilliards.comparison.commands.main import main; main()"]
@@ -159,6 +162,71 @@ def test_cases_that_fail_are_named_and_the_others_kept(tmp_path):
     assert list(failed) == [bad]
     assert "no steady state" in failed[bad]
     assert missing_cases([bad, good], tmp_path) == [bad]
+
+
+def test_whatever_is_wrong_with_a_case_does_not_cost_the_others(tmp_path, monkeypatch):
+    bad, good = sweep().cases()[:2]
+    simulate = JOBS["simulate"]
+
+    def failing(chain, **settings):
+        if chain == bad.chain:
+            raise TypeError("a fault of the program")
+        return simulate(chain, **settings)
+
+    monkeypatch.setitem(JOBS, "simulate", failing)
+    failed = run_cases([bad, good], tmp_path, AtOnce(), progress=False)
+    assert failed == {bad: "TypeError: a fault of the program"}
+    assert missing_cases([bad, good], tmp_path) == [bad]
+
+
+def test_what_was_finished_before_a_worker_died_is_written(tmp_path):
+    class Dying(AtOnce):
+        def submit(self, function, /, case, canonical):
+            if case == cases[0]:
+                future = Future()
+                future.set_exception(BrokenProcessPool("terminated abruptly"))
+                return future
+            return super().submit(function, case, canonical)
+
+    cases = sweep().cases()
+    with pytest.raises(RuntimeError, match="a worker process died"):
+        run_cases(cases, tmp_path, Dying(), progress=False)
+    assert missing_cases(cases, tmp_path) == [cases[0]]
+
+
+def test_a_folder_is_filled_by_one_process_at_a_time(tmp_path):
+    cases = sweep().cases()[:1]
+    with (
+        locked(tmp_path),
+        pytest.raises(BlockingIOError, match=f"in use by process {os.getpid()}"),
+    ):
+        run_cases(cases, tmp_path, AtOnce(), progress=False)
+    assert run_cases(cases, tmp_path, AtOnce(), progress=False) == {}
+
+
+def test_a_full_disk_is_an_error_that_says_what_to_do(tmp_path, monkeypatch):
+    def full(source, target):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    cases = sweep().cases()
+    monkeypatch.setattr(os, "replace", full)
+    with pytest.raises(OSError, match=r"No space left .* the same call .*\.nc"):
+        run_cases(cases, tmp_path, AtOnce(), progress=False)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_ctrl_c_does_not_reach_workers_from_their_first_moment_on(tmp_path):
+    """While they import, before they can ignore it, it would end them with a traceback."""
+
+    class Asking(AtOnce):
+        def submit(self, function, /, *arguments):
+            blocked.append(signal.pthread_sigmask(signal.SIG_BLOCK, []))
+            return super().submit(function, *arguments)
+
+    blocked = []
+    run_cases(sweep().cases()[:1], tmp_path, Asking(), progress=False)
+    assert signal.SIGINT in blocked[0]  # which workers inherit
+    assert signal.SIGINT not in signal.pthread_sigmask(signal.SIG_BLOCK, [])
 
 
 # -- grids ------------------------------------------------------------------------------------
@@ -398,6 +466,8 @@ def test_a_sweep_that_is_killed_keeps_what_is_finished_and_leaves_no_workers(
         assert process.returncode == 130
         assert "interrupted" in errors
         assert "Traceback" not in errors
+        assert "leaked" not in errors
+        assert errors.count("interrupted") == 1
     else:
         assert process.returncode == -how
     cases = read_sweep(long_grid).cases()

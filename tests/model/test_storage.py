@@ -1,10 +1,14 @@
 """Files: what is saved comes back, what is damaged is refused in one line."""
 
+import os
+import sys
+
 import numpy as np
 import pytest
 import xarray as xr
 
 from crazybilliards.model import Chain, chain_of, load, save
+from crazybilliards.model.locks import open_locked
 from crazybilliards.model.vocabulary import result
 
 
@@ -55,10 +59,36 @@ def test_a_failed_write_leaves_the_old_file_and_no_other(dataset, tmp_path, monk
     path = save(dataset, tmp_path / "run.nc")
     before = path.read_bytes()
     monkeypatch.setattr("os.fsync", lambda _: (_ for _ in ()).throw(OSError("no room")))
-    with pytest.raises(OSError, match="no room"):
+    with pytest.raises(OSError, match=r"no room: '.*run\.nc'"):
         save(dataset * 2, path)
     assert path.read_bytes() == before
     assert list(tmp_path.iterdir()) == [path]
+
+
+def test_what_a_kill_left_of_a_file_is_taken_over(dataset, tmp_path):
+    (tmp_path / ".run.nc.part").write_bytes(b"half of it" * 10_000)
+    path = save(dataset, tmp_path / "run.nc")
+    xr.testing.assert_identical(load(path), dataset)
+    assert list(tmp_path.iterdir()) == [path]
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="has no such locks")
+def test_two_writers_of_one_file_do_not_meet(dataset, tmp_path):
+    unfinished = tmp_path / ".run.nc.part"
+    other = open_locked(unfinished)
+    os.write(other, b"of the other one")
+    path = save(dataset, tmp_path / "run.nc")
+    assert unfinished.read_bytes() == b"of the other one"
+    os.close(other)
+    xr.testing.assert_identical(load(path), dataset)
+    assert sorted(each.name for each in tmp_path.iterdir()) == [".run.nc.part", "run.nc"]
+
+
+def test_a_place_that_is_none_is_named(dataset, tmp_path):
+    (tmp_path / "file").write_text("")
+    for path in (tmp_path / "file" / "run.nc", tmp_path / "file" / "deep" / "run.nc"):
+        with pytest.raises(NotADirectoryError, match=str(path)):
+            save(dataset, path)
 
 
 def test_every_truncation_and_damage_is_refused(dataset, tmp_path):

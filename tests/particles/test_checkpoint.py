@@ -1,16 +1,20 @@
 """Checkpoints: a run that is killed and resumed gives the bits of an undisturbed one."""
 
+import errno
 import io
+import os
 import signal
 import subprocess
 import sys
 import time
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
 import xarray as xr
 
 from crazybilliards.model import Chain, load, save
+from crazybilliards.model.locks import locked
 from crazybilliards.model.storage import read_sealed, write_sealed
 from crazybilliards.particles import simulate
 
@@ -96,6 +100,72 @@ def test_a_damaged_or_foreign_checkpoint_is_refused(tmp_path):
     path.write_bytes(whole)
     with pytest.raises(ValueError, match="not a result"):
         load(path)
+
+
+def test_a_second_run_on_one_checkpoint_is_refused(tmp_path):
+    arguments = {"duration": 500, "progress": False, "checkpoint": tmp_path / "state"}
+    first = simulate(Chain(size=10), **arguments)
+    before = (tmp_path / "state").read_bytes()
+    with locked(tmp_path / "state"):
+        with pytest.raises(BlockingIOError, match="state"):
+            simulate(Chain(size=10), **arguments)
+        assert (tmp_path / "state").read_bytes() == before
+    xr.testing.assert_identical(simulate(Chain(size=10), **arguments), first)
+
+
+def test_a_disk_that_fills_up_costs_the_checkpoint_and_not_the_run(tmp_path, monkeypatch):
+    arguments = {"duration": 500, "progress": False}
+    undisturbed = simulate(Chain(size=10), **arguments)
+    arguments |= {"checkpoint": tmp_path / "state", "checkpoint_interval": 0}
+    replace = os.replace
+
+    def once(source, target):
+        replace(source, target)
+        monkeypatch.setattr(os, "replace", full)
+
+    def full(source, target):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(os, "replace", once)
+    with pytest.warns(RuntimeWarning, match=r"state: no checkpoint written: No space left"):
+        run = simulate(Chain(size=10), **arguments)
+    xr.testing.assert_identical(run, undisturbed)
+    assert [path.name for path in tmp_path.iterdir()] == ["state"]
+    monkeypatch.undo()
+    xr.testing.assert_identical(simulate(Chain(size=10), **arguments), undisturbed)
+
+
+def test_ctrl_c_while_replicas_are_started_stops_the_run(tmp_path, monkeypatch):
+    """It used to wait for the end of the run."""
+    submit = ThreadPoolExecutor.submit
+
+    def interrupting(pool, work, replica):
+        submit(pool, work, replica)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(ThreadPoolExecutor, "submit", interrupting)
+    with pytest.raises(KeyboardInterrupt, match="nothing was measured"):
+        simulate(Chain(size=10), warmup=1e9, progress=False, checkpoint=tmp_path / "state")
+
+
+def test_ctrl_c_during_the_last_writing_keeps_everything(tmp_path, monkeypatch):
+    arguments = {"duration": 500, "progress": False, "checkpoint": tmp_path / "state"}
+    written = []
+    replace = os.replace
+
+    def interrupting(source, target):
+        written.append(target)
+        if len(written) == 2:  # the first shows that it can be written
+            raise KeyboardInterrupt
+        replace(source, target)
+
+    monkeypatch.setattr(os, "replace", interrupting)
+    run = simulate(Chain(size=10), **arguments)
+    assert (run.attrs["status"], len(written)) == ("interrupted", 3)
+    monkeypatch.undo()
+    resumed = simulate(Chain(size=10), **arguments)
+    xr.testing.assert_equal(resumed, run)
+    assert resumed.attrs["status"] == "completed"
 
 
 def test_a_checkpoint_that_cannot_be_written_is_an_error_before_any_work(tmp_path):
