@@ -43,10 +43,10 @@ test-lowest: $(OLDEST)/installed
 torture: $(VENV)/installed-test
 	$(BIN)/python -m pytest -n 2 torture
 
-# Compiled kernels cannot be seen into: here they run as Python, without the tests that need speed.
+# Compiled kernels cannot be seen into: here they run as Python, without the tests marked as too slow so.
 coverage: $(VENV)/installed-coverage
 	$(BIN)/coverage erase
-	NUMBA_DISABLE_JIT=1 $(BIN)/coverage run -m pytest -n 2 -m "not speed"
+	NUMBA_DISABLE_JIT=1 $(BIN)/coverage run -m pytest -n 2 -m "not compiled"
 	$(BIN)/coverage combine -q
 	$(BIN)/coverage report
 
