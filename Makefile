@@ -4,17 +4,25 @@
 PYTHON ?= python3
 VENV   := .venv
 BIN    := $(VENV)/bin
+OLDEST := .venv-lowest
 OUTPUT ?= results
 QUALITY ?= quick
+CHECK_PYTHON := $(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
+  { echo "Python 3.11 or later is needed; name one with: make PYTHON=python3.12 ..."; exit 1; }
 ROOMS  := model particles kinetic comparison
 
-.PHONY: help run test check reproduce notebooks browser docs linkcheck benchmark clean
+.PHONY: help run test test-lowest torture coverage check audit reproduce notebooks browser docs \
+  linkcheck benchmark clean
 .DEFAULT_GOAL := help
 
 help:
 	@echo "make run        compare simulation and theory at e = 1; figures into $(OUTPUT)/"
 	@echo "make test       run the tests"
+	@echo "make test-lowest  the same with the oldest version of every package that is allowed"
+	@echo "make torture    faults, bad input, long runs: docs/reliability.md, tested (15 min)"
+	@echo "make coverage   which lines the tests reach, kernels included (10 min)"
 	@echo "make check      lint, format and type checks"
+	@echo "make audit      look up known vulnerabilities of every package used (needs the network)"
 	@echo "make reproduce  every figure and claim of the paper into reproduced/ (4 min; QUALITY=full 1 h)"
 	@echo "make notebooks  execute the notebooks"
 	@echo "make docs       the documentation as a web site, into build/docs/; notebooks and examples are executed"
@@ -28,10 +36,30 @@ run: $(VENV)/installed
 test: $(VENV)/installed-test
 	$(BIN)/python -m pytest -n 2
 
+# numba's cache is of one version: the two environments would throw out each other's.
+test-lowest: $(OLDEST)/installed
+	NUMBA_CACHE_DIR=$(CURDIR)/$(OLDEST)/numba $(OLDEST)/bin/python -m pytest -n 2
+
+torture: $(VENV)/installed-test
+	$(BIN)/python -m pytest -n 2 torture
+
+# Compiled kernels cannot be seen into: here they run as Python, without the tests marked as too slow so.
+coverage: $(VENV)/installed-coverage
+	$(BIN)/coverage erase
+	NUMBA_DISABLE_JIT=1 $(BIN)/coverage run -m pytest -n 2 -m "not compiled"
+	$(BIN)/coverage combine -q
+	$(BIN)/coverage report
+
 check: $(VENV)/installed-check build/types
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	MYPYPATH=build/types $(BIN)/mypy $(ROOMS:%=-p crazybilliards.%)
+
+# Strict: a package that could not be looked up is a failure, not a footnote.
+audit: $(VENV)/installed-test $(VENV)/installed-docs $(VENV)/installed-audit
+	mkdir -p build
+	$(BIN)/python -m pip freeze --exclude-editable > build/audit.txt
+	$(BIN)/pip-audit --strict --no-deps --disable-pip --requirement build/audit.txt
 
 reproduce: $(VENV)/installed
 	$(BIN)/crazybilliards reproduce all --quality $(QUALITY)
@@ -67,8 +95,7 @@ build/types: Makefile
 	touch $@
 
 $(VENV)/created:
-	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
-	  { echo "Python 3.11 or later is needed; name one with: make PYTHON=python3.12 ..."; exit 1; }
+	@$(CHECK_PYTHON)
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --upgrade pip
 	touch $@
@@ -81,6 +108,14 @@ $(VENV)/installed-%: pyproject.toml $(VENV)/created
 	$(BIN)/python -m pip install -qq --editable ".[$*]"
 	touch $@
 
+$(OLDEST)/installed: pyproject.toml
+	@$(CHECK_PYTHON)
+	$(PYTHON) -m venv $(OLDEST)
+	$(OLDEST)/bin/python -m pip install --quiet --upgrade pip uv
+	$(OLDEST)/bin/uv pip install --quiet --python $(OLDEST)/bin/python --resolution lowest-direct \
+	  --editable ".[test]"
+	touch $@
+
 clean:
-	rm -rf $(VENV) build docs/notebooks *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks
+	rm -rf $(VENV) $(OLDEST) build .coverage docs/notebooks *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +

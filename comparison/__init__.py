@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 # A function is never named like its module: importing the module would then hide the function.
 if TYPE_CHECKING:
+    from crazybilliards.comparison.animation_page import standalone_page as standalone_page
     from crazybilliards.comparison.coverage import coverage_density as coverage_density
     from crazybilliards.comparison.coverage import smooth as smooth
     from crazybilliards.comparison.distances import Deviation as Deviation
@@ -61,6 +62,7 @@ _HOMES = {
     "load_sweep": "sweeps",
     "overlay": "drawing",
     "smooth": "coverage",
+    "standalone_page": "animation_page",
     "width_deviations": "restitutions",
 }
 

@@ -97,7 +97,7 @@ def draw_cloud(tree: xr.DataTree) -> Figure:
 def animate(tree: xr.DataTree) -> FuncAnimation:
     """rho(x, t) of the ensemble and the fluids as an animation.
 
-    ``animate(tree).to_jshtml()`` plays in a notebook or a browser, ``.save("relaxation.gif",
+    ``standalone_page(animate(tree))`` plays in a notebook or a browser, ``.save("relaxation.gif",
     writer="pillow")`` makes a file.
     """
     densities = _densities(tree)

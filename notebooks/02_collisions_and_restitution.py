@@ -29,6 +29,7 @@ from matplotlib.animation import FuncAnimation
 from matplotlib.patches import Rectangle
 from scipy.optimize import isotonic_regression
 
+from crazybilliards.comparison import standalone_page
 from crazybilliards.model import Chain
 from crazybilliards.particles import given_start, simulate
 
@@ -316,7 +317,7 @@ def show(frame):
 
 animation = FuncAnimation(fig, show, frames=len(films[0][0]), interval=100)
 plt.close(fig)
-HTML(animation.to_jshtml())
+HTML(standalone_page(animation))
 
 # %% [markdown]
 # **Explain.** Elastic rods hand their velocities on, the whole energy stays, and they spread the

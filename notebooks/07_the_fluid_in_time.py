@@ -37,7 +37,7 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 from scipy.stats import norm
 
-from crazybilliards.comparison import animate, compare_relaxation, overlay, smooth
+from crazybilliards.comparison import animate, compare_relaxation, overlay, smooth, standalone_page
 from crazybilliards.kinetic import displaced, equilibrium_states, hydrodynamics
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
@@ -216,7 +216,7 @@ assert max(off) < 1e-3
 
 # %%
 with plt.rc_context({"figure.dpi": 64}):
-    page = animate(tree).to_jshtml(fps=10)
+    page = standalone_page(animate(tree), fps=10)
 print(f"{len(page) / 1e6:.2f} MB")
 assert len(page) < 2e6
 HTML(page)

@@ -39,7 +39,7 @@ from matplotlib.animation import FuncAnimation
 from scipy.integrate import quad
 from scipy.optimize import linear_sum_assignment
 
-from crazybilliards.comparison import fit_growth, fit_singularity, tail_length
+from crazybilliards.comparison import fit_growth, fit_singularity, standalone_page, tail_length
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
 
@@ -223,7 +223,7 @@ def draw(number):
 
 
 animation = FuncAnimation(picture, draw, frames=frames, interval=100)
-film_of_the_cloud = animation.to_jshtml(embed_frames=True)
+film_of_the_cloud = standalone_page(animation)
 plt.close(picture)
 HTML(film_of_the_cloud)
 

@@ -5,7 +5,6 @@ Only the standard library and typer are imported up here, so that ``--help`` ans
 
 from __future__ import annotations
 
-import sys
 from typing import Annotated
 
 import typer
@@ -18,6 +17,10 @@ def explore(
     address: Annotated[
         str, typer.Option(help="Address to serve it at; the default is this machine only.")
     ] = "127.0.0.1",
+    open_to_network: Annotated[
+        bool,
+        typer.Option("--open-to-network", help="Allow an address that other machines reach."),
+    ] = False,
     browser: Annotated[
         bool, typer.Option("--browser/--no-browser", help="Open the page in the browser.")
     ] = True,
@@ -36,15 +39,9 @@ def explore(
         raise ValueError(
             "Panel is not installed: python -m pip install 'crazybilliards[explore]'"
         ) from error
-    from crazybilliards.comparison.explore.server import is_loopback, serve
+    from crazybilliards.comparison.explore.server import serve
 
-    if not is_loopback(address):
-        print(
-            f"crazybilliards: warning: whoever reaches {address} can open the page and keep this "
-            "machine computing; it asks for no password",
-            file=sys.stderr,
-        )
     try:
-        serve(port, address, open_browser=browser)
+        serve(port, address, open_browser=browser, open_to_network=open_to_network)
     except KeyboardInterrupt as error:
         raise typer.Exit(INTERRUPTED) from error

@@ -93,6 +93,7 @@ def _write_relaxation(tree: xr.DataTree, folder: Path, suffix: str) -> None:
 
     matplotlib.use("Agg")
     from crazybilliards.comparison import relaxation_figures as figures
+    from crazybilliards.comparison import standalone_page
     from crazybilliards.model import save
     from crazybilliards.model.storage import write_atomically
 
@@ -108,7 +109,7 @@ def _write_relaxation(tree: xr.DataTree, folder: Path, suffix: str) -> None:
     with tempfile.TemporaryDirectory() as scratch:  # matplotlib wants a name, not a stream
         gif = Path(scratch, "relaxation.gif")
         animation.save(gif, writer="pillow", dpi=80)
-        contents = {"html": animation.to_jshtml().encode(), "gif": gif.read_bytes()}
+        contents = {"html": standalone_page(animation).encode(), "gif": gif.read_bytes()}
     for kind, content in contents.items():
         path = folder / f"relaxation{suffix}.{kind}"
         write_atomically(path, content)

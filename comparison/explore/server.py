@@ -1,15 +1,28 @@
-"""Serving the page: on the loopback address, to pages that came from there."""
+"""Serving the page: on the loopback address, to pages that came from there.
+
+A program that listens on a port is open to more than its user: to other machines, and to every
+site that is open in a browser of this one. So it takes a flag to be reached from other machines;
+the websocket, through which a page talks to its chain, is open only to pages that came from the
+address served; and whoever asks for another name, as a site does whose name was made to point
+here, is told the right address and gets nothing else.
+"""
 
 from __future__ import annotations
 
 import ipaddress
 import logging
 import os
+import re
 import socket
+import sys
 import webbrowser
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 
 import panel as pn
+from bokeh.server.server import Server
+from bokeh.settings import settings
+from tornado.web import RequestHandler
 from tornado.websocket import WebSocketClosedError
 
 from crazybilliards.comparison.explore.page import page
@@ -19,15 +32,9 @@ from crazybilliards.model import Chain
 from crazybilliards.particles.running import announced
 
 
-def is_loopback(address: str) -> bool:
-    """Whether nobody but this machine reaches an address."""
-    try:
-        return ipaddress.ip_address(address).is_loopback
-    except ValueError:
-        return address == "localhost"
-
-
-def serve(port: int, address: str, *, open_browser: bool) -> None:
+def serve(
+    port: int, address: str, *, open_browser: bool = False, open_to_network: bool = False
+) -> None:
     """Serve the page until Ctrl-C.
 
     Parameters
@@ -39,16 +46,31 @@ def serve(port: int, address: str, *, open_browser: bool) -> None:
         open the websocket, so that no other site in the same browser can.
     open_browser
         Whether to open the page.
+    open_to_network
+        Whether the address may be one that other machines reach.
 
     Raises
     ------
     KeyboardInterrupt
         On Ctrl-C.
     ValueError
-        If there is no such address here, it stands for all of them, or the port is taken.
+        If there is no such address here, it stands for all of them, it takes ``open_to_network``,
+        or the port is taken. The port has not been opened then.
     """
-    _check_address(address)
-    port = _free_port(address, port)
+    address = address.lower()  # as browsers name it
+    number = _look_up(address)
+    if not number.is_loopback and not open_to_network:
+        raise ValueError(
+            f"other machines reach address {address}, and the page asks for no password: if that "
+            "is meant, add --open-to-network"
+        )
+    port = _free_port(address, str(number), port)
+    if not number.is_loopback:
+        print(
+            f"crazybilliards: warning: whoever reaches {address} can open the page and keep this "
+            "machine computing; it asks for no password",
+            file=sys.stderr,
+        )
     with announced(True):
         Session(Chain(size=2)).advance(1.0)
     pn.extension()
@@ -59,16 +81,7 @@ def serve(port: int, address: str, *, open_browser: bool) -> None:
         def new_page() -> pn.viewable.Viewable:  # Panel calls functions only, no partial()
             return page(threads, processes)
 
-        server = pn.serve(
-            {"/": new_page},
-            port=port,
-            address=address,
-            websocket_origin=[f"{address}:{port}"],
-            title="crazybilliards explore",
-            show=False,
-            start=False,
-            verbose=False,
-        )
+        server = _make_server(new_page, address, str(number), port)
         server.start()
         url = f"http://{address}:{port}/"
         print(f"{url}  (Ctrl-C ends it)", flush=True)
@@ -76,6 +89,29 @@ def serve(port: int, address: str, *, open_browser: bool) -> None:
             webbrowser.open(url)
         server.io_loop.start()  # until Ctrl-C, which Panel has made stop it
         raise KeyboardInterrupt
+
+
+def _make_server(
+    new_page: Callable[[], pn.viewable.Viewable], address: str, number: str, port: int
+) -> Server:
+    """Return a server of pages by these two names of its address, and by no other."""
+    origins = [f"{name}:{port}" for name in (address, number)]
+    settings.allowed_ws_origin.set_value(origins)  # whatever BOKEH_ALLOW_WS_ORIGIN says
+    server = pn.serve(
+        {"/": new_page},
+        port=port,
+        address=number,
+        websocket_origin=origins,
+        title="crazybilliards explore",
+        show=False,
+        start=False,
+        verbose=False,
+    )
+    others = f"(?!({re.escape(address)}|{re.escape(number)})$).*"
+    refusal = (".*", _WrongName, {"url": f"http://{address}:{port}/"})
+    # Neither Panel nor Bokeh has a public way to their tornado application.
+    server._tornado.add_handlers(others, [refusal])
+    return server
 
 
 def _expect_closed_pages() -> None:
@@ -88,20 +124,34 @@ def _expect_closed_pages() -> None:
     logging.getLogger("bokeh.server.views.ws").setLevel(logging.ERROR)
 
 
-def _check_address(address: str) -> None:
+class _WrongName(RequestHandler):
+    """Says where the page is to whoever asks for it by another name."""
+
+    def initialize(self, url: str) -> None:
+        self._url = url
+
+    def prepare(self) -> None:
+        self.set_status(421)
+        self.set_header("Content-Type", "text/plain")
+        self.finish(f"The page is at {self._url} and goes by no other name.\n")
+
+
+def _look_up(address: str) -> ipaddress.IPv4Address:
+    """Return the one address of this machine that is meant."""
     try:
-        known = ipaddress.ip_address(address)
-    except ValueError:
-        return
-    if known.version != 4:
-        raise ValueError(f"address must be an IPv4 address or a name, got {address}")
-    if known.is_unspecified:
+        number = ipaddress.IPv4Address(socket.gethostbyname(address))
+    except (OSError, UnicodeError) as error:
         raise ValueError(
-            f"address must be one address of this machine, got {address}, which is all of them"
+            f"cannot serve at {address} (an IPv4 address or a name is needed): {error}"
+        ) from error
+    if number.is_unspecified:
+        raise ValueError(
+            f"address must be one address of this machine, got {address!r}, which is all of them"
         )
+    return number
 
 
-def _free_port(address: str, port: int) -> int:
+def _free_port(address: str, number: str, port: int) -> int:
     """Return the port, or a free one for 0; raise if it cannot be bound."""
     if not 0 <= port <= 65535:
         raise ValueError(f"port must be between 0 and 65535, got {port}")
@@ -110,7 +160,7 @@ def _free_port(address: str, port: int) -> int:
             # As the server does: a port that was served a minute ago is not taken.
             probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
-            probe.bind((address, port))
+            probe.bind((number, port))
         except OSError as error:
             raise ValueError(f"cannot serve at {address}:{port}: {error.strerror}") from error
         return int(probe.getsockname()[1])

@@ -1,6 +1,7 @@
 """The command line: answers fast, refuses in one line, writes all or nothing, keeps on Ctrl-C."""
 
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -199,7 +200,12 @@ def test_relax_writes_pictures_animations_and_the_data(tmp_path):
         "spacetime.png",
     ]
     assert (tmp_path / "relaxation.gif").read_bytes().startswith(b"GIF8")
-    assert "<script" in (tmp_path / "relaxation.html").read_text()
+    page = (tmp_path / "relaxation.html").read_text()
+    assert "<script" in page
+    # It plays without a network, with signs on its buttons.
+    assert "://" not in page
+    for sign in re.findall(r'class="fa (fa-[a-z-]+)', page):
+        assert f".{sign}::before" in page
     tree = load(tmp_path / "relaxation.nc")
     assert set(tree.children) == {"particles", "isothermal", "evolving", "exact"}
     assert "rms distance" in done.stdout

@@ -3,7 +3,10 @@
 import subprocess
 import sys
 
+import pytest
 
+
+@pytest.mark.compiled
 def test_a_changed_callee_is_recompiled(tmp_path):
     caller = (
         "from callee import inner\n"

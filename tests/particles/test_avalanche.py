@@ -1,6 +1,7 @@
 """Avalanches against a slow twin that follows every wave by itself."""
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -57,6 +58,7 @@ def test_a_push_through_a_row_at_rest_is_one_wave_of_every_origin():
     np.testing.assert_array_equal(tally.sizes, expected)
 
 
+@pytest.mark.compiled
 def test_large_avalanches_are_rare_in_the_dissipative_chain():
     chain = Chain(size=50, restitution=0)
     run = simulate(chain, duration=500, replicas=2, observe="avalanches", progress=False)

@@ -45,6 +45,7 @@ def run(script, checkpoint, output, how=None, after=0.0):
         return process.wait(120)
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("e", [1.0, 0.7])
 def test_killed_at_random_moments_and_resumed_it_is_the_undisturbed_run(e, tmp_path):
     script = SCRIPT.format(e=e, duration=800_000 if e == 1 else 12_000)

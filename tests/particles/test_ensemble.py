@@ -43,6 +43,7 @@ def compressed():
     return chain, start, run
 
 
+@pytest.mark.compiled
 def test_elastic_relaxation_is_that_of_independent_oscillators(compressed):
     chain, _, run = compressed
     W = chain.free_velocity_width
@@ -60,6 +61,7 @@ def test_elastic_relaxation_is_that_of_independent_oscillators(compressed):
     assert run.mean_velocity[:, -1].max() > 20 * run.mean_velocity_error[:, -1].mean()
 
 
+@pytest.mark.compiled
 def test_the_first_time_is_the_start_and_the_times_are_those_asked_for(compressed):
     chain, start, run = compressed
     np.testing.assert_allclose(run.time, np.arange(81) / 4)
@@ -69,6 +71,7 @@ def test_the_first_time_is_the_start_and_the_times_are_those_asked_for(compresse
     assert run.attrs["status"] == "completed"
 
 
+@pytest.mark.compiled
 def test_the_density_in_time_holds_every_rod_and_can_be_smoothed(compressed):
     chain, _, run = compressed
     spacing = float(run.x[1] - run.x[0])
@@ -81,6 +84,7 @@ def test_the_density_in_time_holds_every_rod_and_can_be_smoothed(compressed):
     assert float(smoothed.density.max()) < 1.001 * chain.close_packed_density
 
 
+@pytest.mark.compiled
 def test_error_bars_are_those_of_independent_replicas(compressed):
     """Of d of the middle particle, from 32 groups: right to 13 %."""
     _, _, run = compressed
@@ -107,6 +111,7 @@ def test_replicas_are_the_same_whatever_the_threads_and_however_cut(e, tmp_path)
     np.testing.assert_allclose(again.position[:, 0], positions[:, -1], atol=1e-12)
 
 
+@pytest.mark.compiled
 def test_ctrl_c_keeps_the_replicas_that_were_done_and_a_checkpoint_the_rest(tmp_path):
     chain = Chain(size=40)
     arguments = SMALL | {"replicas": 200, "duration": 200, "every": 20}
@@ -123,6 +128,7 @@ def test_ctrl_c_keeps_the_replicas_that_were_done_and_a_checkpoint_the_rest(tmp_
     assert partial.attrs["status"] in ("interrupted", "completed")
 
 
+@pytest.mark.compiled
 def test_times_after_the_first_replica_blew_up_are_left_out():
     chain = Chain(size=150, restitution=1.05, damping=4)
     start = equilibrium_states(chain.replace(restitution=1, amplitude=10), 3)

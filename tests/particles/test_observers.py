@@ -11,6 +11,7 @@ from crazybilliards.particles.observers.energy import Energy
 from crazybilliards.particles.schedule import Schedule
 
 
+@pytest.mark.compiled
 def test_kinetic_energy_is_half_a_temperature_a_rod():
     chain = Chain(size=10)
     run = simulate(chain, duration=20_000, replicas=4, observe="energy", progress=False)
@@ -31,6 +32,7 @@ def test_energy_starts_at_the_start():
     assert "kinetic_energy_error" not in run
 
 
+@pytest.mark.compiled
 def test_elastic_collisions_are_the_zero_crossings_of_gaussian_processes():
     """Rice: each of the L(L-1)/2 pairs of relabelled points meets w0/pi times a time unit."""
     chain = Chain(size=20)
@@ -46,6 +48,7 @@ def test_elastic_collisions_are_the_zero_crossings_of_gaussian_processes():
     )
 
 
+@pytest.mark.compiled
 def test_velocities_are_gaussian_at_restitution_one():
     chain = Chain(size=5)
     run = simulate(chain, duration=50_000, replicas=2, observe="velocities", progress=False)

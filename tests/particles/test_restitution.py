@@ -22,6 +22,7 @@ def centre_and_border(run):
     )
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize(("size", "found", "duration"), [(30, 0.116, 4000), (100, 0.0735, 1500)])
 def test_the_centre_of_the_inelastic_chain_is_as_cold_as_it_was_found(size, found, duration):
     chain = Chain(size=size, restitution=0)
@@ -33,6 +34,7 @@ def test_the_centre_of_the_inelastic_chain_is_as_cold_as_it_was_found(size, foun
     assert centre_width(chain) * chain.free_velocity_width == pytest.approx(centre, rel=0.2)
 
 
+@pytest.mark.compiled
 def test_flippers_heat_the_centre_of_short_chains_and_the_border_of_long_ones():
     shapes = {}
     for size in (50, 100):

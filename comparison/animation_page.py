@@ -1,0 +1,45 @@
+"""An animation as a page that loads nothing: it plays without a network, and nobody is told of it.
+
+Matplotlib's own page takes the signs on its buttons from another host.
+"""
+
+from __future__ import annotations
+
+import re
+
+from matplotlib.animation import FuncAnimation
+
+# The classes of matplotlib's buttons, and the characters shown instead.
+_SIGNS = {
+    "minus": r"\2212",
+    "fast-backward": r"|\25C0",
+    "step-backward": r"\25C0|",
+    "play": r"\25B6",
+    "pause": r"||",
+    "step-forward": r"|\25B6",
+    "fast-forward": r"\25B6|",
+    "plus": "+",
+}
+_STYLE = "\n".join(
+    [
+        ".fa { font-style: normal; display: inline-block; }",
+        ".fa-flip-horizontal { transform: scaleX(-1); }",
+        *(f'.fa-{name}::before {{ content: "{sign}"; }}' for name, sign in _SIGNS.items()),
+    ]
+)
+
+
+def standalone_page(animation: FuncAnimation, fps: float | None = None) -> str:
+    """Return an animation as HTML with its frames in it, to show in a notebook or to write.
+
+    Parameters
+    ----------
+    animation
+        The animation, of :func:`crazybilliards.comparison.animate` say.
+    fps
+        Frames per second; default: as the animation has it.
+    """
+    page = animation.to_jshtml(fps, embed_frames=True)
+    return re.sub(
+        r'<link rel="stylesheet"\s+href="http[^"]*">', lambda _: f"<style>{_STYLE}</style>", page
+    )
