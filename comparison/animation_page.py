@@ -29,7 +29,7 @@ _STYLE = "\n".join(
 )
 
 
-def standalone_page(animation: FuncAnimation, fps: float | None = None) -> str:
+def standalone_page(animation: FuncAnimation, fps: int | None = None) -> str:
     """Return an animation as HTML with its frames in it, to show in a notebook or to write.
 
     Parameters
