@@ -29,8 +29,8 @@ def draw_density(tree: xr.DataTree) -> Figure:
         _draw(axes, results, "density", unit=chain.close_packed_density)
         axes[0].set(title=_title(chain), ylabel=r"density $\rho$ [1/R]")
         axes[1].set(xlabel="position x [R]", ylabel=r"diff. $\times\, 2R$")
-        exact = results[THEORIES["exact"]]
-        seen = exact.x.values[exact.density.values > 1e-4 * chain.close_packed_density]
+        reference = results.get(THEORIES["exact"], results[SIMULATION])
+        seen = reference.x.values[reference.density.values > 1e-4 * chain.close_packed_density]
         axes[1].set_xlim(seen[0], seen[-1])
     _one_legend(figure, panels)
     return figure
@@ -56,7 +56,14 @@ def _results(group: xr.DataTree) -> dict[str, xr.Dataset]:
 
 
 def _draw(axes: list[Axes], results: dict[str, xr.Dataset], quantity: str, unit: float) -> None:
-    """Draw the quantity, and its differences from the exact one divided by ``unit``."""
+    """Draw the quantity, and its differences from the exact one divided by ``unit``.
+
+    Where Ctrl-C came before the theories there are no differences.
+    """
+    overlay(results, quantity, along="mean_position", ax=axes[0])
+    axes[0].set_xlabel("")
+    if THEORIES["exact"] not in results:
+        return
     reference = results[THEORIES["exact"]][quantity]
     differences = {}
     for name, result in results.items():
@@ -64,9 +71,7 @@ def _draw(axes: list[Axes], results: dict[str, xr.Dataset], quantity: str, unit:
         differences[name] = result.assign({quantity: difference})
         if f"{quantity}_error" in result:
             differences[name][f"{quantity}_error"] = result[f"{quantity}_error"] / unit
-    overlay(results, quantity, along="mean_position", ax=axes[0])
     overlay(differences, quantity, along="mean_position", ax=axes[1])
-    axes[0].set_xlabel("")
 
 
 def _panels(number: int) -> tuple[Figure, list[list[Axes]]]:

@@ -3,8 +3,10 @@
 import os
 import signal
 
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
+import xarray as xr
 
 from crazybilliards.comparison import compare_elastic, smooth
 from crazybilliards.comparison.elastic_chain import (
@@ -12,6 +14,7 @@ from crazybilliards.comparison.elastic_chain import (
     elastic_theories,
     largest_width_error,
 )
+from crazybilliards.comparison.elastic_figures import draw_density, draw_displacement
 from crazybilliards.model import Chain, chain_of
 
 
@@ -113,3 +116,11 @@ def test_sigterm_between_simulations_keeps_what_was_computed(monkeypatch):
     assert tree["amplitude_1/simulation"].attrs["status"] == "completed"
     assert "amplitude_2" not in tree
     assert signal.getsignal(signal.SIGTERM) == signal.SIG_DFL
+
+
+def test_what_ctrl_c_left_without_theories_can_be_drawn(tree):
+    run = xr.DataTree.from_dict({"amplitude_3/simulation": tree["amplitude_3/simulation"]})
+    for draw in (draw_density, draw_displacement):
+        figure = draw(run)
+        figure.canvas.draw()
+        plt.close(figure)
