@@ -43,12 +43,13 @@ test-lowest: $(OLDEST)/installed
 torture: $(VENV)/installed-test
 	$(BIN)/python -m pytest -n 2 torture
 
-# Compiled kernels cannot be seen into: here they run as Python, without the tests marked as too slow so.
+# One cannot see into compiled kernels: every test that is quick enough without runs them as Python.
 coverage: $(VENV)/installed-coverage
 	$(BIN)/coverage erase
 	NUMBA_DISABLE_JIT=1 $(BIN)/coverage run -m pytest -n 2 -m "not compiled"
+	$(BIN)/coverage run -m pytest -n 2 -m compiled
 	$(BIN)/coverage combine -q
-	$(BIN)/coverage report
+	$(BIN)/coverage report --skip-covered
 
 check: $(VENV)/installed-check build/types
 	$(BIN)/ruff check .

@@ -42,7 +42,7 @@ class Constants(NamedTuple):
 
 
 @kernel
-def _hll(left, right, crowd, stiffness):  # type: ignore[no-untyped-def] # pragma: no cover
+def _hll(left, right, crowd, stiffness):  # type: ignore[no-untyped-def]
     """Flux of n, nV and E between two states (ln p, V, ln theta)."""
     p_l, p_r, v_l, v_r = np.exp(left[0]), np.exp(right[0]), left[1], right[1]
     hot_l, hot_r = np.exp(left[2]), np.exp(right[2])
@@ -61,7 +61,7 @@ def _hll(left, right, crowd, stiffness):  # type: ignore[no-untyped-def] # pragm
 
 
 @kernel
-def primitive(fields, theta, crowd):  # type: ignore[no-untyped-def] # pragma: no cover
+def primitive(fields, theta, crowd):  # type: ignore[no-untyped-def]
     """Return ln p, V and ln theta, (M, 3); with an energy, theta follows from it.
 
     In a vacuum, where the quotients would be of rounding errors, V = 0 and theta is the given one.
@@ -82,7 +82,7 @@ def primitive(fields, theta, crowd):  # type: ignore[no-untyped-def] # pragma: n
 
 
 @kernel
-def eulerian_rate(fields, x, spacing, theta, frozen, crowd, lam, gamma, exponent):  # type: ignore[no-untyped-def] # pragma: no cover
+def eulerian_rate(fields, x, spacing, theta, frozen, crowd, lam, gamma, exponent):  # type: ignore[no-untyped-def]
     """Rates of change of (n, nV) at the given ``theta`` (M,), or of (n, nV, E).
 
     ``frozen``: u at the cells, (M,), or empty: carried labels. ``crowd``: B.

@@ -91,7 +91,7 @@ def _faces(state: Stationary, number: int | None) -> Array:
 
 
 @kernel
-def label_rate(fields, labels, shares, kappa, stationary_distance, lam, gamma, exponent):  # type: ignore[no-untyped-def] # pragma: no cover
+def label_rate(fields, labels, shares, kappa, stationary_distance, lam, gamma, exponent):  # type: ignore[no-untyped-def]
     """Rates of change of (eta, V) or, with a temperature, of (eta, V, S).
 
     ``fields``: (2 or 3, M). S of the face right of a cell stands at the cell, in units in which

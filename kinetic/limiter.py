@@ -4,7 +4,7 @@ from crazybilliards.model.kernel import kernel
 
 
 @kernel
-def minmod(a, b):  # type: ignore[no-untyped-def] # pragma: no cover
+def minmod(a, b):  # type: ignore[no-untyped-def]
     """Return the smaller of two slopes of equal sign, 0 where they differ in it."""
     if a * b <= 0:
         return 0.0

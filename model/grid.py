@@ -89,7 +89,7 @@ def _half_width(chain: Chain, reach: float | None) -> float:
 
 
 @kernel
-def deposit(points, first, spacing, weights):  # type: ignore[no-untyped-def] # pragma: no cover
+def deposit(points, first, spacing, weights):  # type: ignore[no-untyped-def]
     """Add each point's hat weights to ``weights`` in place; return how many points lay outside.
 
     A point between two nodes gives each the share (1 - distance/spacing). ``points`` is a 1-d

@@ -56,7 +56,7 @@ def make_tally(size: int, *, contacts: bool, waves: bool) -> Tally:
 
 
 @kernel
-def _end(front, tally):  # type: ignore[no-untyped-def] # pragma: no cover
+def _end(front, tally):  # type: ignore[no-untyped-def]
     """Count all waves of a front at their origins and give their places back."""
     wave = tally.heads[front]
     while wave >= 0:
@@ -69,7 +69,7 @@ def _end(front, tally):  # type: ignore[no-untyped-def] # pragma: no cover
 
 
 @kernel
-def note(contact, first, last, momentum, tally):  # type: ignore[no-untyped-def] # pragma: no cover
+def note(contact, first, last, momentum, tally):  # type: ignore[no-untyped-def]
     """Take down a collision of rods ``contact`` and ``contact + 1`` (counted from 0).
 
     ``first`` and ``last`` are the outermost rods of the two clusters that meet, ``momentum`` is

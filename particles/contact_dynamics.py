@@ -23,7 +23,7 @@ from crazybilliards.particles.isotonic import INDEX, pool
 
 
 @kernel
-def bound(gap, closing, restitution, dt):  # type: ignore[no-untyped-def] # pragma: no cover
+def bound(gap, closing, restitution, dt):  # type: ignore[no-untyped-def]
     """Least relative velocity u_{i+1} - u_i of a contact; ``closing`` is v_i - v_{i+1}."""
     if restitution > 0 and gap < dt * closing:
         return restitution * closing
@@ -31,7 +31,7 @@ def bound(gap, closing, restitution, dt):  # type: ignore[no-untyped-def] # prag
 
 
 @kernel
-def drift(y, v, dt, restitution, integers, floats):  # type: ignore[no-untyped-def] # pragma: no cover
+def drift(y, v, dt, restitution, integers, floats):  # type: ignore[no-untyped-def]
     """Advance ``y`` and ``v`` in place by ``dt``; return the contacts that carried an impulse.
 
     ``integers`` and ``floats``, at least three rows of L each, are scratch space.

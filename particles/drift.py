@@ -74,7 +74,7 @@ def make_law(
 
 
 @kernel
-def drift(y, v, dt, law, scratch, tally):  # type: ignore[no-untyped-def] # pragma: no cover
+def drift(y, v, dt, law, scratch, tally):  # type: ignore[no-untyped-def]
     """Advance ``y`` and ``v`` in place by ``dt`` with the operator that ``law`` names."""
     if law.operator == SORT:
         return sort.drift(y, v, dt, scratch.floats[0], scratch.floats[1])

@@ -28,13 +28,13 @@ from crazybilliards.particles.avalanche import note
 
 
 @inlined
-def _before(a, b, due, speed):  # type: ignore[no-untyped-def] # pragma: no cover
+def _before(a, b, due, speed):  # type: ignore[no-untyped-def]
     """Whether contact a is to be taken before contact b."""
     return due[a] < due[b] or (due[a] == due[b] and speed[a] > speed[b])
 
 
 @inlined
-def _sift(place, heap, places, size, due, speed):  # type: ignore[no-untyped-def] # pragma: no cover
+def _sift(place, heap, places, size, due, speed):  # type: ignore[no-untyped-def]
     """Move the contact at ``place`` of the heap up or down to where it belongs."""
     contact = heap[place]
     while place > 0:
@@ -60,7 +60,7 @@ def _sift(place, heap, places, size, due, speed):  # type: ignore[no-untyped-def
 
 
 @inlined
-def _remove(contact, heap, places, size, due, speed):  # type: ignore[no-untyped-def] # pragma: no cover
+def _remove(contact, heap, places, size, due, speed):  # type: ignore[no-untyped-def]
     """Take a contact out of the heap; return the heap's new size."""
     place = places[contact]
     places[contact] = -1
@@ -73,7 +73,7 @@ def _remove(contact, heap, places, size, due, speed):  # type: ignore[no-untyped
 
 
 @inlined
-def _schedule(contact, now, dt, y, v, heap, places, size, due, speed):  # type: ignore[no-untyped-def] # pragma: no cover
+def _schedule(contact, now, dt, y, v, heap, places, size, due, speed):  # type: ignore[no-untyped-def]
     """Work out when the contact closes next, if within the step; return the heap's size."""
     closing = v[contact] - v[contact + 1]
     gap = y[contact + 1] - y[contact]
@@ -94,7 +94,7 @@ def _schedule(contact, now, dt, y, v, heap, places, size, due, speed):  # type: 
 
 
 @kernel
-def drift(y, v, dt, restitution, merge_speed, most, integers, floats, tally):  # type: ignore[no-untyped-def] # pragma: no cover
+def drift(y, v, dt, restitution, merge_speed, most, integers, floats, tally):  # type: ignore[no-untyped-def]
     """Advance ``y`` and ``v`` in place by ``dt``; return the collisions, or -1 if too many.
 
     ``integers`` (4, L) and ``floats`` (2, L) are scratch space. ``tally`` (an

@@ -20,7 +20,7 @@ _0, _1, _2 = INDEX(0), INDEX(1), INDEX(2)
 
 
 @kernel
-def pool(values, companions, falls, count, firsts, lasts, sums, companion_sums):  # type: ignore[no-untyped-def] # pragma: no cover
+def pool(values, companions, falls, count, firsts, lasts, sums, companion_sums):  # type: ignore[no-untyped-def]
     """Isotonic regression of ``values`` with equal weights, in place; return the merged pairs.
 
     ``companions`` (it may be ``values``) are averaged over the same blocks. ``falls``: the first
@@ -94,7 +94,7 @@ def pool(values, companions, falls, count, firsts, lasts, sums, companion_sums):
 
 
 @kernel
-def drift(y, v, dt, integers, floats):  # type: ignore[no-untyped-def] # pragma: no cover
+def drift(y, v, dt, integers, floats):  # type: ignore[no-untyped-def]
     """Advance ``y`` and ``v`` in place by ``dt``; return the contacts that ended up closed.
 
     ``integers`` and ``floats``, at least three and two rows of L, are scratch space.

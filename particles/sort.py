@@ -16,7 +16,7 @@ _RUN = 64
 
 
 @inlined
-def _merge(y, v, begin, middle, end, y_left, v_left):  # type: ignore[no-untyped-def] # pragma: no cover
+def _merge(y, v, begin, middle, end, y_left, v_left):  # type: ignore[no-untyped-def]
     """Merge two sorted runs that meet at ``middle``; return the inversions between them."""
     first = middle
     while first > begin and y[first - 1] > y[middle]:
@@ -38,7 +38,7 @@ def _merge(y, v, begin, middle, end, y_left, v_left):  # type: ignore[no-untyped
 
 
 @kernel
-def drift(y, v, dt, y_left, v_left):  # type: ignore[no-untyped-def] # pragma: no cover
+def drift(y, v, dt, y_left, v_left):  # type: ignore[no-untyped-def]
     """Advance reduced coordinates ``y`` and velocities ``v`` by ``dt``; return the collisions.
 
     Both are 1-d float arrays, ``y`` ascending; both are changed in place. ``y_left`` and

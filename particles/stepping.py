@@ -67,7 +67,7 @@ def _ornstein_uhlenbeck(chain: Chain, duration: float) -> tuple[float, float]:
 
 
 @kernel
-def kick(y, v, anchors, step, decay, before, after):  # type: ignore[no-untyped-def] # pragma: no cover
+def kick(y, v, anchors, step, decay, before, after):  # type: ignore[no-untyped-def]
     """Damp the velocities by ``decay``, with ``before`` and ``after`` spring kicks around it."""
     for i in range(y.size):
         d = y[i] - anchors[i]
@@ -76,7 +76,7 @@ def kick(y, v, anchors, step, decay, before, after):  # type: ignore[no-untyped-
 
 
 @kernel
-def shake(v, noise, generator):  # type: ignore[no-untyped-def] # pragma: no cover
+def shake(v, noise, generator):  # type: ignore[no-untyped-def]
     """Add white noise of standard deviation ``noise`` to the velocities.
 
     Not one loop with :func:`kick`: the call of the generator would keep that from working on
@@ -87,7 +87,7 @@ def shake(v, noise, generator):  # type: ignore[no-untyped-def] # pragma: no cov
 
 
 @kernel
-def advance(y, v, anchors, generator, step, law, scratch, tally, steps):  # type: ignore[no-untyped-def] # pragma: no cover
+def advance(y, v, anchors, generator, step, law, scratch, tally, steps):  # type: ignore[no-untyped-def]
     """Take ``steps`` steps of the chain in place; return the collisions, or -1 if diverged.
 
     ``y``, ``v``, ``anchors``: float arrays of shape (L,) in the reduced coordinate;
@@ -112,7 +112,7 @@ def advance(y, v, anchors, generator, step, law, scratch, tally, steps):  # type
 
 
 @kernel
-def bounded(y, v, fastest):  # type: ignore[no-untyped-def] # pragma: no cover
+def bounded(y, v, fastest):  # type: ignore[no-untyped-def]
     """Whether the state is finite and no rod faster than ``fastest``; false for NaN."""
     for i in range(y.size):
         if not (abs(v[i]) <= fastest and abs(y[i]) < np.inf):
@@ -121,7 +121,7 @@ def bounded(y, v, fastest):  # type: ignore[no-untyped-def] # pragma: no cover
 
 
 @kernel
-def record(  # type: ignore[no-untyped-def] # pragma: no cover
+def record(  # type: ignore[no-untyped-def]
     y, v, anchors, generator, step, law, scratch, tally, stride, fastest, y_buffer, v_buffer
 ):
     """Fill the buffers, shape (snapshots, L), with the state after every ``stride`` steps.

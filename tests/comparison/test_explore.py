@@ -43,6 +43,7 @@ def test_order_is_never_broken_whatever_is_changed():
             assert (np.diff(session.y) >= -1e-12).all()
 
 
+@pytest.mark.compiled
 def test_elastic_widths_are_those_of_a_free_rod():
     chain = Chain(size=20, gap=0.3, amplitude=3.0)
     shares = []
@@ -103,6 +104,7 @@ def test_a_budget_ends_what_would_take_for_ever():
     assert session.time > 1.0
 
 
+@pytest.mark.compiled
 def test_divergence_is_reported_and_the_chain_stands_still():
     chain = Chain(size=100, restitution=1.1, damping=0.4)
     session = Session(chain)
@@ -242,6 +244,7 @@ def errors(browser):
     return [line["message"] for line in browser.get_log("browser") if line["level"] == "SEVERE"]
 
 
+@pytest.mark.compiled
 def test_page_moves_at_twenty_frames_a_second_with_nothing_from_elsewhere(browser, address):
     visit(browser, address)
     assert len(column(browser, "rods", "x")) == 100
@@ -275,6 +278,7 @@ def test_page_moves_at_twenty_frames_a_second_with_nothing_from_elsewhere(browse
     assert errors(browser) == []
 
 
+@pytest.mark.compiled
 def test_a_number_typed_changes_theory_and_address_and_opens_again(browser, address):
     visit(browser, address)
     until(lambda: column(browser, "exact density", "x"))
@@ -312,6 +316,7 @@ def test_a_number_typed_changes_theory_and_address_and_opens_again(browser, addr
     assert errors(browser) == []
 
 
+@pytest.mark.compiled
 def test_a_slider_that_is_moved_changes_the_chain(browser, address):
     from selenium.webdriver.common.keys import Keys
 
@@ -324,6 +329,7 @@ def test_a_slider_that_is_moved_changes_the_chain(browser, address):
     assert errors(browser) == []
 
 
+@pytest.mark.compiled
 def test_a_preset_and_the_kinetic_equation(browser, address):
     from selenium.webdriver.support.ui import Select
 
@@ -345,6 +351,7 @@ def test_a_preset_and_the_kinetic_equation(browser, address):
     assert errors(browser) == []
 
 
+@pytest.mark.compiled
 def test_pages_say_what_is_wrong(browser, address):
     def said():
         return " ".join(each.text for each in browser.execute_script(DEEP, ".alert"))

@@ -143,6 +143,7 @@ def test_widths_of_centre_and_border():
     assert centre_width(run) == pytest.approx((width[45:55] ** 2).mean() ** 0.5)
 
 
+@pytest.mark.compiled
 def test_moments_of_a_gaussian():
     """Skewness 0 and kurtosis 3, within 5 errors of 2 x 5e4 nearly independent velocities."""
     run = simulate(
@@ -214,6 +215,7 @@ def test_an_unknown_figure_is_one_line_and_nothing_written(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.compiled
 def test_a_figure_its_claims_and_one_page_with_everything(tmp_path):
     done = command("arctanh", folder=tmp_path)
     assert done.returncode == 0, done.stderr
@@ -228,6 +230,7 @@ def test_a_figure_its_claims_and_one_page_with_everything(tmp_path):
     assert again.stdout.splitlines()[1:] == done.stdout.splitlines()[2:]
 
 
+@pytest.mark.compiled
 def test_the_report_is_one_page_and_the_table_markdown(tmp_path):
     figures = [*find_figures("model"), *find_figures("arctanh")]
     run_cases(all_cases(figures, "quick"), tmp_path, ThreadPoolExecutor(1), progress=False)

@@ -327,6 +327,7 @@ def test_processes_and_dask_give_the_same_results(tmp_path):
             assert here.identical(other)
 
 
+@pytest.mark.compiled
 def test_a_dask_worker_killed_in_the_middle_costs_nothing(tmp_path):
     from distributed import Client, LocalCluster
 
@@ -441,6 +442,7 @@ def workers_of(parent):
     return [int(pid) for pid in found.stdout.split()]
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
 def test_a_sweep_that_is_killed_keeps_what_is_finished_and_leaves_no_workers(
     how, long_grid, tmp_path
