@@ -124,8 +124,7 @@ class Replica:
         chunk = max(_CHUNK // self.y.size, 1)
         while self.steps < schedule.warmup_steps and not (self.over or stop.is_set()):
             steps = min(chunk, schedule.warmup_steps - self.steps)
-            met = advance(*kernel, unseen, steps)
-            if met < 0 or not bounded(self.y, self.v, dynamics.fastest):
+            if not self._advance(kernel, dynamics, unseen, steps):
                 self._diverge(0)
                 return
             self.steps += steps
@@ -135,18 +134,25 @@ class Replica:
         kernel = self._kernel(dynamics)
         tally = self._tally(counted=dynamics.law.operator == HEAP)
         per_block = schedule.snapshots_per_block
-        rows = max(_CHUNK // self.y.size // schedule.stride, 1)
+        chunk = max(_CHUNK // self.y.size, 1)
+        rows = max(chunk // schedule.stride, 1)
         y_buffer, v_buffer = np.empty((2, min(rows, per_block), self.y.size))
         while self.snapshots < schedule.snapshots and not (self.over or stop.is_set()):
             block, taken = divmod(self.snapshots, per_block)
             n = min(len(y_buffer), per_block - taken)
+            due = schedule.step_of(self.snapshots) - self.steps
             tally.contacts[:] = 0
-            if schedule.ensemble and block == 0:
+            if due == 0:  # the start of an ensemble
                 y_buffer[0], v_buffer[0], good, steps = self.y, self.v, 1, 0
+            elif due > chunk:  # no snapshot yet, but Ctrl-C and checkpoints must not wait for it
+                n, good, steps = 0, 0, chunk
+                if not self._advance(kernel, dynamics, tally, steps):
+                    self._diverge(block)
+                    return
             else:
                 views = y_buffer[:n], v_buffer[:n]
-                good = record(*kernel, tally, schedule.stride, dynamics.fastest, *views)
-                steps = good * schedule.stride
+                good = record(*kernel, tally, due, dynamics.fastest, *views)
+                steps = good * due
             seen = y_buffer[:good], v_buffer[:good], tally.contacts
             for observer in self.observers:
                 observer.observe(Snapshots(block, self.snapshots, self.copy, *seen))
@@ -157,6 +163,13 @@ class Replica:
             if good < n:
                 self._diverge(block)
             yield steps
+
+    def _advance(
+        self, kernel: tuple[Any, ...], dynamics: Dynamics, tally: Tally, steps: int
+    ) -> bool:
+        """Take steps without snapshots; return whether the chain did not diverge in them."""
+        met = advance(*kernel, tally, steps)
+        return bool(met >= 0 and bounded(self.y, self.v, dynamics.fastest))
 
     def _diverge(self, block: int) -> None:
         self.over, self.reached = True, min(self.reached, block)

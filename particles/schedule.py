@@ -68,6 +68,10 @@ class Schedule:
         """Steps that a replica takes, warm-up included."""
         return self.warmup_steps + (self.snapshots - self.ensemble) * self.stride
 
+    def step_of(self, snapshot: int) -> int:
+        """Return the steps that a replica has taken when a snapshot, counted from 0, is due."""
+        return self.warmup_steps + (snapshot + (not self.ensemble)) * self.stride
+
     @property
     def duration(self) -> float:
         """Duration that is measured, per replica."""

@@ -17,6 +17,7 @@ from crazybilliards.model import Chain, load, save
 from crazybilliards.model.locks import locked
 from crazybilliards.model.storage import read_sealed, write_sealed
 from crazybilliards.particles import simulate
+from crazybilliards.particles.replica import Replica
 
 SCRIPT = """
 import sys
@@ -134,6 +135,29 @@ def test_a_disk_that_fills_up_costs_the_checkpoint_and_not_the_run(tmp_path, mon
     assert [path.name for path in tmp_path.iterdir()] == ["state"]
     monkeypatch.undo()
     xr.testing.assert_identical(simulate(Chain(size=10), **arguments), undisturbed)
+
+
+def test_between_two_snapshots_far_apart_a_run_can_be_stopped_and_resumed(tmp_path, monkeypatch):
+    chain = Chain(size=50)
+    options = {"duration": 4e4, "every": 2e4, "average": "ensemble", "progress": False}
+    options |= {"observe": ("widths", "energy")}
+    whole = simulate(chain, **options)
+    measure = Replica._measure
+
+    def stopped(replica, dynamics, schedule, stop):
+        for number, steps in enumerate(measure(replica, dynamics, schedule, stop)):
+            if number == 3:
+                os.kill(os.getpid(), signal.SIGINT)
+                assert stop.wait(120)
+            yield steps
+
+    monkeypatch.setattr(Replica, "_measure", stopped)
+    cut = simulate(chain, **options, checkpoint=tmp_path / "state")
+    assert cut.attrs["status"] == "interrupted"
+    assert cut.time.values.tolist() == [0]
+    monkeypatch.undo()
+    resumed = simulate(chain, **options, checkpoint=tmp_path / "state")
+    xr.testing.assert_identical(resumed, whole)
 
 
 def test_ctrl_c_while_replicas_are_started_stops_the_run(tmp_path, monkeypatch):

@@ -110,6 +110,22 @@ def test_ctrl_c_keeps_what_was_measured():
     assert (run.velocity_width_error > 0).all()
 
 
+@pytest.mark.parametrize("average", ["time", "ensemble"])
+@pytest.mark.parametrize("observe", [("widths", "energy"), ("collisions",)])
+def test_long_times_between_snapshots_are_taken_in_parts(average, observe, monkeypatch):
+    """Without noise, which would be drawn at other moments, nothing else shows."""
+    if average == "ensemble" and "collisions" in observe:
+        pytest.skip("collisions are not averaged over an ensemble")
+    chain = Chain(size=4, amplitude=0, restitution=0.9)
+    position = [-9.0, -3.1, 5.0, 7.1]
+    options = {"duration": 8.0, "every": 0.1, "time_step": 1e-3, "average": average}
+    options |= {"observe": observe, "start": given_start(chain, position), "progress": False}
+    whole = simulate(chain, **options)
+    assert np.ptp(whole[next(iter(whole.data_vars))].values) > 0
+    monkeypatch.setattr("crazybilliards.particles.replica._CHUNK", 30 * chain.size)
+    xr.testing.assert_allclose(simulate(chain, **options), whole, rtol=1e-9, atol=1e-9)
+
+
 def test_ctrl_c_before_anything_was_measured_is_raised():
     timer = threading.Timer(0.5, signal.raise_signal, [signal.SIGINT])
     simulate(Chain(size=2), duration=100, progress=False)
