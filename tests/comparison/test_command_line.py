@@ -91,8 +91,8 @@ def test_what_cannot_be_written_is_shown_at_least(tmp_path):
     done = run(*QUICK, "--output", str(tmp_path))
     assert done.returncode == 2
     assert "close packing" in done.stdout
-    assert done.stderr.count("\n") == 1
-    assert f"{tmp_path / 'comparison.nc'}: Is a directory" in done.stderr
+    [error] = [line for line in done.stderr.splitlines() if "compiling" not in line]
+    assert f"{tmp_path / 'comparison.nc'}: Is a directory" in error
     assert [path.name for path in tmp_path.iterdir()] == ["comparison.nc"]
 
 
