@@ -16,9 +16,8 @@ from crazybilliards.model.memory import require_memory
 from crazybilliards.particles.drift import Method
 from crazybilliards.particles.observers import OBSERVERS, Plan
 from crazybilliards.particles.replica import start_swing
-from crazybilliards.particles.schedule import Average, Schedule, make_schedule
+from crazybilliards.particles.schedule import Average, Schedule, Stepper, make_schedule
 from crazybilliards.particles.start import replica_starts
-from crazybilliards.particles.stepping import Stepper
 
 Array = NDArray[np.float64]
 
@@ -99,6 +98,7 @@ def make_request(
         every=every,
         average=average,
         replicas=replicas,
+        stepper=stepper,
         started=start is not None,
     )
     require_resolved(chain, float(chain.reduced_anchors[-1]))

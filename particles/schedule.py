@@ -37,6 +37,7 @@ _BLOCKS = 64
 _OUTPUTS = 100
 
 Average = Literal["time", "ensemble"]
+Stepper = Literal["splitting", "euler"]
 
 
 @dataclass(frozen=True)
@@ -135,6 +136,20 @@ def default_time_step(chain: Chain) -> float:
     return max(min(step, ratio**2 * chain.mass / (2 * chain.damping)), step / _MOST_REFINED)
 
 
+def longest_step(chain: Chain, stepper: Stepper) -> float:
+    """Time step from which on a swinging rod gains energy without end, or its damping does.
+
+    2/w0 with the splitting; with euler 4/(g + sqrt(g^2 + 4 w0^2)), g = gamma/m. Infinite for a
+    quadratic spring without damping, which has no rate: there the steps show whether it diverges.
+    """
+    if chain.spring == "quadratic" and math.isinf(chain.temperature):
+        return math.inf
+    rate = spring_rate(chain)
+    damping = chain.damping / chain.mass if stepper == "euler" else 0.0
+    slowest = damping + math.hypot(damping, 2 * rate)
+    return 4 / slowest if slowest > 0 else math.inf
+
+
 def time_step_error(chain: Chain, time_step: float, velocity_width: float) -> float:
     """Relative error of a ``velocity_width`` off e = 1 that is due to the kicks of the noise.
 
@@ -170,6 +185,7 @@ def make_schedule(
     every: float | None = None,
     average: Average = "time",
     replicas: int = 1,
+    stepper: Stepper = "splitting",
     started: bool = False,
 ) -> Schedule:
     """Check the times a user gave, fill in those not given, and return whole numbers of steps.
@@ -182,7 +198,7 @@ def make_schedule(
     duration = check_real("duration", duration, positive=True)
     if every is None and ensemble:
         every = duration / _OUTPUTS
-    step, stride = _step_and_stride(chain, time_step, every)
+    step, stride = _step_and_stride(chain, time_step, every, stepper)
     if warmup is None:
         warmup = 0.0 if started or ensemble else _RELAXATIONS * relaxation_time(chain)
     warmup = check_real("warmup", warmup)
@@ -207,16 +223,16 @@ def make_schedule(
 
 
 def _step_and_stride(
-    chain: Chain, time_step: float | None, every: float | None
+    chain: Chain, time_step: float | None, every: float | None, stepper: Stepper
 ) -> tuple[float, int]:
     """Return the length of a step, checked or chosen, and the steps from snapshot to snapshot."""
     if time_step is None:
         step = default_time_step(chain)
     else:
         step = check_real("time_step", time_step, positive=True)
-        if step * spring_rate(chain) >= 2:
-            limit = 2 / spring_rate(chain)
-            raise ValueError(f"time_step must be below 2/w0 = {limit:.3g} to be stable, got {step}")
+        limit = longest_step(chain, stepper)
+        if step >= limit:
+            raise ValueError(f"time_step must be below {limit:.3g} to be stable, got {step:g}")
     if every is None:
         return step, _STRIDE
     every = check_real("every", every, positive=True)

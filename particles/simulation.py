@@ -20,9 +20,9 @@ from crazybilliards.particles.observers import OBSERVERS, Plan
 from crazybilliards.particles.replica import Dynamics, Replica, typical_speed
 from crazybilliards.particles.request import Request, make_request
 from crazybilliards.particles.running import announced, cores, run_all
-from crazybilliards.particles.schedule import Average, Schedule
+from crazybilliards.particles.schedule import Average, Schedule, Stepper
 from crazybilliards.particles.start import replica_starts
-from crazybilliards.particles.stepping import Stepper, make_step
+from crazybilliards.particles.stepping import make_step
 
 _DIVERGED = 1e6  # typical speeds: the steady states of e > 1 stay within some tens of them
 

@@ -21,15 +21,14 @@ First order: a free rod without spring has W^2 = (T/m)/(1 - gamma dt/2m).
 from __future__ import annotations
 
 import math
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from crazybilliards.model import Chain
 from crazybilliards.model.kernel import kernel
 from crazybilliards.particles.drift import drift
-
-Stepper = Literal["splitting", "euler"]
+from crazybilliards.particles.schedule import Stepper
 
 
 class Step(NamedTuple):

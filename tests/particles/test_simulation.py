@@ -11,7 +11,7 @@ import xarray as xr
 from crazybilliards.kinetic import equilibrium, equilibrium_states
 from crazybilliards.model import Chain
 from crazybilliards.particles import given_start, simulate
-from crazybilliards.particles.schedule import make_schedule, relaxation_time
+from crazybilliards.particles.schedule import longest_step, make_schedule, relaxation_time
 
 QUANTITIES = ("velocity_width", "mean_displacement", "displacement_width")
 
@@ -97,6 +97,40 @@ def test_the_error_bar_is_the_exact_one_of_a_free_rod():
     run = simulate(Chain(size=1), duration=duration, observe="widths", progress=False)
     # From 64 blocks an error bar is itself known to 9 %; uncorrelated snapshots would give 0.72.
     assert run.mean_displacement_error.item() * np.sqrt(duration) == pytest.approx(1, abs=0.27)
+
+
+@pytest.mark.parametrize("stepper", ["splitting", "euler"])
+@pytest.mark.parametrize(("damping", "stiffness"), [(0, 1), (1, 1), (9, 0.5), (3, 0)])
+def test_a_step_is_refused_just_where_it_gets_unstable(stepper, damping, stiffness):
+    """One free rod: the growth of its swing in a step is the largest eigenvalue of the step."""
+    chain = Chain(size=1, damping=damping, stiffness=stiffness, amplitude=0, radius=0.3, mass=2)
+    g, rate2 = damping / chain.mass, stiffness / chain.mass
+
+    def growth(dt):
+        flight = np.array([[1, dt], [0, 1]])
+        if stepper == "euler":
+            step = flight @ np.array([[1, 0], [-rate2 * dt, 1 - g * dt]])
+        else:
+            half = np.array([[1, 0], [-rate2 * dt / 2, 1]])
+            step = np.diag([1, np.exp(-g * dt)]) @ half @ flight @ half
+        values = abs(np.linalg.eigvals(step))
+        return values.max() if stiffness else abs(step[1, 1])
+
+    limit = longest_step(chain, stepper)
+    if limit < np.inf:
+        assert growth(1.01 * limit) > 1
+        with pytest.raises(ValueError, match="time_step must be below"):
+            simulate(chain, time_step=1.01 * limit, stepper=stepper)
+    assert growth(0.99 * min(limit, 1e3)) < 1 + 1e-12
+    simulate(chain, duration=2e4, time_step=0.99 * min(limit, 10.0), warmup=0, stepper=stepper)
+
+
+def test_a_spring_without_a_rate_takes_a_time_step():
+    chain = Chain(size=3, spring="quadratic", damping=0)
+    with pytest.raises(ValueError, match="give time_step"):
+        simulate(chain, duration=10)
+    run = simulate(chain, duration=10, time_step=0.01, observe="widths", progress=False)
+    assert run.attrs["status"] == "completed"
 
 
 def test_ctrl_c_keeps_what_was_measured():
