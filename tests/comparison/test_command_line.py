@@ -64,6 +64,7 @@ def test_help_shows_an_example_and_loads_nothing_heavy(arguments):
     assert "Example: crazybilliards " in done.stdout
 
 
+@pytest.mark.compiled
 def test_compare_writes_both_figures_and_the_data(tmp_path):
     folder = tmp_path / "new" / "folder"
     done = run(*QUICK, "--output", str(folder))
@@ -138,6 +139,7 @@ def test_bad_input_is_one_line_exit_two_and_nothing_written(arguments, message, 
     assert not folder.exists()
 
 
+@pytest.mark.compiled
 def test_compare_restitutions(tmp_path):
     arguments = ["--restitution", "0.9,1", "--size", "10", "--duration", "200"]
     done = run("compare", *arguments, "--output", str(tmp_path))
@@ -188,6 +190,7 @@ def test_theory_refuses_in_one_line(arguments, message, tmp_path):
 RELAX = ["relax", "--size", "10", "--duration", "4", "--replicas", "8", "--every", "1"]
 
 
+@pytest.mark.compiled
 def test_relax_writes_pictures_animations_and_the_data(tmp_path):
     done = run(*RELAX, "--release", "quenched", "--output", str(tmp_path))
     assert done.returncode == 0, done.stderr
@@ -233,6 +236,7 @@ def test_relax_refuses_bad_input_in_one_line(arguments, message, tmp_path):
     assert not folder.exists()
 
 
+@pytest.mark.compiled
 @pytest.mark.skipif(os.name == "nt", reason="sends a POSIX signal")
 def test_ctrl_c_keeps_what_relaxed(tmp_path):
     begin = time.monotonic()
@@ -259,6 +263,7 @@ def test_an_unknown_command_and_an_unusable_folder_are_one_line(tmp_path):
     assert file.read_text() == "mine"
 
 
+@pytest.mark.compiled
 @pytest.mark.skipif(os.name == "nt", reason="sends a POSIX signal")
 def test_ctrl_c_saves_what_was_computed_beside_a_finished_result(tmp_path):
     begin = time.monotonic()

@@ -98,6 +98,7 @@ def test_the_power_law_fit_recovers_a_sum_of_two_power_laws():
         fit_border_power_law(source.isel(particle=[1, 2]))
 
 
+@pytest.mark.compiled
 def test_the_dissipative_chain_follows_a_power_law_from_its_borders():
     """L = 300, e = 0: nu = -0.46, as in the paper."""
     chain = Chain(size=300, restitution=0)

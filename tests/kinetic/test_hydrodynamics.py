@@ -31,6 +31,7 @@ def l1_distance(one, other):
     return difference.sum(axis=1) * spacing / one.rods.values
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("temperature", ["isothermal", "evolving"])
 @pytest.mark.parametrize("stretch", [0.3, 2.0])
 def test_the_label_frame_is_exact_for_the_breathing_cloud(temperature, stretch):
@@ -45,6 +46,7 @@ def test_the_label_frame_is_exact_for_the_breathing_cloud(temperature, stretch):
     np.testing.assert_allclose(middle, exact.velocity_variance, rtol=1e-4)
 
 
+@pytest.mark.compiled
 def test_isothermal_clouds_overshoot_where_rods_and_warm_clouds_do_not():
     """From 0.3 s, at the reference damping: a width of 1.55 s, against 1.00 s in truth."""
     chain = Chain()
@@ -60,6 +62,7 @@ def test_isothermal_clouds_overshoot_where_rods_and_warm_clouds_do_not():
     assert widest["evolving"] < 1.0001
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("frame", ["label", "eulerian"])
 @pytest.mark.parametrize("spring", ["linear", "quadratic"])
 def test_a_shift_swings_as_one_oscillator_if_the_springs_are_linear(frame, spring):
@@ -77,6 +80,7 @@ def test_a_shift_swings_as_one_oscillator_if_the_springs_are_linear(frame, sprin
         assert np.abs(flow.centre - exact).max() > 0.05
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("spring", ["linear", "quadratic"])
 @pytest.mark.parametrize("gap", [0.0, 0.2, 1.0])
 @pytest.mark.parametrize(("size", "amplitude"), [(10, 30), (100, 1), (100, 100), (1000, 10)])
@@ -232,6 +236,7 @@ def test_wrong_starts_are_refused():
         breathing_cloud(Chain(gap=1), [0, 1])
 
 
+@pytest.mark.compiled
 def test_what_the_cells_cannot_hold_ends_with_a_reason():
     chain = Chain(size=20)
     with pytest.raises(ValueError, match="too steep"):
@@ -242,6 +247,7 @@ def test_what_the_cells_cannot_hold_ends_with_a_reason():
         hydrodynamics(chain, inward, 0.01, every=0.001, **QUIET)
 
 
+@pytest.mark.compiled
 def test_ctrl_c_keeps_the_times_before():
     chain = Chain(size=100)
     start = force_balance(chain)

@@ -1,5 +1,6 @@
 """The kernel cache must notice a change in a kernel that is called from another file."""
 
+import os
 import subprocess
 import sys
 
@@ -29,6 +30,7 @@ def test_a_changed_callee_is_recompiled(tmp_path):
         done = subprocess.run(
             [sys.executable, "caller.py"],
             cwd=tmp_path,
+            env={**os.environ, "NUMBA_CACHE_DIR": ""},
             capture_output=True,
             text=True,
             check=True,
