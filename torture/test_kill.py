@@ -221,6 +221,8 @@ def test_killed_at_random_moments_it_ends_with_the_bits_of_an_undisturbed_run(jo
     assert end(begin(job, clean)) == 0
     duration = time.monotonic() - start
     undisturbed = contents(clean)
+    # What a run has done helps the next ones: ten of them together may last as long as three.
+    latest = duration if job is compared else 3 * duration / KILLS
     generator = np.random.default_rng(len(job.__name__))
     running = 0
     for sequence in range(SEQUENCES):
@@ -228,7 +230,7 @@ def test_killed_at_random_moments_it_ends_with_the_bits_of_an_undisturbed_run(jo
         folder.parent.mkdir()
         for _ in range(KILLS):
             child = begin(job, folder)
-            time.sleep(generator.uniform(0, duration))
+            time.sleep(generator.uniform(0, latest))
             how = SIGNALS[generator.integers(3)]
             running += bool(members(child))
             end(child, how, group=how == signal.SIGINT or generator.random() < 0.5)
@@ -241,7 +243,7 @@ def test_killed_at_random_moments_it_ends_with_the_bits_of_an_undisturbed_run(jo
     print(
         f"{job.__name__}: {running} of {SEQUENCES * KILLS} kills found it running {duration:.1f} s"
     )
-    assert running > SEQUENCES * KILLS / 4
+    assert running > SEQUENCES * KILLS / 2
 
 
 CONTENTS = []  # what is written

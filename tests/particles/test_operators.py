@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from gauss_seidel import solve
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from crazybilliards.particles.avalanche import make_tally
@@ -89,9 +89,19 @@ def test_contact_dynamics_is_what_gauss_seidel_converges_to(state, e):
     np.testing.assert_allclose(exact, swept, atol=1e-9)
 
 
+def assume_determined(operator, y, v, dt, e):
+    """Pass over states near inelastic collapse, where rounding decides what comes out."""
+    nearby = v + 1e-12 * np.cos(np.arange(v.size))
+    for one, other in zip(
+        drifted(operator, y, v, dt, e)[:2], drifted(operator, y, nearby, dt, e)[:2], strict=True
+    ):
+        assume(np.allclose(one, other, rtol=0, atol=1e-10))
+
+
 @given(state=states(), e=restitutions, name=st.sampled_from(sorted(OPERATORS)))
 def test_reflection_symmetry(state, e, name):
     y, v, dt = state
+    assume_determined(OPERATORS[name], y, v, dt, e)
     one = drifted(OPERATORS[name], y, v, dt, e)
     other = drifted(OPERATORS[name], -y[::-1], -v[::-1], dt, e)
     np.testing.assert_allclose(-other[0][::-1], one[0], atol=1e-10)
@@ -101,6 +111,7 @@ def test_reflection_symmetry(state, e, name):
 @given(state=states(), e=restitutions, name=st.sampled_from(sorted(OPERATORS)))
 def test_galilean_invariance(state, e, name):
     y, v, dt = state
+    assume_determined(OPERATORS[name], y, v, dt, e)
     one = drifted(OPERATORS[name], y, v, dt, e)
     moving = drifted(OPERATORS[name], y, v + 1.5, dt, e)
     np.testing.assert_allclose(moving[0], one[0] + 1.5 * dt, atol=1e-9)
