@@ -29,7 +29,7 @@ def pool(values, companions, falls, count, firsts, lasts, sums, companion_sums):
     """
     size = INDEX(values.size)
     # Blocks of more than one rod lie on a stack; the last one ends before ``end``.
-    blocks, end, merged = _0, _0, _0
+    blocks, end = _0, _0
     k = _0
     while k < count:
         fall = INDEX(falls[k])
@@ -40,7 +40,6 @@ def pool(values, companions, falls, count, firsts, lasts, sums, companion_sums):
             first = INDEX(firsts[blocks])
             members = float(fall - first) + 1.0
             total, companion = sums[blocks], companion_sums[blocks]
-            merged -= fall - first - _1
             end = INDEX(lasts[blocks - _1]) if blocks > _0 else _0
         else:
             first = fall - _1
@@ -58,7 +57,6 @@ def pool(values, companions, falls, count, firsts, lasts, sums, companion_sums):
                     total += sums[left]
                     companion += companion_sums[left]
                     members += weight
-                    merged -= end - first - _1
                     blocks = left
                     end = INDEX(lasts[left - _1]) if left > _0 else _0
                 else:
@@ -79,9 +77,12 @@ def pool(values, companions, falls, count, firsts, lasts, sums, companion_sums):
         sums[blocks], companion_sums[blocks] = total, companion
         blocks += _1
         end = last
-        merged += last - first - _1
-        share = 1.0 / members
-        mean, companion_mean = total * share, companion * share
+    # Only now: a block that goes on growing, written each time, would cost its size each time.
+    merged = _0
+    for block in range(blocks):
+        first, last = INDEX(firsts[block]), INDEX(lasts[block])
+        share = 1.0 / float(last - first)
+        mean, companion_mean = sums[block] * share, companion_sums[block] * share
         # Means of neighbouring blocks that touch may come out of order by rounding.
         if first > _0:
             mean = max(mean, values[first - _1])
@@ -90,6 +91,7 @@ def pool(values, companions, falls, count, firsts, lasts, sums, companion_sums):
         for i in range(first + _2, last):
             values[i] = mean
             companions[i] = companion_mean
+        merged += last - first - _1
     return merged
 
 

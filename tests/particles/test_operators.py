@@ -71,6 +71,17 @@ def test_isotonic_is_event_driven_without_restitution(state):
         np.testing.assert_allclose(ours, theirs, atol=1e-11)
 
 
+@pytest.mark.compiled
+def test_a_cluster_may_swallow_two_rods_at_a_time():
+    """The worst case for a cluster that is written whenever it has grown: minutes, not a moment."""
+    size = 1_000_000
+    v = np.where(np.arange(size) % 2 == 0, 1.0, -5.0) - 1e-6 * np.arange(size)
+    y, w, closed = drifted(ISOTONIC, np.zeros(size), v, 1e-3, 0.0)
+    assert closed == size - 1
+    np.testing.assert_allclose(w, v.mean(), rtol=1e-9)
+    np.testing.assert_allclose(y, 1e-3 * v.mean(), rtol=1e-9)
+
+
 @given(state=states(touching=False))
 def test_sort_is_event_driven_at_restitution_one(state):
     y, v, dt = state
