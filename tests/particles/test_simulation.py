@@ -181,19 +181,12 @@ def test_memory_does_not_grow_with_the_duration():
 
 
 def test_a_chain_that_blows_up_is_marked_diverged():
-    """Euler's damping factor 1 - gamma dt/m is -1.9 here: velocities grow step by step."""
-    chain = Chain(size=5, damping=8)
-    run = simulate(
-        chain,
-        duration=1000,
-        time_step=1.5,
-        warmup=0,
-        stepper="euler",
-        observe="widths",
-        progress=False,
-    )
+    """No step is short enough for quadratic springs without damping when the swings are wide."""
+    chain = Chain(size=5, damping=0, spring="quadratic")
+    run = simulate(chain, duration=10_000, time_step=1.0, observe="widths", progress=False)
     assert run.attrs["status"] == "diverged"
-    assert run.attrs["end_time"] < 1000
+    assert 0 < run.attrs["end_time"] < 10_000
+    assert "velocity_width" in run
     for name in run.data_vars:
         assert np.isfinite(run[name]).all() or name.endswith("_error"), name
 
