@@ -19,7 +19,7 @@ help:
 	@echo "make run        compare simulation and theory at e = 1; figures into $(OUTPUT)/"
 	@echo "make test       run the tests"
 	@echo "make test-lowest  the same with the oldest version of every package that is allowed"
-	@echo "make torture    faults, bad input, long runs: docs/reliability.md, tested (15 min)"
+	@echo "make torture    faults, bad input, long runs: docs/reliability.md, tested (8 min)"
 	@echo "make coverage   which lines the tests reach, kernels included (10 min)"
 	@echo "make check      lint, format and type checks"
 	@echo "make audit      look up known vulnerabilities of every package used (needs the network)"
