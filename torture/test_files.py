@@ -326,7 +326,7 @@ def cases_of(text, path):
         "[simulate]\nobserve = [[1]]",
         "[simulate]\nstart = 1",
         "[simulate]\nthreads = 1",
-        "[simulate]\ncheckpoint = '/tmp/x'",
+        "[simulate]\ncheckpoint = 'state'",
         "[simulate]\nduration = 1e300",
         "[simulate]\nreplicas = 1000000000000",
         "[simulate]\naverage = ['time']",
