@@ -20,7 +20,7 @@ help:
 	@echo "make test       run the tests"
 	@echo "make test-lowest  the same with the oldest version of every package that is allowed"
 	@echo "make torture    faults, bad input, long runs: docs/reliability.md, tested (8 min)"
-	@echo "make coverage   which lines the tests reach, kernels included (10 min)"
+	@echo "make coverage   which lines the tests reach, kernels included (12 min)"
 	@echo "make check      lint, format and type checks"
 	@echo "make audit      look up known vulnerabilities of every package used (needs the network)"
 	@echo "make reproduce  every figure and claim of the paper into reproduced/ (4 min; QUALITY=full 1 h)"

@@ -19,7 +19,7 @@ def modules():
     for room in STANDS_ON:
         package = importlib.import_module(f"crazybilliards.{room}")
         yield package.__name__, package.__file__
-        for info in pkgutil.iter_modules(package.__path__, f"{package.__name__}."):
+        for info in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
             yield info.name, importlib.import_module(info.name).__file__
 
 
@@ -38,6 +38,7 @@ def test_no_room_imports_what_stands_above_it(name, path):
     assert rooms <= STANDS_ON[name.split(".")[1]]
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("name", [name for name, _ in modules()])
 def test_examples_in_docstrings(name):
     outcome = doctest.testmod(importlib.import_module(name))

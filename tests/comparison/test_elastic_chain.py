@@ -17,6 +17,8 @@ from crazybilliards.comparison.elastic_chain import (
 from crazybilliards.comparison.elastic_figures import draw_density, draw_displacement
 from crazybilliards.model import Chain, chain_of
 
+pytestmark = pytest.mark.compiled
+
 
 @pytest.fixture(scope="module")
 def tree():

@@ -9,6 +9,8 @@ from crazybilliards.comparison.relaxation import cloud, label_distances
 from crazybilliards.comparison.relaxation_figures import draw_cloud, draw_profiles, draw_spacetime
 from crazybilliards.model import Chain
 
+pytestmark = pytest.mark.compiled
+
 
 @pytest.fixture(scope="module")
 def tree():

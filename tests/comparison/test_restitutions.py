@@ -21,6 +21,8 @@ matplotlib.use("Agg")
 CHAIN = Chain(size=20)
 QUIET = {"progress": False, "threads": 1}
 
+pytestmark = pytest.mark.compiled
+
 
 @pytest.fixture(scope="module")
 def tree():

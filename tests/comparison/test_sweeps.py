@@ -1,13 +1,9 @@
-"""Sweeps: the same case the same file, nothing computed twice, nothing lost, any engine."""
+"""Sweeps: the same case the same file, nothing computed twice, nothing lost."""
 
 import errno
 import json
 import os
 import signal
-import subprocess
-import sys
-import threading
-import time
 from concurrent.futures import Executor, Future
 from concurrent.futures.process import BrokenProcessPool
 
@@ -19,8 +15,6 @@ from crazybilliards.comparison import load_sweep
 from crazybilliards.comparison.sweeps import (
     Case,
     Sweep,
-    dask_cluster,
-    process_pool,
     read_sweep,
     run_cases,
 )
@@ -29,20 +23,6 @@ from crazybilliards.comparison.sweeps.running import missing_cases
 from crazybilliards.model import Chain, load, save
 from crazybilliards.model.locks import locked
 from crazybilliards.model.storage import write_sealed
-
-COMMAND = [sys.executable, "-c", "from crazybilliards.comparison.commands.main import main; main()"]
-GRID = """
-[grid]
-size = [3, 5]
-restitution = [0.5, 1.0]
-
-[chain]
-damping = 2.0
-
-[simulate]
-duration = {duration}
-observe = ["widths", "density"]
-"""
 
 
 class AtOnce(Executor):
@@ -63,52 +43,50 @@ def sweep(**changes):
     return Sweep(**(given | changes))
 
 
-# -- cases ------------------------------------------------------------------------------------
-
-
-def test_equal_cases_have_equal_keys_however_their_numbers_are_written():
-    chain = Chain(size=3, damping=2)
-    one = Case("simulate", chain, {"duration": 100, "observe": ("widths",), "seed": np.int64(1)})
-    other = Case(
-        "simulate",
-        Chain(size=np.int64(3), damping=np.float64(2.0)),
-        {"seed": 1, "observe": ["widths"], "duration": 100.0, "replicas": 1},
-    )
-    assert one == other
-    assert one.key == other.key
-    assert len({one, other}) == 1
-    assert one.key != Case("simulate", chain, {"duration": 100, "seed": 2}).key
-    assert one.key != Case("simulate", chain.replace(gap=0.1), dict(one.settings)).key
-
-
-def test_the_canonical_text_holds_every_parameter_and_the_version():
-    stored = json.loads(Case("simulate", Chain(), {"duration": 100}).canonical)
-    assert set(Chain().parameters()) < set(stored)
-    assert {"duration", "warmup", "time_step", "method", "seed", "version", "job"} < set(stored)
-    assert not {"threads", "checkpoint", "progress", "start"} & set(stored)
+# -- grids --------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
-    ("job", "settings", "message"),
+    ("changes", "message"),
     [
-        ("simulation", {}, "job must be one of"),
-        ("simulate", {"length": 3}, "simulate takes any of"),
-        ("simulate", {"threads": 3}, "simulate takes any of"),
-        ("simulate", {"duration": -1}, "duration must be"),
-        ("simulate", {"duration": {"a": 1}}, "plain value"),
-        ("simulate", {"observe": ["heat"]}, "observe takes any of"),
-        ("phase_space", {"duration": 1}, "phase_space takes any of"),
+        ({"grid": {"size": []}}, "size must be a list"),
+        ({"grid": {"size": 3}}, "size must be a list"),
+        ({"grid": {"gap": [3, 3.0]}}, "twice"),
+        ({"grid": {"damping": [1.0, 2.0]}}, "given twice"),
+        ({"grid": {"length": [1, 2]}}, "simulate takes any of"),
+        ({"grid": {"size": [3, -1]}}, "size must be an integer"),
+        ({"grid": {"seed": range(2000), "gap": range(2000)}}, "must be a list"),
+        ({"grid": {"seed": [*range(2000)], "gap": [*range(2000)]}}, "4000000 cases"),
+        ({"chain": {"colour": 1}}, "no parameter 'colour'"),
     ],
 )
-def test_a_wrong_case_is_refused_before_any_work(job, settings, message):
+def test_wrong_grids(changes, message):
     with pytest.raises(ValueError, match=message):
-        Case(job, Chain(size=3), settings)
+        sweep(**changes).cases()
 
 
-def test_a_worker_with_another_version_refuses():
-    case = Case("simulate", Chain(size=2), {"duration": 100})
-    with pytest.raises(ValueError, match="another version"):
-        compute(case, case.canonical.replace('"version": "', '"version": "9'))
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("[grid", "not a TOML file"),
+        ("[grids]\nsize = [1]", "got 'grids'"),
+        ("grid = 3", "must be a table"),
+        ("[simulate]\n[phase_space]", "one job a sweep"),
+    ],
+)
+def test_wrong_files(text, message, tmp_path):
+    path = tmp_path / "grid.toml"
+    path.write_text(text)
+    with pytest.raises(ValueError, match=message):
+        read_sweep(path)
+
+
+def test_a_folder_is_no_description_of_a_sweep(tmp_path):
+    with pytest.raises(ValueError, match="a folder, not a TOML file"):
+        read_sweep(tmp_path)
+
+
+# -- running ------------------------------------------------------------------------------------
 
 
 def test_cases_have_random_numbers_of_their_own(tmp_path):
@@ -119,9 +97,6 @@ def test_cases_have_random_numbers_of_their_own(tmp_path):
     assert run_cases(cases, tmp_path, AtOnce(), progress=False) == {}
     v = [case.load(tmp_path).velocity.values for case in cases]
     assert abs(np.corrcoef(v[1].ravel(), v[2].ravel())[0, 1]) < 0.3
-
-
-# -- files ------------------------------------------------------------------------------------
 
 
 def test_files_are_named_by_the_key_and_hold_the_parameters(tmp_path):
@@ -229,42 +204,7 @@ def test_ctrl_c_does_not_reach_workers_from_their_first_moment_on(tmp_path):
     assert signal.SIGINT not in signal.pthread_sigmask(signal.SIG_BLOCK, [])
 
 
-# -- grids ------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(
-    ("changes", "message"),
-    [
-        ({"grid": {"size": []}}, "size must be a list"),
-        ({"grid": {"size": 3}}, "size must be a list"),
-        ({"grid": {"gap": [3, 3.0]}}, "twice"),
-        ({"grid": {"damping": [1.0, 2.0]}}, "given twice"),
-        ({"grid": {"length": [1, 2]}}, "simulate takes any of"),
-        ({"grid": {"size": [3, -1]}}, "size must be an integer"),
-        ({"grid": {"seed": range(2000), "gap": range(2000)}}, "must be a list"),
-        ({"grid": {"seed": [*range(2000)], "gap": [*range(2000)]}}, "4000000 cases"),
-        ({"chain": {"colour": 1}}, "no parameter 'colour'"),
-    ],
-)
-def test_wrong_grids(changes, message):
-    with pytest.raises(ValueError, match=message):
-        sweep(**changes).cases()
-
-
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        ("[grid", "not a TOML file"),
-        ("[grids]\nsize = [1]", "got 'grids'"),
-        ("grid = 3", "must be a table"),
-        ("[simulate]\n[phase_space]", "one job a sweep"),
-    ],
-)
-def test_wrong_files(text, message, tmp_path):
-    path = tmp_path / "grid.toml"
-    path.write_text(text)
-    with pytest.raises(ValueError, match=message):
-        read_sweep(path)
+# -- loading ------------------------------------------------------------------------------------
 
 
 def test_loading_gives_one_dataset_over_the_grid(tmp_path):
@@ -310,187 +250,6 @@ def test_folders_that_hold_no_sweep(tmp_path):
         load_sweep(tmp_path)
 
 
-# -- engines ----------------------------------------------------------------------------------
-
-
-def test_processes_and_dask_give_the_same_results(tmp_path):
-    cases = sweep().cases()
-    run_cases(cases, tmp_path / "here", AtOnce(), progress=False)
-    with process_pool(2) as pool:
-        assert run_cases(cases, tmp_path / "pool", pool, progress=False) == {}
-    with dask_cluster() as cluster:
-        assert run_cases(cases, tmp_path / "dask", cluster, progress=False) == {}
-    for case in cases:
-        here, pool, dask = (case.load(tmp_path / name) for name in ("here", "pool", "dask"))
-        for other in (pool, dask):
-            other.attrs["seconds"] = here.attrs["seconds"]
-            assert here.identical(other)
-
-
-@pytest.mark.compiled
-def test_a_dask_worker_killed_in_the_middle_costs_nothing(tmp_path):
-    from distributed import Client, LocalCluster
-
-    cases = [
-        Case("simulate", Chain(size=20), {"duration": 20_000, "seed": seed}) for seed in range(8)
-    ]
-    with (
-        LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster,
-        dask_cluster(cluster.scheduler_address) as executor,
-    ):
-        killed = []
-
-        def kill_one():
-            # As soon as a first result is there, others are being worked on.
-            while not list(tmp_path.glob("*.nc")):
-                time.sleep(0.05)
-            with Client(cluster.scheduler_address) as client:
-                victim = next(iter(client.run(os.getpid).values()))
-            os.kill(victim, signal.SIGKILL)
-            killed.append(victim)
-
-        killer = threading.Thread(target=kill_one)
-        killer.start()
-        assert run_cases(cases, tmp_path, executor, progress=False) == {}
-        killer.join()
-    assert killed
-    assert missing_cases(cases, tmp_path) == []
-
-
-def test_no_scheduler_at_the_address():
-    with (
-        pytest.raises(ValueError, match="no dask scheduler"),
-        dask_cluster("nowhere"),
-    ):
-        pass
-
-
-# -- the command ------------------------------------------------------------------------------
-
-
-def run(*arguments):
-    return subprocess.run(
-        [*COMMAND, "sweep", *map(str, arguments)],
-        capture_output=True,
-        text=True,
-        timeout=300,
-        check=False,
-    )
-
-
-@pytest.fixture
-def grid(tmp_path):
-    path = tmp_path / "grid.toml"
-    path.write_text(GRID.format(duration=100))
-    return path
-
-
-@pytest.fixture
-def long_grid(tmp_path):
-    path = tmp_path / "long.toml"
-    many = GRID.format(duration=2e5).replace("[3, 5]", str(list(range(20, 32))))
-    path.write_text(many.replace("[0.5, 1.0]", "[1.0]"))
-    return path
-
-
-def test_the_command_computes_what_is_missing(grid, tmp_path):
-    folder = tmp_path / "results"
-    done = run(grid, "--output", folder)
-    assert done.returncode == 0, done.stderr
-    assert "4 cases, 0 of them" in done.stdout
-    assert "computed 4 cases" in done.stdout
-    again = run(grid, "--output", folder)
-    assert again.returncode == 0
-    assert "4 cases, 4 of them" in again.stdout
-    assert "computed" not in again.stdout
-    assert load_sweep(folder).sizes["size"] == 2
-
-
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (["--processes", "0"], "processes must be"),
-        (["--dask", "--processes", "2"], "a dask cluster decides"),
-        (["--scheduler", "nowhere"], "no dask scheduler"),
-    ],
-)
-def test_wrong_options(arguments, message, grid, tmp_path):
-    done = run(grid, "--output", tmp_path / "results", *arguments)
-    assert done.returncode == 2
-    assert message in done.stderr
-    assert done.stderr.count("\n") == 1
-
-
-def test_a_missing_file_and_a_wrong_grid_are_one_line(tmp_path):
-    done = run(tmp_path / "none.toml", "--output", tmp_path / "results")
-    assert done.returncode == 2
-    assert "none.toml" in done.stderr
-    assert done.stderr.count("\n") == 1
-    wrong = tmp_path / "wrong.toml"
-    wrong.write_text("[grid]\nsize = [3, 0]\n")
-    done = run(wrong, "--output", tmp_path / "results")
-    assert done.returncode == 2
-    assert "size must be" in done.stderr
-    assert not (tmp_path / "results").exists()
-
-
-def workers_of(parent):
-    """Return the processes whose parent it is, on Linux."""
-    found = subprocess.run(
-        ["ps", "-o", "pid=", "--ppid", str(parent)], capture_output=True, text=True, check=False
-    )
-    return [int(pid) for pid in found.stdout.split()]
-
-
-@pytest.mark.compiled
-@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
-def test_a_sweep_that_is_killed_keeps_what_is_finished_and_leaves_no_workers(
-    how, long_grid, tmp_path
-):
-    folder = tmp_path / "results"
-    process = subprocess.Popen(
-        [*COMMAND, "sweep", str(long_grid), "--output", str(folder), "--processes", "2"],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-    )
-    try:
-        deadline = time.monotonic() + 200
-        while len(list(folder.glob("*.nc"))) < 1 and time.monotonic() < deadline:
-            time.sleep(0.05)
-        workers = workers_of(process.pid)
-        assert workers
-        process.send_signal(how)
-        _, errors = process.communicate(timeout=60)
-    finally:
-        process.kill()
-    if how == signal.SIGINT:
-        assert process.returncode == 130
-        assert "interrupted" in errors
-        assert "Traceback" not in errors
-        assert "leaked" not in errors
-        assert errors.count("interrupted") == 1
-    else:
-        assert process.returncode == -how
-    cases = read_sweep(long_grid).cases()
-    missing = missing_cases(cases, folder)
-    assert 0 < len(missing) < len(cases)
-    deadline = time.monotonic() + 20
-    while any(os.path.exists(f"/proc/{pid}") for pid in workers) and time.monotonic() < deadline:
-        time.sleep(0.1)
-    assert not any(os.path.exists(f"/proc/{pid}") for pid in workers)
-    assert load_sweep(folder).status.size >= 1
-
-
-def test_settings_of_a_theory_are_checked_before_any_work():
-    for settings in ({"cells": "x"}, {"cells": 10**6}, {"tolerance": -1}, {"order": 3}):
-        with pytest.raises(ValueError, match=next(iter(settings))):
-            Case("phase_space", Chain(size=3), settings)
-    for job in ("equilibrium", "force_balance"):
-        with pytest.raises(ValueError, match=f"{job} takes restitution=1"):
-            Case(job, Chain(restitution=0.5), {})
-
-
 def test_a_sweep_of_a_theory_is_read_back(tmp_path):
     cases = [Case("force_balance", Chain(size=size), {}) for size in (3, 4)]
     for case in cases:
@@ -505,8 +264,3 @@ def test_a_file_without_parameters_is_no_case(case, tmp_path):
     save(xr.Dataset(attrs={"case": case, "status": "", "provenance": ""}), tmp_path / "a.nc")
     with pytest.raises(ValueError, match=r"a\.nc: not a case of a sweep"):
         load_sweep(tmp_path)
-
-
-def test_a_folder_is_no_description_of_a_sweep(tmp_path):
-    with pytest.raises(ValueError, match="a folder, not a TOML file"):
-        read_sweep(tmp_path)

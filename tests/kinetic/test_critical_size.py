@@ -33,6 +33,7 @@ def test_units_do_not_matter():
     assert critical_size(other).value == pytest.approx(critical_size(WEAK).value, rel=1e-9)
 
 
+@pytest.mark.compiled
 def test_critical_damping_undoes_the_critical_size():
     chain = WEAK.replace(size=30)
     damping = critical_damping(chain).value

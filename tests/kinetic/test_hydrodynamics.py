@@ -102,7 +102,7 @@ def test_relaxation_ends_in_the_force_balance(size, amplitude, gap, spring):
 
 
 @pytest.mark.parametrize("gap", [0.0, 0.2, 1.0])
-@pytest.mark.parametrize("amplitude", [1, 30])
+@pytest.mark.parametrize("amplitude", [pytest.param(1, marks=pytest.mark.compiled), 30])
 def test_the_eulerian_frame_rests_in_the_force_balance(amplitude, gap):
     chain = Chain(size=10, amplitude=amplitude, gap=gap)
     theory = force_balance(chain)
@@ -112,6 +112,7 @@ def test_the_eulerian_frame_rests_in_the_force_balance(amplitude, gap):
     np.testing.assert_allclose(flow.rods, 10, rtol=1e-10)
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize(("temperature", "most"), [("isothermal", 1e-4), ("evolving", 1e-4)])
 def test_the_eulerian_frame_is_of_second_order(temperature, most):
     """L1 distance to the label frame, which is exact for a breathing cloud."""
@@ -127,6 +128,7 @@ def test_the_eulerian_frame_is_of_second_order(temperature, most):
     assert errors[1] < most
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("temperature", ["isothermal", "evolving"])
 @pytest.mark.parametrize("gap", [0.2, 1.0])
 def test_the_two_frames_agree_with_a_gap(gap, temperature):
@@ -140,6 +142,7 @@ def test_the_two_frames_agree_with_a_gap(gap, temperature):
     np.testing.assert_allclose(label.cloud_width, eulerian.cloud_width, atol=0.01 * s)
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("frame", ["label", "eulerian"])
 @pytest.mark.parametrize("temperature", ["isothermal", "evolving"])
 def test_shocks_of_two_clumps_survive(frame, temperature):
@@ -157,6 +160,7 @@ def test_shocks_of_two_clumps_survive(frame, temperature):
     np.testing.assert_allclose(flow.centre, 0, atol=1e-3 * s)
 
 
+@pytest.mark.compiled
 def test_a_frozen_displacement_of_the_paper_keeps_its_own_stationary_density():
     chain = Chain(size=50, amplitude=10)
     truth = equilibrium(chain)
@@ -166,6 +170,7 @@ def test_a_frozen_displacement_of_the_paper_keeps_its_own_stationary_density():
     assert difference / chain.close_packed_density < 2e-3
 
 
+@pytest.mark.compiled
 def test_a_prescribed_temperature_keeps_its_own_stationary_density():
     chain = Chain(size=50, amplitude=10, restitution=0.9)
 

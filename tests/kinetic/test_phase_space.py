@@ -67,6 +67,7 @@ def test_mass_momentum_and_energy_balance(restitution, damping, order):
 # Short simulations: good to a percent or two per rod. The theory's own errors are known from long
 # ones (the docstring of phase_space). Without the centre of mass the first case fails (5 % off),
 # with shot noise for e > 1 the last (7 to 28 %), with nine tenths of the drag all of them.
+@pytest.mark.compiled
 @pytest.mark.parametrize(
     ("restitution", "damping", "duration", "within"),
     [(0.9, 1.0, 6000.0, 0.012), (0.95, 1.0, 8000.0, 0.01), (1.05, 4.0, 20000.0, 0.025)],
@@ -83,6 +84,7 @@ def test_widths_are_those_of_simulations(restitution, damping, duration, within)
         assert abs(expected - found) < within * found + 5 * error
 
 
+@pytest.mark.compiled
 def test_shape_of_the_profile():
     """Dissipative: hot at the border. Driven: hot at the border near the critical size only."""
     for restitution, damping, border_is_hot in ((0.9, 1.0, True), (1.05, 10.0, False)):
@@ -91,6 +93,7 @@ def test_shape_of_the_profile():
         np.testing.assert_allclose(width, width[::-1], rtol=1e-10)
 
 
+@pytest.mark.compiled
 def test_no_flow_and_heat_from_hot_to_cold():
     """Points stay on average; heat comes in from the border, where fewer collisions cool."""
     chain = Chain(restitution=0.9)
@@ -105,12 +108,14 @@ def test_no_flow_and_heat_from_hot_to_cold():
     assert float(np.abs(elastic.heat_flux).max()) < 1e-4 * unit
 
 
+@pytest.mark.compiled
 def test_amplitude_only_sets_the_scale():
     one, ten = (phase_space(Chain(size=30, restitution=0.9, amplitude=A)) for A in (1.0, 10.0))
     for name in ("velocity_width", "mean_displacement", "displacement_width"):
         np.testing.assert_allclose(ten[name], 10 * one[name], rtol=1e-8, atol=1e-8)
 
 
+@pytest.mark.compiled
 def test_refinement_keeps_its_promise():
     chain = Chain(size=100, restitution=0.9)
     finer = phase_space(chain, cells=50)

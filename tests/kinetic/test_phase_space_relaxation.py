@@ -47,6 +47,7 @@ def test_error_is_of_second_order_in_the_time_step():
     assert coarse / fine == pytest.approx(4, rel=0.1)
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize(("restitution", "damping"), [(0.9, 1.0), (1.05, 6.0)])
 def test_it_relaxes_to_the_steady_state(restitution, damping):
     chain = Chain(size=40, restitution=restitution, damping=damping)

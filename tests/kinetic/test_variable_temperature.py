@@ -75,6 +75,7 @@ def test_a_prescribed_displacement_takes_a_profile_as_well():
     assert close_packing(chain, prescribed, by_labels) < 1e-3
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize(("e", "off"), [(0.5, 0.042), (0.75, 0.033), (0.95, 0.018)])
 def test_the_measured_widths_give_nearly_the_measured_density(e, off):
     """The general force balance fed with W_v(x) of a dissipative chain.

@@ -48,6 +48,7 @@ def test_flippers_heat_the_centre_of_short_chains_and_the_border_of_long_ones():
     assert border - centre > 5 * np.hypot(error, border_error)
 
 
+@pytest.mark.compiled
 def test_a_supercritical_chain_diverges_and_keeps_what_was_measured():
     chain = Chain(size=150, restitution=1.05, damping=4)
     run = simulate(
@@ -66,6 +67,7 @@ def test_a_supercritical_chain_diverges_and_keeps_what_was_measured():
         assert np.isfinite(run[name]).all() or name.endswith("_error"), name
 
 
+@pytest.mark.compiled
 def test_a_chain_that_explodes_at_once_has_a_status_and_no_averages():
     """150 flippers released in contact amplify their first kick without end."""
     chain = Chain(size=150, restitution=1.05, damping=4)
@@ -82,6 +84,7 @@ def test_quadratic_springs_diverge_as_well():
     assert np.isfinite(run.kinetic_energy).all()
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("e", [0.5, 0.75, 0.95])
 def test_the_merging_threshold_does_not_matter(e):
     chain = Chain(size=20, restitution=e)
@@ -105,6 +108,7 @@ def test_the_merging_threshold_does_not_matter(e):
     assert error < 0.01 * centre
 
 
+@pytest.mark.compiled
 def test_contact_dynamics_agrees_without_restitution():
     chain = Chain(size=20, restitution=0)
     one, other = (

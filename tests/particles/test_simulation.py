@@ -16,6 +16,7 @@ from crazybilliards.particles.schedule import longest_step, make_schedule, relax
 QUANTITIES = ("velocity_width", "mean_displacement", "displacement_width")
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("spring", ["linear", "quadratic"])
 @pytest.mark.parametrize("gap", [0.0, 0.2, 1.0])
 @pytest.mark.parametrize("size", [2, 3, 20, 100])
@@ -133,6 +134,7 @@ def test_a_spring_without_a_rate_takes_a_time_step():
     assert run.attrs["status"] == "completed"
 
 
+@pytest.mark.compiled
 def test_ctrl_c_keeps_what_was_measured():
     timer = threading.Timer(0.5, signal.raise_signal, [signal.SIGINT])
     simulate(Chain(size=2), duration=100, progress=False)  # compiled before the clock starts
@@ -168,6 +170,7 @@ def test_ctrl_c_before_anything_was_measured_is_raised():
         simulate(Chain(size=50), duration=100, warmup=1e9, progress=False)
 
 
+@pytest.mark.compiled
 def test_memory_does_not_grow_with_the_duration():
     chain = Chain(size=20)
     peaks = []
@@ -180,6 +183,7 @@ def test_memory_does_not_grow_with_the_duration():
     assert peaks[2] < peaks[1] + 3e6
 
 
+@pytest.mark.compiled  # numpy warns of the overflow, kernels do not
 def test_a_chain_that_blows_up_is_marked_diverged():
     """No step is short enough for quadratic springs without damping when the swings are wide."""
     chain = Chain(size=5, damping=0, spring="quadratic")

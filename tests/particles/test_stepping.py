@@ -98,6 +98,7 @@ def test_the_frictionless_noiseless_chain_keeps_its_energy(spring):
     assert coarse / fine == pytest.approx(16, rel=0.2)
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("spring", ["linear", "quadratic"])
 def test_with_a_gap_the_energy_wanders_less_the_finer_the_step(spring):
     """Every collision between two kicks adds a small error of its own, of either sign."""
@@ -142,6 +143,7 @@ def test_a_transient_is_of_order_two_in_position_and_velocity():
     np.testing.assert_allclose(np.log2(np.divide(errors[1], errors[0])), 2, atol=0.1)
 
 
+@pytest.mark.compiled
 def test_chain_with_collisions_and_gap_converges_with_order_two():
     """Mean square displacement of the chain against the exact one, at two time steps."""
     chain = Chain(size=20, gap=0.2)

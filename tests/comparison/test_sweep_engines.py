@@ -1,0 +1,211 @@
+"""Sweeps on every engine, and their command: the same results, nothing lost to a kill."""
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+import pytest
+
+from crazybilliards.comparison import load_sweep
+from crazybilliards.comparison.sweeps import (
+    Case,
+    dask_cluster,
+    process_pool,
+    read_sweep,
+    run_cases,
+)
+from crazybilliards.comparison.sweeps.case import compute
+from crazybilliards.comparison.sweeps.running import missing_cases
+from crazybilliards.model import Chain
+from crazybilliards.model.storage import write_sealed
+
+COMMAND = [sys.executable, "-c", "from crazybilliards.comparison.commands.main import main; main()"]
+GRID = """
+[grid]
+size = [3, 5]
+restitution = [0.5, 1.0]
+
+[chain]
+damping = 2.0
+
+[simulate]
+duration = {duration}
+observe = ["widths", "density"]
+"""
+
+
+@pytest.fixture
+def grid(tmp_path):
+    path = tmp_path / "grid.toml"
+    path.write_text(GRID.format(duration=100))
+    return path
+
+
+@pytest.fixture
+def long_grid(tmp_path):
+    path = tmp_path / "long.toml"
+    many = GRID.format(duration=2e5).replace("[3, 5]", str(list(range(20, 32))))
+    path.write_text(many.replace("[0.5, 1.0]", "[1.0]"))
+    return path
+
+
+# -- engines ------------------------------------------------------------------------------------
+
+
+@pytest.mark.compiled
+def test_processes_and_dask_give_the_same_results(grid, tmp_path):
+    cases = read_sweep(grid).cases()
+    for case in cases:
+        write_sealed(case.file(tmp_path / "here"), compute(case, case.canonical))
+    with process_pool(2) as pool:
+        assert run_cases(cases, tmp_path / "pool", pool, progress=False) == {}
+    with dask_cluster() as cluster:
+        assert run_cases(cases, tmp_path / "dask", cluster, progress=False) == {}
+    for case in cases:
+        here, pool, dask = (case.load(tmp_path / name) for name in ("here", "pool", "dask"))
+        for other in (pool, dask):
+            other.attrs["seconds"] = here.attrs["seconds"]
+            assert here.identical(other)
+
+
+@pytest.mark.compiled
+def test_a_dask_worker_killed_in_the_middle_costs_nothing(tmp_path):
+    from distributed import Client, LocalCluster
+
+    cases = [
+        Case("simulate", Chain(size=20), {"duration": 20_000, "seed": seed}) for seed in range(8)
+    ]
+    with (
+        LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster,
+        dask_cluster(cluster.scheduler_address) as executor,
+    ):
+        killed = []
+
+        def kill_one():
+            # As soon as a first result is there, others are being worked on.
+            while not list(tmp_path.glob("*.nc")):
+                time.sleep(0.05)
+            with Client(cluster.scheduler_address) as client:
+                victim = next(iter(client.run(os.getpid).values()))
+            os.kill(victim, signal.SIGKILL)
+            killed.append(victim)
+
+        killer = threading.Thread(target=kill_one)
+        killer.start()
+        assert run_cases(cases, tmp_path, executor, progress=False) == {}
+        killer.join()
+    assert killed
+    assert missing_cases(cases, tmp_path) == []
+
+
+def test_no_scheduler_at_the_address():
+    with (
+        pytest.raises(ValueError, match="no dask scheduler"),
+        dask_cluster("nowhere"),
+    ):
+        pass
+
+
+# -- the command --------------------------------------------------------------------------------
+
+
+def run(*arguments):
+    return subprocess.run(
+        [*COMMAND, "sweep", *map(str, arguments)],
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
+    )
+
+
+def test_the_command_computes_what_is_missing(grid, tmp_path):
+    folder = tmp_path / "results"
+    done = run(grid, "--output", folder)
+    assert done.returncode == 0, done.stderr
+    assert "4 cases, 0 of them" in done.stdout
+    assert "computed 4 cases" in done.stdout
+    again = run(grid, "--output", folder)
+    assert again.returncode == 0
+    assert "4 cases, 4 of them" in again.stdout
+    assert "computed" not in again.stdout
+    assert load_sweep(folder).sizes["size"] == 2
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["--processes", "0"], "processes must be"),
+        (["--dask", "--processes", "2"], "a dask cluster decides"),
+        (["--scheduler", "nowhere"], "no dask scheduler"),
+    ],
+)
+def test_wrong_options(arguments, message, grid, tmp_path):
+    done = run(grid, "--output", tmp_path / "results", *arguments)
+    assert done.returncode == 2
+    assert message in done.stderr
+    assert done.stderr.count("\n") == 1
+
+
+def test_a_missing_file_and_a_wrong_grid_are_one_line(tmp_path):
+    done = run(tmp_path / "none.toml", "--output", tmp_path / "results")
+    assert done.returncode == 2
+    assert "none.toml" in done.stderr
+    assert done.stderr.count("\n") == 1
+    wrong = tmp_path / "wrong.toml"
+    wrong.write_text("[grid]\nsize = [3, 0]\n")
+    done = run(wrong, "--output", tmp_path / "results")
+    assert done.returncode == 2
+    assert "size must be" in done.stderr
+    assert not (tmp_path / "results").exists()
+
+
+def workers_of(parent):
+    """Return the processes whose parent it is, on Linux."""
+    found = subprocess.run(
+        ["ps", "-o", "pid=", "--ppid", str(parent)], capture_output=True, text=True, check=False
+    )
+    return [int(pid) for pid in found.stdout.split()]
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
+def test_a_sweep_that_is_killed_keeps_what_is_finished_and_leaves_no_workers(
+    how, long_grid, tmp_path
+):
+    folder = tmp_path / "results"
+    process = subprocess.Popen(
+        [*COMMAND, "sweep", str(long_grid), "--output", str(folder), "--processes", "2"],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    try:
+        deadline = time.monotonic() + 200
+        while len(list(folder.glob("*.nc"))) < 1 and time.monotonic() < deadline:
+            time.sleep(0.05)
+        workers = workers_of(process.pid)
+        assert workers
+        process.send_signal(how)
+        _, errors = process.communicate(timeout=60)
+    finally:
+        process.kill()
+    if how == signal.SIGINT:
+        assert process.returncode == 130
+        assert "interrupted" in errors
+        assert "Traceback" not in errors
+        assert "leaked" not in errors
+        assert errors.count("interrupted") == 1
+    else:
+        assert process.returncode == -how
+    cases = read_sweep(long_grid).cases()
+    missing = missing_cases(cases, folder)
+    assert 0 < len(missing) < len(cases)
+    deadline = time.monotonic() + 20
+    while any(os.path.exists(f"/proc/{pid}") for pid in workers) and time.monotonic() < deadline:
+        time.sleep(0.1)
+    assert not any(os.path.exists(f"/proc/{pid}") for pid in workers)
+    assert load_sweep(folder).status.size >= 1
