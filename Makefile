@@ -59,7 +59,7 @@ check: $(VENV)/installed-check build/types
 # Strict: a package that could not be looked up is a failure, not a footnote.
 audit: $(VENV)/installed-test $(VENV)/installed-docs $(VENV)/installed-audit
 	mkdir -p build
-	$(BIN)/python -m pip freeze --exclude-editable > build/audit.txt
+	$(BIN)/python -m pip freeze --all --exclude-editable > build/audit.txt
 	$(BIN)/pip-audit --strict --no-deps --disable-pip --requirement build/audit.txt
 
 reproduce: $(VENV)/installed
@@ -95,10 +95,11 @@ build/types: Makefile
 	for room in $(ROOMS); do ln -sfn ../../../$$room $@/crazybilliards/$$room; done
 	touch $@
 
+# Python 3.11 comes with a setuptools of 2022, which has a known vulnerability.
 $(VENV)/created:
 	@$(CHECK_PYTHON)
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --upgrade pip
+	$(BIN)/python -m pip install --quiet --upgrade pip setuptools
 	touch $@
 
 $(VENV)/installed: pyproject.toml $(VENV)/created

@@ -27,6 +27,8 @@ def given_start(
         Rod centres x_i [R], shape (L,) for all replicas or (replicas, L), in order from the left.
     velocity
         Velocities v_i [R/T], of the same shapes, or one for all rods.
+    replicas
+        How many replicas start so; as many as `simulate` is asked for.
 
     Raises
     ------
