@@ -5,9 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from crazybilliards.comparison.sweeps import (
-    Case,
-)
+from crazybilliards.comparison.sweeps import Case
 from crazybilliards.comparison.sweeps.case import compute
 from crazybilliards.model import Chain
 

@@ -12,12 +12,7 @@ import pytest
 import xarray as xr
 
 from crazybilliards.comparison import load_sweep
-from crazybilliards.comparison.sweeps import (
-    Case,
-    Sweep,
-    read_sweep,
-    run_cases,
-)
+from crazybilliards.comparison.sweeps import Case, Sweep, read_sweep, run_cases
 from crazybilliards.comparison.sweeps.case import JOBS, compute
 from crazybilliards.comparison.sweeps.running import missing_cases
 from crazybilliards.model import Chain, load, save
@@ -43,7 +38,7 @@ def sweep(**changes):
     return Sweep(**(given | changes))
 
 
-# -- grids --------------------------------------------------------------------------------------
+# -- grids ------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -86,7 +81,7 @@ def test_a_folder_is_no_description_of_a_sweep(tmp_path):
         read_sweep(tmp_path)
 
 
-# -- running ------------------------------------------------------------------------------------
+# -- running ----------------------------------------------------------------------------------
 
 
 def test_cases_have_random_numbers_of_their_own(tmp_path):
@@ -204,7 +199,7 @@ def test_ctrl_c_does_not_reach_workers_from_their_first_moment_on(tmp_path):
     assert signal.SIGINT not in signal.pthread_sigmask(signal.SIG_BLOCK, [])
 
 
-# -- loading ------------------------------------------------------------------------------------
+# -- loading ----------------------------------------------------------------------------------
 
 
 def test_loading_gives_one_dataset_over_the_grid(tmp_path):
