@@ -10,8 +10,8 @@ from gauss_seidel import solve
 
 from crazybilliards.model import Chain
 from crazybilliards.particles import stepping
-from crazybilliards.particles.avalanche import make_tally
-from crazybilliards.particles.drift import drift, make_law, make_scratch
+from crazybilliards.particles.laws.avalanche import make_tally
+from crazybilliards.particles.laws.law import drift, make_law, make_scratch
 
 SIZE, TIME_STEP = 1000, 1e-3
 UNSEEN = make_tally(2, contacts=False, waves=False)

@@ -16,9 +16,9 @@ from numba import njit
 
 from crazybilliards.model import Chain
 from crazybilliards.particles import stepping
-from crazybilliards.particles.avalanche import make_tally
-from crazybilliards.particles.drift import make_law, make_scratch
-from crazybilliards.particles.schedule import centre_width, default_time_step
+from crazybilliards.particles.laws.avalanche import make_tally
+from crazybilliards.particles.laws.law import make_law, make_scratch
+from crazybilliards.particles.scales import centre_width, default_time_step
 
 PARTICLE_STEPS = 1_000_000
 LEAST_STEPS = 20  # of one call

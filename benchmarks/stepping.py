@@ -12,9 +12,13 @@ from numba import njit
 from pde import CartesianGrid, FieldCollection, ScalarField
 
 from crazybilliards.kinetic import compressed
-from crazybilliards.kinetic.eulerian_frame import make_constants, make_faces, starting_fields
-from crazybilliards.kinetic.finite_volumes import eulerian_rate, make_rate
-from crazybilliards.kinetic.pde_solver import Flow
+from crazybilliards.kinetic.fluids.eulerian_frame import (
+    make_constants,
+    make_faces,
+    starting_fields,
+)
+from crazybilliards.kinetic.fluids.finite_volumes import eulerian_rate, make_rate
+from crazybilliards.kinetic.fluids.pde_solver import Flow
 from crazybilliards.kinetic.starts import read_start
 from crazybilliards.model import Chain
 

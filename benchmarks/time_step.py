@@ -16,9 +16,9 @@ import numpy as np
 from numba import njit
 
 from crazybilliards.model import Chain
-from crazybilliards.particles.avalanche import make_tally
-from crazybilliards.particles.drift import Law, drift, make_law, make_scratch
-from crazybilliards.particles.schedule import default_time_step
+from crazybilliards.particles.laws.avalanche import make_tally
+from crazybilliards.particles.laws.law import Law, drift, make_law, make_scratch
+from crazybilliards.particles.scales import default_time_step
 from crazybilliards.particles.stepping import Step, make_step
 
 RUNS = 8

@@ -14,7 +14,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
-from crazybilliards.comparison.restitutions import WidthDeviation, width_deviation
+from crazybilliards.comparison.studies.restitutions import WidthDeviation, width_deviation
 from crazybilliards.kinetic import phase_space
 from crazybilliards.model import Chain, load, save
 from crazybilliards.particles import simulate

@@ -8,13 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 # A function is never named like its module: importing the module would then hide the function.
 if TYPE_CHECKING:
-    from crazybilliards.comparison.animation_page import standalone_page as standalone_page
     from crazybilliards.comparison.coverage import coverage_density as coverage_density
     from crazybilliards.comparison.coverage import smooth as smooth
     from crazybilliards.comparison.distances import Deviation as Deviation
     from crazybilliards.comparison.distances import deviation as deviation
     from crazybilliards.comparison.drawing import overlay as overlay
-    from crazybilliards.comparison.elastic_chain import compare_elastic as compare_elastic
     from crazybilliards.comparison.fits import ArctanhFit as ArctanhFit
     from crazybilliards.comparison.fits import AvalancheFit as AvalancheFit
     from crazybilliards.comparison.fits import ExponentialFit as ExponentialFit
@@ -30,10 +28,16 @@ if TYPE_CHECKING:
     from crazybilliards.comparison.fits import fit_scaling as fit_scaling
     from crazybilliards.comparison.fits import fit_singularity as fit_singularity
     from crazybilliards.comparison.fits import tail_length as tail_length
-    from crazybilliards.comparison.relaxation import compare_relaxation as compare_relaxation
-    from crazybilliards.comparison.relaxation_figures import animate as animate
-    from crazybilliards.comparison.restitutions import compare_restitutions as compare_restitutions
-    from crazybilliards.comparison.restitutions import width_deviations as width_deviations
+    from crazybilliards.comparison.studies.animation_page import standalone_page as standalone_page
+    from crazybilliards.comparison.studies.elastic_chain import compare_elastic as compare_elastic
+    from crazybilliards.comparison.studies.relaxation import (
+        compare_relaxation as compare_relaxation,
+    )
+    from crazybilliards.comparison.studies.relaxation_figures import animate as animate
+    from crazybilliards.comparison.studies.restitutions import (
+        compare_restitutions as compare_restitutions,
+    )
+    from crazybilliards.comparison.studies.restitutions import width_deviations as width_deviations
     from crazybilliards.comparison.sweeps import load_sweep as load_sweep
 
 _HOMES = {
@@ -52,18 +56,18 @@ _HOMES = {
     "fit_scaling": "fits",
     "fit_singularity": "fits",
     "tail_length": "fits",
-    "animate": "relaxation_figures",
+    "animate": "studies.relaxation_figures",
     "Deviation": "distances",
-    "compare_elastic": "elastic_chain",
-    "compare_relaxation": "relaxation",
-    "compare_restitutions": "restitutions",
+    "compare_elastic": "studies.elastic_chain",
+    "compare_relaxation": "studies.relaxation",
+    "compare_restitutions": "studies.restitutions",
     "coverage_density": "coverage",
     "deviation": "distances",
     "load_sweep": "sweeps",
     "overlay": "drawing",
     "smooth": "coverage",
-    "standalone_page": "animation_page",
-    "width_deviations": "restitutions",
+    "standalone_page": "studies.animation_page",
+    "width_deviations": "studies.restitutions",
 }
 
 __all__ = list(_HOMES)

@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
 from scipy.optimize import elementwise
 
-from crazybilliards.kinetic.label_closure import stationary
+from crazybilliards.kinetic.statics.label_closure import stationary
 from crazybilliards.model import Chain, chain_of
-from crazybilliards.model.chain import check_real
+from crazybilliards.model.checks import check_real
 from crazybilliards.model.grid import position_grid, thermal_reach
 from crazybilliards.model.vocabulary import require, result
 

@@ -21,68 +21,17 @@ Units: length R, mass M, time sqrt(M/k).
 from __future__ import annotations
 
 import math
-import reprlib
 from dataclasses import asdict, dataclass, fields, replace
-from numbers import Integral, Real
 from typing import Any, Literal, Self, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from crazybilliards.model.checks import check_choice, check_integer, check_real
+
 Spring = Literal["linear", "quadratic"]
 
-# Squares and ratios of parameters must neither overflow nor underflow.
-_SMALLEST, _LARGEST = 1e-60, 1e60
 _MOST_RODS = 10**9  # 8 GB an array
-
-_SHORTLY = reprlib.Repr()
-_SHORTLY.maxstring = _SHORTLY.maxother = _SHORTLY.maxlong = 80
-
-
-def shown(value: object) -> str:
-    """Return a wrong value as an error shows it: on one line, long ones cut in the middle."""
-    return " ".join(_SHORTLY.repr(value).split())
-
-
-def check_real(name: str, value: object, *, positive: bool = False, signed: bool = False) -> float:
-    """Return ``value`` as a float, or raise the one ValueError that says what ``name`` takes.
-
-    Accepts real numbers (Python's or numpy's) that are finite and whose magnitude lies within
-    1e-60..1e60, or 0 unless ``positive``; negative ones only if ``signed``.
-    """
-    sign = "" if signed else "positive " if positive else "non-negative "
-    wanted = f"{name} must be a finite {sign}number between 1e-60 and 1e60"
-    if not positive:
-        wanted += " (or 0)"
-    if isinstance(value, bool | np.bool_) or not isinstance(value, Real):
-        raise ValueError(f"{wanted}, got {shown(value)}")
-    try:
-        number = float(value)
-    except OverflowError:  # a whole number of more than 308 digits
-        number = math.inf
-    in_range = _SMALLEST <= abs(number) <= _LARGEST or (number == 0 and not positive)
-    if not in_range or (number < 0 and not signed):
-        raise ValueError(f"{wanted}, got {shown(value)}")
-    return number
-
-
-def check_integer(name: str, value: object, *, least: int, most: int | None = None) -> int:
-    """Return ``value`` as an int, or raise the one ValueError that says what ``name`` takes."""
-    wanted = f"an integer >= {least}" if most is None else f"an integer from {least} to {most}"
-    if (
-        isinstance(value, bool | np.bool_)
-        or not isinstance(value, Integral)
-        or int(value) < least
-        or (most is not None and int(value) > most)
-    ):
-        raise ValueError(f"{name} must be {wanted}, got {shown(value)}")
-    return int(value)
-
-
-def check_choice(name: str, value: object, choices: tuple[str, ...]) -> None:
-    """Raise a ValueError unless ``value`` is one of the words that ``name`` takes."""
-    if not isinstance(value, str) or value not in choices:
-        raise ValueError(f"{name} must be one of {choices}, got {shown(value)}")
 
 
 @dataclass(frozen=True, kw_only=True)

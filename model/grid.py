@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crazybilliards.model.chain import Chain
-from crazybilliards.model.kernel import kernel
+from crazybilliards.model.kernels import kernel
 from crazybilliards.model.memory import require_memory
 
 _BINS_PER_ROD = 21  # "bins much smaller than R": h = 0.095 R

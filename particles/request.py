@@ -10,14 +10,15 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from crazybilliards.model import Chain
-from crazybilliards.model.chain import check_choice, check_integer, check_real, shown
+from crazybilliards.model.checks import check_choice, check_integer, check_real, shown
 from crazybilliards.model.grid import require_resolved
 from crazybilliards.model.memory import require_memory
-from crazybilliards.particles.drift import Method
+from crazybilliards.particles.laws.law import Method
 from crazybilliards.particles.observers import OBSERVERS, Plan
-from crazybilliards.particles.replica import start_swing
-from crazybilliards.particles.schedule import Average, Schedule, Stepper, make_schedule
+from crazybilliards.particles.scales import start_swing
+from crazybilliards.particles.schedule import Average, Schedule, make_schedule
 from crazybilliards.particles.start import replica_starts
+from crazybilliards.particles.stepping import Stepper
 
 Array = NDArray[np.float64]
 

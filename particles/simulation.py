@@ -12,17 +12,19 @@ import numpy as np
 import xarray as xr
 
 from crazybilliards.model import Chain
-from crazybilliards.model.chain import check_integer, check_real
-from crazybilliards.particles.checkpoint import Checkpoint, run_identity
-from crazybilliards.particles.collecting import collect
-from crazybilliards.particles.drift import Method, make_law
+from crazybilliards.model.checks import check_integer, check_real
+from crazybilliards.model.process import announced, cores
+from crazybilliards.particles.laws.law import Method, make_law
 from crazybilliards.particles.observers import OBSERVERS, Plan
-from crazybilliards.particles.replica import Dynamics, Replica, typical_speed
 from crazybilliards.particles.request import Request, make_request
-from crazybilliards.particles.running import announced, cores, run_all
-from crazybilliards.particles.schedule import Average, Schedule, Stepper
+from crazybilliards.particles.running.checkpoint import Checkpoint, run_identity
+from crazybilliards.particles.running.collecting import collect
+from crazybilliards.particles.running.replica import Dynamics, Replica
+from crazybilliards.particles.running.threads import run_all
+from crazybilliards.particles.scales import typical_speed
+from crazybilliards.particles.schedule import Average, Schedule
 from crazybilliards.particles.start import replica_starts
-from crazybilliards.particles.stepping import make_step
+from crazybilliards.particles.stepping import Stepper, make_step
 
 _DIVERGED = 1e6  # typical speeds: the steady states of e > 1 stay within some tens of them
 

@@ -7,7 +7,7 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from crazybilliards.model import Chain
-from crazybilliards.model.chain import check_integer
+from crazybilliards.model.checks import check_integer
 from crazybilliards.model.memory import require_memory
 from crazybilliards.model.vocabulary import require, result
 

@@ -21,14 +21,16 @@ First order: a free rod without spring has W^2 = (T/m)/(1 - gamma dt/2m).
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 
 from crazybilliards.model import Chain
-from crazybilliards.model.kernel import kernel
-from crazybilliards.particles.drift import drift
-from crazybilliards.particles.schedule import Stepper
+from crazybilliards.model.kernels import kernel
+from crazybilliards.particles.laws.law import drift
+from crazybilliards.particles.scales import spring_rate
+
+Stepper = Literal["splitting", "euler"]
 
 
 class Step(NamedTuple):
@@ -55,6 +57,20 @@ def make_step(chain: Chain, time_step: float, stepper: Stepper) -> Step:
         return Step(time_step, decay, noise, decay, noise, full_kick, quadratic, False)
     inner, outer = (_ornstein_uhlenbeck(chain, duration) for duration in (time_step, time_step / 2))
     return Step(time_step, *inner, *outer, full_kick / 2, quadratic, True)
+
+
+def longest_step(chain: Chain, stepper: Stepper) -> float:
+    """Time step from which on a swinging rod gains energy without end, or its damping does.
+
+    2/w0 with the splitting; with euler 4/(g + sqrt(g^2 + 4 w0^2)), g = gamma/m. Infinite for a
+    quadratic spring without damping, which has no rate: there the steps show whether it diverges.
+    """
+    if chain.spring == "quadratic" and math.isinf(chain.temperature):
+        return math.inf
+    rate = spring_rate(chain)
+    damping = chain.damping / chain.mass if stepper == "euler" else 0.0
+    slowest = damping + math.hypot(damping, 2 * rate)
+    return 4 / slowest if slowest > 0 else math.inf
 
 
 def _ornstein_uhlenbeck(chain: Chain, duration: float) -> tuple[float, float]:

@@ -211,7 +211,7 @@ def test_a_foreign_file_is_refused(kind, files, tmp_path):
 
 
 def test_the_wrong_version_of_a_checkpoint_or_a_case_is_refused(files, tmp_path, monkeypatch):
-    monkeypatch.setattr("crazybilliards.particles.checkpoint.version", lambda _: "0.0.1")
+    monkeypatch.setattr("crazybilliards.particles.running.checkpoint.version", lambda _: "0.0.1")
     monkeypatch.setattr("crazybilliards.comparison.sweeps.case.version", lambda _: "0.0.1")
     with pytest.raises(ValueError, match="a checkpoint of another run: version is"):
         simulate(CHAIN, checkpoint=files["checkpoint"], **RUN)

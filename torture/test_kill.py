@@ -24,9 +24,9 @@ import matplotlib as mpl
 import numpy as np
 import pytest
 
-from crazybilliards.comparison import figures
 from crazybilliards.comparison.commands.main import main
-from crazybilliards.comparison.figures import fig01_model, fig16_arctanh, fig17_density
+from crazybilliards.comparison.paper import figures
+from crazybilliards.comparison.paper.figures import fig01_model, fig16_arctanh, fig17_density
 from crazybilliards.model import Chain, load, save
 from crazybilliards.model.storage import read_sealed, write_sealed
 from crazybilliards.particles import simulate

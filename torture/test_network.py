@@ -71,7 +71,10 @@ for room in ("model", "particles", "kinetic", "comparison"):
     package = importlib.import_module(f"crazybilliards.{room}")
     for info in pkgutil.walk_packages(package.__path__, package.__name__ + "."):
         importlib.import_module(info.name)
-from crazybilliards.kinetic import equilibrium, force_balance, hydrodynamics, phase_space
+from crazybilliards.kinetic import equilibrium
+from crazybilliards.kinetic import force_balance
+from crazybilliards.kinetic import hydrodynamics
+from crazybilliards.kinetic import phase_space
 from crazybilliards.model import Chain, load, save
 from crazybilliards.particles import simulate
 chain = Chain(size=10)
@@ -222,8 +225,8 @@ def test_the_report_of_all_figures_loads_nothing(guarded):
     script = """
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from crazybilliards.comparison.figures import find_figures
-from crazybilliards.comparison.reproduction import all_cases, html, reproduce
+from crazybilliards.comparison.paper.figures import find_figures
+from crazybilliards.comparison.claims.report import all_cases, html, reproduce
 from crazybilliards.comparison.sweeps import run_cases
 figures = [*find_figures("model"), *find_figures("arctanh")]
 run_cases(all_cases(figures, "quick"), Path("."), ThreadPoolExecutor(1), progress=False)

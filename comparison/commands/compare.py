@@ -75,7 +75,7 @@ def compare(
     if restitution is None:
         if size < 3:
             raise ValueError(f"size must be at least 3 to compare with an arctanh fit, got {size}")
-        from crazybilliards.comparison.elastic_chain import compare_elastic
+        from crazybilliards.comparison.studies.elastic_chain import compare_elastic
 
         tree = compare_elastic(
             Chain(size=size, gap=gap, damping=damping),
@@ -88,7 +88,7 @@ def compare(
     else:
         if amplitudes is not None:
             raise ValueError("amplitudes only set the scale here: give restitution or amplitudes")
-        from crazybilliards.comparison.restitutions import compare_restitutions
+        from crazybilliards.comparison.studies.restitutions import compare_restitutions
 
         tree = compare_restitutions(
             Chain(size=size, gap=gap, damping=damping),
@@ -113,7 +113,7 @@ def _write_comparison(tree: xr.DataTree, folder: Path, suffix: str) -> None:
     import matplotlib
 
     matplotlib.use("Agg")
-    from crazybilliards.comparison.elastic_figures import draw_density, draw_displacement
+    from crazybilliards.comparison.studies.elastic_figures import draw_density, draw_displacement
     from crazybilliards.model import save
 
     # The data first: a failing picture must not cost the computation.
@@ -125,7 +125,7 @@ def _print_deviations(tree: xr.DataTree) -> None:
     from rich.console import Console
     from rich.table import Table
 
-    from crazybilliards.comparison.elastic_chain import (
+    from crazybilliards.comparison.studies.elastic_chain import (
         THEORIES,
         deviations,
         largest_width_error,
@@ -161,8 +161,8 @@ def _write_restitutions(tree: xr.DataTree, folder: Path, suffix: str) -> None:
     import matplotlib
 
     matplotlib.use("Agg")
-    from crazybilliards.comparison.restitution_figures import draw_phase_space, draw_widths
-    from crazybilliards.comparison.restitutions import THEORY
+    from crazybilliards.comparison.studies.restitution_figures import draw_phase_space, draw_widths
+    from crazybilliards.comparison.studies.restitutions import THEORY
     from crazybilliards.model import save
 
     print(f"wrote {save(tree, folder / f'comparison{suffix}.nc')}")
@@ -177,7 +177,7 @@ def _print_widths(tree: xr.DataTree) -> None:
     from rich.console import Console
     from rich.table import Table
 
-    from crazybilliards.comparison.restitutions import width_deviations
+    from crazybilliards.comparison.studies.restitutions import width_deviations
 
     table = Table(
         title="Velocity widths: kinetic equation minus simulation, in %",

@@ -22,7 +22,7 @@ def numbers(name: str, text: str) -> list[float]:
     try:
         return [float(part) for part in text.split(",")]
     except ValueError as error:
-        from crazybilliards.model.chain import shown
+        from crazybilliards.model.checks import shown
 
         message = f"{name} takes numbers separated by commas, got {shown(text)}"
         raise ValueError(message) from error

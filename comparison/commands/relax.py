@@ -59,9 +59,9 @@ def relax(
 
     Example: crazybilliards relax --output results --release displaced --by 2 --gap 0.2
     """
-    from crazybilliards.comparison.relaxation import compare_relaxation
+    from crazybilliards.comparison.studies.relaxation import compare_relaxation
     from crazybilliards.model import Chain
-    from crazybilliards.model.chain import check_choice
+    from crazybilliards.model.checks import check_choice
 
     defaults = {"compressed": 0.3, "displaced": 2.0, "quenched": 3.0}
     check_choice("release", release, tuple(defaults))
@@ -92,8 +92,8 @@ def _write_relaxation(tree: xr.DataTree, folder: Path, suffix: str) -> None:
     import matplotlib
 
     matplotlib.use("Agg")
-    from crazybilliards.comparison import relaxation_figures as figures
     from crazybilliards.comparison import standalone_page
+    from crazybilliards.comparison.studies import relaxation_figures as figures
     from crazybilliards.model import save
     from crazybilliards.model.storage import write_atomically
 
@@ -120,7 +120,7 @@ def _print_distances(tree: xr.DataTree) -> None:
     from rich.console import Console
     from rich.table import Table
 
-    from crazybilliards.comparison.relaxation import THEORIES, label_distances
+    from crazybilliards.comparison.studies.relaxation import THEORIES, label_distances
 
     table = Table(
         caption="Rms over the rods of their mean position in theory minus simulation, in thermal "

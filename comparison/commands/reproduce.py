@@ -21,8 +21,8 @@ from crazybilliards.comparison.commands.sweep import (
 )
 
 if TYPE_CHECKING:
-    from crazybilliards.comparison.figures.figure import PaperFigure
-    from crazybilliards.comparison.reproduction import Reproduced
+    from crazybilliards.comparison.claims.report import Reproduced
+    from crazybilliards.comparison.claims.study import PaperFigure
 
 
 class Quality(StrEnum):
@@ -59,7 +59,7 @@ def reproduce(
 
     Example: crazybilliards reproduce all --quality full
     """
-    from crazybilliards.comparison.figures import FIGURES, find_figures
+    from crazybilliards.comparison.paper.figures import FIGURES, find_figures
 
     if show_list:
         for figure in FIGURES:
@@ -67,7 +67,7 @@ def reproduce(
         return
     wanted = find_figures(which)
     check_folder(output)
-    from crazybilliards.comparison.reproduction import all_cases
+    from crazybilliards.comparison.claims.report import all_cases
     from crazybilliards.comparison.sweeps.running import missing_cases
     from crazybilliards.model.locks import locked
     from crazybilliards.model.storage import make_folder
@@ -87,8 +87,8 @@ def _write(figures: list[PaperFigure], quality: Quality, output: Path) -> None:
     import matplotlib
 
     matplotlib.use("Agg")
-    from crazybilliards.comparison.reproduction import html, markdown
-    from crazybilliards.comparison.reproduction import reproduce as draw
+    from crazybilliards.comparison.claims.report import html, markdown
+    from crazybilliards.comparison.claims.report import reproduce as draw
     from crazybilliards.model.storage import write_atomically
 
     reproduced = []

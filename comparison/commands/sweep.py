@@ -74,7 +74,7 @@ def engine(
 ) -> AbstractContextManager[Executor]:
     """Return what computes cases, as the options say."""
     from crazybilliards.comparison.sweeps import dask_cluster, process_pool
-    from crazybilliards.model.chain import check_integer
+    from crazybilliards.model.checks import check_integer
 
     if dask or scheduler is not None:
         if processes is not None:

@@ -79,7 +79,10 @@ def _write(result: xr.Dataset, folder: Path) -> None:
     import matplotlib
 
     matplotlib.use("Agg")
-    from crazybilliards.comparison.restitution_figures import draw_phase_space, draw_profile
+    from crazybilliards.comparison.studies.restitution_figures import (
+        draw_phase_space,
+        draw_profile,
+    )
     from crazybilliards.model import save
 
     print(f"wrote {save(result, folder / 'theory.nc')}")

@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 
 from crazybilliards.comparison.explore.session import Session
 from crazybilliards.model import Chain
-from crazybilliards.particles.schedule import centre_width
+from crazybilliards.particles.scales import centre_width
 
 Array = NDArray[np.float64]
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from crazybilliards.comparison.figures import find_figures
+from crazybilliards.comparison.paper.figures import find_figures
 from crazybilliards.model import Chain
 
 

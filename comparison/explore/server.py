@@ -29,7 +29,7 @@ from crazybilliards.comparison.explore.page import page
 from crazybilliards.comparison.explore.session import Session
 from crazybilliards.comparison.sweeps import process_pool
 from crazybilliards.model import Chain
-from crazybilliards.particles.running import announced
+from crazybilliards.model.process import announced
 
 
 def serve(

@@ -18,10 +18,9 @@ from numpy.typing import NDArray
 from crazybilliards.model import Chain
 from crazybilliards.model.grid import deposit, position_grid, thermal_reach
 from crazybilliards.model.vocabulary import result
-from crazybilliards.particles.avalanche import make_tally
-from crazybilliards.particles.drift import make_law, make_scratch
-from crazybilliards.particles.replica import typical_speed
-from crazybilliards.particles.schedule import default_time_step, relaxation_time
+from crazybilliards.particles.laws.avalanche import make_tally
+from crazybilliards.particles.laws.law import make_law, make_scratch
+from crazybilliards.particles.scales import default_time_step, relaxation_time, typical_speed
 from crazybilliards.particles.stepping import advance, bounded, make_step
 
 Array = NDArray[np.float64]

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import curve_fit
 
 from crazybilliards.model import chain_of
-from crazybilliards.model.chain import check_integer
+from crazybilliards.model.checks import check_integer
 from crazybilliards.model.vocabulary import require
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import minimize_scalar
 
-from crazybilliards.model.chain import check_integer
+from crazybilliards.model.checks import check_integer
 
 Array = NDArray[np.float64]
 

@@ -25,7 +25,7 @@ import xarray as xr
 from threadpoolctl import threadpool_limits
 
 from crazybilliards.kinetic import equilibrium, force_balance, phase_space
-from crazybilliards.kinetic.phase_space import check_phase_space
+from crazybilliards.kinetic.kinetic_equation.stationary import check_phase_space
 from crazybilliards.model import Chain, load
 from crazybilliards.model.storage import load_attributes
 from crazybilliards.particles import simulate

@@ -22,8 +22,8 @@ from tqdm import tqdm
 
 from crazybilliards.comparison.sweeps.case import Case, compute
 from crazybilliards.model.locks import locked
+from crazybilliards.model.process import cores
 from crazybilliards.model.storage import make_folder, write_sealed
-from crazybilliards.particles.running import cores
 
 _PATIENCE = "20s"  # for a scheduler to answer
 

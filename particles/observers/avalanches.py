@@ -7,7 +7,7 @@ from typing import Self
 
 import numpy as np
 
-from crazybilliards.particles.avalanche import make_tally
+from crazybilliards.particles.laws.avalanche import make_tally
 from crazybilliards.particles.observers.base import (
     Array,
     Integers,
@@ -21,7 +21,7 @@ from crazybilliards.particles.observers.base import (
 class Avalanches(Observer):
     """avalanche_count: rightward waves started by each particle that triggered N_c collisions.
 
-    Counted by the collision kernel itself (see ``particles/avalanche.py``), while measuring; by
+    Counted by the collision kernel itself (see ``particles/laws/avalanche.py``) while measuring. By
     symmetry leftward waves are those of the mirrored particles. In a dissipative chain the counts
     depend on the time step: rods in contact are kicked anew in every step. 16 L^2 bytes.
     """

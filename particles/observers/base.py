@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from crazybilliards.model import Chain
-from crazybilliards.particles.blocks import jackknife
+from crazybilliards.particles.observers.error_bars import jackknife
 from crazybilliards.particles.schedule import Schedule
 
 Array = NDArray[np.float64]

@@ -7,7 +7,6 @@ from typing import Self
 
 import numpy as np
 
-from crazybilliards.particles.blocks import jackknife
 from crazybilliards.particles.observers.base import (
     Array,
     Integers,
@@ -16,6 +15,7 @@ from crazybilliards.particles.observers.base import (
     Snapshots,
     Variables,
 )
+from crazybilliards.particles.observers.error_bars import jackknife
 
 _MOST_TIMES = 1000
 

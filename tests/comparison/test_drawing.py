@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from crazybilliards.comparison import compare_elastic, overlay, smooth
-from crazybilliards.comparison.elastic_figures import draw_density, draw_displacement
+from crazybilliards.comparison.studies.elastic_figures import draw_density, draw_displacement
 from crazybilliards.kinetic import equilibrium, force_balance
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate

@@ -9,12 +9,12 @@ import pytest
 import xarray as xr
 
 from crazybilliards.comparison import compare_elastic, smooth
-from crazybilliards.comparison.elastic_chain import (
+from crazybilliards.comparison.studies.elastic_chain import (
     deviations,
     elastic_theories,
     largest_width_error,
 )
-from crazybilliards.comparison.elastic_figures import draw_density, draw_displacement
+from crazybilliards.comparison.studies.elastic_figures import draw_density, draw_displacement
 from crazybilliards.model import Chain, chain_of
 
 pytestmark = pytest.mark.compiled
@@ -112,7 +112,9 @@ def test_sigterm_between_simulations_keeps_what_was_computed(monkeypatch):
         os.kill(os.getpid(), signal.SIGTERM)
         return elastic_theories(chain, run)
 
-    monkeypatch.setattr("crazybilliards.comparison.elastic_chain.elastic_theories", theories)
+    monkeypatch.setattr(
+        "crazybilliards.comparison.studies.elastic_chain.elastic_theories", theories
+    )
     tree = compare_elastic(Chain(size=5), (1.0, 2.0), duration=500, progress=False)
     assert tree.attrs["status"] == "interrupted"
     assert tree["amplitude_1/simulation"].attrs["status"] == "completed"

@@ -9,7 +9,7 @@ from functools import cache
 import matplotlib.pyplot as plt
 import pytest
 
-from crazybilliards.comparison.figures import FIGURES
+from crazybilliards.comparison.paper.figures import FIGURES
 from crazybilliards.comparison.sweeps.case import JOBS
 
 SIMULATED = [

@@ -5,8 +5,12 @@ import numpy as np
 import pytest
 
 from crazybilliards.comparison import animate, compare_relaxation
-from crazybilliards.comparison.relaxation import cloud, label_distances
-from crazybilliards.comparison.relaxation_figures import draw_cloud, draw_profiles, draw_spacetime
+from crazybilliards.comparison.studies.relaxation import cloud, label_distances
+from crazybilliards.comparison.studies.relaxation_figures import (
+    draw_cloud,
+    draw_profiles,
+    draw_spacetime,
+)
 from crazybilliards.model import Chain
 
 pytestmark = pytest.mark.compiled

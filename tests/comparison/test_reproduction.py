@@ -8,29 +8,23 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 
-from crazybilliards.comparison.figures import FIGURES, find_figures
-from crazybilliards.comparison.figures.claims import (
-    Estimate,
-    number_claim,
-    positive_claim,
-    same_claim,
-    small_claim,
-)
-from crazybilliards.comparison.figures.distributions import moment
-from crazybilliards.comparison.figures.runs import (
+from crazybilliards.comparison.claims.report import all_cases, describe, html, markdown, reproduce
+from crazybilliards.comparison.claims.runs import (
     border_width,
     centre_width,
     estimate,
     pooled,
     runs,
 )
-from crazybilliards.comparison.reproduction import (
-    all_cases,
-    describe,
-    html,
-    markdown,
-    reproduce,
+from crazybilliards.comparison.claims.verdicts import (
+    Estimate,
+    number_claim,
+    positive_claim,
+    same_claim,
+    small_claim,
 )
+from crazybilliards.comparison.paper.distributions import moment
+from crazybilliards.comparison.paper.figures import FIGURES, find_figures
 from crazybilliards.comparison.sweeps import Case, run_cases
 from crazybilliards.model import Chain
 from crazybilliards.model.vocabulary import result

@@ -14,7 +14,7 @@ from crazybilliards.kinetic import (
     hydrodynamics,
     two_clumps,
 )
-from crazybilliards.kinetic.breathing_cloud import breathing_cloud
+from crazybilliards.kinetic.exact.breathing import breathing_cloud
 from crazybilliards.model import Chain
 
 QUIET = {"progress": False}

@@ -4,8 +4,12 @@ import numpy as np
 import pytest
 
 from crazybilliards.kinetic import equilibrium, force_balance, phase_space
-from crazybilliards.kinetic.continuation import continued, elastic_state, free_units
-from crazybilliards.kinetic.kinetic_equation import Equation, coefficients
+from crazybilliards.kinetic.kinetic_equation.continuation import (
+    continued,
+    elastic_state,
+    free_units,
+)
+from crazybilliards.kinetic.kinetic_equation.weak_form import Equation, coefficients
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
 

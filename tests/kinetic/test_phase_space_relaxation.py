@@ -8,11 +8,13 @@ from crazybilliards.kinetic import (
     displaced,
     force_balance,
     phase_space,
-    phase_space_relaxation,
     relax_phase_space,
 )
-from crazybilliards.kinetic.breathing_cloud import breathing_cloud
-from crazybilliards.kinetic.continuation import continued, elastic_state
+from crazybilliards.kinetic.exact.breathing import breathing_cloud
+from crazybilliards.kinetic.kinetic_equation import (
+    relaxation as phase_space_relaxation,
+)
+from crazybilliards.kinetic.kinetic_equation.continuation import continued, elastic_state
 from crazybilliards.model import Chain
 
 CHAIN = Chain(size=30)

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.special import erf
 
-from crazybilliards.kinetic.rods_of_points import points
-from crazybilliards.kinetic.velocity_space import (
+from crazybilliards.kinetic.kinetic_equation.order_statistics import points
+from crazybilliards.kinetic.kinetic_equation.velocity_space import (
     Box,
     VelocitySpace,
     fitting_box,

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
-from crazybilliards.particles.avalanche import make_tally, note
+from crazybilliards.particles.laws.avalanche import make_tally, note
 
 
 def follow_every_wave(size, collisions):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from crazybilliards.particles.blocks import jackknife
+from crazybilliards.particles.observers.error_bars import jackknife
 
 
 def mean(average):

@@ -17,7 +17,7 @@ from crazybilliards.model import Chain, load, save
 from crazybilliards.model.locks import locked
 from crazybilliards.model.storage import read_sealed, write_sealed
 from crazybilliards.particles import simulate
-from crazybilliards.particles.replica import Replica
+from crazybilliards.particles.running.replica import Replica
 
 SCRIPT = """
 import sys

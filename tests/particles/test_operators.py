@@ -6,8 +6,16 @@ from gauss_seidel import solve
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from crazybilliards.particles.avalanche import make_tally
-from crazybilliards.particles.drift import CONTACTS, HEAP, ISOTONIC, SORT, Law, drift, make_scratch
+from crazybilliards.particles.laws.avalanche import make_tally
+from crazybilliards.particles.laws.law import (
+    CONTACTS,
+    HEAP,
+    ISOTONIC,
+    SORT,
+    Law,
+    drift,
+    make_scratch,
+)
 
 UNSEEN = make_tally(2, contacts=False, waves=False)
 OPERATORS = {"sort": SORT, "isotonic": ISOTONIC, "heap": HEAP, "contacts": CONTACTS}

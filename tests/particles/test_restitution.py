@@ -6,7 +6,7 @@ import pytest
 from crazybilliards.kinetic import equilibrium_states
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
-from crazybilliards.particles.schedule import centre_width, default_time_step
+from crazybilliards.particles.scales import centre_width, default_time_step
 
 
 def centre_and_border(run):

@@ -11,7 +11,9 @@ import xarray as xr
 from crazybilliards.kinetic import equilibrium, equilibrium_states
 from crazybilliards.model import Chain
 from crazybilliards.particles import given_start, simulate
-from crazybilliards.particles.schedule import longest_step, make_schedule, relaxation_time
+from crazybilliards.particles.scales import relaxation_time
+from crazybilliards.particles.schedule import make_schedule
+from crazybilliards.particles.stepping import longest_step
 
 QUANTITIES = ("velocity_width", "mean_displacement", "displacement_width")
 
@@ -158,7 +160,7 @@ def test_long_times_between_snapshots_are_taken_in_parts(average, observe, monke
     options |= {"observe": observe, "start": given_start(chain, position), "progress": False}
     whole = simulate(chain, **options)
     assert np.ptp(whole[next(iter(whole.data_vars))].values) > 0
-    monkeypatch.setattr("crazybilliards.particles.replica._CHUNK", 30 * chain.size)
+    monkeypatch.setattr("crazybilliards.particles.running.replica._CHUNK", 30 * chain.size)
     xr.testing.assert_allclose(simulate(chain, **options), whole, rtol=1e-9, atol=1e-9)
 
 

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from crazybilliards.particles import sort
+from crazybilliards.particles.laws import sort
 
 
 def drift(y, v, dt):

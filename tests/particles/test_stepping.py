@@ -7,8 +7,8 @@ from scipy.linalg import solve_discrete_lyapunov
 from crazybilliards.kinetic import equilibrium
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
-from crazybilliards.particles.avalanche import make_tally
-from crazybilliards.particles.drift import make_law, make_scratch
+from crazybilliards.particles.laws.avalanche import make_tally
+from crazybilliards.particles.laws.law import make_law, make_scratch
 from crazybilliards.particles.stepping import advance, make_step
 
 

@@ -1,0 +1,73 @@
+"""Figure 5: mean displacements, and their widths, of perfectly inelastic chains."""
+
+from __future__ import annotations
+
+import itertools
+
+import matplotlib.pyplot as plt
+import xarray as xr
+from matplotlib.figure import Figure
+
+from crazybilliards.comparison.claims.runs import estimate, pooled
+from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
+from crazybilliards.comparison.claims.verdicts import Claim, positive_claim
+from crazybilliards.comparison.drawing import along_the_chain, draw_rods
+from crazybilliards.comparison.paper.chains import LARGE, dissipative, dissipative_name
+from crazybilliards.model import chain_of
+
+_SIZES = (30, 100, 300, LARGE)
+
+
+def cases(quality: Quality) -> Cases:
+    """E = 0, four sizes."""
+    cases: Cases = {}
+    for size in _SIZES:
+        cases |= dissipative(size, 0.0, quality)
+    return cases
+
+
+def swelling(run: xr.Dataset) -> float:
+    """Return the slope of <dx> against i_n by least squares: all rods count."""
+    place = run.normalized_particle.values
+    return float(place @ run.mean_displacement.values / (place @ place))
+
+
+def claims(results: Results) -> list[Claim]:
+    """Check: displacements decrease with the size."""
+    found = {size: estimate(results, dissipative_name(size, 0.0), swelling) for size in _SIZES}
+    return [
+        positive_claim(
+            f"the mean displacement decreases from L = {small} to L = {large}",
+            f"slope of <dx> against i_n: {found[small]} less {found[large]}, difference",
+            found[small].minus(found[large]),
+        )
+        for small, large in itertools.pairwise(_SIZES)
+    ]
+
+
+def draw(results: Results) -> Figure:
+    """Draw <dx> and W_x against i_n."""
+    figure, axes = plt.subplots(1, 2, figsize=(8.8, 3.6), layout="constrained")
+    for number, size in enumerate(_SIZES):
+        run = pooled(results, dissipative_name(size, 0.0))
+        s = chain_of(run).thermal_length
+        for ax, name in zip(axes, ("mean_displacement", "displacement_width"), strict=True):
+            draw_rods(ax, run, name, number=number, unit=s, label=f"L = {size}")
+    axes[0].set(ylabel=r"mean displacement $\langle\Delta x\rangle/s$")
+    axes[1].set(ylabel="displacement width $W_x/s$", ylim=(0, None))
+    for ax in axes:
+        along_the_chain(ax)
+    axes[0].legend(frameon=False)
+    return figure
+
+
+FIGURE = PaperFigure(
+    number=5,
+    name="displacements-inelastic",
+    title="Mean displacements at e = 0",
+    caption="Mean displacement (left) and its width (right, the paper's inset) against the "
+    "normalized particle number, e = 0, in units of the thermal length s.",
+    cases=cases,
+    draw=draw,
+    claims=claims,
+)

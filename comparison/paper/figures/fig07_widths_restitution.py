@@ -1,0 +1,171 @@
+"""Figure 7: velocity widths for several restitutions, and the exponent against the restitution."""
+
+from __future__ import annotations
+
+import matplotlib.pyplot as plt
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from crazybilliards.comparison.claims.runs import estimate, pooled
+from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
+from crazybilliards.comparison.claims.verdicts import Claim, Estimate, same_claim, small_claim
+from crazybilliards.comparison.drawing import COLOURS, SYMBOLS, along_the_chain, draw_rods
+from crazybilliards.comparison.fits import ExponentialFit, fit_border_power_law, fit_exponential
+from crazybilliards.comparison.paper.chains import (
+    LARGE,
+    RESTITUTIONS,
+    dissipative,
+    dissipative_name,
+    elastic,
+    elastic_name,
+    kinetic_equation,
+    kinetic_name,
+)
+from crazybilliards.comparison.studies.restitutions import width_deviation
+from crazybilliards.model import chain_of
+
+THEORIES = {"quick": (0.95,), "full": (0.85, 0.92, 0.95)}
+_ELASTIC_SIZE = 100
+
+
+def cases(quality: Quality) -> Cases:
+    """L = 1000 at six restitutions, L = 100 at e = 1; the kinetic equation where it holds."""
+    cases: Cases = {}
+    for restitution in RESTITUTIONS:
+        cases |= dissipative(LARGE, restitution, quality)
+    for restitution in THEORIES[quality]:
+        cases |= kinetic_equation(LARGE, restitution, 1.0, quality)
+    return cases | elastic(_ELASTIC_SIZE, quality)
+
+
+def theories(results: Results) -> dict[float, xr.Dataset]:
+    """Return the kinetic equation's results by restitution."""
+    names = {e: kinetic_name(LARGE, e, 1.0) for e in RESTITUTIONS}
+    return {e: results[name] for e, name in names.items() if name in results}
+
+
+def _exponents(results: Results) -> dict[float, Estimate]:
+    def minus_nu(run: xr.Dataset) -> float:
+        return -fit_border_power_law(run).exponent
+
+    return {e: estimate(results, dissipative_name(LARGE, e), minus_nu) for e in RESTITUTIONS}
+
+
+def _fit(found: dict[float, Estimate]) -> ExponentialFit:
+    values, errors = zip(*found.values(), strict=True)
+    return fit_exponential(list(found), values, errors)
+
+
+def claims(results: Results) -> list[Claim]:
+    """Check: -nu = a exp(-lambda (1 - e)) + d; and how good the kinetic equation is."""
+    found = _exponents(results)
+    fit = _fit(found)
+    residuals = [(each.value - float(fit(e))) / each.error for e, each in found.items()]
+    parameters = (
+        f"lambda = {Estimate(fit.rate, fit.rate_error)}, "
+        f"a = {Estimate(fit.amplitude, fit.amplitude_error)}, "
+        f"d = {Estimate(fit.offset, fit.offset_error)}"
+    )
+    exponents = ", ".join(f"{e:g}: {each}" for e, each in found.items())
+    first = same_claim(
+        "-nu = a exp(-lambda (1 - e)) + d",
+        f"{parameters}; -nu by e: {exponents}",
+        float(np.abs(residuals).max()),
+        theory=", ".join(
+            f"{e:g}: {-fit_border_power_law(theory).exponent:.3f}"
+            for e, theory in theories(results).items()
+        ),
+        reason="the exponents scatter about the curve by more than their errors",
+    )
+    return [first, *_theory_claims(results)]
+
+
+def _theory_claims(results: Results) -> list[Claim]:
+    claims = []
+    for e, theory in theories(results).items():
+        deviation = width_deviation(pooled(results, dissipative_name(LARGE, e)), theory)
+        claims.append(
+            small_claim(
+                f"(beyond the paper) the kinetic equation gives W_v in the centre, e = {e:g}",
+                "relative deviation",
+                Estimate(deviation.centre, deviation.error / np.sqrt(LARGE / 10)),
+                0.05,
+                theory="nothing fitted",
+                reason="correlations of velocities, which the theory leaves out, grow with "
+                "L (1 - e)",
+            )
+        )
+    return claims
+
+
+def draw(results: Results) -> Figure:
+    """Draw W_v(i) with the kinetic equation, and -nu against e with its fit."""
+    figure, (left, right) = plt.subplots(
+        1, 2, figsize=(9.6, 4.0), layout="constrained", width_ratios=(1.5, 1)
+    )
+    predicted = theories(results)
+    names = {e: dissipative_name(LARGE, e) for e in RESTITUTIONS}
+    names[1.0] = elastic_name(_ELASTIC_SIZE)
+    for number, (e, name) in enumerate(names.items()):
+        run = pooled(results, name)
+        unit = chain_of(run).free_velocity_width
+        label = f"e = {e:g}" + (f", L = {_ELASTIC_SIZE}" if e == 1 else "")
+        draw_rods(left, run, "velocity_width", number=number, unit=unit, label=label)
+        if e in predicted:
+            theory = predicted[e]
+            left.plot(
+                theory.normalized_particle, theory.velocity_width / unit, color=COLOURS[number]
+            )
+    along_the_chain(left)
+    left.set(ylabel="velocity width $W_v/W$", yscale="log")
+    figure.legend(
+        *left.get_legend_handles_labels(),
+        loc="outside upper center",
+        ncols=4,
+        frameon=False,
+        title="symbols: simulation, lines: kinetic equation",
+    )
+    _draw_exponents(right, results)
+    return figure
+
+
+def _draw_exponents(ax: Axes, results: Results) -> None:
+    found = _exponents(results)
+    fit = _fit(found)
+    values, errors = np.array(list(found.values())).T
+    ax.errorbar(
+        list(found),
+        values,
+        errors,
+        fmt=SYMBOLS[0],
+        color="black",
+        markerfacecolor="none",
+        label="simulation",
+    )
+    for e, theory in theories(results).items():
+        ax.plot(
+            e,
+            -fit_border_power_law(theory).exponent,
+            "x",
+            color=COLOURS[4],
+            label=None if e != max(theories(results)) else "kinetic equation",
+        )
+    fine = np.linspace(0, 1, 101)
+    ax.plot(fine, fit(fine), "0.4", linewidth=1, label=rf"fit, $\lambda = {fit.rate:.1f}$")
+    ax.set(xlabel="restitution e", ylabel=r"exponent $-\nu$")
+    ax.legend(frameon=False, fontsize=8)
+
+
+FIGURE = PaperFigure(
+    number=7,
+    name="widths-restitution",
+    title="Velocity widths for several restitutions",
+    caption="Left: W_v against the normalized particle number, L = 1000 (e = 1: L = 100). Lines: "
+    "the kinetic equation, into which nothing of the simulation goes. Right: the exponent of the "
+    "two power laws against the restitution, and the paper's exponential fitted to it.",
+    cases=cases,
+    draw=draw,
+    claims=claims,
+)

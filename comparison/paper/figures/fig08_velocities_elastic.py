@@ -1,0 +1,119 @@
+"""Figure 8: at e = 1 every rod has the velocity distribution of a free one."""
+
+from __future__ import annotations
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from crazybilliards.comparison.claims.runs import centre_width, estimate, pooled, runs
+from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
+from crazybilliards.comparison.claims.verdicts import Claim, Estimate, same_claim, small_claim
+from crazybilliards.comparison.drawing import along_the_chain, draw_rods
+from crazybilliards.comparison.paper.chains import LARGE, elastic, elastic_name
+from crazybilliards.comparison.paper.distributions import draw_distributions, moment
+from crazybilliards.model import Chain, chain_of
+
+_SIZE = 100
+_PARTICLES = (1, 50)
+_LONG = {"quick": (2, 200.0), "full": (4, 2000.0)}
+_STEPS = (1e-2, 1e-3)  # of Contact Dynamics
+_EXACT = "long chain, event-driven"
+
+
+def cases(quality: Quality) -> Cases:
+    """L = 100; and L = 1000, with the exact operator and with Contact Dynamics."""
+    number, duration = _LONG[quality]
+    chain = Chain(size=LARGE)
+    common = {"duration": duration, "observe": ["widths"]}
+    cases = elastic(_SIZE, quality) | runs(_EXACT, chain, number, **common)
+    for step in _STEPS:
+        cases |= runs(
+            _contact(step), chain, number, method="contact-dynamics", time_step=step, **common
+        )
+    return cases
+
+
+def _contact(step: float) -> str:
+    return f"long chain, Contact Dynamics, dt={step:g}"
+
+
+def claims(results: Results) -> list[Claim]:
+    """Check: identical to the free Gaussian; Contact Dynamics at L = 1000 is not."""
+    run = pooled(results, elastic_name(_SIZE))
+    unit = chain_of(run).free_velocity_width
+    deviation = np.abs(run.velocity_width - unit) / run.velocity_width_error
+    kurtosis = estimate(
+        results, elastic_name(_SIZE), lambda run: moment(run, range(1, _SIZE + 1), 4) - 3
+    )
+    wrong = [estimate(results, _contact(step), centre_width).value / unit for step in _STEPS]
+    long = pooled(results, _EXACT)
+    long_deviation = np.abs(long.velocity_width - unit) / long.velocity_width_error
+    return [
+        same_claim(
+            "W_v of every rod is that of a free rod",
+            f"W_v/W = {float(run.velocity_width.mean()) / unit:.4f} on average over the rods",
+            float(deviation.max()),
+            theory="exact: 1 for every rod, any gap, any spring",
+        ),
+        small_claim(
+            "the distributions are Gaussian",
+            "excess kurtosis, mean of all rods",
+            kurtosis,
+            0.05,
+            theory="exact: 0",
+        ),
+        same_claim(
+            f"(beyond the paper) the same at L = {LARGE}",
+            f"W_v/W = {float(long.velocity_width.mean()) / unit:.4f}",
+            float(long_deviation.max()),
+            theory="exact: 1",
+        ),
+        small_claim(
+            f"(beyond the paper) Contact Dynamics is right at e = 1, L = {LARGE}, "
+            f"dt = {_STEPS[-1]:g}",
+            "1 - W_v/W in the centre",
+            Estimate(1 - wrong[-1], estimate(results, _contact(_STEPS[-1]), centre_width).error),
+            0.02,
+            theory="exact: 0",
+            reason="a step sees many collisions of each rod there, and Contact Dynamics "
+            "dissipates in rows of contacts",
+        ),
+    ]
+
+
+def draw(results: Results) -> Figure:
+    """Draw p(v) of two rods, and W_v of long chains by three methods."""
+    figure, (left, right) = plt.subplots(1, 2, figsize=(9.0, 3.7), layout="constrained")
+    run = pooled(results, elastic_name(_SIZE))
+    draw_distributions(left, run, _PARTICLES, chain_of(run).free_velocity_width)
+    left.set_title(f"L = {_SIZE}")
+    _draw_long_chains(right, results)
+    return figure
+
+
+def _draw_long_chains(ax: Axes, results: Results) -> None:
+    names = {_EXACT: "event-driven", **{_contact(s): f"Cont. Dyn., dt = {s:g}" for s in _STEPS}}
+    for number, (name, label) in enumerate(names.items()):
+        run = pooled(results, name)
+        unit = chain_of(run).free_velocity_width
+        draw_rods(ax, run, "velocity_width", number=number, unit=unit, label=label)
+    ax.axhline(1, color="black", linestyle=":", label="exact")
+    along_the_chain(ax)
+    ax.set(ylabel="velocity width $W_v/W$", ylim=(0, 1.45))
+    ax.set_title(f"L = {LARGE}")
+    ax.legend(frameon=False, fontsize=8, ncols=2)
+
+
+FIGURE = PaperFigure(
+    number=8,
+    name="velocities-elastic",
+    title="Velocity distributions at e = 1",
+    caption="Left: symbols, simulated rods 1 and 50 of 100; dotted, the exact distribution, that "
+    "of a free rod. Right: W_v of 1000 rods, exact at any step with event-driven collisions, wrong "
+    "with Contact Dynamics at steps that are affordable.",
+    cases=cases,
+    draw=draw,
+    claims=claims,
+)

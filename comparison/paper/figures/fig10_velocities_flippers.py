@@ -1,0 +1,93 @@
+"""Figure 10: velocity distributions of weakly damped flippers: the border is the widest."""
+
+from __future__ import annotations
+
+import matplotlib.pyplot as plt
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from crazybilliards.comparison.claims.runs import border_width, centre_width, estimate, pooled
+from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
+from crazybilliards.comparison.claims.verdicts import Claim, Estimate, positive_claim
+from crazybilliards.comparison.fits import tail_length
+from crazybilliards.comparison.paper.chains import flippers, flippers_name
+from crazybilliards.comparison.paper.distributions import draw_distributions, moment
+from crazybilliards.model import chain_of
+
+SIZE = 100
+PARTICLES = (1, 10, 50)
+_DAMPING = 4.0
+_TAIL = 3.0  # widths of the rod, where the tail begins
+
+
+def cases(quality: Quality) -> Cases:
+    """L = 100, e = 1.05, gamma = 4."""
+    return flippers(SIZE, _DAMPING, quality)
+
+
+def claims(results: Results) -> list[Claim]:
+    """Check: the border is the widest and has an exponential tail."""
+    name = flippers_name(SIZE, _DAMPING)
+    border = estimate(results, name, border_width)
+    kurtosis = estimate(results, name, lambda run: moment(run, (1, SIZE), 4) - 3)
+    ratio = estimate(results, name, _tail_ratio)
+    return [
+        positive_claim(
+            "the border is the widest",
+            "W_v(border) - W_v(centre) =",
+            border.minus(estimate(results, name, centre_width)),
+        ),
+        positive_claim(
+            "the tail at the border is exponential, not Gaussian",
+            f"excess kurtosis {kurtosis}; length of the tail beyond 5 W_v over that beyond 3 W_v "
+            f"{ratio} (exponential: 1, Gaussian: 0.65), less half-way between the two",
+            ratio.minus(Estimate(0.825, 0.0)),
+            reason="the tail falls off faster than an exponential",
+        ),
+    ]
+
+
+def _density(run: xr.Dataset) -> xr.DataArray:
+    """Return p(v) of the leftmost rod, averaged with the mirror image of the rightmost."""
+    p = run.velocity_density
+    return (p.sel(particle=1) + p.sel(particle=SIZE).values[::-1]) / 2
+
+
+def _tail_ratio(run: xr.Dataset) -> float:
+    """Length of the border's outward tail far out over that nearer by: 1 if exponential."""
+    outward = run.velocity.values < 0
+    v, p = run.velocity.values[outward], _density(run).values[outward]
+    width = border_width(run)
+    return tail_length(v, p, 5 * width) / tail_length(v, p, _TAIL * width)
+
+
+def draw(results: Results) -> Figure:
+    """Draw p(v) of three rods, with an exponential tail at the border."""
+    run = pooled(results, flippers_name(SIZE, _DAMPING))
+    unit = chain_of(run).free_velocity_width
+    figure, ax = plt.subplots(figsize=(5.2, 3.8), layout="constrained")
+    draw_distributions(ax, run, PARTICLES, unit)
+    # The leftmost rod is thrown to the left.
+    v, p = (each.values[run.velocity.values < 0] for each in (run.velocity, _density(run)))
+    begin = _TAIL * border_width(run)
+    length = tail_length(v, p, begin)
+    share = float((p * np.gradient(v))[v < -begin].sum())
+    out = np.linspace(begin, begin + 7 * length, 50)
+    tail = share / length * np.exp(-(out - begin) / length)
+    ax.plot(-out / unit, tail * unit, "--", color="0.4", linewidth=1.2, label="exponential tail")
+    ax.legend(frameon=False, fontsize=8)
+    return figure
+
+
+FIGURE = PaperFigure(
+    number=10,
+    name="velocities-flippers",
+    title="Velocity distributions at e = 1.05, gamma = 4",
+    caption="L = 100, e = 1.05, gamma = 4. Symbols: simulation. Lines: Gaussians of the same "
+    "width. Dashed: an exponential of the border's mean excess over three widths. Dotted: a free "
+    "rod.",
+    cases=cases,
+    draw=draw,
+    claims=claims,
+)

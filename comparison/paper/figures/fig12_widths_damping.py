@@ -1,0 +1,108 @@
+"""Figure 12: velocity widths of flippers for several dampings: from convex to concave."""
+
+from __future__ import annotations
+
+import matplotlib.pyplot as plt
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from crazybilliards.comparison.claims.runs import border_width, centre_width, estimate, pooled
+from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
+from crazybilliards.comparison.claims.verdicts import Claim, Estimate, positive_claim
+from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_rods
+from crazybilliards.comparison.paper.chains import (
+    flippers,
+    flippers_name,
+    kinetic_equation,
+    kinetic_name,
+)
+from crazybilliards.model import chain_of
+
+_SIZE = 100
+_RESTITUTION = 1.05
+_DAMPINGS = (4.0, 5.0, 6.0, 8.0, 10.0)
+
+
+def cases(quality: Quality) -> Cases:
+    """L = 100, e = 1.05, five dampings, each with the kinetic equation."""
+    cases: Cases = {}
+    for damping in _DAMPINGS:
+        cases |= flippers(_SIZE, damping, quality)
+        cases |= kinetic_equation(_SIZE, _RESTITUTION, damping, quality)
+    return cases
+
+
+def bulge(run: xr.Dataset) -> float:
+    """Ln of the border's width over the centre's: positive for a convex profile."""
+    return float(np.log(border_width(run) / centre_width(run)))
+
+
+def claims(results: Results) -> list[Claim]:
+    """Check: convex at gamma = 4, concave at gamma = 10, and where it changes."""
+    found = {g: estimate(results, flippers_name(_SIZE, g), bulge) for g in _DAMPINGS}
+    theory = {g: bulge(results[kinetic_name(_SIZE, _RESTITUTION, g)]) for g in _DAMPINGS}
+    low, high = _DAMPINGS[0], _DAMPINGS[-1]
+    values = np.array([each.value for each in found.values()])
+    change = _crossing(values), _crossing(np.array(list(theory.values())))
+    opposite = Estimate(-found[high].value, found[high].error)
+    return [
+        positive_claim(
+            f"convex at gamma = {low:g}",
+            "ln of the border's width over the centre's:",
+            found[low],
+            theory=f"{theory[low]:+.3f}",
+        ),
+        positive_claim(
+            f"concave at gamma = {high:g}",
+            f"it changes at gamma = {change[0]:.1f}; ln of the centre's width over the border's:",
+            opposite,
+            theory=f"{-theory[high]:+.3f}; changes at gamma = {change[1]:.1f}",
+        ),
+    ]
+
+
+def _crossing(values: np.ndarray) -> float:
+    """Return the damping where the bulge vanishes, by interpolation."""
+    return float(np.interp(0.0, values[::-1], np.array(_DAMPINGS)[::-1]))
+
+
+def draw(results: Results) -> Figure:
+    """Draw gamma W_v(i) for every damping with the kinetic equation."""
+    figure, ax = plt.subplots(figsize=(5.6, 4.2), layout="constrained")
+    for number, damping in enumerate(_DAMPINGS):
+        run = pooled(results, flippers_name(_SIZE, damping))
+        # gamma W_v over that of a free rod at gamma = 1, A/sqrt(2 m).
+        free = chain_of(run).replace(damping=1.0).free_velocity_width
+        draw_rods(
+            ax,
+            run,
+            "velocity_width",
+            number=number,
+            unit=free / damping,
+            label=rf"$\gamma$ = {damping:g}",
+        )
+        theory = results[kinetic_name(_SIZE, _RESTITUTION, damping)]
+        ax.plot(
+            theory.normalized_particle,
+            theory.velocity_width * damping / free,
+            color=COLOURS[number],
+        )
+    along_the_chain(ax)
+    ax.set(
+        ylabel=r"$\gamma W_v/(A/\sqrt{2m})$  [M$^{1/2}$T$^{-1/2}$]",
+    )
+    ax.legend(frameon=False, title="symbols: simulation\nlines: kinetic equation", fontsize=8)
+    return figure
+
+
+FIGURE = PaperFigure(
+    number=12,
+    name="widths-damping",
+    title="Velocity widths of flippers for several dampings",
+    caption="Damping times velocity width against the normalized particle number, L = 100, "
+    "e = 1.05. Lines: the kinetic equation.",
+    cases=cases,
+    draw=draw,
+    claims=claims,
+)

@@ -1,0 +1,105 @@
+"""Figure 14: velocity widths of flippers for several sizes: concave, convex, then divergence."""
+
+from __future__ import annotations
+
+import math
+
+import matplotlib.pyplot as plt
+from matplotlib.figure import Figure
+
+from crazybilliards.comparison.claims.runs import estimate, members, pooled, runs
+from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
+from crazybilliards.comparison.claims.verdicts import Claim, Estimate, positive_claim
+from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_rods
+from crazybilliards.comparison.paper.chains import (
+    flippers,
+    flippers_name,
+    kinetic_equation,
+    kinetic_name,
+)
+from crazybilliards.comparison.paper.figures.fig12_widths_damping import bulge
+from crazybilliards.model import Chain, chain_of
+
+_DAMPING, _RESTITUTION = 4.0, 1.05
+_SIZES = (25, 50, 75, 100, 105)
+_UNSTEADY = 150
+
+
+def cases(quality: Quality) -> Cases:
+    """E = 1.05, gamma = 4, five sizes with the kinetic equation, and one that diverges."""
+    cases: Cases = {}
+    for size in _SIZES:
+        cases |= flippers(size, _DAMPING, quality)
+        cases |= kinetic_equation(size, _RESTITUTION, _DAMPING, quality)
+    chain = Chain(size=_UNSTEADY, restitution=_RESTITUTION, damping=_DAMPING)
+    return cases | runs("unsteady", chain, 4, duration=1000.0, warmup=0.0, observe=["energy"])
+
+
+def claims(results: Results) -> list[Claim]:
+    """Check: concave for short chains, convex for long ones, then no steady state."""
+    found = {size: estimate(results, flippers_name(size, _DAMPING), bulge) for size in _SIZES}
+    theory = {size: bulge(results[kinetic_name(size, _RESTITUTION, _DAMPING)]) for size in _SIZES}
+    diverged = members(results, "unsteady")
+    times = [run.attrs["end_time"] for run in diverged if run.attrs["status"] == "diverged"]
+    short, long = _SIZES[0], _SIZES[-1]
+    everyone = Estimate(len(times) / len(diverged), 0.0)
+    return [
+        positive_claim(
+            f"concave at L = {short}",
+            "ln of the centre's width over the border's:",
+            Estimate(-found[short].value, found[short].error),
+            theory=f"{-theory[short]:+.3f}",
+        ),
+        positive_claim(
+            f"convex at L = {long}",
+            "ln of the border's width over the centre's:",
+            found[long],
+            theory=f"{theory[long]:+.3f}",
+        ),
+        positive_claim(
+            f"without a steady state at L = {_UNSTEADY}",
+            f"{len(times)} of {len(diverged)} runs diverged, released from rest, the last after "
+            f"{max(times, default=math.nan):.2g} T; their share:",
+            everyone,
+            theory=f"no steady state beyond L = {_critical_size():.0f} (weak damping)",
+        ),
+    ]
+
+
+def _critical_size() -> float:
+    """L_c = pi gamma/((e - 1) sqrt(k m)), where collisions feed in what the damping takes out.
+
+    The kinetic equation's own value (``critical_size``) agrees within its error at this damping.
+    """
+    chain = Chain(restitution=_RESTITUTION, damping=_DAMPING)
+    scale = math.sqrt(chain.stiffness * chain.mass)
+    return math.pi * chain.damping / ((chain.restitution - 1) * scale)
+
+
+def draw(results: Results) -> Figure:
+    """Draw W_v(i) for every size with the kinetic equation."""
+    figure, ax = plt.subplots(figsize=(5.6, 4.2), layout="constrained")
+    for number, size in enumerate(_SIZES):
+        run = pooled(results, flippers_name(size, _DAMPING))
+        unit = chain_of(run).free_velocity_width
+        draw_rods(ax, run, "velocity_width", number=number, unit=unit, label=f"L = {size}")
+        theory = results[kinetic_name(size, _RESTITUTION, _DAMPING)]
+        ax.plot(theory.normalized_particle, theory.velocity_width / unit, color=COLOURS[number])
+    along_the_chain(ax)
+    ax.set(ylabel="velocity width $W_v/W$")
+    ax.legend(
+        frameon=False, ncols=2, fontsize=8, title="symbols: simulation\nlines: kinetic equation"
+    )
+    return figure
+
+
+FIGURE = PaperFigure(
+    number=14,
+    name="widths-size",
+    title="Velocity widths of flippers for several sizes",
+    caption="W_v against the normalized particle number, e = 1.05, gamma = 4. Lines: the kinetic "
+    "equation. Longer chains have no steady state: L = 150 diverges.",
+    cases=cases,
+    draw=draw,
+    claims=claims,
+)

@@ -1,0 +1,158 @@
+"""Figure 15: kinetic energy of flippers in time: exponential growth, finite-time singularity."""
+
+from __future__ import annotations
+
+import math
+
+import matplotlib.pyplot as plt
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from crazybilliards.comparison.claims.runs import estimate, members, runs
+from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
+from crazybilliards.comparison.claims.verdicts import Claim, Estimate, positive_claim, small_claim
+from crazybilliards.comparison.drawing import COLOURS
+from crazybilliards.comparison.fits import fit_growth, fit_singularity
+from crazybilliards.model import Chain
+
+_CHAINS = {
+    spring: Chain(size=100, restitution=1.01, damping=0.4, spring=spring)
+    for spring in ("linear", "quadratic")
+}
+_NUMBER = {"quick": 6, "full": 24}
+# The quadratic spring stiffens as it is stretched: the step is short enough for the last moments.
+_SETTINGS = {
+    "linear": {"duration": 150.0, "time_step": 0.02},
+    "quadratic": {"duration": 100.0, "time_step": 0.002},
+}
+_GROWING = 1e3  # energy beyond which noise no longer matters [M R^2/T^2]
+_SINGULAR = 1e5  # and beyond which damping matters little
+
+
+def cases(quality: Quality) -> Cases:
+    """L = 100, e = 1.01, gamma = 0.4, both springs, from rest."""
+    cases: Cases = {}
+    for spring, chain in _CHAINS.items():
+        settings = _SETTINGS[spring]
+        cases |= runs(spring, chain, _NUMBER[quality], warmup=0.0, observe=["energy"], **settings)
+    return cases
+
+
+def _late(run: xr.Dataset, beyond: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return times and energies from the first one above ``beyond``."""
+    energy = run.kinetic_energy.values
+    begin = int(np.argmax(energy > beyond))
+    return run.time.values[begin:], energy[begin:]
+
+
+def growth_rate(chain: Chain) -> float:
+    """Rate at which collisions feed energy in, less that at which damping takes it out [1/T].
+
+    With linear springs every pair of rods meets once in half a period, whatever the amplitude, and
+    gains (e^2 - 1)/4 m (v - u)^2: the energy grows as exp[(gamma/m)(L/L_c - 1) t], L_c being the
+    size at which the two balance.
+    """
+    scale = math.sqrt(chain.stiffness * chain.mass)
+    critical = 2 * math.pi * chain.damping / ((chain.restitution**2 - 1) * scale)
+    return chain.damping / chain.mass * (chain.size / critical - 1)
+
+
+def claims(results: Results) -> list[Claim]:
+    """Check: exponential growth for linear springs, a singularity for quadratic ones."""
+    rate = estimate(results, "linear", lambda run: fit_growth(*_late(run, _GROWING)).rate)
+    bend = estimate(results, "linear", _late_rate).minus(rate)
+    exponent = estimate(
+        results, "quadratic", lambda run: fit_singularity(*_late(run, _SINGULAR)).exponent
+    )
+    time = estimate(results, "quadratic", lambda run: fit_singularity(*_late(run, _SINGULAR)).time)
+    all_of_them = members(results, "quadratic")
+    diverged = sum(run.attrs["status"] == "diverged" for run in all_of_them)
+    return [
+        small_claim(
+            "linear springs: exponential growth",
+            f"rate {rate} per T; rate of the second half less that of the whole, over the rate:",
+            Estimate(bend.value / rate.value, bend.error / rate.value),
+            0.1,
+            theory=f"(gamma/m)(L/L_c - 1) = {growth_rate(_CHAINS['linear']):.4f} per T",
+        ),
+        positive_claim(
+            "quadratic springs: divergence in finite time, a power law of t_c - t",
+            f"{diverged} of {len(all_of_them)} runs diverged, t_c = {time} T; exponent of E",
+            exponent,
+            theory="6 without damping if the rods share the energy (frequency ~ E^(1/6), so "
+            "dE/dt ~ E^(7/6)); less, as it gathers on ever fewer rods",
+        ),
+    ]
+
+
+def _late_rate(run: xr.Dataset) -> float:
+    time, energy = _late(run, _GROWING)
+    half = time.size // 2
+    return fit_growth(time[half:], energy[half:]).rate
+
+
+def draw(results: Results) -> Figure:
+    """Draw E(t) of all runs, and the quadratic ones against t_c - t."""
+    figure, (left, right) = plt.subplots(1, 2, figsize=(9.0, 3.8), layout="constrained")
+    for number, spring in enumerate(_CHAINS):
+        for k, run in enumerate(members(results, spring)):
+            left.semilogy(
+                run.time,
+                run.kinetic_energy,
+                color=COLOURS[number],
+                linewidth=0.6,
+                alpha=0.7,
+                label=f"{spring} springs" if k == 0 else None,
+            )
+    rate = growth_rate(_CHAINS["linear"])
+    t = np.array([40.0, 150.0])
+    anchor = np.mean(
+        [np.interp(90, run.time, run.kinetic_energy) for run in members(results, "linear")]
+    )
+    left.semilogy(
+        t,
+        anchor * np.exp(rate * (t - 90)),
+        "k--",
+        linewidth=1.2,
+        label=f"theory: exp({rate:.3f} t/T)",
+    )
+    left.set(xlabel="time t [T]", ylabel=r"kinetic energy E [M R$^2$/T$^2$]", ylim=(1, 1e8))
+    left.legend(frameon=False, fontsize=8)
+    _draw_singularity(right, members(results, "quadratic"))
+    return figure
+
+
+def _draw_singularity(ax: Axes, quadratic: list[xr.Dataset]) -> None:
+    for k, run in enumerate(quadratic):
+        fit = fit_singularity(*_late(run, _SINGULAR))
+        left = fit.time - run.time.values
+        seen = left > 0
+        ax.loglog(
+            left[seen],
+            run.kinetic_energy.values[seen],
+            ".",
+            markersize=2,
+            color=COLOURS[1],
+            alpha=0.6,
+            label="quadratic springs" if k == 0 else None,
+        )
+    span = np.array([0.6, 6.0])
+    ax.loglog(span, 3e7 * span**-6.0, "k--", linewidth=1.2, label="slope -6")
+    ax.set(xlabel="time left $t_c - t$ [T]", ylim=(1, 1e12))
+    ax.legend(frameon=False, fontsize=8)
+
+
+FIGURE = PaperFigure(
+    number=15,
+    name="energy",
+    title="Kinetic energy of flippers in time",
+    caption="L = 100, e = 1.01, gamma = 0.4, from rest. Left: every line is a run. Dashed: the "
+    "growth rate of a balance between damping and one collision of every pair in half a period. "
+    "Right: the runs with quadratic springs against the time left until their own t_c, fitted.",
+    cases=cases,
+    draw=draw,
+    claims=claims,
+)

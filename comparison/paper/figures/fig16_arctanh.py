@@ -1,0 +1,104 @@
+"""Figure 16: the arctanh fit of the mean displacement at e = 1, and the exact curve."""
+
+from __future__ import annotations
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.figure import Figure
+
+from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
+from crazybilliards.comparison.claims.verdicts import Claim, same_claim
+from crazybilliards.comparison.drawing import COLOURS
+from crazybilliards.comparison.fits import fit_arctanh
+from crazybilliards.comparison.paper.figures.fig17_density import simulation
+from crazybilliards.kinetic import equilibrium
+from crazybilliards.model import chain_of
+
+_AMPLITUDE = 10.0
+
+
+def cases(quality: Quality) -> Cases:
+    """L = 100, e = 1, A = 10."""
+    return {"run": simulation(_AMPLITUDE, quality)}
+
+
+def claims(results: Results) -> list[Claim]:
+    """Check: the arctanh fits; the exact curve does."""
+    run = results["run"]
+    chain = chain_of(run)
+    fit, s = fit_arctanh(run), chain.thermal_length
+    fitted = fit(run.mean_position)
+    exact = equilibrium(chain).mean_displacement
+
+    def largest(curve: np.ndarray) -> float:
+        off = np.abs(run.mean_displacement.values - curve) / run.mean_displacement_error.values
+        return float(off.max())
+
+    worst = float(np.abs(run.mean_displacement.values - fitted).max()) / s
+    return [
+        same_claim(
+            "<dx> = B arctanh(C x)",
+            f"B = {fit.scale:.3f} R, C = {fit.steepness:.5f}/R; off by {100 * fit.misfit / s:.1f} "
+            f"% of s (rms), {100 * worst:.0f} % at most",
+            largest(fitted),
+            theory="a good interpolation of the exact curve, not the law",
+            reason="the exact displacements are expected order statistics, which no arctanh is; "
+            "to the eye it fits",
+        ),
+        same_claim(
+            "(beyond the paper) exact: expected order statistics, nothing fitted",
+            "all 100 rods",
+            largest(exact.values),
+        ),
+    ]
+
+
+def draw(results: Results) -> Figure:
+    """Draw <dx>(x), the fit and the exact curve, and their differences."""
+    run = results["run"]
+    chain = chain_of(run)
+    s = chain.thermal_length
+    fit = fit_arctanh(run)
+    exact = equilibrium(chain)
+    x = run.mean_position.values
+    figure, (top, bottom) = plt.subplots(
+        2, 1, figsize=(5.4, 4.8), layout="constrained", sharex=True, height_ratios=(2, 1)
+    )
+    measured = run.mean_displacement.values
+    top.errorbar(
+        x,
+        measured / s,
+        run.mean_displacement_error / s,
+        fmt="o",
+        color="black",
+        markersize=3.5,
+        markerfacecolor="none",
+        linewidth=0.8,
+        label="simulation",
+    )
+    curves = {
+        "exact": (exact.mean_displacement.values, "-", COLOURS[1]),
+        "arctanh fit": (fit(x), "--", COLOURS[0]),
+    }
+    for label, (curve, style, colour) in curves.items():
+        top.plot(x, curve / s, style, color=colour, label=label)
+        bottom.plot(x, (curve - measured) / s, style, color=colour)
+    bottom.fill_between(
+        x, -run.mean_displacement_error / s, run.mean_displacement_error / s, color="0.85"
+    )
+    top.set(ylabel=r"displacement $\langle\Delta x\rangle/s$")
+    bottom.set(xlabel="mean position x [R]", ylabel="curve less simulation")
+    top.legend(frameon=False)
+    return figure
+
+
+FIGURE = PaperFigure(
+    number=16,
+    name="arctanh",
+    title="The mean displacement at e = 1 and its arctanh fit",
+    caption="L = 100, e = 1, A = 10. Below: curves less simulation; grey, one standard error. "
+    "s is the thermal length.",
+    cases=cases,
+    draw=draw,
+    claims=claims,
+)

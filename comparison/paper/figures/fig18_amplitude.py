@@ -1,0 +1,92 @@
+"""Figure 18: the amplitude only sets the scale."""
+
+from __future__ import annotations
+
+import matplotlib.pyplot as plt
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from crazybilliards.comparison.claims.runs import pooled
+from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
+from crazybilliards.comparison.claims.verdicts import Claim, same_claim
+from crazybilliards.comparison.drawing import along_the_chain, draw_rods
+from crazybilliards.comparison.paper.chains import LARGE, dissipative, dissipative_name
+
+_RESTITUTIONS = (0.0, 0.95)
+_AMPLITUDES = (1.0, 3.0, 10.0)
+_SCALED = ("velocity_variance", "mean_displacement")
+
+
+def cases(quality: Quality) -> Cases:
+    """L = 1000, two restitutions, three amplitudes."""
+    cases: Cases = {}
+    for restitution in _RESTITUTIONS:
+        for amplitude in _AMPLITUDES:
+            cases |= dissipative(LARGE, restitution, quality, amplitude)
+    return cases
+
+
+def _scaled(results: Results, restitution: float, amplitude: float) -> xr.Dataset:
+    """Return W_v^2/A^2 and <dx>/A with their errors."""
+    run = pooled(results, dissipative_name(LARGE, restitution, amplitude))
+    error = 2 * run.velocity_width * run.velocity_width_error
+    return run.assign(
+        velocity_variance=run.velocity_width**2 / amplitude**2,
+        velocity_variance_error=error / amplitude**2,
+        mean_displacement=run.mean_displacement / amplitude,
+        mean_displacement_error=run.mean_displacement_error / amplitude,
+    )
+
+
+def claims(results: Results) -> list[Claim]:
+    """Check: all amplitudes fall onto one curve."""
+    claims = []
+    for restitution in _RESTITUTIONS:
+        reference, *others = (_scaled(results, restitution, a) for a in _AMPLITUDES)
+        for name, symbol in zip(_SCALED, ("W_v^2/A^2", "<dx>/A"), strict=True):
+            largest = max(_largest(reference, other, name) for other in others)
+            claims.append(
+                same_claim(
+                    f"{symbol} the same for all A, e = {restitution:g}",
+                    f"A = {', '.join(f'{a:g}' for a in _AMPLITUDES)}, all {LARGE} rods",
+                    largest,
+                    theory="exact for linear springs without gap: A can be scaled away",
+                )
+            )
+    return claims
+
+
+def _largest(one: xr.Dataset, other: xr.Dataset, name: str) -> float:
+    """Return the largest difference over the rods in standard errors."""
+    error = np.hypot(one[f"{name}_error"], other[f"{name}_error"])
+    return float((np.abs(one[name] - other[name]) / error).max())
+
+
+def draw(results: Results) -> Figure:
+    """Draw both quantities for both restitutions."""
+    figure, axes = plt.subplots(2, 2, figsize=(8.6, 6.0), layout="constrained", sharex=True)
+    labels = (r"$W_v^2/A^2$ [1/(M T)]", r"$\langle\Delta x\rangle/A$ [T$^{3/2}$/M]")
+    for row, restitution in zip(axes, _RESTITUTIONS, strict=True):
+        for number, amplitude in enumerate(_AMPLITUDES):
+            scaled = _scaled(results, restitution, amplitude)
+            for ax, name, label in zip(row, _SCALED, labels, strict=True):
+                draw_rods(ax, scaled, name, number=number, label=f"A = {amplitude:g}")
+                ax.set(ylabel=label, title=f"e = {restitution:g}")
+        row[0].set_yscale("log")
+    for ax in axes[-1]:
+        along_the_chain(ax)
+    axes[0, 0].legend(frameon=False)
+    return figure
+
+
+FIGURE = PaperFigure(
+    number=18,
+    name="amplitude",
+    title="The driving amplitude only sets the scale",
+    caption="Velocity variance over A^2 and mean displacement over A against the normalized "
+    "particle number, L = 1000, three amplitudes with random numbers of their own.",
+    cases=cases,
+    draw=draw,
+    claims=claims,
+)

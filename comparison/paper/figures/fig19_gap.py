@@ -1,0 +1,107 @@
+"""Figure 19: velocity variances of chains with gaps: a plateau in the interior."""
+
+from __future__ import annotations
+
+import matplotlib.pyplot as plt
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from crazybilliards.comparison.claims.runs import centre_width, estimate, pooled, runs
+from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
+from crazybilliards.comparison.claims.verdicts import Claim, positive_claim, small_claim
+from crazybilliards.comparison.drawing import along_the_chain, draw_rods
+from crazybilliards.comparison.paper.chains import LARGE, dissipative, dissipative_name
+from crazybilliards.model import Chain, chain_of
+
+_RESTITUTIONS = (0.0, 0.75, 0.95)
+_GAPS = (0.05, 0.2, 1.0)
+_NUMBER = {"quick": (2, 60.0, 50.0), "full": (4, 600.0, 100.0)}  # runs, duration, warm-up
+_FLAT = 0.1  # change of W_v^2 between the middle and half-way to the border
+
+
+def cases(quality: Quality) -> Cases:
+    """L = 1000, three restitutions, four gaps."""
+    number, duration, warmup = _NUMBER[quality]
+    cases: Cases = {}
+    for restitution in _RESTITUTIONS:
+        cases |= dissipative(LARGE, restitution, quality)
+        for gap in _GAPS:
+            chain = Chain(size=LARGE, restitution=restitution, gap=gap)
+            cases |= runs(
+                _name(restitution, gap),
+                chain,
+                number,
+                duration=duration,
+                warmup=warmup,
+                observe=["widths"],
+            )
+    return cases
+
+
+def _name(restitution: float, gap: float) -> str:
+    if gap == 0:
+        return dissipative_name(LARGE, restitution)
+    return f"{dissipative_name(LARGE, restitution)} g={gap:g}"
+
+
+def _change(run: xr.Dataset) -> float:
+    """Ln of W_v^2 half-way to the border over that in the centre."""
+    there = np.abs(np.abs(run.normalized_particle.values) - 0.5) < 0.05
+    half_way = float((run.velocity_width.values[there] ** 2).mean())
+    return float(np.log(half_way / centre_width(run) ** 2))
+
+
+def claims(results: Results) -> list[Claim]:
+    """Check: a plateau with a gap, none without."""
+    claims = []
+    for restitution in _RESTITUTIONS:
+        what = "ln of W_v^2 half-way to the border over that in the centre:"
+        without = estimate(results, _name(restitution, 0.0), _change)
+        for gap in _GAPS:
+            claims.append(
+                small_claim(
+                    f"plateau in the interior, e = {restitution:g}, g = {gap:g}",
+                    what,
+                    estimate(results, _name(restitution, gap), _change),
+                    _FLAT,
+                    reason="the gap is too small for the interior to become homogeneous",
+                )
+            )
+        claims.append(positive_claim(f"none without gap, e = {restitution:g}", what, without))
+    return claims
+
+
+def draw(results: Results) -> Figure:
+    """Draw W_v^2(i) for every gap, a panel a restitution."""
+    figure, axes = plt.subplots(
+        1, len(_RESTITUTIONS), figsize=(10.0, 3.6), layout="constrained", sharey=True
+    )
+    for ax, restitution in zip(axes, _RESTITUTIONS, strict=True):
+        for number, gap in enumerate((0.0, *_GAPS)):
+            run = pooled(results, _name(restitution, gap))
+            run = run.assign(
+                velocity_variance=run.velocity_width**2,
+                velocity_variance_error=2 * run.velocity_width * run.velocity_width_error,
+            )
+            unit = chain_of(run).free_velocity_width ** 2
+            draw_rods(ax, run, "velocity_variance", number=number, unit=unit, label=f"g = {gap:g}")
+        along_the_chain(ax)
+        ax.set(title=f"e = {restitution:g}", yscale="log")
+    axes[0].set_ylabel("velocity variance $W_v^2/W^2$")
+    figure.legend(
+        *axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=4, frameon=False
+    )
+    return figure
+
+
+FIGURE = PaperFigure(
+    number=19,
+    name="gap",
+    title="Velocity variances of chains with gaps",
+    caption="W_v^2 against the normalized particle number, L = 1000, for several gaps g between "
+    "neighbouring rods at their anchors, in radii.",
+    cases=cases,
+    draw=draw,
+    claims=claims,
+)

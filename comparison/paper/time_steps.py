@@ -1,0 +1,35 @@
+"""The perfectly inelastic chain at fixed time steps: what the step does to the exponents."""
+
+from __future__ import annotations
+
+from crazybilliards.comparison.claims.runs import runs
+from crazybilliards.comparison.claims.study import Cases, Quality
+from crazybilliards.comparison.paper.chains import SIZES, dissipative, dissipative_name
+from crazybilliards.model import Chain
+
+STEPS = (1e-2, 3e-3, 1e-3)
+_DURATION = {"quick": (2, 100.0), "full": (6, 1500.0)}
+
+
+def at_steps(quality: Quality, sizes: tuple[int, ...] = SIZES) -> Cases:
+    """Return runs at every fixed step and at the default one."""
+    number, duration = _DURATION[quality]
+    cases: Cases = {}
+    for size in sizes:
+        cases |= dissipative(size, 0.0, quality)
+        for step in STEPS:
+            chain = Chain(size=size, restitution=0.0)
+            cases |= runs(
+                step_name(size, step),
+                chain,
+                number,
+                duration=duration if size > 100 else 4 * duration,
+                time_step=step,
+                observe=["widths"],
+            )
+    return cases
+
+
+def step_name(size: int, step: float | None) -> str:
+    """Return the name of the runs at a step; None: the default one."""
+    return dissipative_name(size, 0.0) if step is None else f"L={size} dt={step:g}"

@@ -1,0 +1,1 @@
+"""Comparisons of simulation and theory beyond single figures of the paper."""

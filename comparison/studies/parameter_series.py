@@ -1,0 +1,86 @@
+"""Chains that differ in one parameter, simulated one after another, each beside its theories."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+import xarray as xr
+
+from crazybilliards.model import Chain
+from crazybilliards.model.checks import check_integer, check_real
+from crazybilliards.model.process import terminated_like_interrupted
+from crazybilliards.particles import simulate
+from crazybilliards.particles.schedule import make_schedule
+
+SIMULATION = "simulation"
+
+# Independent runs whatever the number of threads, enough for two cores.
+_REPLICAS = 2
+
+
+def varied_chains(
+    chain: Chain, name: str, values: Sequence[float], duration: float
+) -> dict[str, Chain]:
+    """Return the chain at every value of a parameter, after all checks: none fails half-way."""
+    if not values:
+        raise ValueError(f"{name}s must hold at least one number")
+    checked = [check_real(name, value) for value in values]
+    if len(set(checked)) != len(checked):
+        raise ValueError(f"{name}s must differ from one another, got {list(values)}")
+    chains = {f"{name}_{value:g}": chain.replace(**{name: value}) for value in checked}
+    if len(chains) != len(checked):
+        raise ValueError(f"{name}s must differ in their first six digits, got {list(values)}")
+    for each in chains.values():
+        each.require_steady_state()
+        make_schedule(each, duration=duration, replicas=_REPLICAS)
+    return chains
+
+
+def simulate_beside(
+    chains: Mapping[str, Chain],
+    theories: Callable[[Chain, xr.Dataset], Mapping[str, xr.Dataset]],
+    *,
+    duration: float,
+    seed: int,
+    threads: int | None,
+    progress: bool,
+) -> xr.DataTree:
+    """Simulate every chain with random numbers of its own, and put its theories beside it.
+
+    Returns
+    -------
+    xarray.DataTree
+        ``tree["NAME/simulation"]`` and ``tree["NAME/THEORY"]``. ``attrs["status"]`` is
+        ``interrupted`` if Ctrl-C or SIGTERM ended it early (the tree then holds what was finished,
+        and the run cut short), ``diverged`` if a simulation did.
+    """
+    seeds = np.random.SeedSequence(check_integer("seed", seed, least=0))
+    results: dict[str, xr.Dataset] = {}
+    status = "completed"
+    try:
+        with terminated_like_interrupted():
+            for (name, chain), own_seed in zip(
+                chains.items(), seeds.generate_state(len(chains)), strict=True
+            ):
+                run = simulate(
+                    chain,
+                    duration=duration,
+                    seed=int(own_seed),
+                    replicas=_REPLICAS,
+                    threads=threads,
+                    progress=progress,
+                )
+                results[f"{name}/{SIMULATION}"] = run
+                if run.attrs["status"] != "completed":
+                    status = run.attrs["status"]
+                results |= {f"{name}/{key}": theory for key, theory in theories(chain, run).items()}
+                if status == "interrupted":
+                    break
+    except KeyboardInterrupt:
+        if not results:
+            raise
+        status = "interrupted"
+    tree = xr.DataTree.from_dict(results)
+    tree.attrs |= {"status": status, "source": "comparison"}
+    return tree

@@ -1,0 +1,170 @@
+"""Relaxation: one start, followed by rods, two fluids and, where there is one, the exact solution.
+
+An elastic chain is released from a displaced or compressed state, or quenched from another driving
+amplitude. Compared are an ensemble of simulated chains, the isothermal fluid (the paper's
+closure), the fluid with a temperature equation, and without gap the exact motion.
+"""
+
+from __future__ import annotations
+
+from typing import Literal, get_args
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from crazybilliards.kinetic import (
+    compressed,
+    displaced,
+    equilibrium_states,
+    force_balance,
+    hydrodynamics,
+)
+from crazybilliards.kinetic.exact.breathing import breathing_cloud
+from crazybilliards.model import Chain, chain_of
+from crazybilliards.model.checks import check_choice, check_integer, check_real
+from crazybilliards.particles import simulate
+
+Array = NDArray[np.float64]
+Release = Literal["compressed", "displaced", "quenched"]
+
+PARTICLES = "particles"
+THEORIES = {
+    "isothermal": "isothermal fluid",
+    "evolving": "fluid with temperature",
+    "exact": "exact",
+}
+
+
+def compare_relaxation(
+    chain: Chain,
+    release: Release = "compressed",
+    by: float = 0.3,
+    *,
+    duration: float = 40.0,
+    every: float = 0.5,
+    replicas: int = 300,
+    seed: int = 0,
+    threads: int | None = None,
+    progress: bool = True,
+) -> xr.DataTree:
+    """Follow the release of a chain in all descriptions.
+
+    Parameters
+    ----------
+    chain
+        The chain, with restitution 1.
+    release
+        ``"compressed"``: the equilibrium state with y multiplied by ``by`` (above 1: stretched);
+        ``"displaced"``: moved by ``by`` thermal lengths; ``"quenched"``: the equilibrium state of
+        the chain driven with ``by`` times its amplitude.
+    duration, every
+        Time, and time between outputs [T].
+    replicas, seed, threads
+        Of the ensemble of simulated chains.
+
+    Returns
+    -------
+    xarray.DataTree
+        ``tree["particles"]``, ``["isothermal"]``, ``["evolving"]`` and, for linear springs without
+        gap, ``["exact"]``: results over time in the common vocabulary.
+
+    Raises
+    ------
+    ValueError
+        For a wrong argument, before any work.
+    """
+    check_choice("release", release, get_args(Release))
+    if chain.restitution != 1:
+        raise ValueError(f"the comparison is of elastic chains, got e={chain.restitution:g}")
+    chain.require_steady_state()
+    by = check_real("by", by, positive=release != "displaced", signed=release == "displaced")
+    replicas = check_integer("replicas", replicas, least=2)
+    start = _states(chain, release, by, replicas, seed)
+    fluid = _fluid(chain, release, by)
+    # The fluids first: they take a second, and complain of a wrong duration before the long run.
+    results = {
+        temperature: hydrodynamics(
+            chain, fluid, duration, every=every, temperature=temperature, progress=False
+        )
+        for temperature in ("isothermal", "evolving")
+    }
+    if any(fluid.attrs["status"] == "interrupted" for fluid in results.values()):
+        raise KeyboardInterrupt("interrupted before the simulation")
+    times = results["isothermal"].time.values
+    if chain.gap == 0 and chain.spring == "linear":
+        results["exact"] = _exact(chain, release, by, times)
+    ensemble = simulate(
+        chain,
+        start=start,
+        replicas=replicas,
+        average="ensemble",
+        duration=duration,
+        every=every,
+        observe=("widths", "density"),
+        seed=seed,
+        threads=threads,
+        progress=progress,
+    )
+    # 32 groups of densities in time would be nine tenths of all the data.
+    results[PARTICLES] = ensemble.drop_vars("density_block")
+    tree = xr.DataTree.from_dict(results)
+    tree.attrs |= {
+        "status": results[PARTICLES].attrs["status"],
+        "source": "comparison",
+        "release": release,
+        "by": by,
+    }
+    return tree
+
+
+def label_distances(tree: xr.DataTree) -> dict[str, float]:
+    """Largest rms distance, in time, of the rods' mean positions from the ensemble's, over s."""
+    rods = tree[PARTICLES].mean_displacement
+    s = chain_of(tree[PARTICLES].to_dataset()).thermal_length
+    return {
+        key: float(np.sqrt(((tree[key].mean_displacement - rods) ** 2).mean("particle")).max() / s)
+        for key in THEORIES
+        if key in tree
+    }
+
+
+def cloud(result: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray]:
+    """Centre and width of the cloud in the reduced coordinate, of any of the results [R]."""
+    if "cloud_width" in result:
+        return result.centre, result.cloud_width
+    chain = chain_of(result)
+    place = result.mean_displacement + chain.reduced_anchors
+    square = (place**2 + result.displacement_width**2).mean("particle")
+    centre = place.mean("particle")
+    return centre, np.sqrt(square - centre**2)
+
+
+def _states(chain: Chain, release: Release, by: float, replicas: int, seed: int) -> xr.Dataset:
+    """Return exact equilibrium states, changed as asked: one for each replica."""
+    before = chain.replace(amplitude=by * chain.amplitude) if release == "quenched" else chain
+    # Other random numbers than those of the noise.
+    states = equilibrium_states(before, replicas, seed=seed + 1)
+    y = before.reduced(states.position.values)
+    if release == "compressed":
+        y = by * y
+    if release == "displaced":
+        y = y + by * chain.thermal_length
+    return states.assign(position=(("replica", "particle"), chain.physical(y)))
+
+
+def _fluid(chain: Chain, release: Release, by: float) -> xr.Dataset:
+    if release == "compressed":
+        return compressed(chain, by)
+    if release == "displaced":
+        return displaced(chain, by * chain.thermal_length)
+    return force_balance(chain.replace(amplitude=by * chain.amplitude))
+
+
+def _exact(chain: Chain, release: Release, by: float, times: Array) -> xr.Dataset:
+    if release == "compressed":
+        return breathing_cloud(chain, times, stretch=by)
+    if release == "displaced":
+        return breathing_cloud(chain, times, shift=by * chain.thermal_length)
+    hot = (by * chain.free_velocity_width) ** 2
+    return breathing_cloud(chain, times, stretch=by, variance=hot)

@@ -1,0 +1,122 @@
+"""Chains of several restitutions: simulation next to the kinetic equation, nothing fitted."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from crazybilliards.comparison.studies.parameter_series import (
+    SIMULATION,
+    simulate_beside,
+    varied_chains,
+)
+from crazybilliards.kinetic import phase_space
+from crazybilliards.model import Chain, chain_of
+
+THEORY = "kinetic_equation"
+
+_LEAST_INNER = 7  # rods from which on the two at each border are left out of the largest deviation
+
+
+class WidthDeviation(NamedTuple):
+    """Relative deviations of velocity widths, theory minus simulation."""
+
+    largest: float  # over the particles 3 to L - 2
+    centre: float  # of the middle tenth of the rods
+    border: float  # of the first and the last rod
+    error: float  # typical standard error of a rod's simulated width
+    border_error: float  # that of the border's
+
+
+def compare_restitutions(
+    chain: Chain,
+    restitutions: Sequence[float],
+    *,
+    duration: float = 5_000.0,
+    seed: int = 0,
+    threads: int | None = None,
+    progress: bool = True,
+) -> xr.DataTree:
+    """Simulate a chain at several restitutions and solve its kinetic equation beside it.
+
+    Parameters
+    ----------
+    chain
+        The chain; its restitution is replaced by each of ``restitutions``.
+    restitutions
+        e near 1, different from one another; 0.9 to 1.05 is where the theory is good.
+    duration
+        Simulated time of each of two replicas [T].
+    seed, threads, progress
+        As in ``simulate``. Every restitution has random numbers of its own.
+
+    Returns
+    -------
+    xarray.DataTree
+        ``tree["restitution_0.95/simulation"]`` and ``.../kinetic_equation``. The theory is left
+        out, with a warning that gives the reason, where it has no steady state.
+        ``attrs["status"]`` is ``interrupted`` if Ctrl-C ended it early, ``diverged`` if a
+        simulation did; the tree holds what there is.
+
+    Raises
+    ------
+    ValueError
+        For a wrong argument, before any work.
+    """
+    return simulate_beside(
+        varied_chains(chain, "restitution", restitutions, duration),
+        _kinetic_equation,
+        duration=duration,
+        seed=seed,
+        threads=threads,
+        progress=progress,
+    )
+
+
+def _kinetic_equation(chain: Chain, run: xr.Dataset) -> dict[str, xr.Dataset]:
+    try:
+        return {THEORY: phase_space(chain)}
+    except ValueError as error:
+        # No steady state, say. The simulation must not be lost for it.
+        warnings.warn(f"e = {chain.restitution:g} goes without theory: {error}", stacklevel=2)
+        return {}
+
+
+def width_deviations(tree: xr.DataTree) -> dict[str, WidthDeviation]:
+    """Compare velocity widths, group by group, where there are both.
+
+    Both ends of a chain are the same in the mean: simulated widths are averaged over a rod and
+    its mirror image, which lowers their errors by up to the root of two.
+    """
+    return {
+        name: width_deviation(group[SIMULATION].to_dataset(), group[THEORY].to_dataset())
+        for name, group in tree.children.items()
+        if THEORY in group and "velocity_width" in group[SIMULATION].data_vars
+    }
+
+
+def width_deviation(run: xr.Dataset, theory: xr.Dataset) -> WidthDeviation:
+    """Compare the velocity widths of a simulation and a theory of the same chain."""
+    size = chain_of(run).size
+    square = run.velocity_width.values**2
+    square = (square + square[::-1]) / 2
+    expected = theory.velocity_width.values**2
+    inner = slice(2, size - 2) if size >= _LEAST_INNER else slice(None)
+    middle = slice((9 * size) // 20, -(-11 * size // 20))
+
+    def relative(part: slice | list[int]) -> float:
+        return float(np.sqrt(expected[part].mean() / square[part].mean()) - 1)
+
+    each = np.sqrt(expected / square) - 1
+    relative_error = (run.velocity_width_error / run.velocity_width).values
+    return WidthDeviation(
+        largest=float(np.abs(each[inner]).max()),
+        centre=relative(middle),
+        border=relative([0, -1]),
+        error=float(np.median(relative_error)),
+        border_error=float(np.hypot(relative_error[0], relative_error[-1]) / 2),
+    )

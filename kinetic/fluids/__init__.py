@@ -1,0 +1,1 @@
+"""Hydrodynamics in time, on labels and on positions."""

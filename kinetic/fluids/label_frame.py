@@ -1,0 +1,261 @@
+r"""Hydrodynamics on labels (Lagrangian): the unknown is where the rods of a label are.
+
+A label nu = N/L - 1/2 in (-1/2, 1/2) is carried by the flow, N_t + V N_x = 0, so the displacement
+<dx> = x - (2R + g)(N - L/2) that closes the equations is known exactly. With lengths in thermal
+lengths s, velocities in W, times in s/W, and eta(nu, t) = y/s, the continuity equation is solved by
+construction and the velocity equation reads
+
+    eta_t = V,      V_t = -dp/dnu - u |u|^(n-2) - Gamma V,        p = theta / eta_nu,
+
+    u = eta - Lam nu,      Lam = g L/s,      Gamma = gamma s/(m W),
+
+theta = T/T_0 being 1 in the isothermal case. With the temperature equation of a gas with one degree
+of freedom and no heat flux, in contact with the noise,
+
+    theta_t + V theta_y = -2 theta V_y - 2 Gamma (theta - 1),
+
+the quantity S = theta eta_nu^2 obeys the linear law S_t = 2 Gamma (eta_nu^2 - S): positive always.
+
+**Discretisation.** M cells of labels, equally wide at the edges, hold eta and V; S and p live on
+the faces between them, p = kappa S/d^3 with d the distance of neighbouring cells. kappa and the
+cells' places are calibrated on the stationary state, so that this one, its rigid motions and,
+without gap, every breathing motion are exact for any M. The ends are free: p = 0. Shocks are held
+by an artificial viscosity of von Neumann and Richtmyer on the velocity jump that is left after a
+limited linear reconstruction; it vanishes for smooth flows and heats where there is a temperature.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.integrate import cumulative_trapezoid
+from scipy.interpolate import PchipInterpolator
+
+from crazybilliards.kinetic.fluids.flow_fields import FlowFields
+from crazybilliards.kinetic.fluids.limiter import minmod
+from crazybilliards.kinetic.fluids.pde_solver import solve
+from crazybilliards.kinetic.starts import Start
+from crazybilliards.kinetic.statics.label_closure import Stationary, stationary
+from crazybilliards.model import Chain
+from crazybilliards.model.grid import position_grid, thermal_reach
+from crazybilliards.model.kernels import kernel
+
+Array = NDArray[np.float64]
+
+_EDGE_CELL = 0.045  # width of a cell at the edge, in thermal lengths
+_LAST_SHARE = 1e-5  # of the rods, beyond the outermost face
+_FEWEST_CELLS, _MOST_CELLS = 100, 4000
+_CLOSEST = 1e-3  # distance of cells, as a share of that at rest
+_SPACING = 0.05  # of the points that a solution is read out at, in thermal lengths
+
+
+class Cells(NamedTuple):
+    """The labels' cells and what calibrates them, from the stationary state."""
+
+    labels: Array  # of the cells' middles, (M,)
+    shares: Array  # of all rods, (M,)
+    faces: Array  # labels of the inner faces, (M - 1,)
+    eta: Array  # stationary, (M,)
+    kappa: Array  # p d at the inner faces, (M - 1,)
+    weights: Array  # where a face lies between its two cells, (M - 1,)
+
+
+def make_cells(state: Stationary, exponent: int, number: int | None) -> Cells:
+    """Calibrate cells on the stationary state; ``number`` None: 0.045 s wide at the edges."""
+    eta_faces = _faces(state, number)
+    faces, log_density = state.profile(eta_faces)
+    bounds = np.concatenate([[-0.5], faces, [0.5]])
+    shares, labels = np.diff(bounds), (bounds[1:] + bounds[:-1]) / 2
+    density = np.exp(log_density)
+    pressure = np.concatenate([[0.0], density, [0.0]])
+    # The mean force on a cell balances the pressures at its faces: u |u|^(n-2) = -dp/dnu.
+    force = -np.diff(pressure) / shares
+    u = np.sign(force) * np.abs(force) ** (1 / (exponent - 1))
+    eta = state.edge.lam * labels + u
+    distance = np.diff(eta)
+    return Cells(labels, shares, faces, eta, density * distance, (eta_faces - eta[:-1]) / distance)
+
+
+def _faces(state: Stationary, number: int | None) -> Array:
+    """Return the stationary eta of the inner faces: even at the edges, wider in a plateau."""
+    end = float(state.at(np.array([0.5 - _LAST_SHARE]))[0][0])
+    fine = np.linspace(0, end, 20_001)
+    depth = state.edge.lam / 2 - fine
+    crowd = cumulative_trapezoid(1 / np.clip(1 + (depth - 6) / 3, 1, 8), fine, initial=0)
+    if number is None:
+        number = int(np.clip(2 * crowd[-1] / _EDGE_CELL, _FEWEST_CELLS, _MOST_CELLS))
+    count = crowd[-1] * np.linspace(-1, 1, number - 1)
+    return np.asarray(np.sign(count) * np.interp(np.abs(count), crowd, fine))
+
+
+@kernel
+def label_rate(fields, labels, shares, kappa, stationary_distance, lam, gamma, exponent):  # type: ignore[no-untyped-def]
+    """Rates of change of (eta, V) or, with a temperature, of (eta, V, S).
+
+    ``fields``: (2 or 3, M). S of the face right of a cell stands at the cell, in units in which
+    it is ``stationary_distance`` squared at rest; its last value is not used.
+    """
+    eta, v = fields[0], fields[1]
+    thermal = fields.shape[0] == 3
+    cells = eta.size
+    rates = np.empty_like(fields)
+    before = 0.0  # pressure at the left face
+    for i in range(cells):
+        pressure = 0.0
+        if i < cells - 1:
+            # Trial stages of an integrator may cross cells: all stays finite and drives back.
+            d = max(eta[i + 1] - eta[i], _CLOSEST * stationary_distance[i])
+            theta = 1.0
+            if thermal:
+                theta = min(max(fields[2, i], 0.0) / d**2, 1e6)
+            pressure = kappa[i] * theta / d
+            jump = v[i + 1] - v[i]
+            viscous = 0.0
+            if jump < 0:
+                left = minmod(v[i] - v[i - 1], jump) if i > 0 else 0.0
+                right = minmod(v[i + 2] - v[i + 1], jump) if i < cells - 2 else 0.0
+                rest = max(min(jump - (left + right) / 2, 0.0), -1e3)
+                viscous = kappa[i] / d * (2 * rest**2 - 0.5 * np.sqrt(theta) * rest)
+                pressure += viscous
+            if thermal:
+                heating = -4 * viscous * jump * d**2 / (shares[i] + shares[i + 1])
+                rates[2, i] = 2 * gamma * (d**2 - fields[2, i]) + heating
+        elif thermal:
+            rates[2, i] = 0.0
+        u = eta[i] - lam * labels[i]
+        force = u if exponent == 2 else u * abs(u)
+        rates[0, i] = v[i]
+        rates[1, i] = (before - pressure) / shares[i] - force - gamma * v[i]
+        before = pressure
+    return rates
+
+
+def solve_on_labels(
+    chain: Chain, start: Start, times: Array, number: int | None, *, thermal: bool, progress: bool
+) -> FlowFields:
+    """Solve from a start with ``number`` cells, by DOP853 of scipy through py-pde."""
+    s, W = chain.thermal_length, chain.free_velocity_width
+    state = stationary(chain)
+    cells = make_cells(state, chain.potential_exponent, number)
+    lam, gamma = state.edge.lam, chain.damping * s / (chain.mass * W)
+    constants = (cells.labels, cells.shares, cells.kappa, np.diff(cells.eta), lam, gamma)
+
+    def rate(values: Array, time: float = 0.0) -> Array:
+        return np.asarray(label_rate(values, *constants, chain.potential_exponent))
+
+    solution = solve(
+        rate,
+        _starting_fields(chain, cells, state, start, thermal=thermal),
+        times * W / s,
+        progress=progress,
+        solver="scipy",
+        backend="numpy",  # the rate is compiled already
+        method="DOP853",
+        rtol=1e-7,
+        atol=1e-7,
+    )
+    closest = np.diff(solution[:, 0], axis=1) / np.diff(cells.eta)
+    if not (closest > _CLOSEST).all():
+        raise ValueError(
+            "the hydrodynamic equations could not be solved: the fluid collapses to less than "
+            f"{_CLOSEST:g} of its width at rest"
+        )
+    rates = np.array([rate(values)[:2] for values in solution])
+    unsteadiness = np.sqrt(np.sum(rates**2, axis=1) @ cells.shares)
+    return _on_positions(chain, cells, state, solution, unsteadiness)
+
+
+def _starting_fields(
+    chain: Chain, cells: Cells, state: Stationary, start: Start, *, thermal: bool
+) -> dict[str, Array]:
+    """Put a start on the cells.
+
+    A cell is a weighted mean of two points in it, with the weights that are right for the
+    stationary state: its images under shift and stretch then start exact.
+    """
+    s, W, L = chain.thermal_length, chain.free_velocity_width, chain.size
+
+    def at(labels: Array) -> tuple[Array, Array, Array]:
+        x = start.positions(L * (labels + 0.5))
+        eta = (x - 2 * chain.radius * L * labels) / s
+        return eta, start.velocity(x) / W, start.variance(x) / W**2
+
+    offset = cells.shares / (2 * np.sqrt(3))
+    left, right = cells.labels - offset, cells.labels + offset
+    inner, outer = state.at(left)[0], state.at(right)[0]
+    weight = (cells.eta - inner) / (outer - inner)
+    eta_left, v_left, _ = at(left)
+    eta_right, v_right, _ = at(right)
+    eta = eta_left + weight * (eta_right - eta_left)
+    if not (np.diff(eta) > 0).all():
+        raise ValueError("initial: the start is too steep for its grid of positions")
+    fields = {"eta": eta, "V": (v_left + v_right) / 2}
+    if thermal:
+        fields["S"] = np.append(at(cells.faces)[2] * np.diff(eta) ** 2, 0.0)
+    return fields
+
+
+def _on_positions(
+    chain: Chain, cells: Cells, state: Stationary, solution: Array, unsteadiness: Array
+) -> FlowFields:
+    """Put the solution onto positions and particles, in the chain's units.
+
+    eta is interpolated as a function of the stationary eta of the same label, which is smooth and,
+    for shifts and stretches, linear; beyond the outermost faces it is continued linearly.
+    Densities are those of the stationary state over the slope of that function.
+    """
+    s, W, L, R = chain.thermal_length, chain.free_velocity_width, chain.size, chain.radius
+    weights = cells.weights
+    rest = cells.eta[:-1] + weights * np.diff(cells.eta)
+    distance = np.diff(solution[:, 0], axis=1)
+    moved = solution[:, 0, :-1] + weights * distance
+    flow = solution[:, 1, :-1] + weights * np.diff(solution[:, 1], axis=1)
+    theta = solution[:, 2, :-1] / distance**2 if solution.shape[1] == 3 else np.ones_like(distance)
+    # Just inside: at the end itself rounding may put a node where there is nothing.
+    nodes = _refined(rest, (state.edge.right + state.edge.lam / 2) * (1 - 1e-12))
+    labels, log_density = state.profile(nodes)
+    rod_nodes = state.at(chain.rank / L)[0]
+
+    place = [_continued(rest, each, nodes) for each in moved]
+    position = [s * eta + 2 * R * L * labels for eta, _ in place]
+    farthest = max(float(np.abs(each[[0, -1]]).max()) for each in position) - chain.anchors[-1]
+    x = position_grid(chain, max(farthest, thermal_reach(chain)))
+    density, label, velocity, variance = np.empty((4, len(solution), x.size))
+    rods, rod_velocities = np.empty((2, len(solution), L))
+    for i, (known, (_, slope)) in enumerate(zip(position, place, strict=True)):
+        here = np.clip(x, known[0], known[-1])
+        log_reduced = PchipInterpolator(known, log_density - np.log(slope))(here)
+        reduced = np.where(x == here, L / s * np.exp(log_reduced), 0.0)
+        density[i] = reduced / (1 + 2 * R * reduced)
+        label[i] = L * (0.5 + PchipInterpolator(known, labels)(here))
+        label[i][x < known[0]], label[i][x > known[-1]] = 0.0, L
+        velocity[i] = W * np.interp(here, known, _continued(rest, flow[i], nodes)[0])
+        inner = s * moved[i] + 2 * R * L * cells.faces
+        variance[i] = W**2 * np.interp(here, inner, theta[i])
+        rods[i] = s * _continued(rest, moved[i], rod_nodes)[0] + 2 * R * chain.rank
+        rod_velocities[i] = W * _continued(rest, flow[i], rod_nodes)[0]
+    fields = (density, label, velocity, variance, rods, rod_velocities)
+    return FlowFields(x, *fields, cells.labels.size, unsteadiness)
+
+
+def _refined(faces: Array, end: float) -> Array:
+    """Return points from -end to end: the faces, the tails, and points in wide gaps between."""
+    coarse = np.concatenate([[-end], faces, [end]])
+    parts = np.ceil(np.diff(coarse) / _SPACING).astype(int)
+    fine = [
+        np.linspace(left, right, n, endpoint=False)
+        for left, right, n in zip(coarse[:-1], coarse[1:], parts, strict=True)
+    ]
+    return np.append(np.concatenate(fine), end)
+
+
+def _continued(known: Array, values: Array, wanted: Array) -> tuple[Array, Array]:
+    """Interpolate, linearly beyond the ends; return values and slopes."""
+    spline = PchipInterpolator(known, values)
+    inside = np.clip(wanted, known[0], known[-1])
+    slopes = np.diff(values)[[0, -1]] / np.diff(known)[[0, -1]]
+    slope = np.where(wanted < known[0], slopes[0], slopes[1])
+    slope = np.where(wanted == inside, spline(inside, 1), slope)
+    return spline(inside) + (wanted - inside) * slope, slope

@@ -1,0 +1,1 @@
+"""The kinetic equation for f(y, v): restitutions other than 1."""

@@ -1,0 +1,151 @@
+r"""Continuation of the kinetic equation's steady state from restitution 1, on a mesh that follows.
+
+At e = 1 the state is known. Each step changes the drag lambda L by a bounded factor; a step that
+does not converge, or leaves the physical branch, is halved. Above the critical size the energy
+grows without bound as e approaches its critical value: no step is small enough, and the reason is
+reported.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crazybilliards.kinetic.kinetic_equation.velocity_space import Box, VelocitySpace, fitting_box
+from crazybilliards.kinetic.kinetic_equation.weak_form import Units, coefficients, stationary_state
+from crazybilliards.kinetic.statics.label_closure import stationary
+from crazybilliards.model import Chain
+
+Array = NDArray[np.float64]
+
+_ROUGHLY = 1e-4  # tolerance of the states on the way
+_LARGEST_CHANGE = 2.2  # of the energy, in one step
+_NEGATIVE = 0.03
+_MOST_HALVINGS = 6
+
+
+@dataclass(frozen=True)
+class State:
+    """A steady state on its mesh, in the free rod's thermal length and velocity width."""
+
+    chain: Chain
+    order: int  # of the collision operator in lambda
+    space: VelocitySpace
+    f: Array
+    residual: float
+
+    def energy(self) -> float:
+        """Mean of v^2, 1 at restitution 1."""
+        return float(self.space.whole_energy @ self.f)
+
+
+def free_units(chain: Chain) -> Units:
+    """Thermal length and velocity width of the free rod."""
+    return Units(chain.thermal_length, chain.free_velocity_width)
+
+
+def elastic_state(chain: Chain, order: int, cells: int) -> State:
+    """Return the state at restitution 1: Maxwellian, with the density of the force balance."""
+    elastic = chain.replace(restitution=1.0)
+    lattice = chain.gap * chain.size / (2 * chain.thermal_length)
+    reach = 6.5 if chain.spring == "linear" else 4.5
+    space = VelocitySpace(Box(lattice + reach, 6.5, lattice + 1.5, 1.5), cells)
+    y, v = space.axes
+    log_density = stationary(elastic).profile(y)[1]
+    maxwellian = space.nodal(np.exp(log_density[:, None] - v**2 / 2))
+    return _solved(State(elastic, order, space, maxwellian, np.nan))
+
+
+def continued(chain: Chain, state: State) -> State:
+    """Follow the steady state from ``state`` to the restitution of ``chain``."""
+    goal = (1 - chain.restitution) / 2 * chain.size
+    halvings = 0
+    for now in _path(goal):
+        drag = (1 - state.chain.restitution) / 2 * chain.size
+        while drag != now:
+            trial = drag + (now - drag) / 2**halvings
+            # The last step exactly to the goal, not to its neighbour by rounding.
+            e = chain.restitution if trial == goal else 1 - 2 * trial / chain.size
+            try:
+                found = _solved(replace(state, chain=chain.replace(restitution=e)), _ROUGHLY)
+                _require_physical(found, state)
+                found = fitted(found)
+            except ValueError as error:
+                halvings += 1
+                if halvings > _MOST_HALVINGS:
+                    raise ValueError(_no_steady_state(chain, trial)) from error
+                continue
+            if chain.restitution > 1 and abs(goal) > (limit := _limit(state, found)):
+                raise ValueError(_no_steady_state(chain, limit))
+            state, drag = found, trial
+            halvings = max(halvings - 1, 0)
+    return state
+
+
+def _limit(before: State, after: State) -> float:
+    """Estimate, from above, the |drag| at which 1/energy, about linear in it, reaches zero."""
+    drags = [(s.chain.restitution - 1) / 2 * s.chain.size for s in (before, after)]
+    inverses = [1 / s.energy() for s in (before, after)]
+    zero = drags[1] + inverses[1] * (drags[1] - drags[0]) / (inverses[0] - inverses[1])
+    # The slope varies by a third from e = 1 to the limit.
+    return zero * (1.01 + 0.3 * inverses[1])
+
+
+def _path(goal: float) -> Iterator[float]:
+    """Drags on the way: multiplied by 2.5, from 0.5."""
+    drag = 0.5
+    while drag < abs(goal):
+        yield drag * np.sign(goal)
+        drag *= 2.5
+    yield goal
+
+
+def fitted(state: State) -> State:
+    """Move the state to a mesh that fits it, if the present one does not."""
+    for _ in range(5):
+        wanted = fitting_box(state.space, state.f)
+        if wanted.fits(state.space.box):
+            return state
+        state = _solved(_moved(state, VelocitySpace(wanted, state.space.cells)), _ROUGHLY)
+    return state
+
+
+def refined(state: State, cells: int) -> State:
+    """Return the state on as many cells, accurately."""
+    return _solved(_moved(state, VelocitySpace(state.space.box, cells)))
+
+
+def _moved(state: State, space: VelocitySpace) -> State:
+    return replace(state, space=space, f=space.take_over(state.space, state.f))
+
+
+def _solved(guess: State, tolerance: float = 1e-10) -> State:
+    space = guess.space
+    f = guess.f / (space.whole_mass @ guess.f)
+    numbers = coefficients(guess.chain, free_units(guess.chain), guess.order)
+    f, residual = stationary_state(space, numbers, f, tolerance)
+    return replace(guess, f=f, residual=residual)
+
+
+def _require_physical(found: State, before: State) -> None:
+    change = found.energy() / before.energy()
+    if not 1 / _LARGEST_CHANGE < change < _LARGEST_CHANGE:
+        raise ValueError(f"the energy changed by a factor {change:.2g} in one step")
+    if found.f.min() < -_NEGATIVE * found.f.max():
+        raise ValueError("the density became negative")
+
+
+def _no_steady_state(chain: Chain, drag: float) -> str:
+    e = 1 + 2 * abs(drag) / chain.size
+    if chain.restitution > 1:
+        return (
+            f"no steady state: with {chain.size} rods and damping={chain.damping:g} the energy "
+            f"grows without bound before restitution {e:.4g}, asked for is {chain.restitution:g}; "
+            "critical_size tells how many rods there may be"
+        )
+    return (
+        f"the kinetic equation could not be solved at restitution {1 - 2 * drag / chain.size:.4g}"
+    )

@@ -1,0 +1,191 @@
+r"""The largest chain with a steady state for restitution e > 1, by the kinetic equation.
+
+For linear springs the equation without noise is homogeneous: positions and velocities can be
+scaled by any factor. So the energy does not turn unstable at some amplitude, it diverges. With
+velocities in units of their own width, <v^2> = 1, the noise appears with the factor
+
+    tau = W_free^2 / <v^2>,
+
+1 at e = 1 and 0 where the energy is infinite. The steady state is followed from tau = 1 down, with
+the drag lambda L that belongs to each tau as an unknown. Nothing diverges on the way. The critical
+drag depends on the damping alone, on Gamma = gamma/sqrt(k m), and the gap drops out with the noise:
+
+    L_c = 2 kappa_c(Gamma)/(e - 1).
+"""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import root_scalar
+
+from crazybilliards.kinetic.kinetic_equation.velocity_space import Box, VelocitySpace, fitting_box
+from crazybilliards.kinetic.kinetic_equation.weak_form import (
+    Coefficients,
+    Equation,
+    along_velocity,
+    newton_step,
+)
+from crazybilliards.model import Chain
+
+Array = NDArray[np.float64]
+
+_CELLS = 24
+_NOISE = (0.85, 0.7, 0.4, 0.2, 0.1, 0.05, 0.025)  # values of tau
+_FITTED = 4  # the last ones, for the limit
+_TOLERANCE = 1e-6
+_MOST_STEPS = 12
+_MOST_HALVINGS = 4
+
+
+class _State(NamedTuple):
+    space: VelocitySpace
+    f: Array
+    drag: float
+
+
+class Estimate(NamedTuple):
+    """A critical value and its numerical error."""
+
+    value: float
+    error: float
+
+
+def critical_size(chain: Chain) -> Estimate:
+    """Return the number of rods at which the steady state of a chain with e > 1 is lost.
+
+    Of the kinetic equation of first order in lambda, for linear springs; ``chain.size`` and
+    ``chain.gap`` do not matter. Takes some ten seconds; the same damping again, none.
+
+    Raises
+    ------
+    ValueError
+        For e <= 1, where every size has a steady state; for quadratic springs, where none has.
+
+    Examples
+    --------
+    >>> critical = critical_size(Chain(restitution=1.05, damping=4.0))
+    >>> round(critical.value)
+    122
+    """
+    damping = _require_drive(chain)
+    drag, error = _critical_drag(damping)
+    share = (chain.restitution - 1) / 2
+    return Estimate(drag / share, error / share)
+
+
+def critical_restitution(chain: Chain) -> Estimate:
+    """Return the restitution at which a chain of this size and damping loses its steady state.
+
+    See :func:`critical_size`; ``chain.restitution`` does not matter.
+    """
+    drag, error = _critical_drag(_require_drive(chain.replace(restitution=2.0)))
+    return Estimate(1 + 2 * drag / chain.size, 2 * error / chain.size)
+
+
+def critical_damping(chain: Chain) -> Estimate:
+    """Return the smallest damping with which a chain of this size and e > 1 has a steady state.
+
+    See :func:`critical_size`; ``chain.damping`` does not matter.
+    """
+    _require_drive(chain.replace(damping=1.0))
+    wanted = (chain.restitution - 1) / 2 * chain.size
+
+    def excess(log_damping: float) -> float:
+        return math.log(_critical_drag(math.exp(log_damping))[0] / wanted)
+
+    found = root_scalar(excess, method="secant", x0=0.0, x1=0.5, xtol=1e-3)
+    if not found.converged:
+        raise ValueError(f"no damping found at which {chain.size} rods become critical")
+    unit = math.sqrt(chain.stiffness * chain.mass)
+    damping = unit * math.exp(found.root)
+    return Estimate(damping, 2e-3 * damping)
+
+
+def _require_drive(chain: Chain) -> float:
+    """Return the damping gamma/sqrt(k m), or say why nothing is critical about the chain."""
+    if chain.restitution <= 1:
+        raise ValueError(
+            "every size has a steady state unless restitution is above 1, got "
+            f"{chain.restitution:g}"
+        )
+    if chain.spring != "linear":
+        raise ValueError(
+            "with quadratic springs and e > 1 there is no critical size: rods collide the more "
+            "often the faster they are, and a fluctuation large enough always runs away"
+        )
+    for name in ("damping", "stiffness"):
+        if getattr(chain, name) == 0:
+            raise ValueError(f"{name}=0: no size has a steady state with e > 1")
+    return chain.damping / math.sqrt(chain.stiffness * chain.mass)
+
+
+@lru_cache(maxsize=256)
+def _critical_drag(damping: float) -> tuple[float, float]:
+    """Return kappa_c = |lambda| L, and its error: a fifth of the way that is extrapolated."""
+    drags = drag_at_noise(damping, _NOISE)
+    tau, kappa = np.array(_NOISE[-_FITTED:]), drags[-_FITTED:]
+    limit = float(np.polynomial.Polynomial.fit(tau, kappa, _FITTED - 1)(0.0))
+    return limit, 0.2 * abs(limit - float(drags[-1]))
+
+
+def drag_at_noise(damping: float, noise: tuple[float, ...], cells: int = _CELLS) -> Array:
+    """Return |lambda| L of the steady states whose energy is 1/tau of the free one.
+
+    ``noise``: values of tau, descending from below 1. A step too long for Newton's method is
+    halved.
+    """
+    space = VelocitySpace(Box(6.5, 6.5, 1.5, 1.5), cells)
+    y, v = space.axes
+    maxwellian = space.nodal(np.exp(-(y[:, None] ** 2 + v**2) / 2))
+    state = _State(space, maxwellian / (space.whole_mass @ maxwellian), 0.0)
+    reached, drags = 1.0, []
+    for goal in noise:
+        halvings = 0
+        while reached != goal:
+            tau = reached + (goal - reached) / 2**halvings
+            try:
+                state = _fitted(_state_of_unit_energy(state, damping, tau), damping, tau)
+                reached, halvings = tau, max(halvings - 1, 0)
+            except ValueError:
+                halvings += 1
+                if halvings > _MOST_HALVINGS:
+                    raise
+        drags.append(-state.drag)
+    return np.array(drags)
+
+
+def _fitted(state: _State, damping: float, tau: float) -> _State:
+    """Move a state to a mesh that fits it, if the present one does not."""
+    for _ in range(2):
+        box = fitting_box(state.space, state.f)
+        if box.fits(state.space.box):
+            break
+        space = VelocitySpace(box, state.space.cells)
+        moved = _State(space, space.take_over(state.space, state.f), state.drag)
+        state = _state_of_unit_energy(moved, damping, tau)
+    return state
+
+
+def _state_of_unit_energy(state: _State, damping: float, tau: float) -> _State:
+    """Solve for f with <v^2> = 1, and for the drag, by Newton's method."""
+    space, f, drag = state
+    conditions = [space.whole_mass, space.whole_energy]
+    for _ in range(_MOST_STEPS):
+        numbers = Coefficients(1.0, 2, 0.0, damping, tau * damping, drag, 0.0)
+        equation = Equation(space, numbers)
+        mean = equation.mean(f)
+        matrix = equation.matrix(mean)
+        seen = space.table(space.interpolate(f)[0])
+        by_drag = space.assemble(along_velocity, flux=space.field(seen * mean.I1))
+        residual = np.concatenate([-(matrix @ f), [1 - row @ f for row in conditions]])
+        columns = np.column_stack([space.whole_mass, by_drag])
+        step = newton_step(matrix, columns, conditions, equation.variation(f), residual)
+        f, drag = f + step[: f.size], drag + float(step[-1])
+        if np.abs(step[: f.size]).max() < _TOLERANCE * np.abs(f).max():
+            return _State(space, f, drag)
+    raise ValueError(f"no critical state found at damping gamma/sqrt(k m) = {damping:.3g}")

@@ -1,0 +1,84 @@
+"""Starts of the kinetic equation in time: f(y, v) itself, or Maxwellians on a density over x."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+from scipy.interpolate import PchipInterpolator, RectBivariateSpline
+
+from crazybilliards.kinetic.kinetic_equation.weak_form import Units
+from crazybilliards.kinetic.starts import read_start
+from crazybilliards.model import Chain
+
+Array = NDArray[np.float64]
+
+REACH = 6.5  # of a mesh, in widths of a Gaussian
+
+
+@dataclass(frozen=True)
+class PhaseSpaceStart:
+    """f as a function of y and v, and its extent, in scaled units."""
+
+    f: Callable[[Array, Array], Array]
+    length: float
+    velocity: float
+
+
+def read_phase_space(chain: Chain, units: Units, initial: xr.Dataset) -> PhaseSpaceStart:
+    """Check a start, f(y, v) itself or a density over x, and make a function of it."""
+    length, velocity = units
+    if "phase_space_density" not in initial:
+        return _maxwellian(chain, units, initial)
+    density = initial.phase_space_density
+    if density.dims != ("y", "velocity"):
+        raise ValueError(
+            f"initial: phase_space_density must be over y and velocity, got {density.dims}"
+        )
+    y, v = initial.y.values / length, initial.velocity.values / velocity
+    values = density.values
+    if not (np.isfinite(values).all() and values.max() > 0):
+        raise ValueError("initial: phase_space_density must be finite and not zero everywhere")
+    spline = RectBivariateSpline(y, v, values / values.max())
+
+    def f(at_y: Array, at_v: Array) -> Array:
+        inside = (np.abs(at_y - y.mean()) <= np.ptp(y) / 2)[:, None]
+        inside = inside & (np.abs(at_v - v.mean()) <= np.ptp(v) / 2)
+        return np.where(inside, spline(at_y, at_v), 0.0)
+
+    return PhaseSpaceStart(f, float(np.abs(y).max()), float(np.abs(v).max()))
+
+
+def _maxwellian(chain: Chain, units: Units, initial: xr.Dataset) -> PhaseSpaceStart:
+    length, velocity = units
+    start = read_start(chain, initial)
+    x, R, L = start.x, chain.radius, chain.size
+    y = (x - 2 * R * (start.label(x) - L / 2)) / length
+    density = np.maximum(start.label(x, 1), 0.0)
+    reduced = density / np.maximum(1 - 2 * R * density, 1e-12)
+    kept = np.concatenate([[True], np.diff(y) > 0])
+    log_density, flow, variance = (
+        PchipInterpolator(y[kept], values[kept], extrapolate=False)
+        for values in (
+            np.log(np.maximum(reduced, reduced.max() * 1e-30)),
+            start.velocity(x) / velocity,
+            start.variance(x) / velocity**2,
+        )
+    )
+    seen = kept & (reduced > 1e-9 * reduced.max())
+    widest = float(np.sqrt(start.variance(x[seen]).max())) / velocity
+
+    def f(at_y: Array, at_v: Array) -> Array:
+        inside = np.isfinite(log_density(at_y))
+        where = np.where(inside, at_y, y[kept].mean())
+        W2 = variance(where)[:, None]
+        values = np.exp(
+            log_density(where)[:, None] - (at_v - flow(where)[:, None]) ** 2 / (2 * W2)
+        ) / np.sqrt(W2)
+        return np.where(inside[:, None], values, 0.0)
+
+    fastest = float(np.abs(start.velocity(x[seen])).max()) / velocity
+    return PhaseSpaceStart(f, float(np.abs(y[seen]).max()), fastest + REACH * widest)

@@ -1,0 +1,142 @@
+r"""From the density f(y, v) of points to the rods: order statistics, and the centre of mass.
+
+**Order statistics.** Without gap the points are exchangeable; drawn independently from f, the i-th
+of L in order has a label N/L distributed as Beta(i, L + 1 - i), and an average over rod i is that
+of a function of the label over this distribution. Exact at e = 1.
+
+**Centre of mass.** What independence leaves out first: the noise feeds every mode of motion alike,
+but collisions conserve momentum and leave the centre of mass alone. On linear springs it is a
+damped oscillator of mass L m whatever e, with <V^2> = W^2/L and <Y^2> = s^2/L, W and s those of the
+free rod. Replacing the share that independent points have by these, with w_i and q_i the widths of
+independent points,
+
+    W_v(i)^2 = (1 - 1/L) w_i^2 + W^2/L,
+    W_x(i)^2 = q_i^2 + (s^2 + <y^2> - 2 c_i)/L,     c_i = L Cov(y_i, Y) = (1/n) int_y^inf y' n dy'.
+
+On quadratic springs the second correction is left out, for the centre of mass is then tied to the
+other modes. Nothing is fitted. It is exact at e = 1 and to first order in lambda L, and the energy
+of all rods then is m W^2/2 for the centre of mass plus L - 1 times the mean of the relative
+motions, in which each pair of rods collides with the drag lambda L of the kinetic equation.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import PchipInterpolator
+from scipy.special import betaincinv, ndtr, ndtri
+
+from crazybilliards.kinetic.kinetic_equation.velocity_space import Moments
+from crazybilliards.model import Chain
+
+Array = NDArray[np.float64]
+
+_NODES = 40  # of Gauss-Hermite quadrature over an order statistic's normal score
+_FARTHEST = 1e-8  # labels closer to the end than this are numerical noise
+
+
+class Points(NamedTuple):
+    """Means over the order statistics of independent points, shape (L,), in the units of f."""
+
+    position: Array
+    position_variance: Array
+    velocity: Array
+    velocity_variance: Array
+    lever: Array  # L Cov(y_i, Y)
+
+
+class Rods(NamedTuple):
+    """Moments of each rod, shape (L,), in the common vocabulary's units."""
+
+    position: Array
+    position_variance: Array
+    velocity_variance: Array
+
+
+def points(size: int, seen: Moments) -> Points:
+    """Average over the order statistics of ``size`` points drawn from a distribution."""
+    share = np.maximum(seen.density * seen.weights, 0.0)
+    share = share / share.sum()
+    below, beyond = _cumulated(share), _cumulated(share[::-1])[::-1]
+    mean = float(share @ seen.y)
+    lever = _cumulated((share * (seen.y - mean))[::-1])[::-1]
+    kept = (np.minimum(below, beyond) > _FARTHEST) & (share > _FARTHEST * share.max())
+    # The smaller of the two labels is the more accurate one.
+    score = np.where(below < beyond, ndtri(below), -ndtri(beyond))[kept]
+    places = np.clip(_scores(size), score[0], score[-1])
+    weights = _hermite()[1]
+
+    def over(values: Array) -> Array:
+        return np.asarray(PchipInterpolator(score, values[kept])(places))
+
+    position = over(seen.y)
+    flow = np.divide(seen.flux, seen.density, out=np.zeros_like(share), where=kept)
+    covariance = np.divide(lever * seen.weights, share, out=np.zeros_like(share), where=kept)
+    velocity = over(flow)
+    average = position @ weights
+    speed = velocity @ weights
+    return Points(
+        average,
+        position**2 @ weights - average**2,
+        speed,
+        over(seen.variance) @ weights + velocity**2 @ weights - speed**2,
+        over(covariance) @ weights,
+    )
+
+
+def rods(chain: Chain, seen: Moments, length: float, velocity: float) -> Rods:
+    """Return the moments of the rods of a steady state, the centre of mass set right."""
+    L = chain.size
+    seen = _mirrored(seen)
+    of = points(L, seen)
+    share = seen.density * seen.weights
+    spread = float((share * seen.y**2).sum() / share.sum())
+    free_variance = chain.free_velocity_width**2 / velocity**2
+    position_variance = of.position_variance
+    if chain.spring == "linear":
+        free_spread = chain.thermal_length**2 / length**2
+        position_variance = position_variance + (free_spread + spread - 2 * of.lever) / L
+    return Rods(
+        length * of.position,
+        length**2 * position_variance,
+        velocity**2 * ((1 - 1 / L) * of.velocity_variance + free_variance / L),
+    )
+
+
+def _mirrored(half: Moments) -> Moments:
+    """Return both halves of a symmetric state."""
+
+    def both(values: Array, parity: int) -> Array:
+        return np.concatenate([parity * values[::-1], values])
+
+    return Moments(
+        both(half.y, -1),
+        both(half.weights / 2, 1),
+        both(half.density, 1),
+        both(half.flux, -1),
+        both(half.variance, 1),
+        both(half.heat_flux, -1),
+        both(half.label, -1),
+    )
+
+
+def _cumulated(shares: Array) -> Array:
+    """Sum up to each place, half of its own share included."""
+    return np.asarray(np.cumsum(shares) - shares / 2)
+
+
+def _hermite() -> tuple[Array, Array]:
+    nodes, weights = np.polynomial.hermite_e.hermegauss(_NODES)
+    return nodes, weights / math.sqrt(2 * math.pi)
+
+
+def _scores(size: int) -> Array:
+    """Return normal scores of all order statistics at the quadrature's nodes, shape (L, nodes)."""
+    i = np.arange(1, size + 1)[:, None]
+    probability = ndtr(_hermite()[0])
+    # Smaller labels are the more accurate ones: the upper half by reflection.
+    lower = ndtri(betaincinv(i, size + 1 - i, probability))
+    return np.where(i <= size / 2, lower, -lower[::-1, ::-1])

@@ -1,0 +1,223 @@
+r"""The kinetic equation of the chain for restitution near 1, in weak form, and Newton's method.
+
+In the picture where a collision is a pass-through, each of two points loses the fraction
+lambda = (1 - e)/2 of their relative velocity. With a collision so weak, points meeting
+independently (molecular chaos) make the density f(y, v, t) of L points obey
+
+    f_t + v f_y - (F/m) f_v = d/dv [ (gamma/m) v f + (A^2/2m^2) f_v ]            springs, noise
+                            + lambda d/dv [ f int |v-u| (v-u) f(y,u) du ]          drag
+                            + (lambda^2/2) d^2/dv^2 [ f int |v-u|^3 f(y,u) du ],   its diffusion
+
+the Kramers-Moyal expansion of the collision operator to second order in lambda: for e < 1 a drag
+towards the local flow, for e > 1 a drive; e = 1 is the Kramers equation. The second-order term is
+the shot noise of encounters at random. It belongs to e < 1, where a point is slowed down within a
+fraction of the cloud. It does not for e > 1: the points that matter there, fast ones, cross the
+whole cloud, and whoever does meets each of the L - 1 others exactly once. F = F(y - g (N - L/2))
+is the spring's force, in mean field: the anchor is that of the label N(y).
+
+Here in units of a length l and a velocity c, and with f normalised to 1:
+
+    weak form, for all test functions p (no flux through the far border):
+
+    int v f p_y - [ phi f + Gamma v f + D f_v + kappa f I1 + kappa_2 (f I3)_v ] p_v  = int f_t p,
+
+    I1 = int |v-u| (v-u) f(y,u) du,      I3 = int |v-u|^3 f(y,u) du,
+    phi = F l/m c^2,   Gamma = gamma l/m c,   D = A^2 l/2 m^2 c^3,
+    kappa = lambda L,  kappa_2 = lambda^2 L/2.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csc_matrix, hstack, vstack
+from scipy.sparse.linalg import LinearOperator, gmres, splu
+from skfem import BilinearForm, LinearForm
+from skfem.helpers import grad
+
+from crazybilliards.kinetic.kinetic_equation.velocity_space import VelocitySpace
+from crazybilliards.model import Chain
+
+Array = NDArray[np.float64]
+
+_MOST_STEPS = 12
+_GMRES = 40  # Krylov vectors; 5 to 15 are needed
+
+
+class Units(NamedTuple):
+    """Length [R] and velocity [R/T] that an equation is written in."""
+
+    length: float
+    velocity: float
+
+
+class Coefficients(NamedTuple):
+    """The numbers of the equation in its units."""
+
+    spring: float  # phi = spring * d |d|^(exponent - 2)
+    exponent: int
+    gap: float  # g L/l
+    damping: float
+    noise: float
+    drag: float
+    diffusion: float
+
+
+def coefficients(chain: Chain, units: Units, order: int) -> Coefficients:
+    """Return the equation's numbers for a chain; ``order`` 1 leaves the drag's diffusion out."""
+    length, velocity = units
+    m, n = chain.mass, chain.potential_exponent
+    share = (1 - chain.restitution) / 2
+    return Coefficients(
+        spring=chain.stiffness * length**n / (m * velocity**2),
+        exponent=n,
+        gap=chain.gap * chain.size / length,
+        damping=chain.damping * length / (m * velocity),
+        noise=chain.amplitude**2 * length / (2 * m**2 * velocity**3),
+        drag=share * chain.size,
+        diffusion=share**2 * chain.size / 2 if order == 2 else 0.0,
+    )
+
+
+@BilinearForm
+def transport(f, p, w):  # type: ignore[no-untyped-def]
+    """All of the weak form, with the force and the integrals I1, I3 given."""
+    v = w.x[1]
+    through = (w.force + w.damping * v + w.drag * w.I1) * f + w.noise * grad(f)[1]
+    spread = w.diffusion * (w.I3 * grad(f)[1] + w.I3v * f)
+    return v * f * grad(p)[0] - (through + spread) * grad(p)[1]
+
+
+@LinearForm
+def along_velocity(p, w):  # type: ignore[no-untyped-def]
+    """Minus a flux along v, tested."""
+    return -w.flux * grad(p)[1]
+
+
+@BilinearForm
+def mass(f, p, w):  # type: ignore[no-untyped-def]
+    """Scalar product, for the equation in time."""
+    return f * p
+
+
+class Mean(NamedTuple):
+    """Fields that depend on f as a whole, tables over the quadrature points."""
+
+    force: Array
+    I1: Array
+    I3: Array
+    I3v: Array
+
+
+class Equation:
+    """The weak form on one mesh with one set of coefficients."""
+
+    def __init__(self, space: VelocitySpace, numbers: Coefficients) -> None:
+        self.space, self.numbers = space, numbers
+
+    def mean(self, f: Array) -> Mean:
+        """Return force and collision integrals for a distribution."""
+        seen = self.space.table(self.space.interpolate(f)[0])
+        return Mean(self._force(self._displacement(seen)), *self._integrals(seen))
+
+    def _integrals(self, seen: Array) -> list[Array]:
+        return [seen @ kernel.T for kernel in self.space.kernels]
+
+    def _displacement(self, seen: Array) -> Array:
+        """Distance from the anchor of the label at each y, in mean field."""
+        label = self.space.cumulative(seen @ self.space.v_weights)
+        centre = 0.0 if self.space.symmetric else 0.5
+        return self.space.y - self.numbers.gap * (label - centre)
+
+    def _force(self, displacement: Array) -> Array:
+        n = self.numbers.exponent
+        force = self.numbers.spring * displacement * np.abs(displacement) ** (n - 2)
+        return np.broadcast_to(force[:, None], (force.size, self.space.v.size))
+
+    def matrix(self, mean: Mean) -> csc_matrix:
+        """Assemble the weak form with given force and integrals, on the unknowns."""
+        fields = {name: self.space.field(table) for name, table in mean._asdict().items()}
+        names = ("damping", "noise", "drag", "diffusion")
+        numbers = {name: getattr(self.numbers, name) for name in names}
+        whole = transport.assemble(self.space.basis, **fields, **numbers)
+        return (self.space.unknowns.T @ whole @ self.space.unknowns).tocsc()
+
+    def variation(self, f: Array) -> Callable[[Array], Array]:
+        """Return the function that maps a change of f to that of the weak form via the means."""
+        space, numbers = self.space, self.numbers
+        f_table, slope = (space.table(each) for each in space.interpolate(f))
+        displacement = self._displacement(f_table)
+        n = numbers.exponent
+        stiffness = numbers.spring * (n - 1) * np.abs(displacement) ** (n - 2)
+
+        def change(df: Array) -> Array:
+            seen = space.table(space.interpolate(df)[0])
+            I1, I3, I3v = self._integrals(seen)
+            flux = numbers.drag * f_table * I1 + numbers.diffusion * (slope * I3 + f_table * I3v)
+            if numbers.gap > 0:
+                label = space.cumulative(seen @ space.v_weights)
+                flux = flux - (stiffness * numbers.gap * label)[:, None] * f_table
+            return space.assemble(along_velocity, flux=space.field(flux))
+
+        return change
+
+
+class Solution(NamedTuple):
+    """A stationary distribution, and the size of the last Newton step relative to max f."""
+
+    f: Array
+    residual: float
+
+
+def stationary_state(
+    space: VelocitySpace, numbers: Coefficients, guess: Array, tolerance: float = 1e-10
+) -> Solution:
+    """Solve the stationary equation with int f = 1 by Newton's method.
+
+    The Jacobian's sparse part (integrals frozen) is factorised; it preconditions GMRES for the
+    whole, which the integrals make dense. ``tolerance``: of the last step, relative to max f.
+    """
+    f, equation = guess, Equation(space, numbers)
+    for _ in range(_MOST_STEPS):
+        matrix = equation.matrix(equation.mean(f))
+        residual = np.append(-(matrix @ f), 1 - space.whole_mass @ f)
+        step = newton_step(
+            matrix, space.whole_mass[:, None], [space.whole_mass], equation.variation(f), residual
+        )
+        f = f + step[: f.size]
+        size = float(np.abs(step[: f.size]).max() / np.abs(f).max())
+        if not math.isfinite(size):
+            break
+        if size < tolerance:
+            return Solution(f, size)
+    raise ValueError(f"the kinetic equation did not converge in {_MOST_STEPS} Newton steps")
+
+
+def newton_step(
+    matrix: csc_matrix,
+    columns: Array,
+    rows: list[Array],
+    variation: Callable[[Array], Array],
+    right: Array,
+) -> Array:
+    """Solve [matrix + variation, columns; rows, 0] step = right.
+
+    Further unknowns than f have ``columns``; as many conditions on f have ``rows``.
+    """
+    borders = csc_matrix(columns), csc_matrix(np.array(rows))
+    corner = csc_matrix((len(rows), len(rows)))
+    bordered = vstack([hstack([matrix, borders[0]]), hstack([borders[1], corner])]).tocsc()
+    factors, size = splu(bordered), matrix.shape[0]
+
+    def apply(x: Array) -> Array:
+        image = bordered @ x
+        image[:size] += variation(x[:size])
+        return np.asarray(factors.solve(image))
+
+    operator = LinearOperator(bordered.shape, matvec=apply, dtype=float)
+    step, _ = gmres(operator, factors.solve(right), rtol=1e-5, restart=_GMRES, maxiter=2)
+    return np.asarray(step)

@@ -1,0 +1,1 @@
+"""The stationary force balance for the density rho(x), and its closures."""

@@ -1,0 +1,118 @@
+r"""The stationary gas-kinetic force balance for the density rho(x).
+
+The paper (arXiv:1404.7460, last numbered equation of its analytics section) balances the
+gradient of the pressure rho W^2/(1 - 2 R rho) of hard rods against the springs:
+
+    rho' = -(k / (m W^2)) <dx>(x) rho (1 - 2 R rho)^2,                                    (*)
+
+with the velocity variance W^2 = A^2/(2 m gamma) of the elastic chain and the mean displacement
+<dx> from their anchors of the rods at x. For a non-linear spring k <dx> becomes F(<dx>). In the
+density of the reduced coordinate, rho_y = rho/(1 - 2 R rho), it reads
+
+    (ln rho_y)' = -(F(<dx>) / (m W^2)) / (1 + 2 R rho_y),                                (**)
+
+which stays accurate where 1 - 2 R rho is too small to be stored.
+
+**Closures.** *Prescribed*, the paper's: <dx>(x) is measured (and fitted), see
+:mod:`crazybilliards.kinetic.statics.wright_closure`. *By labels*, with no input: the N-th rod from
+the left belongs to the N-th anchor, so <dx> = x - (2R + g)(N - L/2) with N' = rho, see
+:mod:`crazybilliards.kinetic.statics.label_closure`.
+
+**Temperature.** With a prescribed W^2(x), measured off restitution 1 for example, the balance is
+
+    (1/rho) d/dx [rho W^2/(1 - 2 R rho)] = -F(<dx>)/m,                                  (***)
+
+closed by labels in :mod:`crazybilliards.kinetic.statics.variable_temperature`.
+
+**Boundary conditions.** rho -> 0 on both sides with L rods in between: N(-inf) = 0,
+N(+inf) = L.
+"""
+
+from __future__ import annotations
+
+import math
+from numbers import Real
+
+import numpy as np
+import xarray as xr
+
+from crazybilliards.kinetic.statics.label_closure import solve_label_closure
+from crazybilliards.kinetic.statics.prescribed_closure import solve_prescribed_closure
+from crazybilliards.kinetic.statics.profiles import (
+    Prescribed,
+    displacement_profile,
+    variance_profile,
+)
+from crazybilliards.kinetic.statics.variable_temperature import solve_variable_temperature
+from crazybilliards.kinetic.statics.wright_closure import solve_wright_closure
+from crazybilliards.model import Chain
+from crazybilliards.model.checks import check_real
+
+
+def force_balance(
+    chain: Chain,
+    displacement: Prescribed | None = None,
+    velocity_variance: float | Prescribed | None = None,
+) -> xr.Dataset:
+    """Density of the chain from the force balance (*) of this module.
+
+    Parameters
+    ----------
+    chain
+        The chain. Works for A from 0.1 to 100, g from 0 to 3, L from 2 to 1e5 and beyond.
+    displacement
+        None: by labels, nothing is put in. Otherwise <dx>(x) [R]: a table (x, <dx>), a result
+        with ``mean_displacement``, or a callable of x (the paper: a fitted arctanh).
+    velocity_variance
+        W^2 [R^2/T^2]; None: the free value, which is right for restitution 1 only. A number, or a
+        profile W^2(x) in any of the forms of the displacement: a simulation's ``velocity_width``
+        is squared. A profile closed by labels needs linear springs.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``density``, ``label`` and ``displacement`` over x, by labels also ``mean_displacement``
+        and ``velocity_width`` over particle. ``attrs["residual"]``: by labels, the drift of the
+        conserved quantity of the equations (an error of ln rho); prescribed, the relative error
+        of the number of rods.
+
+    Raises
+    ------
+    ValueError
+        If there is no steady state; if the restitution is not 1 and no variance is given; if the
+        displacement is not understood or does not hold the rods together.
+
+    Examples
+    --------
+    >>> theory = force_balance(Chain(size=100, amplitude=10))
+    >>> round(theory.density.max().item(), 4)  # 0.5 is close packing
+    0.4593
+    """
+    profile = None
+    if velocity_variance is None:
+        if chain.restitution != 1:
+            raise ValueError(
+                "the velocity variance is the free one for restitution=1 only; give "
+                f"velocity_variance for restitution={chain.restitution:g}"
+            )
+    elif isinstance(velocity_variance, float | Real | np.generic):
+        # W^2 enters as T = m W^2 only: the elastic chain with that temperature is equivalent.
+        variance = check_real("velocity_variance", velocity_variance, positive=True)
+        amplitude = math.sqrt(2 * chain.damping * chain.mass * variance)
+        chain = chain.replace(amplitude=amplitude, restitution=1)
+    else:
+        profile = variance_profile(chain, velocity_variance)
+    chain.require_steady_state()
+    if displacement is not None:
+        prescribed = displacement_profile(chain, displacement)
+        if not prescribed.left < 0 < prescribed.right:
+            raise ValueError(
+                "displacement must be given on both sides of x = 0, got the interval "
+                f"({prescribed.left:g}, {prescribed.right:g})"
+            )
+        if profile is None:
+            return solve_wright_closure(chain, prescribed)
+        return solve_prescribed_closure(chain, prescribed, profile)
+    if profile is not None:
+        return solve_variable_temperature(chain, profile)
+    return solve_label_closure(chain)

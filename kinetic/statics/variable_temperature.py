@@ -1,0 +1,185 @@
+r"""The force balance with a prescribed W^2(x), closed by labels: Newton's method with scikit-fem.
+
+In the log pressure P = ln(w rho_y) (no derivative of W^2 appears, P is continuous where W^2 jumps,
+and rho stays below close packing by itself), with lengths in thermal lengths s of the free chain,
+w = W^2(x)/W^2, B = 2 R L/s and Lam = g L/s, equation (***) of
+:mod:`crazybilliards.kinetic.statics.balance` is
+
+    (w + B exp(P)) P' = -u,      u = x - (B + Lam) nu,      nu' = n = exp(P)/(w + B exp(P)),
+
+n = rho s/L; differentiated once more, the label drops out:
+
+    ((w + B exp(P)) P')' = -1 + (B + Lam) n,
+    flux (w + B exp(P)) P' = -x +- (B + Lam)/2 at the far ends: all rods lie in between.
+
+Weak form, for all test functions v: int (w + B e^P) P' v' + int ((B + Lam) n - 1) v = [flux v].
+
+Newton's steps are capped where there is pressure, at a factor e^2; the far tails may jump. The mesh
+is fine where the stationary state of the free chain has its edges and is adapted to the solution.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+from scipy.integrate import cumulative_trapezoid
+from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
+from scipy.sparse.linalg import splu
+from skfem import Basis, BilinearForm, ElementLineP2, LinearForm, MeshLine
+from skfem.helpers import grad
+
+from crazybilliards.kinetic.statics.label_closure import stationary
+from crazybilliards.kinetic.statics.profiles import Profile
+from crazybilliards.model import Chain
+from crazybilliards.model.grid import position_grid, thermal_reach
+from crazybilliards.model.vocabulary import result
+
+Array = NDArray[np.float64]
+Warmth = Callable[[Array], Array]
+
+_CELLS = 1200
+_MESHES = 3
+_MOST_STEPS = 200
+_CAP = 2.0
+_DEPTH = 6.0  # from an edge into a plateau where cells begin to grow, in thermal lengths
+_DEAD = 30.0  # a pressure lower than the highest by exp(-30) is none
+_REACH = 9.0  # of the mesh beyond the lattice of anchors, in the hottest thermal length
+
+
+@BilinearForm
+def _jacobian(u, v, w):  # type: ignore[no-untyped-def]
+    pressure = np.exp(w.P)
+    room = w.warmth + w.crowd * pressure
+    stiffness = (w.crowd * pressure * u * grad(w.P)[0] + room * grad(u)[0]) * grad(v)[0]
+    return stiffness + (w.crowd + w.lam) * pressure * w.warmth / room**2 * u * v
+
+
+@LinearForm
+def _residual(v, w):  # type: ignore[no-untyped-def]
+    pressure = np.exp(w.P)
+    room = w.warmth + w.crowd * pressure
+    return room * grad(w.P)[0] * grad(v)[0] + ((w.crowd + w.lam) * pressure / room - 1) * v
+
+
+def solve_variable_temperature(chain: Chain, variance: Profile) -> xr.Dataset:
+    """Solve for the density at a given W^2(x); see ``force_balance``, which checks both."""
+    if chain.spring != "linear":
+        raise ValueError("a profile of the velocity variance needs linear springs, got quadratic")
+    s, L, R = chain.thermal_length, chain.size, chain.radius
+    crowd, lam = 2 * R * L / s, chain.gap * L / s
+
+    def warmth(x: Array) -> Array:
+        return np.asarray(variance.function(s * x)) / chain.free_velocity_width**2
+
+    hottest = float(np.sqrt(warmth(chain.anchors / s).max()))
+    end = lam / 2 + _REACH * max(hottest, 0.05)
+    even = np.linspace(0, end, 100_001)
+    growth = 1 + np.maximum(lam / 2 - _DEPTH - even, 0) / _DEPTH
+    crowding = cumulative_trapezoid(1 / growth, even, initial=0)
+    half = np.interp(np.linspace(0, crowding[-1], _CELLS // 2 + 1), crowding, even)
+    rough = np.concatenate([-half[:0:-1], half])
+    labels, log_density = stationary(chain).profile(rough)
+    nodes = rough + crowd * labels
+    guess = PchipInterpolator(nodes, np.maximum(log_density, -60.0) + np.log(warmth(nodes)))
+    for _ in range(_MESHES):
+        basis = Basis(MeshLine(nodes), ElementLineP2(), intorder=6)
+        P = _newton(basis, guess(basis.doflocs[0]), warmth, crowd, lam)
+        label = _labels(basis, P, warmth, crowd)
+        nodes = _adapted(basis, P, label, crowd, warmth)
+        order = np.argsort(basis.doflocs[0])
+        guess = PchipInterpolator(basis.doflocs[0][order], P[order])
+    return _assemble(chain, basis, P, label, warmth)
+
+
+def _newton(basis: Basis, P: Array, warmth: Warmth, crowd: float, lam: float) -> Array:
+    """Solve the discrete equations from a guess."""
+    x = basis.global_coordinates()[0]
+    known = {"warmth": warmth(x), "crowd": crowd, "lam": lam}
+    end = float(basis.mesh.p[0].max())
+    outflow = basis.zeros()
+    places = basis.doflocs[0]
+    outflow[np.argmax(places)] = outflow[np.argmin(places)] = (crowd + lam) / 2 - end
+    for _ in range(_MOST_STEPS):
+        seen = basis.interpolate(P)
+        right = outflow - _residual.assemble(basis, P=seen, **known)
+        try:
+            step = splu(_jacobian.assemble(basis, P=seen, **known).tocsc()).solve(right)
+        except RuntimeError as error:  # "exactly singular"
+            raise ValueError(f"the force balance did not converge: {error}") from error
+        alive = P.max() - _DEAD < P
+        largest = float(np.abs(step[alive]).max())
+        P = np.maximum(P + step * min(1.0, _CAP / largest), P.max() - 400)
+        if largest < 1e-10:
+            return P
+    raise ValueError(f"the force balance did not converge in {_MOST_STEPS} Newton steps")
+
+
+def _labels(basis: Basis, P: Array, warmth: Warmth, crowd: float) -> Array:
+    """Return nu at the mesh's vertices, counted from the left end; the last one should be 1."""
+    pressure = np.exp(np.asarray(basis.interpolate(P)))
+    room = warmth(basis.global_coordinates()[0]) + crowd * pressure
+    return np.concatenate([[0.0], np.cumsum((pressure / room * basis.dx).sum(axis=1))])
+
+
+def _adapted(basis: Basis, P: Array, label: Array, crowd: float, warmth: Warmth) -> Array:
+    """Return as many vertices, spread evenly over free room, pressure and changes of warmth.
+
+    Away from where pressure or warmth change, on a plateau, free room counts less and less.
+    """
+    x = basis.mesh.p[0]
+    w, alive = warmth(x), np.maximum(P[basis.nodal_dofs[0]], P.max() - _DEAD)
+    width = np.diff(x - crowd * label) / np.sqrt((w[1:] + w[:-1]) / 2)
+    change = np.abs(np.diff(np.log(w))) + np.abs(np.diff(alive)) / 4
+    place = np.cumsum(width) - width / 2
+    active = place[change > 1e-6 * width]
+    nearest = np.searchsorted(active, place)
+    right = np.append(active, np.inf)[nearest] - place
+    left = place - np.insert(active, 0, -np.inf)[nearest]
+    growth = 1 + np.maximum(np.minimum(left, right) - _DEPTH, 0) / _DEPTH
+    spread = np.concatenate([[0.0], np.cumsum(width / growth + change)])
+    return np.interp(np.linspace(0, spread[-1], x.size), spread, x)
+
+
+def _assemble(chain: Chain, basis: Basis, P: Array, label: Array, warmth: Warmth) -> xr.Dataset:
+    """Put the solution onto the position grid and the particles."""
+    s, L = chain.thermal_length, chain.size
+    crowd = 2 * chain.radius * L / s
+    order = np.argsort(basis.doflocs[0])
+    log_pressure = PchipInterpolator(basis.doflocs[0][order], P[order])
+
+    def share(x: Array) -> Array:
+        """Return n = rho s/L."""
+        pressure = np.exp(log_pressure(x))
+        return np.asarray(pressure / (warmth(x) + crowd * pressure))
+
+    vertices = basis.mesh.p[0]
+    count = CubicHermiteSpline(vertices, label / label[-1], share(vertices))
+    farthest = s * vertices[-1] - float(chain.anchors[-1])
+    x = position_grid(chain, min(thermal_reach(chain), farthest))
+    here = np.clip(x / s, vertices[0], vertices[-1])
+    labels = L * np.clip(count(here), 0.0, 1.0)
+    displacement = x - (2 * chain.radius + chain.gap) * (labels - L / 2)
+    # Displacements by label, not positions: positions of many rods drown them in rounding.
+    known, first = np.unique(label / label[-1] - 0.5, return_index=True)
+    at_vertices = vertices[first] - (crowd + chain.gap * L / s) * known
+    mean = s * PchipInterpolator(known, at_vertices)(chain.rank / L)
+    return result(
+        chain,
+        {
+            "density": ("x", np.where(here == x / s, share(here), 0.0) * L / s),
+            "label": ("x", labels),
+            "displacement": ("x", displacement),
+            "mean_displacement": ("particle", mean),
+            "velocity_width": (
+                "particle",
+                chain.free_velocity_width * np.sqrt(warmth((chain.anchors + mean) / s)),
+            ),
+        },
+        coordinates={"x": x},
+        source="theory",
+        method={"theory": "force balance, by labels, prescribed velocity variance"},
+        residual=abs(label[-1] - 1),
+    )

@@ -1,0 +1,44 @@
+"""The running process: its cores, its signals, and a message while kernels are compiled."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from threading import Timer
+
+
+def cores() -> int:
+    """Return how many cores this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+@contextmanager
+def announced(progress: bool) -> Iterator[None]:
+    """Say that kernels are being compiled, if it takes long enough to wonder."""
+    message = "crazybilliards: compiling the kernels, once (they are cached) ..."
+    timer = Timer(0.7, lambda: print(message, file=sys.stderr, flush=True))
+    if progress:
+        timer.start()
+    try:
+        yield
+    finally:
+        timer.cancel()
+
+
+@contextmanager
+def terminated_like_interrupted() -> Iterator[None]:
+    """Let SIGTERM, which batch systems send before they kill, act like Ctrl-C meanwhile."""
+    if threading.current_thread() is not threading.main_thread():
+        yield  # only the main thread may change handlers, and only it receives signals
+        return
+    before = signal.signal(signal.SIGTERM, signal.default_int_handler)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)

@@ -1,0 +1,81 @@
+"""One result from many replicas: their measurements joined, with status, times and provenance."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike, NDArray
+
+from crazybilliards.model.vocabulary import result
+from crazybilliards.particles.observers import Integers, Variables
+from crazybilliards.particles.request import Request
+from crazybilliards.particles.running.replica import NEVER, Replica
+from crazybilliards.particles.scales import centre_width, time_step_error
+
+Array = NDArray[np.float64]
+
+
+def collect(
+    request: Request,
+    runs: list[Replica],
+    interrupted: bool,
+) -> xr.Dataset:
+    """Join the replicas' measurements into one result."""
+    chain, schedule, chosen = request.chain, request.schedule, request.plan.chosen
+    reached = min(run.reached for run in runs)
+    counts = np.array([run.counts for run in runs])
+    if schedule.ensemble:
+        # Only times that no replica blew up before: the survivors alone would be a wrong average.
+        counts = counts[:, :reached]
+        counts = counts[:, counts.sum(axis=0) > 0]
+        times = schedule.times[: counts.shape[1]]
+        end_time = times[-1] if times.size else 0.0
+    else:
+        counts = counts.ravel()
+        end_time = min(run.steps for run in runs) * schedule.time_step
+    if interrupted and counts.sum() == 0:
+        raise KeyboardInterrupt("nothing was measured yet")
+    variables: Variables = {}
+    coordinates: dict[str, Array] = {"time": times} if schedule.ensemble else {}
+    # A chain that diverged before its first snapshot has a status and a time, but no averages.
+    observed = zip(*(run.observers for run in runs), strict=True) if counts.sum() else ()
+    for first, *others in observed:
+        first.join(others)
+        variables |= first.report(counts)
+        coordinates |= first.coordinates()
+    diverged = reached < NEVER
+    run = result(
+        chain,
+        {name: _only(chosen, chain.size, *variable) for name, variable in variables.items()},
+        coordinates=coordinates,
+        source="simulation",
+        status="interrupted" if interrupted else "diverged" if diverged else "completed",
+        end_time=end_time,
+        particles=chosen + 1,
+        method={
+            **request.settings,
+            "replicas": sum(len(run.starts) for run in runs),
+            "schedule": asdict(schedule),
+            "duration": schedule.duration,
+            "snapshots": int(counts.sum()),
+        },
+    )
+    width = centre_width(chain) * chain.free_velocity_width
+    if "velocity_width" in run:
+        width = float(run.velocity_width.min())
+    if np.isfinite(width) and chain.restitution != 1:
+        run.attrs["time_step_error"] = time_step_error(chain, schedule.time_step, width)
+    return run
+
+
+def _only(
+    chosen: Integers, size: int, dimensions: tuple[str, ...], values: ArrayLike
+) -> tuple[tuple[str, ...], ArrayLike]:
+    """Keep the chosen particles of a variable that was measured for all of them."""
+    if "particle" not in dimensions:
+        return dimensions, values
+    axis = dimensions.index("particle")
+    values = np.asarray(values)
+    return dimensions, values if values.shape[axis] < size else values.take(chosen, axis)

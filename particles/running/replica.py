@@ -1,0 +1,194 @@
+"""One copy of the chain: its start, its state, its random numbers and its measurements."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from threading import Event, Lock
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from crazybilliards.particles.laws.avalanche import Tally, make_tally
+from crazybilliards.particles.laws.law import HEAP, Law, make_scratch
+from crazybilliards.particles.observers import Avalanches, Observer, Snapshots
+from crazybilliards.particles.schedule import Schedule
+from crazybilliards.particles.stepping import Step, advance, bounded, record
+
+Array = NDArray[np.float64]
+
+# Between two looks at Ctrl-C a replica takes about this many particle steps (some 20 ms).
+_CHUNK = 2**20
+
+NEVER = 2**62
+
+_CHANGING = ("copy", "y", "v", "counts", "steps", "snapshots", "over", "reached")
+
+
+class Dynamics(NamedTuple):
+    """What moves a chain: the numbers its kernels need, the same for all replicas."""
+
+    anchors: Array
+    step: Step
+    law: Law
+    fastest: float  # a rod that is faster has left every steady state: the chain diverged
+
+
+@dataclass
+class Replica:
+    """State and measurements of one copy of the chain, or of several, one after another.
+
+    In an ensemble the replicas come in groups that share their observers, so that a thousand of
+    them take no more memory than a few.
+    """
+
+    starts: Sequence[tuple[Array, Array]]
+    streams: Sequence[np.random.SeedSequence]
+    observers: list[Observer]
+    counts: NDArray[np.int64]  # snapshots taken, block by block
+    copy: int = 0  # the one under way
+    steps: int = 0  # that it has taken
+    snapshots: int = 0  # taken of it
+    over: bool = False  # it diverged
+    reached: int = NEVER  # the first block that a diverged copy did not fill
+    lock: Any = field(default_factory=Lock)  # held while a chunk is under way
+
+    def __post_init__(self) -> None:
+        self._start()
+
+    def _start(self) -> None:
+        """Put the chain at the start of the present copy."""
+        self.y, self.v = (np.array(each) for each in self.starts[self.copy])
+        self.generator = np.random.Generator(np.random.PCG64(self.streams[self.copy]))
+        self.steps, self.snapshots, self.over = 0, 0, False
+
+    @property
+    def diverged(self) -> bool:
+        """Whether any copy diverged so far."""
+        return self.reached < NEVER
+
+    def state(self) -> dict[str, ArrayLike]:
+        """Return all that changes while running, but the generator's state."""
+        state: dict[str, ArrayLike] = {name: getattr(self, name) for name in _CHANGING}
+        for number, observer in enumerate(self.observers):
+            for name in observer.accumulated:
+                state[f"observer {number} {name}"] = getattr(observer, name)
+        return state
+
+    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
+        """Take over what :meth:`state` returned."""
+        for name in _CHANGING:
+            _put(self, name, state[name])
+        for number, observer in enumerate(self.observers):
+            for name in observer.accumulated:
+                _put(observer, name, state[f"observer {number} {name}"])
+
+    def work(self, dynamics: Dynamics, schedule: Schedule, stop: Event) -> Iterator[int]:
+        """Run, holding the lock during each chunk; yield the steps of every chunk."""
+        chunks = self.run(dynamics, schedule, stop)
+        while True:
+            with self.lock:
+                steps = next(chunks, None)
+            if steps is None:
+                return
+            yield steps
+
+    def run(self, dynamics: Dynamics, schedule: Schedule, stop: Event) -> Iterator[int]:
+        """Warm up and measure, copy by copy; yield the number of steps after every chunk."""
+        while True:
+            yield from self._warm_up(dynamics, schedule, stop)
+            yield from self._measure(dynamics, schedule, stop)
+            if stop.is_set() or self.copy + 1 == len(self.starts):
+                return
+            self.copy += 1
+            self._start()
+
+    def _kernel(self, dynamics: Dynamics) -> tuple[Any, ...]:
+        """Return what the kernels of ``stepping`` take first."""
+        scratch = make_scratch(self.y.size)
+        return (
+            self.y,
+            self.v,
+            dynamics.anchors,
+            self.generator,
+            dynamics.step,
+            dynamics.law,
+            scratch,
+        )
+
+    def _warm_up(self, dynamics: Dynamics, schedule: Schedule, stop: Event) -> Iterator[int]:
+        kernel = self._kernel(dynamics)
+        unseen = make_tally(self.y.size, contacts=False, waves=False)
+        chunk = max(_CHUNK // self.y.size, 1)
+        while self.steps < schedule.warmup_steps and not (self.over or stop.is_set()):
+            steps = min(chunk, schedule.warmup_steps - self.steps)
+            if not self._advance(kernel, dynamics, unseen, steps):
+                self._diverge(0)
+                return
+            self.steps += steps
+            yield steps
+
+    def _measure(self, dynamics: Dynamics, schedule: Schedule, stop: Event) -> Iterator[int]:
+        kernel = self._kernel(dynamics)
+        tally = self._tally(counted=dynamics.law.operator == HEAP)
+        per_block = schedule.snapshots_per_block
+        chunk = max(_CHUNK // self.y.size, 1)
+        rows = max(chunk // schedule.stride, 1)
+        y_buffer, v_buffer = np.empty((2, min(rows, per_block), self.y.size))
+        while self.snapshots < schedule.snapshots and not (self.over or stop.is_set()):
+            block, taken = divmod(self.snapshots, per_block)
+            n = min(len(y_buffer), per_block - taken)
+            due = schedule.step_of(self.snapshots) - self.steps
+            tally.contacts[:] = 0
+            if due == 0:  # the start of an ensemble
+                y_buffer[0], v_buffer[0], good, steps = self.y, self.v, 1, 0
+            elif due > chunk:  # no snapshot yet, but Ctrl-C and checkpoints must not wait for it
+                n, good, steps = 0, 0, chunk
+                if not self._advance(kernel, dynamics, tally, steps):
+                    self._diverge(block)
+                    return
+            else:
+                views = y_buffer[:n], v_buffer[:n]
+                good = record(*kernel, tally, due, dynamics.fastest, *views)
+                steps = good * due
+            seen = y_buffer[:good], v_buffer[:good], tally.contacts
+            for observer in self.observers:
+                observer.observe(Snapshots(block, self.snapshots, self.copy, *seen))
+            # All before the yield, where a checkpoint may be taken.
+            self.counts[block] += good
+            self.snapshots += good
+            self.steps += steps
+            if good < n:
+                self._diverge(block)
+            yield steps
+
+    def _advance(
+        self, kernel: tuple[Any, ...], dynamics: Dynamics, tally: Tally, steps: int
+    ) -> bool:
+        """Take steps without snapshots; return whether the chain did not diverge in them."""
+        met = advance(*kernel, tally, steps)
+        return bool(met >= 0 and bounded(self.y, self.v, dynamics.fastest))
+
+    def _diverge(self, block: int) -> None:
+        self.over, self.reached = True, min(self.reached, block)
+
+    def _tally(self, *, counted: bool) -> Tally:
+        """Collisions at each contact if they are counted at all; waves if they are observed."""
+        tally = make_tally(self.y.size, contacts=counted, waves=False)
+        for observer in self.observers:
+            if isinstance(observer, Avalanches):
+                waves = {name: getattr(observer, name) for name in observer.accumulated}
+                tally = tally._replace(**waves)
+        return tally
+
+
+def _put(owner: object, name: str, value: NDArray[Any]) -> None:
+    """Set an attribute to a restored value, keeping its kind: an array or a plain number."""
+    current = getattr(owner, name)
+    if isinstance(current, np.ndarray):
+        if current.shape != value.shape or current.dtype != value.dtype:
+            raise ValueError(f"the checkpoint's {name} does not fit this run")
+        current[...] = value
+    else:
+        setattr(owner, name, type(current)(value))
