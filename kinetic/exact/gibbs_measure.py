@@ -170,7 +170,8 @@ class _Recursion:
         return d, log_w + self.log_below(i) + mirrored
 
 
-def _recursion(chain: Chain) -> _Recursion:
+def check_equilibrium(chain: Chain) -> None:
+    """Raise the ValueError that :func:`equilibrium` would raise, without any work."""
     if chain.restitution != 1:
         raise ValueError(
             "the exact equilibrium holds for elastic collisions only: restitution must be 1, "
@@ -178,14 +179,22 @@ def _recursion(chain: Chain) -> _Recursion:
         )
     chain.require_steady_state()
     require_resolved(chain, float(chain.reduced_anchors[-1]))
-    reach = thermal_reach(chain)
-    # Width of the middle order statistic, 1/(2 p(0) sqrt(L)), or of one free rod if smaller.
-    narrowest = chain.thermal_length * min(1.0, 1.25 / np.sqrt(chain.size))
-    half = int(np.ceil(reach / narrowest * _NODES_PER_WIDTH))
     require_memory(
         f"size={chain.size} (force_balance takes more): the exact equilibrium",
-        8.0 * chain.size * (2 * half + 1),
+        8.0 * chain.size * (2 * _half_window(chain) + 1),
     )
+
+
+def _half_window(chain: Chain) -> int:
+    """Return the nodes to either side of a rod's anchor."""
+    # Width of the middle order statistic, 1/(2 p(0) sqrt(L)), or of one free rod if smaller.
+    narrowest = chain.thermal_length * min(1.0, 1.25 / np.sqrt(chain.size))
+    return int(np.ceil(thermal_reach(chain) / narrowest * _NODES_PER_WIDTH))
+
+
+def _recursion(chain: Chain) -> _Recursion:
+    check_equilibrium(chain)
+    reach, half = thermal_reach(chain), _half_window(chain)
     spacing = reach / half
     # Rounding halves to even keeps the centres antisymmetric, as log_density needs.
     centres = np.rint(chain.reduced_anchors / spacing).astype(np.int64)

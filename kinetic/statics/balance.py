@@ -40,6 +40,7 @@ from crazybilliards.kinetic.statics.label_closure import solve_label_closure
 from crazybilliards.kinetic.statics.prescribed_closure import solve_prescribed_closure
 from crazybilliards.kinetic.statics.profiles import (
     Prescribed,
+    Profile,
     displacement_profile,
     variance_profile,
 )
@@ -88,7 +89,29 @@ def force_balance(
     >>> round(theory.density.max().item(), 4)  # 0.5 is close packing
     0.4593
     """
-    profile = None
+    chain, given, variance = check_force_balance(chain, displacement, velocity_variance)
+    if given is not None and variance is not None:
+        return solve_prescribed_closure(chain, given, variance)
+    if given is not None:
+        return solve_wright_closure(chain, given)
+    if variance is not None:
+        return solve_variable_temperature(chain, variance)
+    return solve_label_closure(chain)
+
+
+def check_force_balance(
+    chain: Chain,
+    displacement: Prescribed | None = None,
+    velocity_variance: float | Prescribed | None = None,
+) -> tuple[Chain, Profile | None, Profile | None]:
+    """Raise the ValueError that :func:`force_balance` would raise for a wrong argument.
+
+    Returns
+    -------
+    tuple
+        The elastic chain with this temperature, and the profiles <dx>(x) and W^2(x) if given.
+    """
+    profile = given = None
     if velocity_variance is None:
         if chain.restitution != 1:
             raise ValueError(
@@ -104,15 +127,10 @@ def force_balance(
         profile = variance_profile(chain, velocity_variance)
     chain.require_steady_state()
     if displacement is not None:
-        prescribed = displacement_profile(chain, displacement)
-        if not prescribed.left < 0 < prescribed.right:
+        given = displacement_profile(chain, displacement)
+        if not given.left < 0 < given.right:
             raise ValueError(
                 "displacement must be given on both sides of x = 0, got the interval "
-                f"({prescribed.left:g}, {prescribed.right:g})"
+                f"({given.left:g}, {given.right:g})"
             )
-        if profile is None:
-            return solve_wright_closure(chain, prescribed)
-        return solve_prescribed_closure(chain, prescribed, profile)
-    if profile is not None:
-        return solve_variable_temperature(chain, profile)
-    return solve_label_closure(chain)
+    return chain, given, profile
