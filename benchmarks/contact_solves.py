@@ -11,7 +11,7 @@ from gauss_seidel import solve
 from crazybilliards.model import Chain
 from crazybilliards.particles import stepping
 from crazybilliards.particles.laws.avalanche import make_tally
-from crazybilliards.particles.laws.law import drift, make_law, make_scratch
+from crazybilliards.particles.laws.law import drift, make_scratch
 
 SIZE, TIME_STEP = 1000, 1e-3
 UNSEEN = make_tally(2, contacts=False, waves=False)
@@ -21,18 +21,17 @@ UNSEEN = make_tally(2, contacts=False, waves=False)
 def solver():
     """Return a settled chain's law and fifty successive states, the next kick already given."""
     chain = Chain(size=SIZE, restitution=0)
-    law = make_law(chain, TIME_STEP, "contact-dynamics", 0.03, speed=1.0)
-    step = stepping.make_step(chain, TIME_STEP, "splitting")
+    dynamics = stepping.make_dynamics(chain, TIME_STEP, speed=1.0, method="contact-dynamics")
     generator = np.random.Generator(np.random.PCG64(0))
     scratch = make_scratch(SIZE)
-    y, v, anchors = np.zeros((3, SIZE))
-    kernel = (y, v, anchors, generator, step, law, scratch, UNSEEN)
+    y, v = np.zeros((2, SIZE))
+    kernel = (y, v, generator, dynamics, scratch, UNSEEN)
     stepping.advance(*kernel, 30_000)
     states = []
     for _ in range(50):
         stepping.advance(*kernel, 1)
-        states.append((y.copy(), v + step.noise * generator.standard_normal(SIZE)))
-    return law, scratch, states
+        states.append((y.copy(), v + dynamics.step.noise * generator.standard_normal(SIZE)))
+    return dynamics.law, scratch, states
 
 
 @pytest.mark.benchmark(group=f"50 contact solves of {SIZE} rods")

@@ -17,7 +17,7 @@ from numba import njit
 from crazybilliards.model import Chain
 from crazybilliards.particles import stepping
 from crazybilliards.particles.laws.avalanche import make_tally
-from crazybilliards.particles.laws.law import make_law, make_scratch
+from crazybilliards.particles.laws.law import make_scratch
 from crazybilliards.particles.scales import centre_width, default_time_step
 
 PARTICLE_STEPS = 1_000_000
@@ -62,11 +62,11 @@ def test_step(benchmark, work, size):
     # Near the steady state, which long chains take too long to find from rest.
     y = np.sort(generator.normal(scale=chain.thermal_length, size=size))
     v = generator.normal(scale=centre_width(chain) * chain.free_velocity_width, size=size)
-    anchors = chain.reduced_anchors
-    law = make_law(chain, time_step, method, 0.03, speed=1.0, counted="e=1" in work)
-    step = stepping.make_step(chain, time_step, "splitting")
+    dynamics = stepping.make_dynamics(
+        chain, time_step, speed=1.0, method=method, counted="e=1" in work
+    )
     unseen = make_tally(size, contacts=False, waves=False)
-    kernel = (y, v, anchors, generator, step, law, make_scratch(size), unseen)
+    kernel = (y, v, generator, dynamics, make_scratch(size), unseen)
     stepping.advance(*kernel, max(20_000_000 // size, 50))
     collisions = benchmark(stepping.advance, *kernel, steps)
     benchmark.extra_info["collisions"] = collisions

@@ -6,27 +6,32 @@ import os
 from collections.abc import Sequence
 from contextlib import nullcontext
 from pathlib import Path
-from threading import Event
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from crazybilliards.model import Chain
 from crazybilliards.model.checks import check_integer, check_real
+from crazybilliards.model.grid import deposit
 from crazybilliards.model.process import announced, cores
-from crazybilliards.particles.laws.law import Method, make_law
-from crazybilliards.particles.observers import OBSERVERS, Plan
-from crazybilliards.particles.request import Request, make_request
-from crazybilliards.particles.running.checkpoint import Checkpoint, run_identity
+from crazybilliards.particles.laws.avalanche import make_tally
+from crazybilliards.particles.laws.law import Method, make_scratch
+from crazybilliards.particles.observers import Observer, find_observers
+from crazybilliards.particles.run import Run
+from crazybilliards.particles.running.checkpoint import Checkpoint, identity
 from crazybilliards.particles.running.collecting import collect
-from crazybilliards.particles.running.replica import Dynamics, Replica
+from crazybilliards.particles.running.replica import Replica
 from crazybilliards.particles.running.threads import run_all
-from crazybilliards.particles.scales import typical_speed
-from crazybilliards.particles.schedule import Average, Schedule
-from crazybilliards.particles.start import replica_starts
-from crazybilliards.particles.stepping import Stepper, make_step
-
-_DIVERGED = 1e6  # typical speeds: the steady states of e > 1 stay within some tens of them
+from crazybilliards.particles.schedule import Average
+from crazybilliards.particles.stepping import (
+    MERGING,
+    Stepper,
+    advance,
+    bounded,
+    make_dynamics,
+    record,
+)
 
 
 def simulate(
@@ -37,9 +42,9 @@ def simulate(
     time_step: float | None = None,
     method: Method = "event-driven",
     stepper: Stepper = "splitting",
-    merging: float = 0.03,
+    merging: float = MERGING,
     seed: int = 0,
-    observe: Sequence[str] = ("widths", "density"),
+    observe: str | Observer | Sequence[str | Observer] = ("widths", "density"),
     start: xr.Dataset | None = None,
     particles: Sequence[int] | None = None,
     replicas: int = 1,
@@ -80,7 +85,8 @@ def simulate(
         and the autocorrelation_time that tells whether warm-up and duration were long enough),
         ``"density"``, ``"velocities"`` (velocity_density), ``"energy"`` (kinetic_energy in time),
         ``"collisions"`` (collision_rate), ``"avalanches"`` (avalanche_count) and ``"snapshots"``
-        (position and velocity as they are).
+        (position and velocity as they are). An observer itself is taken as well, of the package,
+        ``Velocities(bins=801)`` say, or of one's own.
     start
         A result with ``position`` and ``velocity`` over (replica, particle), such as
         ``equilibrium_states(chain, replicas)`` or ``given_start(chain, position)``; None: every
@@ -131,79 +137,57 @@ def simulate(
     >>> run.velocity_width.dims, run.attrs["status"]
     (('particle',), 'completed')
     """
+    asked = dict(locals())  # the arguments
+    for name in ("threads", "checkpoint", "checkpoint_interval", "progress"):
+        del asked[name]  # no number depends on these
     checkpoint_interval = check_real("checkpoint_interval", checkpoint_interval)
     threads = check_integer("threads", cores() if threads is None else threads, least=1)
-    request = make_request(
-        chain,
-        duration=duration,
-        warmup=warmup,
-        time_step=time_step,
-        method=method,
-        stepper=stepper,
-        merging=merging,
-        seed=seed,
-        observe=observe,
-        start=start,
-        particles=particles,
-        replicas=replicas,
-        average=average,
-        every=every,
-    )
-    schedule = request.schedule
-    dynamics, runs = _dynamics(request), _replicas(request)
+    run = make_run(**asked)
+    copies = _replicas(run)
     with announced(progress):
-        _compile_kernels(request.observe)
+        _compile_kernels()
     keeper = None
     if checkpoint is not None:
-        keeper = Checkpoint(Path(checkpoint), run_identity(request), checkpoint_interval)
-    with nullcontext() if keeper is None else keeper.resumed(runs):
-        interrupted = run_all(runs, dynamics, schedule, threads, keeper, progress)
-    return collect(request, runs, interrupted)
+        keeper = Checkpoint(Path(checkpoint), identity(run), checkpoint_interval)
+    with nullcontext() if keeper is None else keeper.resumed(copies):
+        interrupted = run_all(run, copies, threads, keeper, progress)
+    return collect(run, copies, interrupted)
 
 
-def _dynamics(request: Request) -> Dynamics:
-    chain, schedule, settings = request.chain, request.schedule, request.settings
-    duration = schedule.warmup + schedule.duration
-    speed = max(typical_speed(chain, duration, y, v) for y, v in request.starts)
-    return Dynamics(
-        chain.reduced_anchors,
-        make_step(chain, schedule.time_step, settings["stepper"]),
-        make_law(
-            chain,
-            schedule.time_step,
-            settings["method"],
-            settings["merging"],
-            speed,
-            counted=request.counted,
-        ),
-        _DIVERGED * speed if speed > 0 else np.inf,
-    )
+def make_run(chain: Chain, *, observe: Any, **arguments: Any) -> Run:
+    """Check all arguments of :func:`simulate` that its numbers follow from, without any work.
+
+    Raises
+    ------
+    ValueError
+        For a wrong argument, or if the run would not fit into memory.
+    """
+    return Run(chain=chain, observers=find_observers(observe), **arguments)
 
 
-def _replicas(request: Request) -> list[Replica]:
+def _replicas(run: Run) -> list[Replica]:
     """Deal the replicas out to groups, each with observers of its own."""
-    starts = request.starts
-    streams = np.random.SeedSequence(request.settings["seed"]).spawn(len(starts))
-    runs: list[Replica] = []
-    for members in np.array_split(np.arange(len(starts)), request.groups):
-        own = request.plan._replace(copies=members.size)
-        observers = [OBSERVERS[name](own) for name in request.observe]
-        counts = np.zeros(request.schedule.blocks, dtype=np.int64)
-        mine = [starts[i] for i in members], [streams[i] for i in members]
-        runs.append(Replica(*mine, observers, counts))
-    return runs
+    streams = np.random.SeedSequence(run.seed).spawn(run.replicas)
+    return [
+        Replica(
+            [run.starts[i] for i in members],
+            [streams[i] for i in members],
+            [observer.prepared(run, members.size) for observer in run.observers],
+            np.zeros(run.schedule.blocks, dtype=np.int64),
+        )
+        for members in np.array_split(np.arange(run.replicas), run.groups)
+    ]
 
 
-def _compile_kernels(names: list[str]) -> None:
+def _compile_kernels() -> None:
     """Compile every kernel, or load it from numba's cache, by running a chain of two rods."""
-    chain = Chain(size=2)
-    schedule = Schedule(0.1, warmup_steps=1, stride=1, blocks=1, snapshots_per_block=1)
-    settings = {"method": "event-driven", "stepper": "splitting", "merging": 0.03, "seed": 0}
-    plan = Plan(chain, schedule, np.arange(2), swing=0.0, copies=1)
-    starts = replica_starts(chain, None, 1)
-    request = Request(chain, schedule, names, plan, 1, starts, settings)
     # Counting collisions compiles the heap, and with it all that the other operators need.
-    dynamics = _dynamics(request._replace(observe=["collisions"]))
-    [replica] = _replicas(request)
-    for _ in replica.run(dynamics, schedule, Event()):
-        pass
+    dynamics = make_dynamics(Chain(size=2), 0.1, speed=1.0, counted=True)
+    y, v = np.zeros((2, 2))
+    y_buffer, v_buffer = np.zeros((2, 1, 2))
+    tally = make_tally(2, contacts=True, waves=False)
+    state = y, v, np.random.default_rng(0), dynamics, make_scratch(2), tally
+    advance(*state, 1)
+    record(*state, 1, y_buffer, v_buffer)
+    bounded(y, v, dynamics.fastest)
+    deposit(y, -1.0, 0.1, np.zeros(30))

@@ -24,11 +24,14 @@ import math
 from typing import Literal, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from crazybilliards.model import Chain
 from crazybilliards.model.kernels import kernel
-from crazybilliards.particles.laws.law import drift
+from crazybilliards.particles.laws.law import Law, Method, drift, make_law
 from crazybilliards.particles.scales import spring_rate
+
+MERGING = 0.03  # in velocity kicks of one step: rods that separate more slowly move as one
 
 Stepper = Literal["splitting", "euler"]
 
@@ -44,6 +47,48 @@ class Step(NamedTuple):
     kick: float  # velocity kick per unit of d or d|d|, one half of it for the splitting
     quadratic: bool
     symmetric: bool  # splitting: half kicks of spring and noise after the drift
+
+
+class Dynamics(NamedTuple):
+    """All that the kernels need to know of a run: the same for all replicas."""
+
+    anchors: NDArray[np.float64]  # reduced, (L,)
+    step: Step
+    law: Law
+    fastest: float  # a rod that is faster has left every steady state: the chain has diverged
+
+
+def make_dynamics(
+    chain: Chain,
+    time_step: float,
+    *,
+    speed: float,
+    method: Method = "event-driven",
+    stepper: Stepper = "splitting",
+    merging: float = MERGING,
+    counted: bool = False,
+    diverged: float = 1e6,
+) -> Dynamics:
+    """Return what the kernels need to know of a chain.
+
+    Parameters
+    ----------
+    chain, time_step, method, stepper, merging
+        As in ``simulate``.
+    speed
+        A typical speed of the rods [R/T].
+    counted
+        Whether every collision is to be recorded at its contact.
+    diverged
+        In typical speeds: a chain with a faster rod has diverged. The steady states of e > 1 stay
+        within some tens of them.
+    """
+    return Dynamics(
+        chain.reduced_anchors,
+        make_step(chain, time_step, stepper),
+        make_law(chain, time_step, method, merging, speed, counted=counted),
+        diverged * speed if speed > 0 else math.inf,
+    )
 
 
 def make_step(chain: Chain, time_step: float, stepper: Stepper) -> Step:
@@ -102,15 +147,17 @@ def shake(v, noise, generator):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def advance(y, v, anchors, generator, step, law, scratch, tally, steps):  # type: ignore[no-untyped-def]
+def advance(y, v, generator, dynamics, scratch, tally, steps):  # type: ignore[no-untyped-def]
     """Take ``steps`` steps of the chain in place; return the collisions, or -1 if diverged.
 
-    ``y``, ``v``, ``anchors``: float arrays of shape (L,) in the reduced coordinate;
-    ``generator``: a numpy Generator of this thread's own; ``tally``: see ``avalanche``.
+    ``y``, ``v``: float arrays of shape (L,) in the reduced coordinate; ``generator``: a numpy
+    Generator of this thread's own; ``scratch``: see ``laws/law.py``; ``tally``: see
+    ``laws/avalanche.py``.
     """
+    anchors, step, law = dynamics.anchors, dynamics.step, dynamics.law
     collisions = 0
     decay, noise = step.outer_decay, step.outer_noise
-    half_due = 0.0  # 1: half a spring kick of the last step, given with this one's in one pass
+    half_due = 0.0  # 1 after the first step: its second half kick is merged into the next one
     for _ in range(steps):
         kick(y, v, anchors, step, decay, half_due, 1.0)
         shake(v, noise, generator)
@@ -137,18 +184,18 @@ def bounded(y, v, fastest):  # type: ignore[no-untyped-def]
 
 @kernel
 def record(  # type: ignore[no-untyped-def]
-    y, v, anchors, generator, step, law, scratch, tally, stride, fastest, y_buffer, v_buffer
+    y, v, generator, dynamics, scratch, tally, stride, y_buffer, v_buffer
 ):
     """Fill the buffers, shape (snapshots, L), with the state after every ``stride`` steps.
 
     Return how many snapshots are good: fewer than there is room for if the chain diverged, that
-    is, an operator gave up or a rod became faster than ``fastest``. Collisions at the contacts are
+    is, an operator gave up or a rod became too fast. Collisions at the contacts are
     then those up to the last good one: the steps that blew up may have had a million.
     """
     contacts = tally.contacts.copy()
     for snapshot in range(y_buffer.shape[0]):
-        met = advance(y, v, anchors, generator, step, law, scratch, tally, stride)
-        if met < 0 or not bounded(y, v, fastest):
+        met = advance(y, v, generator, dynamics, scratch, tally, stride)
+        if met < 0 or not bounded(y, v, dynamics.fastest):
             tally.contacts[:] = contacts
             return snapshot
         contacts[:] = tally.contacts

@@ -19,15 +19,14 @@ from crazybilliards.model import Chain
 from crazybilliards.model.grid import deposit, position_grid, thermal_reach
 from crazybilliards.model.vocabulary import result
 from crazybilliards.particles.laws.avalanche import make_tally
-from crazybilliards.particles.laws.law import make_law, make_scratch
+from crazybilliards.particles.laws.law import make_scratch
 from crazybilliards.particles.scales import default_time_step, relaxation_time, typical_speed
-from crazybilliards.particles.stepping import advance, bounded, make_step
+from crazybilliards.particles.stepping import advance, bounded, make_dynamics
 
 Array = NDArray[np.float64]
 
 _RELAXATIONS = 6
 _STRIDE = 10  # steps from snapshot to snapshot, as in simulate
-_MERGING = 0.03  # as in simulate
 # Typical speeds beyond which the chain has blown up. Steady states of e > 1 stay within some tens
 # of them. simulate waits for 1e6, but its steps get slower with every collision: nobody wants to
 # look at that.
@@ -103,7 +102,7 @@ class Session:
 
         Whole steps are taken; what is left over is added to the next duration.
         """
-        due = duration / self._step.time_step + self._owed
+        due = duration / self._dynamics.step.time_step + self._owed
         steps, self._owed = int(due), due % 1
         deadline = perf_counter() + budget
         while steps > 0 and not self.diverged:
@@ -139,7 +138,7 @@ class Session:
                 "density": ("x", density),
             },
             source="simulation",
-            method={"method": "event-driven", "time_step": self._step.time_step},
+            method={"method": "event-driven", "time_step": self._dynamics.step.time_step},
             coordinates={"x": self._x},
             status="diverged" if self.diverged else "completed",
             end_time=self.time,
@@ -152,10 +151,7 @@ class Session:
         time_step = default_time_step(chain)
         rest = chain.reduced_anchors, np.zeros(chain.size)
         speed = typical_speed(chain, math.inf, *rest)
-        self._step = make_step(chain, time_step, "splitting")
-        self._law = make_law(chain, time_step, "event-driven", _MERGING, speed)
-        self._fastest = _DIVERGED * speed
-        self._anchors = chain.reduced_anchors
+        self._dynamics = make_dynamics(chain, time_step, speed=speed, diverged=_DIVERGED)
         self._scratch = make_scratch(chain.size)
         self._tally = make_tally(chain.size, contacts=False, waves=False)
         self._offsets = chain.physical(np.zeros(chain.size))
@@ -174,13 +170,13 @@ class Session:
     def _take(self, steps: int) -> None:
         """Take some steps and a snapshot; nothing of it if the chain blows up on the way."""
         before = self.y.copy(), self.v.copy()
-        kernel = self.y, self.v, self._anchors, self._generator, self._step, self._law
-        met = advance(*kernel, self._scratch, self._tally, steps)
-        if met < 0 or not bounded(self.y, self.v, self._fastest):
+        state = self.y, self.v, self._generator
+        met = advance(*state, self._dynamics, self._scratch, self._tally, steps)
+        if met < 0 or not bounded(self.y, self.v, self._dynamics.fastest):
             self.y, self.v = before
             self.diverged = True
             return
-        self.time += steps * self._step.time_step
+        self.time += steps * self._dynamics.step.time_step
         self.collisions += met
         if self.time > self.measured_from:
             self._squares += self.v * self.v

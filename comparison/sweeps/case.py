@@ -29,7 +29,7 @@ from crazybilliards.kinetic.kinetic_equation.stationary import check_phase_space
 from crazybilliards.model import Chain, load
 from crazybilliards.model.storage import load_attributes
 from crazybilliards.particles import simulate
-from crazybilliards.particles.request import make_request
+from crazybilliards.particles.simulation import make_run
 
 JOBS: dict[str, Callable[..., xr.Dataset]] = {
     "simulate": simulate,
@@ -96,7 +96,7 @@ class Case:
         settings = {name: _plain(name, value) for name, value in self.settings.items()}
         object.__setattr__(self, "settings", {**_plain_all(defaults), **settings})
         if self.job == "simulate":
-            make_request(self.chain, start=None, **self.settings)
+            make_run(self.chain, start=None, **self.settings)
         elif self.job == "phase_space":
             check_phase_space(self.chain, **self.settings)
         else:
@@ -130,8 +130,8 @@ class Case:
         """Particle steps to do, to put long cases first and to foresee how long all take."""
         if self.job != "simulate":
             return _THEORY_WORK
-        request = make_request(self.chain, start=None, **self.settings)
-        return float(request.schedule.steps) * self.chain.size * len(request.starts)
+        run = make_run(self.chain, start=None, **self.settings)
+        return float(run.schedule.steps) * self.chain.size * run.replicas
 
     def file(self, folder: Path) -> Path:
         """Return the name of its file in ``folder``."""

@@ -69,7 +69,7 @@ def _end(front, tally):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def note(contact, first, last, momentum, tally):  # type: ignore[no-untyped-def]
+def record_collision(contact, first, last, momentum, tally):  # type: ignore[no-untyped-def]
     """Take down a collision of rods ``contact`` and ``contact + 1`` (counted from 0).
 
     ``first`` and ``last`` are the outermost rods of the two clusters that meet, ``momentum`` is

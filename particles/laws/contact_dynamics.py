@@ -36,7 +36,7 @@ def drift(y, v, dt, restitution, integers, floats):  # type: ignore[no-untyped-d
 
     ``integers`` and ``floats``, at least three rows of L each, are scratch space.
     """
-    falls, firsts, lasts = integers[0], integers[1], integers[2]
+    violations, firsts, lasts = integers[0], integers[1], integers[2]
     shifted, sums, unused = floats[0], floats[1], floats[2]
     count, total, before = INDEX(0), 0.0, v[0]
     shifted[0] = before
@@ -44,10 +44,10 @@ def drift(y, v, dt, restitution, integers, floats):  # type: ignore[no-untyped-d
         total += bound(y[i + 1] - y[i], v[i] - v[i + 1], restitution, dt)
         free = v[i + 1] - total
         shifted[i + 1] = free
-        falls[count] = i + 1
+        violations[count] = i + 1
         count += INDEX(free < before)
         before = free
-    merged = pool(shifted, shifted, falls, count, firsts, lasts, sums, unused)
+    merged = pool(shifted, shifted, violations, count, firsts, lasts, sums, unused)
     total, before = 0.0, -np.inf
     for i in range(y.size):
         # The bound of the next contact needs this rod's state before it is overwritten.

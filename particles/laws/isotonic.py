@@ -6,8 +6,8 @@ of one block have met; by conservation of momentum a block moves with the mean v
 members, and lies at the mean of their free positions.
 
 Most rods meet nobody within a step, but which ones do is random, and a branch that a processor
-mispredicts costs it more than the arithmetic of a rod. The falls (rods that have overtaken their
-left neighbour) are therefore listed first, without a branch, and only blocks are worked on.
+mispredicts costs it more than the arithmetic of a rod. The violations (rods that have overtaken
+their left neighbour) are therefore listed first, without a branch, and only blocks are worked on.
 """
 
 import numpy as np
@@ -20,10 +20,10 @@ _0, _1, _2 = INDEX(0), INDEX(1), INDEX(2)
 
 
 @kernel
-def pool(values, companions, falls, count, firsts, lasts, sums, companion_sums):  # type: ignore[no-untyped-def]
+def pool(values, carried, violations, count, firsts, lasts, sums, carried_sums):  # type: ignore[no-untyped-def]
     """Isotonic regression of ``values`` with equal weights, in place; return the merged pairs.
 
-    ``companions`` (it may be ``values``) are averaged over the same blocks. ``falls``: the first
+    ``carried`` (it may be ``values``) are averaged over the same blocks. ``violations``: the first
     ``count`` entries are the indices i with values[i] < values[i - 1], in order. The last four,
     two of integers and two of floats, are scratch space of the values' size.
     """
@@ -32,20 +32,20 @@ def pool(values, companions, falls, count, firsts, lasts, sums, companion_sums):
     blocks, end = _0, _0
     k = _0
     while k < count:
-        fall = INDEX(falls[k])
+        violation = INDEX(violations[k])
         k += _1
-        last = fall + _1
-        if fall == end:
+        last = violation + _1
+        if violation == end:
             blocks -= _1
             first = INDEX(firsts[blocks])
-            members = float(fall - first) + 1.0
-            total, companion = sums[blocks], companion_sums[blocks]
+            members = float(violation - first) + 1.0
+            total, carried_total = sums[blocks], carried_sums[blocks]
             end = INDEX(lasts[blocks - _1]) if blocks > _0 else _0
         else:
-            first = fall - _1
-            members, total, companion = 2.0, values[first], companions[first]
-        total += values[fall]
-        companion += companions[fall]
+            first = violation - _1
+            members, total, carried_total = 2.0, values[first], carried[first]
+        total += values[violation]
+        carried_total += carried[violation]
         while True:
             while first > _0:
                 if first == end:
@@ -55,7 +55,7 @@ def pool(values, companions, falls, count, firsts, lasts, sums, companion_sums):
                         break
                     first = INDEX(firsts[left])
                     total += sums[left]
-                    companion += companion_sums[left]
+                    carried_total += carried_sums[left]
                     members += weight
                     blocks = left
                     end = INDEX(lasts[left - _1]) if left > _0 else _0
@@ -64,17 +64,17 @@ def pool(values, companions, falls, count, firsts, lasts, sums, companion_sums):
                         break
                     first -= _1
                     total += values[first]
-                    companion += companions[first]
+                    carried_total += carried[first]
                     members += 1.0
             if last == size or values[last] * members >= total:
                 break
             total += values[last]
-            companion += companions[last]
+            carried_total += carried[last]
             members += 1.0
-            k += INDEX(falls[k] == last)
+            k += INDEX(violations[k] == last)
             last += _1
         firsts[blocks], lasts[blocks] = first, last
-        sums[blocks], companion_sums[blocks] = total, companion
+        sums[blocks], carried_sums[blocks] = total, carried_total
         blocks += _1
         end = last
     # Only now: a block that goes on growing, written each time, would cost its size each time.
@@ -82,15 +82,15 @@ def pool(values, companions, falls, count, firsts, lasts, sums, companion_sums):
     for block in range(blocks):
         first, last = INDEX(firsts[block]), INDEX(lasts[block])
         share = 1.0 / float(last - first)
-        mean, companion_mean = sums[block] * share, companion_sums[block] * share
+        mean, carried_mean = sums[block] * share, carried_sums[block] * share
         # Means of neighbouring blocks that touch may come out of order by rounding.
         if first > _0:
             mean = max(mean, values[first - _1])
         values[first] = values[first + _1] = mean
-        companions[first] = companions[first + _1] = companion_mean
+        carried[first] = carried[first + _1] = carried_mean
         for i in range(first + _2, last):
             values[i] = mean
-            companions[i] = companion_mean
+            carried[i] = carried_mean
         merged += last - first - _1
     return merged
 
@@ -101,13 +101,13 @@ def drift(y, v, dt, integers, floats):  # type: ignore[no-untyped-def]
 
     ``integers`` and ``floats``, at least three and two rows of L, are scratch space.
     """
-    falls, firsts, lasts = integers[0], integers[1], integers[2]
+    violations, firsts, lasts = integers[0], integers[1], integers[2]
     count = _0
     before = -np.inf
     for i in range(y.size):
         position = y[i] + dt * v[i]
         y[i] = position
-        falls[count] = i
+        violations[count] = i
         count += INDEX(position < before)
         before = position
-    return np.int64(pool(y, v, falls, count, firsts, lasts, floats[0], floats[1]))
+    return np.int64(pool(y, v, violations, count, firsts, lasts, floats[0], floats[1]))

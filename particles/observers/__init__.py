@@ -1,10 +1,22 @@
-"""Observers: what is measured. A new measurement is a class in a file here and a line below.
+"""Observers: what is measured. A new measurement is a class in a file here and a name below.
 
 No kernel changes for it: the kernels fill buffers of snapshots, observers consume them.
 """
 
+from __future__ import annotations
+
+from collections.abc import Collection
+
+from crazybilliards.model.checks import shown
 from crazybilliards.particles.observers.avalanches import Avalanches
-from crazybilliards.particles.observers.base import Integers, Observer, Plan, Snapshots, Variables
+from crazybilliards.particles.observers.base import (
+    Averaged,
+    Integers,
+    Observer,
+    Snapshots,
+    Variables,
+    restore,
+)
 from crazybilliards.particles.observers.collisions import Collisions
 from crazybilliards.particles.observers.density import Density
 from crazybilliards.particles.observers.energy import Energy
@@ -13,13 +25,41 @@ from crazybilliards.particles.observers.velocities import Velocities
 from crazybilliards.particles.observers.widths import Widths
 
 OBSERVERS: dict[str, type[Observer]] = {
-    "widths": Widths,
-    "density": Density,
-    "velocities": Velocities,
-    "energy": Energy,
-    "collisions": Collisions,
-    "avalanches": Avalanches,
-    "snapshots": Raw,
+    observer.name: observer
+    for observer in (Widths, Density, Velocities, Energy, Collisions, Avalanches, Raw)
 }
 
-__all__ = ["OBSERVERS", "Avalanches", "Integers", "Observer", "Plan", "Snapshots", "Variables"]
+__all__ = [
+    "OBSERVERS",
+    "Averaged",
+    "Integers",
+    "Observer",
+    "Snapshots",
+    "Variables",
+    "Velocities",
+    "find_observers",
+    "restore",
+]
+
+
+def find_observers(observe: str | Observer | Collection[str | Observer]) -> tuple[Observer, ...]:
+    """Return the observers that are meant, each name once.
+
+    Raises
+    ------
+    ValueError
+        If there are none, or one of them is not known.
+    """
+    names = f"any of {sorted(OBSERVERS)}, or observers"
+    if isinstance(observe, str | Observer):
+        observe = [observe]
+    elif not isinstance(observe, Collection):
+        raise ValueError(f"observe takes a list of {names}, got {shown(observe)}")
+    for each in observe:
+        if not isinstance(each, Observer) and (not isinstance(each, str) or each not in OBSERVERS):
+            raise ValueError(f"observe takes {names}, got {shown(each)}")
+    if not observe:
+        raise ValueError(f"observe must name at least one of {sorted(OBSERVERS)}")
+    return tuple(
+        OBSERVERS[each]() if isinstance(each, str) else each for each in dict.fromkeys(observe)
+    )

@@ -7,15 +7,15 @@ from typing import Self
 
 import numpy as np
 
-from crazybilliards.particles.laws.avalanche import make_tally
+from crazybilliards.particles.laws.avalanche import Tally, make_tally
 from crazybilliards.particles.observers.base import (
     Array,
     Integers,
     Observer,
-    Plan,
     Snapshots,
     Variables,
 )
+from crazybilliards.particles.run import Run
 
 
 class Avalanches(Observer):
@@ -26,19 +26,32 @@ class Avalanches(Observer):
     depend on the time step: rods in contact are kicked anew in every step. 16 L^2 bytes.
     """
 
-    accumulated = ("heads", "following", "origins", "unused", "sizes")
+    name = "avalanches"
+    gives = ("avalanche_count",)
+    along = ("avalanche_size",)
+    single_collisions = True
     ensemble = False
 
-    def __init__(self, plan: Plan) -> None:
-        tally = make_tally(plan.chain.size, contacts=False, waves=True)
+    def prepare(self, run: Run, copies: int) -> None:
+        """Make the sums."""
+        tally = make_tally(run.chain.size, contacts=False, waves=True)
         _, self.heads, self.following, self.origins, self.unused, self.sizes = tally
 
-    @staticmethod
-    def memory(plan: Plan) -> float:
-        """Return the bytes it keeps."""
-        return 16.0 * plan.chain.size**2
+    def tally(self, tally: Tally) -> Tally:
+        """Return the tally with the waves of this observer."""
+        return tally._replace(
+            heads=self.heads,
+            following=self.following,
+            origins=self.origins,
+            unused=self.unused,
+            sizes=self.sizes,
+        )
 
-    def observe(self, seen: Snapshots) -> None:
+    def memory(self, run: Run) -> float:
+        """Return the bytes it keeps."""
+        return 16.0 * run.chain.size**2
+
+    def observe(self, snapshots: Snapshots) -> None:
         """Nothing: the kernel has counted already."""
 
     def join(self, others: Sequence[Self]) -> None:

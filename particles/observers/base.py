@@ -1,6 +1,6 @@
 """What an observer is: it takes buffers of snapshots, keeps sums, and reports variables.
 
-Every replica (in an ensemble every group of replicas) has observers of its own; they are joined
+Every replica (in an ensemble every group of replicas) has observers of its own. They are joined
 in order, so that results do not depend on how many threads ran them.
 """
 
@@ -8,18 +8,23 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
-from typing import ClassVar, NamedTuple, Self
+from copy import copy
+from typing import Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from crazybilliards.model import Chain
+from crazybilliards.particles.laws.avalanche import Tally
 from crazybilliards.particles.observers.error_bars import jackknife
+from crazybilliards.particles.run import Run
 from crazybilliards.particles.schedule import Schedule
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 Variables = dict[str, tuple[tuple[str, ...], ArrayLike]]
+
+_STATE = (np.ndarray, np.generic, int, float)  # what a checkpoint can hold
+_NO_STATE = (list, dict, set, bytearray)
 
 
 class Snapshots(NamedTuple):
@@ -33,36 +38,74 @@ class Snapshots(NamedTuple):
     collisions: Integers  # since the last snapshots, by contact; empty if not counted
 
 
-class Plan(NamedTuple):
-    """What an observer is made for."""
-
-    chain: Chain
-    schedule: Schedule
-    chosen: Integers  # the particles asked for, from 0
-    swing: float  # how far the start's energy takes a rod from its anchor
-    copies: int  # replicas that share the observer
-
-
 class Observer(ABC):
-    """What the simulation asks of a measurement; made anew for every replica, or group of them.
+    """A measurement: first its parameters, then, once prepared for a run, what it has summed up.
 
-    ``accumulated`` names the attributes that change while observing, arrays and plain numbers:
-    what a checkpoint keeps.
+    ``observe`` of ``simulate`` takes observers by their names or as objects:
+    ``observe=["widths", Velocities(bins=801)]``. The constructor takes the parameters, if there
+    are any. :meth:`prepare` makes the arrays to sum up in.
+
+    Attributes
+    ----------
+    name
+        Its name in ``observe``.
+    gives
+        The variables that it reports. Their meanings and units stand in the vocabulary.
+    along
+        The coordinates that it brings along, ``("velocity",)`` say.
+    single_collisions
+        Whether it needs every single collision, not only snapshots.
+    ensemble
+        Whether it can be averaged over replicas at equal times.
     """
 
-    accumulated: ClassVar[tuple[str, ...]]
-    ensemble: ClassVar[bool] = True  # whether it can be averaged over replicas at equal times
+    name: ClassVar[str]
+    gives: ClassVar[tuple[str, ...]]
+    along: ClassVar[tuple[str, ...]] = ()
+    single_collisions: ClassVar[bool] = False
+    ensemble: ClassVar[bool] = True
+
+    def __str__(self) -> str:
+        """Return the name and, if there are any, the parameters."""
+        given = ", ".join(f"{name}={value!r}" for name, value in vars(self).items())
+        return f"{self.name}({given})" if given else self.name
 
     @abstractmethod
-    def __init__(self, plan: Plan) -> None: ...
-
-    @staticmethod
-    @abstractmethod
-    def memory(plan: Plan) -> float:
-        """Return the bytes that one made for this plan would keep."""
+    def memory(self, run: Run) -> float:
+        """Return the bytes that it keeps for one replica of the run, or one group of replicas."""
 
     @abstractmethod
-    def observe(self, seen: Snapshots) -> None:
+    def prepare(self, run: Run, copies: int) -> None:
+        """Make what is summed up in, for a run and the number of replicas that share it."""
+
+    def prepared(self, run: Run, copies: int) -> Self:
+        """Return an observer with the same parameters, prepared.
+
+        Raises
+        ------
+        TypeError
+            If it keeps something that a checkpoint cannot hold: it would be wrong when resumed.
+        """
+        fresh = copy(self)
+        fresh.prepare(run, copies)
+        for name, value in vars(fresh).items():
+            if isinstance(value, _NO_STATE):
+                raise TypeError(f"{self.name}: {name} must be an array or a number")
+        return fresh
+
+    def state(self) -> dict[str, ArrayLike]:
+        """Return all that a checkpoint keeps of it: every attribute that is an array or a number.
+
+        Those that never change are few and small. None can be forgotten.
+        """
+        return {name: value for name, value in vars(self).items() if isinstance(value, _STATE)}
+
+    def tally(self, tally: Tally) -> Tally:
+        """Return what single collisions are written into, with arrays of its own if it has any."""
+        return tally
+
+    @abstractmethod
+    def observe(self, snapshots: Snapshots) -> None:
         """Take some snapshots."""
 
     @abstractmethod
@@ -85,11 +128,10 @@ class Observer(ABC):
 class Averaged(Observer):
     """An observer that keeps ``sums``, shape (blocks, ...), and reports averages of them.
 
-    Joined, the blocks of all replicas stand one after another; in an ensemble, where a block is
+    Joined, the blocks of all replicas stand one after another. In an ensemble, where a block is
     a time, the groups are put side by side: (groups, times, ...), and averages are over groups.
     """
 
-    accumulated: ClassVar[tuple[str, ...]] = ("sums",)
     schedule: Schedule
     sums: Array
 
@@ -116,3 +158,14 @@ class Averaged(Observer):
             variables[name] = (dimensions, value)
             variables[f"{name}_error"] = (dimensions, error)
         return variables
+
+
+def restore(owner: Any, name: str, value: NDArray[Any]) -> None:
+    """Set an attribute to a restored value, keeping its kind: an array or a plain number."""
+    current = getattr(owner, name)
+    if isinstance(current, np.ndarray):
+        if current.shape != value.shape or current.dtype != value.dtype:
+            raise ValueError(f"the checkpoint's {name} does not fit this run")
+        current[...] = value  # in place: kernels write into the same array
+    else:
+        setattr(owner, name, type(current)(value))

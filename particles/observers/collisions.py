@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from crazybilliards.particles.observers.base import Averaged, Integers, Plan, Snapshots, Variables
+from crazybilliards.particles.observers.base import Averaged, Integers, Snapshots, Variables
+from crazybilliards.particles.run import Run
 
 
 class Collisions(Averaged):
@@ -14,20 +15,23 @@ class Collisions(Averaged):
     the next step: below e = 1 the rate depends on the time step, as it is infinite without one.
     """
 
+    name = "collisions"
+    gives = ("collision_rate",)
+    single_collisions = True
     ensemble = False
 
-    def __init__(self, plan: Plan) -> None:
-        self.schedule = plan.schedule
-        self.sums = np.zeros((plan.schedule.blocks, plan.chain.size))
+    def prepare(self, run: Run, copies: int) -> None:
+        """Make the sums."""
+        self.schedule = run.schedule
+        self.sums = np.zeros((run.schedule.blocks, run.chain.size))
 
-    @staticmethod
-    def memory(plan: Plan) -> float:
+    def memory(self, run: Run) -> float:
         """Return the bytes it keeps."""
-        return 8.0 * plan.chain.size * plan.schedule.blocks
+        return 8.0 * run.chain.size * run.schedule.blocks
 
-    def observe(self, seen: Snapshots) -> None:
+    def observe(self, snapshots: Snapshots) -> None:
         """Add the collisions since the last snapshots."""
-        self.sums[seen.block, :-1] += seen.collisions
+        self.sums[snapshots.block, :-1] += snapshots.collisions
 
     def report(self, counts: Integers) -> Variables:
         """Return the rate and its standard error."""

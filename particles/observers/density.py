@@ -13,20 +13,20 @@ from crazybilliards.particles.observers.base import (
     Array,
     Averaged,
     Integers,
-    Plan,
     Snapshots,
     Variables,
 )
+from crazybilliards.particles.run import Run
 
 
-def _grid(plan: Plan) -> Array:
-    chain = plan.chain
+def _grid(run: Run) -> Array:
+    chain = run.chain
     if not np.isfinite(thermal_reach(chain)):
         raise ValueError("observe: 'density' needs damping and stiffness above 0, to size its grid")
     # Flippers (e > 1) drive a chain apart by several times the free reach.
     thermal = thermal_reach(chain) * (5 if chain.restitution > 1 else 1)
     # A start that is thermal itself, or tamer, needs no more room than that.
-    return position_grid(chain, thermal + max(0.0, plan.swing - 0.75 * thermal))
+    return position_grid(chain, thermal + max(0.0, run.swing - 0.75 * thermal))
 
 
 class Density(Averaged):
@@ -36,25 +36,27 @@ class Density(Averaged):
     follow from the errors of the bins. 8 bytes per node and block.
     """
 
-    accumulated = ("sums", "outside")
+    name = "density"
+    gives = ("density", "density_block", "outside")
+    along = ("x",)
 
-    def __init__(self, plan: Plan) -> None:
-        self.schedule = plan.schedule
-        self.x = _grid(plan)
+    def prepare(self, run: Run, copies: int) -> None:
+        """Make the sums."""
+        self.schedule = run.schedule
+        self.x = _grid(run)
         self.first, self.spacing = self.x[0], self.x[1] - self.x[0]
-        self.offsets = plan.chain.physical(np.zeros(plan.chain.size))
-        self.sums = np.zeros((plan.schedule.blocks, self.x.size))
+        self.offsets = run.chain.physical(np.zeros(run.chain.size))
+        self.sums = np.zeros((run.schedule.blocks, self.x.size))
         self.outside = 0
 
-    @staticmethod
-    def memory(plan: Plan) -> float:
+    def memory(self, run: Run) -> float:
         """Return the bytes it keeps."""
-        return 8.0 * _grid(plan).size * plan.schedule.blocks
+        return 8.0 * _grid(run).size * run.schedule.blocks
 
-    def observe(self, seen: Snapshots) -> None:
+    def observe(self, snapshots: Snapshots) -> None:
         """Put every rod of every snapshot on the grid."""
-        points = (seen.y + self.offsets).ravel()
-        self.outside += deposit(points, self.first, self.spacing, self.sums[seen.block])
+        points = (snapshots.y + self.offsets).ravel()
+        self.outside += deposit(points, self.first, self.spacing, self.sums[snapshots.block])
 
     def join(self, others: Sequence[Self]) -> None:
         """Append what others measured."""

@@ -11,11 +11,11 @@ from crazybilliards.particles.observers.base import (
     Array,
     Integers,
     Observer,
-    Plan,
     Snapshots,
     Variables,
 )
 from crazybilliards.particles.observers.error_bars import jackknife
+from crazybilliards.particles.run import Run
 
 _MOST_TIMES = 1000
 
@@ -28,25 +28,27 @@ class Energy(Observer):
     Times that not every replica reached are left out.
     """
 
-    accumulated = ("sums", "counts")
+    name = "energy"
+    gives = ("kinetic_energy",)
+    along = ("time",)
 
-    def __init__(self, plan: Plan) -> None:
-        self.schedule = plan.schedule
-        self.together = 1 if plan.schedule.ensemble else -(-plan.schedule.snapshots // _MOST_TIMES)
-        self.mass = plan.chain.mass
-        times = -(-plan.schedule.snapshots // self.together)
+    def prepare(self, run: Run, copies: int) -> None:
+        """Make the sums."""
+        self.schedule = run.schedule
+        self.together = 1 if run.schedule.ensemble else -(-run.schedule.snapshots // _MOST_TIMES)
+        self.mass = run.chain.mass
+        times = -(-run.schedule.snapshots // self.together)
         self.sums = np.zeros((1, times))
         self.counts = np.zeros((1, times), dtype=np.int64)
 
-    @staticmethod
-    def memory(plan: Plan) -> float:
+    def memory(self, run: Run) -> float:
         """Return the bytes it keeps."""
-        return 16.0 * (plan.schedule.snapshots if plan.schedule.ensemble else _MOST_TIMES)
+        return 16.0 * (run.schedule.snapshots if run.schedule.ensemble else _MOST_TIMES)
 
-    def observe(self, seen: Snapshots) -> None:
+    def observe(self, snapshots: Snapshots) -> None:
         """Add the energies of snapshots to their times."""
-        energies = self.mass / 2 * np.einsum("sp,sp->s", seen.v, seen.v)
-        place = (seen.first + np.arange(energies.size)) // self.together
+        energies = self.mass / 2 * np.einsum("sp,sp->s", snapshots.v, snapshots.v)
+        place = (snapshots.first + np.arange(energies.size)) // self.together
         np.add.at(self.sums[0], place, energies)
         np.add.at(self.counts[0], place, 1)
 
@@ -58,13 +60,13 @@ class Energy(Observer):
     def report(self, counts: Integers) -> Variables:
         """Return kinetic_energy and, with replicas, its error."""
         if self.schedule.ensemble:
-            energies, seen = self.sums[:, : counts.shape[1]], counts
+            energies, numbers = self.sums[:, : counts.shape[1]], counts
         else:
             reached = (self.counts > 0).all(axis=0)
-            energies, seen = self.sums[:, reached], self.counts[:, reached]
-        value, error = jackknife(lambda average: average, energies, seen)
+            energies, numbers = self.sums[:, reached], self.counts[:, reached]
+        value, error = jackknife(lambda average: average, energies, numbers)
         variables: Variables = {"kinetic_energy": (("time",), value)}
-        if len(seen) > 1:
+        if len(numbers) > 1:
             variables["kinetic_energy_error"] = (("time",), error)
         return variables
 

@@ -12,10 +12,10 @@ from crazybilliards.particles.observers.base import (
     Array,
     Integers,
     Observer,
-    Plan,
     Snapshots,
     Variables,
 )
+from crazybilliards.particles.run import Run
 
 
 class Raw(Observer):
@@ -26,26 +26,26 @@ class Raw(Observer):
     run: ``run.isel(time=-1)``.
     """
 
-    accumulated = ("y", "v")
+    name = "snapshots"
+    gives = ("position", "velocity")
+    along = ("time",)
 
-    def __init__(self, plan: Plan) -> None:
-        self.schedule = plan.schedule
-        self.chosen = plan.chosen
-        self.offsets = plan.chain.physical(np.zeros(plan.chain.size))[plan.chosen]
-        self.y, self.v = np.full(
-            (2, plan.copies, plan.schedule.times.size, plan.chosen.size), np.nan
-        )
+    def prepare(self, run: Run, copies: int) -> None:
+        """Make the sums."""
+        self.schedule = run.schedule
+        self.chosen = run.chosen
+        self.offsets = run.chain.physical(np.zeros(run.chain.size))[run.chosen]
+        self.y, self.v = np.full((2, copies, run.schedule.times.size, run.chosen.size), np.nan)
 
-    @staticmethod
-    def memory(plan: Plan) -> float:
+    def memory(self, run: Run) -> float:
         """Return the bytes it keeps."""
-        return 16.0 * plan.chosen.size * plan.schedule.snapshots * plan.copies
+        return 16.0 * run.chosen.size * run.schedule.snapshots * run.copies
 
-    def observe(self, seen: Snapshots) -> None:
+    def observe(self, snapshots: Snapshots) -> None:
         """Put the snapshots in their places."""
-        place = slice(seen.first, seen.first + len(seen.y))
-        self.y[seen.copy, place] = seen.y[:, self.chosen]
-        self.v[seen.copy, place] = seen.v[:, self.chosen]
+        place = slice(snapshots.first, snapshots.first + len(snapshots.y))
+        self.y[snapshots.copy, place] = snapshots.y[:, self.chosen]
+        self.v[snapshots.copy, place] = snapshots.v[:, self.chosen]
 
     def join(self, others: Sequence[Self]) -> None:
         """Append other replicas."""

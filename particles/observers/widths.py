@@ -8,10 +8,10 @@ from crazybilliards.particles.observers.base import (
     Array,
     Averaged,
     Integers,
-    Plan,
     Snapshots,
     Variables,
 )
+from crazybilliards.particles.run import Run
 
 
 def _displacement_width(average: Array) -> Array:
@@ -38,24 +38,27 @@ class Widths(Averaged):
     Keeps the sums of d, d^2, v and v^2: 32 L bytes per block.
     """
 
-    def __init__(self, plan: Plan) -> None:
-        self.schedule = plan.schedule
-        self.anchors = plan.chain.reduced_anchors
-        self.sums = np.zeros((plan.schedule.blocks, 4, plan.chain.size))
+    name = "widths"
+    gives = (*_QUANTITIES, "autocorrelation_time")
 
-    @staticmethod
-    def memory(plan: Plan) -> float:
+    def prepare(self, run: Run, copies: int) -> None:
+        """Make the sums."""
+        self.schedule = run.schedule
+        self.anchors = run.chain.reduced_anchors
+        self.sums = np.zeros((run.schedule.blocks, 4, run.chain.size))
+
+    def memory(self, run: Run) -> float:
         """Return the bytes it keeps."""
-        return 32.0 * plan.chain.size * plan.schedule.blocks
+        return 32.0 * run.chain.size * run.schedule.blocks
 
-    def observe(self, seen: Snapshots) -> None:
+    def observe(self, snapshots: Snapshots) -> None:
         """Add snapshots to the sums of their block."""
-        d = seen.y - self.anchors
-        sums = self.sums[seen.block]
+        d = snapshots.y - self.anchors
+        sums = self.sums[snapshots.block]
         sums[0] += d.sum(axis=0)
         sums[1] += np.einsum("sp,sp->p", d, d)
-        sums[2] += seen.v.sum(axis=0)
-        sums[3] += np.einsum("sp,sp->p", seen.v, seen.v)
+        sums[2] += snapshots.v.sum(axis=0)
+        sums[3] += np.einsum("sp,sp->p", snapshots.v, snapshots.v)
 
     def report(self, counts: Integers) -> Variables:
         """Return the quantities, their standard errors and the autocorrelation time."""

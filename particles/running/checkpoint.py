@@ -1,7 +1,8 @@
 """Checkpoints: the whole state of a run in one file, so that it can go on where it stopped.
 
 A checkpoint holds, for every replica, positions, velocities, the random generator and what its
-observers have summed up; and the identity of the run: parameters, schedule, seed, version. It is
+observers have summed up. It also holds the identity of the run: parameters, schedule, seed, and a
+fingerprint of the source code, without which an edited kernel would continue the old run. It is
 written atomically, sealed with a checksum, and kept by one process at a time. Replicas are caught
 between two chunks, whose boundaries do not depend on when that is: a resumed run gives the same
 bits as an undisturbed one.
@@ -9,23 +10,22 @@ bits as an undisturbed one.
 
 from __future__ import annotations
 
-import hashlib
 import io
 import json
 import time
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import asdict
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from crazybilliards.model.fingerprint import room_fingerprint
 from crazybilliards.model.locks import locked
 from crazybilliards.model.storage import make_folder, read_sealed, write_sealed
-from crazybilliards.particles.request import Request
+from crazybilliards.particles.run import Run
 from crazybilliards.particles.running.replica import Replica
 
 
@@ -39,7 +39,7 @@ class Checkpoint:
         self.saved = time.monotonic()
 
     @contextmanager
-    def resumed(self, runs: Sequence[Replica]) -> Iterator[None]:
+    def resumed(self, replicas: Sequence[Replica]) -> Iterator[None]:
         """Bring the replicas to the state in the file, if there is one, and keep others off it.
 
         Raises
@@ -52,19 +52,19 @@ class Checkpoint:
         make_folder(self.path.parent)
         with locked(self.path):
             if self.path.exists():
-                self._restore(runs)
-            self._write(runs)  # shows before any work that the file can be written
+                self._restore(replicas)
+            self._write(replicas)  # shows before any work that the file can be written
             yield
 
-    def save_if_due(self, runs: Sequence[Replica]) -> None:
+    def save_if_due(self, replicas: Sequence[Replica]) -> None:
         """Save if the interval has passed since the last time."""
         if time.monotonic() - self.saved >= self.interval:
-            self.save(runs)
+            self.save(replicas)
 
-    def save(self, runs: Sequence[Replica]) -> None:
+    def save(self, replicas: Sequence[Replica]) -> None:
         """Write the state of all replicas, or warn: a full disk must not cost the run."""
         try:
-            self._write(runs)
+            self._write(replicas)
         except OSError as error:
             warnings.warn(
                 f"{self.path}: no checkpoint written: {error.strerror}; the run goes on, and what "
@@ -74,21 +74,21 @@ class Checkpoint:
             )
             self.saved = time.monotonic()
 
-    def _write(self, runs: Sequence[Replica]) -> None:
+    def _write(self, replicas: Sequence[Replica]) -> None:
         """Write the state of all replicas, each at the end of its chunk."""
         arrays: dict[str, np.ndarray] = {"header": _text({"identity": self.identity})}
-        for number, run in enumerate(runs):
-            with run.lock:
-                for name, value in run.state().items():
+        for number, replica in enumerate(replicas):
+            with replica.lock:
+                for name, value in replica.state().items():
                     arrays[f"{number}/{name}"] = np.array(value)
-                generator = run.generator.bit_generator.state
+                generator = replica.generator.bit_generator.state
             arrays[f"{number}/generator"] = _text(generator)
         buffer = io.BytesIO()
         np.savez(buffer, **arrays)  # type: ignore[arg-type]
         write_sealed(self.path, buffer.getvalue())
         self.saved = time.monotonic()
 
-    def _restore(self, runs: Sequence[Replica]) -> None:
+    def _restore(self, replicas: Sequence[Replica]) -> None:
         content = read_sealed(self.path)
         try:
             arrays = dict(np.load(io.BytesIO(content), allow_pickle=False))
@@ -98,44 +98,48 @@ class Checkpoint:
             raise ValueError(f"{self.path}: not a checkpoint") from error
         self._require_same_run(found)
         try:
-            for number, run in enumerate(runs):
-                _restore_replica(run, number, arrays)
+            for number, replica in enumerate(replicas):
+                _restore_replica(replica, number, arrays)
         except (KeyError, TypeError, ValueError) as error:
             raise ValueError(f"{self.path}: a checkpoint without a part of the run") from error
 
     def _require_same_run(self, found: Mapping[str, Any]) -> None:
         for name, wanted in self.identity.items():
-            if found.get(name) != wanted:
+            if found.get(name) == wanted:
+                continue
+            if name == "source":
                 raise ValueError(
-                    f"{self.path}: a checkpoint of another run: {name} is {found.get(name)} there "
-                    f"and {wanted} here; remove the file to start anew"
+                    f"{self.path}: a checkpoint that other source code of crazybilliards has "
+                    f"written, version {found.get('version')}: its run cannot be continued to the "
+                    "same numbers; remove the file to start anew, or go back to that code"
                 )
+            raise ValueError(
+                f"{self.path}: a checkpoint of another run: {name} is {found.get(name)} there "
+                f"and {wanted} here; remove the file to start anew"
+            )
 
 
-def run_identity(request: Request) -> dict[str, Any]:
-    """Everything that a run's bits depend on, by name; the start as a checksum."""
-    states = (state.tobytes() for start in request.starts for state in start)
+def identity(run: Run) -> dict[str, Any]:
+    """Return everything that a run's bits depend on, by name."""
+    depends = run.provenance()
     return {
+        **run.chain.parameters(),
+        **depends.pop("schedule"),
+        **depends,
         "version": version("crazybilliards"),
-        **request.chain.parameters(),
-        **asdict(request.schedule),
-        **request.settings,
-        "observe": request.observe,
-        "particles": (request.plan.chosen + 1).tolist(),
-        "replicas": len(request.starts),
-        "start": hashlib.sha256(b"".join(states)).hexdigest(),
+        "source": room_fingerprint("model", "particles"),
     }
 
 
-def _restore_replica(run: Replica, number: int, arrays: Mapping[str, np.ndarray]) -> None:
+def _restore_replica(replica: Replica, number: int, arrays: Mapping[str, np.ndarray]) -> None:
     prefix = f"{number}/"
     state = {
         name.removeprefix(prefix): value
         for name, value in arrays.items()
         if name.startswith(prefix)
     }
-    run.generator.bit_generator.state = json.loads(bytes(state.pop("generator")))
-    run.restore(state)
+    replica.generator.bit_generator.state = json.loads(bytes(state.pop("generator")))
+    replica.restore(state)
 
 
 def _text(content: Any) -> np.ndarray:

@@ -2,30 +2,24 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
-
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from crazybilliards.model.vocabulary import result
 from crazybilliards.particles.observers import Integers, Variables
-from crazybilliards.particles.request import Request
+from crazybilliards.particles.run import Run
 from crazybilliards.particles.running.replica import NEVER, Replica
 from crazybilliards.particles.scales import centre_width, time_step_error
 
 Array = NDArray[np.float64]
 
 
-def collect(
-    request: Request,
-    runs: list[Replica],
-    interrupted: bool,
-) -> xr.Dataset:
+def collect(run: Run, replicas: list[Replica], interrupted: bool) -> xr.Dataset:
     """Join the replicas' measurements into one result."""
-    chain, schedule, chosen = request.chain, request.schedule, request.plan.chosen
-    reached = min(run.reached for run in runs)
-    counts = np.array([run.counts for run in runs])
+    chain, schedule = run.chain, run.schedule
+    reached = min(replica.reached for replica in replicas)
+    counts = np.array([replica.counts for replica in replicas])
     if schedule.ensemble:
         # Only times that no replica blew up before: the survivors alone would be a wrong average.
         counts = counts[:, :reached]
@@ -34,40 +28,38 @@ def collect(
         end_time = times[-1] if times.size else 0.0
     else:
         counts = counts.ravel()
-        end_time = min(run.steps for run in runs) * schedule.time_step
+        end_time = min(replica.steps for replica in replicas) * schedule.time_step
     if interrupted and counts.sum() == 0:
         raise KeyboardInterrupt("nothing was measured yet")
     variables: Variables = {}
     coordinates: dict[str, Array] = {"time": times} if schedule.ensemble else {}
     # A chain that diverged before its first snapshot has a status and a time, but no averages.
-    observed = zip(*(run.observers for run in runs), strict=True) if counts.sum() else ()
-    for first, *others in observed:
+    observed = zip(*(replica.observers for replica in replicas), strict=True)
+    for first, *others in observed if counts.sum() else ():
         first.join(others)
         variables |= first.report(counts)
         coordinates |= first.coordinates()
     diverged = reached < NEVER
-    run = result(
+    measured = result(
         chain,
-        {name: _only(chosen, chain.size, *variable) for name, variable in variables.items()},
+        {name: _only(run.chosen, chain.size, *each) for name, each in variables.items()},
         coordinates=coordinates,
         source="simulation",
         status="interrupted" if interrupted else "diverged" if diverged else "completed",
         end_time=end_time,
-        particles=chosen + 1,
+        particles=run.chosen + 1,
         method={
-            **request.settings,
-            "replicas": sum(len(run.starts) for run in runs),
-            "schedule": asdict(schedule),
+            **run.provenance(),
             "duration": schedule.duration,
             "snapshots": int(counts.sum()),
         },
     )
     width = centre_width(chain) * chain.free_velocity_width
-    if "velocity_width" in run:
-        width = float(run.velocity_width.min())
+    if "velocity_width" in measured:
+        width = float(measured.velocity_width.min())
     if np.isfinite(width) and chain.restitution != 1:
-        run.attrs["time_step_error"] = time_step_error(chain, schedule.time_step, width)
-    return run
+        measured.attrs["time_step_error"] = time_step_error(chain, schedule.time_step, width)
+    return measured
 
 
 def _only(

@@ -5,16 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from threading import Event, Lock
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from crazybilliards.particles.laws.avalanche import Tally, make_tally
-from crazybilliards.particles.laws.law import HEAP, Law, make_scratch
-from crazybilliards.particles.observers import Avalanches, Observer, Snapshots
+from crazybilliards.particles.laws.law import HEAP, Scratch, make_scratch
+from crazybilliards.particles.observers import Observer, Snapshots, restore
 from crazybilliards.particles.schedule import Schedule
-from crazybilliards.particles.stepping import Step, advance, bounded, record
+from crazybilliards.particles.stepping import Dynamics, advance, bounded, record
 
 Array = NDArray[np.float64]
 
@@ -24,15 +24,6 @@ _CHUNK = 2**20
 NEVER = 2**62
 
 _CHANGING = ("copy", "y", "v", "counts", "steps", "snapshots", "over", "reached")
-
-
-class Dynamics(NamedTuple):
-    """What moves a chain: the numbers its kernels need, the same for all replicas."""
-
-    anchors: Array
-    step: Step
-    law: Law
-    fastest: float  # a rod that is faster has left every steady state: the chain diverged
 
 
 @dataclass
@@ -72,17 +63,17 @@ class Replica:
         """Return all that changes while running, but the generator's state."""
         state: dict[str, ArrayLike] = {name: getattr(self, name) for name in _CHANGING}
         for number, observer in enumerate(self.observers):
-            for name in observer.accumulated:
-                state[f"observer {number} {name}"] = getattr(observer, name)
+            for name, value in observer.state().items():
+                state[f"observer {number} {name}"] = value
         return state
 
     def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
         """Take over what :meth:`state` returned."""
         for name in _CHANGING:
-            _put(self, name, state[name])
+            restore(self, name, state[name])
         for number, observer in enumerate(self.observers):
-            for name in observer.accumulated:
-                _put(observer, name, state[f"observer {number} {name}"])
+            for name in observer.state():
+                restore(observer, name, state[f"observer {number} {name}"])
 
     def work(self, dynamics: Dynamics, schedule: Schedule, stop: Event) -> Iterator[int]:
         """Run, holding the lock during each chunk; yield the steps of every chunk."""
@@ -104,33 +95,20 @@ class Replica:
             self.copy += 1
             self._start()
 
-    def _kernel(self, dynamics: Dynamics) -> tuple[Any, ...]:
-        """Return what the kernels of ``stepping`` take first."""
-        scratch = make_scratch(self.y.size)
-        return (
-            self.y,
-            self.v,
-            dynamics.anchors,
-            self.generator,
-            dynamics.step,
-            dynamics.law,
-            scratch,
-        )
-
     def _warm_up(self, dynamics: Dynamics, schedule: Schedule, stop: Event) -> Iterator[int]:
-        kernel = self._kernel(dynamics)
-        unseen = make_tally(self.y.size, contacts=False, waves=False)
+        scratch = make_scratch(self.y.size)
+        uncounted = make_tally(self.y.size, contacts=False, waves=False)
         chunk = max(_CHUNK // self.y.size, 1)
         while self.steps < schedule.warmup_steps and not (self.over or stop.is_set()):
             steps = min(chunk, schedule.warmup_steps - self.steps)
-            if not self._advance(kernel, dynamics, unseen, steps):
+            if not self._advance(dynamics, scratch, uncounted, steps):
                 self._diverge(0)
                 return
             self.steps += steps
             yield steps
 
     def _measure(self, dynamics: Dynamics, schedule: Schedule, stop: Event) -> Iterator[int]:
-        kernel = self._kernel(dynamics)
+        scratch = make_scratch(self.y.size)
         tally = self._tally(counted=dynamics.law.operator == HEAP)
         per_block = schedule.snapshots_per_block
         chunk = max(_CHUNK // self.y.size, 1)
@@ -145,16 +123,27 @@ class Replica:
                 y_buffer[0], v_buffer[0], good, steps = self.y, self.v, 1, 0
             elif due > chunk:  # no snapshot yet, but Ctrl-C and checkpoints must not wait for it
                 n, good, steps = 0, 0, chunk
-                if not self._advance(kernel, dynamics, tally, steps):
+                if not self._advance(dynamics, scratch, tally, steps):
                     self._diverge(block)
                     return
             else:
-                views = y_buffer[:n], v_buffer[:n]
-                good = record(*kernel, tally, due, dynamics.fastest, *views)
+                good = record(
+                    self.y,
+                    self.v,
+                    self.generator,
+                    dynamics,
+                    scratch,
+                    tally,
+                    due,
+                    y_buffer[:n],
+                    v_buffer[:n],
+                )
                 steps = good * due
-            seen = y_buffer[:good], v_buffer[:good], tally.contacts
+            snapshots = Snapshots(
+                block, self.snapshots, self.copy, y_buffer[:good], v_buffer[:good], tally.contacts
+            )
             for observer in self.observers:
-                observer.observe(Snapshots(block, self.snapshots, self.copy, *seen))
+                observer.observe(snapshots)
             # All before the yield, where a checkpoint may be taken.
             self.counts[block] += good
             self.snapshots += good
@@ -163,32 +152,17 @@ class Replica:
                 self._diverge(block)
             yield steps
 
-    def _advance(
-        self, kernel: tuple[Any, ...], dynamics: Dynamics, tally: Tally, steps: int
-    ) -> bool:
+    def _advance(self, dynamics: Dynamics, scratch: Scratch, tally: Tally, steps: int) -> bool:
         """Take steps without snapshots; return whether the chain did not diverge in them."""
-        met = advance(*kernel, tally, steps)
+        met = advance(self.y, self.v, self.generator, dynamics, scratch, tally, steps)
         return bool(met >= 0 and bounded(self.y, self.v, dynamics.fastest))
 
     def _diverge(self, block: int) -> None:
         self.over, self.reached = True, min(self.reached, block)
 
     def _tally(self, *, counted: bool) -> Tally:
-        """Collisions at each contact if they are counted at all; waves if they are observed."""
+        """Return what the kernels write collisions into: counts, and what observers add to it."""
         tally = make_tally(self.y.size, contacts=counted, waves=False)
         for observer in self.observers:
-            if isinstance(observer, Avalanches):
-                waves = {name: getattr(observer, name) for name in observer.accumulated}
-                tally = tally._replace(**waves)
+            tally = observer.tally(tally)
         return tally
-
-
-def _put(owner: object, name: str, value: NDArray[Any]) -> None:
-    """Set an attribute to a restored value, keeping its kind: an array or a plain number."""
-    current = getattr(owner, name)
-    if isinstance(current, np.ndarray):
-        if current.shape != value.shape or current.dtype != value.dtype:
-            raise ValueError(f"the checkpoint's {name} does not fit this run")
-        current[...] = value
-    else:
-        setattr(owner, name, type(current)(value))

@@ -8,32 +8,28 @@ from threading import Event
 from tqdm import tqdm
 
 from crazybilliards.model.process import terminated_like_interrupted
+from crazybilliards.particles.run import Run
 from crazybilliards.particles.running.checkpoint import Checkpoint
-from crazybilliards.particles.running.replica import Dynamics, Replica
-from crazybilliards.particles.schedule import Schedule
+from crazybilliards.particles.running.replica import Replica
 
 
 def run_all(
-    runs: list[Replica],
-    dynamics: Dynamics,
-    schedule: Schedule,
-    threads: int,
-    keeper: Checkpoint | None,
-    progress: bool,
+    run: Run, replicas: list[Replica], threads: int, keeper: Checkpoint | None, progress: bool
 ) -> bool:
     """Run the replicas in threads; return whether Ctrl-C or SIGTERM stopped them."""
     stop = Event()
-    done = sum(run.copy * schedule.steps + run.steps for run in runs)
+    schedule, dynamics = run.schedule, run.dynamics()
+    done = sum(replica.copy * schedule.steps + replica.steps for replica in replicas)
     with (
         tqdm(
-            total=sum(len(run.starts) for run in runs) * schedule.steps * schedule.time_step,
+            total=run.replicas * schedule.steps * schedule.time_step,
             initial=done * schedule.time_step,
             desc="simulating",
             unit=" time units",
             unit_scale=True,
             disable=None if progress else True,
         ) as bar,
-        ThreadPoolExecutor(min(threads, len(runs))) as pool,
+        ThreadPoolExecutor(min(threads, len(replicas))) as pool,
         terminated_like_interrupted(),
     ):
 
@@ -44,18 +40,20 @@ def run_all(
         futures: list[Future[None]] = []
         interrupted = False
         try:
-            futures.extend(pool.submit(work, replica) for replica in runs)
-            _finish(futures, runs, keeper)
+            futures.extend(pool.submit(work, replica) for replica in replicas)
+            _finish(futures, replicas, keeper)
         except KeyboardInterrupt:
             interrupted = True
             stop.set()
-            _finish(futures, runs, keeper)
+            _finish(futures, replicas, keeper)
         finally:
             stop.set()  # or leaving would wait for the end of the run
     return interrupted
 
 
-def _finish(futures: list[Future[None]], runs: list[Replica], keeper: Checkpoint | None) -> None:
+def _finish(
+    futures: list[Future[None]], replicas: list[Replica], keeper: Checkpoint | None
+) -> None:
     """Wait for all, or for the first that fails, and keep the checkpoint; see signals soon."""
     timeout = 0.5 if keeper is None else min(0.5, keeper.interval)
     while True:
@@ -65,6 +63,6 @@ def _finish(futures: list[Future[None]], runs: list[Replica], keeper: Checkpoint
         if not pending:
             break
         if keeper is not None:
-            keeper.save_if_due(runs)
+            keeper.save_if_due(replicas)
     if keeper is not None:
-        keeper.save(runs)
+        keeper.save(replicas)

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
-from crazybilliards.particles.laws.avalanche import make_tally, note
+from crazybilliards.particles.laws.avalanche import make_tally, record_collision
 
 
 def follow_every_wave(size, collisions):
@@ -37,7 +37,7 @@ def test_waves_are_counted_like_the_slow_twin(size, seed, number):
     tally = make_tally(size, contacts=True, waves=True)
     pushes = []
     for contact, first, last, momentum in zip(contacts, firsts, lasts, momenta, strict=True):
-        note(contact, first, last, momentum, tally)
+        record_collision(contact, first, last, momentum, tally)
         row = range(contact, last) if momentum > 0 else range(contact, first - 1, -1)
         pushes += [(each, momentum) for each in row]
     expected, under_way = follow_every_wave(size, pushes)
@@ -50,8 +50,8 @@ def test_a_push_through_a_row_at_rest_is_one_wave_of_every_origin():
     """Contacts closing one after another from the left: the wave from 0 runs to the end."""
     tally = make_tally(6, contacts=False, waves=True)
     for contact in range(5):
-        note(contact, contact, contact + 1, 1.0, tally)
-    note(4, 4, 5, -1.0, tally)  # the last front is thrown back: all waves end there
+        record_collision(contact, contact, contact + 1, 1.0, tally)
+    record_collision(4, 4, 5, -1.0, tally)  # the last front is thrown back: all waves end there
     expected = np.zeros((6, 6), dtype=int)
     for origin in range(5):
         expected[origin, 5 - origin - 1] = 1

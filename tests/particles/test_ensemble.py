@@ -166,7 +166,7 @@ def test_only_chosen_particles_are_reported():
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({"observe": "velocities"}, "for an ensemble"),
+        ({"observe": "velocities"}, "not over an ensemble"),
         ({"every": 5}, "every must be at most the duration"),
         ({"every": 0}, "every must be"),
         ({"average": "both"}, "average must be one of"),

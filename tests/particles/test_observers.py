@@ -1,14 +1,29 @@
 """What is measured, against what is known exactly at e = 1."""
 
+import inspect
+import json
+
 import numpy as np
 import pytest
 from scipy.stats import norm
 
 from crazybilliards.model import Chain
+from crazybilliards.model.vocabulary import VOCABULARY
 from crazybilliards.particles import simulate
-from crazybilliards.particles.observers import Plan
-from crazybilliards.particles.observers.energy import Energy
-from crazybilliards.particles.schedule import Schedule
+from crazybilliards.particles.laws.avalanche import make_tally
+from crazybilliards.particles.observers import OBSERVERS, Observer, Velocities, restore
+from crazybilliards.particles.observers.base import Averaged, Snapshots
+from crazybilliards.particles.simulation import make_run
+
+
+def a_run(chain, **changes):
+    """Return a run with the defaults of simulate and some changes."""
+    arguments = {
+        name: parameter.default
+        for name, parameter in inspect.signature(simulate).parameters.items()
+        if name not in ("chain", "threads", "checkpoint", "checkpoint_interval", "progress")
+    }
+    return make_run(chain, **arguments | changes)
 
 
 @pytest.mark.compiled
@@ -71,7 +86,7 @@ def test_the_autocorrelation_time_is_that_of_a_free_rod():
 
 
 def test_collisions_are_only_seen_one_at_a_time():
-    with pytest.raises(ValueError, match="'collisions' are only seen"):
+    with pytest.raises(ValueError, match="'collisions' needs single collisions"):
         simulate(Chain(), method="contact-dynamics", observe="collisions", progress=False)
     with pytest.raises(ValueError, match="'velocities' needs"):
         simulate(Chain(damping=0), observe="velocities", progress=False)
@@ -89,7 +104,115 @@ def test_observe_and_particles_take_lists():
 
 
 def test_the_energy_of_a_run_of_a_billion_snapshots_takes_no_memory_for_their_times():
-    schedule = Schedule(0.1, warmup_steps=0, stride=10, blocks=64, snapshots_per_block=10**8)
-    energy = Energy(Plan(Chain(), schedule, np.arange(100), swing=0.0, copies=1))
+    run = a_run(Chain(), duration=6.4e9, time_step=0.1, warmup=0, observe="energy")
+    assert run.schedule.snapshots == 64 * 10**8
+    [energy] = (observer.prepared(run, 1) for observer in run.observers)
     energy.counts[:] = energy.together
     assert energy.coordinates()["time"][[0, -1]] == pytest.approx([3.2e6, 6.4e9 - 3.2e6], rel=1e-6)
+
+
+BUILT_IN = [pytest.param(observer, id=name) for name, observer in OBSERVERS.items()]
+
+
+def some_snapshots(run, generator, first):
+    """Return three snapshots of ordered rods, and the collisions since the last ones."""
+    y = np.sort(generator.normal(scale=run.chain.thermal_length, size=(3, run.chain.size)))
+    v = generator.normal(scale=2000 * run.chain.free_velocity_width, size=y.shape)
+    y[0, -1] = 1e9  # beyond any grid
+    collisions = generator.integers(1, 9, size=run.chain.size - 1)
+    return Snapshots(0, first, 0, y, v, collisions)
+
+
+@pytest.mark.parametrize("average", ["time", "ensemble"])
+@pytest.mark.parametrize("observer", BUILT_IN)
+def test_a_checkpoint_keeps_everything_that_observing_changes(observer, average):
+    """Save and restore, then observe the same: every attribute agrees. None can be forgotten."""
+    if average == "ensemble" and not observer.ensemble:
+        return
+    run = a_run(Chain(size=5), duration=100, observe=observer(), average=average, replicas=2)
+    generator = np.random.default_rng(1)
+    [original] = (each.prepared(run, 2) for each in run.observers)
+    untouched = {name: np.array(value) for name, value in original.state().items()}
+    original.observe(some_snapshots(run, generator, 0))
+    tally = original.tally(make_tally(5, contacts=True, waves=False))
+    for array in tally:
+        array += 1  # as the collision kernels do
+    state = {name: np.array(value) for name, value in original.state().items()}
+    assert any(not np.array_equal(state[name], untouched[name]) for name in state)
+    [resumed] = (each.prepared(run, 2) for each in run.observers)
+    for name, value in state.items():
+        restore(resumed, name, value)
+    snapshots = some_snapshots(run, generator, 3)
+    for each in (original, resumed):
+        each.observe(snapshots)
+    assert vars(original).keys() == vars(resumed).keys()
+    for name, value in vars(original).items():
+        assert np.array_equal(value, vars(resumed)[name], equal_nan=isinstance(value, np.ndarray))
+
+
+@pytest.mark.parametrize("observer", BUILT_IN)
+def test_an_observer_gives_what_it_declares(observer):
+    result = simulate(Chain(size=4), duration=300, observe=observer(), progress=False)
+    variables = {str(name).removesuffix("_error") for name in result.data_vars}
+    assert variables == set(observer.gives)
+    common = {"particle", "normalized_particle", "mean_position"}
+    assert {str(name) for name in result.coords} - common == set(observer.along)
+    assert set(observer.gives) <= VOCABULARY.keys()
+
+
+def test_what_a_checkpoint_cannot_hold_is_refused():
+    class Listing(Averaged):
+        name = "listing"
+        gives = ("density",)
+
+        def prepare(self, run, copies):
+            self.kept = []
+
+        def memory(self, run):
+            return 0.0
+
+        def observe(self, snapshots):
+            self.kept.append(snapshots)
+
+        def report(self, counts):
+            return {}
+
+    with pytest.raises(TypeError, match="listing: kept must be an array or a number"):
+        simulate(Chain(size=2), duration=200, observe=Listing(), progress=False)
+
+
+def test_an_observer_is_taken_as_an_object_with_parameters():
+    options = {"duration": 500, "progress": False}
+    fine = simulate(Chain(size=2), observe=["widths", Velocities(bins=801)], **options)
+    assert fine.sizes["velocity"] == 801
+    usual = simulate(Chain(size=2), observe=["widths", "velocities"], **options)
+    assert usual.sizes["velocity"] == 401
+    np.testing.assert_array_equal(fine.velocity_width, usual.velocity_width)
+    observe = json.loads(fine.attrs["provenance"])["observe"]
+    assert observe == ["widths", "velocities(bins=801)"]
+    with pytest.raises(ValueError, match="bins must be an integer"):
+        Velocities(bins=0)
+
+
+@pytest.mark.parametrize(
+    ("observe", "name"),
+    [
+        (["velocities", "snapshots"], "velocity"),
+        (["energy", "snapshots"], "time"),
+        ([Velocities(bins=11), Velocities()], "velocity"),
+    ],
+)
+def test_two_observers_that_would_give_one_name_are_refused(observe, name):
+    with pytest.raises(ValueError, match=f"would both give '{name}'"):
+        a_run(Chain(), observe=observe)
+    if "energy" in observe:  # the times of an ensemble are common to all
+        a_run(Chain(), observe=observe, average="ensemble")
+
+
+def test_every_observer_has_a_name_of_its_own():
+    def leaves(kind):
+        below = kind.__subclasses__()
+        return {kind} if not below else set().union(*map(leaves, below))
+
+    built_in = {each for each in leaves(Observer) if each.__module__.startswith("crazybilliards.")}
+    assert built_in == set(OBSERVERS.values())

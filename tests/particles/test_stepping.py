@@ -8,16 +8,16 @@ from crazybilliards.kinetic import equilibrium
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
 from crazybilliards.particles.laws.avalanche import make_tally
-from crazybilliards.particles.laws.law import make_law, make_scratch
-from crazybilliards.particles.stepping import advance, make_step
+from crazybilliards.particles.laws.law import make_scratch
+from crazybilliards.particles.stepping import advance, make_dynamics, make_step
 
 
 def take_steps(chain, y, v, generator, step, steps):
     """Advance an elastic chain in place."""
-    law = make_law(chain, step.time_step, "event-driven", 0.03, 1.0)
+    dynamics = make_dynamics(chain, step.time_step, speed=1.0)._replace(step=step)
     tally = make_tally(chain.size, contacts=False, waves=False)
     scratch = make_scratch(chain.size)
-    return advance(y, v, chain.reduced_anchors, generator, step, law, scratch, tally, steps)
+    return advance(y, v, generator, dynamics, scratch, tally, steps)
 
 
 def stationary_widths(stepper, time_step, **parameters):

@@ -1,0 +1,206 @@
+"""What a run is: the arguments of ``simulate`` that its numbers follow from, checked, in one place.
+
+A :class:`Run` is made once, before any work. Observers, kernels, checkpoints and the provenance
+of the result take from it what they need.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Collection, Sequence
+from dataclasses import asdict, dataclass
+from functools import cached_property
+from typing import Any, ClassVar, Protocol, get_args
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from crazybilliards.model import Chain
+from crazybilliards.model.checks import check_choice, check_integer, check_real, shown
+from crazybilliards.model.grid import require_resolved
+from crazybilliards.model.memory import require_memory
+from crazybilliards.particles.laws.law import Method
+from crazybilliards.particles.scales import start_swing, typical_speed
+from crazybilliards.particles.schedule import Average, Schedule, make_schedule
+from crazybilliards.particles.start import replica_starts
+from crazybilliards.particles.stepping import Dynamics, Stepper, make_dynamics
+
+Array = NDArray[np.float64]
+
+_GROUPS = 32  # of an ensemble: enough for an error bar good to an eighth
+
+# Peak memory, measured: observers are joined and averaged in copies; chunks of snapshots.
+_COPIES = 7
+_BYTES_PER_ROD = 100
+_BYTES_PER_REPLICA = 10_000
+_CHUNKS = 4e7
+
+
+class Measurement(Protocol):
+    """What a run has to know of an observer before it begins; see ``observers/base.py``."""
+
+    name: ClassVar[str]
+    gives: ClassVar[tuple[str, ...]]
+    along: ClassVar[tuple[str, ...]]
+    single_collisions: ClassVar[bool]
+    ensemble: ClassVar[bool]
+
+    def memory(self, run: Run) -> float:
+        """Return the bytes it would keep for one replica, or one group of an ensemble's."""
+
+    def prepared(self, run: Run, copies: int) -> Any:
+        """Return an observer with the same parameters that can begin."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Run:
+    """A run that can be carried out; the fields are the arguments of ``simulate``.
+
+    Raises
+    ------
+    ValueError
+        For a wrong argument, or if the run would not fit into memory: it takes 100 bytes a rod
+        and 10 kB a replica, 40 MB for the snapshots under way, and seven times what the
+        observers keep, while they are joined and averaged.
+    """
+
+    chain: Chain
+    duration: float
+    warmup: float | None
+    time_step: float | None
+    method: Method
+    stepper: Stepper
+    merging: float
+    seed: int
+    observers: tuple[Measurement, ...]
+    start: xr.Dataset | None
+    particles: Sequence[int] | None
+    replicas: int
+    average: Average
+    every: float | None
+
+    def __post_init__(self) -> None:
+        for name, kinds in (("method", Method), ("stepper", Stepper), ("average", Average)):
+            check_choice(name, getattr(self, name), get_args(kinds))
+        object.__setattr__(self, "merging", check_real("merging", self.merging))
+        object.__setattr__(self, "seed", check_integer("seed", self.seed, least=0))
+        object.__setattr__(self, "replicas", check_integer("replicas", self.replicas, least=1))
+        # Each of these raises for what is wrong with its own arguments.
+        own = self.replicas * (_BYTES_PER_ROD * float(self.chain.size) + _BYTES_PER_REPLICA)
+        require_memory(f"replicas={self.replicas} of {self.chain.size} rods", own + _CHUNKS)
+        _check_observers(self)
+        _ = self.chosen, self.schedule
+        require_resolved(self.chain, float(self.chain.reduced_anchors[-1]))
+        _ = self.starts
+        kept = self.groups * sum(observer.memory(self) for observer in self.observers)
+        names = ", ".join(observer.name for observer in self.observers)
+        few = "ask for fewer particles, replicas or times"
+        require_memory(f"observe ({few}): {names}", own + _CHUNKS + _COPIES * kept)
+
+    @cached_property
+    def schedule(self) -> Schedule:
+        """The run in whole numbers of steps and snapshots."""
+        return make_schedule(
+            self.chain,
+            duration=self.duration,
+            warmup=self.warmup,
+            time_step=self.time_step,
+            every=self.every,
+            average=self.average,
+            replicas=self.replicas,
+            stepper=self.stepper,
+            started=self.start is not None,
+        )
+
+    @cached_property
+    def chosen(self) -> NDArray[np.int64]:
+        """The particles to report, counted from 0."""
+        size, particles = self.chain.size, self.particles
+        if particles is None:
+            return np.arange(size)
+        if isinstance(particles, str) or not isinstance(particles, Collection):
+            raise ValueError(f"particles must be a list of numbers, got {shown(particles)}")
+        chosen = [check_integer("particles", particle, least=1) for particle in particles]
+        if not chosen or max(chosen) > size or sorted(set(chosen)) != chosen:
+            raise ValueError(f"particles must ascend within 1..{size}, got {shown(particles)}")
+        return np.array(chosen) - 1
+
+    @cached_property
+    def starts(self) -> list[tuple[Array, Array]]:
+        """Reduced positions and velocities at the start, one pair a replica."""
+        return replica_starts(self.chain, self.start, self.replicas)
+
+    @cached_property
+    def swing(self) -> float:
+        """How far the energy of the start takes a rod from its anchor [R]."""
+        return max(start_swing(self.chain, y, v) for y, v in self.starts)
+
+    @property
+    def groups(self) -> int:
+        """Number of groups of replicas; those of a group share their observers."""
+        return min(self.replicas, _GROUPS) if self.schedule.ensemble else self.replicas
+
+    @property
+    def copies(self) -> int:
+        """Number of replicas in the largest group."""
+        return -(-self.replicas // self.groups)
+
+    @property
+    def counted(self) -> bool:
+        """Whether an observer needs every single collision."""
+        return any(observer.single_collisions for observer in self.observers)
+
+    def dynamics(self) -> Dynamics:
+        """Return what the kernels need to know."""
+        duration = self.schedule.warmup + self.schedule.duration
+        return make_dynamics(
+            self.chain,
+            self.schedule.time_step,
+            speed=max(typical_speed(self.chain, duration, y, v) for y, v in self.starts),
+            method=self.method,
+            stepper=self.stepper,
+            merging=self.merging,
+            counted=self.counted,
+        )
+
+    def provenance(self) -> dict[str, Any]:
+        """Return all but the chain that the numbers follow from, as JSON can hold it."""
+        states = (state.tobytes() for start in self.starts for state in start)
+        return {
+            "method": self.method,
+            "stepper": self.stepper,
+            "merging": self.merging,
+            "seed": self.seed,
+            "replicas": self.replicas,
+            "observe": [str(observer) for observer in self.observers],
+            "particles": "all" if self.particles is None else (self.chosen + 1).tolist(),
+            "start": "at rest"
+            if self.start is None
+            else f"sha256 {hashlib.sha256(b''.join(states)).hexdigest()}",
+            "schedule": asdict(self.schedule),
+        }
+
+
+def _check_observers(run: Run) -> None:
+    """Raise if an observer cannot do its work in this run, or two would give one name."""
+    given: dict[str, str] = {}
+    for observer in run.observers:
+        if run.average == "ensemble" and not observer.ensemble:
+            raise ValueError(
+                f"observe: {observer.name!r} is averaged over time only, not over an ensemble"
+            )
+        if observer.single_collisions and run.method != "event-driven":
+            raise ValueError(
+                f"observe: {observer.name!r} needs single collisions, which only "
+                "method='event-driven' sees"
+            )
+        # The times of an ensemble are the same for all observers.
+        own = set(observer.along) - ({"time"} if run.average == "ensemble" else set())
+        for name in sorted(own | set(observer.gives)):
+            if name in given:
+                raise ValueError(
+                    f"observe: {given[name]!r} and {observer.name!r} would both give {name!r}; "
+                    "take one of them"
+                )
+            given[name] = observer.name
