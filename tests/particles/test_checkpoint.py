@@ -17,6 +17,7 @@ from crazybilliards.model import Chain, load, save
 from crazybilliards.model.locks import locked
 from crazybilliards.model.storage import read_sealed, write_sealed
 from crazybilliards.particles import simulate
+from crazybilliards.particles.running import checkpoint
 from crazybilliards.particles.running.replica import Replica
 
 SCRIPT = """
@@ -49,13 +50,13 @@ def run(script, checkpoint, output, how=None, after=0.0):
 @pytest.mark.compiled
 @pytest.mark.parametrize("e", [1.0, 0.7])
 def test_killed_at_random_moments_and_resumed_it_is_the_undisturbed_run(e, tmp_path):
-    script = SCRIPT.format(e=e, duration=800_000 if e == 1 else 12_000)
+    script = SCRIPT.format(e=e, duration=150_000 if e == 1 else 4_000)
     undisturbed, output = tmp_path / "undisturbed.nc", tmp_path / "run.nc"
     checkpoint = tmp_path / "state"
     assert run(script, "", undisturbed) == 0
     generator = np.random.default_rng(int(10 * e))
     for how in (signal.SIGTERM, signal.SIGKILL, signal.SIGKILL, signal.SIGINT):
-        run(script, checkpoint, output, how, after=generator.random())
+        run(script, checkpoint, output, how, after=generator.random() / 2)
         if how == signal.SIGTERM:
             assert load(output).attrs["status"] == "interrupted"
     # However far it came, now to the end.
@@ -227,3 +228,15 @@ def test_a_checkpoint_without_a_part_is_refused(tmp_path):
         write_sealed(path, buffer.getvalue())
         with pytest.raises(ValueError, match="without a part of the run"):
             simulate(chain, checkpoint=path, **options)
+
+
+def test_a_checkpoint_of_other_source_code_is_refused(tmp_path, monkeypatch):
+    """An edited kernel would continue the run to numbers of which half are the old one's."""
+    arguments = {"duration": 500, "progress": False, "checkpoint": tmp_path / "state"}
+    with monkeypatch.context() as patched:
+        patched.setattr(checkpoint, "room_fingerprint", lambda *rooms: "before the edit")
+        before = simulate(Chain(size=10), **arguments)
+    with pytest.raises(ValueError, match="that other source code of crazybilliards has written"):
+        simulate(Chain(size=10), **arguments)
+    (tmp_path / "state").unlink()
+    xr.testing.assert_identical(simulate(Chain(size=10), **arguments), before)
