@@ -24,8 +24,8 @@ help:
 	@echo "make check      lint, format and type checks"
 	@echo "make audit      look up known vulnerabilities of every package used (needs the network)"
 	@echo "make reproduce  every figure and claim of the paper into reproduced/ (4 min; QUALITY=full 1 h)"
-	@echo "make notebooks  execute the notebooks"
-	@echo "make docs       the documentation as a web site, into build/docs/; notebooks and examples are executed"
+	@echo "make notebooks  execute the notebooks, into build/notebooks/"
+	@echo "make docs       the documentation as a web site, into build/docs/; its examples are executed"
 	@echo "make linkcheck  look up every address the pages point to (needs the network)"
 	@echo "make benchmark  measure the speed"
 	@echo "make clean      remove the environment and everything built"
@@ -65,8 +65,16 @@ audit: $(VENV)/installed-test $(VENV)/installed-docs $(VENV)/installed-audit
 reproduce: $(VENV)/installed
 	$(BIN)/crazybilliards reproduce all --quality $(QUALITY)
 
+# Copies are executed, with their outputs: the documentation shows those.
 notebooks: $(VENV)/installed-notebooks
-	$(BIN)/python -m pytest -n 2 --nbmake --nbmake-timeout=300 notebooks
+	rm -rf build/notebooks
+	mkdir -p build/notebooks
+	cp notebooks/*.ipynb build/notebooks
+	$(BIN)/python -m pytest -n 2 --nbmake --nbmake-timeout=300 --overwrite build/notebooks
+	touch build/notebooks/executed
+
+build/notebooks/executed: $(wildcard notebooks/*.ipynb)
+	$(MAKE) notebooks
 
 # A browser for the test of the page, which is skipped without: Debian's, where one may install it.
 browser:
@@ -76,11 +84,11 @@ browser:
 	  echo "install chromium and chromedriver to test the page of crazybilliards explore"
 
 # Warnings are errors: links and anchors that lead nowhere, examples that fail.
-docs: $(VENV)/installed-docs
+docs: $(VENV)/installed-docs build/notebooks/executed
 	$(BIN)/python -m sphinx -W --keep-going -b html docs build/docs
 	@echo "open build/docs/index.html"
 
-linkcheck: $(VENV)/installed-docs
+linkcheck: $(VENV)/installed-docs build/notebooks/executed
 	$(BIN)/python -m sphinx -b linkcheck docs build/linkcheck
 
 benchmark: $(VENV)/installed-benchmark

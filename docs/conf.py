@@ -43,9 +43,10 @@ myst_enable_extensions = ["dollarmath", "amsmath", "deflist"]
 myst_heading_anchors = 3
 myst_dmath_double_inline = True
 
-# Notebooks, and the examples in the how-to pages, run; what fails fails the build.
-nb_execution_mode = "cache"
-nb_execution_cache_path = str(ROOT / "build" / "executed")
+# The notebooks come with the outputs that `make notebooks` has given them. The examples in the
+# how-to pages have none and are executed; what fails fails the build.
+nb_execution_mode = "force"
+nb_execution_excludepatterns = ["notebooks/*"]
 nb_execution_timeout = 300
 nb_execution_raise_on_error = True
 nb_merge_streams = True
@@ -67,14 +68,14 @@ napoleon_use_ivar = True
 
 
 def copy_notebooks() -> None:
-    """Bring the notebooks of the repository below docs/, where Sphinx looks for pages.
+    """Bring the executed notebooks below docs/, where Sphinx looks for pages.
 
     Links to ../docs/ become links to pages. A file that has not changed is left alone, for Sphinx
     not to read it again.
     """
     there = HERE / "notebooks"
     there.mkdir(exist_ok=True)
-    sources = {path.name: path for path in (ROOT / "notebooks").glob("*.ipynb")}
+    sources = {path.name: path for path in (ROOT / "build" / "notebooks").glob("*.ipynb")}
     for stale in there.iterdir():
         if stale.name not in sources:
             shutil.rmtree(stale) if stale.is_dir() else stale.unlink()

@@ -50,7 +50,11 @@ def _fingerprint(function: Callable[..., Any]) -> str:
         if each in known:
             continue
         known.add(each)
-        files.add(Path(inspect.getfile(each)))
+        file = Path(inspect.getfile(each))
+        if file.is_file():
+            files.add(file)
+        else:  # a cell of a notebook
+            constants.add(inspect.getsource(each))
         for name, value in _named(each):
             if hasattr(value, "py_func"):
                 waiting.append(value.py_func)

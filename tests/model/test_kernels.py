@@ -1,10 +1,13 @@
 """The kernel cache must notice a change in anything that a kernel calls, wherever it stands."""
 
+import linecache
 import os
 import subprocess
 import sys
 
 import pytest
+
+from crazybilliards.model import kernels
 
 CALLER = """
 import inner.middle
@@ -55,3 +58,14 @@ def test_a_changed_callee_is_recompiled_however_far_away(tmp_path):
         outputs.append(int(done.stdout))
     assert outputs == [3, 3, 6, 8]
     assert list(tmp_path.glob("__pycache__/caller.outer*.nbi"))
+
+
+def test_a_kernel_of_a_notebook_has_no_file():
+    found = set()
+    for number, factor in enumerate((2, 2, 3)):
+        source, name = f"def scaled(x):\n    return {factor} * x\n", f"/nowhere/cell{number}.py"
+        linecache.cache[name] = (len(source), None, source.splitlines(keepends=True), name)
+        scope = {}
+        exec(compile(source, name, "exec"), scope)
+        found.add(kernels._fingerprint(scope["scaled"]))
+    assert len(found) == 2
