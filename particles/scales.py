@@ -55,9 +55,9 @@ def centre_width(chain: Chain) -> float:
     e = chain.restitution
     if e >= 1 or chain.damping == 0 or chain.stiffness == 0:
         return 1.0
-    crowd = chain.size / (1 + chain.gap * chain.size / max(2.5 * chain.thermal_length, 1e-60))
+    neighbours = chain.size / (1 + chain.gap * chain.size / max(2.5 * chain.thermal_length, 1e-60))
     rate = spring_rate(chain) * chain.mass / chain.damping
-    return 1 / math.sqrt(1 + (0.1 + 0.14 * e**4) * (1 - e**2) * crowd * rate)
+    return 1 / math.sqrt(1 + (0.1 + 0.14 * e**4) * (1 - e**2) * neighbours * rate)
 
 
 def default_time_step(chain: Chain) -> float:
