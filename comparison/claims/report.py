@@ -69,10 +69,13 @@ def all_cases(figures: Iterable[PaperFigure], quality: Quality) -> list[Case]:
 
 
 def reproduce(
-    figures: Iterable[PaperFigure], quality: Quality, folder: Path
+    figures: Iterable[PaperFigure], quality: Quality, folder: Path, *, keep_old: bool = False
 ) -> Iterator[Reproduced]:
-    """Draw figures and check their claims, one after another, from the cases in ``folder``."""
-    load = cache(lambda case: case.load(folder))  # many figures share cases
+    """Draw figures and check their claims, one after another, from the cases in ``folder``.
+
+    ``keep_old`` as in :func:`crazybilliards.comparison.sweeps.run_cases`.
+    """
+    load = cache(lambda case: case.load(folder, keep_old=keep_old))  # many figures share cases
     for figure in figures:
         cases = figure.cases(quality)
         yield _reproduce(figure, cases, {name: load(case) for name, case in cases.items()})

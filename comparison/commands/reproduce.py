@@ -14,6 +14,7 @@ import typer
 from crazybilliards.comparison.commands.output import check_folder
 from crazybilliards.comparison.commands.sweep import (
     Dask,
+    KeepOld,
     Processes,
     Scheduler,
     compute_missing,
@@ -47,6 +48,7 @@ def reproduce(
     processes: Processes = None,
     dask: Dask = False,
     scheduler: Scheduler = None,
+    keep_old: KeepOld = False,
 ) -> None:
     """Reproduce the figures of arXiv:1404.7460, and check what the paper claims.
 
@@ -77,13 +79,13 @@ def reproduce(
     with locked(output):
         kept = output / "cases"
         cases = all_cases(wanted, quality.value)
-        missing = missing_cases(cases, kept)
+        missing = missing_cases(cases, kept, keep_old=keep_old)
         print(f"{len(cases)} cases, {len(cases) - len(missing)} of them in {kept} already")
         compute_missing(missing, kept, computing)
-        _write(wanted, quality, output)
+        _write(wanted, quality, output, keep_old)
 
 
-def _write(figures: list[PaperFigure], quality: Quality, output: Path) -> None:
+def _write(figures: list[PaperFigure], quality: Quality, output: Path, keep_old: bool) -> None:
     import matplotlib
 
     matplotlib.use("Agg")
@@ -92,7 +94,7 @@ def _write(figures: list[PaperFigure], quality: Quality, output: Path) -> None:
     from crazybilliards.model.storage import write_atomically
 
     reproduced = []
-    for each in draw(figures, quality.value, output / "cases"):
+    for each in draw(figures, quality.value, output / "cases", keep_old=keep_old):
         write_atomically(output / each.file_name, each.picture)
         print(f"wrote {output / each.file_name}")
         reproduced.append(each)

@@ -10,7 +10,7 @@ import matplotlib.pyplot as plt
 import pytest
 
 from crazybilliards.comparison.paper.figures import FIGURES
-from crazybilliards.comparison.sweeps.case import JOBS
+from crazybilliards.comparison.sweeps.jobs import JOBS
 
 SIMULATED = [
     figure
@@ -25,7 +25,7 @@ def short_run(case):
     # Energies grow in time, and the tails of flippers are empty in short runs: those stay.
     if settings["average"] != "replicas" and case.chain.restitution <= 1:
         settings |= {"duration": 70.0, "warmup": 20.0, "time_step": 0.05}
-    return JOBS[case.job](case.chain, **settings)
+    return JOBS[case.job].function(case.chain, **settings)
 
 
 @pytest.mark.compiled

@@ -59,7 +59,7 @@ def long_grid(tmp_path):
 def test_processes_and_dask_give_the_same_results(grid, tmp_path):
     cases = read_sweep(grid).cases()
     for case in cases:
-        write_sealed(case.file(tmp_path / "here"), compute(case, case.canonical))
+        write_sealed(case.file(tmp_path / "here"), compute(case, case.source))
     with process_pool(2) as pool:
         assert run_cases(cases, tmp_path / "pool", pool, progress=False) == {}
     with dask_cluster() as cluster:
