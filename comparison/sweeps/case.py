@@ -191,7 +191,7 @@ def compute(case: Case, source: str) -> bytes:
         return bytes(result.to_netcdf(engine="h5netcdf"))
 
 
-def stored_parameters(attributes: Mapping[str, Any]) -> dict[str, Any]:
+def stored_parameters(attributes: Mapping[Any, Any]) -> dict[str, Any]:
     """Return the parameters of the case that a file holds, by its attributes; {} if it holds none.
 
     Parameters that the file lacks, because they did not exist when it was written, are at their

@@ -135,10 +135,9 @@ def load_sweep(folder: Path) -> xr.Dataset:
         hold the same case.
     """
     paths = sorted(Path(folder).glob("*.nc"))
-    results = [load(path) for path in paths]
-    points = [_point(path, result) for path, result in zip(paths, results, strict=True)]
-    if not points:
+    if not paths:
         raise ValueError(f"{folder}: holds no case of a sweep")
+    points, results = zip(*map(_read_case, paths), strict=True)
     _check_points(paths, points)
     if len({result.attrs.get("source_fingerprint") for result in results}) > 1:
         warnings.warn(f"{folder}: different source code computed these cases", stacklevel=2)
@@ -167,16 +166,17 @@ def load_sweep(folder: Path) -> xr.Dataset:
     return joined.assign_attrs(parameters=json.dumps(fixed, sort_keys=True))
 
 
-def _point(path: Path, result: xr.Dataset | xr.DataTree) -> dict[str, Any]:
-    """Return the parameters of the case in a file, or raise if there is none."""
+def _read_case(path: Path) -> tuple[dict[str, Any], xr.Dataset]:
+    """Return the parameters of the case in a file and its result, or raise if there is none."""
+    result = load(path)
     point = stored_parameters(result.attrs)
     complete = point and {"status", "provenance"} <= result.attrs.keys()
     if not complete or isinstance(result, xr.DataTree):
         raise ValueError(f"{path}: not a case of a sweep")
-    return point
+    return point, result
 
 
-def _check_points(paths: list[Path], points: list[dict[str, Any]]) -> None:
+def _check_points(paths: Sequence[Path], points: Sequence[dict[str, Any]]) -> None:
     """Raise unless these are different cases of one job, with the same names of parameters."""
     if len({point["job"] for point in points}) > 1:
         raise ValueError(f"{paths[0].parent}: holds cases of different jobs")
