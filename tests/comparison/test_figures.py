@@ -1,4 +1,4 @@
-"""Every figure of the paper is drawn and its claims are checked, from runs that are far too short.
+"""Every figure and study is drawn and its claims are checked, from runs that are far too short.
 
 Right numbers are the business of ``crazybilliards reproduce``; here nothing may break on the way.
 Figures that need the kinetic equation take minutes and are left to it.
@@ -10,13 +10,14 @@ import matplotlib.pyplot as plt
 import pytest
 
 from crazybilliards.comparison.paper.figures import FIGURES
+from crazybilliards.comparison.studies.found import STUDIES
 from crazybilliards.comparison.sweeps import Case
 from crazybilliards.comparison.sweeps.jobs import JOBS
 
-SIMULATED = [
-    figure
-    for figure in FIGURES
-    if all(case.job == "simulate" for case in figure.cases("quick").values())
+QUICK = [
+    study
+    for study in (*FIGURES, *STUDIES)
+    if not any(case.job == "phase_space" for case in study.cases("quick").values())
 ]
 
 
@@ -26,6 +27,8 @@ def result(case):
 
 
 def short_run(case):
+    if case.job != "simulate":
+        return result(case)
     settings, chain = dict(case.settings), case.chain
     # Flippers stay as they are: their energy grows in time, and short runs have no tails.
     if chain.restitution <= 1:
@@ -37,12 +40,12 @@ def short_run(case):
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("figure", SIMULATED, ids=lambda figure: figure.name)
-def test_a_figure_is_drawn_and_every_claim_gets_a_verdict(figure):
-    results = {name: short_run(case) for name, case in figure.cases("quick").items()}
-    for claim in figure.claims(results):
+@pytest.mark.parametrize("study", QUICK, ids=lambda study: study.name)
+def test_it_is_drawn_and_every_claim_gets_a_verdict(study):
+    results = {name: short_run(case) for name, case in study.cases("quick").items()}
+    for claim in study.claims(results):
         assert claim.verdict in ("reproduced", "refuted", "undecided")
         assert claim.statement
-    drawn = figure.draw(results)
+    drawn = study.draw(results)
     assert drawn.axes
     plt.close(drawn)
