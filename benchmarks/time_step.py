@@ -96,12 +96,12 @@ def widths(chain: Chain, time_step: float, duration: float, seed: int) -> np.nda
     steps = math.ceil(duration / time_step)
     for taken, measure in ((math.ceil(WARM_UP / time_step), False), (steps, True)):
         run(*copies, chain.reduced_anchors, generator, tally, taken, measure)
-    seen = []
+    found = []
     for copy in copies:
         # The results of `simulate` are taken after half a step more of damping and noise.
         square = copy.step.outer_decay**2 * copy.squares / steps + copy.step.outer_noise**2
-        seen.append(np.sqrt([square[middle].mean(), (square[0] + square[-1]) / 2]))
-    return np.array(seen)
+        found.append(np.sqrt([square[middle].mean(), (square[0] + square[-1]) / 2]))
+    return np.array(found)
 
 
 def main() -> None:
@@ -113,9 +113,9 @@ def main() -> None:
             continue
         chain = Chain(size=size, restitution=restitution, damping=damping)
         step = default_time_step(chain)
-        seen = np.array([widths(chain, step, duration / RUNS, seed) for seed in range(RUNS)])
+        found = np.array([widths(chain, step, duration / RUNS, seed) for seed in range(RUNS)])
         # coarse/limit - 1 = (1 + share) (coarse/fine - 1), limit = fine + share (fine - coarse)
-        deviation = 100 * (1 + 1 / (FINER**0.75 - 1)) * (seen[:, 0] / seen[:, 1] - 1)
+        deviation = 100 * (1 + 1 / (FINER**0.75 - 1)) * (found[:, 0] / found[:, 1] - 1)
         mean, error = deviation.mean(axis=0), deviation.std(axis=0, ddof=1) / math.sqrt(RUNS)
         shown = [f"{d:+.1f} ± {s:.1f}" for d, s in zip(mean, error, strict=True)]
         print(f"| {restitution} | {size} | {step:.1e} | {' | '.join(shown)} |", flush=True)

@@ -40,14 +40,14 @@ def compared(chain: Chain, duration: float, folder: Path) -> WidthDeviation:
     return width_deviation(run, theory)
 
 
-def row(chain: Chain, seen: WidthDeviation) -> str:
+def row(chain: Chain, found: WidthDeviation) -> str:
     """Return a line of the table, in per cent."""
     name = f"{chain.restitution:g}" + (f", gamma = {chain.damping:g}" if chain.damping != 1 else "")
     values = " | ".join(
         f"{100 * value:+.1f} ± {100 * error:.1f}"
-        for value, error in ((seen.centre, seen.error), (seen.border, seen.border_error))
+        for value, error in ((found.centre, found.error), (found.border, found.border_error))
     )
-    return f"| {name} | {chain.size} | {values} | {100 * seen.largest:.1f} |"
+    return f"| {name} | {chain.size} | {values} | {100 * found.largest:.1f} |"
 
 
 def main(folder: Path, figure: Path) -> None:
@@ -58,15 +58,15 @@ def main(folder: Path, figure: Path) -> None:
         for restitution in RESTITUTIONS:
             chain = Chain(size=size, restitution=restitution)
             longer = LONGER if size >= 300 and restitution >= 0.9 else 1.0
-            seen = compared(chain, longer * duration, folder)
-            results[size].append((restitution, seen))
-            print(row(chain, seen), flush=True)
+            found = compared(chain, longer * duration, folder)
+            results[size].append((restitution, found))
+            print(row(chain, found), flush=True)
     driven = []
     for size, duration in DRIVEN:
         chain = Chain(size=size, restitution=1.05, damping=4.0)
-        seen = compared(chain, duration, folder)
-        driven.append((size, seen))
-        print(row(chain, seen), flush=True)
+        found = compared(chain, duration, folder)
+        driven.append((size, found))
+        print(row(chain, found), flush=True)
     draw(results, driven, figure)
 
 
@@ -78,12 +78,12 @@ def draw(
     drawing, axes = plt.subplots(1, 2, figsize=(9.2, 4.2), sharex=True, layout="constrained")
     shown = [*RESTITUTIONS, 1.05]  # evenly spaced: most of what happens lies close to 1
     for ax, place, error in zip(axes, ("centre", "border"), ("error", "border_error"), strict=True):
-        for number, (size, seen) in enumerate(results.items()):
+        for number, (size, found) in enumerate(results.items()):
             colour, symbol = LOOKS[size]
             ax.errorbar(
-                [shown.index(e) + 0.04 * (number - 1.5) for e, _ in seen],
-                [100 * getattr(each, place) for _, each in seen],
-                [100 * getattr(each, error) for _, each in seen],
+                [shown.index(e) + 0.04 * (number - 1.5) for e, _ in found],
+                [100 * getattr(each, place) for _, each in found],
+                [100 * getattr(each, error) for _, each in found],
                 label=f"L = {size}",
                 color=colour,
                 marker=symbol,

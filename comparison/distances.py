@@ -66,13 +66,13 @@ def deviation(result: xr.Dataset, reference: xr.Dataset, floor: float = 1e-3) ->
     a, b = xr.align(ours.density, theirs.density, join="outer", fill_value=0.0)
     difference = a - b
     either = ((a > floor * unit) | (b > floor * unit)).values
-    seen = difference.values[either] / unit if either.any() else np.zeros(1)
+    differences = difference.values[either] / unit if either.any() else np.zeros(1)
     squared_error = _squared_error(ours, a) + _squared_error(theirs, b)
     both = ((a > floor * unit) & (b > floor * unit) & (squared_error > 0)).values
     in_errors = difference.values[both] / np.sqrt(squared_error.values[both])
     return Deviation(
-        maximum=float(np.abs(seen).max()),
-        rms=float(np.sqrt((seen**2).mean())),
+        maximum=float(np.abs(differences).max()),
+        rms=float(np.sqrt((differences**2).mean())),
         integrated=float(np.abs(difference).sum() * spacing / chain.size),
         maximum_in_errors=float(np.abs(in_errors).max()) if in_errors.size else None,
         rms_in_errors=float(np.sqrt((in_errors**2).mean())) if in_errors.size else None,

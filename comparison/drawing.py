@@ -50,15 +50,17 @@ def overlay(
     Raises
     ------
     ValueError
-        If a result lacks the quantity.
+        If a result lacks the quantity, or has it over other than one of x, time and particle: a
+        density over time and x, say, of which one time must be chosen first.
 
     Returns
     -------
     matplotlib.axes.Axes
         Without a legend yet: call its ``legend()``.
     """
-    for dataset in results.values():
+    for label, dataset in results.items():
         require(dataset, (quantity,))
+        _require_curve(label, dataset[quantity])
     if ax is None:
         _, ax = plt.subplots(layout="constrained")
     lines = cycle(_LINES)
@@ -86,6 +88,16 @@ def overlay(
         ax.set_xlabel(_axis_label(abscissa))
         ax.set_ylabel(_axis_label(values))
     return ax
+
+
+def _require_curve(label: str, values: xr.DataArray) -> None:
+    """Raise unless these are values over one dimension, that of an abscissa."""
+    if values.dims in (("x",), ("time",), ("particle",)):
+        return
+    message = f"{label}: {values.name} is over ({', '.join(map(str, values.dims))})"
+    if "time" in values.dims:
+        raise ValueError(f"{message}; choose a time: .isel(time=...)")
+    raise ValueError(f"{message}; overlay draws what is over x, time or particle")
 
 
 def draw_rods(

@@ -14,6 +14,7 @@ import ast
 import shutil
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import h5py
@@ -23,6 +24,7 @@ import xarray as xr
 
 from crazybilliards.comparison.sweeps import load_sweep, read_sweep
 from crazybilliards.comparison.sweeps.case import Case, compute
+from crazybilliards.comparison.sweeps.jobs import JOBS
 from crazybilliards.kinetic import displaced, force_balance, hydrodynamics
 from crazybilliards.model import Chain, chain_of, load, save
 from crazybilliards.model.storage import load_attributes, write_sealed
@@ -87,7 +89,7 @@ def files(tmp_path_factory):
     simulate(CHAIN, checkpoint=paths["checkpoint"], **RUN)
     case = Case("simulate", CHAIN, {"duration": 100, "warmup": 1})
     for name in ("case", "sweep"):
-        write_sealed(paths[name], compute(case, case.canonical))
+        write_sealed(paths[name], compute(case, case.source))
     return paths
 
 
@@ -212,13 +214,13 @@ def test_a_foreign_file_is_refused(kind, files, tmp_path):
 
 def test_the_wrong_version_of_a_checkpoint_or_a_case_is_refused(files, tmp_path, monkeypatch):
     monkeypatch.setattr("crazybilliards.particles.running.checkpoint.version", lambda _: "0.0.1")
-    monkeypatch.setattr("crazybilliards.comparison.sweeps.case.version", lambda _: "0.0.1")
+    other = replace(JOBS["simulate"], source="other source code")
+    monkeypatch.setitem(JOBS, "simulate", other)
     with pytest.raises(ValueError, match="a checkpoint of another run: version is"):
         simulate(CHAIN, checkpoint=files["checkpoint"], **RUN)
     case = Case("simulate", CHAIN, {"duration": 100, "warmup": 1})
-    assert not case.file(files["case"].parent).exists()  # another version, another name
     shutil.copy(files["case"], case.file(tmp_path))
-    with pytest.raises(ValueError, match="not the case that its name says"):
+    with pytest.raises(ValueError, match="other source code"):
         case.load(tmp_path)
 
 

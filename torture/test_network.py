@@ -225,10 +225,10 @@ def test_the_report_of_all_figures_loads_nothing(guarded):
     script = """
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from crazybilliards.comparison.paper.figures import find_figures
+from crazybilliards.comparison.paper.reproducible import find_studies
 from crazybilliards.comparison.claims.report import all_cases, html, reproduce
 from crazybilliards.comparison.sweeps import run_cases
-figures = [*find_figures("model"), *find_figures("arctanh")]
+figures = [*find_studies("model"), *find_studies("arctanh")]
 run_cases(all_cases(figures, "quick"), Path("."), ThreadPoolExecutor(1), progress=False)
 Path("report.html").write_text(html(list(reproduce(figures, "quick", Path("."))), "quick"))
 """

@@ -1,4 +1,4 @@
-"""The paper reproduced: figures drawn from stored cases, claims checked, a report of all of it."""
+"""Studies carried out: pictures drawn from stored cases, claims checked, a report of all of it."""
 
 from __future__ import annotations
 
@@ -18,22 +18,21 @@ from typing import Any
 import jinja2
 import matplotlib.pyplot as plt
 
-from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
+from crazybilliards.comparison.claims.study import Cases, Quality, Results, Study
 from crazybilliards.comparison.claims.verdicts import Claim
 from crazybilliards.comparison.sweeps import Case
-from crazybilliards.model import Chain
 
 _VERSIONS = ("crazybilliards", "numpy", "numba", "scipy", "scikit-fem", "py-pde", "xarray")
 
 
 @dataclass(frozen=True)
 class Reproduced:
-    """A figure of the paper, drawn from its results, and what became of its claims.
+    """A study, drawn from its results, and what became of its claims.
 
     Attributes
     ----------
-    figure
-        The figure.
+    study
+        The study, which may be a figure of the paper.
     picture
         PNG bytes.
     claims
@@ -41,19 +40,14 @@ class Reproduced:
     parameters
         What was computed, a line for each kind of case.
     seconds
-        Computing time of its cases; those that figures share count for each.
+        Computing time of its cases; those that studies share count for each.
     """
 
-    figure: PaperFigure
+    study: Study
     picture: bytes
     claims: list[Claim]
     parameters: list[str]
     seconds: float
-
-    @property
-    def file_name(self) -> str:
-        """Name of its picture: number and name."""
-        return f"fig{self.figure.number:02d}_{self.figure.name}.png"
 
     @property
     def embedded(self) -> str:
@@ -61,31 +55,32 @@ class Reproduced:
         return base64.b64encode(self.picture).decode()
 
 
-def all_cases(figures: Iterable[PaperFigure], quality: Quality) -> list[Case]:
-    """Return the cases that the figures need, each once."""
-    return list(
-        dict.fromkeys(case for figure in figures for case in figure.cases(quality).values())
-    )
+def all_cases(studies: Iterable[Study], quality: Quality) -> list[Case]:
+    """Return the cases that the studies need, each once."""
+    return list(dict.fromkeys(case for study in studies for case in study.cases(quality).values()))
 
 
 def reproduce(
-    figures: Iterable[PaperFigure], quality: Quality, folder: Path
+    studies: Iterable[Study], quality: Quality, folder: Path, *, keep_old: bool = False
 ) -> Iterator[Reproduced]:
-    """Draw figures and check their claims, one after another, from the cases in ``folder``."""
-    load = cache(lambda case: case.load(folder))  # many figures share cases
-    for figure in figures:
-        cases = figure.cases(quality)
-        yield _reproduce(figure, cases, {name: load(case) for name, case in cases.items()})
+    """Draw studies and check their claims, one after another, from the cases in ``folder``.
+
+    ``keep_old`` as in :func:`crazybilliards.comparison.sweeps.run_cases`.
+    """
+    load = cache(lambda case: case.load(folder, keep_old=keep_old))  # many studies share cases
+    for study in studies:
+        cases = study.cases(quality)
+        yield _reproduce(study, cases, {name: load(case) for name, case in cases.items()})
 
 
-def _reproduce(figure: PaperFigure, cases: Cases, results: Results) -> Reproduced:
-    claims = figure.claims(results)
-    drawn = figure.draw(results)
+def _reproduce(study: Study, cases: Cases, results: Results) -> Reproduced:
+    claims = study.claims(results)
+    drawn = study.draw(results)
     picture = io.BytesIO()
     drawn.savefig(picture, format="png", dpi=130)
     plt.close(drawn)
     return Reproduced(
-        figure=figure,
+        study=study,
         picture=picture.getvalue(),
         claims=claims,
         parameters=describe(cases.values()),
@@ -94,42 +89,40 @@ def _reproduce(figure: PaperFigure, cases: Cases, results: Results) -> Reproduce
 
 
 def describe(cases: Iterable[Case]) -> list[str]:
-    """Say in a line for each kind of case what is not the default, and how many runs there are."""
-    standard = Chain().parameters()
+    """Say in a line for each kind of case what is not the default, and how many runs there are.
+
+    Runs that differ in their random numbers or in what is observed only are of one kind.
+    """
     lines = []
     for case in cases:
-        own = case.chain.parameters().items()
-        chain = [f"{name} {value}" for name, value in own if value != standard[name]]
-        wanted = ("duration", "warmup", "time_step", "method", "cells")
-        standard_job = Case(case.job, Chain(), {}).settings
-        settings = [
-            f"{name} {case.settings[name]}"
-            for name in wanted
-            if name in case.settings and case.settings[name] != standard_job[name]
+        changed = [
+            f"{name} {value}"
+            for name, value in case.changed.items()
+            if name not in ("seed", "observe")
         ]
-        lines.append(f"{case.job}: {', '.join(chain + settings) or 'defaults'}")
+        lines.append(f"{case.job}: {', '.join(changed) or 'defaults'}")
     return [
         f"{line} ({number} runs)" if number > 1 else line for line, number in Counter(lines).items()
     ]
 
 
 def markdown(reproduced: list[Reproduced], quality: Quality) -> str:
-    """Return the table of claims, and the figures, as a page of Markdown beside the pictures."""
+    """Return the table of claims, and the pictures, as a page of Markdown beside the pictures."""
     numbers = _versions()
     rows = [
-        "# What the paper claims, and what was found",
+        "# What is claimed, and what was found",
         "",
         f"Quality: {quality}. {_summary(reproduced)}. Written by `crazybilliards reproduce`; "
         f"{', '.join(f'{name} {number}' for name, number in numbers.items())}.",
         "",
-        "| figure | the paper says | its number | found here | theory | verdict |",
+        "| figure | claim | its number | found here | theory | verdict |",
         "|---|---|---|---|---|---|",
     ]
     for each in reproduced:
         for claim in each.claims:
             verdict = f"**{claim.verdict}**" + (f": {claim.reason}" if claim.reason else "")
             cells = (
-                f"{each.figure.number} {each.figure.name}",
+                each.study.label,
                 claim.statement,
                 claim.paper,
                 claim.measured,
@@ -140,9 +133,9 @@ def markdown(reproduced: list[Reproduced], quality: Quality) -> str:
             plain = (escape(cell, quote=False).replace("|", "\\|") for cell in cells)
             rows.append("| " + " | ".join(plain) + " |")
     for each in reproduced:
-        figure = each.figure
-        rows += ["", f"## {figure.number}. {figure.title}", ""]
-        rows += [f"![{figure.title}]({each.file_name})", "", figure.caption]
+        study = each.study
+        rows += ["", f"## {study.heading}", ""]
+        rows += [f"![{study.title}]({study.file_name})", "", study.caption]
     return "\n".join(rows) + "\n"
 
 

@@ -1,4 +1,4 @@
-"""What a figure of the paper is here: its cases, its picture, its claims."""
+"""What a study is: the cases it needs, its picture, its claims. A figure of the paper is one."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ def no_claims(results: Results) -> list[Claim]:
 
 
 @dataclass(frozen=True, kw_only=True)
-class PaperFigure:
-    """A figure of arXiv:1404.7460, computed anew.
+class Study:
+    """A question put to simulations and theories, answered by a picture and by checked claims.
 
     Attributes
     ----------
-    number, name
-        Its number in the paper, and a short name for the command line and for files.
+    name
+        A short name for the command line and for files.
     title, caption
         What it shows: one line, and what a reader needs to understand the picture.
     cases
@@ -42,13 +42,55 @@ class PaperFigure:
     draw
         ``draw(results)`` gives the picture, results being those of the cases by the same names.
     claims
-        ``claims(results)`` sets what the paper says beside what was found.
+        ``claims(results)`` sets what is claimed beside what was found.
     """
 
-    number: int
     name: str
     title: str
     caption: str
     draw: Callable[[Results], Figure]
     cases: Callable[[Quality], Cases] = no_cases
     claims: Callable[[Results], list[Claim]] = no_claims
+
+    @property
+    def label(self) -> str:
+        """What it is called in lists and tables."""
+        return self.name
+
+    @property
+    def heading(self) -> str:
+        """The heading of its part of a report."""
+        return self.title
+
+    @property
+    def file_name(self) -> str:
+        """The name of its picture."""
+        return f"study_{self.name}.png"
+
+
+@dataclass(frozen=True, kw_only=True)
+class PaperFigure(Study):
+    """A figure of arXiv:1404.7460, computed anew; its claims are those of the paper.
+
+    Attributes
+    ----------
+    number
+        Its number in the paper.
+    """
+
+    number: int
+
+    @property
+    def label(self) -> str:
+        """Number and name."""
+        return f"{self.number} {self.name}"
+
+    @property
+    def heading(self) -> str:
+        """Number and title."""
+        return f"{self.number}. {self.title}"
+
+    @property
+    def file_name(self) -> str:
+        """Number and name as the name of its picture."""
+        return f"fig{self.number:02d}_{self.name}.png"

@@ -14,6 +14,7 @@ import typer
 from crazybilliards.comparison.commands.output import check_folder
 from crazybilliards.comparison.commands.sweep import (
     Dask,
+    KeepOld,
     Processes,
     Scheduler,
     compute_missing,
@@ -22,7 +23,11 @@ from crazybilliards.comparison.commands.sweep import (
 
 if TYPE_CHECKING:
     from crazybilliards.comparison.claims.report import Reproduced
-    from crazybilliards.comparison.claims.study import PaperFigure
+    from crazybilliards.comparison.claims.study import Study
+
+
+# By what is asked for: names of the page with everything and of the table of claims.
+_REPORTS = {"all": ("report.html", "claims.md"), "studies": ("studies.html", "studies.md")}
 
 
 class Quality(StrEnum):
@@ -34,9 +39,15 @@ class Quality(StrEnum):
 
 def reproduce(
     which: Annotated[
-        str, typer.Argument(help="Number or name of a figure of the paper, or all.")
+        str,
+        typer.Argument(
+            help="Number or name of a figure of the paper, name of a study beyond the paper, "
+            "all (figures of the paper), or studies (all beyond the paper)."
+        ),
     ] = "all",
-    show_list: Annotated[bool, typer.Option("--list", help="List the figures and stop.")] = False,
+    show_list: Annotated[
+        bool, typer.Option("--list", help="List the figures and the studies, and stop.")
+    ] = False,
     quality: Annotated[
         Quality,
         typer.Option(help="All figures take 4 minutes (quick) or an hour (full) on two cores."),
@@ -47,25 +58,27 @@ def reproduce(
     processes: Processes = None,
     dask: Dask = False,
     scheduler: Scheduler = None,
+    keep_old: KeepOld = False,
 ) -> None:
     """Reproduce the figures of arXiv:1404.7460, and check what the paper claims.
 
-    Writes a picture for each figure and prints what became of the paper's claims; for all figures
-    also report.html, one page with everything in it, and claims.md, the table. Results are kept in
-    the folder: drawing again is a matter of seconds, and after Ctrl-C or a crash the same command
-    goes on.
+    Writes a picture for each figure and prints what became of the paper's claims. For all figures
+    it also writes report.html, one page with everything in it, and claims.md, the table; for all
+    studies beyond the paper these are studies.html and studies.md. Results are kept in the folder:
+    drawing again is a matter of seconds, and after Ctrl-C or a crash the same command goes on.
 
     Example: crazybilliards reproduce 17 --output results/paper
 
     Example: crazybilliards reproduce all --quality full
+
+    Example: crazybilliards reproduce elastic-gaps
     """
-    from crazybilliards.comparison.paper.figures import FIGURES, find_figures
+    from crazybilliards.comparison.paper.reproducible import find_studies
 
     if show_list:
-        for figure in FIGURES:
-            print(f"{figure.number:3d}  {figure.name:28s} {figure.title}")
+        _print_list()
         return
-    wanted = find_figures(which)
+    wanted = find_studies(which)
     check_folder(output)
     from crazybilliards.comparison.claims.report import all_cases
     from crazybilliards.comparison.sweeps.running import missing_cases
@@ -77,46 +90,66 @@ def reproduce(
     with locked(output):
         kept = output / "cases"
         cases = all_cases(wanted, quality.value)
-        missing = missing_cases(cases, kept)
+        missing = missing_cases(cases, kept, keep_old=keep_old)
         print(f"{len(cases)} cases, {len(cases) - len(missing)} of them in {kept} already")
         compute_missing(missing, kept, computing)
-        _write(wanted, quality, output)
+        reproduced = _draw(wanted, quality, output, keep_old)
+        _print_claims(reproduced)
+        if which in _REPORTS:
+            _write_report(reproduced, quality, output, *_REPORTS[which])
 
 
-def _write(figures: list[PaperFigure], quality: Quality, output: Path) -> None:
+def _print_list() -> None:
+    from crazybilliards.comparison.claims.study import PaperFigure
+    from crazybilliards.comparison.paper.reproducible import groups
+
+    for group in groups().values():
+        for study in group:
+            number = study.number if isinstance(study, PaperFigure) else ""
+            print(f"{number:3}  {study.name:28s} {study.title}")
+
+
+def _draw(studies: list[Study], quality: Quality, output: Path, keep_old: bool) -> list[Reproduced]:
     import matplotlib
 
     matplotlib.use("Agg")
-    from crazybilliards.comparison.claims.report import html, markdown
     from crazybilliards.comparison.claims.report import reproduce as draw
     from crazybilliards.model.storage import write_atomically
 
     reproduced = []
-    for each in draw(figures, quality.value, output / "cases"):
-        write_atomically(output / each.file_name, each.picture)
-        print(f"wrote {output / each.file_name}")
+    for each in draw(studies, quality.value, output / "cases", keep_old=keep_old):
+        path = output / each.study.file_name
+        write_atomically(path, each.picture)
+        print(f"wrote {path}")
         reproduced.append(each)
-    _print_claims(reproduced)
-    if len(figures) > 1:
-        for name, text in (
-            ("claims.md", markdown(reproduced, quality.value)),
-            ("report.html", html(reproduced, quality.value)),
-        ):
-            write_atomically(output / name, text.encode())
-            print(f"wrote {output / name}")
+    return reproduced
+
+
+def _write_report(
+    reproduced: list[Reproduced], quality: Quality, output: Path, page: str, table: str
+) -> None:
+    from crazybilliards.comparison.claims.report import html, markdown
+    from crazybilliards.model.storage import write_atomically
+
+    for name, text in (
+        (table, markdown(reproduced, quality.value)),
+        (page, html(reproduced, quality.value)),
+    ):
+        write_atomically(output / name, text.encode())
+        print(f"wrote {output / name}")
 
 
 def _print_claims(reproduced: list[Reproduced]) -> None:
     from rich.console import Console
     from rich.table import Table
 
-    table = Table(title="Claims of the paper")
+    table = Table(title="Claims")
     for name in ("figure", "claim", "found here", "theory", "verdict"):
         table.add_column(name)
     for each in reproduced:
         for claim in each.claims:
             table.add_row(
-                str(each.figure.number),
+                each.study.label,
                 claim.statement,
                 claim.measured,
                 claim.theory,

@@ -30,6 +30,13 @@ Scheduler = Annotated[
     str | None,
     typer.Option(help="Compute on the dask cluster with this scheduler, tcp://HOST:PORT say."),
 ]
+KeepOld = Annotated[
+    bool,
+    typer.Option(
+        "--keep-old",
+        help="Take results that other source code of crazybilliards computed as they are.",
+    ),
+]
 
 
 def sweep(
@@ -46,16 +53,18 @@ def sweep(
     processes: Processes = None,
     dask: Dask = False,
     scheduler: Scheduler = None,
+    keep_old: KeepOld = False,
 ) -> None:
     """Compute every case of a grid of parameters, each into a file of its own.
 
-    The file says which: [grid] holds lists of values of parameters of the chain or settings of the
-    job, every combination of which is a case; [chain] and [simulate] (or [phase_space],
-    [equilibrium], [force_balance]) what is the same for all.
+    The table [grid] of the file holds lists of values of parameters of the chain or settings of
+    the job. Every combination of them is a case. The tables [chain] and [simulate] (or
+    [phase_space], [equilibrium], [force_balance]) hold what is the same for all cases.
 
     What the folder holds already is not computed again: after Ctrl-C, a crash, or with a larger
-    grid, the same command computes what is missing. In Python,
-    crazybilliards.comparison.load_sweep(FOLDER) reads all of it as one Dataset.
+    grid, the same command computes what is missing. Results are computed anew if the source code
+    that they depend on was changed since (unless --keep-old is given). In Python,
+    crazybilliards.comparison.load_sweep(FOLDER) reads all of them as one Dataset.
 
     Example: crazybilliards sweep grid.toml --output results/grid
     """
@@ -64,7 +73,7 @@ def sweep(
     from crazybilliards.comparison.sweeps.running import missing_cases
 
     cases = read_sweep(file).cases()
-    missing = missing_cases(cases, output)
+    missing = missing_cases(cases, output, keep_old=keep_old)
     print(f"{len(cases)} cases, {len(cases) - len(missing)} of them in {output} already")
     compute_missing(missing, output, engine(processes, dask, scheduler))
 
@@ -90,13 +99,14 @@ def compute_missing(
 ) -> None:
     """Compute cases; end the command, saying what there is and why, unless all succeed."""
     from crazybilliards.comparison.sweeps import run_cases
+    from crazybilliards.comparison.sweeps.running import missing_cases
 
     if not missing:
         return
     reason, status = "", 0
     try:
-        with executor as running:
-            failed = run_cases(missing, folder, running)
+        with executor as workers:
+            failed = run_cases(missing, folder, workers)
     except KeyboardInterrupt:
         status = INTERRUPTED  # which says so itself
     except RuntimeError as error:
@@ -106,7 +116,7 @@ def compute_missing(
             case, first = next(iter(failed.items()))
             reason = f"{len(failed)} cases failed, the first, {case.canonical}, with {first}"
             status = 1
-    kept = sum(case.file(folder).exists() for case in missing)
+    kept = len(missing) - len(missing_cases(missing, folder))
     print(f"computed {kept} cases into {folder}")
     if reason:
         print(f"crazybilliards: {reason}", file=sys.stderr)

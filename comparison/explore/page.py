@@ -20,8 +20,8 @@ from crazybilliards.comparison.explore.setting import Setting
 from crazybilliards.comparison.explore.theories import (
     Background,
     Densities,
-    elastic_theories,
-    kinetic_theory,
+    elastic_densities,
+    kinetic_density,
 )
 from crazybilliards.model import Chain
 
@@ -50,8 +50,8 @@ class Page:
         self._frames, self._last, self._drawn = 0, perf_counter(), (perf_counter(), 0.0)
         self._make_widgets()
         post = pn.state.curdoc.add_next_tick_callback
-        self._elastic = Background(threads, elastic_theories, self._show_theories, post)
-        self._kinetic = Background(processes, kinetic_theory, self._show_theories, post)
+        self._elastic = Background(threads, elastic_densities, self._show_theories, post)
+        self._kinetic = Background(processes, kinetic_density, self._show_theories, post)
         self.setting.param.watch(self._changed, self.setting.parameters())
         self._begin()
         if pn.state.location is not None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from crazybilliards.comparison.paper.figures import find_figures
+from crazybilliards.comparison.paper.reproducible import find_studies
 from crazybilliards.model import Chain
 
 
@@ -23,8 +23,8 @@ class Preset:
     @property
     def label(self) -> str:
         """What a user chooses: number and title of the figure, and the remark."""
-        [figure] = find_figures(self.figure)
-        return f"{figure.number}: {figure.title} ({self.remark})"
+        [figure] = find_studies(self.figure)
+        return f"{figure.heading} ({self.remark})"
 
 
 def _preset(figure: str, remark: str, **parameters: Any) -> Preset:

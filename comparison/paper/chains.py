@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from crazybilliards.comparison.claims.runs import runs
+from crazybilliards.comparison.claims.repetition import repeated
 from crazybilliards.comparison.claims.study import Cases, Quality
 from crazybilliards.comparison.sweeps import Case
 from crazybilliards.model import Chain
@@ -30,9 +30,11 @@ def dissipative(size: int, restitution: float, quality: Quality, amplitude: floa
     if size < LARGE:
         number, duration = _SHORT_CHAINS[quality]
         duration *= 0.5 if size > 100 else 1.0
-        return runs(name, chain, number, duration=duration, observe=observe)
+        return repeated(name, chain, number, duration=duration, observe=observe)
     number, duration = _LONG_CHAINS[quality]
-    return runs(name, chain, number, duration=duration, warmup=_WARMUP[quality], observe=observe)
+    return repeated(
+        name, chain, number, duration=duration, warmup=_WARMUP[quality], observe=observe
+    )
 
 
 def dissipative_name(size: int, restitution: float, amplitude: float = 1.0) -> str:
@@ -44,7 +46,7 @@ def flippers(size: int, damping: float, quality: Quality) -> Cases:
     """Return runs at e = 1.05, with avalanches."""
     chain = Chain(size=size, restitution=1.05, damping=damping)
     number, duration = {"quick": (3, 1000.0), "full": (8, 8000.0)}[quality]
-    return runs(
+    return repeated(
         flippers_name(size, damping),
         chain,
         number,
@@ -63,7 +65,9 @@ def elastic(size: int, quality: Quality, **settings: Any) -> Cases:
     number, duration = {"quick": (4, 5000.0), "full": (8, 50_000.0)}[quality]
     observe = ["widths", "velocities"]
     chain = Chain(size=size)
-    return runs(elastic_name(size), chain, number, duration=duration, observe=observe, **settings)
+    return repeated(
+        elastic_name(size), chain, number, duration=duration, observe=observe, **settings
+    )
 
 
 def elastic_name(size: int) -> str:

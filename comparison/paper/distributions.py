@@ -42,11 +42,11 @@ def draw_distributions(
     for number, particle in enumerate(particles):
         p = run.velocity_density.sel(particle=particle).values * unit
         width = float(run.velocity_width.sel(particle=particle)) / unit
-        seen = p > _LEAST * p.max()
-        reach = max(reach, float(np.abs(v[seen]).max()))
+        drawable = p > _LEAST * p.max()
+        reach = max(reach, float(np.abs(v[drawable]).max()))
         colour = COLOURS[number]
         # Bins grow with v: draw those nearest to equally spaced velocities.
-        inside = v[seen]
+        inside = v[drawable]
         spaced = np.linspace(inside[0], inside[-1], _SYMBOLS_DRAWN)
         shown = np.unique(np.abs(v[:, None] - spaced).argmin(axis=0))
         ax.semilogy(
@@ -73,11 +73,11 @@ def draw_sizes(
     ax: Axes, sizes: np.ndarray, p: np.ndarray, counts: np.ndarray, *, number: int, label: str
 ) -> None:
     """Draw the probability of avalanche sizes, with error bars of counting statistics."""
-    seen = counts > 0
+    counted = counts > 0
     ax.errorbar(
-        sizes[seen],
-        p[seen],
-        p[seen] / np.sqrt(counts[seen]),
+        sizes[counted],
+        p[counted],
+        p[counted] / np.sqrt(counts[counted]),
         fmt=SYMBOLS[number],
         color=COLOURS[number],
         markerfacecolor="none",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from crazybilliards.comparison.claims.runs import runs
+from crazybilliards.comparison.claims.repetition import repeated
 from crazybilliards.comparison.claims.study import Cases, Quality
 from crazybilliards.comparison.paper.chains import SIZES, dissipative, dissipative_name
 from crazybilliards.model import Chain
@@ -19,7 +19,7 @@ def at_steps(quality: Quality, sizes: tuple[int, ...] = SIZES) -> Cases:
         cases |= dissipative(size, 0.0, quality)
         for step in STEPS:
             chain = Chain(size=size, restitution=0.0)
-            cases |= runs(
+            cases |= repeated(
                 step_name(size, step),
                 chain,
                 number,

@@ -30,8 +30,8 @@ def draw_density(tree: xr.DataTree) -> Figure:
         axes[0].set(title=_title(chain), ylabel=r"density $\rho$ [1/R]")
         axes[1].set(xlabel="position x [R]", ylabel=r"diff. $\times\, 2R$")
         reference = results.get(THEORIES["exact"], results[SIMULATION])
-        seen = reference.x.values[reference.density.values > 1e-4 * chain.close_packed_density]
-        axes[1].set_xlim(seen[0], seen[-1])
+        inside = reference.density.values > 1e-4 * chain.close_packed_density
+        axes[1].set_xlim(*reference.x.values[inside][[0, -1]])
     _one_legend(figure, panels)
     return figure
 

@@ -23,7 +23,7 @@ from crazybilliards.model import Chain, chain_of
 Array = NDArray[np.float64]
 
 _MOMENTS = (0.0, 0.05, 0.1, 1.0)  # of the duration, for the profiles
-_SEEN = 2e-3  # of close packing: pictures end where every density is below
+_LEAST_DRAWN = 2e-3  # of close packing: pictures end where every density is lower
 
 
 def draw_spacetime(tree: xr.DataTree) -> Figure:
@@ -151,12 +151,12 @@ def _densities(tree: xr.DataTree) -> dict[str, xr.Dataset]:
 
 
 def _extent(densities: dict[str, xr.Dataset]) -> tuple[float, float]:
-    """Where any density is seen at any time."""
+    """Return the ends of the interval outside of which every density is small at all times."""
     ends = []
     for result in densities.values():
-        threshold = _SEEN * chain_of(result).close_packed_density
-        seen = result.x.values[(result.density.values > threshold).any(axis=0)]
-        ends += [float(seen[0]), float(seen[-1])]
+        threshold = _LEAST_DRAWN * chain_of(result).close_packed_density
+        inside = result.x.values[(result.density.values > threshold).any(axis=0)]
+        ends += [float(inside[0]), float(inside[-1])]
     return min(ends), max(ends)
 
 

@@ -1,19 +1,20 @@
-"""One case: a job, a chain and the job's settings, with a name that follows from them alone.
+"""One case: a job, a chain and the job's settings, with a file whose name follows from them.
 
-The name is a hash of the case's canonical parameters: every parameter, defaults included, numbers
-written one way, and the version of the package. The parameters are stored in the file as well.
-A case's random numbers follow from its parameters too, ``seed`` being one of them, so that the
-cases of a grid are independent of one another.
+The name is a hash of the job and of the parameters that differ from their defaults. So the name
+stays the same when the package gets a new parameter. A case's random numbers follow from the same
+parameters, ``seed`` among them: the cases of a grid are independent of one another.
+
+The file holds all parameters, defaults included, and the fingerprint of the source code that
+computed it. A file of other parameters or of other source code does not count as the case's result.
 """
 
 from __future__ import annotations
 
 import hashlib
-import inspect
 import json
 import sys
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from contextlib import nullcontext
 from dataclasses import dataclass
 from importlib.metadata import version
@@ -24,33 +25,13 @@ import numpy as np
 import xarray as xr
 from threadpoolctl import threadpool_limits
 
-from crazybilliards.kinetic import equilibrium, force_balance, phase_space
-from crazybilliards.kinetic.kinetic_equation.stationary import check_phase_space
+from crazybilliards.comparison.sweeps.jobs import JOBS
 from crazybilliards.model import Chain, load
 from crazybilliards.model.storage import load_attributes
-from crazybilliards.particles import simulate
-from crazybilliards.particles.simulation import make_run
 
-JOBS: dict[str, Callable[..., xr.Dataset]] = {
-    "simulate": simulate,
-    "phase_space": phase_space,
-    "equilibrium": equilibrium,
-    "force_balance": force_balance,
-}
 
-# Settings that no number depends on, and those that are not plain values.
-_LEFT_OUT = {
-    "chain",
-    "start",
-    "threads",
-    "checkpoint",
-    "checkpoint_interval",
-    "progress",
-    "displacement",
-    "velocity_variance",
-}
-
-_THEORY_WORK = 3e9  # particle steps that take as long as a theory, roughly
+class OutdatedError(ValueError):
+    """A file was computed by other source code than today's."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,7 +41,7 @@ class Case:
     Parameters
     ----------
     job
-        ``"simulate"``, ``"phase_space"``, ``"equilibrium"`` or ``"force_balance"``.
+        ``"simulate"``, or a theory: ``"equilibrium"``, ``"force_balance"``, ``"phase_space"``.
     chain
         The chain.
     settings
@@ -85,24 +66,13 @@ class Case:
     def __post_init__(self) -> None:
         if self.job not in JOBS:
             raise ValueError(f"job must be one of {sorted(JOBS)}, got {self.job!r}")
-        defaults = {
-            name: parameter.default
-            for name, parameter in inspect.signature(JOBS[self.job]).parameters.items()
-            if name not in _LEFT_OUT
-        }
+        job = JOBS[self.job]
         for name in self.settings:
-            if name not in defaults:
-                raise ValueError(f"{self.job} takes any of {sorted(defaults)}, got {name!r}")
+            if name not in job.settings:
+                raise ValueError(f"{self.job} takes any of {sorted(job.settings)}, got {name!r}")
         settings = {name: _plain(name, value) for name, value in self.settings.items()}
-        object.__setattr__(self, "settings", {**_plain_all(defaults), **settings})
-        if self.job == "simulate":
-            make_run(self.chain, start=None, **self.settings)
-        elif self.job == "phase_space":
-            check_phase_space(self.chain, **self.settings)
-        else:
-            self.chain.require_steady_state()
-            if self.chain.restitution != 1:
-                raise ValueError(f"{self.job} takes restitution=1, got {self.chain.restitution:g}")
+        object.__setattr__(self, "settings", {**_plain_all(job.settings), **settings})
+        job.check(self.chain, **self.settings)
 
     @property
     def parameters(self) -> dict[str, Any]:
@@ -110,14 +80,31 @@ class Case:
         return {"job": self.job, **_plain_all(self.chain.parameters()), **self.settings}
 
     @property
+    def changed(self) -> dict[str, Any]:
+        """The parameters that differ from their defaults."""
+        defaults = _defaults(self.job)
+        return {name: value for name, value in self.parameters.items() if value != defaults[name]}
+
+    @property
     def canonical(self) -> str:
-        """The parameters and the package's version as text, the same for equal cases."""
-        return json.dumps(self.parameters | {"version": version("crazybilliards")}, sort_keys=True)
+        """All parameters as text, the same for equal cases."""
+        return json.dumps(self.parameters, sort_keys=True)
+
+    @property
+    def _digest(self) -> str:
+        """Hash of the job and of the changed parameters."""
+        text = json.dumps({"job": self.job, **self.changed}, sort_keys=True)
+        return hashlib.sha256(text.encode()).hexdigest()
 
     @property
     def key(self) -> str:
-        """Hash of the canonical parameters: 20 hexadecimal digits."""
-        return hashlib.sha256(self.canonical.encode()).hexdigest()[:20]
+        """Name of the case, 20 hexadecimal digits: a hash of its job and changed parameters."""
+        return self._digest[:20]
+
+    @property
+    def own_seed(self) -> int:
+        """The seed of its random numbers, which follows from the same parameters as its key."""
+        return int(self._digest[20:35], 16)
 
     def __hash__(self) -> int:
         return hash(self.canonical)
@@ -128,52 +115,99 @@ class Case:
     @property
     def work(self) -> float:
         """Particle steps to do, to put long cases first and to foresee how long all take."""
-        if self.job != "simulate":
-            return _THEORY_WORK
-        run = make_run(self.chain, start=None, **self.settings)
-        return float(run.schedule.steps) * self.chain.size * run.replicas
+        return JOBS[self.job].work(self.chain, **self.settings)
+
+    @property
+    def source(self) -> str:
+        """Fingerprint of the source code that its result depends on."""
+        return JOBS[self.job].source
 
     def file(self, folder: Path) -> Path:
         """Return the name of its file in ``folder``."""
         return folder / f"{self.key}.nc"
 
-    def check_file(self, folder: Path) -> None:
-        """Raise if its file in ``folder`` is missing, damaged or of another case."""
-        if load_attributes(self.file(folder)).get("case") != self.canonical:
-            raise ValueError(f"{self.file(folder)}: not the case that its name says")
+    def check_file(self, folder: Path, *, keep_old: bool = False) -> None:
+        """Raise unless ``folder`` holds its result.
 
-    def load(self, folder: Path) -> xr.Dataset:
-        """Read its result from ``folder``; raises as :meth:`check_file`."""
-        self.check_file(folder)
+        Parameters
+        ----------
+        folder
+            Where its file lies.
+        keep_old
+            Accept a result that other source code of the package computed.
+
+        Raises
+        ------
+        FileNotFoundError
+            If there is no file.
+        OutdatedError
+            A ValueError: if other source code of the package computed the file.
+        ValueError
+            If the file is damaged or holds another case.
+        """
+        path = self.file(folder)
+        attributes = load_attributes(path)
+        if stored_parameters(attributes) != self.parameters:
+            raise ValueError(f"{path}: not the case that its name says")
+        if not keep_old and attributes.get("source_fingerprint") != self.source:
+            raise OutdatedError(
+                f"{path}: computed by other source code of crazybilliards; compute it anew, or "
+                "take it as it is with keep_old=True"
+            )
+
+    def load(self, folder: Path, *, keep_old: bool = False) -> xr.Dataset:
+        """Read its result from ``folder``; arguments and errors are those of :meth:`check_file`."""
+        self.check_file(folder, keep_old=keep_old)
         result = load(self.file(folder))
         assert isinstance(result, xr.Dataset)
         return result
 
 
-def compute(case: Case, canonical: str) -> bytes:
+def compute(case: Case, source: str) -> bytes:
     """Carry out a case and return its result as a NetCDF file; runs in a worker, one thread.
 
-    ``canonical`` is what the sender takes the case to be: a worker with another version of the
-    package would give the result of another case under the same name.
+    ``source`` is the fingerprint of the sender's source code. A worker with other source code
+    refuses: its result would be taken for one of the sender's code.
     """
-    if case.canonical != canonical:
-        raise ValueError(f"the worker runs another version, {version('crazybilliards')}")
+    if case.source != source:
+        number = version("crazybilliards")
+        raise ValueError(f"the worker runs other source code of crazybilliards (version {number})")
     begin = time.perf_counter()
-    settings = dict(case.settings)
-    if case.job == "simulate":
-        text = json.dumps(case.parameters, sort_keys=True)
-        own_seed = int(hashlib.sha256(text.encode()).hexdigest()[:15], 16)
-        settings |= {"seed": own_seed, "threads": 1, "progress": False}
+    own = {"seed": case.own_seed} if "seed" in case.settings else {}
     # Linear algebra in threads sums in another order, and workers beside it would only wait.
     with threadpool_limits(1):
-        result = JOBS[case.job](case.chain, **settings)
+        result = JOBS[case.job].function(case.chain, **{**case.settings, **own})
     if result.attrs["status"] == "interrupted":
         raise KeyboardInterrupt
-    result.attrs |= {"case": canonical, "seconds": time.perf_counter() - begin}
+    result.attrs |= {
+        "case": case.canonical,
+        "source_fingerprint": source,
+        "package_version": version("crazybilliards"),
+        "seconds": time.perf_counter() - begin,
+    }
     # On a dask worker xarray would lock the file all over the cluster; these are bytes in memory.
     alone = sys.modules["dask"].config.set(scheduler="sync") if "dask" in sys.modules else None
     with alone or nullcontext():
         return bytes(result.to_netcdf(engine="h5netcdf"))
+
+
+def stored_parameters(attributes: Mapping[Any, Any]) -> dict[str, Any]:
+    """Return the parameters of the case that a file holds, by its attributes; {} if it holds none.
+
+    Parameters that the file lacks, because they did not exist when it was written, are at their
+    defaults.
+    """
+    try:
+        stored = dict(json.loads(attributes["case"]))
+        defaults = _defaults(stored["job"])
+    except (KeyError, TypeError, ValueError):
+        return {}
+    return defaults | stored if "size" in stored else {}  # every version has stored the size
+
+
+def _defaults(job: str) -> dict[str, Any]:
+    """Return the parameters of a case of which nothing is given."""
+    return {"job": job, **_plain_all(Chain().parameters()), **_plain_all(JOBS[job].settings)}
 
 
 def _plain_all(values: Mapping[str, Any]) -> dict[str, Any]:

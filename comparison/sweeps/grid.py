@@ -19,6 +19,7 @@ import itertools
 import json
 import math
 import tomllib
+import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
@@ -27,7 +28,8 @@ from typing import Any
 import pandas as pd
 import xarray as xr
 
-from crazybilliards.comparison.sweeps.case import JOBS, Case
+from crazybilliards.comparison.sweeps.case import Case, stored_parameters
+from crazybilliards.comparison.sweeps.jobs import JOBS
 from crazybilliards.model import Chain, load
 
 _MOST_CASES = 1_000_000
@@ -113,6 +115,9 @@ def read_sweep(path: Path) -> Sweep:
 def load_sweep(folder: Path) -> xr.Dataset:
     """Read all cases of a folder into one Dataset over the parameters in which they differ.
 
+    A parameter that a file lacks, because it did not exist when the file was written, is taken at
+    its default. A warning says so if the cases were computed by different source code.
+
     Returns
     -------
     xarray.Dataset
@@ -126,25 +131,22 @@ def load_sweep(folder: Path) -> xr.Dataset:
     Raises
     ------
     ValueError
-        If a file is damaged, or there are none, or they are not cases of a sweep.
+        If a file is damaged, or there are none, or they are not cases of one job, or two files
+        hold the same case.
     """
-    runs: list[Any] = []
-    points: list[dict[str, Any]] = []
-    for path in sorted(Path(folder).glob("*.nc")):
-        run = load(path)
-        points.append(_point(path, run))
-        runs.append(run)
-    if not runs:
+    paths = sorted(Path(folder).glob("*.nc"))
+    if not paths:
         raise ValueError(f"{folder}: holds no case of a sweep")
-    if len({point["job"] for point in points}) > 1:
-        raise ValueError(f"{folder}: holds cases of different jobs")
+    points, results = zip(*map(_read_case, paths), strict=True)
+    _check_points(paths, points)
+    if len({result.attrs.get("source_fingerprint") for result in results}) > 1:
+        warnings.warn(f"{folder}: different source code computed these cases", stacklevel=2)
     table = pd.DataFrame([{k: _scalar(v) for k, v in point.items()} for point in points])
     names = [*_CHAIN, *(name for name in points[0] if name not in _CHAIN)]
     varied = [name for name in names if table[name].nunique(dropna=False) > 1]
     fixed = {name: value for name, value in points[0].items() if name not in varied}
-    runs = _alike([_with_status(run) for run in runs])
     joined = xr.concat(
-        runs,
+        _alike([_with_status(result) for result in results]),
         dim="case",
         join="outer",
         data_vars="all",
@@ -164,16 +166,32 @@ def load_sweep(folder: Path) -> xr.Dataset:
     return joined.assign_attrs(parameters=json.dumps(fixed, sort_keys=True))
 
 
-def _point(path: Path, run: xr.Dataset | xr.DataTree) -> dict[str, Any]:
-    """Return the parameters of a case, which its file names, or raise if it is none."""
-    try:
-        point = dict(json.loads(run.attrs["case"]))
-    except (KeyError, TypeError, ValueError):
-        point = {}
-    complete = {"job", *_CHAIN} <= point.keys() and {"status", "provenance"} <= run.attrs.keys()
-    if not complete or isinstance(run, xr.DataTree):
+def _read_case(path: Path) -> tuple[dict[str, Any], xr.Dataset]:
+    """Return the parameters of the case in a file and its result, or raise if there is none."""
+    result = load(path)
+    point = stored_parameters(result.attrs)
+    complete = point and {"status", "provenance"} <= result.attrs.keys()
+    if not complete or isinstance(result, xr.DataTree):
         raise ValueError(f"{path}: not a case of a sweep")
-    return point
+    return point, result
+
+
+def _check_points(paths: Sequence[Path], points: Sequence[dict[str, Any]]) -> None:
+    """Raise unless these are different cases of one job, with the same names of parameters."""
+    if len({point["job"] for point in points}) > 1:
+        raise ValueError(f"{paths[0].parent}: holds cases of different jobs")
+    first: dict[str, Path] = {}
+    for path, point in zip(paths, points, strict=True):
+        unknown = point.keys() ^ points[0].keys()
+        if unknown:
+            raise ValueError(
+                f"{paths[0]} and {path}: only one of them has {min(unknown)!r}, a parameter that "
+                "this version of crazybilliards does not know"
+            )
+        canonical = json.dumps(point, sort_keys=True)
+        if canonical in first:
+            raise ValueError(f"{first[canonical]} and {path}: hold the same case; remove one")
+        first[canonical] = path
 
 
 def _scalar(value: Any) -> Any:
@@ -181,26 +199,28 @@ def _scalar(value: Any) -> Any:
     return json.dumps(value) if isinstance(value, list) else value
 
 
-def _with_status(run: xr.Dataset) -> xr.Dataset:
+def _with_status(result: xr.Dataset) -> xr.Dataset:
     """Turn what differs from case to case into variables."""
     names = ("status", "end_time", "provenance")  # a theory has no end_time
-    return run.assign({name: ((), run.attrs[name]) for name in names if name in run.attrs})
+    return result.assign({name: ((), result.attrs[name]) for name in names if name in result.attrs})
 
 
-def _alike(runs: list[xr.Dataset]) -> list[xr.Dataset]:
-    """Make dimensions other than the particle fit, by numbering places where the runs differ."""
-    for dimension in sorted({str(name) for run in runs for name in run.dims} - {"particle"}):
-        values = [run[dimension] for run in runs if dimension in run.dims]
-        if len(values) < len(runs) or not all(each.equals(values[0]) for each in values):
-            runs = [_numbered(run, dimension) if dimension in run.dims else run for run in runs]
-    return runs
+def _alike(results: list[xr.Dataset]) -> list[xr.Dataset]:
+    """Make dimensions other than the particle fit, by numbering places where results differ."""
+    for dimension in sorted({str(name) for each in results for name in each.dims} - {"particle"}):
+        values = [each[dimension] for each in results if dimension in each.dims]
+        if len(values) < len(results) or not all(each.equals(values[0]) for each in values):
+            results = [
+                _numbered(each, dimension) if dimension in each.dims else each for each in results
+            ]
+    return results
 
 
-def _numbered(run: xr.Dataset, dimension: str) -> xr.Dataset:
-    places = range(run.sizes[dimension])
-    if dimension not in run.coords:
-        return run.assign_coords({dimension: places})
-    values = run[dimension]
+def _numbered(result: xr.Dataset, dimension: str) -> xr.Dataset:
+    places = range(result.sizes[dimension])
+    if dimension not in result.coords:
+        return result.assign_coords({dimension: places})
+    values = result[dimension]
     index = f"{dimension}_index"
-    run = run.drop_vars(dimension).rename({dimension: index})
-    return run.assign_coords({index: places, dimension: (index, values.values, values.attrs)})
+    result = result.drop_vars(dimension).rename({dimension: index})
+    return result.assign_coords({index: places, dimension: (index, values.values, values.attrs)})

@@ -20,7 +20,7 @@ from pathlib import Path
 
 from tqdm import tqdm
 
-from crazybilliards.comparison.sweeps.case import Case, compute
+from crazybilliards.comparison.sweeps.case import Case, OutdatedError, compute
 from crazybilliards.model.locks import locked
 from crazybilliards.model.process import cores
 from crazybilliards.model.storage import make_folder, write_sealed
@@ -28,24 +28,27 @@ from crazybilliards.model.storage import make_folder, write_sealed
 _PATIENCE = "20s"  # for a scheduler to answer
 
 
-def missing_cases(cases: Iterable[Case], folder: Path) -> list[Case]:
-    """Return the cases, each once, that ``folder`` has no sound file of, the longest first."""
-    missing = []
-    for case in dict.fromkeys(cases):
-        try:
-            case.check_file(folder)
-        except FileNotFoundError:
-            missing.append(case)
-        except ValueError as error:
-            print(f"crazybilliards: {error}; computing it anew", file=sys.stderr)
-            missing.append(case)
-    return sorted(missing, key=lambda case: -case.work)
+def missing_cases(cases: Iterable[Case], folder: Path, *, keep_old: bool = False) -> list[Case]:
+    """Return the cases, each once, that ``folder`` has no valid file of, the longest first.
+
+    A file is valid if it is sound, holds the case, and was computed by the source code of today;
+    with ``keep_old`` other source code may have computed it.
+    """
+    return _longest_first(_problems(cases, folder, keep_old))
 
 
 def run_cases(
-    cases: Iterable[Case], folder: Path, executor: Executor, *, progress: bool = True
+    cases: Iterable[Case],
+    folder: Path,
+    executor: Executor,
+    *,
+    keep_old: bool = False,
+    progress: bool = True,
 ) -> dict[Case, str]:
     """Compute the cases that ``folder`` has no file of; return the reasons of those that failed.
+
+    A file that is damaged, or that other source code of the package computed, is replaced when the
+    new result is there. A line on standard error says so.
 
     Parameters
     ----------
@@ -55,6 +58,9 @@ def run_cases(
         Where the files lie, one a case, named by its key; made if missing.
     executor
         What runs them: :func:`process_pool` or :func:`dask_cluster`, or any other.
+    keep_old
+        Take results that other source code of the package computed as they are. Say so only if no
+        number depends on what was edited since.
     progress
         Show a progress bar with the time left, if standard error is a terminal.
 
@@ -67,7 +73,40 @@ def run_cases(
     """
     make_folder(folder)
     with locked(folder):
-        return _run_missing(missing_cases(cases, folder), folder, executor, progress)
+        problems = _problems(cases, folder, keep_old)
+        _report(problems, folder)
+        return _run_missing(_longest_first(problems), folder, executor, progress)
+
+
+def _problems(cases: Iterable[Case], folder: Path, keep_old: bool) -> dict[Case, Exception]:
+    """Return why the file of a case is not valid, for each case whose file is not."""
+    problems: dict[Case, Exception] = {}
+    for case in dict.fromkeys(cases):
+        try:
+            case.check_file(folder, keep_old=keep_old)
+        except (FileNotFoundError, ValueError) as error:
+            problems[case] = error
+    return problems
+
+
+def _longest_first(cases: Iterable[Case]) -> list[Case]:
+    return sorted(cases, key=lambda case: -case.work)
+
+
+def _report(problems: dict[Case, Exception], folder: Path) -> None:
+    """Say on standard error which files are there but are replaced, and why."""
+    outdated = 0
+    for error in problems.values():
+        if isinstance(error, OutdatedError):
+            outdated += 1
+        elif isinstance(error, ValueError):
+            print(f"crazybilliards: {error}; computing it anew", file=sys.stderr)
+    if outdated:
+        print(
+            f"crazybilliards: other source code of crazybilliards computed {outdated} cases in "
+            f"{folder}; computing them anew (keep_old=True or --keep-old: take them as they are)",
+            file=sys.stderr,
+        )
 
 
 def _run_missing(
@@ -80,7 +119,7 @@ def _run_missing(
     futures = {}
     for case in missing:
         with _ctrl_c_held_back():
-            futures[executor.submit(compute, case, case.canonical)] = case
+            futures[executor.submit(compute, case, case.source)] = case
     with tqdm(
         total=sum(work.values()),
         desc=f"{len(missing)} cases",

@@ -28,6 +28,9 @@ from crazybilliards.model.storage import make_folder, read_sealed, write_sealed
 from crazybilliards.particles.run import Run
 from crazybilliards.particles.running.replica import Replica
 
+# Taken together with the code: an edit while this process lives is not what it runs.
+_SOURCE = room_fingerprint("model", "particles")
+
 
 class Checkpoint:
     """The checkpoint file of one run; ``identity`` is what has to agree to go on."""
@@ -127,7 +130,7 @@ def identity(run: Run) -> dict[str, Any]:
         **depends.pop("schedule"),
         **depends,
         "version": version("crazybilliards"),
-        "source": room_fingerprint("model", "particles"),
+        "source": _SOURCE,
     }
 
 

@@ -3,10 +3,11 @@
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
+import xarray as xr
 
 from crazybilliards.comparison import compare_elastic, overlay, smooth
 from crazybilliards.comparison.studies.elastic_figures import draw_density, draw_displacement
-from crazybilliards.kinetic import equilibrium, force_balance
+from crazybilliards.kinetic import equilibrium, equilibrium_states, force_balance
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
 
@@ -40,6 +41,21 @@ def test_overlay_of_a_quantity_over_particles():
     assert ax.get_xlabel() == "mean position <x_i> [R]"
     with pytest.raises(ValueError, match="no 'kinetic_energy'"):
         overlay({"theory": theory}, "kinetic_energy")
+
+
+def test_overlay_takes_one_curve_a_result():
+    chain = Chain(size=5)
+    exact = equilibrium(chain)
+    moving = xr.concat([exact, exact], dim=xr.Variable("time", [0.0, 1.0]), data_vars="all")
+    assert moving.density.dims == ("time", "x")
+    with pytest.raises(ValueError, match=r"^fluid: density is over \(time, x\); choose a time: "):
+        overlay({"exact": exact, "fluid": moving})
+    assert plt.get_fignums() == []  # nothing was begun
+    ax = overlay({"exact": exact, "fluid": moving.isel(time=1)})
+    assert len(ax.lines) == 2
+    states = equilibrium_states(chain, 3)
+    with pytest.raises(ValueError, match=r"over \(replica, particle\); overlay draws what"):
+        overlay({"states": states}, "position")
 
 
 @pytest.mark.parametrize("amplitudes", [(2.0,), (1.0, 2.0, 5.0)])

@@ -123,8 +123,12 @@ def test_sigterm_between_simulations_keeps_what_was_computed(monkeypatch):
 
 
 def test_what_ctrl_c_left_without_theories_can_be_drawn(tree):
+    """The rods are drawn, and nothing in the panel of differences from the exact solution."""
     run = xr.DataTree.from_dict({"amplitude_3/simulation": tree["amplitude_3/simulation"]})
     for draw in (draw_density, draw_displacement):
         figure = draw(run)
         figure.canvas.draw()
+        above, below = figure.get_axes()
+        assert above.get_legend_handles_labels()[1] == ["simulation"]
+        assert not below.has_data()
         plt.close(figure)

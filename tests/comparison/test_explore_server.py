@@ -13,28 +13,35 @@ import pytest
 from tornado.httpclient import HTTPClientError, HTTPRequest
 from tornado.websocket import websocket_connect
 
+from crazybilliards.comparison.commands.main import main
 from crazybilliards.comparison.explore.server import serve
 
 COMMAND = [sys.executable, "-c", "from crazybilliards.comparison.commands.main import main; main()"]
-EXPLORE = [*COMMAND, "explore", "--no-browser"]
+EXPLORE = ["explore", "--no-browser"]
 
 
-def refusal(*arguments):
-    """Return the one line with which the command refuses."""
-    done = subprocess.run(
-        [*EXPLORE, *arguments], capture_output=True, text=True, timeout=300, check=False
-    )
-    assert done.returncode == 2, done.stderr
-    assert done.stdout == ""
-    [line] = done.stderr.splitlines()
-    return line
+@pytest.fixture
+def refusal(monkeypatch, capsys):
+    """Return what calls the command and gives the one line with which it refuses."""
+
+    def call(*arguments):
+        monkeypatch.setattr(sys, "argv", ["crazybilliards", *EXPLORE, *arguments])
+        with pytest.raises(SystemExit) as done:
+            main()
+        assert done.value.code == 2
+        printed, errors = capsys.readouterr()
+        assert printed == ""
+        [line] = errors.splitlines()
+        return line
+
+    return call
 
 
-def test_another_address_takes_a_flag():
+def test_another_address_takes_a_flag(refusal):
     assert "add --open-to-network" in refusal("--address", "192.0.2.1")
 
 
-def test_a_port_that_is_taken_is_refused():
+def test_a_port_that_is_taken_is_refused(refusal):
     with socket.socket() as taken:
         taken.bind(("127.0.0.1", 0))
         taken.listen()
@@ -75,7 +82,7 @@ def port():
     if os.name == "nt":
         pytest.skip("sends a POSIX signal")
     process = subprocess.Popen(
-        [*EXPLORE, "--port", "0", "--address", "LocalHost"],
+        [*COMMAND, *EXPLORE, "--port", "0", "--address", "LocalHost"],
         stdout=subprocess.PIPE,
         stderr=subprocess.DEVNULL,
         text=True,

@@ -1,21 +1,23 @@
 """Reproducing the paper: verdicts follow from numbers, every figure is there, the page is whole."""
 
 import re
-import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 
-from crazybilliards.comparison.claims.report import all_cases, describe, html, markdown, reproduce
-from crazybilliards.comparison.claims.runs import (
+from crazybilliards.comparison.claims.repetition import (
     border_width,
-    centre_width,
+    central_width,
     estimate,
     pooled,
-    runs,
+    repeated,
 )
+from crazybilliards.comparison.claims.report import all_cases, describe, html, markdown, reproduce
+from crazybilliards.comparison.claims.study import PaperFigure
 from crazybilliards.comparison.claims.verdicts import (
     Estimate,
     number_claim,
@@ -23,15 +25,17 @@ from crazybilliards.comparison.claims.verdicts import (
     same_claim,
     small_claim,
 )
+from crazybilliards.comparison.commands.main import main
 from crazybilliards.comparison.paper.distributions import moment
-from crazybilliards.comparison.paper.figures import FIGURES, find_figures
+from crazybilliards.comparison.paper.figures import FIGURES, fig17_density
+from crazybilliards.comparison.paper.reproducible import find_studies
+from crazybilliards.comparison.studies import elastic_gaps
+from crazybilliards.comparison.studies.found import STUDIES
 from crazybilliards.comparison.sweeps import Case, run_cases
+from crazybilliards.comparison.sweeps.jobs import JOBS
 from crazybilliards.model import Chain
 from crazybilliards.model.vocabulary import result
 from crazybilliards.particles import simulate
-
-COMMAND = [sys.executable, "-c", "from crazybilliards.comparison.commands.main import main; main()"]
-
 
 # -- claims -----------------------------------------------------------------------------------
 
@@ -92,19 +96,10 @@ def test_estimates_are_written_to_the_second_digit_of_the_error():
 def test_errors_of_estimates_cover_the_truth_however_few_the_runs():
     """68 % of the estimates from three runs lie within one error, thanks to Student's factor."""
     generator = np.random.default_rng(5)
-    chain = Chain(size=2)
     hits, trials = 0, 300
     for _ in range(trials):
-        results = {
-            f"a/{k}": result(
-                chain,
-                {"velocity_width": ("particle", np.full(2, generator.normal(1, 0.1)))},
-                source="simulation",
-                method={},
-            )
-            for k in range(3)
-        }
-        value, error = estimate(results, "a", border_width)
+        results = {f"a/{k}": generator.normal(1, 0.1) for k in range(3)}  # of runs only the number
+        value, error = estimate(results, "a", float)
         hits += abs(value - 1) < error
     assert abs(hits / trials - 0.683) < 5 * (0.683 * 0.317 / trials) ** 0.5
 
@@ -134,7 +129,7 @@ def test_widths_of_centre_and_border():
     chain = Chain(size=100)
     run = result(chain, {"velocity_width": ("particle", width)}, source="theory", method={})
     assert border_width(run) == pytest.approx(((1 + 100**2) / 2) ** 0.5)
-    assert centre_width(run) == pytest.approx((width[45:55] ** 2).mean() ** 0.5)
+    assert central_width(run) == pytest.approx((width[45:55] ** 2).mean() ** 0.5)
 
 
 @pytest.mark.compiled
@@ -157,11 +152,41 @@ def test_all_nineteen_figures_are_there_in_order():
     assert all(figure.title and figure.caption for figure in FIGURES)
 
 
-def test_figures_are_found_by_number_name_or_all():
-    assert find_figures("17") == find_figures("density")
-    assert len(find_figures("all")) == 19
-    with pytest.raises(ValueError, match="no figure 'colour'"):
-        find_figures("colour")
+def test_figures_and_studies_are_found_by_number_name_or_group():
+    assert find_studies("17") == find_studies("density") == [FIGURES[16]]
+    assert find_studies("all") == list(FIGURES)
+    assert find_studies("studies") == list(STUDIES)
+    assert find_studies("elastic-gaps") == [elastic_gaps.STUDY]
+    for nothing in ("colour", "20", "", "17 density"):
+        with pytest.raises(ValueError, match=f"no figure or study '{nothing}'.* elastic-gaps"):
+            find_studies(nothing)
+
+
+def test_every_study_beyond_the_paper_is_found_and_has_a_name_of_its_own():
+    everything = [*FIGURES, *STUDIES]
+    assert elastic_gaps.STUDY in STUDIES
+    assert not any(isinstance(study, PaperFigure) for study in STUDIES)
+    assert len({study.name for study in everything}) == len(everything)
+    assert len({study.file_name for study in everything}) == len(everything)
+    assert not {"all", "studies"} & {study.name for study in everything}
+    assert all(study.title and study.caption for study in everything)
+
+
+@pytest.mark.compiled
+def test_rods_with_gaps_are_where_the_exact_solution_has_them():
+    """At quick quality every claim holds; if the rods were those of another gap, none would."""
+    [study] = find_studies("elastic-gaps")
+    results = {
+        name: JOBS[case.job].function(case.chain, **case.settings)
+        for name, case in study.cases("quick").items()
+    }
+    assert [claim.verdict for claim in study.claims(results)] == ["reproduced"] * 6
+    drawn = study.draw(results)
+    assert len(drawn.axes) == 2
+    plt.close(drawn)
+    results["rods g=0"], results["rods g=2"] = results["rods g=2"], results["rods g=0"]
+    verdicts = [claim.verdict for claim in study.claims(results)]
+    assert verdicts == ["refuted"] * 2 + ["reproduced"] * 2 + ["refuted"] * 2
 
 
 @pytest.mark.parametrize("quality", ["quick", "full"])
@@ -172,10 +197,10 @@ def test_every_case_can_be_carried_out_and_shared_ones_count_once(quality):
 
 
 def test_parameters_are_described_by_what_is_not_the_default():
-    cases = runs("a", Chain(size=30, restitution=0.0), 3, duration=100.0).values()
+    cases = repeated("a", Chain(size=30, restitution=0.0), 3, duration=100.0).values()
     both = [*cases, Case("phase_space", Chain(restitution=0.9), {"cells": 16})]
     assert describe(both) == [
-        "simulate: size 30, restitution 0.0, duration 100 (3 runs)",
+        "simulate: size 30, restitution 0, duration 100 (3 runs)",
         "phase_space: restitution 0.9, cells 16",
     ]
 
@@ -183,63 +208,89 @@ def test_parameters_are_described_by_what_is_not_the_default():
 # -- the command ------------------------------------------------------------------------------
 
 
-def command(*arguments, folder):
-    return subprocess.run(
-        [*COMMAND, "reproduce", *arguments],
-        capture_output=True,
-        text=True,
-        timeout=300,
-        check=False,
-        cwd=folder,
-    )
+@pytest.fixture
+def command(tmp_path, monkeypatch, capsys):
+    """Return what calls the command in an empty folder and gives its status and what it printed."""
+    monkeypatch.chdir(tmp_path)
+
+    def call(*arguments):
+        monkeypatch.setattr(sys, "argv", ["crazybilliards", "reproduce", *arguments])
+        with pytest.raises(SystemExit) as done:
+            main()
+        return done.value.code or 0, *capsys.readouterr()
+
+    return call
 
 
-def test_list_needs_no_folder(tmp_path):
-    done = command("--list", folder=tmp_path)
-    assert done.returncode == 0
-    assert len(done.stdout.splitlines()) == 19
+def test_list_needs_no_folder(command, tmp_path):
+    status, lines, _ = command("--list")
+    assert status == 0
+    lines = lines.splitlines()
+    assert len(lines) == 19 + len(STUDIES)
+    assert lines[16].split()[:2] == ["17", "density"]
+    assert "elastic-gaps" in [line.split()[0] for line in lines[19:]]
     assert list(tmp_path.iterdir()) == []
 
 
-def test_an_unknown_figure_is_one_line_and_nothing_written(tmp_path):
-    done = command("20", folder=tmp_path)
-    assert done.returncode == 2
-    assert done.stderr.count("\n") == 1
-    assert "no figure '20'" in done.stderr
+def test_an_unknown_figure_is_one_line_and_nothing_written(command, tmp_path):
+    status, _, errors = command("20")
+    assert status == 2
+    assert errors.count("\n") == 1
+    assert "no figure or study '20'" in errors
     assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.compiled
-def test_a_figure_its_claims_and_one_page_with_everything(tmp_path):
-    done = command("arctanh", folder=tmp_path)
-    assert done.returncode == 0, done.stderr
-    assert "1 cases, 0 of them" in done.stdout
+def test_a_figure_its_claims_and_nothing_computed_twice(command, tmp_path, monkeypatch):
+    monkeypatch.setitem(fig17_density._DURATION, "quick", 5000.0)
+    status, printed, errors = command("arctanh", "--processes", "1")
+    assert status == 0, errors
+    assert "1 cases, 0 of them" in printed
     folder = tmp_path / "reproduced"
     assert {path.name for path in folder.iterdir()} == {"cases", "fig16_arctanh.png"}
-    assert "reproduced" in done.stdout
+    assert "reproduced" in printed
     # Again: nothing is computed, the same claims come out.
-    again = command("16", folder=tmp_path)
-    assert again.returncode == 0
-    assert "1 cases, 1 of them" in again.stdout
-    assert again.stdout.splitlines()[1:] == done.stdout.splitlines()[2:]
+    status, again, _ = command("16")
+    assert status == 0
+    assert "1 cases, 1 of them" in again
+    assert again.splitlines()[1:] == printed.splitlines()[2:]
+    # After an edit of the simulation: with --keep-old the same, otherwise it is computed anew.
+    other = replace(JOBS["simulate"], source="other source code")
+    monkeypatch.setitem(JOBS, "simulate", other)
+    assert command("16", "--keep-old") == (0, again, "")
+    status, printed, errors = command("16", "--processes", "1")
+    assert status == 1
+    assert "1 cases, 0 of them" in printed
+    assert "other source code of crazybilliards computed 1 cases" in errors
+    assert "the worker runs other source code" in errors  # as it does: this edit is a pretence
 
 
 @pytest.mark.compiled
-def test_the_report_is_one_page_and_the_table_markdown(tmp_path):
-    figures = [*find_figures("model"), *find_figures("arctanh")]
-    run_cases(all_cases(figures, "quick"), tmp_path, ThreadPoolExecutor(1), progress=False)
-    reproduced = list(reproduce(figures, "quick", tmp_path))
+def test_the_report_is_one_page_and_the_table_markdown(tmp_path, monkeypatch):
+    monkeypatch.setitem(fig17_density._DURATION, "quick", 5000.0)
+    monkeypatch.setitem(elastic_gaps._DURATION, "quick", 5000.0)
+    studies = [*find_studies("model"), *find_studies("arctanh"), elastic_gaps.STUDY]
+    run_cases(all_cases(studies, "quick"), tmp_path, ThreadPoolExecutor(1), progress=False)
+    reproduced = list(reproduce(studies, "quick", tmp_path))
     page = html(reproduced, "quick")
     # Self-contained: the only address in it is the paper's.
     assert set(re.findall(r'(?:src|href)="(?!data:|#)([^"]*)"', page)) == {
         "https://arxiv.org/abs/1404.7460"
     }
-    assert page.count("data:image/png;base64,") == 2
+    assert page.count("data:image/png;base64,") == 3
     assert "amplitude 10" in page
     assert "&lt;dx&gt; = B arctanh(C x)" in page
+    assert re.findall(r'<h2 id="[^"]*">([^.<]*)', page) == [
+        "1",
+        "16",
+        "Displacements of elastic chains with gaps",
+    ]
     table = markdown(reproduced, "quick")
-    assert len([line for line in table.splitlines() if "|" in line]) == 2 + len(
-        reproduced[1].claims
-    )
+    rows = [line for line in table.splitlines() if "|" in line]
+    assert len(rows) == 2 + len(reproduced[1].claims) + len(reproduced[2].claims)
+    assert rows[2].startswith("| 16 arctanh |")
+    assert rows[-1].startswith("| elastic-gaps |")
     assert re.search(r"\*\*(reproduced|refuted|undecided)\*\*", table)
-    assert [each.file_name for each in reproduced] == ["fig01_model.png", "fig16_arctanh.png"]
+    pictures = re.findall(r"!\[.*\]\((.*)\)", table)
+    assert pictures == ["fig01_model.png", "fig16_arctanh.png", "study_elastic-gaps.png"]
+    assert pictures == [each.study.file_name for each in reproduced]

@@ -37,9 +37,9 @@ def test_tree_holds_both(tree):
 
 
 def test_deviations(tree):
-    for seen in width_deviations(tree).values():
-        assert abs(seen.centre) < 0.02 + 5 * seen.error
-        assert abs(seen.largest) < 0.02 + 5 * seen.error
+    for found in width_deviations(tree).values():
+        assert abs(found.centre) < 0.02 + 5 * found.error
+        assert abs(found.largest) < 0.02 + 5 * found.error
 
 
 def test_width_deviation_of_a_known_difference():
@@ -47,12 +47,12 @@ def test_width_deviation_of_a_known_difference():
     wider = equilibrium(CHAIN)
     wider["velocity_width"] = wider.velocity_width * 1.1
     wider["velocity_width_error"] = wider.velocity_width * 0.01
-    seen = width_deviation(wider, theory)
-    for value in (seen.centre, seen.border):
+    found = width_deviation(wider, theory)
+    for value in (found.centre, found.border):
         assert value == pytest.approx(1 / 1.1 - 1, rel=1e-3)
-    assert seen.largest == pytest.approx(1 - 1 / 1.1, rel=1e-3)
-    assert seen.error == pytest.approx(0.01)
-    assert seen.border_error == pytest.approx(0.01 / 2**0.5)
+    assert found.largest == pytest.approx(1 - 1 / 1.1, rel=1e-3)
+    assert found.error == pytest.approx(0.01)
+    assert found.border_error == pytest.approx(0.01 / 2**0.5)
 
 
 def test_without_a_steady_state_there_is_a_warning_and_no_theory():

@@ -7,7 +7,10 @@ import pytest
 
 from crazybilliards.comparison.sweeps import Case
 from crazybilliards.comparison.sweeps.case import compute
+from crazybilliards.comparison.sweeps.jobs import JOBS
+from crazybilliards.comparison.theories import THEORIES
 from crazybilliards.model import Chain
+from crazybilliards.model.fingerprint import room_fingerprint
 
 
 def test_equal_cases_have_equal_keys_however_their_numbers_are_written():
@@ -25,11 +28,36 @@ def test_equal_cases_have_equal_keys_however_their_numbers_are_written():
     assert one.key != Case("simulate", chain.replace(gap=0.1), dict(one.settings)).key
 
 
-def test_the_canonical_text_holds_every_parameter_and_the_version():
+def test_the_canonical_text_holds_every_parameter():
     stored = json.loads(Case("simulate", Chain(), {"duration": 100}).canonical)
     assert set(Chain().parameters()) < set(stored)
-    assert {"duration", "warmup", "time_step", "method", "seed", "version", "job"} < set(stored)
+    assert {"duration", "warmup", "time_step", "method", "seed", "job"} < set(stored)
     assert not {"threads", "checkpoint", "progress", "start"} & set(stored)
+
+
+def test_key_and_seed_follow_from_what_is_not_the_default():
+    """A parameter that the package gets later, at its default, changes neither."""
+    case = Case("simulate", Chain(size=3, gap=0), {"duration": 5000, "seed": 1})
+    assert case.changed == {"size": 3, "seed": 1}
+    assert case.key == "1ea596a9dd6911f2ba11"
+    assert case.own_seed == 703106191185711103
+    others = [
+        Case("simulate", Chain(size=3), {}),
+        Case("simulate", Chain(size=3, gap=1), {"seed": 1}),
+        Case("equilibrium", Chain(size=3), {}),
+        Case("phase_space", Chain(size=3), {}),
+    ]
+    assert len({each.key for each in [case, *others]}) == 5
+    assert len({each.own_seed for each in [case, *others]}) == 5
+
+
+def test_every_theory_is_a_job():
+    assert set(JOBS) == {"simulate", *THEORIES}
+    for name, theory in THEORIES.items():
+        assert Case(name, Chain(size=3), {}).key
+        assert JOBS[name].function is theory.solve
+        assert JOBS[name].source == room_fingerprint("model", "kinetic")
+    assert JOBS["simulate"].source == room_fingerprint("model", "particles")
 
 
 @pytest.mark.parametrize(
@@ -53,12 +81,13 @@ def test_settings_of_a_theory_are_checked_before_any_work():
     for settings in ({"cells": "x"}, {"cells": 10**6}, {"tolerance": -1}, {"order": 3}):
         with pytest.raises(ValueError, match=next(iter(settings))):
             Case("phase_space", Chain(size=3), settings)
-    for job in ("equilibrium", "force_balance"):
-        with pytest.raises(ValueError, match=f"{job} takes restitution=1"):
-            Case(job, Chain(restitution=0.5), {})
+    with pytest.raises(ValueError, match="restitution must be 1"):
+        Case("equilibrium", Chain(restitution=0.5), {})
+    with pytest.raises(ValueError, match="restitution=1 only"):
+        Case("force_balance", Chain(restitution=0.5), {})
 
 
-def test_a_worker_with_another_version_refuses():
+def test_a_worker_with_other_source_code_refuses():
     case = Case("simulate", Chain(size=2), {"duration": 100})
-    with pytest.raises(ValueError, match="another version"):
-        compute(case, case.canonical.replace('"version": "', '"version": "9'))
+    with pytest.raises(ValueError, match="other source code"):
+        compute(case, "0123456789abcdef0123")

@@ -10,6 +10,7 @@ import time
 import pytest
 
 from crazybilliards.comparison import load_sweep
+from crazybilliards.comparison.commands.main import main
 from crazybilliards.comparison.sweeps import (
     Case,
     dask_cluster,
@@ -46,8 +47,9 @@ def grid(tmp_path):
 
 @pytest.fixture
 def long_grid(tmp_path):
+    """Return a grid of cases that take a third of a second each."""
     path = tmp_path / "long.toml"
-    many = GRID.format(duration=2e5).replace("[3, 5]", str(list(range(20, 32))))
+    many = GRID.format(duration=5e4).replace("[3, 5]", str(list(range(20, 32))))
     path.write_text(many.replace("[0.5, 1.0]", "[1.0]"))
     return path
 
@@ -55,15 +57,21 @@ def long_grid(tmp_path):
 # -- engines ----------------------------------------------------------------------------------
 
 
+@pytest.fixture(scope="module")
+def cluster():
+    """Run cases on a dask cluster of this machine."""
+    with dask_cluster() as executor:
+        yield executor
+
+
 @pytest.mark.compiled
-def test_processes_and_dask_give_the_same_results(grid, tmp_path):
+def test_processes_and_dask_give_the_same_results(grid, cluster, tmp_path):
     cases = read_sweep(grid).cases()
     for case in cases:
-        write_sealed(case.file(tmp_path / "here"), compute(case, case.canonical))
+        write_sealed(case.file(tmp_path / "here"), compute(case, case.source))
     with process_pool(2) as pool:
         assert run_cases(cases, tmp_path / "pool", pool, progress=False) == {}
-    with dask_cluster() as cluster:
-        assert run_cases(cases, tmp_path / "dask", cluster, progress=False) == {}
+    assert run_cases(cases, tmp_path / "dask", cluster, progress=False) == {}
     for case in cases:
         here, pool, dask = (case.load(tmp_path / name) for name in ("here", "pool", "dask"))
         for other in (pool, dask):
@@ -72,28 +80,26 @@ def test_processes_and_dask_give_the_same_results(grid, tmp_path):
 
 
 @pytest.mark.compiled
-def test_a_dask_worker_killed_in_the_middle_costs_nothing(tmp_path):
-    from distributed import Client, LocalCluster
+def test_a_dask_worker_killed_in_the_middle_costs_nothing(cluster, tmp_path):
+    from distributed import Client
 
     cases = [
         Case("simulate", Chain(size=20), {"duration": 20_000, "seed": seed}) for seed in range(8)
     ]
-    with (
-        LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster,
-        dask_cluster(cluster.scheduler_address) as executor,
-    ):
-        killed = []
+    address = cluster._client.scheduler.address
+    killed = []
 
-        def kill_one():
-            # As soon as a first result is there, others are being worked on.
-            while not list(tmp_path.glob("*.nc")):
-                time.sleep(0.05)
-            with Client(cluster.scheduler_address) as client:
-                victim = next(iter(client.run(os.getpid).values()))
-            os.kill(victim, signal.SIGKILL)
-            killed.append(victim)
+    def kill_one():
+        # As soon as a first result is there, others are being worked on.
+        while not list(tmp_path.glob("*.nc")):
+            time.sleep(0.05)
+        with Client(address, set_as_default=False) as client:
+            victim = next(iter(client.run(os.getpid).values()))
+        os.kill(victim, signal.SIGKILL)
+        killed.append(victim)
 
-        killer = threading.Thread(target=kill_one)
+    killer = threading.Thread(target=kill_one)
+    with dask_cluster(address) as executor:
         killer.start()
         assert run_cases(cases, tmp_path, executor, progress=False) == {}
         killer.join()
@@ -112,26 +118,29 @@ def test_no_scheduler_at_the_address():
 # -- the command ------------------------------------------------------------------------------
 
 
-def run(*arguments):
-    return subprocess.run(
-        [*COMMAND, "sweep", *map(str, arguments)],
-        capture_output=True,
-        text=True,
-        timeout=300,
-        check=False,
-    )
+@pytest.fixture
+def command(monkeypatch, capsys):
+    """Return what calls the command and gives its status and what it printed."""
+
+    def call(*arguments):
+        monkeypatch.setattr(sys, "argv", ["crazybilliards", "sweep", *map(str, arguments)])
+        with pytest.raises(SystemExit) as done:
+            main()
+        return done.value.code or 0, *capsys.readouterr()
+
+    return call
 
 
-def test_the_command_computes_what_is_missing(grid, tmp_path):
+def test_the_command_computes_what_is_missing(command, grid, tmp_path):
     folder = tmp_path / "results"
-    done = run(grid, "--output", folder)
-    assert done.returncode == 0, done.stderr
-    assert "4 cases, 0 of them" in done.stdout
-    assert "computed 4 cases" in done.stdout
-    again = run(grid, "--output", folder)
-    assert again.returncode == 0
-    assert "4 cases, 4 of them" in again.stdout
-    assert "computed" not in again.stdout
+    status, printed, errors = command(grid, "--output", folder)
+    assert status == 0, errors
+    assert "4 cases, 0 of them" in printed
+    assert "computed 4 cases" in printed
+    status, printed, _ = command(grid, "--output", folder)
+    assert status == 0
+    assert "4 cases, 4 of them" in printed
+    assert "computed" not in printed
     assert load_sweep(folder).sizes["size"] == 2
 
 
@@ -143,23 +152,23 @@ def test_the_command_computes_what_is_missing(grid, tmp_path):
         (["--scheduler", "nowhere"], "no dask scheduler"),
     ],
 )
-def test_wrong_options(arguments, message, grid, tmp_path):
-    done = run(grid, "--output", tmp_path / "results", *arguments)
-    assert done.returncode == 2
-    assert message in done.stderr
-    assert done.stderr.count("\n") == 1
+def test_wrong_options(arguments, message, command, grid, tmp_path):
+    status, _, errors = command(grid, "--output", tmp_path / "results", *arguments)
+    assert status == 2
+    assert message in errors
+    assert errors.count("\n") == 1
 
 
-def test_a_missing_file_and_a_wrong_grid_are_one_line(tmp_path):
-    done = run(tmp_path / "none.toml", "--output", tmp_path / "results")
-    assert done.returncode == 2
-    assert "none.toml" in done.stderr
-    assert done.stderr.count("\n") == 1
+def test_a_missing_file_and_a_wrong_grid_are_one_line(command, tmp_path):
+    status, _, errors = command(tmp_path / "none.toml", "--output", tmp_path / "results")
+    assert status == 2
+    assert "none.toml" in errors
+    assert errors.count("\n") == 1
     wrong = tmp_path / "wrong.toml"
     wrong.write_text("[grid]\nsize = [3, 0]\n")
-    done = run(wrong, "--output", tmp_path / "results")
-    assert done.returncode == 2
-    assert "size must be" in done.stderr
+    status, _, errors = command(wrong, "--output", tmp_path / "results")
+    assert status == 2
+    assert "size must be" in errors
     assert not (tmp_path / "results").exists()
 
 

@@ -6,6 +6,7 @@ import os
 import signal
 from concurrent.futures import Executor, Future
 from concurrent.futures.process import BrokenProcessPool
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -13,7 +14,8 @@ import xarray as xr
 
 from crazybilliards.comparison import load_sweep
 from crazybilliards.comparison.sweeps import Case, Sweep, read_sweep, run_cases
-from crazybilliards.comparison.sweeps.case import JOBS, compute
+from crazybilliards.comparison.sweeps.case import compute
+from crazybilliards.comparison.sweeps.jobs import JOBS
 from crazybilliards.comparison.sweeps.running import missing_cases
 from crazybilliards.model import Chain, load, save
 from crazybilliards.model.locks import locked
@@ -110,8 +112,8 @@ def test_nothing_is_computed_twice_and_a_damaged_file_is_computed_anew(tmp_path,
     content = broken.read_bytes()
     broken.write_bytes(content[:-500] + b"x" + content[-499:])
     assert missing_cases(cases, tmp_path) == [cases[2]]
-    assert "computing it anew" in capsys.readouterr().err
     run_cases(cases, tmp_path, AtOnce(), progress=False)
+    assert "computing it anew" in capsys.readouterr().err
     after = {case: case.file(tmp_path).stat().st_mtime_ns for case in cases}
     assert [case for case in cases if after[case] != before[case]] == [cases[2]]
     assert missing_cases(cases, tmp_path) == []
@@ -136,14 +138,14 @@ def test_cases_that_fail_are_named_and_the_others_kept(tmp_path):
 
 def test_whatever_is_wrong_with_a_case_does_not_cost_the_others(tmp_path, monkeypatch):
     bad, good = sweep().cases()[:2]
-    simulate = JOBS["simulate"]
+    job = JOBS["simulate"]
 
     def failing(chain, **settings):
         if chain == bad.chain:
             raise TypeError("a fault of the program")
-        return simulate(chain, **settings)
+        return job.function(chain, **settings)
 
-    monkeypatch.setitem(JOBS, "simulate", failing)
+    monkeypatch.setitem(JOBS, "simulate", replace(job, function=failing))
     failed = run_cases([bad, good], tmp_path, AtOnce(), progress=False)
     assert failed == {bad: "TypeError: a fault of the program"}
     assert missing_cases([bad, good], tmp_path) == [bad]
@@ -151,12 +153,12 @@ def test_whatever_is_wrong_with_a_case_does_not_cost_the_others(tmp_path, monkey
 
 def test_what_was_finished_before_a_worker_died_is_written(tmp_path):
     class Dying(AtOnce):
-        def submit(self, function, /, case, canonical):
+        def submit(self, function, /, case, source):
             if case == cases[0]:
                 future = Future()
                 future.set_exception(BrokenProcessPool("terminated abruptly"))
                 return future
-            return super().submit(function, case, canonical)
+            return super().submit(function, case, source)
 
     cases = sweep().cases()
     with pytest.raises(RuntimeError, match="a worker process died"):
@@ -248,7 +250,7 @@ def test_folders_that_hold_no_sweep(tmp_path):
 def test_a_sweep_of_a_theory_is_read_back(tmp_path):
     cases = [Case("force_balance", Chain(size=size), {}) for size in (3, 4)]
     for case in cases:
-        write_sealed(case.file(tmp_path), compute(case, case.canonical))
+        write_sealed(case.file(tmp_path), compute(case, case.source))
     grid = load_sweep(tmp_path)
     assert grid.sizes["size"] == 2
     assert (grid.status == "completed").all()

@@ -234,7 +234,7 @@ def test_a_checkpoint_of_other_source_code_is_refused(tmp_path, monkeypatch):
     """An edited kernel would continue the run to numbers of which half are the old one's."""
     arguments = {"duration": 500, "progress": False, "checkpoint": tmp_path / "state"}
     with monkeypatch.context() as patched:
-        patched.setattr(checkpoint, "room_fingerprint", lambda *rooms: "before the edit")
+        patched.setattr(checkpoint, "_SOURCE", "before the edit")
         before = simulate(Chain(size=10), **arguments)
     with pytest.raises(ValueError, match="that other source code of crazybilliards has written"):
         simulate(Chain(size=10), **arguments)

@@ -6,7 +6,12 @@ import matplotlib.pyplot as plt
 import xarray as xr
 from matplotlib.figure import Figure
 
-from crazybilliards.comparison.claims.runs import border_width, centre_width, estimate, pooled
+from crazybilliards.comparison.claims.repetition import (
+    border_width,
+    central_width,
+    estimate,
+    pooled,
+)
 from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
 from crazybilliards.comparison.claims.verdicts import Claim, Estimate, positive_claim, small_claim
 from crazybilliards.comparison.paper.chains import LARGE, dissipative, dissipative_name
@@ -52,7 +57,7 @@ def claims(results: Results) -> list[Claim]:
         positive_claim(
             "narrower inside than at the border",
             "W_v(border) - W_v(centre) =",
-            border.minus(estimate(results, _NAME, centre_width)),
+            border.minus(estimate(results, _NAME, central_width)),
         ),
     ]
 

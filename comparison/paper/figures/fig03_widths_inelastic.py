@@ -10,7 +10,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from crazybilliards.comparison.claims.runs import estimate, pooled
+from crazybilliards.comparison.claims.repetition import estimate, pooled
 from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
 from crazybilliards.comparison.claims.verdicts import Claim, Estimate, number_claim, same_claim
 from crazybilliards.comparison.drawing import COLOURS, SYMBOLS, draw_rods

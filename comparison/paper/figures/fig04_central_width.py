@@ -8,7 +8,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.figure import Figure
 
-from crazybilliards.comparison.claims.runs import centre_width, estimate, runs
+from crazybilliards.comparison.claims.repetition import central_width, estimate, repeated
 from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
 from crazybilliards.comparison.claims.verdicts import Claim, Estimate, number_claim, positive_claim
 from crazybilliards.comparison.drawing import COLOURS, SYMBOLS
@@ -32,7 +32,7 @@ def cases(quality: Quality) -> Cases:
     """E = 0, L = 10 to 1000 at four time steps; longer chains at steps of their own."""
     cases = at_steps(quality)
     for size, (number, duration, warmup) in _LONG[quality].items():
-        cases |= runs(
+        cases |= repeated(
             _long_name(size),
             Chain(size=size, restitution=0.0),
             number,
@@ -52,7 +52,7 @@ def _widths(results: Results, name: Callable[[int], str]) -> dict[int, Estimate]
     """W_v in the centre of all sizes that there are runs of under this name."""
     sizes = sorted({run.sizes["particle"] for run in results.values()})
     return {
-        size: estimate(results, name(size), centre_width)
+        size: estimate(results, name(size), central_width)
         for size in sizes
         if f"{name(size)}/0" in results
     }

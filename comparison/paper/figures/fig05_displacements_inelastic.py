@@ -8,7 +8,7 @@ import matplotlib.pyplot as plt
 import xarray as xr
 from matplotlib.figure import Figure
 
-from crazybilliards.comparison.claims.runs import estimate, pooled
+from crazybilliards.comparison.claims.repetition import estimate, pooled
 from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
 from crazybilliards.comparison.claims.verdicts import Claim, positive_claim
 from crazybilliards.comparison.drawing import along_the_chain, draw_rods

@@ -8,7 +8,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from crazybilliards.comparison.claims.runs import estimate, pooled, runs
+from crazybilliards.comparison.claims.repetition import estimate, pooled, repeated
 from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
 from crazybilliards.comparison.claims.verdicts import Claim, Estimate, number_claim, positive_claim
 from crazybilliards.comparison.fits import fit_avalanches
@@ -28,7 +28,7 @@ def cases(quality: Quality) -> Cases:
     number, duration = _DURATION[quality]
     cases: Cases = {}
     for step in _STEPS:
-        cases |= runs(
+        cases |= repeated(
             f"dt={step:g}",
             Chain(size=LARGE, restitution=0.0),
             number,

@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from crazybilliards.comparison.claims.runs import centre_width, estimate, pooled, runs
+from crazybilliards.comparison.claims.repetition import central_width, estimate, pooled, repeated
 from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
 from crazybilliards.comparison.claims.verdicts import Claim, Estimate, same_claim, small_claim
 from crazybilliards.comparison.drawing import along_the_chain, draw_rods
@@ -27,9 +27,9 @@ def cases(quality: Quality) -> Cases:
     number, duration = _LONG[quality]
     chain = Chain(size=LARGE)
     common = {"duration": duration, "observe": ["widths"]}
-    cases = elastic(_SIZE, quality) | runs(_EXACT, chain, number, **common)
+    cases = elastic(_SIZE, quality) | repeated(_EXACT, chain, number, **common)
     for step in _STEPS:
-        cases |= runs(
+        cases |= repeated(
             _contact(step), chain, number, method="contact-dynamics", time_step=step, **common
         )
     return cases
@@ -47,7 +47,7 @@ def claims(results: Results) -> list[Claim]:
     kurtosis = estimate(
         results, elastic_name(_SIZE), lambda run: moment(run, range(1, _SIZE + 1), 4) - 3
     )
-    wrong = [estimate(results, _contact(step), centre_width).value / unit for step in _STEPS]
+    wrong = [estimate(results, _contact(step), central_width).value / unit for step in _STEPS]
     long = pooled(results, _EXACT)
     long_deviation = np.abs(long.velocity_width - unit) / long.velocity_width_error
     return [
@@ -74,7 +74,7 @@ def claims(results: Results) -> list[Claim]:
             f"(beyond the paper) Contact Dynamics is right at e = 1, L = {LARGE}, "
             f"dt = {_STEPS[-1]:g}",
             "1 - W_v/W in the centre",
-            Estimate(1 - wrong[-1], estimate(results, _contact(_STEPS[-1]), centre_width).error),
+            Estimate(1 - wrong[-1], estimate(results, _contact(_STEPS[-1]), central_width).error),
             0.02,
             theory="exact: 0",
             reason="a step sees many collisions of each rod there, and Contact Dynamics "

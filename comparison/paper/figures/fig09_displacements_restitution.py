@@ -7,7 +7,7 @@ import itertools
 import matplotlib.pyplot as plt
 from matplotlib.figure import Figure
 
-from crazybilliards.comparison.claims.runs import estimate, pooled
+from crazybilliards.comparison.claims.repetition import estimate, pooled
 from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
 from crazybilliards.comparison.claims.verdicts import Claim, positive_claim
 from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_rods

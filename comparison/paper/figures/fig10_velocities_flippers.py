@@ -7,7 +7,12 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from crazybilliards.comparison.claims.runs import border_width, centre_width, estimate, pooled
+from crazybilliards.comparison.claims.repetition import (
+    border_width,
+    central_width,
+    estimate,
+    pooled,
+)
 from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
 from crazybilliards.comparison.claims.verdicts import Claim, Estimate, positive_claim
 from crazybilliards.comparison.fits import tail_length
@@ -36,7 +41,7 @@ def claims(results: Results) -> list[Claim]:
         positive_claim(
             "the border is the widest",
             "W_v(border) - W_v(centre) =",
-            border.minus(estimate(results, name, centre_width)),
+            border.minus(estimate(results, name, central_width)),
         ),
         positive_claim(
             "the tail at the border is exponential, not Gaussian",

@@ -5,7 +5,12 @@ from __future__ import annotations
 import matplotlib.pyplot as plt
 from matplotlib.figure import Figure
 
-from crazybilliards.comparison.claims.runs import border_width, centre_width, estimate, pooled
+from crazybilliards.comparison.claims.repetition import (
+    border_width,
+    central_width,
+    estimate,
+    pooled,
+)
 from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
 from crazybilliards.comparison.claims.verdicts import Claim, positive_claim
 from crazybilliards.comparison.paper.chains import flippers, flippers_name
@@ -24,7 +29,7 @@ def cases(quality: Quality) -> Cases:
 def claims(results: Results) -> list[Claim]:
     """Check: the centre is the widest."""
     name = flippers_name(SIZE, _DAMPING)
-    centre = estimate(results, name, centre_width)
+    centre = estimate(results, name, central_width)
     return [
         positive_claim(
             "the centre is the widest",

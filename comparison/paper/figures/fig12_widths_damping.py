@@ -7,7 +7,12 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from crazybilliards.comparison.claims.runs import border_width, centre_width, estimate, pooled
+from crazybilliards.comparison.claims.repetition import (
+    border_width,
+    central_width,
+    estimate,
+    pooled,
+)
 from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
 from crazybilliards.comparison.claims.verdicts import Claim, Estimate, positive_claim
 from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_rods
@@ -35,7 +40,7 @@ def cases(quality: Quality) -> Cases:
 
 def bulge(run: xr.Dataset) -> float:
     """Ln of the border's width over the centre's: positive for a convex profile."""
-    return float(np.log(border_width(run) / centre_width(run)))
+    return float(np.log(border_width(run) / central_width(run)))
 
 
 def claims(results: Results) -> list[Claim]:

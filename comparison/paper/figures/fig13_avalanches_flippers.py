@@ -6,7 +6,7 @@ import matplotlib.pyplot as plt
 import xarray as xr
 from matplotlib.figure import Figure
 
-from crazybilliards.comparison.claims.runs import estimate, pooled
+from crazybilliards.comparison.claims.repetition import estimate, pooled
 from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
 from crazybilliards.comparison.claims.verdicts import Claim, positive_claim
 from crazybilliards.comparison.paper.chains import flippers, flippers_name

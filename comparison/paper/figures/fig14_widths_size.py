@@ -7,7 +7,7 @@ import math
 import matplotlib.pyplot as plt
 from matplotlib.figure import Figure
 
-from crazybilliards.comparison.claims.runs import estimate, members, pooled, runs
+from crazybilliards.comparison.claims.repetition import estimate, members, pooled, repeated
 from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
 from crazybilliards.comparison.claims.verdicts import Claim, Estimate, positive_claim
 from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_rods
@@ -32,7 +32,7 @@ def cases(quality: Quality) -> Cases:
         cases |= flippers(size, _DAMPING, quality)
         cases |= kinetic_equation(size, _RESTITUTION, _DAMPING, quality)
     chain = Chain(size=_UNSTEADY, restitution=_RESTITUTION, damping=_DAMPING)
-    return cases | runs("unsteady", chain, 4, duration=1000.0, warmup=0.0, observe=["energy"])
+    return cases | repeated("unsteady", chain, 4, duration=1000.0, warmup=0.0, observe=["energy"])
 
 
 def claims(results: Results) -> list[Claim]:

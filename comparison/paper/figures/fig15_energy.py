@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from crazybilliards.comparison.claims.runs import estimate, members, runs
+from crazybilliards.comparison.claims.repetition import estimate, members, repeated
 from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
 from crazybilliards.comparison.claims.verdicts import Claim, Estimate, positive_claim, small_claim
 from crazybilliards.comparison.drawing import COLOURS
@@ -37,7 +37,9 @@ def cases(quality: Quality) -> Cases:
     cases: Cases = {}
     for spring, chain in _CHAINS.items():
         settings = _SETTINGS[spring]
-        cases |= runs(spring, chain, _NUMBER[quality], warmup=0.0, observe=["energy"], **settings)
+        cases |= repeated(
+            spring, chain, _NUMBER[quality], warmup=0.0, observe=["energy"], **settings
+        )
     return cases
 
 
@@ -129,10 +131,10 @@ def _draw_singularity(ax: Axes, quadratic: list[xr.Dataset]) -> None:
     for k, run in enumerate(quadratic):
         fit = fit_singularity(*_late(run, _SINGULAR))
         left = fit.time - run.time.values
-        seen = left > 0
+        before = left > 0
         ax.loglog(
-            left[seen],
-            run.kinetic_energy.values[seen],
+            left[before],
+            run.kinetic_energy.values[before],
             ".",
             markersize=2,
             color=COLOURS[1],

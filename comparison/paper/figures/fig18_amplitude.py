@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from crazybilliards.comparison.claims.runs import pooled
+from crazybilliards.comparison.claims.repetition import pooled
 from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
 from crazybilliards.comparison.claims.verdicts import Claim, same_claim
 from crazybilliards.comparison.drawing import along_the_chain, draw_rods

@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from crazybilliards.comparison.claims.runs import centre_width, estimate, pooled, runs
+from crazybilliards.comparison.claims.repetition import central_width, estimate, pooled, repeated
 from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
 from crazybilliards.comparison.claims.verdicts import Claim, positive_claim, small_claim
 from crazybilliards.comparison.drawing import along_the_chain, draw_rods
@@ -28,7 +28,7 @@ def cases(quality: Quality) -> Cases:
         cases |= dissipative(LARGE, restitution, quality)
         for gap in _GAPS:
             chain = Chain(size=LARGE, restitution=restitution, gap=gap)
-            cases |= runs(
+            cases |= repeated(
                 _name(restitution, gap),
                 chain,
                 number,
@@ -49,7 +49,7 @@ def _change(run: xr.Dataset) -> float:
     """Ln of W_v^2 half-way to the border over that in the centre."""
     there = np.abs(np.abs(run.normalized_particle.values) - 0.5) < 0.05
     half_way = float((run.velocity_width.values[there] ** 2).mean())
-    return float(np.log(half_way / centre_width(run) ** 2))
+    return float(np.log(half_way / central_width(run) ** 2))
 
 
 def claims(results: Results) -> list[Claim]:

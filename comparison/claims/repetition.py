@@ -22,7 +22,7 @@ from crazybilliards.model import Chain
 _SQUARED = ("velocity_width", "displacement_width")
 
 
-def runs(name: str, chain: Chain, number: int, **settings: Any) -> Cases:
+def repeated(name: str, chain: Chain, number: int, **settings: Any) -> Cases:
     """Return cases ``NAME/0``, ``NAME/1``, ... that differ in their random numbers only."""
     return {
         f"{name}/{seed}": Case("simulate", chain, {**settings, "seed": seed})
@@ -70,7 +70,7 @@ def estimate(results: Results, name: str, quantity: Callable[[xr.Dataset], float
     return Estimate(float(np.mean(values)), spread * float(t.ppf(norm.cdf(1), number - 1)))
 
 
-def centre_width(run: xr.Dataset) -> float:
+def central_width(run: xr.Dataset) -> float:
     """W_v in the centre: root mean square over the middle tenth of the rods, at least two."""
     size = run.sizes["particle"]
     half = max(size // 20, 1)

@@ -1,0 +1,95 @@
+"""The jobs of a sweep, by name: the simulation and every stationary theory.
+
+A job is one entry of ``JOBS``. A theory that is added to ``THEORIES``, in
+:mod:`crazybilliards.comparison.theories`, is a job at once.
+"""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+import xarray as xr
+
+from crazybilliards.comparison.theories import THEORIES
+from crazybilliards.model import Chain
+from crazybilliards.model.fingerprint import room_fingerprint
+from crazybilliards.particles import simulate
+from crazybilliards.particles.run import Run
+from crazybilliards.particles.simulation import make_run
+
+# Arguments that no number depends on, and those that are no plain values.
+_NO_SETTINGS = {"chain", "start", "threads", "checkpoint", "checkpoint_interval", "progress"}
+
+_THEORY_WORK = 3e9  # particle steps that take as long as a theory, roughly
+
+
+@dataclass(frozen=True)
+class Job:
+    """A function of a chain that a sweep can compute.
+
+    Attributes
+    ----------
+    function
+        ``function(chain, **settings)`` gives a result in the common vocabulary. A setting ``seed``
+        is replaced by a seed of the case's own.
+    check
+        ``check(chain, **settings)`` raises the ValueError that the function would raise for a
+        wrong argument, without its work.
+    work
+        ``work(chain, **settings)``: how long it takes, in particle steps.
+    settings
+        The names of the settings with their defaults.
+    source
+        Fingerprint of the source code that the result depends on. It is taken when this module is
+        imported, together with that code: an edit during a long interactive session must not be
+        ascribed to the code that is in memory.
+    """
+
+    function: Callable[..., xr.Dataset]
+    check: Callable[..., Any]
+    work: Callable[..., float]
+    settings: Mapping[str, Any]
+    source: str
+
+
+def _settings(function: Callable[..., Any]) -> dict[str, Any]:
+    """Return the arguments of a function that are settings of a job, with their defaults."""
+    arguments = inspect.signature(function).parameters.items()
+    return {name: each.default for name, each in arguments if name not in _NO_SETTINGS}
+
+
+def _run(chain: Chain, **settings: Any) -> Run:
+    return make_run(chain, start=None, **settings)
+
+
+def _steps(chain: Chain, **settings: Any) -> float:
+    run = _run(chain, **settings)
+    return float(run.schedule.steps) * chain.size * run.replicas
+
+
+def _theory_work(chain: Chain, **settings: Any) -> float:
+    return _THEORY_WORK
+
+
+JOBS: dict[str, Job] = {
+    "simulate": Job(
+        function=partial(simulate, threads=1, progress=False),
+        check=_run,
+        work=_steps,
+        settings=_settings(simulate),
+        source=room_fingerprint("model", "particles"),
+    )
+} | {
+    name: Job(
+        function=theory.solve,
+        check=theory.check,
+        work=_theory_work,
+        settings=_settings(theory.solve),
+        source=room_fingerprint("model", "kinetic"),
+    )
+    for name, theory in THEORIES.items()
+}

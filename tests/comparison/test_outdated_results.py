@@ -1,0 +1,197 @@
+"""Results of other source code are computed anew, and new parameters leave old results valid."""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from concurrent.futures import Executor, Future
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import crazybilliards.model
+from crazybilliards.comparison import load_sweep
+from crazybilliards.comparison.sweeps import Case, run_cases
+from crazybilliards.comparison.sweeps.case import compute
+from crazybilliards.comparison.sweeps.jobs import JOBS
+from crazybilliards.comparison.sweeps.running import missing_cases
+from crazybilliards.model import Chain, load, save
+from crazybilliards.model.storage import write_sealed
+
+CASES = [Case("equilibrium", Chain(size=size), {}) for size in (2, 3)]
+
+
+class AtOnce(Executor):
+    """Carries out what is submitted, here and now."""
+
+    def submit(self, function, /, *arguments):
+        future = Future()
+        future.set_result(function(*arguments))
+        return future
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """Return a folder with the results of the cases."""
+    for case in CASES:
+        write_sealed(case.file(tmp_path), compute(case, case.source))
+    return tmp_path
+
+
+@pytest.fixture
+def edited(monkeypatch):
+    """Let the exact equilibrium be one whose velocity widths are twice as large."""
+    job = JOBS["equilibrium"]
+
+    def doubled(chain):
+        result = job.function(chain)
+        return result.assign(velocity_width=2 * result.velocity_width)
+
+    other = replace(job, function=doubled, source="other source code")
+    monkeypatch.setitem(JOBS, "equilibrium", other)
+
+
+def width(case, folder, **settings):
+    free = case.chain.free_velocity_width
+    return float(case.load(folder, **settings).velocity_width[0]) / free
+
+
+# -- source code ------------------------------------------------------------------------------
+
+
+def test_a_result_of_other_source_code_is_computed_anew(folder, edited, capsys):
+    assert set(missing_cases(CASES, folder)) == set(CASES)
+    for case in CASES:
+        with pytest.raises(ValueError, match="computed by other source code"):
+            case.load(folder)
+    assert run_cases(CASES, folder, AtOnce(), progress=False) == {}
+    [line] = capsys.readouterr().err.splitlines()
+    assert f"computed 2 cases in {folder}; computing them anew" in line
+    assert "--keep-old" in line
+    assert missing_cases(CASES, folder) == []
+    assert [width(case, folder) for case in CASES] == pytest.approx([2, 2])
+
+
+def test_a_result_of_other_source_code_can_be_kept(folder, edited, capsys):
+    assert missing_cases(CASES, folder, keep_old=True) == []
+    assert run_cases(CASES, folder, AtOnce(), keep_old=True, progress=False) == {}
+    assert capsys.readouterr().err == ""
+    assert width(CASES[0], folder, keep_old=True) == pytest.approx(1)
+
+
+def test_an_old_file_stays_until_the_new_result_is_there(folder, edited):
+    class Full(AtOnce):
+        def submit(self, function, /, *arguments):
+            raise MemoryError
+
+    with pytest.raises(MemoryError):
+        run_cases(CASES, folder, Full(), progress=False)
+    assert width(CASES[0], folder, keep_old=True) == pytest.approx(1)
+
+
+def test_a_sweep_of_two_source_codes_is_read_with_a_warning(folder, edited):
+    assert "source_fingerprint" in load_sweep(folder).attrs
+    run_cases(CASES[:1], folder, AtOnce(), progress=False)
+    with pytest.warns(UserWarning, match="different source code computed these cases"):
+        grid = load_sweep(folder)
+    assert "source_fingerprint" not in grid.attrs
+
+
+ROOMS = ("model", "particles", "kinetic", "comparison")
+COMMAND = [sys.executable, "-c", "from crazybilliards.comparison.commands.main import main; main()"]
+
+
+def test_after_an_edit_of_a_theory_its_sweep_gives_the_new_number(tmp_path):
+    """A copy of the package is edited and its commands are run, as a developer would."""
+    package = tmp_path / "crazybilliards"
+    root = Path(crazybilliards.model.__file__).parents[1]
+    for room in ROOMS:
+        shutil.copytree(root / room, package / room, ignore=shutil.ignore_patterns("__pycache__"))
+    (package / "__init__.py").touch()
+    (tmp_path / "grid.toml").write_text("[grid]\nsize = [2]\n[equilibrium]\n")
+
+    def sweep(*options):
+        """Run the command; return the velocity width, over the free one, and standard error."""
+        done = subprocess.run(
+            [*COMMAND, "sweep", "grid.toml", "--output", "results", "--processes", "1", *options],
+            capture_output=True,
+            text=True,
+            timeout=300,
+            check=True,
+            cwd=tmp_path,
+            env={**os.environ, "PYTHONPATH": str(tmp_path), "PYTHONDONTWRITEBYTECODE": "1"},
+        )
+        [file] = (tmp_path / "results").glob("*.nc")
+        return float(load(file).velocity_width[0]) / Chain().free_velocity_width, done.stderr
+
+    assert sweep() == (pytest.approx(1), "")
+    theory = package / "kinetic" / "exact" / "gibbs_measure.py"
+    text = theory.read_text()
+    assert text.count("np.full(chain.size, chain.free_velocity_width)") == 1
+    theory.write_text(text.replace("np.full(chain.size,", "np.full(chain.size, 2 *"))
+    assert sweep("--keep-old") == (pytest.approx(1), "")
+    number, errors = sweep()
+    assert number == pytest.approx(2)
+    assert errors.count("\n") == 1
+    assert "computed 1 cases in results; computing them anew" in errors
+
+
+# -- parameters -------------------------------------------------------------------------------
+
+
+def without(name, path):
+    """Rewrite a file as if a parameter had not existed when it was written."""
+    result = load(path)
+    stored = json.loads(result.attrs["case"])
+    del stored[name]
+    save(result.assign_attrs(case=json.dumps(stored)), path)
+
+
+@pytest.mark.parametrize("name", ["spring", "merging"])
+def test_parameters_that_a_file_lacks_are_at_their_defaults(name, tmp_path):
+    """A parameter of the chain, and a setting of the job."""
+    cases = [
+        Case("simulate", Chain(size=size), {"duration": 100, "observe": ["widths"]})
+        for size in (2, 3)
+    ]
+    assert run_cases(cases, tmp_path, AtOnce(), progress=False) == {}
+    before = load_sweep(tmp_path)
+    without(name, cases[0].file(tmp_path))
+    assert missing_cases(cases, tmp_path) == []
+    assert load_sweep(tmp_path).identical(before)
+
+
+def test_a_file_that_lacks_a_parameter_is_not_that_of_another_value(tmp_path):
+    case = Case("equilibrium", Chain(size=2, gap=1), {})
+    write_sealed(case.file(tmp_path), compute(case, case.source))
+    without("gap", case.file(tmp_path))
+    with pytest.raises(ValueError, match="not the case that its name says"):
+        case.load(tmp_path)
+
+
+def test_two_files_of_one_case_are_refused_by_name(folder):
+    name = CASES[0].file(folder)
+    shutil.copy(name, folder / "copy.nc")
+    with pytest.raises(ValueError, match=rf"{name.name} and .*copy\.nc: hold the same case"):
+        load_sweep(folder)
+
+
+def test_parameters_that_nobody_knows_are_refused(folder):
+    path = CASES[0].file(folder)
+    result = load(path)
+    stored = json.loads(result.attrs["case"]) | {"colour": "red"}
+    save(result.assign_attrs(case=json.dumps(stored)), path)
+    with pytest.raises(ValueError, match=r"\.nc: only one of them has 'colour'"):
+        load_sweep(folder)
+
+
+def test_a_stored_sweep_keeps_its_numbers(folder):
+    """The file says everything that its numbers follow from."""
+    attributes = load(CASES[0].file(folder)).attrs
+    assert json.loads(attributes["case"]) == CASES[0].parameters
+    assert attributes["source_fingerprint"] == CASES[0].source
+    assert attributes["package_version"]
+    assert np.isfinite(attributes["seconds"])
