@@ -5,7 +5,7 @@ import os
 import shutil
 import subprocess
 import sys
-from concurrent.futures import Executor, Future
+from concurrent.futures import Executor, ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 
@@ -24,13 +24,10 @@ from crazybilliards.model.storage import write_sealed
 CASES = [Case("equilibrium", Chain(size=size), {}) for size in (2, 3)]
 
 
-class AtOnce(Executor):
-    """Carries out what is submitted, here and now."""
-
-    def submit(self, function, /, *arguments):
-        future = Future()
-        future.set_result(function(*arguments))
-        return future
+@pytest.fixture
+def executor():
+    with ThreadPoolExecutor(1) as threads:
+        yield threads
 
 
 @pytest.fixture
@@ -62,12 +59,12 @@ def width(case, folder, **settings):
 # -- source code ------------------------------------------------------------------------------
 
 
-def test_a_result_of_other_source_code_is_computed_anew(folder, edited, capsys):
+def test_a_result_of_other_source_code_is_computed_anew(folder, edited, executor, capsys):
     assert set(missing_cases(CASES, folder)) == set(CASES)
     for case in CASES:
         with pytest.raises(ValueError, match="computed by other source code"):
             case.load(folder)
-    assert run_cases(CASES, folder, AtOnce(), progress=False) == {}
+    assert run_cases(CASES, folder, executor, progress=False) == {}
     [line] = capsys.readouterr().err.splitlines()
     assert f"computed 2 cases in {folder}; computing them anew" in line
     assert "--keep-old" in line
@@ -75,15 +72,15 @@ def test_a_result_of_other_source_code_is_computed_anew(folder, edited, capsys):
     assert [width(case, folder) for case in CASES] == pytest.approx([2, 2])
 
 
-def test_a_result_of_other_source_code_can_be_kept(folder, edited, capsys):
+def test_a_result_of_other_source_code_can_be_kept(folder, edited, executor, capsys):
     assert missing_cases(CASES, folder, keep_old=True) == []
-    assert run_cases(CASES, folder, AtOnce(), keep_old=True, progress=False) == {}
+    assert run_cases(CASES, folder, executor, keep_old=True, progress=False) == {}
     assert capsys.readouterr().err == ""
     assert width(CASES[0], folder, keep_old=True) == pytest.approx(1)
 
 
 def test_an_old_file_stays_until_the_new_result_is_there(folder, edited):
-    class Full(AtOnce):
+    class Full(Executor):
         def submit(self, function, /, *arguments):
             raise MemoryError
 
@@ -92,9 +89,9 @@ def test_an_old_file_stays_until_the_new_result_is_there(folder, edited):
     assert width(CASES[0], folder, keep_old=True) == pytest.approx(1)
 
 
-def test_a_sweep_of_two_source_codes_is_read_with_a_warning(folder, edited):
+def test_a_sweep_of_two_source_codes_is_read_with_a_warning(folder, edited, executor):
     assert "source_fingerprint" in load_sweep(folder).attrs
-    run_cases(CASES[:1], folder, AtOnce(), progress=False)
+    run_cases(CASES[:1], folder, executor, progress=False)
     with pytest.warns(UserWarning, match="different source code computed these cases"):
         grid = load_sweep(folder)
     assert "source_fingerprint" not in grid.attrs
@@ -151,13 +148,13 @@ def without(name, path):
 
 
 @pytest.mark.parametrize("name", ["spring", "merging"])
-def test_parameters_that_a_file_lacks_are_at_their_defaults(name, tmp_path):
+def test_parameters_that_a_file_lacks_are_at_their_defaults(name, executor, tmp_path):
     """A parameter of the chain, and a setting of the job."""
     cases = [
         Case("simulate", Chain(size=size), {"duration": 100, "observe": ["widths"]})
         for size in (2, 3)
     ]
-    assert run_cases(cases, tmp_path, AtOnce(), progress=False) == {}
+    assert run_cases(cases, tmp_path, executor, progress=False) == {}
     before = load_sweep(tmp_path)
     without(name, cases[0].file(tmp_path))
     assert missing_cases(cases, tmp_path) == []
