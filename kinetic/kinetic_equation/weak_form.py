@@ -40,7 +40,7 @@ from skfem import BilinearForm, LinearForm
 from skfem.helpers import grad
 
 from crazybilliards.kinetic.kinetic_equation.velocity_space import VelocitySpace
-from crazybilliards.model import Chain
+from crazybilliards.model import Chain, spring
 
 Array = NDArray[np.float64]
 
@@ -134,8 +134,7 @@ class Equation:
         return self.space.y - self.numbers.gap * (label - centre)
 
     def _force(self, displacement: Array) -> Array:
-        n = self.numbers.exponent
-        force = self.numbers.spring * displacement * np.abs(displacement) ** (n - 2)
+        force = self.numbers.spring * spring.force(displacement, self.numbers.exponent)
         return np.broadcast_to(force[:, None], (force.size, self.space.v.size))
 
     def matrix(self, mean: Mean) -> csc_matrix:
@@ -151,8 +150,7 @@ class Equation:
         space, numbers = self.space, self.numbers
         f_table, slope = (space.table(each) for each in space.interpolate(f))
         displacement = self._displacement(f_table)
-        n = numbers.exponent
-        stiffness = numbers.spring * (n - 1) * np.abs(displacement) ** (n - 2)
+        stiffness = numbers.spring * spring.stiffness(displacement, numbers.exponent)
 
         def change(df: Array) -> Array:
             seen = space.table(space.interpolate(df)[0])
