@@ -143,7 +143,7 @@ def _frozen(profile: Profile, x: Array) -> Array:
         inside = middle + np.clip(x - middle, -half * _JUST_INSIDE, half * _JUST_INSIDE)
     values = np.asarray(profile.function(inside), dtype=float) + (x - inside)
     if not np.isfinite(values).all():
-        raise ValueError("closure: the displacement must be finite on the grid of positions")
+        raise ValueError("displacement must be finite on the grid of positions")
     return values
 
 

@@ -190,7 +190,7 @@ def _starting_fields(
     eta_right, v_right, _ = at(right)
     eta = eta_left + weight * (eta_right - eta_left)
     if not (np.diff(eta) > 0).all():
-        raise ValueError("initial: the start is too steep for its grid of positions")
+        raise ValueError("start: it is too steep for its grid of positions")
     fields = {"eta": eta, "V": (v_left + v_right) / 2}
     if thermal:
         fields["S"] = np.append(at(cells.faces)[2] * np.diff(eta) ** 2, 0.0)

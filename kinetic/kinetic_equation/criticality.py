@@ -30,6 +30,7 @@ from crazybilliards.kinetic.kinetic_equation.weak_form import (
     along_velocity,
     newton_step,
 )
+from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain
 
 Array = NDArray[np.float64]
@@ -48,14 +49,14 @@ class _State(NamedTuple):
     drag: float
 
 
-class Estimate(NamedTuple):
+class CriticalValue(NamedTuple):
     """A critical value and its numerical error."""
 
     value: float
     error: float
 
 
-def critical_size(chain: Chain) -> Estimate:
+def critical_size(chain: Chain) -> CriticalValue:
     """Return the number of rods at which the steady state of a chain with e > 1 is lost.
 
     Of the kinetic equation of first order in lambda, for linear springs; ``chain.size`` and
@@ -75,19 +76,19 @@ def critical_size(chain: Chain) -> Estimate:
     damping = _require_drive(chain)
     drag, error = _critical_drag(damping)
     share = (chain.restitution - 1) / 2
-    return Estimate(drag / share, error / share)
+    return CriticalValue(drag / share, error / share)
 
 
-def critical_restitution(chain: Chain) -> Estimate:
+def critical_restitution(chain: Chain) -> CriticalValue:
     """Return the restitution at which a chain of this size and damping loses its steady state.
 
     See :func:`critical_size`; ``chain.restitution`` does not matter.
     """
     drag, error = _critical_drag(_require_drive(chain.replace(restitution=2.0)))
-    return Estimate(1 + 2 * drag / chain.size, 2 * error / chain.size)
+    return CriticalValue(1 + 2 * drag / chain.size, 2 * error / chain.size)
 
 
-def critical_damping(chain: Chain) -> Estimate:
+def critical_damping(chain: Chain) -> CriticalValue:
     """Return the smallest damping with which a chain of this size and e > 1 has a steady state.
 
     See :func:`critical_size`; ``chain.damping`` does not matter.
@@ -103,7 +104,7 @@ def critical_damping(chain: Chain) -> Estimate:
         raise ValueError(f"no damping found at which {chain.size} rods become critical")
     unit = math.sqrt(chain.stiffness * chain.mass)
     damping = unit * math.exp(found.root)
-    return Estimate(damping, 2e-3 * damping)
+    return CriticalValue(damping, 2e-3 * damping)
 
 
 def _require_drive(chain: Chain) -> float:
@@ -118,6 +119,7 @@ def _require_drive(chain: Chain) -> float:
             "with quadratic springs and e > 1 there is no critical size: rods collide the more "
             "often the faster they are, and a fluctuation large enough always runs away"
         )
+    require_chain(chain, "the critical size", steady=False)
     for name in ("damping", "stiffness"):
         if getattr(chain, name) == 0:
             raise ValueError(f"{name}=0: no size has a steady state with e > 1")

@@ -26,12 +26,12 @@ from scipy.sparse.linalg import splu
 from tqdm import tqdm
 
 from crazybilliards.kinetic.kinetic_equation.continuation import free_units
-from crazybilliards.kinetic.kinetic_equation.initial import (
+from crazybilliards.kinetic.kinetic_equation.order_statistics import points
+from crazybilliards.kinetic.kinetic_equation.start import (
     REACH,
     PhaseSpaceStart,
     read_phase_space,
 )
-from crazybilliards.kinetic.kinetic_equation.order_statistics import points
 from crazybilliards.kinetic.kinetic_equation.velocity_space import Box, VelocitySpace, moments
 from crazybilliards.kinetic.kinetic_equation.weak_form import (
     Coefficients,
@@ -41,6 +41,8 @@ from crazybilliards.kinetic.kinetic_equation.weak_form import (
     coefficients,
     mass,
 )
+from crazybilliards.kinetic.output_times import output_times
+from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain
 from crazybilliards.model.checks import check_integer, check_real
 from crazybilliards.model.memory import require_memory
@@ -59,12 +61,11 @@ _LOST = 2e-4  # share of the points on a line of the outermost cells at which th
 _NEGATIVE = 0.1
 _DIVERGED = 1e3  # times the energy of the start or the free rod
 _ENLARGED = 1.4
-_MOST_OUTPUTS = 100_000
 
 
 def relax_phase_space(
     chain: Chain,
-    initial: xr.Dataset,
+    start: xr.Dataset,
     duration: float,
     *,
     every: float | None = None,
@@ -78,8 +79,8 @@ def relax_phase_space(
     ----------
     chain
         The chain, any restitution near 1, both springs, any gap (in mean field).
-    initial
-        The start: a result with ``phase_space_density`` (``phase_space`` of another chain, say),
+    start
+        A result with ``phase_space_density`` (``phase_space`` of another chain, say),
         or one with ``density`` over x and, if wanted, ``label``, ``flow_velocity`` and
         ``velocity_variance``, as ``hydrodynamics`` takes it: ``displaced``, ``compressed``,
         ``force_balance`` of another chain; velocities are then Maxwellian around the flow.
@@ -118,37 +119,33 @@ def relax_phase_space(
     >>> flow.centre.values[[0, -1]].round(2) + 0.0
     array([ 1.  , -0.09])
     """
-    duration = check_real("duration", duration, positive=True)
-    every = duration / _OUTPUTS if every is None else check_real("every", every, positive=True)
-    count = math.ceil(duration / every - 1e-9)
-    if every > duration * (1 + 1e-9) or count > _MOST_OUTPUTS:
-        raise ValueError(f"every must lie between duration/{_MOST_OUTPUTS} and duration")
+    times = output_times(duration, every, _OUTPUTS)
+    count, interval = times.size - 1, times[1]
     cells = check_integer("cells", cells, least=4)
     if cells > _LARGEST_MESH:
         raise ValueError(f"cells must be at most {_LARGEST_MESH}, got {cells}")
     bytes_per_cell = _BYTES_PER_CELL + _BYTES_PER_OUTPUT * float(count)
     require_memory(f"{count} outputs on cells={cells}", bytes_per_cell * cells**2)
-    chain.require_steady_state()
+    require_chain(chain, "the kinetic equation in time")
     units = free_units(chain)
     unit_time = units.length / units.velocity
     if time_step is not None:
         time_step = check_real("time_step", time_step, positive=True) / unit_time
-    start = read_phase_space(chain, units, initial)
-    steps = math.ceil(every / unit_time / (time_step or _STEP) - 1e-9)
-    flow = _start(chain, units, start, cells)
+    steps = math.ceil(interval / unit_time / (time_step or _STEP) - 1e-9)
+    flow = _start(chain, units, read_phase_space(chain, units, start), cells)
     outputs = [_output(chain, units, flow)]
     most = _DIVERGED * max(flow.energy(), 1.0)
     status = "completed"
     try:
         for _ in tqdm(range(count), disable=None if progress else True, unit="output"):
-            flow = flow.advanced(every / unit_time / steps, steps)
+            flow = flow.advanced(interval / unit_time / steps, steps)
             if not flow.sound() or flow.energy() > most:
                 status = "diverged"
                 break
             outputs.append(_output(chain, units, flow))
     except KeyboardInterrupt:
         status = "interrupted"
-    return _result(chain, outputs, every * np.arange(float(len(outputs))), flow.space, status)
+    return _result(chain, outputs, times[: len(outputs)], flow.space, status)
 
 
 @dataclass(frozen=True)

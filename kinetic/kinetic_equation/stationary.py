@@ -33,6 +33,7 @@ from crazybilliards.kinetic.kinetic_equation.continuation import (
 )
 from crazybilliards.kinetic.kinetic_equation.order_statistics import Rods, rods
 from crazybilliards.kinetic.kinetic_equation.velocity_space import moments
+from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain
 from crazybilliards.model.checks import check_integer, check_real
 from crazybilliards.model.grid import position_grid
@@ -134,7 +135,7 @@ def check_phase_space(
         raise ValueError(f"size must be at most {_MOST_RODS}, got {chain.size}")
     if order is not None:
         check_integer("order", order, least=1, most=2)
-    chain.require_steady_state()
+    require_chain(chain, "the kinetic equation")
     return order or (2 if chain.restitution <= 1 else 1)
 
 
