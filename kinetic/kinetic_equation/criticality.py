@@ -23,7 +23,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import root_scalar
 
-from crazybilliards.kinetic.kinetic_equation.velocity_space import Box, VelocitySpace, fitting_box
+from crazybilliards.kinetic.kinetic_equation.velocity_space import (
+    Box,
+    VelocitySpace,
+    fitting_box,
+    one_thread,
+)
 from crazybilliards.kinetic.kinetic_equation.weak_form import (
     Coefficients,
     Equation,
@@ -135,6 +140,7 @@ def _critical_drag(damping: float) -> tuple[float, float]:
     return limit, 0.2 * abs(limit - float(drags[-1]))
 
 
+@one_thread
 def drag_at_noise(damping: float, noise: tuple[float, ...], cells: int = _CELLS) -> Array:
     """Return |lambda| L of the steady states whose energy is 1/tau of the free one.
 

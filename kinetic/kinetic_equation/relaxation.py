@@ -22,7 +22,6 @@ import xarray as xr
 from numpy.typing import NDArray
 from scipy.interpolate import RectBivariateSpline
 from scipy.sparse import csc_matrix
-from scipy.sparse.linalg import splu
 from tqdm import tqdm
 
 from crazybilliards.kinetic.kinetic_equation.continuation import free_units
@@ -32,7 +31,13 @@ from crazybilliards.kinetic.kinetic_equation.start import (
     PhaseSpaceStart,
     read_phase_space,
 )
-from crazybilliards.kinetic.kinetic_equation.velocity_space import Box, VelocitySpace, moments
+from crazybilliards.kinetic.kinetic_equation.velocity_space import (
+    Box,
+    VelocitySpace,
+    factorised,
+    moments,
+    one_thread,
+)
 from crazybilliards.kinetic.kinetic_equation.weak_form import (
     Coefficients,
     Equation,
@@ -63,6 +68,7 @@ _DIVERGED = 1e3  # times the energy of the start or the free rod
 _ENLARGED = 1.4
 
 
+@one_thread
 def relax_phase_space(
     chain: Chain,
     start: xr.Dataset,
@@ -206,7 +212,7 @@ class _Flow:
 
 
 def _step(inertia: csc_matrix, matrix: csc_matrix, dt: float) -> Callable[[Array], Array]:
-    solve = splu((inertia - dt / 2 * matrix).tocsc()).solve
+    solve = factorised(inertia - dt / 2 * matrix).solve
     explicit = inertia + dt / 2 * matrix
     return lambda f: np.asarray(solve(explicit @ f))
 

@@ -32,7 +32,7 @@ from crazybilliards.kinetic.kinetic_equation.continuation import (
     refined,
 )
 from crazybilliards.kinetic.kinetic_equation.order_statistics import Rods, rods
-from crazybilliards.kinetic.kinetic_equation.velocity_space import moments
+from crazybilliards.kinetic.kinetic_equation.velocity_space import moments, one_thread
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain
 from crazybilliards.model.checks import check_integer, check_real
@@ -46,10 +46,11 @@ _CELLS = 22
 _FINER = 1.5
 _MOST_CELLS = 60
 _LARGEST_MESH = 150
-_BYTES_PER_CELL = 9e4
+_BYTES_PER_CELL = 4e4
 _MOST_RODS = 100_000
 
 
+@one_thread
 def phase_space(
     chain: Chain,
     *,
@@ -71,7 +72,7 @@ def phase_space(
         The mesh is refined until no velocity width changes by more, relatively.
     cells
         Cells from the centre to the end of the mesh, in each direction, instead of that; up to
-        150, which takes 2 GB: 90 kB times their square.
+        150, which takes 0.9 GB: 40 kB times their square.
 
     Returns
     -------

@@ -35,11 +35,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csc_matrix, hstack, vstack
-from scipy.sparse.linalg import LinearOperator, gmres, splu
+from scipy.sparse.linalg import LinearOperator, gmres
 from skfem import BilinearForm, LinearForm
 from skfem.helpers import grad
 
-from crazybilliards.kinetic.kinetic_equation.velocity_space import VelocitySpace
+from crazybilliards.kinetic.kinetic_equation.velocity_space import VelocitySpace, factorised
 from crazybilliards.model import Chain, spring
 
 Array = NDArray[np.float64]
@@ -209,7 +209,7 @@ def newton_step(
     borders = csc_matrix(columns), csc_matrix(np.array(rows))
     corner = csc_matrix((len(rows), len(rows)))
     bordered = vstack([hstack([matrix, borders[0]]), hstack([borders[1], corner])]).tocsc()
-    factors, size = splu(bordered), matrix.shape[0]
+    factors, size = factorised(bordered), matrix.shape[0]
 
     def apply(x: Array) -> Array:
         image = bordered @ x
