@@ -104,7 +104,9 @@ def critical_damping(chain: Chain) -> CriticalValue:
     def excess(log_damping: float) -> float:
         return math.log(_critical_drag(math.exp(log_damping))[0] / wanted)
 
-    found = root_scalar(excess, method="secant", x0=0.0, x1=0.5, xtol=1e-3)
+    # For weak damping |lambda| L = (pi/2) gamma/sqrt(k m), and about proportional beyond.
+    weak = math.log(2 * wanted / math.pi)
+    found = root_scalar(excess, method="secant", x0=weak, x1=weak - excess(weak), xtol=1e-3)
     if not found.converged:
         raise ValueError(f"no damping found at which {chain.size} rods become critical")
     unit = math.sqrt(chain.stiffness * chain.mass)

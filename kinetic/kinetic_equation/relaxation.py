@@ -26,6 +26,7 @@ from tqdm import tqdm
 
 from crazybilliards.kinetic.kinetic_equation.continuation import free_units
 from crazybilliards.kinetic.kinetic_equation.order_statistics import points
+from crazybilliards.kinetic.kinetic_equation.positions import density_and_label
 from crazybilliards.kinetic.kinetic_equation.start import (
     REACH,
     PhaseSpaceStart,
@@ -50,6 +51,7 @@ from crazybilliards.kinetic.output_times import output_times
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain
 from crazybilliards.model.checks import check_integer, check_real
+from crazybilliards.model.grid import position_grid
 from crazybilliards.model.memory import require_memory
 from crazybilliards.model.vocabulary import result
 
@@ -58,8 +60,9 @@ Array = NDArray[np.float64]
 _STEP = 0.04  # in units of the spring's 1/w0
 _CELLS = 20
 _LARGEST_MESH = 80
-_BYTES_PER_CELL = 1.6e5
+_BYTES_PER_CELL = 1.1e5
 _BYTES_PER_OUTPUT = 600  # and cell: f at six points in each direction, twice
+_BYTES_PER_NODE = 20  # of x, and output
 _OUTPUTS = 50
 _CORE = 1.5
 _LOST = 2e-4  # share of the points on a line of the outermost cells at which the mesh is enlarged
@@ -98,7 +101,7 @@ def relax_phase_space(
         Longest step [T]; None: 0.04 of the spring's s/W. The error of the moments is a quarter of
         its square in these units, 4e-4.
     cells
-        Of the mesh, from the centre to the end in each direction. Their square takes 160 kB, and
+        Of the mesh, from the centre to the end in each direction. Their square takes 110 kB, and
         600 bytes for each output.
     progress
         Show a progress bar, if standard error is a terminal.
@@ -106,7 +109,8 @@ def relax_phase_space(
     Returns
     -------
     xarray.Dataset
-        ``phase_space_density`` over (time, y, velocity); ``mean_displacement``, ``mean_velocity``
+        ``phase_space_density`` over (time, y, velocity); ``density`` and ``label`` over (time, x);
+        ``mean_displacement``, ``mean_velocity``
         and ``velocity_width`` (about zero) over (time, particle), of points drawn independently
         from f; over time ``rods``, ``centre``, ``cloud_width``, ``kinetic_energy`` and
         ``covariance``. ``attrs["status"]`` is ``diverged`` if the energy grew without bound, or
@@ -139,6 +143,8 @@ def relax_phase_space(
         time_step = check_real("time_step", time_step, positive=True) / unit_time
     steps = math.ceil(interval / unit_time / (time_step or _STEP) - 1e-9)
     flow = _start(chain, units, read_phase_space(chain, units, start), cells)
+    nodes = _positions(chain, units, flow.space).size
+    require_memory(f"every: {count} outputs", _BYTES_PER_NODE * float(nodes) * count)
     outputs = [_output(chain, units, flow)]
     most = _DIVERGED * max(flow.energy(), 1.0)
     status = "completed"
@@ -151,7 +157,7 @@ def relax_phase_space(
             outputs.append(_output(chain, units, flow))
     except KeyboardInterrupt:
         status = "interrupted"
-    return _result(chain, outputs, times[: len(outputs)], flow.space, status)
+    return _result(chain, units, outputs, times[: len(outputs)], flow.space, status)
 
 
 @dataclass(frozen=True)
@@ -244,9 +250,15 @@ def _output(chain: Chain, units: Units, flow: _Flow) -> dict[str, Any]:
     spread = share @ seen.y**2 - centre**2
     drift = seen.weights @ seen.flux
     y, v, values = flow.space.seen(flow.f)
+    # Ripples where there are no points are left out, for the positions to ascend.
+    alive = np.maximum(seen.density, 0.0)
+    label = np.maximum.accumulate(flow.space.cumulative(alive))
+    number = chain.size / (alive @ seen.weights)
     return {
         "y": length * y,
         "v": velocity * v,
+        "points": number / length * alive,
+        "below": np.clip(number * label, 0.0, chain.size),
         "phase_space_density": chain.size / (length * velocity) * values,
         "mean_displacement": length * of.position - chain.reduced_anchors,
         "mean_velocity": velocity * of.velocity,
@@ -259,13 +271,29 @@ def _output(chain: Chain, units: Units, flow: _Flow) -> dict[str, Any]:
     }
 
 
+def _positions(chain: Chain, units: Units, space: VelocitySpace) -> Array:
+    """Return the grid of positions for all points of the mesh."""
+    reach = units.length * space.box.length - float(chain.reduced_anchors[-1])
+    return position_grid(chain, max(reach, units.length))
+
+
 def _result(
-    chain: Chain, outputs: list[dict[str, Any]], times: Array, last: VelocitySpace, status: str
+    chain: Chain,
+    units: Units,
+    outputs: list[dict[str, Any]],
+    times: Array,
+    last: VelocitySpace,
+    status: str,
 ) -> xr.Dataset:
-    """Put the outputs into the common vocabulary; f on the last, largest mesh's axes."""
+    """Put the outputs into the common vocabulary, on the axes of the last, largest mesh."""
+    x = _positions(chain, units, last)
+    density, label = np.empty((2, len(outputs), x.size))
+    for i, output in enumerate(outputs):
+        of = (output[name] for name in ("y", "points", "below"))
+        density[i], label[i] = density_and_label(chain, x, *of)
     y, v = outputs[-1]["y"], outputs[-1]["v"]
-    density = np.zeros((len(outputs), y.size, v.size))
-    for place, output in zip(density, outputs, strict=True):
+    phase_space = np.zeros((len(outputs), y.size, v.size))
+    for place, output in zip(phase_space, outputs, strict=True):
         if output["y"].shape == y.shape and (output["y"] == y).all() and (output["v"] == v).all():
             place[...] = output["phase_space_density"]
             continue
@@ -280,11 +308,13 @@ def _result(
     return result(
         chain,
         {
-            "phase_space_density": (("time", "y", "velocity"), density),
+            "phase_space_density": (("time", "y", "velocity"), phase_space),
+            "density": (("time", "x"), density),
+            "label": (("time", "x"), label),
             **{name: (("time", "particle"), stacked[name]) for name in over_rods},
             **{name: ("time", stacked[name]) for name in over_time},
         },
-        coordinates={"time": times, "y": y, "velocity": v},
+        coordinates={"time": times, "x": x, "y": y, "velocity": v},
         source="theory",
         method={"theory": "kinetic equation in time", "cells": last.cells},
         status=status,

@@ -32,7 +32,8 @@ from crazybilliards.kinetic.kinetic_equation.continuation import (
     refined,
 )
 from crazybilliards.kinetic.kinetic_equation.order_statistics import Rods, rods
-from crazybilliards.kinetic.kinetic_equation.velocity_space import moments, one_thread
+from crazybilliards.kinetic.kinetic_equation.positions import density_and_label
+from crazybilliards.kinetic.kinetic_equation.velocity_space import moments
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain
 from crazybilliards.model.checks import check_integer, check_real
@@ -50,7 +51,6 @@ _BYTES_PER_CELL = 4e4
 _MOST_RODS = 100_000
 
 
-@one_thread
 def phase_space(
     chain: Chain,
     *,
@@ -187,13 +187,18 @@ def _fields(state: State) -> dict[str, Array]:
         curve = PchipInterpolator(np.concatenate([-places[::-1], places]), both, extrapolate=False)
         return np.asarray(curve(x))
 
-    inside = np.abs(x) <= places[-1]
-    reduced = np.where(inside, over_x(np.maximum(seen.density, 0.0), 1) * L / length, 0.0)
-    label = L / 2 + L * np.where(inside, over_x(seen.label, -1), np.sign(x) / 2)
+    y, points = length * seen.y, L / length * np.maximum(seen.density, 0.0)
+    density, label = density_and_label(
+        chain,
+        x,
+        np.concatenate([-y[::-1], y]),
+        np.concatenate([points[::-1], points]),
+        L / 2 + L * np.concatenate([-seen.label[::-1], seen.label]),
+    )
     alive = np.maximum(seen.density, seen.density.max() * 1e-6)
     return {
         "x": x,
-        "density": reduced / (1 + 2 * R * reduced),
+        "density": density,
         "label": label,
         "displacement": x - (2 * R + chain.gap) * (label - L / 2),
         "velocity_variance": velocity**2 * _continued_flat(over_x(seen.variance, 1)),

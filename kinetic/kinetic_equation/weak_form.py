@@ -39,7 +39,11 @@ from scipy.sparse.linalg import LinearOperator, gmres
 from skfem import BilinearForm, LinearForm
 from skfem.helpers import grad
 
-from crazybilliards.kinetic.kinetic_equation.velocity_space import VelocitySpace, factorised
+from crazybilliards.kinetic.kinetic_equation.velocity_space import (
+    VelocitySpace,
+    factorised,
+    one_thread,
+)
 from crazybilliards.model import Chain, spring
 
 Array = NDArray[np.float64]
@@ -171,6 +175,7 @@ class Solution(NamedTuple):
     residual: float
 
 
+@one_thread
 def stationary_state(
     space: VelocitySpace, numbers: Coefficients, guess: Array, tolerance: float = 1e-10
 ) -> Solution:

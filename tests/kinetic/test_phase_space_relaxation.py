@@ -3,10 +3,12 @@
 import numpy as np
 import pytest
 
+from crazybilliards.comparison import smooth
 from crazybilliards.kinetic import (
     compressed,
     displaced,
     force_balance,
+    hydrodynamics,
     phase_space,
     relax_phase_space,
 )
@@ -34,6 +36,26 @@ def test_elastic_cloud_moves_as_the_exact_one(stretch, shift):
         np.testing.assert_allclose(flow.kinetic_energy, energy, rtol=2e-3)
     assert float(np.abs(flow.rods - CHAIN.size).max()) < 1e-10 * CHAIN.size
     assert float(flow.phase_space_density.min()) > -1e-3 * float(flow.phase_space_density.max())
+
+
+@pytest.mark.parametrize("gap", [0.0, 0.2])
+def test_the_density_is_that_of_the_fluid(gap):
+    """At restitution 1 the fluid with a temperature moves as the kinetic equation does."""
+    chain = CHAIN.replace(gap=gap)
+    start = displaced(chain, 1.0)
+    flow = relax_phase_space(chain, start, 6.0, every=2.0, cells=16, progress=False)
+    fluid = hydrodynamics(
+        chain, start, 6.0, every=2.0, velocity_variance="evolving", progress=False
+    )
+    # Twice and three times what the mesh leaves, which falls with the cells squared.
+    for name, most in (("density", 8e-3), ("label", 2e-3)):
+        difference = flow[name].interp(x=fluid.x, kwargs={"fill_value": 0.0}) - fluid[name]
+        inside = np.abs(fluid.x) < float(flow.x[-1])
+        assert float(np.abs(difference.where(inside)).max()) < most, name
+    np.testing.assert_allclose(flow.density.integrate("x"), chain.size, rtol=1e-4)
+    np.testing.assert_allclose(flow.label[:, -1], chain.size, rtol=1e-12)
+    smoothed = smooth(flow).density.interp(x=fluid.x, kwargs={"fill_value": 0.0})
+    assert float(np.abs(smoothed - smooth(fluid).density).max()) < 1e-3
 
 
 def test_error_is_of_second_order_in_the_time_step():
