@@ -224,8 +224,8 @@ def _log_cumulative(phi: Array, spacing: float) -> Array:
 
 def _add_rod(x: Array, centres: Array, p: Array, density: Array, label: Array) -> None:
     """Add one rod's probabilities ``p`` at positions ``centres`` to density and label on x."""
-    seen = np.flatnonzero(p > 1e-20 * np.max(p))
-    kept = slice(max(seen[0] - 2, 0), seen[-1] + 3)
+    likely = np.flatnonzero(p > 1e-20 * np.max(p))
+    kept = slice(max(likely[0] - 2, 0), likely[-1] + 3)
     positions = centres[kept]
     curve = CubicSpline(positions, p[kept] / (positions[1] - positions[0]))
     cumulative = curve.antiderivative()

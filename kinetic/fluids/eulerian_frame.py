@@ -126,12 +126,12 @@ def _integrate(
             backend="numba" if steps * (times.size - 1) > _MANY_STEPS else "numpy",
             dt=interval / steps,
         )
-        seen = math.inf
+        reached = math.inf
         if np.isfinite(solution).all():
-            seen = max(_fastest(each, constants) for each in solution)
-        if seen * interval / steps < _MOST_COURANT * h:
+            reached = max(_fastest(each, constants) for each in solution)
+        if reached * interval / steps < _MOST_COURANT * h:
             return solution
-        fastest = max(2 * fastest, seen if seen < math.inf else 0.0)
+        fastest = max(2 * fastest, reached if reached < math.inf else 0.0)
     raise ValueError("the flow gets too fast for the grid: give fewer cells or frame='label'")
 
 

@@ -38,7 +38,7 @@ class Constants(NamedTuple):
     spacing: float
     theta: Array
     frozen: Array
-    crowd: float
+    crowd: float  # B: length of all rods in thermal lengths
     lam: float
     gamma: float
     exponent: int

@@ -84,11 +84,11 @@ def _faces(state: Stationary, number: int | None) -> Array:
     end = float(state.at(np.array([0.5 - _LAST_SHARE]))[0][0])
     fine = np.linspace(0, end, 20_001)
     depth = state.edge.lam / 2 - fine
-    crowd = cumulative_trapezoid(1 / np.clip(1 + (depth - 6) / 3, 1, 8), fine, initial=0)
+    cells_up_to = cumulative_trapezoid(1 / np.clip(1 + (depth - 6) / 3, 1, 8), fine, initial=0)
     if number is None:
-        number = int(np.clip(2 * crowd[-1] / _EDGE_CELL, _FEWEST_CELLS, _MOST_CELLS))
-    count = crowd[-1] * np.linspace(-1, 1, number - 1)
-    return np.asarray(np.sign(count) * np.interp(np.abs(count), crowd, fine))
+        number = int(np.clip(2 * cells_up_to[-1] / _EDGE_CELL, _FEWEST_CELLS, _MOST_CELLS))
+    count = cells_up_to[-1] * np.linspace(-1, 1, number - 1)
+    return np.asarray(np.sign(count) * np.interp(np.abs(count), cells_up_to, fine))
 
 
 @kernel

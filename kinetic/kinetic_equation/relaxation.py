@@ -175,8 +175,8 @@ class _Flow:
 
     def sound(self) -> bool:
         """Whether this is a distribution; runaway leaves any mesh and time step behind."""
-        seen = moments(self.space, self.f)
-        spread = (seen.density * seen.weights) @ seen.y**2
+        profiles = moments(self.space, self.f)
+        spread = (profiles.density * profiles.weights) @ profiles.y**2
         return bool(self.energy() > 0 and spread > 0 and self.f.min() > -_NEGATIVE * self.f.max())
 
     def advanced(self, dt: float, steps: int) -> _Flow:
@@ -242,18 +242,18 @@ def _start(chain: Chain, units: Units, start: PhaseSpaceStart, cells: int) -> _F
 
 def _output(chain: Chain, units: Units, flow: _Flow) -> dict[str, Any]:
     length, velocity = units
-    seen = moments(flow.space, flow.f)
-    of = points(chain.size, seen)
-    share = seen.density * seen.weights
+    profiles = moments(flow.space, flow.f)
+    of = points(chain.size, profiles)
+    share = profiles.density * profiles.weights
     total = share.sum()
-    centre = share @ seen.y
-    spread = share @ seen.y**2 - centre**2
-    drift = seen.weights @ seen.flux
-    y, v, values = flow.space.seen(flow.f)
+    centre = share @ profiles.y
+    spread = share @ profiles.y**2 - centre**2
+    drift = profiles.weights @ profiles.flux
+    y, v, values = flow.space.sampled(flow.f)
     # Ripples where there are no points are left out, for the positions to ascend.
-    alive = np.maximum(seen.density, 0.0)
+    alive = np.maximum(profiles.density, 0.0)
     label = np.maximum.accumulate(flow.space.cumulative(alive))
-    number = chain.size / (alive @ seen.weights)
+    number = chain.size / (alive @ profiles.weights)
     return {
         "y": length * y,
         "v": velocity * v,
@@ -267,7 +267,9 @@ def _output(chain: Chain, units: Units, flow: _Flow) -> dict[str, Any]:
         "centre": length * centre,
         "cloud_width": length * math.sqrt(spread),
         "kinetic_energy": chain.size * chain.temperature / 2 * flow.energy(),
-        "covariance": length * velocity * ((seen.weights * seen.y) @ seen.flux - centre * drift),
+        "covariance": length
+        * velocity
+        * ((profiles.weights * profiles.y) @ profiles.flux - centre * drift),
     }
 
 

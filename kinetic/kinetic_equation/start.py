@@ -68,8 +68,8 @@ def _maxwellian(chain: Chain, units: Units, start: xr.Dataset) -> PhaseSpaceStar
             known.variance(x) / velocity**2,
         )
     )
-    seen = kept & (reduced > 1e-9 * reduced.max())
-    widest = float(np.sqrt(known.variance(x[seen]).max())) / velocity
+    populated = kept & (reduced > 1e-9 * reduced.max())
+    widest = float(np.sqrt(known.variance(x[populated]).max())) / velocity
 
     def f(at_y: Array, at_v: Array) -> Array:
         inside = np.isfinite(log_density(at_y))
@@ -80,5 +80,5 @@ def _maxwellian(chain: Chain, units: Units, start: xr.Dataset) -> PhaseSpaceStar
         ) / np.sqrt(W2)
         return np.where(inside[:, None], values, 0.0)
 
-    fastest = float(np.abs(known.velocity(x[seen])).max()) / velocity
-    return PhaseSpaceStart(f, float(np.abs(y[seen]).max()), fastest + REACH * widest)
+    fastest = float(np.abs(known.velocity(x[populated])).max()) / velocity
+    return PhaseSpaceStart(f, float(np.abs(y[populated]).max()), fastest + REACH * widest)

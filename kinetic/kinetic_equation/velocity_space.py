@@ -199,7 +199,7 @@ class VelocitySpace:
             np.concatenate([values[:0:-1, ::-1], values]),
         )
 
-    def seen(self, f: Array) -> tuple[Array, Array, Array]:
+    def sampled(self, f: Array) -> tuple[Array, Array, Array]:
         """Return y, v and the values of f at the quadrature points of the whole plane.
 
         There f is more accurate than at the nodes, where it alternates a little around v = 0.
@@ -234,8 +234,8 @@ class VelocitySpace:
 
     def interpolate(self, f: Array) -> tuple[Array, Array]:
         """Return f and its derivative along v at the quadrature points."""
-        seen = self.basis.interpolate(self.unknowns @ f)
-        return np.asarray(seen), np.asarray(seen.grad[1])
+        field = self.basis.interpolate(self.unknowns @ f)
+        return np.asarray(field), np.asarray(field.grad[1])
 
     # -- integrals ---------------------------------------------------------------------------
 
@@ -291,8 +291,8 @@ class Moments(NamedTuple):
 
 def moments(space: VelocitySpace, f: Array) -> Moments:
     """Integrate a distribution over the velocities."""
-    seen = space.table(space.interpolate(f)[0])
-    density, first, second, third = (seen @ (space.v_weights * space.v**n) for n in range(4))
+    table = space.table(space.interpolate(f)[0])
+    density, first, second, third = (table @ (space.v_weights * space.v**n) for n in range(4))
     safe = np.where(density > 0, density, np.inf)
     flow = first / safe
     # Ripples far out, where there are no points, may have any sign.
@@ -304,17 +304,17 @@ def moments(space: VelocitySpace, f: Array) -> Moments:
 
 def fitting_box(space: VelocitySpace, f: Array) -> Box:
     """Return the box that fits a symmetric f of mass 1; larger where f does not end in its box."""
-    seen = moments(space, f)
+    profiles = moments(space, f)
     table = space.table(space.interpolate(f)[0])
     right = space.v > 0
     along_v = 2 * ((space.y_weights @ table) * space.v_weights)[right]
-    coldest = float(seen.variance[seen.label < _CORE].min())
+    coldest = float(profiles.variance[profiles.label < _CORE].min())
     if not coldest > 0:
         raise ValueError("the velocity variance became negative")
     wanted = Box(
-        _end(seen.y, seen.density * seen.weights),
+        _end(profiles.y, profiles.density * profiles.weights),
         _end(space.v[right], along_v),
-        float(np.interp(0.3, seen.label, seen.y)),
+        float(np.interp(0.3, profiles.label, profiles.y)),
         1.5 * coldest**0.5,
     )
     return Box(*np.minimum(wanted, _GROWTH * np.array(space.box)))

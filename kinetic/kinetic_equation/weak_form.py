@@ -125,15 +125,15 @@ class Equation:
 
     def mean(self, f: Array) -> Mean:
         """Return force and collision integrals for a distribution."""
-        seen = self.space.table(self.space.interpolate(f)[0])
-        return Mean(self._force(self._displacement(seen)), *self._integrals(seen))
+        table = self.space.table(self.space.interpolate(f)[0])
+        return Mean(self._force(self._displacement(table)), *self._integrals(table))
 
-    def _integrals(self, seen: Array) -> list[Array]:
-        return [seen @ kernel.T for kernel in self.space.kernels]
+    def _integrals(self, table: Array) -> list[Array]:
+        return [table @ kernel.T for kernel in self.space.kernels]
 
-    def _displacement(self, seen: Array) -> Array:
+    def _displacement(self, table: Array) -> Array:
         """Distance from the anchor of the label at each y, in mean field."""
-        label = self.space.cumulative(seen @ self.space.v_weights)
+        label = self.space.cumulative(table @ self.space.v_weights)
         centre = 0.0 if self.space.symmetric else 0.5
         return self.space.y - self.numbers.gap * (label - centre)
 
@@ -157,11 +157,11 @@ class Equation:
         stiffness = numbers.spring * spring.stiffness(displacement, numbers.exponent)
 
         def change(df: Array) -> Array:
-            seen = space.table(space.interpolate(df)[0])
-            I1, I3, I3v = self._integrals(seen)
+            table = space.table(space.interpolate(df)[0])
+            I1, I3, I3v = self._integrals(table)
             flux = numbers.drag * f_table * I1 + numbers.diffusion * (slope * I3 + f_table * I3v)
             if numbers.gap > 0:
-                label = space.cumulative(seen @ space.v_weights)
+                label = space.cumulative(table @ space.v_weights)
                 flux = flux - (stiffness * numbers.gap * label)[:, None] * f_table
             return space.assemble(along_velocity, flux=space.field(flux))
 

@@ -57,7 +57,7 @@ OTHER = {
     "stiffness": 1.5,
     "gap": 0.2,
     "radius": 1.1,
-    "mass": 5.0,
+    "mass": 9.0,
     "spring": "quadratic",
 }
 
