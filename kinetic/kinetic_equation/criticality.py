@@ -23,10 +23,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import root_scalar
 
+from crazybilliards.kinetic.kinetic_equation.velocity_moments import fitting_box
 from crazybilliards.kinetic.kinetic_equation.velocity_space import (
     Box,
     VelocitySpace,
-    fitting_box,
     one_thread,
 )
 from crazybilliards.kinetic.kinetic_equation.weak_form import (

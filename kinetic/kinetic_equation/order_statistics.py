@@ -29,7 +29,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 from scipy.special import betaincinv, ndtr, ndtri
 
-from crazybilliards.kinetic.kinetic_equation.velocity_space import Moments
+from crazybilliards.kinetic.kinetic_equation.velocity_moments import Moments
 from crazybilliards.model import Chain
 
 Array = NDArray[np.float64]

@@ -15,28 +15,29 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
-from scipy.interpolate import RectBivariateSpline
 from scipy.sparse import csc_matrix
 from tqdm import tqdm
 
 from crazybilliards.kinetic.kinetic_equation.continuation import free_units
-from crazybilliards.kinetic.kinetic_equation.order_statistics import points
-from crazybilliards.kinetic.kinetic_equation.positions import density_and_label
+from crazybilliards.kinetic.kinetic_equation.relaxation_result import (
+    in_vocabulary,
+    positions,
+    snapshot,
+)
 from crazybilliards.kinetic.kinetic_equation.start import (
     REACH,
     PhaseSpaceStart,
     read_phase_space,
 )
+from crazybilliards.kinetic.kinetic_equation.velocity_moments import moments
 from crazybilliards.kinetic.kinetic_equation.velocity_space import (
     Box,
     VelocitySpace,
     factorised,
-    moments,
     one_thread,
 )
 from crazybilliards.kinetic.kinetic_equation.weak_form import (
@@ -51,9 +52,7 @@ from crazybilliards.kinetic.output_times import output_times
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain
 from crazybilliards.model.checks import check_integer, check_real
-from crazybilliards.model.grid import position_grid
 from crazybilliards.model.memory import require_memory
-from crazybilliards.model.vocabulary import result
 
 Array = NDArray[np.float64]
 
@@ -143,9 +142,9 @@ def relax_phase_space(
         time_step = check_real("time_step", time_step, positive=True) / unit_time
     steps = math.ceil(interval / unit_time / (time_step or _STEP) - 1e-9)
     flow = _start(chain, units, read_phase_space(chain, units, start), cells)
-    nodes = _positions(chain, units, flow.space).size
+    nodes = positions(chain, units, flow.space).size
     require_memory(f"every: {count} outputs", _BYTES_PER_NODE * float(nodes) * count)
-    outputs = [_output(chain, units, flow)]
+    outputs = [snapshot(chain, units, flow.space, flow.f, flow.energy())]
     most = _DIVERGED * max(flow.energy(), 1.0)
     status = "completed"
     try:
@@ -154,10 +153,10 @@ def relax_phase_space(
             if not flow.sound() or flow.energy() > most:
                 status = "diverged"
                 break
-            outputs.append(_output(chain, units, flow))
+            outputs.append(snapshot(chain, units, flow.space, flow.f, flow.energy()))
     except KeyboardInterrupt:
         status = "interrupted"
-    return _result(chain, units, outputs, times[: len(outputs)], flow.space, status)
+    return in_vocabulary(chain, units, outputs, times[: len(outputs)], flow.space, status)
 
 
 @dataclass(frozen=True)
@@ -238,87 +237,3 @@ def _start(chain: Chain, units: Units, start: PhaseSpaceStart, cells: int) -> _F
     space = VelocitySpace(box, cells, symmetric=False)
     f = space.project(start.f)
     return _Flow(coefficients(chain, units, order), space, f / (space.whole_mass @ f))
-
-
-def _output(chain: Chain, units: Units, flow: _Flow) -> dict[str, Any]:
-    length, velocity = units
-    profiles = moments(flow.space, flow.f)
-    of = points(chain.size, profiles)
-    share = profiles.density * profiles.weights
-    total = share.sum()
-    centre = share @ profiles.y
-    spread = share @ profiles.y**2 - centre**2
-    drift = profiles.weights @ profiles.flux
-    y, v, values = flow.space.sampled(flow.f)
-    # Ripples where there are no points are left out, for the positions to ascend.
-    alive = np.maximum(profiles.density, 0.0)
-    label = np.maximum.accumulate(flow.space.cumulative(alive))
-    number = chain.size / (alive @ profiles.weights)
-    return {
-        "y": length * y,
-        "v": velocity * v,
-        "points": number / length * alive,
-        "below": np.clip(number * label, 0.0, chain.size),
-        "phase_space_density": chain.size / (length * velocity) * values,
-        "mean_displacement": length * of.position - chain.reduced_anchors,
-        "mean_velocity": velocity * of.velocity,
-        "velocity_width": velocity * np.sqrt(of.velocity_variance + of.velocity**2),
-        "rods": chain.size * total,
-        "centre": length * centre,
-        "cloud_width": length * math.sqrt(spread),
-        "kinetic_energy": chain.size * chain.temperature / 2 * flow.energy(),
-        "covariance": length
-        * velocity
-        * ((profiles.weights * profiles.y) @ profiles.flux - centre * drift),
-    }
-
-
-def _positions(chain: Chain, units: Units, space: VelocitySpace) -> Array:
-    """Return the grid of positions for all points of the mesh."""
-    reach = units.length * space.box.length - float(chain.reduced_anchors[-1])
-    return position_grid(chain, max(reach, units.length))
-
-
-def _result(
-    chain: Chain,
-    units: Units,
-    outputs: list[dict[str, Any]],
-    times: Array,
-    last: VelocitySpace,
-    status: str,
-) -> xr.Dataset:
-    """Put the outputs into the common vocabulary, on the axes of the last, largest mesh."""
-    x = _positions(chain, units, last)
-    density, label = np.empty((2, len(outputs), x.size))
-    for i, output in enumerate(outputs):
-        of = (output[name] for name in ("y", "points", "below"))
-        density[i], label[i] = density_and_label(chain, x, *of)
-    y, v = outputs[-1]["y"], outputs[-1]["v"]
-    phase_space = np.zeros((len(outputs), y.size, v.size))
-    for place, output in zip(phase_space, outputs, strict=True):
-        if output["y"].shape == y.shape and (output["y"] == y).all() and (output["v"] == v).all():
-            place[...] = output["phase_space_density"]
-            continue
-        spline = RectBivariateSpline(output["y"], output["v"], output["phase_space_density"])
-        inside = (np.abs(y) <= output["y"][-1])[:, None] & (np.abs(v) <= output["v"][-1])
-        place[...] = np.where(inside, spline(y, v), 0.0)
-    over_time = ("rods", "centre", "cloud_width", "kinetic_energy", "covariance")
-    over_rods = ("mean_displacement", "mean_velocity", "velocity_width")
-    stacked = {
-        name: np.array([output[name] for output in outputs]) for name in over_time + over_rods
-    }
-    return result(
-        chain,
-        {
-            "phase_space_density": (("time", "y", "velocity"), phase_space),
-            "density": (("time", "x"), density),
-            "label": (("time", "x"), label),
-            **{name: (("time", "particle"), stacked[name]) for name in over_rods},
-            **{name: ("time", stacked[name]) for name in over_time},
-        },
-        coordinates={"time": times, "x": x, "y": y, "velocity": v},
-        source="theory",
-        method={"theory": "kinetic equation in time", "cells": last.cells},
-        status=status,
-        end_time=times[-1],
-    )

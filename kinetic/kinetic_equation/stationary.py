@@ -33,7 +33,7 @@ from crazybilliards.kinetic.kinetic_equation.continuation import (
 )
 from crazybilliards.kinetic.kinetic_equation.order_statistics import Rods, rods
 from crazybilliards.kinetic.kinetic_equation.positions import density_and_label
-from crazybilliards.kinetic.kinetic_equation.velocity_space import moments
+from crazybilliards.kinetic.kinetic_equation.velocity_moments import moments
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain
 from crazybilliards.model.checks import check_integer, check_real

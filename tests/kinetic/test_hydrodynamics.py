@@ -188,6 +188,26 @@ def test_a_prescribed_temperature_keeps_its_own_stationary_density():
     np.testing.assert_allclose(flow.velocity_variance[-1], variance(flow.x), rtol=1e-2)
 
 
+@pytest.mark.parametrize("frame", ["label", "eulerian"])
+def test_a_number_is_the_velocity_variance_of_the_isothermal_fluid(frame):
+    """The fluid of the elastic chain with that temperature, whatever restitution and amplitude."""
+    chain = Chain(size=10, gap=0.1)
+    hotter = chain.replace(amplitude=1.5)
+    start = displaced(chain, 1.0)
+    arguments = {"duration": 3, "every": 1, "frame": frame, "cells": 100} | QUIET
+    expected = hydrodynamics(hotter, start, **arguments)
+    flow = hydrodynamics(
+        chain.replace(restitution=0.8),
+        start,
+        velocity_variance=hotter.free_velocity_width**2,
+        **arguments,
+    )
+    np.testing.assert_allclose(flow.density, expected.density, rtol=1e-6, atol=1e-9)
+    assert np.abs(expected.cloud_width / chain.thermal_length - 1)[-1] > 0.1
+    with pytest.raises(ValueError, match="damping=0"):
+        hydrodynamics(chain.replace(damping=0), start, velocity_variance=0.1, **arguments)
+
+
 def test_equal_calls_give_equal_bits():
     chain = Chain(size=20)
     one, two = (hydrodynamics(chain, displaced(chain, 1), 5, **QUIET) for _ in range(2))

@@ -109,7 +109,7 @@ def test_divergence_is_a_result():
 
 def test_interrupt_keeps_what_there_is(monkeypatch):
     seen = []
-    original = phase_space_relaxation._output
+    original = phase_space_relaxation.snapshot
 
     def interrupt(*arguments):
         seen.append(1)
@@ -117,7 +117,7 @@ def test_interrupt_keeps_what_there_is(monkeypatch):
             raise KeyboardInterrupt
         return original(*arguments)
 
-    monkeypatch.setattr(phase_space_relaxation, "_output", interrupt)
+    monkeypatch.setattr(phase_space_relaxation, "snapshot", interrupt)
     flow = relax_phase_space(CHAIN, displaced(CHAIN, 1.0), 5.0, cells=8, progress=False)
     assert flow.attrs["status"] == "interrupted"
     assert flow.time.size == 3
