@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
 from scipy.optimize import elementwise
 
+from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.kinetic.statics.label_closure import stationary
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.checks import check_real
@@ -46,7 +47,7 @@ def two_clumps(chain: Chain, distance: float, speed: float) -> xr.Dataset:
     """
     distance = check_real("distance", distance, positive=True)
     speed = check_real("speed", speed)
-    chain.require_steady_state()
+    require_chain(chain, "a start from the stationary state")
     grid = _grid(chain, distance / 2)
     apart = np.maximum(np.abs(grid) - distance / 2, 0.0)
     outside = np.abs(grid) >= distance / 2
@@ -58,7 +59,7 @@ def two_clumps(chain: Chain, distance: float, speed: float) -> xr.Dataset:
 
 
 def _stationary_image(chain: Chain, stretch: float = 1.0, shift: float = 0.0) -> xr.Dataset:
-    chain.require_steady_state()
+    require_chain(chain, "a start from the stationary state")
     grid = _grid(chain, abs(shift) + (max(stretch, 1.0) - 1) * thermal_reach(chain))
     density, label = stationary(chain).fields(chain, grid - shift, stretch)
     return _start(chain, grid, density, label)
@@ -102,43 +103,42 @@ class Start(NamedTuple):
         return np.asarray(np.where(root.success, root.x, (low + high) / 2))
 
 
-def read_start(chain: Chain, initial: xr.Dataset) -> Start:
+def read_start(chain: Chain, start: xr.Dataset) -> Start:
     """Check a start and make functions of it."""
-    require(initial, ("density",))
-    if initial.density.dims != ("x",):
-        raise ValueError(f"initial: density must be over x alone, got {initial.density.dims}")
-    x, density = initial.x.values, initial.density.values
+    require(start, ("density",))
+    if start.density.dims != ("x",):
+        raise ValueError(f"start: density must be over x alone, got {start.density.dims}")
+    x, density = start.x.values, start.density.values
     if not (np.isfinite(density).all() and (np.diff(x) > 0).all() and (density >= 0).all()):
-        raise ValueError("initial: the density must be finite and not negative, over ascending x")
+        raise ValueError("start: the density must be finite and not negative, over ascending x")
     if density.max() >= chain.close_packed_density:
         raise ValueError(
-            f"initial: rods overlap, the density reaches {density.max():.4g} and close packing is "
+            f"start: rods overlap, the density reaches {density.max():.4g} and close packing is "
             f"{chain.close_packed_density:.4g}"
         )
-    if "label" in initial:
-        label = initial.label.values - initial.label.values[0]
+    if "label" in start:
+        label = start.label.values - start.label.values[0]
     else:
         label = PchipInterpolator(x, density).antiderivative()(x)
     if abs(label[-1] / chain.size - 1) > _RODS_TOLERANCE:
         raise ValueError(
-            f"initial: the density must add up to the chain's {chain.size} rods, got "
-            f"{label[-1]:.6g}"
+            f"start: the density must add up to the chain's {chain.size} rods, got {label[-1]:.6g}"
         )
     scale = chain.size / label[-1]
     profiles = {}
-    free = _own_variance(chain, initial)
+    free = _own_variance(chain, start)
     for name, default in (("flow_velocity", 0.0), ("velocity_variance", free)):
-        values = initial[name].values if name in initial else np.full(x.size, default)
+        values = start[name].values if name in start else np.full(x.size, default)
         if values.shape != x.shape or not np.isfinite(values).all():
-            raise ValueError(f"initial: {name} must be finite and over x alone")
+            raise ValueError(f"start: {name} must be finite and over x alone")
         profiles[name] = PchipInterpolator(x, values)
     if (profiles["velocity_variance"](x) <= 0).any():
-        raise ValueError("initial: velocity_variance must be positive")
+        raise ValueError("start: velocity_variance must be positive")
     return Start(x, CubicHermiteSpline(x, scale * label, scale * density), *profiles.values())
 
 
-def _own_variance(chain: Chain, initial: xr.Dataset) -> float:
+def _own_variance(chain: Chain, start: xr.Dataset) -> float:
     """Return the free W^2 of the chain the start belongs to: after a quench another one."""
-    if "provenance" in initial.attrs:
-        chain = chain_of(initial)
+    if "provenance" in start.attrs:
+        chain = chain_of(start)
     return chain.free_velocity_width**2

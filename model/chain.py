@@ -27,6 +27,7 @@ from typing import Any, Literal, Self, get_args
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from crazybilliards.model import spring
 from crazybilliards.model.checks import check_choice, check_integer, check_real
 
 Spring = Literal["linear", "quadratic"]
@@ -144,12 +145,12 @@ class Chain:
     def force(self, displacement: ArrayLike) -> NDArray[np.float64]:
         """Restoring force F(d) = k d or k d |d|, the sign being that of d [M R/T^2]."""
         d = np.asarray(displacement, dtype=float)
-        return self.stiffness * d * np.abs(d) ** (self.potential_exponent - 2)
+        return self.stiffness * spring.force(d, self.potential_exponent)
 
     def potential(self, displacement: ArrayLike) -> NDArray[np.float64]:
         """Spring energy U(d) = k |d|^n / n [M R^2/T^2]."""
-        n = self.potential_exponent
-        return self.stiffness * np.abs(np.asarray(displacement, dtype=float)) ** n / n
+        d = np.asarray(displacement, dtype=float)
+        return self.stiffness * spring.potential(d, self.potential_exponent)
 
     # -- heat -------------------------------------------------------------------------------
 

@@ -375,7 +375,7 @@ assert np.isclose(springs, plasma, rtol=1e-12)
 # %% [markdown]
 # `equilibrium(chain)` takes any gap: given $y_{i+1}$, the points to its left do not care about
 # those to its right, so all integrals over the chain can be done one rod after another.
-# `equilibrium_states(chain, n, seed)` uses the same integrals backwards to draw $n$ *independent*
+# `equilibrium_states(chain, replicas, seed)` uses the same integrals backwards to draw *independent*
 # states, positions and velocities, from the exact distribution: sorting, generalised.
 #
 # **Predict.** Without gap every rod but the middle one is pushed outward. What happens to
@@ -489,7 +489,7 @@ heat = (ensemble.velocity_width**2).mean("particle").values
 
 moments_exact = moments(fifty, times, np.array([(squeeze * s) ** 2, 0, W**2]))
 exact_sigma, exact_heat = np.sqrt(moments_exact[:, 0]), moments_exact[:, 2]
-cloud = breathing_cloud(fifty, times, stretch=squeeze)
+cloud = breathing_cloud(fifty, 30, every=0.5, stretch=squeeze)
 assert abs(cloud.cloud_width.values - exact_sigma).max() < 1e-6 * s
 
 # 50 000 independent Gaussian points: the relative error of a width is 1/sqrt(2 n).
@@ -508,7 +508,7 @@ assert abs(pulls_heat).max() < 5
 # `evolving=False` the temperature is held constant: that is the isothermal fluid of the paper.
 
 # %%
-isothermal = breathing_cloud(fifty, times, stretch=squeeze, evolving=False)
+isothermal = breathing_cloud(fifty, 30, every=0.5, stretch=squeeze, evolving=False)
 fig, (left, middle, right) = plt.subplots(1, 3, figsize=(11, 3.5), layout="constrained")
 left.plot(times, exact_sigma / s, color=ORANGE, linewidth=2.2, label="exact")
 left.plot(times, isothermal.cloud_width / s, "--", color=BLUE, label="isothermal fluid")

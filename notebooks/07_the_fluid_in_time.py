@@ -231,9 +231,10 @@ HTML(page)
 pushed = displaced(chain, 2 * s)
 fig, ax = plt.subplots(figsize=(6, 2.8), layout="constrained")
 swings = {}
-for temperature in ("isothermal", "evolving"):
-    flow = hydrodynamics(chain, pushed, 16, every=0.4, temperature=temperature, progress=False)
-    swings["fluid, " + temperature] = flow
+variances = {"isothermal": None, "evolving": "evolving"}  # the velocity_variance of each fluid
+for fluid, variance in variances.items():
+    flow = hydrodynamics(chain, pushed, 16, every=0.4, velocity_variance=variance, progress=False)
+    swings["fluid, " + fluid] = flow
 ringing = np.sqrt(omega**2 - friction**2 / 4)
 oscillator = np.exp(-friction * time / 2) * (
     np.cos(ringing * time) + friction / (2 * ringing) * np.sin(ringing * time)
@@ -313,8 +314,9 @@ pulses, measured = {}, {}
 for ax, temperature, factor in zip(
     panels, ("isothermal", "evolving"), (1, np.sqrt(3)), strict=True
 ):
+    variance = variances[temperature]
     flow = hydrodynamics(
-        chain, start, END, temperature=temperature, every=END / 40, cells=1000, progress=False
+        chain, start, END, velocity_variance=variance, every=END / 40, cells=1000, progress=False
     )
     pulses[temperature] = flow
     t, x = flow.time.values, flow.x.values
@@ -405,7 +407,13 @@ strong = rest.assign(
 styles = {"isothermal": ("--", BLUE), "evolving": ("-.", PINK)}
 for temperature, (style, colour) in styles.items():
     flow = hydrodynamics(
-        chain, strong, moment, temperature=temperature, every=moment, cells=1000, progress=False
+        chain,
+        strong,
+        moment,
+        velocity_variance=variances[temperature],
+        every=moment,
+        cells=1000,
+        progress=False,
     ).isel(time=-1)
     flow_y = flow.x - 2 * chain.radius * (flow.label - chain.size / 2)
     ax.plot(flow_y / s, flow.flow_velocity / W, style, color=colour, label="fluid, " + temperature)
@@ -478,7 +486,7 @@ assert abs(hump_soon / (W * early) - np.sqrt(2)) < 0.05
 # ```python
 # from crazybilliards.kinetic import compressed
 # other = hydrodynamics(chain, compressed(chain, SQUEEZE), 16, every=0.4, frame="eulerian",
-#                       temperature="evolving", progress=False)
+#                       velocity_variance="evolving", progress=False)
 # np.abs(other.cloud_width / s - width).max().item()
 # ```
 #

@@ -26,14 +26,16 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crazybilliards.model import Chain
-from crazybilliards.model.kernels import kernel
+from crazybilliards.model import Chain, spring
+from crazybilliards.model.kernels import inlined, kernel
 from crazybilliards.particles.laws.law import Law, Method, drift, make_law
 from crazybilliards.particles.scales import spring_rate
 
 MERGING = 0.03  # in velocity kicks of one step: rods that separate more slowly move as one
 
 Stepper = Literal["splitting", "euler"]
+
+_pull = inlined(spring.force)
 
 
 class Step(NamedTuple):
@@ -44,8 +46,8 @@ class Step(NamedTuple):
     noise: float  # standard deviation of the velocity kick
     outer_decay: float  # the same for the first kick of successive steps (and the last one)
     outer_noise: float
-    kick: float  # velocity kick per unit of d or d|d|, one half of it for the splitting
-    quadratic: bool
+    kick: float  # velocity kick per unit of F/k, one half of it for the splitting
+    exponent: int  # of the spring's potential
     symmetric: bool  # splitting: half kicks of spring and noise after the drift
 
 
@@ -95,13 +97,13 @@ def make_step(chain: Chain, time_step: float, stepper: Stepper) -> Step:
     """Return the numbers of one step of the chain under the named scheme."""
     m, gamma = chain.mass, chain.damping
     full_kick = chain.stiffness * time_step / m
-    quadratic = chain.spring == "quadratic"
+    exponent = chain.potential_exponent
     if stepper == "euler":
         decay = 1 - gamma * time_step / m
         noise = chain.amplitude / m * math.sqrt(time_step)
-        return Step(time_step, decay, noise, decay, noise, full_kick, quadratic, False)
+        return Step(time_step, decay, noise, decay, noise, full_kick, exponent, False)
     inner, outer = (_ornstein_uhlenbeck(chain, duration) for duration in (time_step, time_step / 2))
-    return Step(time_step, *inner, *outer, full_kick / 2, quadratic, True)
+    return Step(time_step, *inner, *outer, full_kick / 2, exponent, True)
 
 
 def longest_step(chain: Chain, stepper: Stepper) -> float:
@@ -130,8 +132,7 @@ def _ornstein_uhlenbeck(chain: Chain, duration: float) -> tuple[float, float]:
 def kick(y, v, anchors, step, decay, before, after):  # type: ignore[no-untyped-def]
     """Damp the velocities by ``decay``, with ``before`` and ``after`` spring kicks around it."""
     for i in range(y.size):
-        d = y[i] - anchors[i]
-        pull = step.kick * (d * abs(d) if step.quadratic else d)
+        pull = step.kick * _pull(y[i] - anchors[i], step.exponent)
         v[i] = decay * (v[i] - before * pull) - after * pull
 
 

@@ -113,8 +113,8 @@ def compiled():
         simulate(Chain(size=2, restitution=e), method=method, duration=200.0, progress=False)
     chain = Chain(size=2)
     for frame in ("label", "eulerian"):
-        for temperature in ("isothermal", "evolving"):
-            options = {"frame": frame, "temperature": temperature, "progress": False}
+        for variance in (None, "evolving"):
+            options = {"frame": frame, "velocity_variance": variance, "progress": False}
             hydrodynamics(chain, displaced(chain, 1.0), 0.1, **options)
 
 
@@ -263,17 +263,18 @@ def test_a_force_balance_is_sound_or_refused(parameters, options):
 @given(
     chains(ELASTIC),
     arguments(
-        times=st.sampled_from([[0.0, 1.0, 2.0], [0.0, 10.0], [1.0, 0.0], [], [0.0]]),
+        duration=ORDINARY,
+        every=ORDINARY,
         stretch=ORDINARY,
         shift=ORDINARY,
-        variance=ORDINARY,
+        start_velocity_variance=ORDINARY,
         evolving=st.booleans(),
     ),
 )
 def test_a_breathing_cloud_is_sound_or_refused(parameters, options):
     chain = outcome(Chain, **{**parameters, "gap": 0.0, "spring": "linear"})
     if chain is not None:
-        require_sound(outcome(breathing_cloud, chain, **{"times": [0.0, 1.0], **options}))
+        require_sound(outcome(breathing_cloud, chain, **{"duration": 1.0, **options}))
 
 
 def starts(chain):
@@ -304,8 +305,8 @@ def starts(chain):
     arguments(
         duration=st.floats(0.1, 5),
         frame=st.sampled_from(["label", "eulerian"]),
-        closure=st.just("label") | TABLE,
-        temperature=st.sampled_from(["isothermal", "evolving"]) | TABLE,
+        displacement=st.none() | TABLE,
+        velocity_variance=st.sampled_from([None, "evolving"]) | ORDINARY | TABLE,
         every=st.floats(0.1, 2),
         cells=st.integers(8, 200),
     ),
@@ -315,9 +316,9 @@ def test_a_flow_is_sound_or_refused(parameters, options, number):
     chain = outcome(Chain, **parameters)
     some = starts(chain) if chain is not None else []
     if some:
-        initial = some[number] if number < len(some) else some[0]
+        start = some[number] if number < len(some) else some[0]
         options = {"duration": 1.0, "progress": False, **options}
-        require_sound(outcome(hydrodynamics, chain, initial, **options))
+        require_sound(outcome(hydrodynamics, chain, start, **options))
 
 
 @explored(100)
@@ -335,9 +336,9 @@ def test_a_phase_space_in_time_is_sound_or_refused(parameters, options, number):
     chain = outcome(Chain, **parameters)
     some = starts(chain) if chain is not None else []
     if some:
-        initial = some[number] if number < len(some) else some[0]
+        start = some[number] if number < len(some) else some[0]
         options = {"duration": 0.5, "cells": 6, "progress": False, **options}
-        require_sound(outcome(relax_phase_space, chain, initial, **options))
+        require_sound(outcome(relax_phase_space, chain, start, **options))
 
 
 @explored(100)

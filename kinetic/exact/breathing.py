@@ -18,25 +18,28 @@ from __future__ import annotations
 
 import numpy as np
 import xarray as xr
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 from crazybilliards.kinetic.exact.gibbs_measure import equilibrium
+from crazybilliards.kinetic.output_times import output_times
+from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain
-from crazybilliards.model.checks import check_real, shown
+from crazybilliards.model.checks import check_real
 from crazybilliards.model.memory import require_memory
 from crazybilliards.model.vocabulary import result
 
-Array = NDArray[np.float64]
+_OUTPUTS = 100
 
 
 def breathing_cloud(
     chain: Chain,
-    times: ArrayLike,
+    duration: float,
     *,
+    every: float | None = None,
     stretch: float = 1.0,
     shift: float = 0.0,
-    variance: float | None = None,
+    start_velocity_variance: float | None = None,
     evolving: bool = True,
 ) -> xr.Dataset:
     """Solve the equations of this module from a stationary cloud, stretched and shifted, at rest.
@@ -45,14 +48,16 @@ def breathing_cloud(
     ----------
     chain
         A chain with linear springs, no gap and restitution 1.
-    times
-        Output times [T], at least two, ascending from 0.
+    duration
+        Time to solve for [T].
+    every
+        Time between outputs [T]; None: a hundredth of the duration.
     stretch, shift
         Of the stationary cloud at the start: sigma(0) = stretch s, Y(0) = shift [R].
-    variance
+    start_velocity_variance
         W^2 at the start [R^2/T^2]; None: the free value.
     evolving
-        With the temperature equation (exact for the rods) or isothermal.
+        With the temperature equation (exact for the rods), or isothermal at the free value.
 
     Returns
     -------
@@ -65,22 +70,19 @@ def breathing_cloud(
     ValueError
         For another chain or a wrong argument, before any work; if the cloud collapses.
     """
-    if chain.gap or chain.spring != "linear" or chain.restitution != 1:
-        raise ValueError(
-            "the breathing cloud needs linear springs, gap=0 and restitution=1, got "
-            f"{chain.spring}, {chain.gap:g}, {chain.restitution:g}"
-        )
-    chain.require_steady_state()
-    times = _check_times(times)
+    require_chain(chain, "the breathing cloud", elastic=True, linear=True, gapless=True)
+    times = output_times(duration, every, _OUTPUTS)
     stretch = check_real("stretch", stretch, positive=True)
     shift = check_real("shift", shift, signed=True)
     free = chain.free_velocity_width**2
-    hot = free if variance is None else check_real("variance", variance, positive=True)
-    require_memory("times", 32.0 * times.size * chain.size)
+    hot = free
+    if start_velocity_variance is not None:
+        hot = check_real("start_velocity_variance", start_velocity_variance, positive=True)
+    require_memory(f"every: {times.size} outputs", 32.0 * times.size * chain.size)
     order_statistics = equilibrium(chain).mean_displacement.values / chain.thermal_length
     damping, pull = chain.damping / chain.mass, chain.stiffness / chain.mass
 
-    def equations(time: float, state: Array) -> list[float]:
+    def equations(time: float, state: NDArray[np.float64]) -> list[float]:
         place, speed, width, rate, heat = state
         warming = -2 * heat * rate / width - 2 * damping * (heat - free) if evolving else 0.0
         return [
@@ -114,14 +116,3 @@ def breathing_cloud(
         method={"theory": "breathing cloud", "evolving": str(evolving)},
         end_time=times[-1],
     )
-
-
-def _check_times(times: ArrayLike) -> Array:
-    try:
-        checked = np.asarray(times, dtype=float)
-    except (TypeError, ValueError, OverflowError) as error:
-        raise ValueError(f"times must be numbers, got {shown(times)}") from error
-    if checked.ndim != 1 or checked.size < 2 or checked[0] != 0 or not (np.diff(checked) > 0).all():
-        raise ValueError(f"times must ascend from 0, at least two, got {shown(times)}")
-    check_real("times", checked[-1], positive=True)
-    return checked

@@ -30,6 +30,7 @@ import xarray as xr
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
+from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain
 from crazybilliards.model.checks import check_integer
 from crazybilliards.model.grid import position_grid, require_resolved, thermal_reach
@@ -96,8 +97,8 @@ def equilibrium(chain: Chain) -> xr.Dataset:
     )
 
 
-def equilibrium_states(chain: Chain, n: int, seed: int = 0) -> xr.Dataset:
-    """Draw ``n`` independent states of the elastic chain in its stationary state.
+def equilibrium_states(chain: Chain, replicas: int, seed: int = 0) -> xr.Dataset:
+    """Draw independent states, ``replicas`` of them, of the elastic chain in its stationary state.
 
     Backward sampling on the recursion: the last rod from F_L, then each rod given its right
     neighbour from F_i below it. Velocities are independent Gaussians of width W.
@@ -111,22 +112,22 @@ def equilibrium_states(chain: Chain, n: int, seed: int = 0) -> xr.Dataset:
     Raises
     ------
     ValueError
-        As :func:`equilibrium`; and if n < 1 or the seed is not an integer >= 0.
+        As :func:`equilibrium`; and for a wrong ``replicas`` or ``seed``.
     """
-    n = check_integer("n", n, least=1)
+    replicas = check_integer("replicas", replicas, least=1)
     generator = np.random.default_rng(check_integer("seed", seed, least=0))
-    require_memory(f"n={n} states of {chain.size} rods", 40.0 * n * chain.size)
+    require_memory(f"replicas={replicas} of {chain.size} rods", 40.0 * replicas * chain.size)
     recursion = _recursion(chain)
-    y = np.empty((n, chain.size))
-    below = np.full(n, np.inf)
+    y = np.empty((replicas, chain.size))
+    below = np.full(replicas, np.inf)
     for i in reversed(range(chain.size)):
         nodes = recursion.nodes(i)
         log_f = recursion.log_f[i]
         # 1 - U lies in (0, 1]: its logarithm is finite.
-        target = np.interp(below, nodes, log_f) + np.log1p(-generator.random(n))
+        target = np.interp(below, nodes, log_f) + np.log1p(-generator.random(replicas))
         # Linear in log F between nodes, both ways, so that order is kept exactly.
         y[:, i] = below = np.minimum(np.interp(target, log_f, nodes), below)
-    velocity = chain.free_velocity_width * generator.standard_normal((n, chain.size))
+    velocity = chain.free_velocity_width * generator.standard_normal((replicas, chain.size))
     dims = ("replica", "particle")
     return result(
         chain,
@@ -172,12 +173,7 @@ class _Recursion:
 
 def check_equilibrium(chain: Chain) -> None:
     """Raise the ValueError that :func:`equilibrium` would raise, without any work."""
-    if chain.restitution != 1:
-        raise ValueError(
-            "the exact equilibrium holds for elastic collisions only: restitution must be 1, "
-            f"got {chain.restitution:g}"
-        )
-    chain.require_steady_state()
+    require_chain(chain, "the exact equilibrium", elastic=True)
     require_resolved(chain, float(chain.reduced_anchors[-1]))
     require_memory(
         f"size={chain.size} (force_balance takes more): the exact equilibrium",
@@ -228,8 +224,8 @@ def _log_cumulative(phi: Array, spacing: float) -> Array:
 
 def _add_rod(x: Array, centres: Array, p: Array, density: Array, label: Array) -> None:
     """Add one rod's probabilities ``p`` at positions ``centres`` to density and label on x."""
-    seen = np.flatnonzero(p > 1e-20 * np.max(p))
-    kept = slice(max(seen[0] - 2, 0), seen[-1] + 3)
+    likely = np.flatnonzero(p > 1e-20 * np.max(p))
+    kept = slice(max(likely[0] - 2, 0), likely[-1] + 3)
     positions = centres[kept]
     curve = CubicSpline(positions, p[kept] / (positions[1] - positions[0]))
     cumulative = curve.antiderivative()

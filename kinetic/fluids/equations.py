@@ -7,17 +7,18 @@ The paper's continuity and velocity equations (arXiv:1404.7460, analytics sectio
 
 with the pressure of hard rods and the springs' force at the mean displacement.
 
-**Closure of the displacement.** ``"label"``: carried by the flow, N_t + V N_x = 0 and
-<dx> = x - (2R + g)(N - L/2), nothing put in. Or the paper's: a frozen profile <dx>(x).
+**Displacement.** By labels, which the flow carries: N_t + V N_x = 0 and
+<dx> = x - (2R + g)(N - L/2); nothing is put in. Or the paper's: a frozen profile <dx>(x).
 
-**Temperature.** ``"isothermal"``, the paper's: W^2 is the free value at all times. That is right in
-the steady state and wrong in a transient at the reference damping, where heat is exchanged more
-slowly than the chain moves. ``"evolving"``: the velocity variance has an equation of its own,
+**Velocity variance.** *Isothermal*, the paper's: W^2 is the free value at all times. That is right
+in the steady state and wrong in a transient at the reference damping, where heat is exchanged more
+slowly than the chain moves. *Evolving*: the velocity variance has an equation of its own,
 
     (W^2)_t + V (W^2)_x = -2 W^2 V_x/(1 - 2 R rho) - (2 gamma/m) (W^2 - A^2/(2 m gamma)),
 
 adiabatic compression of a gas with one degree of freedom plus exchange with the noise, no heat
-flux: without gap exact for Gaussian clouds at restitution 1. Or a prescribed profile W^2(x).
+flux: without gap exact for Gaussian clouds at restitution 1. *Prescribed*: a number, or a profile
+W^2(x), at all times.
 
 **Boundary conditions.** Nothing outside: the density falls to zero, no rods enter or leave.
 
@@ -27,7 +28,7 @@ Two independent solvers: on labels (:mod:`.label_frame`), and on a grid of posit
 
 from __future__ import annotations
 
-from typing import Literal, get_args
+from typing import Literal, NamedTuple, get_args
 
 import numpy as np
 import xarray as xr
@@ -37,15 +38,17 @@ from scipy.integrate import trapezoid
 from crazybilliards.kinetic.fluids.eulerian_frame import solve_on_positions
 from crazybilliards.kinetic.fluids.flow_fields import FlowFields
 from crazybilliards.kinetic.fluids.label_frame import solve_on_labels
+from crazybilliards.kinetic.output_times import output_times
+from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.kinetic.starts import read_start
 from crazybilliards.kinetic.statics.profiles import (
     Prescribed,
     Profile,
-    displacement_profile,
-    variance_profile,
+    read_displacement,
+    read_velocity_variance,
 )
 from crazybilliards.model import Chain
-from crazybilliards.model.checks import check_choice, check_integer, check_real, shown
+from crazybilliards.model.checks import check_choice, check_integer, shown
 from crazybilliards.model.grid import position_grid
 from crazybilliards.model.memory import require_memory
 from crazybilliards.model.vocabulary import result
@@ -53,7 +56,7 @@ from crazybilliards.model.vocabulary import result
 Array = NDArray[np.float64]
 
 Frame = Literal["label", "eulerian"]
-Temperature = Literal["isothermal", "evolving"]
+Evolving = Literal["evolving"]
 
 _OUTPUTS = 100
 _MOST_CELLS = 100_000
@@ -62,12 +65,12 @@ _BYTES_PER_NODE = 100  # and output: the fields while they are computed, and in 
 
 def hydrodynamics(
     chain: Chain,
-    initial: xr.Dataset,
+    start: xr.Dataset,
     duration: float,
     *,
+    displacement: Prescribed | None = None,
+    velocity_variance: Evolving | float | Prescribed | None = None,
     frame: Frame = "label",
-    closure: Literal["label"] | Prescribed = "label",
-    temperature: Temperature | Prescribed = "isothermal",
     every: float | None = None,
     cells: int | None = None,
     progress: bool = True,
@@ -77,22 +80,24 @@ def hydrodynamics(
     Parameters
     ----------
     chain
-        The chain, any gap, both springs; with restitution 1 unless the temperature is prescribed.
-    initial
-        The start: a result with ``density`` over x and, if wanted, ``label``, ``flow_velocity``
+        The chain, any gap, both springs; with restitution 1 unless ``velocity_variance`` is a
+        number or a profile.
+    start
+        A result with ``density`` over x and, if wanted, ``label``, ``flow_velocity``
         and ``velocity_variance``. ``force_balance`` of another chain (a quench), or ``displaced``,
         ``compressed`` and ``two_clumps`` of this one.
     duration
         Time to solve for [T]; 12 relaxation times 2m/gamma come within 1e-5 of the steady state.
+    displacement
+        None: by labels, which the flow carries. Or a frozen <dx>(x) [R], in any form that
+        ``force_balance`` takes; it needs the eulerian frame.
+    velocity_variance
+        None: isothermal at the free W^2 (the paper's; wrong in transients). ``"evolving"``: with
+        the temperature equation. Or a prescribed W^2 [R^2/T^2] in any form that ``force_balance``
+        takes: a number is isothermal at this value, a profile W^2(x) needs the eulerian frame.
     frame
         ``"label"``: exact mass, no grid of positions, milliseconds to a second. ``"eulerian"``:
         the paper's equations on a grid of positions, an independent check.
-    closure
-        ``"label"``: displacements carried by the flow. Or a frozen <dx>(x), in any form that
-        ``force_balance`` takes; in the eulerian frame.
-    temperature
-        ``"isothermal"`` (the paper's; wrong in transients) or ``"evolving"``. Or a prescribed
-        W^2(x), in any form that ``force_balance`` takes; in the eulerian frame.
     every
         Time between outputs [T]; None: a hundredth of the duration. Each output takes 100 bytes
         for each node of its grid x (21 or more in a rod length) and for each rod.
@@ -125,76 +130,77 @@ def hydrodynamics(
     array([3., 0.])
     """
     check_choice("frame", frame, get_args(Frame))
-    variance, frozen = _prescribed(chain, temperature, closure)
-    if frame == "label" and (variance or frozen):
-        raise ValueError("a prescribed closure or temperature needs frame='eulerian'")
-    chain.require_steady_state()
-    if chain.restitution != 1 and variance is None:
+    closure = _read_closure(chain, displacement, velocity_variance)
+    chain = closure.chain
+    if frame == "label" and (closure.variance or closure.displacement):
         raise ValueError(
-            "hydrodynamics holds for restitution=1 unless temperature is a profile W^2(x), got "
-            f"restitution={chain.restitution:g}"
+            "a profile of displacement or velocity_variance needs frame='eulerian'; a number as "
+            "velocity_variance does not"
         )
-    times = _output_times(duration, every)
+    times = output_times(duration, every, _OUTPUTS)
     if cells is not None:
         cells = check_integer("cells", cells, least=8)
         if cells > _MOST_CELLS:
             raise ValueError(f"cells must be at most {_MOST_CELLS}, got {cells}")
-    start = read_start(chain, initial)
-    nodes = position_grid(chain, float(np.abs(start.x).max())).size + chain.size
+    known = read_start(chain, start)
+    nodes = position_grid(chain, float(np.abs(known.x).max())).size + chain.size
     require_memory(f"every: {times.size} outputs", _BYTES_PER_NODE * float(nodes) * times.size)
-    thermal = isinstance(temperature, str) and temperature == "evolving"
+    thermal = closure.kind == "evolving"
     if frame == "label":
-        fields = solve_on_labels(chain, start, times, cells, thermal=thermal, progress=progress)
+        fields = solve_on_labels(chain, known, times, cells, thermal=thermal, progress=progress)
     else:
         fields = solve_on_positions(
             chain,
-            start,
+            known,
             times,
             cells,
-            variance=variance,
-            displacement=frozen,
+            variance=closure.variance,
+            displacement=closure.displacement,
             thermal=thermal,
             progress=progress,
         )
     method = {
         "frame": frame,
-        "closure": "prescribed" if frozen else "label",
-        "temperature": temperature if isinstance(temperature, str) else "prescribed",
+        "displacement": "prescribed" if closure.displacement else "by labels",
+        "velocity_variance": closure.kind,
         "cells": fields.cells,
     }
     return _result(chain, fields, times, method)
 
 
-def _prescribed(
-    chain: Chain, temperature: Temperature | Prescribed, closure: str | Prescribed
-) -> tuple[Profile | None, Profile | None]:
-    """Return the profiles of W^2 and <dx>, None where the equations find them themselves."""
-    variance = frozen = None
-    if isinstance(temperature, str):
-        if temperature not in get_args(Temperature):
+class _Closure(NamedTuple):
+    """What is put in: the profiles are None where the equations find them themselves."""
+
+    chain: Chain  # for a number W^2 the elastic chain with that temperature
+    displacement: Profile | None
+    variance: Profile | None
+    kind: str  # of the velocity variance
+
+
+def _read_closure(
+    chain: Chain,
+    displacement: Prescribed | None,
+    velocity_variance: Evolving | float | Prescribed | None,
+) -> _Closure:
+    frozen = read_displacement(chain, displacement)
+    variance, kind = None, "isothermal"
+    if isinstance(velocity_variance, str):
+        if velocity_variance != "evolving":
             raise ValueError(
-                f"temperature must be one of {get_args(Temperature)} or a profile W^2(x), got "
-                f"{shown(temperature)}"
+                "velocity_variance must be None, 'evolving', a number or a profile W^2(x), got "
+                f"{shown(velocity_variance)}"
             )
-    else:
-        variance = variance_profile(chain, temperature)
-    if isinstance(closure, str):
-        if closure != "label":
-            raise ValueError(f"closure must be 'label' or a profile <dx>(x), got {shown(closure)}")
-    else:
-        frozen = displacement_profile(chain, closure)
-    return variance, frozen
-
-
-def _output_times(duration: float, every: float | None) -> Array:
-    duration = check_real("duration", duration, positive=True)
-    every = duration / _OUTPUTS if every is None else check_real("every", every, positive=True)
-    if every > duration * (1 + 1e-9):
-        raise ValueError(f"every must be at most the duration {duration:g}, got {every:g}")
-    count = np.ceil(duration / every - 1e-9)
-    if count > 1e6:
-        raise ValueError(f"every = {every:g} asks for {count:.1g} outputs")
-    return every * np.arange(count + 1)
+        kind = "evolving"
+    elif velocity_variance is not None:
+        chain, variance = read_velocity_variance(chain, velocity_variance)
+        kind = "prescribed"
+    require_chain(
+        chain,
+        "hydrodynamics",
+        elastic=kind != "prescribed",
+        remedy="; give a number or a profile as velocity_variance for others",
+    )
+    return _Closure(chain, frozen, variance, kind)
 
 
 def _result(

@@ -126,12 +126,12 @@ def _integrate(
             backend="numba" if steps * (times.size - 1) > _MANY_STEPS else "numpy",
             dt=interval / steps,
         )
-        seen = math.inf
+        reached = math.inf
         if np.isfinite(solution).all():
-            seen = max(_fastest(each, constants) for each in solution)
-        if seen * interval / steps < _MOST_COURANT * h:
+            reached = max(_fastest(each, constants) for each in solution)
+        if reached * interval / steps < _MOST_COURANT * h:
             return solution
-        fastest = max(2 * fastest, seen if seen < math.inf else 0.0)
+        fastest = max(2 * fastest, reached if reached < math.inf else 0.0)
     raise ValueError("the flow gets too fast for the grid: give fewer cells or frame='label'")
 
 
@@ -143,7 +143,7 @@ def _frozen(profile: Profile, x: Array) -> Array:
         inside = middle + np.clip(x - middle, -half * _JUST_INSIDE, half * _JUST_INSIDE)
     values = np.asarray(profile.function(inside), dtype=float) + (x - inside)
     if not np.isfinite(values).all():
-        raise ValueError("closure: the displacement must be finite on the grid of positions")
+        raise ValueError("displacement must be finite on the grid of positions")
     return values
 
 

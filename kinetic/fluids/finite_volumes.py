@@ -17,9 +17,12 @@ from numpy.typing import NDArray
 
 from crazybilliards.kinetic.fluids.limiter import minmod
 from crazybilliards.kinetic.fluids.pde_solver import Rate
-from crazybilliards.model.kernels import kernel
+from crazybilliards.model import spring
+from crazybilliards.model.kernels import inlined, kernel
 
 Array = NDArray[np.float64]
+
+_pull = inlined(spring.force)
 
 VACUUM = 1e-13
 _THIN = 1e-10
@@ -35,7 +38,7 @@ class Constants(NamedTuple):
     spacing: float
     theta: Array
     frozen: Array
-    crowd: float
+    crowd: float  # B: length of all rods in thermal lengths
     lam: float
     gamma: float
     exponent: int
@@ -97,7 +100,7 @@ def eulerian_rate(fields, x, spacing, theta, frozen, crowd, lam, gamma, exponent
         label += 0.5 * n * spacing
         u = frozen[i] if frozen.size > 0 else x[i] - (crowd + lam) * label
         label += 0.5 * n * spacing
-        force = u if exponent == 2 else u * abs(u)
+        force = _pull(u, exponent)
         # At rest ln p changes by this much over a cell; its force is what these pressures hold.
         change = -force * max(1 - crowd * n, _LEAST_ROOM) * spacing / np.exp(state[i, 2])
         rest[i, 0] = min(max(change, -_STEEPEST), _STEEPEST)

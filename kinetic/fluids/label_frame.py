@@ -38,11 +38,13 @@ from crazybilliards.kinetic.fluids.limiter import minmod
 from crazybilliards.kinetic.fluids.pde_solver import solve
 from crazybilliards.kinetic.starts import Start
 from crazybilliards.kinetic.statics.label_closure import Stationary, stationary
-from crazybilliards.model import Chain
+from crazybilliards.model import Chain, spring
 from crazybilliards.model.grid import position_grid, thermal_reach
-from crazybilliards.model.kernels import kernel
+from crazybilliards.model.kernels import inlined, kernel
 
 Array = NDArray[np.float64]
+
+_pull = inlined(spring.force)
 
 _EDGE_CELL = 0.045  # width of a cell at the edge, in thermal lengths
 _LAST_SHARE = 1e-5  # of the rods, beyond the outermost face
@@ -72,8 +74,7 @@ def make_cells(state: Stationary, exponent: int, number: int | None) -> Cells:
     pressure = np.concatenate([[0.0], density, [0.0]])
     # The mean force on a cell balances the pressures at its faces: u |u|^(n-2) = -dp/dnu.
     force = -np.diff(pressure) / shares
-    u = np.sign(force) * np.abs(force) ** (1 / (exponent - 1))
-    eta = state.edge.lam * labels + u
+    eta = state.edge.lam * labels + spring.displacement(force, exponent)
     distance = np.diff(eta)
     return Cells(labels, shares, faces, eta, density * distance, (eta_faces - eta[:-1]) / distance)
 
@@ -83,11 +84,11 @@ def _faces(state: Stationary, number: int | None) -> Array:
     end = float(state.at(np.array([0.5 - _LAST_SHARE]))[0][0])
     fine = np.linspace(0, end, 20_001)
     depth = state.edge.lam / 2 - fine
-    crowd = cumulative_trapezoid(1 / np.clip(1 + (depth - 6) / 3, 1, 8), fine, initial=0)
+    cells_up_to = cumulative_trapezoid(1 / np.clip(1 + (depth - 6) / 3, 1, 8), fine, initial=0)
     if number is None:
-        number = int(np.clip(2 * crowd[-1] / _EDGE_CELL, _FEWEST_CELLS, _MOST_CELLS))
-    count = crowd[-1] * np.linspace(-1, 1, number - 1)
-    return np.asarray(np.sign(count) * np.interp(np.abs(count), crowd, fine))
+        number = int(np.clip(2 * cells_up_to[-1] / _EDGE_CELL, _FEWEST_CELLS, _MOST_CELLS))
+    count = cells_up_to[-1] * np.linspace(-1, 1, number - 1)
+    return np.asarray(np.sign(count) * np.interp(np.abs(count), cells_up_to, fine))
 
 
 @kernel
@@ -124,8 +125,7 @@ def label_rate(fields, labels, shares, kappa, stationary_distance, lam, gamma, e
                 rates[2, i] = 2 * gamma * (d**2 - fields[2, i]) + heating
         elif thermal:
             rates[2, i] = 0.0
-        u = eta[i] - lam * labels[i]
-        force = u if exponent == 2 else u * abs(u)
+        force = _pull(eta[i] - lam * labels[i], exponent)
         rates[0, i] = v[i]
         rates[1, i] = (before - pressure) / shares[i] - force - gamma * v[i]
         before = pressure
@@ -190,7 +190,7 @@ def _starting_fields(
     eta_right, v_right, _ = at(right)
     eta = eta_left + weight * (eta_right - eta_left)
     if not (np.diff(eta) > 0).all():
-        raise ValueError("initial: the start is too steep for its grid of positions")
+        raise ValueError("start: it is too steep for its grid of positions")
     fields = {"eta": eta, "V": (v_left + v_right) / 2}
     if thermal:
         fields["S"] = np.append(at(cells.faces)[2] * np.diff(eta) ** 2, 0.0)

@@ -14,7 +14,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from crazybilliards.kinetic.kinetic_equation.velocity_space import Box, VelocitySpace, fitting_box
+from crazybilliards.kinetic.kinetic_equation.velocity_moments import fitting_box
+from crazybilliards.kinetic.kinetic_equation.velocity_space import Box, VelocitySpace
 from crazybilliards.kinetic.kinetic_equation.weak_form import Units, coefficients, stationary_state
 from crazybilliards.kinetic.statics.label_closure import stationary
 from crazybilliards.model import Chain

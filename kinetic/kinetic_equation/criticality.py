@@ -23,13 +23,19 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import root_scalar
 
-from crazybilliards.kinetic.kinetic_equation.velocity_space import Box, VelocitySpace, fitting_box
+from crazybilliards.kinetic.kinetic_equation.velocity_moments import fitting_box
+from crazybilliards.kinetic.kinetic_equation.velocity_space import (
+    Box,
+    VelocitySpace,
+    one_thread,
+)
 from crazybilliards.kinetic.kinetic_equation.weak_form import (
     Coefficients,
     Equation,
     along_velocity,
     newton_step,
 )
+from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain
 
 Array = NDArray[np.float64]
@@ -48,14 +54,14 @@ class _State(NamedTuple):
     drag: float
 
 
-class Estimate(NamedTuple):
+class CriticalValue(NamedTuple):
     """A critical value and its numerical error."""
 
     value: float
     error: float
 
 
-def critical_size(chain: Chain) -> Estimate:
+def critical_size(chain: Chain) -> CriticalValue:
     """Return the number of rods at which the steady state of a chain with e > 1 is lost.
 
     Of the kinetic equation of first order in lambda, for linear springs; ``chain.size`` and
@@ -75,19 +81,19 @@ def critical_size(chain: Chain) -> Estimate:
     damping = _require_drive(chain)
     drag, error = _critical_drag(damping)
     share = (chain.restitution - 1) / 2
-    return Estimate(drag / share, error / share)
+    return CriticalValue(drag / share, error / share)
 
 
-def critical_restitution(chain: Chain) -> Estimate:
+def critical_restitution(chain: Chain) -> CriticalValue:
     """Return the restitution at which a chain of this size and damping loses its steady state.
 
     See :func:`critical_size`; ``chain.restitution`` does not matter.
     """
     drag, error = _critical_drag(_require_drive(chain.replace(restitution=2.0)))
-    return Estimate(1 + 2 * drag / chain.size, 2 * error / chain.size)
+    return CriticalValue(1 + 2 * drag / chain.size, 2 * error / chain.size)
 
 
-def critical_damping(chain: Chain) -> Estimate:
+def critical_damping(chain: Chain) -> CriticalValue:
     """Return the smallest damping with which a chain of this size and e > 1 has a steady state.
 
     See :func:`critical_size`; ``chain.damping`` does not matter.
@@ -98,12 +104,14 @@ def critical_damping(chain: Chain) -> Estimate:
     def excess(log_damping: float) -> float:
         return math.log(_critical_drag(math.exp(log_damping))[0] / wanted)
 
-    found = root_scalar(excess, method="secant", x0=0.0, x1=0.5, xtol=1e-3)
+    # For weak damping |lambda| L = (pi/2) gamma/sqrt(k m), and about proportional beyond.
+    weak = math.log(2 * wanted / math.pi)
+    found = root_scalar(excess, method="secant", x0=weak, x1=weak - excess(weak), xtol=1e-3)
     if not found.converged:
         raise ValueError(f"no damping found at which {chain.size} rods become critical")
     unit = math.sqrt(chain.stiffness * chain.mass)
     damping = unit * math.exp(found.root)
-    return Estimate(damping, 2e-3 * damping)
+    return CriticalValue(damping, 2e-3 * damping)
 
 
 def _require_drive(chain: Chain) -> float:
@@ -118,6 +126,7 @@ def _require_drive(chain: Chain) -> float:
             "with quadratic springs and e > 1 there is no critical size: rods collide the more "
             "often the faster they are, and a fluctuation large enough always runs away"
         )
+    require_chain(chain, "the critical size", steady=False)
     for name in ("damping", "stiffness"):
         if getattr(chain, name) == 0:
             raise ValueError(f"{name}=0: no size has a steady state with e > 1")
@@ -133,6 +142,7 @@ def _critical_drag(damping: float) -> tuple[float, float]:
     return limit, 0.2 * abs(limit - float(drags[-1]))
 
 
+@one_thread
 def drag_at_noise(damping: float, noise: tuple[float, ...], cells: int = _CELLS) -> Array:
     """Return |lambda| L of the steady states whose energy is 1/tau of the free one.
 
@@ -180,8 +190,8 @@ def _state_of_unit_energy(state: _State, damping: float, tau: float) -> _State:
         equation = Equation(space, numbers)
         mean = equation.mean(f)
         matrix = equation.matrix(mean)
-        seen = space.table(space.interpolate(f)[0])
-        by_drag = space.assemble(along_velocity, flux=space.field(seen * mean.I1))
+        table = space.table(space.interpolate(f)[0])
+        by_drag = space.assemble(along_velocity, flux=space.field(table * mean.I1))
         residual = np.concatenate([-(matrix @ f), [1 - row @ f for row in conditions]])
         columns = np.column_stack([space.whole_mass, by_drag])
         step = newton_step(matrix, columns, conditions, equation.variation(f), residual)

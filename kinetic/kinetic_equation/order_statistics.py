@@ -29,7 +29,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 from scipy.special import betaincinv, ndtr, ndtri
 
-from crazybilliards.kinetic.kinetic_equation.velocity_space import Moments
+from crazybilliards.kinetic.kinetic_equation.velocity_moments import Moments
 from crazybilliards.model import Chain
 
 Array = NDArray[np.float64]
@@ -56,13 +56,13 @@ class Rods(NamedTuple):
     velocity_variance: Array
 
 
-def points(size: int, seen: Moments) -> Points:
+def points(size: int, profiles: Moments) -> Points:
     """Average over the order statistics of ``size`` points drawn from a distribution."""
-    share = np.maximum(seen.density * seen.weights, 0.0)
+    share = np.maximum(profiles.density * profiles.weights, 0.0)
     share = share / share.sum()
     below, beyond = _cumulated(share), _cumulated(share[::-1])[::-1]
-    mean = float(share @ seen.y)
-    lever = _cumulated((share * (seen.y - mean))[::-1])[::-1]
+    mean = float(share @ profiles.y)
+    lever = _cumulated((share * (profiles.y - mean))[::-1])[::-1]
     kept = (np.minimum(below, beyond) > _FARTHEST) & (share > _FARTHEST * share.max())
     # The smaller of the two labels is the more accurate one.
     score = np.where(below < beyond, ndtri(below), -ndtri(beyond))[kept]
@@ -72,9 +72,9 @@ def points(size: int, seen: Moments) -> Points:
     def over(values: Array) -> Array:
         return np.asarray(PchipInterpolator(score, values[kept])(places))
 
-    position = over(seen.y)
-    flow = np.divide(seen.flux, seen.density, out=np.zeros_like(share), where=kept)
-    covariance = np.divide(lever * seen.weights, share, out=np.zeros_like(share), where=kept)
+    position = over(profiles.y)
+    flow = np.divide(profiles.flux, profiles.density, out=np.zeros_like(share), where=kept)
+    covariance = np.divide(lever * profiles.weights, share, out=np.zeros_like(share), where=kept)
     velocity = over(flow)
     average = position @ weights
     speed = velocity @ weights
@@ -82,18 +82,18 @@ def points(size: int, seen: Moments) -> Points:
         average,
         position**2 @ weights - average**2,
         speed,
-        over(seen.variance) @ weights + velocity**2 @ weights - speed**2,
+        over(profiles.variance) @ weights + velocity**2 @ weights - speed**2,
         over(covariance) @ weights,
     )
 
 
-def rods(chain: Chain, seen: Moments, length: float, velocity: float) -> Rods:
+def rods(chain: Chain, profiles: Moments, length: float, velocity: float) -> Rods:
     """Return the moments of the rods of a steady state, the centre of mass set right."""
     L = chain.size
-    seen = _mirrored(seen)
-    of = points(L, seen)
-    share = seen.density * seen.weights
-    spread = float((share * seen.y**2).sum() / share.sum())
+    profiles = _mirrored(profiles)
+    of = points(L, profiles)
+    share = profiles.density * profiles.weights
+    spread = float((share * profiles.y**2).sum() / share.sum())
     free_variance = chain.free_velocity_width**2 / velocity**2
     position_variance = of.position_variance
     if chain.spring == "linear":

@@ -15,24 +15,31 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
-from scipy.interpolate import RectBivariateSpline
 from scipy.sparse import csc_matrix
-from scipy.sparse.linalg import splu
 from tqdm import tqdm
 
 from crazybilliards.kinetic.kinetic_equation.continuation import free_units
-from crazybilliards.kinetic.kinetic_equation.initial import (
+from crazybilliards.kinetic.kinetic_equation.relaxation_result import (
+    in_vocabulary,
+    positions,
+    snapshot,
+)
+from crazybilliards.kinetic.kinetic_equation.start import (
     REACH,
     PhaseSpaceStart,
     read_phase_space,
 )
-from crazybilliards.kinetic.kinetic_equation.order_statistics import points
-from crazybilliards.kinetic.kinetic_equation.velocity_space import Box, VelocitySpace, moments
+from crazybilliards.kinetic.kinetic_equation.velocity_moments import moments
+from crazybilliards.kinetic.kinetic_equation.velocity_space import (
+    Box,
+    VelocitySpace,
+    factorised,
+    one_thread,
+)
 from crazybilliards.kinetic.kinetic_equation.weak_form import (
     Coefficients,
     Equation,
@@ -41,30 +48,32 @@ from crazybilliards.kinetic.kinetic_equation.weak_form import (
     coefficients,
     mass,
 )
+from crazybilliards.kinetic.output_times import output_times
+from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain
 from crazybilliards.model.checks import check_integer, check_real
 from crazybilliards.model.memory import require_memory
-from crazybilliards.model.vocabulary import result
 
 Array = NDArray[np.float64]
 
 _STEP = 0.04  # in units of the spring's 1/w0
 _CELLS = 20
 _LARGEST_MESH = 80
-_BYTES_PER_CELL = 1.6e5
+_BYTES_PER_CELL = 1.1e5
 _BYTES_PER_OUTPUT = 600  # and cell: f at six points in each direction, twice
+_BYTES_PER_NODE = 20  # of x, and output
 _OUTPUTS = 50
 _CORE = 1.5
 _LOST = 2e-4  # share of the points on a line of the outermost cells at which the mesh is enlarged
 _NEGATIVE = 0.1
 _DIVERGED = 1e3  # times the energy of the start or the free rod
 _ENLARGED = 1.4
-_MOST_OUTPUTS = 100_000
 
 
+@one_thread
 def relax_phase_space(
     chain: Chain,
-    initial: xr.Dataset,
+    start: xr.Dataset,
     duration: float,
     *,
     every: float | None = None,
@@ -78,8 +87,8 @@ def relax_phase_space(
     ----------
     chain
         The chain, any restitution near 1, both springs, any gap (in mean field).
-    initial
-        The start: a result with ``phase_space_density`` (``phase_space`` of another chain, say),
+    start
+        A result with ``phase_space_density`` (``phase_space`` of another chain, say),
         or one with ``density`` over x and, if wanted, ``label``, ``flow_velocity`` and
         ``velocity_variance``, as ``hydrodynamics`` takes it: ``displaced``, ``compressed``,
         ``force_balance`` of another chain; velocities are then Maxwellian around the flow.
@@ -91,7 +100,7 @@ def relax_phase_space(
         Longest step [T]; None: 0.04 of the spring's s/W. The error of the moments is a quarter of
         its square in these units, 4e-4.
     cells
-        Of the mesh, from the centre to the end in each direction. Their square takes 160 kB, and
+        Of the mesh, from the centre to the end in each direction. Their square takes 110 kB, and
         600 bytes for each output.
     progress
         Show a progress bar, if standard error is a terminal.
@@ -99,7 +108,8 @@ def relax_phase_space(
     Returns
     -------
     xarray.Dataset
-        ``phase_space_density`` over (time, y, velocity); ``mean_displacement``, ``mean_velocity``
+        ``phase_space_density`` over (time, y, velocity); ``density`` and ``label`` over (time, x);
+        ``mean_displacement``, ``mean_velocity``
         and ``velocity_width`` (about zero) over (time, particle), of points drawn independently
         from f; over time ``rods``, ``centre``, ``cloud_width``, ``kinetic_energy`` and
         ``covariance``. ``attrs["status"]`` is ``diverged`` if the energy grew without bound, or
@@ -118,37 +128,35 @@ def relax_phase_space(
     >>> flow.centre.values[[0, -1]].round(2) + 0.0
     array([ 1.  , -0.09])
     """
-    duration = check_real("duration", duration, positive=True)
-    every = duration / _OUTPUTS if every is None else check_real("every", every, positive=True)
-    count = math.ceil(duration / every - 1e-9)
-    if every > duration * (1 + 1e-9) or count > _MOST_OUTPUTS:
-        raise ValueError(f"every must lie between duration/{_MOST_OUTPUTS} and duration")
+    times = output_times(duration, every, _OUTPUTS)
+    count, interval = times.size - 1, times[1]
     cells = check_integer("cells", cells, least=4)
     if cells > _LARGEST_MESH:
         raise ValueError(f"cells must be at most {_LARGEST_MESH}, got {cells}")
     bytes_per_cell = _BYTES_PER_CELL + _BYTES_PER_OUTPUT * float(count)
     require_memory(f"{count} outputs on cells={cells}", bytes_per_cell * cells**2)
-    chain.require_steady_state()
+    require_chain(chain, "the kinetic equation in time")
     units = free_units(chain)
     unit_time = units.length / units.velocity
     if time_step is not None:
         time_step = check_real("time_step", time_step, positive=True) / unit_time
-    start = read_phase_space(chain, units, initial)
-    steps = math.ceil(every / unit_time / (time_step or _STEP) - 1e-9)
-    flow = _start(chain, units, start, cells)
-    outputs = [_output(chain, units, flow)]
+    steps = math.ceil(interval / unit_time / (time_step or _STEP) - 1e-9)
+    flow = _start(chain, units, read_phase_space(chain, units, start), cells)
+    nodes = positions(chain, units, flow.space).size
+    require_memory(f"every: {count} outputs", _BYTES_PER_NODE * float(nodes) * count)
+    outputs = [snapshot(chain, units, flow.space, flow.f, flow.energy())]
     most = _DIVERGED * max(flow.energy(), 1.0)
     status = "completed"
     try:
         for _ in tqdm(range(count), disable=None if progress else True, unit="output"):
-            flow = flow.advanced(every / unit_time / steps, steps)
+            flow = flow.advanced(interval / unit_time / steps, steps)
             if not flow.sound() or flow.energy() > most:
                 status = "diverged"
                 break
-            outputs.append(_output(chain, units, flow))
+            outputs.append(snapshot(chain, units, flow.space, flow.f, flow.energy()))
     except KeyboardInterrupt:
         status = "interrupted"
-    return _result(chain, outputs, every * np.arange(float(len(outputs))), flow.space, status)
+    return in_vocabulary(chain, units, outputs, times[: len(outputs)], flow.space, status)
 
 
 @dataclass(frozen=True)
@@ -166,8 +174,8 @@ class _Flow:
 
     def sound(self) -> bool:
         """Whether this is a distribution; runaway leaves any mesh and time step behind."""
-        seen = moments(self.space, self.f)
-        spread = (seen.density * seen.weights) @ seen.y**2
+        profiles = moments(self.space, self.f)
+        spread = (profiles.density * profiles.weights) @ profiles.y**2
         return bool(self.energy() > 0 and spread > 0 and self.f.min() > -_NEGATIVE * self.f.max())
 
     def advanced(self, dt: float, steps: int) -> _Flow:
@@ -209,7 +217,7 @@ class _Flow:
 
 
 def _step(inertia: csc_matrix, matrix: csc_matrix, dt: float) -> Callable[[Array], Array]:
-    solve = splu((inertia - dt / 2 * matrix).tocsc()).solve
+    solve = factorised(inertia - dt / 2 * matrix).solve
     explicit = inertia + dt / 2 * matrix
     return lambda f: np.asarray(solve(explicit @ f))
 
@@ -229,61 +237,3 @@ def _start(chain: Chain, units: Units, start: PhaseSpaceStart, cells: int) -> _F
     space = VelocitySpace(box, cells, symmetric=False)
     f = space.project(start.f)
     return _Flow(coefficients(chain, units, order), space, f / (space.whole_mass @ f))
-
-
-def _output(chain: Chain, units: Units, flow: _Flow) -> dict[str, Any]:
-    length, velocity = units
-    seen = moments(flow.space, flow.f)
-    of = points(chain.size, seen)
-    share = seen.density * seen.weights
-    total = share.sum()
-    centre = share @ seen.y
-    spread = share @ seen.y**2 - centre**2
-    drift = seen.weights @ seen.flux
-    y, v, values = flow.space.seen(flow.f)
-    return {
-        "y": length * y,
-        "v": velocity * v,
-        "phase_space_density": chain.size / (length * velocity) * values,
-        "mean_displacement": length * of.position - chain.reduced_anchors,
-        "mean_velocity": velocity * of.velocity,
-        "velocity_width": velocity * np.sqrt(of.velocity_variance + of.velocity**2),
-        "rods": chain.size * total,
-        "centre": length * centre,
-        "cloud_width": length * math.sqrt(spread),
-        "kinetic_energy": chain.size * chain.temperature / 2 * flow.energy(),
-        "covariance": length * velocity * ((seen.weights * seen.y) @ seen.flux - centre * drift),
-    }
-
-
-def _result(
-    chain: Chain, outputs: list[dict[str, Any]], times: Array, last: VelocitySpace, status: str
-) -> xr.Dataset:
-    """Put the outputs into the common vocabulary; f on the last, largest mesh's axes."""
-    y, v = outputs[-1]["y"], outputs[-1]["v"]
-    density = np.zeros((len(outputs), y.size, v.size))
-    for place, output in zip(density, outputs, strict=True):
-        if output["y"].shape == y.shape and (output["y"] == y).all() and (output["v"] == v).all():
-            place[...] = output["phase_space_density"]
-            continue
-        spline = RectBivariateSpline(output["y"], output["v"], output["phase_space_density"])
-        inside = (np.abs(y) <= output["y"][-1])[:, None] & (np.abs(v) <= output["v"][-1])
-        place[...] = np.where(inside, spline(y, v), 0.0)
-    over_time = ("rods", "centre", "cloud_width", "kinetic_energy", "covariance")
-    over_rods = ("mean_displacement", "mean_velocity", "velocity_width")
-    stacked = {
-        name: np.array([output[name] for output in outputs]) for name in over_time + over_rods
-    }
-    return result(
-        chain,
-        {
-            "phase_space_density": (("time", "y", "velocity"), density),
-            **{name: (("time", "particle"), stacked[name]) for name in over_rods},
-            **{name: ("time", stacked[name]) for name in over_time},
-        },
-        coordinates={"time": times, "y": y, "velocity": v},
-        source="theory",
-        method={"theory": "kinetic equation in time", "cells": last.cells},
-        status=status,
-        end_time=times[-1],
-    )

@@ -21,18 +21,16 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import RectBivariateSpline
-from scipy.sparse import csr_matrix
-from scipy.sparse.linalg import splu
+from scipy.sparse import csc_matrix, csr_matrix
+from scipy.sparse.linalg import SuperLU, splu
 from skfem import Basis, BilinearForm, ElementLineP2, ElementQuad2, LinearForm, MeshLine, MeshQuad
+from threadpoolctl import threadpool_limits
 
 Array = NDArray[np.float64]
 
-_TAIL = 1e-5  # share of the points beyond which only a margin follows
-_MARGIN = 1.5
-_GROWTH = 1.6  # of a box in one go: ripples beyond a box that is too small look like a tail
 _MISFIT = 1.15  # factor that a box may be off
-_CORE = 0.45  # label up to which the core reaches, which the coldest place must be in
 
+_PIVOT = 1e-3  # of the largest entry below it, the least a diagonal pivot may be
 _ORDER = 5  # of the quadrature: three Gauss points along each side of a cell
 
 
@@ -53,6 +51,25 @@ class Box(NamedTuple):
 def graded(cells: int, end: float, core: float) -> Array:
     """Return nodes from 0 to ``end``: even below ``core``, then growing with the distance."""
     return np.asarray(core * np.sinh(np.linspace(0, np.arcsinh(end / core), cells + 1)))
+
+
+def factorised(matrix: csc_matrix) -> SuperLU:
+    """Factorise a matrix of finite elements, whose pattern is symmetric.
+
+    With the ordering for symmetric patterns, five times fewer entries fill in than with the
+    default one. A pivot may leave the diagonal where that is small: the matrices are not definite.
+    """
+    return splu(
+        matrix.tocsc(),
+        permc_spec="MMD_AT_PLUS_A",
+        diag_pivot_thresh=_PIVOT,
+        options={"SymmetricMode": True},
+    )
+
+
+# A decorator of the theories on this plane: their matrix products are so small that the threads of
+# the linear algebra cost more than they save, up to ten times the whole on a busy machine.
+one_thread = threadpool_limits.wrap(limits=1, user_api="blas")
 
 
 @dataclass(frozen=True)
@@ -178,7 +195,7 @@ class VelocitySpace:
             np.concatenate([values[:0:-1, ::-1], values]),
         )
 
-    def seen(self, f: Array) -> tuple[Array, Array, Array]:
+    def sampled(self, f: Array) -> tuple[Array, Array, Array]:
         """Return y, v and the values of f at the quadrature points of the whole plane.
 
         There f is more accurate than at the nodes, where it alternates a little around v = 0.
@@ -205,7 +222,7 @@ class VelocitySpace:
         table = function(self.y, self.v)
         right = self.assemble(LinearForm(lambda p, w: w.f * p), f=self.field(table))
         gram = BilinearForm(lambda f, p, w: f * p).assemble(self.basis)
-        return np.asarray(splu((self.unknowns.T @ gram @ self.unknowns).tocsc()).solve(right))
+        return np.asarray(factorised(self.unknowns.T @ gram @ self.unknowns).solve(right))
 
     def assemble(self, form: LinearForm, **fields: Any) -> Array:
         """Assemble a linear form on the unknowns."""
@@ -213,8 +230,8 @@ class VelocitySpace:
 
     def interpolate(self, f: Array) -> tuple[Array, Array]:
         """Return f and its derivative along v at the quadrature points."""
-        seen = self.basis.interpolate(self.unknowns @ f)
-        return np.asarray(seen), np.asarray(seen.grad[1])
+        field = self.basis.interpolate(self.unknowns @ f)
+        return np.asarray(field), np.asarray(field.grad[1])
 
     # -- integrals ---------------------------------------------------------------------------
 
@@ -254,51 +271,3 @@ class VelocitySpace:
         upto = np.vander(xi, 4, increasing=True)[:, 1:] / [1, 2, 3] @ np.linalg.inv(powers)
         widths = weights.sum(axis=1)[:, None]
         return np.asarray((before[:, None] + widths * (values @ upto.T)).ravel())
-
-
-class Moments(NamedTuple):
-    """Moments of f over v at each y of the quadrature, y ascending."""
-
-    y: Array
-    weights: Array
-    density: Array
-    flux: Array  # int v f dv
-    variance: Array  # of the velocity
-    heat_flux: Array  # int (v - V)^3 f dv / 2
-    label: Array  # share of the points between 0 (or the lower end) and y
-
-
-def moments(space: VelocitySpace, f: Array) -> Moments:
-    """Integrate a distribution over the velocities."""
-    seen = space.table(space.interpolate(f)[0])
-    density, first, second, third = (seen @ (space.v_weights * space.v**n) for n in range(4))
-    safe = np.where(density > 0, density, np.inf)
-    flow = first / safe
-    # Ripples far out, where there are no points, may have any sign.
-    variance = np.maximum(second / safe - flow**2, 0.0)
-    heat_flux = (third - 3 * flow * second + 2 * flow**2 * first) / 2
-    label = space.cumulative(density)
-    return Moments(space.y, space.y_weights, density, first, variance, heat_flux, label)
-
-
-def fitting_box(space: VelocitySpace, f: Array) -> Box:
-    """Return the box that fits a symmetric f of mass 1; larger where f does not end in its box."""
-    seen = moments(space, f)
-    table = space.table(space.interpolate(f)[0])
-    right = space.v > 0
-    along_v = 2 * ((space.y_weights @ table) * space.v_weights)[right]
-    coldest = float(seen.variance[seen.label < _CORE].min())
-    if not coldest > 0:
-        raise ValueError("the velocity variance became negative")
-    wanted = Box(
-        _end(seen.y, seen.density * seen.weights),
-        _end(space.v[right], along_v),
-        float(np.interp(0.3, seen.label, seen.y)),
-        1.5 * coldest**0.5,
-    )
-    return Box(*np.minimum(wanted, _GROWTH * np.array(space.box)))
-
-
-def _end(places: Array, shares: Array) -> float:
-    beyond = np.cumsum(shares[::-1])[::-1]
-    return float(_MARGIN * places[np.flatnonzero(beyond > _TAIL)[-1]])

@@ -35,12 +35,16 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csc_matrix, hstack, vstack
-from scipy.sparse.linalg import LinearOperator, gmres, splu
+from scipy.sparse.linalg import LinearOperator, gmres
 from skfem import BilinearForm, LinearForm
 from skfem.helpers import grad
 
-from crazybilliards.kinetic.kinetic_equation.velocity_space import VelocitySpace
-from crazybilliards.model import Chain
+from crazybilliards.kinetic.kinetic_equation.velocity_space import (
+    VelocitySpace,
+    factorised,
+    one_thread,
+)
+from crazybilliards.model import Chain, spring
 
 Array = NDArray[np.float64]
 
@@ -121,21 +125,20 @@ class Equation:
 
     def mean(self, f: Array) -> Mean:
         """Return force and collision integrals for a distribution."""
-        seen = self.space.table(self.space.interpolate(f)[0])
-        return Mean(self._force(self._displacement(seen)), *self._integrals(seen))
+        table = self.space.table(self.space.interpolate(f)[0])
+        return Mean(self._force(self._displacement(table)), *self._integrals(table))
 
-    def _integrals(self, seen: Array) -> list[Array]:
-        return [seen @ kernel.T for kernel in self.space.kernels]
+    def _integrals(self, table: Array) -> list[Array]:
+        return [table @ kernel.T for kernel in self.space.kernels]
 
-    def _displacement(self, seen: Array) -> Array:
+    def _displacement(self, table: Array) -> Array:
         """Distance from the anchor of the label at each y, in mean field."""
-        label = self.space.cumulative(seen @ self.space.v_weights)
+        label = self.space.cumulative(table @ self.space.v_weights)
         centre = 0.0 if self.space.symmetric else 0.5
         return self.space.y - self.numbers.gap * (label - centre)
 
     def _force(self, displacement: Array) -> Array:
-        n = self.numbers.exponent
-        force = self.numbers.spring * displacement * np.abs(displacement) ** (n - 2)
+        force = self.numbers.spring * spring.force(displacement, self.numbers.exponent)
         return np.broadcast_to(force[:, None], (force.size, self.space.v.size))
 
     def matrix(self, mean: Mean) -> csc_matrix:
@@ -151,15 +154,14 @@ class Equation:
         space, numbers = self.space, self.numbers
         f_table, slope = (space.table(each) for each in space.interpolate(f))
         displacement = self._displacement(f_table)
-        n = numbers.exponent
-        stiffness = numbers.spring * (n - 1) * np.abs(displacement) ** (n - 2)
+        stiffness = numbers.spring * spring.stiffness(displacement, numbers.exponent)
 
         def change(df: Array) -> Array:
-            seen = space.table(space.interpolate(df)[0])
-            I1, I3, I3v = self._integrals(seen)
+            table = space.table(space.interpolate(df)[0])
+            I1, I3, I3v = self._integrals(table)
             flux = numbers.drag * f_table * I1 + numbers.diffusion * (slope * I3 + f_table * I3v)
             if numbers.gap > 0:
-                label = space.cumulative(seen @ space.v_weights)
+                label = space.cumulative(table @ space.v_weights)
                 flux = flux - (stiffness * numbers.gap * label)[:, None] * f_table
             return space.assemble(along_velocity, flux=space.field(flux))
 
@@ -173,6 +175,7 @@ class Solution(NamedTuple):
     residual: float
 
 
+@one_thread
 def stationary_state(
     space: VelocitySpace, numbers: Coefficients, guess: Array, tolerance: float = 1e-10
 ) -> Solution:
@@ -211,7 +214,7 @@ def newton_step(
     borders = csc_matrix(columns), csc_matrix(np.array(rows))
     corner = csc_matrix((len(rows), len(rows)))
     bordered = vstack([hstack([matrix, borders[0]]), hstack([borders[1], corner])]).tocsc()
-    factors, size = splu(bordered), matrix.shape[0]
+    factors, size = factorised(bordered), matrix.shape[0]
 
     def apply(x: Array) -> Array:
         image = bordered @ x

@@ -30,24 +30,20 @@ N(+inf) = L.
 
 from __future__ import annotations
 
-import math
-from numbers import Real
-
-import numpy as np
 import xarray as xr
 
+from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.kinetic.statics.label_closure import solve_label_closure
 from crazybilliards.kinetic.statics.prescribed_closure import solve_prescribed_closure
 from crazybilliards.kinetic.statics.profiles import (
     Prescribed,
     Profile,
-    displacement_profile,
-    variance_profile,
+    read_displacement,
+    read_velocity_variance,
 )
 from crazybilliards.kinetic.statics.variable_temperature import solve_variable_temperature
 from crazybilliards.kinetic.statics.wright_closure import solve_wright_closure
 from crazybilliards.model import Chain
-from crazybilliards.model.checks import check_real
 
 
 def force_balance(
@@ -111,26 +107,18 @@ def check_force_balance(
     tuple
         The elastic chain with this temperature, and the profiles <dx>(x) and W^2(x) if given.
     """
-    profile = given = None
-    if velocity_variance is None:
-        if chain.restitution != 1:
-            raise ValueError(
-                "the velocity variance is the free one for restitution=1 only; give "
-                f"velocity_variance for restitution={chain.restitution:g}"
-            )
-    elif isinstance(velocity_variance, float | Real | np.generic):
-        # W^2 enters as T = m W^2 only: the elastic chain with that temperature is equivalent.
-        variance = check_real("velocity_variance", velocity_variance, positive=True)
-        amplitude = math.sqrt(2 * chain.damping * chain.mass * variance)
-        chain = chain.replace(amplitude=amplitude, restitution=1)
-    else:
-        profile = variance_profile(chain, velocity_variance)
-    chain.require_steady_state()
-    if displacement is not None:
-        given = displacement_profile(chain, displacement)
-        if not given.left < 0 < given.right:
-            raise ValueError(
-                "displacement must be given on both sides of x = 0, got the interval "
-                f"({given.left:g}, {given.right:g})"
-            )
-    return chain, given, profile
+    given = read_displacement(chain, displacement)
+    chain, variance = read_velocity_variance(chain, velocity_variance)
+    require_chain(
+        chain,
+        "the force balance",
+        elastic=velocity_variance is None,
+        linear=variance is not None and given is None,
+        remedy="; give velocity_variance for others",
+    )
+    if given is not None and not given.left < 0 < given.right:
+        raise ValueError(
+            "displacement must be given on both sides of x = 0, got the interval "
+            f"({given.left:g}, {given.right:g})"
+        )
+    return chain, given, variance

@@ -33,7 +33,7 @@ from scipy.integrate import solve_bvp
 from scipy.special import gamma, gammaincc
 from scipy.stats import gennorm
 
-from crazybilliards.model import Chain
+from crazybilliards.model import Chain, spring
 from crazybilliards.model.grid import position_grid
 from crazybilliards.model.vocabulary import result
 
@@ -107,7 +107,7 @@ def solve_edge(n: int, lam: float) -> Edge:
 
     def equations(zeta: Array, state: Array) -> Array:
         u = zeta + lam / scale * state[1]
-        return np.array([-u * np.abs(u) ** (n - 2), -scale * np.exp(state[0])])
+        return np.array([-spring.force(u, n), -scale * np.exp(state[0])])
 
     def boundary(at_left: Array, at_right: Array) -> Array:
         return np.array([at_left[1] / scale - share_left, at_right[1]])
@@ -121,7 +121,7 @@ def solve_edge(n: int, lam: float) -> Edge:
     if not solution.success:
         raise ValueError(f"the force balance found no solution: {solution.message}")
     P, u = solution.y[0], solution.x + lam / scale * solution.y[1]
-    conserved = (lam * np.exp(P) - P - np.abs(u) ** n / n)[P.max() - 30 < P]
+    conserved = (lam * np.exp(P) - P - spring.potential(u, n))[P.max() - 30 < P]
     return Edge(lam, left, right, scale, solution.sol, float(np.ptp(conserved)))
 
 

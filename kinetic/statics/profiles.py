@@ -1,15 +1,17 @@
-"""Prescribed profiles: what a user may hand to the theories as <dx>(x) or as W^2(x).
+"""Prescribed profiles: the displacement <dx>(x) and the velocity variance W^2(x) of the user.
 
-A *table* (x, values), a *result* (simulated or exact) with ``mean_displacement`` or
+A profile is a *table* (x, values), a *result* (simulated or exact) with ``mean_displacement`` or
 ``velocity_width`` of the particles, or a *callable* of x, such as the paper's arctanh fit. A
-displacement that is callable may have an attribute ``support``, the interval (left, right) on which
-it is finite; the density vanishes outside.
+velocity variance may also be a *number*, the same everywhere. A displacement that is callable may
+have an attribute ``support``, the interval (left, right) on which it is finite; the density
+vanishes outside.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from numbers import Real
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,7 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import PchipInterpolator
 
 from crazybilliards.model import Chain
-from crazybilliards.model.checks import shown
+from crazybilliards.model.checks import check_real, shown
 from crazybilliards.model.vocabulary import require
 
 Prescribed = (
@@ -34,12 +36,16 @@ class Profile(NamedTuple):
     right: float
 
 
-def displacement_profile(chain: Chain, displacement: Prescribed) -> Profile:
+def read_displacement(chain: Chain, displacement: Prescribed | None) -> Profile | None:
     """Turn any accepted form of <dx>(x) into a :class:`Profile`, or say what is wrong.
+
+    None (displacements by labels) stays None.
 
     A table is continued with slope 1 to either side, the truth outside the chain, where a rod that
     goes further out leaves its anchor behind by as much.
     """
+    if displacement is None:
+        return None
     if callable(displacement):
         left, right = getattr(displacement, "support", (-math.inf, math.inf))
         return Profile(_numbers("displacement", displacement), float(left), float(right))
@@ -47,8 +53,21 @@ def displacement_profile(chain: Chain, displacement: Prescribed) -> Profile:
     return Profile(_interpolated(*table, slope=1.0), -math.inf, math.inf)
 
 
-def variance_profile(chain: Chain, variance: Prescribed) -> Profile:
-    """Turn any accepted form of W^2(x) into a :class:`Profile`; a table goes on as it ends."""
+def read_velocity_variance(
+    chain: Chain, variance: float | Prescribed | None
+) -> tuple[Chain, Profile | None]:
+    """Return the chain to solve for and W^2(x), None if it is the chain's free value everywhere.
+
+    W^2 enters the equations as T = m W^2 only. A number W^2 therefore gives the elastic chain with
+    that temperature. A table goes on as it ends.
+    """
+    if variance is None:
+        return chain, None
+    if isinstance(variance, Real | np.generic):
+        number = check_real("velocity_variance", variance, positive=True)
+        amplitude = math.sqrt(2 * chain.damping * chain.mass * number)
+        # Without damping no amplitude gives this temperature; such a chain has no steady state.
+        return chain.replace(amplitude=amplitude, restitution=1) if amplitude else chain, None
     if callable(variance):
         function = _numbers("velocity_variance", variance)
     else:
@@ -64,7 +83,7 @@ def variance_profile(chain: Chain, variance: Prescribed) -> Profile:
         return values
 
     positive(chain.anchors)
-    return Profile(positive, -math.inf, math.inf)
+    return chain, Profile(positive, -math.inf, math.inf)
 
 
 def _numbers(
@@ -100,8 +119,8 @@ def _table(
         x, values = (np.asarray(column, dtype=float) for column in source)
     except (TypeError, ValueError, OverflowError) as error:
         raise ValueError(
-            f"{name} takes a table (x, values), a result with {variable}, or a callable of x, got "
-            f"{type(source).__name__}"
+            f"{name} takes {'a number, ' if name == 'velocity_variance' else ''}a table (x, "
+            f"values), a result with {variable}, or a callable of x, got {shown(source)}"
         ) from error
     if x.shape != values.shape or x.ndim != 1 or x.size < 2:
         raise ValueError(

@@ -66,8 +66,6 @@ def _residual(v, w):  # type: ignore[no-untyped-def]
 
 def solve_variable_temperature(chain: Chain, variance: Profile) -> xr.Dataset:
     """Solve for the density at a given W^2(x); see ``force_balance``, which checks both."""
-    if chain.spring != "linear":
-        raise ValueError("a profile of the velocity variance needs linear springs, got quadratic")
     s, L, R = chain.thermal_length, chain.size, chain.radius
     crowd, lam = 2 * R * L / s, chain.gap * L / s
 
@@ -78,8 +76,8 @@ def solve_variable_temperature(chain: Chain, variance: Profile) -> xr.Dataset:
     end = lam / 2 + _REACH * max(hottest, 0.05)
     even = np.linspace(0, end, 100_001)
     growth = 1 + np.maximum(lam / 2 - _DEPTH - even, 0) / _DEPTH
-    crowding = cumulative_trapezoid(1 / growth, even, initial=0)
-    half = np.interp(np.linspace(0, crowding[-1], _CELLS // 2 + 1), crowding, even)
+    cells_up_to = cumulative_trapezoid(1 / growth, even, initial=0)
+    half = np.interp(np.linspace(0, cells_up_to[-1], _CELLS // 2 + 1), cells_up_to, even)
     rough = np.concatenate([-half[:0:-1], half])
     labels, log_density = stationary(chain).profile(rough)
     nodes = rough + crowd * labels
@@ -103,10 +101,10 @@ def _newton(basis: Basis, P: Array, warmth: Warmth, crowd: float, lam: float) ->
     places = basis.doflocs[0]
     outflow[np.argmax(places)] = outflow[np.argmin(places)] = (crowd + lam) / 2 - end
     for _ in range(_MOST_STEPS):
-        seen = basis.interpolate(P)
-        right = outflow - _residual.assemble(basis, P=seen, **known)
+        at_points = basis.interpolate(P)
+        right = outflow - _residual.assemble(basis, P=at_points, **known)
         try:
-            step = splu(_jacobian.assemble(basis, P=seen, **known).tocsc()).solve(right)
+            step = splu(_jacobian.assemble(basis, P=at_points, **known).tocsc()).solve(right)
         except RuntimeError as error:  # "exactly singular"
             raise ValueError(f"the force balance did not converge: {error}") from error
         alive = P.max() - _DEAD < P

@@ -47,8 +47,8 @@ def solve_wright_closure(chain: Chain, profile: Profile) -> xr.Dataset:
     lowest = float(potential.min())
 
     def density(constant: float, values: Array) -> Array:
-        crowd = wrightomega(constant - (values - lowest))
-        return np.asarray(crowd / (1 + crowd) / (2 * chain.radius))
+        covered = wrightomega(constant - (values - lowest))  # 2 R rho_y
+        return np.asarray(covered / (1 + covered) / (2 * chain.radius))
 
     def excess(constant: float) -> float:
         return float(((half * density(constant, potential)) @ weights).sum()) / chain.size - 1

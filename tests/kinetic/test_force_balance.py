@@ -163,7 +163,7 @@ def test_a_velocity_variance_replaces_the_temperature():
 @pytest.mark.parametrize(
     ("chain", "arguments", "message"),
     [
-        (Chain(restitution=0.5), {}, "give velocity_variance for restitution=0.5"),
+        (Chain(restitution=0.5), {}, "restitution must be 1, got 0.5; give velocity_variance"),
         (Chain(amplitude=0), {}, "no steady state"),
         (Chain(damping=0), {}, "no steady state"),
         (Chain(), {"velocity_variance": -1}, "velocity_variance must be"),

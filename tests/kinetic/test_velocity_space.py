@@ -7,12 +7,11 @@ import pytest
 from scipy.special import erf
 
 from crazybilliards.kinetic.kinetic_equation.order_statistics import points
+from crazybilliards.kinetic.kinetic_equation.velocity_moments import fitting_box, moments
 from crazybilliards.kinetic.kinetic_equation.velocity_space import (
     Box,
     VelocitySpace,
-    fitting_box,
     graded,
-    moments,
 )
 
 BOX = Box(6.5, 6.5, 1.5, 1.5)

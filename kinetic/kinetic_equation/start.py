@@ -28,20 +28,20 @@ class PhaseSpaceStart:
     velocity: float
 
 
-def read_phase_space(chain: Chain, units: Units, initial: xr.Dataset) -> PhaseSpaceStart:
+def read_phase_space(chain: Chain, units: Units, start: xr.Dataset) -> PhaseSpaceStart:
     """Check a start, f(y, v) itself or a density over x, and make a function of it."""
     length, velocity = units
-    if "phase_space_density" not in initial:
-        return _maxwellian(chain, units, initial)
-    density = initial.phase_space_density
+    if "phase_space_density" not in start:
+        return _maxwellian(chain, units, start)
+    density = start.phase_space_density
     if density.dims != ("y", "velocity"):
         raise ValueError(
-            f"initial: phase_space_density must be over y and velocity, got {density.dims}"
+            f"start: phase_space_density must be over y and velocity, got {density.dims}"
         )
-    y, v = initial.y.values / length, initial.velocity.values / velocity
+    y, v = start.y.values / length, start.velocity.values / velocity
     values = density.values
     if not (np.isfinite(values).all() and values.max() > 0):
-        raise ValueError("initial: phase_space_density must be finite and not zero everywhere")
+        raise ValueError("start: phase_space_density must be finite and not zero everywhere")
     spline = RectBivariateSpline(y, v, values / values.max())
 
     def f(at_y: Array, at_v: Array) -> Array:
@@ -52,24 +52,24 @@ def read_phase_space(chain: Chain, units: Units, initial: xr.Dataset) -> PhaseSp
     return PhaseSpaceStart(f, float(np.abs(y).max()), float(np.abs(v).max()))
 
 
-def _maxwellian(chain: Chain, units: Units, initial: xr.Dataset) -> PhaseSpaceStart:
+def _maxwellian(chain: Chain, units: Units, start: xr.Dataset) -> PhaseSpaceStart:
     length, velocity = units
-    start = read_start(chain, initial)
-    x, R, L = start.x, chain.radius, chain.size
-    y = (x - 2 * R * (start.label(x) - L / 2)) / length
-    density = np.maximum(start.label(x, 1), 0.0)
+    known = read_start(chain, start)
+    x, R, L = known.x, chain.radius, chain.size
+    y = (x - 2 * R * (known.label(x) - L / 2)) / length
+    density = np.maximum(known.label(x, 1), 0.0)
     reduced = density / np.maximum(1 - 2 * R * density, 1e-12)
     kept = np.concatenate([[True], np.diff(y) > 0])
     log_density, flow, variance = (
         PchipInterpolator(y[kept], values[kept], extrapolate=False)
         for values in (
             np.log(np.maximum(reduced, reduced.max() * 1e-30)),
-            start.velocity(x) / velocity,
-            start.variance(x) / velocity**2,
+            known.velocity(x) / velocity,
+            known.variance(x) / velocity**2,
         )
     )
-    seen = kept & (reduced > 1e-9 * reduced.max())
-    widest = float(np.sqrt(start.variance(x[seen]).max())) / velocity
+    populated = kept & (reduced > 1e-9 * reduced.max())
+    widest = float(np.sqrt(known.variance(x[populated]).max())) / velocity
 
     def f(at_y: Array, at_v: Array) -> Array:
         inside = np.isfinite(log_density(at_y))
@@ -80,5 +80,5 @@ def _maxwellian(chain: Chain, units: Units, initial: xr.Dataset) -> PhaseSpaceSt
         ) / np.sqrt(W2)
         return np.where(inside[:, None], values, 0.0)
 
-    fastest = float(np.abs(start.velocity(x[seen])).max()) / velocity
-    return PhaseSpaceStart(f, float(np.abs(y[seen]).max()), fastest + REACH * widest)
+    fastest = float(np.abs(known.velocity(x[populated])).max()) / velocity
+    return PhaseSpaceStart(f, float(np.abs(y[populated]).max()), fastest + REACH * widest)

@@ -1,0 +1,112 @@
+"""What the kinetic equation in time gives out, in the common vocabulary."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+from scipy.interpolate import RectBivariateSpline
+
+from crazybilliards.kinetic.kinetic_equation.order_statistics import points
+from crazybilliards.kinetic.kinetic_equation.positions import density_and_label
+from crazybilliards.kinetic.kinetic_equation.velocity_moments import moments
+from crazybilliards.kinetic.kinetic_equation.velocity_space import VelocitySpace
+from crazybilliards.kinetic.kinetic_equation.weak_form import Units
+from crazybilliards.model import Chain
+from crazybilliards.model.grid import position_grid
+from crazybilliards.model.vocabulary import result
+
+Array = NDArray[np.float64]
+
+
+def snapshot(
+    chain: Chain, units: Units, space: VelocitySpace, f: Array, energy: float
+) -> dict[str, Any]:
+    """Return what a distribution gives at one time, by name, on its own mesh.
+
+    ``energy``: the mean of v^2, 1 for free rods.
+    """
+    length, velocity = units
+    profiles = moments(space, f)
+    of = points(chain.size, profiles)
+    share = profiles.density * profiles.weights
+    total = share.sum()
+    centre = share @ profiles.y
+    spread = share @ profiles.y**2 - centre**2
+    drift = profiles.weights @ profiles.flux
+    y, v, values = space.sampled(f)
+    # Ripples where there are no points are left out, for the positions to ascend.
+    alive = np.maximum(profiles.density, 0.0)
+    label = np.maximum.accumulate(space.cumulative(alive))
+    number = chain.size / (alive @ profiles.weights)
+    return {
+        "y": length * y,
+        "v": velocity * v,
+        "points": number / length * alive,
+        "below": np.clip(number * label, 0.0, chain.size),
+        "phase_space_density": chain.size / (length * velocity) * values,
+        "mean_displacement": length * of.position - chain.reduced_anchors,
+        "mean_velocity": velocity * of.velocity,
+        "velocity_width": velocity * np.sqrt(of.velocity_variance + of.velocity**2),
+        "rods": chain.size * total,
+        "centre": length * centre,
+        "cloud_width": length * math.sqrt(spread),
+        "kinetic_energy": chain.size * chain.temperature / 2 * energy,
+        "covariance": length
+        * velocity
+        * ((profiles.weights * profiles.y) @ profiles.flux - centre * drift),
+    }
+
+
+def positions(chain: Chain, units: Units, space: VelocitySpace) -> Array:
+    """Return the grid of positions for all points of the mesh."""
+    reach = units.length * space.box.length - float(chain.reduced_anchors[-1])
+    return position_grid(chain, max(reach, units.length))
+
+
+def in_vocabulary(
+    chain: Chain,
+    units: Units,
+    outputs: list[dict[str, Any]],
+    times: Array,
+    last: VelocitySpace,
+    status: str,
+) -> xr.Dataset:
+    """Put the outputs into the common vocabulary, on the axes of the last, largest mesh."""
+    x = positions(chain, units, last)
+    density, label = np.empty((2, len(outputs), x.size))
+    for i, output in enumerate(outputs):
+        of = (output[name] for name in ("y", "points", "below"))
+        density[i], label[i] = density_and_label(chain, x, *of)
+    y, v = outputs[-1]["y"], outputs[-1]["v"]
+    phase_space = np.zeros((len(outputs), y.size, v.size))
+    for place, output in zip(phase_space, outputs, strict=True):
+        if output["y"].shape == y.shape and (output["y"] == y).all() and (output["v"] == v).all():
+            place[...] = output["phase_space_density"]
+            continue
+        spline = RectBivariateSpline(output["y"], output["v"], output["phase_space_density"])
+        inside = (np.abs(y) <= output["y"][-1])[:, None] & (np.abs(v) <= output["v"][-1])
+        place[...] = np.where(inside, spline(y, v), 0.0)
+    over_time = ("rods", "centre", "cloud_width", "kinetic_energy", "covariance")
+    over_rods = ("mean_displacement", "mean_velocity", "velocity_width")
+    stacked = {
+        name: np.array([output[name] for output in outputs]) for name in over_time + over_rods
+    }
+    return result(
+        chain,
+        {
+            "phase_space_density": (("time", "y", "velocity"), phase_space),
+            "density": (("time", "x"), density),
+            "label": (("time", "x"), label),
+            **{name: (("time", "particle"), stacked[name]) for name in over_rods},
+            **{name: ("time", stacked[name]) for name in over_time},
+        },
+        coordinates={"time": times, "x": x, "y": y, "velocity": v},
+        source="theory",
+        method={"theory": "kinetic equation in time", "cells": last.cells},
+        status=status,
+        end_time=times[-1],
+    )

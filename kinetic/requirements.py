@@ -1,0 +1,74 @@
+"""What a theory asks of a chain, checked in one place for all theories."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+
+from crazybilliards.model import Chain
+from crazybilliards.model.checks import shown
+
+# Parameters that the theories' equations contain, or that `require_chain` can refuse by name. A new
+# parameter of the chain is refused by every theory until it is added here.
+_KNOWN = frozenset(
+    {
+        "size",
+        "restitution",
+        "amplitude",
+        "damping",
+        "stiffness",
+        "gap",
+        "radius",
+        "mass",
+        "spring",
+    }
+)
+
+
+def require_chain(
+    chain: Chain,
+    theory: str,
+    *,
+    elastic: bool = False,
+    linear: bool = False,
+    gapless: bool = False,
+    steady: bool = True,
+    remedy: str = "",
+) -> None:
+    """Raise the ValueError that says why ``theory`` does not hold for this chain, if so.
+
+    Every theory calls this once, before any work. A chain with a parameter that the theories do
+    not know passes only if that parameter has its default value.
+
+    Parameters
+    ----------
+    chain
+        The chain that the theory is asked about.
+    theory
+        What the theory is called in the error.
+    elastic, linear, gapless
+        Whether it asks for restitution 1, for linear springs, for no gap.
+    steady
+        Whether it asks for a chain that has a steady state.
+    remedy
+        What to do for a restitution other than 1; the end of that error.
+    """
+    for field in fields(chain):
+        value = getattr(chain, field.name)
+        if field.name not in _KNOWN and value != field.default:
+            raise ValueError(
+                f"{theory} does not know the chain's {field.name}: it must be "
+                f"{shown(field.default)}, got {shown(value)}"
+            )
+    if elastic and chain.restitution != 1:
+        raise ValueError(
+            f"{theory} holds for elastic collisions only: restitution must be 1, got "
+            f"{chain.restitution:g}{remedy}"
+        )
+    if linear and chain.spring != "linear":
+        raise ValueError(
+            f"{theory} holds for linear springs only: spring must be 'linear', got {chain.spring!r}"
+        )
+    if gapless and chain.gap != 0:
+        raise ValueError(f"{theory} holds without gap only: gap must be 0, got {chain.gap:g}")
+    if steady:
+        chain.require_steady_state()

@@ -1,0 +1,40 @@
+r"""The law of the springs, in units of the stiffness k: the one place where it stands.
+
+A spring stretched by d has the potential U, pulls back with the force F = U' and has the local
+stiffness F':
+
+    U(d) = |d|^n / n,      F(d) = d |d|^(n-2),      F'(d) = (n-1) |d|^(n-2).
+
+n is the exponent of the potential: 2 for the linear spring, F = d, and 3 for the quadratic one,
+F = d |d|. The functions take floats and arrays. They are plain Python, so that a kernel can
+compile them in with ``inlined`` of :mod:`crazybilliards.model.kernels`.
+"""
+
+from __future__ import annotations
+
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+Number = TypeVar("Number", float, NDArray[np.float64])
+
+
+def force(d: Number, exponent: int) -> Number:
+    """Return the restoring force F(d)/k; its sign is that of d."""
+    return d if exponent == 2 else d * abs(d)
+
+
+def stiffness(d: Number, exponent: int) -> Number:
+    """Return the derivative of the force, F'(d)/k."""
+    return (exponent - 1) * abs(d) ** (exponent - 2)
+
+
+def potential(d: Number, exponent: int) -> Number:
+    """Return the energy U(d)/k."""
+    return abs(d) ** exponent / exponent
+
+
+def displacement(f: Number, exponent: int) -> Number:
+    """Return the d at which the force F(d)/k is ``f``: the inverse of :func:`force`."""
+    return np.sign(f) * abs(f) ** (1 / (exponent - 1))
