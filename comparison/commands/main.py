@@ -7,6 +7,7 @@ job imports what it needs when it runs.
 from __future__ import annotations
 
 import sys
+from typing import Annotated
 
 import typer
 
@@ -20,21 +21,36 @@ from crazybilliards.comparison.commands.theory import theory
 
 app = typer.Typer(
     add_completion=False,
-    no_args_is_help=True,
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
 
-@app.callback()
-def crazybilliards() -> None:
+def _show_version(wanted: bool) -> None:
+    if wanted:
+        from importlib.metadata import version
+
+        print(f"crazybilliards {version('crazybilliards')}")
+        raise typer.Exit
+
+
+@app.callback(invoke_without_command=True)
+def crazybilliards(
+    context: typer.Context,
+    version: Annotated[
+        bool,
+        typer.Option("--version", callback=_show_version, is_eager=True, help="Show the version."),
+    ] = False,
+) -> None:
     """Noisy rods on springs colliding in one dimension: simulation and theory side by side.
 
     Lengths are in units of the rod radius R, masses in M, times in sqrt(M/k).
 
     Example: crazybilliards compare --output results
     """
+    if context.invoked_subcommand is None:
+        print(context.get_help())
 
 
 for command in (compare, relax, theory, reproduce, sweep, explore):
