@@ -21,7 +21,7 @@ _ROOMS = ("model", "particles", "kinetic", "comparison")
 # The rooms list their names; here they are only collected.
 _ROOM_OF = {name: room for room in _ROOMS for name in import_module(f"{__name__}.{room}").__all__}
 
-__all__ = list(_ROOM_OF)  # noqa: PLE0605
+__all__ = list(_ROOM_OF)
 
 
 def __getattr__(name: str) -> Any:
