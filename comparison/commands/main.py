@@ -11,13 +11,16 @@ from typing import Annotated
 
 import typer
 
-from crazybilliards.comparison.commands.compare import compare
-from crazybilliards.comparison.commands.explore import explore
+from crazybilliards.comparison.commands import (
+    compare,
+    explore,
+    relax,
+    reproduce,
+    simulate,
+    sweep,
+    theory,
+)
 from crazybilliards.comparison.commands.output import INTERRUPTED
-from crazybilliards.comparison.commands.relax import relax
-from crazybilliards.comparison.commands.reproduce import reproduce
-from crazybilliards.comparison.commands.sweep import sweep
-from crazybilliards.comparison.commands.theory import theory
 
 app = typer.Typer(
     add_completion=False,
@@ -53,8 +56,8 @@ def crazybilliards(
         print(context.get_help())
 
 
-for command in (compare, relax, theory, reproduce, sweep, explore):
-    app.command()(command)
+for module in (compare, simulate, theory, relax, reproduce, sweep, explore):
+    app.command(module.__name__.rpartition(".")[2])(module.command)
 
 
 def main() -> None:

@@ -32,7 +32,7 @@ class Quality(StrEnum):
     FULL = "full"
 
 
-def reproduce(
+def command(
     which: Annotated[
         str, typer.Argument(help="Number or name of a figure of the paper, or all.")
     ] = "all",

@@ -32,7 +32,7 @@ Scheduler = Annotated[
 ]
 
 
-def sweep(
+def command(
     file: Annotated[
         Path,
         typer.Argument(
