@@ -37,7 +37,7 @@ def with_chain_options(
             command(chain=chain, **given)
 
         # Chain itself is not loaded yet, so its name in an annotation has no meaning here.
-        del command.__annotations__["chain"]
+        command.__annotations__.pop("chain", None)
         signature = inspect.signature(command, eval_str=True)
         parameters: list[inspect.Parameter] = []
         for name, each in signature.parameters.items():
