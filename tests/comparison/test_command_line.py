@@ -285,7 +285,7 @@ def test_compare_restitutions(run, tmp_path):
 
 @pytest.fixture
 def solved(monkeypatch):
-    """What a command gave to theories, and what came out: (chain, settings, result)."""
+    """Take down what a command gives to theories, and gets: (chain, settings, result)."""
     calls = []
 
     def watched(theory):
