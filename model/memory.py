@@ -72,8 +72,8 @@ def _of_the_groups(root: Path) -> float:
         else:
             continue
         group = top / path.lstrip("/")
-        # In a container the path may be the one outside, which is not to be seen in here.
-        around = (group, *group.parents) if group.is_dir() else (top,)
+        # In a container the path may be the one outside; in here only its top is to be seen.
+        around = (group, *group.parents)
         left = min([left, *(_left(each, *names) for each in around if each.is_relative_to(top))])
     return left
 

@@ -16,7 +16,11 @@ import xarray as xr
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
 
-COMMAND = [sys.executable, "-c", "from crazybilliards.comparison.commands.main import main; main()"]
+COMMAND = [
+    sys.executable,
+    "-c",
+    "from crazybilliards.comparison.commands.entry import main; main()",
+]
 PATIENCE = 600.0
 GRID = """
 [grid]

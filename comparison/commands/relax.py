@@ -93,8 +93,8 @@ def _write_relaxation(tree: xr.DataTree, folder: Path, suffix: str) -> None:
     import matplotlib
 
     matplotlib.use("Agg")
-    from crazybilliards.comparison import standalone_page
     from crazybilliards.comparison.studies import relaxation_figures as figures
+    from crazybilliards.comparison.studies.animation_page import standalone_page
     from crazybilliards.model import save
     from crazybilliards.model.storage import write_atomically
 

@@ -15,7 +15,11 @@ from tornado.websocket import websocket_connect
 
 from crazybilliards.comparison.explore.server import serve
 
-COMMAND = [sys.executable, "-c", "from crazybilliards.comparison.commands.main import main; main()"]
+COMMAND = [
+    sys.executable,
+    "-c",
+    "from crazybilliards.comparison.commands.entry import main; main()",
+]
 EXPLORE = [*COMMAND, "explore", "--no-browser"]
 
 

@@ -30,7 +30,11 @@ from crazybilliards.model import Chain
 from crazybilliards.model.vocabulary import result
 from crazybilliards.particles import simulate
 
-COMMAND = [sys.executable, "-c", "from crazybilliards.comparison.commands.main import main; main()"]
+COMMAND = [
+    sys.executable,
+    "-c",
+    "from crazybilliards.comparison.commands.entry import main; main()",
+]
 
 
 # -- claims -----------------------------------------------------------------------------------
