@@ -1,5 +1,5 @@
 """``python -m crazybilliards`` is the command ``crazybilliards``."""
 
-from crazybilliards.comparison.commands.entry import main
+from crazybilliards.comparison.commands.line import main
 
 main()

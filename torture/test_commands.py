@@ -14,7 +14,7 @@ import sys
 
 import pytest
 
-from crazybilliards.comparison.commands.entry import main
+from crazybilliards.comparison.commands.line import main
 
 PATIENCE, HANG = 2.0, 120.0
 NASTY = [

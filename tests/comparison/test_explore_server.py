@@ -15,11 +15,7 @@ from tornado.websocket import websocket_connect
 
 from crazybilliards.comparison.explore.server import serve
 
-COMMAND = [
-    sys.executable,
-    "-c",
-    "from crazybilliards.comparison.commands.entry import main; main()",
-]
+COMMAND = [sys.executable, "-c", "from crazybilliards.comparison.commands.line import main; main()"]
 EXPLORE = [*COMMAND, "explore", "--no-browser"]
 
 

@@ -30,11 +30,7 @@ from crazybilliards.model import Chain
 from crazybilliards.model.vocabulary import result
 from crazybilliards.particles import simulate
 
-COMMAND = [
-    sys.executable,
-    "-c",
-    "from crazybilliards.comparison.commands.entry import main; main()",
-]
+COMMAND = [sys.executable, "-c", "from crazybilliards.comparison.commands.line import main; main()"]
 
 
 # -- claims -----------------------------------------------------------------------------------

@@ -22,11 +22,7 @@ from crazybilliards.comparison.sweeps.running import missing_cases
 from crazybilliards.model import Chain
 from crazybilliards.model.storage import write_sealed
 
-COMMAND = [
-    sys.executable,
-    "-c",
-    "from crazybilliards.comparison.commands.entry import main; main()",
-]
+COMMAND = [sys.executable, "-c", "from crazybilliards.comparison.commands.line import main; main()"]
 GRID = """
 [grid]
 size = [3, 5]

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import matplotlib.pyplot as plt
 import pytest
 
-from crazybilliards.comparison.commands.entry import main
+from crazybilliards.comparison.commands.line import main
 
 
 class Ended(NamedTuple):
@@ -54,7 +54,7 @@ def refused(run):
 # A command that says on standard error when its simulation has measured for a while.
 MEASURING = """
 import sys
-from crazybilliards.comparison.commands.entry import main
+from crazybilliards.comparison.commands.line import main
 from crazybilliards.particles.observers.widths import Widths
 
 observe, calls = Widths.observe, []

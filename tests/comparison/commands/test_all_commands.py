@@ -9,7 +9,7 @@ from typing import get_args
 import pytest
 
 from crazybilliards.comparison.commands import chain_options
-from crazybilliards.comparison.commands.entry import app
+from crazybilliards.comparison.commands.line import app
 from crazybilliards.comparison.theories import THEORIES
 from crazybilliards.model import Chain
 
@@ -20,7 +20,7 @@ COMMANDS = [each.name for each in app.registered_commands]
 def test_help_shows_an_example_and_loads_nothing_heavy(arguments):
     script = (
         "import sys\n"
-        "from crazybilliards.comparison.commands.entry import main\n"
+        "from crazybilliards.comparison.commands.line import main\n"
         "try:\n    main()\n"
         "finally:\n"
         "    heavy = {'numpy', 'numba', 'scipy', 'matplotlib', 'xarray', 'panel'}\n"
