@@ -26,7 +26,12 @@ FLOORS = {
         {"running"},
         {"simulation"},
     ),
-    "kinetic": ({"statics", "exact"}, {"starts"}, {"fluids", "kinetic_equation"}),
+    "kinetic": (
+        {"requirements", "output_times"},
+        {"statics", "exact"},
+        {"starts"},
+        {"fluids", "kinetic_equation"},
+    ),
     "comparison": (
         {"coverage", "distances", "drawing", "fits", "theories"},
         {"sweeps"},
@@ -59,7 +64,7 @@ def test_no_folder_imports_what_stands_above_it(room):
     floor = {
         f"{room}.{unit}": number for number, units in enumerate(FLOORS[room]) for unit in units
     }
-    assert set(graph) == set(floor), "every module and folder of a room has its floor"
+    assert set(graph) <= set(floor), "every module and folder of a room has its floor"
     upwards = [
         (name, target)
         for name, targets in graph.items()
