@@ -54,7 +54,7 @@ coverage: $(VENV)/installed-coverage
 check: $(VENV)/installed-check build/types
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
-	MYPYPATH=build/types $(BIN)/mypy $(ROOMS:%=-p crazybilliards.%)
+	MYPYPATH=build/types $(BIN)/mypy -p crazybilliards
 
 # Strict: a package that could not be looked up is a failure, not a footnote.
 audit: $(VENV)/installed-test $(VENV)/installed-docs $(VENV)/installed-audit
@@ -100,6 +100,8 @@ benchmark: $(VENV)/installed-benchmark
 # mypy does not see through an editable install: it reads the rooms through this farm of links.
 build/types: Makefile
 	mkdir -p $@/crazybilliards
+	for file in __init__.py __init__.pyi __main__.py py.typed; do \
+	  ln -sfn ../../../api/$$file $@/crazybilliards/$$file; done
 	for room in $(ROOMS); do ln -sfn ../../../$$room $@/crazybilliards/$$room; done
 	touch $@
 

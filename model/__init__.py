@@ -1,7 +1,8 @@
-"""The chain itself: parameters, units, derived scales, the vocabulary of results, files."""
+"""The chain itself: parameters, units, derived scales, the vocabulary of results, files.
 
-from crazybilliards.model.chain import Chain
-from crazybilliards.model.storage import load, save
-from crazybilliards.model.vocabulary import chain_of
+The public names are listed in ``__init__.pyi``. Each loads its module when it is first used.
+"""
 
-__all__ = ["Chain", "chain_of", "load", "save"]
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

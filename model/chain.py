@@ -22,21 +22,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import asdict, dataclass, fields, replace
-from typing import Any, Literal, Self, get_args
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from crazybilliards.model import spring
-from crazybilliards.model.checks import check_choice, check_integer, check_real
-
-Spring = Literal["linear", "quadratic"]
-
-_MOST_RODS = 10**9  # 8 GB an array
+from crazybilliards.model.parameters import Parameters
 
 
 @dataclass(frozen=True, kw_only=True)
-class Chain:
+class Chain(Parameters):
     """The parameters of one chain, checked; the defaults are the paper's reference at e = 1.
 
     Parameters
@@ -71,27 +67,6 @@ class Chain:
     >>> chain.replace(gap=0.5).anchors[:2]
     array([-11.25,  -8.75])
     """
-
-    size: int = 100
-    restitution: float = 1.0
-    amplitude: float = 1.0
-    damping: float = 1.0
-    stiffness: float = 1.0
-    gap: float = 0.0
-    radius: float = 1.0
-    mass: float = 4 * math.pi / 3
-    spring: Spring = "linear"
-
-    def __post_init__(self) -> None:
-        size = check_integer("size", self.size, least=1, most=_MOST_RODS)
-        checked: dict[str, Any] = {"size": size}
-        for name in ("restitution", "amplitude", "damping", "stiffness", "gap"):
-            checked[name] = check_real(name, getattr(self, name))
-        for name in ("radius", "mass"):
-            checked[name] = check_real(name, getattr(self, name), positive=True)
-        check_choice("spring", self.spring, get_args(Spring))
-        for name, value in checked.items():
-            object.__setattr__(self, name, value)
 
     def replace(self, **changes: Any) -> Self:
         """Return the same chain with some parameters changed (and all checked again)."""

@@ -6,8 +6,6 @@ import math
 import reprlib
 from numbers import Integral, Real
 
-import numpy as np
-
 # Squares and ratios of parameters must neither overflow nor underflow.
 _SMALLEST, _LARGEST = 1e-60, 1e60
 
@@ -30,7 +28,7 @@ def check_real(name: str, value: object, *, positive: bool = False, signed: bool
     wanted = f"{name} must be a finite {sign}number between 1e-60 and 1e60"
     if not positive:
         wanted += " (or 0)"
-    if isinstance(value, bool | np.bool_) or not isinstance(value, Real):
+    if isinstance(value, bool) or not isinstance(value, Real):
         raise ValueError(f"{wanted}, got {shown(value)}")
     try:
         number = float(value)
@@ -46,7 +44,7 @@ def check_integer(name: str, value: object, *, least: int, most: int | None = No
     """Return ``value`` as an int, or raise the one ValueError that says what ``name`` takes."""
     wanted = f"an integer >= {least}" if most is None else f"an integer from {least} to {most}"
     if (
-        isinstance(value, bool | np.bool_)
+        isinstance(value, bool)
         or not isinstance(value, Integral)
         or int(value) < least
         or (most is not None and int(value) > most)
@@ -55,7 +53,8 @@ def check_integer(name: str, value: object, *, least: int, most: int | None = No
     return int(value)
 
 
-def check_choice(name: str, value: object, choices: tuple[str, ...]) -> None:
-    """Raise a ValueError unless ``value`` is one of the words that ``name`` takes."""
+def check_choice(name: str, value: object, choices: tuple[str, ...]) -> str:
+    """Return ``value``, or raise a ValueError unless it is one of the words ``name`` takes."""
     if not isinstance(value, str) or value not in choices:
         raise ValueError(f"{name} must be one of {choices}, got {shown(value)}")
+    return value

@@ -15,7 +15,7 @@ from pathlib import Path
 _PACKAGE = Path(__file__).parents[1]
 
 
-def fingerprint(sources: Iterable[Path], *others: str) -> str:
+def fingerprint_of(sources: Iterable[Path], *others: str) -> str:
     """Return a hash of the content of files, in any order, and of further text."""
     hashed = hashlib.sha256("\0".join(others).encode())
     for content in sorted(_content(source) for source in sources):
@@ -29,7 +29,7 @@ def room_fingerprint(*rooms: str) -> str:
 
     20 hexadecimal digits; computed once in a process, in some milliseconds.
     """
-    return fingerprint(file for room in rooms for file in (_PACKAGE / room).rglob("*.py"))[:20]
+    return fingerprint_of(file for room in rooms for file in (_PACKAGE / room).rglob("*.py"))[:20]
 
 
 def _content(source: Path) -> bytes:

@@ -16,7 +16,7 @@ from typing import Any
 
 from numba import njit
 
-from crazybilliards.model.fingerprint import fingerprint
+from crazybilliards.model.fingerprint import fingerprint_of
 
 
 def kernel(function: Callable[..., Any]) -> Any:
@@ -60,7 +60,7 @@ def _fingerprint(function: Callable[..., Any]) -> str:
                 waiting.append(value.py_func)
             elif isinstance(value, bool | int | float | str | tuple):
                 constants.add(f"{name}={value!r}")
-    return fingerprint(files, *sorted(constants))
+    return fingerprint_of(files, *sorted(constants))
 
 
 def _named(function: Callable[..., Any]) -> list[tuple[str, Any]]:

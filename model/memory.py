@@ -10,9 +10,14 @@ from __future__ import annotations
 
 import math
 import os
+from contextlib import suppress
 from pathlib import Path
 
 _GIB = 2**30
+
+# Limit, usage, and what of it the system can take back, in the two versions of control groups.
+_VERSION_1 = ("memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file")
+_VERSION_2 = ("memory.max", "memory.current", "inactive_file")
 
 
 def require_memory(wanted: str, needed: float) -> None:
@@ -29,7 +34,15 @@ def require_memory(wanted: str, needed: float) -> None:
 
 
 def available_memory() -> float:
-    """Return the bytes that can be taken without swapping; where nobody knows, infinity."""
+    """Return the bytes that can be taken without swapping; where nobody knows, infinity.
+
+    A container or a batch job may have less than the machine: Linux kills what goes beyond the
+    limit of its control group, or of a group around it. The smallest number counts.
+    """
+    return min(_of_the_machine(), _of_the_groups(Path("/")))
+
+
+def _of_the_machine() -> float:
     try:
         for line in Path("/proc/meminfo").read_text().splitlines():
             name, amount = line.split()[:2]
@@ -41,3 +54,40 @@ def available_memory() -> float:
         return float(os.sysconf("SC_PHYS_PAGES")) * os.sysconf("SC_PAGE_SIZE")
     except (AttributeError, ValueError, OSError):
         return math.inf
+
+
+def _of_the_groups(root: Path) -> float:
+    """Return what the control groups of this process leave it, below a root of the file system."""
+    try:
+        lines = (root / "proc/self/cgroup").read_text().splitlines()
+    except OSError:
+        return math.inf  # not Linux
+    left = math.inf
+    for line in lines:  # number:controllers:path, with number 0 and no controllers in version 2
+        _, controllers, path = line.split(":", 2)
+        if controllers == "":
+            top, names = root / "sys/fs/cgroup", _VERSION_2
+        elif "memory" in controllers.split(","):
+            top, names = root / "sys/fs/cgroup/memory", _VERSION_1
+        else:
+            continue
+        group = top / path.lstrip("/")
+        # In a container the path may be the one outside; in here only its top is to be seen.
+        around = (group, *group.parents)
+        left = min([left, *(_left(each, *names) for each in around if each.is_relative_to(top))])
+    return left
+
+
+def _left(group: Path, limit: str, usage: str, reclaimable: str) -> float:
+    """Return the limit of a group less what it uses; files kept in memory can be dropped."""
+    try:
+        text = (group / limit).read_text().strip()
+        if text == "max":
+            return math.inf
+        left = int(text) - int((group / usage).read_text())
+    except (OSError, ValueError):
+        return math.inf  # the outermost group has no limit
+    with suppress(OSError, ValueError, KeyError):
+        statistics = dict(line.split() for line in (group / "memory.stat").read_text().splitlines())
+        left += int(statistics[reclaimable])
+    return max(float(left), 0.0)

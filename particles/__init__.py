@@ -1,6 +1,8 @@
-"""The simulation: collision operators, time stepping, observers, and :func:`simulate`."""
+"""The simulation: collision operators, time stepping, observers, and :func:`simulate`.
 
-from crazybilliards.particles.simulation import simulate
-from crazybilliards.particles.start import given_start
+The public names are listed in ``__init__.pyi``. Each loads its module when it is first used.
+"""
 
-__all__ = ["given_start", "simulate"]
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -1,45 +1,119 @@
-"""The four rooms stand on one another in one direction only, and their docstrings are true."""
+"""The house stands: nothing imports upwards, nothing is hidden by its module, no file is long."""
 
 import ast
 import doctest
+import graphlib
 import importlib
-import pkgutil
+from pathlib import Path
 
+import architecture
 import pytest
 
+ROOT = Path(__file__).parent.parent
 STANDS_ON = {
     "model": {"model"},
     "particles": {"model", "particles"},
     "kinetic": {"model", "kinetic"},
     "comparison": {"model", "particles", "kinetic", "comparison"},
 }
+# What stands on one floor may import what stands there or below, but never in a circle.
+FLOORS = {
+    "particles": (
+        {"scales", "stepping", "laws"},
+        {"schedule", "start"},
+        {"observers"},
+        {"request"},
+        {"running"},
+        {"simulation"},
+    ),
+    "kinetic": (
+        {"requirements", "output_times"},
+        {"statics", "exact"},
+        {"starts"},
+        {"fluids", "kinetic_equation"},
+    ),
+    "comparison": (
+        {"coverage", "distances", "drawing", "fits", "theories"},
+        {"sweeps"},
+        {"claims"},
+        {"studies"},
+        {"paper"},
+        {"explore", "commands"},
+    ),
+}
+LINES = 300
+# Longer files, and why.
+LONG = {
+    "kinetic/kinetic_equation/velocity_space.py": "one derivation, which the code follows",
+    "tests/comparison/test_explore.py": "one page, tried in one browser",
+    "torture/test_files.py": "one damage after another, on one set of files",
+    "torture/test_parameters.py": "a list of every argument of every function",
+}
+MODULES = architecture.modules()
 
 
-def modules():
-    for room in STANDS_ON:
-        package = importlib.import_module(f"crazybilliards.{room}")
-        yield package.__name__, package.__file__
-        for info in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
-            yield info.name, importlib.import_module(info.name).__file__
+@pytest.mark.parametrize("name", MODULES)
+def test_no_room_imports_what_stands_above_it(name):
+    imported = architecture.imports()[name]
+    assert {each.split(".")[0] for each in imported} <= STANDS_ON[name.split(".")[0]]
 
 
-@pytest.mark.parametrize(("name", "path"), list(modules()), ids=lambda value: value.split("/")[-1])
-def test_no_room_imports_what_stands_above_it(name, path):
-    with open(path, encoding="utf-8") as file:
-        tree = ast.parse(file.read())
-    imported = {node.module for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)}
-    imported |= {
-        alias.name
-        for node in ast.walk(tree)
-        if isinstance(node, ast.Import)
-        for alias in node.names
+@pytest.mark.parametrize("room", FLOORS)
+def test_no_folder_imports_what_stands_above_it(room):
+    graph = architecture.unit_imports(room)
+    floor = {
+        f"{room}.{unit}": number for number, units in enumerate(FLOORS[room]) for unit in units
     }
-    rooms = {each.split(".")[1] for each in imported if each and each.startswith("crazybilliards.")}
-    assert rooms <= STANDS_ON[name.split(".")[1]]
+    assert set(graph) <= set(floor), "every module and folder of a room has its floor"
+    upwards = [
+        (name, target)
+        for name, targets in graph.items()
+        for target in targets
+        if floor[target] > floor[name]
+    ]
+    assert not upwards
+
+
+@pytest.mark.parametrize("room", STANDS_ON)
+def test_nothing_imports_in_a_circle(room):
+    graphlib.TopologicalSorter(architecture.unit_imports(room)).prepare()
+    graphlib.TopologicalSorter(architecture.imports()).prepare()
+
+
+@pytest.mark.parametrize("name", MODULES)
+def test_within_a_room_modules_import_modules(name):
+    """Not the names of the room, which would hide from which floor they come."""
+    assert name.split(".")[0] not in architecture.imports()[name]
+
+
+@pytest.mark.parametrize("name", MODULES)
+def test_nothing_is_named_like_its_module(name):
+    """Importing the module would hide the function or class behind it."""
+    tree = ast.parse(MODULES[name].read_text(encoding="utf-8"))
+    definitions = (ast.FunctionDef, ast.ClassDef)
+    defined = {node.name for node in tree.body if isinstance(node, definitions)}
+    assert name.split(".")[-1] not in defined
+
+
+def test_no_file_is_long():
+    folders = (*STANDS_ON, "api", "benchmarks", "docs", "tests", "torture")
+    files = [path for folder in folders for path in (ROOT / folder).rglob("*.py")]
+    lengths = {
+        path.relative_to(ROOT).as_posix(): len(path.read_text(encoding="utf-8").splitlines())
+        for path in files
+        if "docs/notebooks" not in path.as_posix()
+    }
+    long = {name: length for name, length in lengths.items() if length >= LINES}
+    assert set(long) <= set(LONG), long
+
+
+def test_the_picture_of_the_architecture_shows_the_imports():
+    """If it does not, draw it again: python docs/figures/architecture.py."""
+    assert architecture.described() in architecture.PICTURE.read_text(encoding="utf-8")
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("name", [name for name, _ in modules()])
+@pytest.mark.parametrize("name", ["", *MODULES])
 def test_examples_in_docstrings(name):
-    outcome = doctest.testmod(importlib.import_module(name))
-    assert outcome.failed == 0
+    module = importlib.import_module(f"crazybilliards.{name}".removesuffix("."))
+    assert doctest.testmod(module).failed == 0

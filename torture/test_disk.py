@@ -21,7 +21,7 @@ from crazybilliards.particles import simulate
 
 pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="mounts, limits")
 
-COMMAND = [sys.executable, "-c", "from crazybilliards.comparison.commands.main import main; main()"]
+COMMAND = [sys.executable, "-c", "from crazybilliards.comparison.commands.line import main; main()"]
 PATIENCE = 600.0
 GRID = """
 [grid]

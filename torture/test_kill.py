@@ -24,7 +24,7 @@ import matplotlib as mpl
 import numpy as np
 import pytest
 
-from crazybilliards.comparison.commands.main import main
+from crazybilliards.comparison.commands.line import main
 from crazybilliards.comparison.paper import figures
 from crazybilliards.comparison.paper.figures import fig01_model, fig16_arctanh, fig17_density
 from crazybilliards.model import Chain, load, save

@@ -15,7 +15,7 @@ from test_kill import GRID, PATIENCE, SIGNALS, check, contents, leave_nobody
 
 pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="reads /proc")
 
-COMMAND = [sys.executable, "-c", "from crazybilliards.comparison.commands.main import main; main()"]
+COMMAND = [sys.executable, "-c", "from crazybilliards.comparison.commands.line import main; main()"]
 
 
 @pytest.mark.parametrize(

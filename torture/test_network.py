@@ -56,7 +56,7 @@ ALONE = (
     "fcntl.ioctl(socket.socket(), 0x8914, struct.pack('16sh', b'lo', 1)); "
     "os.execv(sys.executable, [sys.executable, *sys.argv[1:]])"
 )
-MAIN = "from crazybilliards.comparison.commands.main import main; main()"
+MAIN = "from crazybilliards.comparison.commands.line import main; main()"
 SWEEP = """
 [grid]
 restitution = [0.9, 1.0]

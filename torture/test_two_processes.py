@@ -16,7 +16,7 @@ import xarray as xr
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
 
-COMMAND = [sys.executable, "-c", "from crazybilliards.comparison.commands.main import main; main()"]
+COMMAND = [sys.executable, "-c", "from crazybilliards.comparison.commands.line import main; main()"]
 PATIENCE = 600.0
 GRID = """
 [grid]

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from crazybilliards.comparison.commands.chain_options import with_chain_options
 from crazybilliards.comparison.commands.output import (
     check_folder,
     exit_unless_completed,
@@ -20,8 +21,12 @@ from crazybilliards.comparison.commands.output import (
 if TYPE_CHECKING:
     import xarray as xr
 
+    from crazybilliards.model import Chain
 
-def compare(
+
+@with_chain_options(without=("amplitude", "restitution"))
+def command(
+    chain: Chain,
     output: Annotated[
         Path | None,
         typer.Option(
@@ -29,7 +34,6 @@ def compare(
             "written."
         ),
     ] = None,
-    size: Annotated[int, typer.Option(help="Number of rods L, at least 3.")] = 100,
     amplitudes: Annotated[
         str | None,
         typer.Option(help="Driving amplitudes A, separated by commas; default: 1,3,10,30."),
@@ -40,8 +44,6 @@ def compare(
             help="Restitutions e, separated by commas: compare with the kinetic equation instead."
         ),
     ] = None,
-    damping: Annotated[float, typer.Option(help="Damping gamma [M/T].")] = 1.0,
-    gap: Annotated[float, typer.Option(help="Gap g between rods at their anchors [R].")] = 0.0,
     duration: Annotated[
         float | None,
         typer.Option(
@@ -68,18 +70,18 @@ def compare(
 
     Example: crazybilliards compare --output results --restitution 0.9,0.95,0.98
     """
-    from crazybilliards.model import Chain
-
     if output is not None:
         check_folder(output)
     if restitution is None:
-        if size < 3:
-            raise ValueError(f"size must be at least 3 to compare with an arctanh fit, got {size}")
+        if chain.size < 3:
+            raise ValueError(
+                f"size must be at least 3 to compare with an arctanh fit, got {chain.size}"
+            )
         from crazybilliards.comparison.studies.elastic_chain import compare_elastic
 
         tree = compare_elastic(
-            Chain(size=size, gap=gap, damping=damping),
-            numbers("amplitudes", "1,3,10,30" if amplitudes is None else amplitudes),
+            chain,
+            numbers("amplitudes", "1,3,10,30" if amplitudes is None else amplitudes, float),
             duration=200_000.0 if duration is None else duration,
             seed=seed,
             threads=threads,
@@ -91,8 +93,8 @@ def compare(
         from crazybilliards.comparison.studies.restitutions import compare_restitutions
 
         tree = compare_restitutions(
-            Chain(size=size, gap=gap, damping=damping),
-            numbers("restitution", restitution),
+            chain,
+            numbers("restitution", restitution, float),
             duration=5_000.0 if duration is None else duration,
             seed=seed,
             threads=threads,

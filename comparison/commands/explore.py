@@ -12,7 +12,7 @@ import typer
 from crazybilliards.comparison.commands.output import INTERRUPTED
 
 
-def explore(
+def command(
     port: Annotated[int, typer.Option(help="Port to serve the page at; 0: any free one.")] = 5006,
     address: Annotated[
         str, typer.Option(help="Address to serve it at; the default is this machine only.")

@@ -1,4 +1,4 @@
-"""What the commands share: reading lists of numbers, folders, figures, and the exit status.
+"""What the commands share: reading lists, folders, figures, tables, and the exit status.
 
 Standard library and typer only up here, so that ``--help`` answers at once.
 """
@@ -6,21 +6,25 @@ Standard library and typer only up here, so that ``--help`` answers at once.
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import typer
 
 if TYPE_CHECKING:
+    import xarray as xr
     from matplotlib.figure import Figure
 
 INTERRUPTED = 130
 
+Number = TypeVar("Number", int, float)
 
-def numbers(name: str, text: str) -> list[float]:
+
+def numbers(name: str, text: str, kind: Callable[[str], Number]) -> list[Number]:
     """Read numbers separated by commas."""
     try:
-        return [float(part) for part in text.split(",")]
+        return [kind(part) for part in text.split(",")]
     except ValueError as error:
         from crazybilliards.model.checks import shown
 
@@ -37,6 +41,13 @@ def check_folder(path: Path) -> None:
         raise ValueError(f"output: no permission to write to {existing}")
 
 
+def check_file(path: Path) -> None:
+    """Raise, before any work, if ``path`` cannot become a result's file."""
+    if path.suffix != ".nc" or path.is_dir():
+        raise ValueError(f"output must be a file whose name ends in .nc, got {path}")
+    check_folder(path.parent)
+
+
 def write_figures(folder: Path, suffix: str, **figures: Figure) -> None:
     """Write pictures, none of them half, and say so."""
     from io import BytesIO
@@ -49,6 +60,35 @@ def write_figures(folder: Path, suffix: str, **figures: Figure) -> None:
         path = folder / f"{name}{suffix}.png"
         write_atomically(path, picture.getvalue())
         print(f"wrote {path}")
+
+
+_COLUMNS = {
+    "velocity_width": "W_v",
+    "mean_displacement": "<dx>",
+    "displacement_width": "W_x",
+}
+
+
+def print_rods(result: xr.Dataset, title: str, caption: str) -> None:
+    """Print widths and displacements of some rods, with their standard errors if there are any."""
+    from rich.console import Console
+    from rich.table import Table
+
+    columns = {name: text for name, text in _COLUMNS.items() if name in result}
+    table = Table("particle", *columns.values(), title=title, caption=caption)
+    for column in table.columns:
+        column.justify = "right"
+    L = result.sizes["particle"]
+    for i in sorted({1, 2, max(L // 10, 1), max(L // 4, 1), max(L // 2, 1)} & set(range(1, L + 1))):
+        rod = result.isel(particle=i - 1)
+        table.add_row(str(rod.particle.item()), *(_measured(rod, name) for name in columns))
+    Console().print(table)
+
+
+def _measured(rod: xr.Dataset, name: str) -> str:
+    value = f"{float(rod[name]):.4g}"
+    error = rod.get(f"{name}_error")
+    return value if error is None else f"{value} +- {float(error):.1g}"
 
 
 def exit_unless_completed(status: str) -> None:

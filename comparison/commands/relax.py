@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from crazybilliards.comparison.commands.chain_options import with_chain_options
 from crazybilliards.comparison.commands.output import (
     check_folder,
     exit_unless_completed,
@@ -19,8 +20,12 @@ from crazybilliards.comparison.commands.output import (
 if TYPE_CHECKING:
     import xarray as xr
 
+    from crazybilliards.model import Chain
 
-def relax(
+
+@with_chain_options(without=("restitution",), amplitude=30.0)
+def command(
+    chain: Chain,
     output: Annotated[
         Path | None,
         typer.Option(
@@ -38,9 +43,6 @@ def relax(
             "before (quenched); default: 0.3, 2 or 3."
         ),
     ] = None,
-    size: Annotated[int, typer.Option(help="Number of rods L.")] = 100,
-    amplitude: Annotated[float, typer.Option(help="Driving amplitude A.")] = 30.0,
-    gap: Annotated[float, typer.Option(help="Gap g between rods at their anchors [R].")] = 0.0,
     duration: Annotated[float, typer.Option(help="Time to follow.")] = 40.0,
     every: Annotated[float, typer.Option(help="Time between outputs.")] = 0.5,
     replicas: Annotated[int, typer.Option(help="Simulated chains to average over.")] = 300,
@@ -60,7 +62,6 @@ def relax(
     Example: crazybilliards relax --output results --release displaced --by 2 --gap 0.2
     """
     from crazybilliards.comparison.studies.relaxation import compare_relaxation
-    from crazybilliards.model import Chain
     from crazybilliards.model.checks import check_choice
 
     defaults = {"compressed": 0.3, "displaced": 2.0, "quenched": 3.0}
@@ -68,7 +69,7 @@ def relax(
     if output is not None:
         check_folder(output)
     tree = compare_relaxation(
-        Chain(size=size, amplitude=amplitude, gap=gap),
+        chain,
         release,  # type: ignore[arg-type]
         defaults[release] if by is None else by,
         duration=duration,
@@ -92,8 +93,8 @@ def _write_relaxation(tree: xr.DataTree, folder: Path, suffix: str) -> None:
     import matplotlib
 
     matplotlib.use("Agg")
-    from crazybilliards.comparison import standalone_page
     from crazybilliards.comparison.studies import relaxation_figures as figures
+    from crazybilliards.comparison.studies.animation_page import standalone_page
     from crazybilliards.model import save
     from crazybilliards.model.storage import write_atomically
 

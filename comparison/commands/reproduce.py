@@ -37,7 +37,7 @@ class Quality(StrEnum):
     FULL = "full"
 
 
-def reproduce(
+def command(
     which: Annotated[
         str,
         typer.Argument(

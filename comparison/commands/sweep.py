@@ -39,7 +39,7 @@ KeepOld = Annotated[
 ]
 
 
-def sweep(
+def command(
     file: Annotated[
         Path,
         typer.Argument(

@@ -218,6 +218,6 @@ class Page:
         self.message.visible = bool(message)
 
 
-def page(threads: Executor, processes: Executor) -> pn.viewable.Viewable:
+def make_page(threads: Executor, processes: Executor) -> pn.viewable.Viewable:
     """Return a new page, for one browser."""
     return Page(threads, processes).view()

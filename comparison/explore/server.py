@@ -25,7 +25,7 @@ from bokeh.settings import settings
 from tornado.web import RequestHandler
 from tornado.websocket import WebSocketClosedError
 
-from crazybilliards.comparison.explore.page import page
+from crazybilliards.comparison.explore.page import make_page
 from crazybilliards.comparison.explore.session import Session
 from crazybilliards.comparison.sweeps import process_pool
 from crazybilliards.model import Chain
@@ -79,7 +79,7 @@ def serve(
     with ThreadPoolExecutor(1) as threads, process_pool(1) as processes:
 
         def new_page() -> pn.viewable.Viewable:  # Panel calls functions only, no partial()
-            return page(threads, processes)
+            return make_page(threads, processes)
 
         server = _make_server(new_page, address, str(number), port)
         server.start()

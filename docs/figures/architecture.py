@@ -1,86 +1,201 @@
-"""Draw the four rooms: run it, and it writes architecture.svg beside itself."""
+"""Draw the rooms, their folders and who imports whom, read from the imports of all modules.
 
+Run it, and it writes architecture.svg beside itself. The tests take the imports from here too, and
+check that the picture belongs to them.
+"""
+
+import ast
+from functools import cache
 from pathlib import Path
 
-import matplotlib
-
-matplotlib.use("svg")
+import matplotlib as mpl
 import matplotlib.pyplot as plt
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.patches import FancyBboxPatch
 
-# name: (left, bottom, width, height, colour, what is in it)
+ROOT = Path(__file__).parents[2]
+PICTURE = Path(__file__).with_suffix(".svg")
+# name: (left, bottom, width, height, colour)
 ROOMS = {
-    "comparison": (
-        0.0,
-        5.6,
-        10.0,
-        1.9,
-        "#F6DDEB",
-        "densities as the paper bins them, fits, deviations, overlays\n"
-        "the paper's figures, sweeps, the command line",
-    ),
-    "particles": (
-        0.0,
-        2.8,
-        4.75,
-        1.9,
-        "#D5E8F5",
-        "collision operators, time stepping\nobservers, replicas, checkpoints",
-    ),
-    "kinetic": (
-        5.25,
-        2.8,
-        4.75,
-        1.9,
-        "#FBE8C3",
-        "exact equilibrium, force balance\nhydrodynamics, kinetic equation",
-    ),
-    "model": (
-        0.0,
-        0.0,
-        10.0,
-        1.9,
-        "#D4EFE6",
-        "the chain and its scales, the reduced coordinate\n"
-        "the vocabulary of results, checked files",
-    ),
+    "comparison": (0.0, 9.7, 12.0, 5.2, "#F6DDEB"),
+    "particles": (0.0, 4.1, 5.9, 5.2, "#D5E8F5"),
+    "kinetic": (6.1, 4.1, 5.9, 5.2, "#FBE8C3"),
+    "model": (0.0, 0.0, 12.0, 3.7, "#D4EFE6"),
 }
-# from, to, where along the line
-ARROWS = (
-    ("comparison", "particles", 2.4),
-    ("comparison", "kinetic", 7.6),
-    ("comparison", "model", 5.0),
-    ("particles", "model", 2.4),
-    ("kinetic", "model", 7.6),
+# From, to, where along the line.
+BETWEEN_ROOMS = (
+    ("comparison", "particles", 3.0),
+    ("comparison", "kinetic", 9.0),
+    ("particles", "model", 3.0),
+    ("kinetic", "model", 9.0),
 )
+ARROW = {"arrowstyle": "-|>", "color": "0.35", "linewidth": 0.8, "shrinkA": 0, "shrinkB": 0}
+
+Graph = dict[str, set[str]]
 
 
-def draw() -> plt.Figure:
+def modules() -> dict[str, Path]:
+    """Return every module of the four rooms by its name, without ``crazybilliards.``."""
+    names = {}
+    for room in ROOMS:
+        for path in sorted((ROOT / room).rglob("*.py")):
+            parts = path.relative_to(ROOT).with_suffix("").parts
+            names[".".join(parts).removesuffix(".__init__")] = path
+    return names
+
+
+@cache
+def imports() -> Graph:
+    """Return what every module imports of the package, those within functions too."""
+    known = modules()
+    return {name: _imported(path, known) for name, path in known.items()}
+
+
+def _imported(path: Path, known: dict[str, Path]) -> set[str]:
+    found = set()
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("crazybilliards."):
+            source = node.module.removeprefix("crazybilliards.")
+            for alias in node.names:
+                inner = f"{source}.{alias.name}"
+                found.add(inner if inner in known else source)
+    return found
+
+
+def unit(module: str) -> str:
+    """Return the folder of a room that a module lies in, or itself."""
+    return ".".join(module.split(".")[:2])
+
+
+def unit_imports(room: str) -> Graph:
+    """Return which folders and modules of a room import which others of the room."""
+    graph: Graph = {}
+    for module, imported in imports().items():
+        if module.startswith(f"{room}."):
+            others = {unit(each) for each in imported if each.startswith(f"{room}.")}
+            graph.setdefault(unit(module), set()).update(others - {unit(module)})
+    return graph
+
+
+def levels(graph: Graph) -> dict[str, int]:
+    """Return how far above the ground each unit stands: one more than the highest it imports."""
+    heights: dict[str, int] = {}
+
+    def height(name: str) -> int:
+        if name not in heights:
+            heights[name] = max((height(below) + 1 for below in graph[name]), default=0)
+        return heights[name]
+
+    return {name: height(name) for name in graph}
+
+
+def _direct(graph: Graph) -> Graph:
+    """Leave out arrows that a way over others replaces."""
+
+    def below(name: str) -> set[str]:
+        return graph[name].union(*(below(each) for each in graph[name]))
+
+    return {
+        name: targets - set().union(*(below(each) for each in targets))
+        for name, targets in graph.items()
+    }
+
+
+def draw() -> Figure:
     """Return the figure."""
-    figure, ax = plt.subplots(figsize=(7, 5.2))
-    ax.set(xlim=(-0.1, 10.1), ylim=(-0.1, 7.6))
+    figure, ax = plt.subplots(figsize=(8.6, 10.0))
+    ax.set(xlim=(-0.1, 12.1), ylim=(-0.1, 15.0))
     ax.axis("off")
-    for name, (left, bottom, width, height, colour, text) in ROOMS.items():
-        box = FancyBboxPatch(
-            (left + 0.1, bottom + 0.1),
-            width - 0.2,
-            height - 0.2,
-            boxstyle="round,pad=0.1",
-            facecolor=colour,
-            edgecolor="0.35",
-        )
-        ax.add_patch(box)
-        middle = left + width / 2
-        ax.text(middle, bottom + height - 0.5, name, ha="center", va="center", size=14, weight=600)
-        ax.text(middle, bottom + 0.72, text, ha="center", va="center", size=10, linespacing=1.4)
-    for upper, lower, x in ARROWS:
+    for room, (left, bottom, width, height, colour) in ROOMS.items():
+        _box(ax, left, bottom, width, height, colour)
+        ax.text(left + 0.25, bottom + height - 0.3, room, va="top", size=13, weight="bold")
+        _draw_units(ax, room)
+    for upper, lower, x in BETWEEN_ROOMS:
         top, bottom = ROOMS[upper][1], ROOMS[lower][1] + ROOMS[lower][3]
-        style = {"arrowstyle": "-|>", "color": "0.35", "linewidth": 1.5, "shrinkA": 0, "shrinkB": 1}
-        ax.annotate("", (x, bottom), (x, top), arrowprops=style)
+        ax.annotate("", (x, bottom), (x, top), arrowprops=ARROW | {"linewidth": 2.0})
     return figure
 
 
+def _draw_units(ax: Axes, room: str) -> None:
+    left, bottom, width, height, _ = ROOMS[room]
+    graph = unit_imports(room)
+    level = levels(graph)
+    floors = max(level.values()) + 1
+    half_wide, half_high = 0.62, 0.19
+    places = {}
+    for floor in range(floors):
+        names = sorted(name for name in graph if level[name] == floor)
+        y = bottom + 0.45 + floor * (height - 1.35) / max(floors - 1, 1)
+        for number, name in enumerate(names):
+            # Rows stand against each other, for arrows to pass between boxes.
+            shift = 0.22 * (-1) ** floor
+            places[name] = left + (number + 0.5) * width / len(names) + shift, y
+    for name, targets in _direct(graph).items():
+        x, y = places[name]
+        for target in sorted(targets):
+            end_x, end_y = places[target]
+            ax.annotate("", (end_x, end_y + half_high), (x, y - half_high), arrowprops=ARROW)
+    for name, (x, y) in places.items():
+        folder = (ROOT / name.replace(".", "/")).is_dir()
+        box = (x - half_wide, y - half_high, 2 * half_wide, 2 * half_high)
+        _box(ax, *box, "white", edge="0.35" if folder else "0.75", pad=0.02)
+        text = name.split(".")[1].replace("kinetic_equation", "kinetic eq.")
+        ax.text(
+            x,
+            y,
+            text,
+            ha="center",
+            va="center",
+            size=7.5,
+            weight="bold" if folder else "normal",
+            zorder=4,
+        )
+
+
+def _box(
+    ax: Axes,
+    left: float,
+    bottom: float,
+    width: float,
+    height: float,
+    colour: str,
+    edge: str = "0.35",
+    pad: float = 0.1,
+) -> None:
+    corner = (left + pad, bottom + pad)
+    ax.add_patch(
+        FancyBboxPatch(
+            corner,
+            width - 2 * pad,
+            height - 2 * pad,
+            boxstyle=f"round,pad={pad}",
+            facecolor=colour,
+            edgecolor=edge,
+            zorder=1 if colour != "white" else 3,
+        )
+    )
+
+
+def described() -> str:
+    """Return what the picture shows, as it stands in the file."""
+    return "; ".join(
+        f"{name}: {' '.join(sorted(targets))}"
+        for room in ROOMS
+        for name, targets in sorted(_direct(unit_imports(room)).items())
+    )
+
+
+def write(path: Path) -> None:
+    """Write the picture, the same every time: no date, no random names."""
+    style = {"svg.hashsalt": "crazybilliards", "figure.constrained_layout.use": True}
+    with mpl.rc_context(style):
+        figure = draw()
+        metadata = {"Date": None, "Description": described()}
+        figure.savefig(path, format="svg", metadata=metadata, facecolor="white")
+        plt.close(figure)
+
+
 if __name__ == "__main__":
-    # The same picture every time: no date, no random names.
-    plt.rcParams.update({"svg.hashsalt": "crazybilliards", "figure.constrained_layout.use": True})
-    draw().savefig(Path(__file__).with_suffix(".svg"), metadata={"Date": None}, facecolor="white")
+    mpl.use("svg")
+    write(PICTURE)

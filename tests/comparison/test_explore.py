@@ -14,7 +14,7 @@ from crazybilliards.comparison.explore.presets import PRESETS
 from crazybilliards.comparison.explore.session import Session
 from crazybilliards.model import Chain
 
-COMMAND = [sys.executable, "-c", "from crazybilliards.comparison.commands.main import main; main()"]
+COMMAND = [sys.executable, "-c", "from crazybilliards.comparison.commands.line import main; main()"]
 CHROMIUM, DRIVER = Path("/usr/bin/chromium"), Path("/usr/bin/chromedriver")
 FLAGS = (
     "--headless=new --no-sandbox --disable-gpu --disable-quic --no-first-run "
@@ -147,7 +147,7 @@ def test_presets_have_names_of_their_own_within_the_sliders():
 def test_without_panel_it_says_what_to_install():
     script = (
         "import sys; sys.modules['panel'] = None; sys.argv[1:] = ['explore']\n"
-        "from crazybilliards.comparison.commands.main import main; main()"
+        "from crazybilliards.comparison.commands.line import main; main()"
     )
     done = subprocess.run(
         [sys.executable, "-c", script], capture_output=True, text=True, check=False

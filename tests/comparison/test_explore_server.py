@@ -13,10 +13,10 @@ import pytest
 from tornado.httpclient import HTTPClientError, HTTPRequest
 from tornado.websocket import websocket_connect
 
-from crazybilliards.comparison.commands.main import main
+from crazybilliards.comparison.commands.line import main
 from crazybilliards.comparison.explore.server import serve
 
-COMMAND = [sys.executable, "-c", "from crazybilliards.comparison.commands.main import main; main()"]
+COMMAND = [sys.executable, "-c", "from crazybilliards.comparison.commands.line import main; main()"]
 EXPLORE = ["explore", "--no-browser"]
 
 

@@ -25,7 +25,7 @@ from crazybilliards.comparison.claims.verdicts import (
     same_claim,
     small_claim,
 )
-from crazybilliards.comparison.commands.main import main
+from crazybilliards.comparison.commands.line import main
 from crazybilliards.comparison.paper.distributions import moment
 from crazybilliards.comparison.paper.figures import FIGURES, fig17_density
 from crazybilliards.comparison.paper.reproducible import find_studies

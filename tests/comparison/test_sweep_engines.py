@@ -10,7 +10,7 @@ import time
 import pytest
 
 from crazybilliards.comparison import load_sweep
-from crazybilliards.comparison.commands.main import main
+from crazybilliards.comparison.commands.line import main
 from crazybilliards.comparison.sweeps import (
     Case,
     dask_cluster,
@@ -23,7 +23,7 @@ from crazybilliards.comparison.sweeps.running import missing_cases
 from crazybilliards.model import Chain
 from crazybilliards.model.storage import write_sealed
 
-COMMAND = [sys.executable, "-c", "from crazybilliards.comparison.commands.main import main; main()"]
+COMMAND = [sys.executable, "-c", "from crazybilliards.comparison.commands.line import main; main()"]
 GRID = """
 [grid]
 size = [3, 5]

@@ -38,7 +38,7 @@ def test_another_process_holds_it_until_it_dies(name, tmp_path):
         holder.wait()
     [left] = tmp_path.rglob(".*.lock") if name == "state" else path.iterdir()
     with locked(path):
-        assert left.read_text().startswith(f"process {os.getpid()} on ")
+        assert left.read_text().strip().startswith(f"process {os.getpid()} on ")
     assert not left.exists()
 
 

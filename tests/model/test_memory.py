@@ -1,16 +1,88 @@
 """What would not fit into memory is refused, with both numbers."""
 
+import math
+
 import pytest
 
 from crazybilliards.kinetic import equilibrium_states, phase_space
-from crazybilliards.model import Chain
-from crazybilliards.model.memory import available_memory, require_memory
+from crazybilliards.model import Chain, memory
+from crazybilliards.model.memory import _of_the_groups, available_memory, require_memory
 from crazybilliards.particles import simulate
 from crazybilliards.particles.start import given_start
 
 
 def test_available_memory_is_that_of_a_computer():
     assert 2**20 < available_memory() < 2**60
+
+
+@pytest.fixture
+def groups(tmp_path):
+    """Write a tree of control groups, /proc with it, and read it."""
+
+    def read(membership, **files):
+        (tmp_path / "proc/self").mkdir(parents=True)
+        (tmp_path / "proc/self/cgroup").write_text(membership)
+        for name, content in files.items():
+            file = tmp_path / "sys/fs/cgroup" / name
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_text(content)
+        return _of_the_groups(tmp_path)
+
+    return read
+
+
+def group(path, limit, used, cached, version=2):
+    """Return the three files of a group."""
+    names = ["memory.max", "memory.current"]
+    if version == 1:
+        names = ["memory.limit_in_bytes", "memory.usage_in_bytes"]
+    statistics = f"file 1\n{'total_' if version == 1 else ''}inactive_file {cached}\n"
+    values = dict(
+        zip([*names, "memory.stat"], (f"{limit}\n", f"{used}\n", statistics), strict=True)
+    )
+    return {f"{path}/{name}": value for name, value in values.items()}
+
+
+def test_the_limit_of_a_group_counts_without_what_can_be_dropped(groups):
+    assert groups("0::/job\n", **group("job", 1000, 400, 150)) == 750
+
+
+def test_the_tightest_of_the_groups_around_counts(groups):
+    around = group("a", 1000, 900, 0) | group("a/b", "max", 500, 0) | group("a/b/c", 800, 300, 0)
+    assert groups("0::/a/b/c\n", **around, **group("other", 10, 5, 0)) == 100
+
+
+def test_a_container_sees_its_own_group_at_the_top(groups):
+    files = group(".", 1000, 400, 0)
+    assert groups("0::/docker/abc\n", **files) == 600
+
+
+def test_groups_of_version_1(groups):
+    own = group("memory/job", 1000, 400, 50, version=1)
+    around = group("memory", 2**63 - 4096, 900, 0, version=1)
+    assert groups("9:cpu:/x\n4:hugetlb,memory:/job\n0::/x\n", **own, **around) == 650
+
+
+def test_a_group_over_its_limit_has_nothing_left(groups):
+    assert groups("0::/job\n", **group("job", 1000, 1001, 0)) == 0
+
+
+def test_a_group_without_statistics(groups):
+    files = group("job", 1000, 400, 0)
+    del files["job/memory.stat"]
+    assert groups("0::/job\n", **files) == 600
+
+
+def test_groups_without_a_limit(groups, tmp_path):
+    assert _of_the_groups(tmp_path / "not Linux") == math.inf
+    assert groups("0::/job\n3:cpuset:/job\n", **group("job", "max", 400, 0)) == math.inf
+
+
+def test_the_smallest_of_machine_and_groups_is_available(monkeypatch):
+    for machine, left in ((7.0, 5.0), (5.0, 7.0)):
+        monkeypatch.setattr(memory, "_of_the_machine", lambda own=machine: own)
+        monkeypatch.setattr(memory, "_of_the_groups", lambda root, own=left: own)
+        assert available_memory() == 5.0
 
 
 def test_the_error_has_both_numbers():

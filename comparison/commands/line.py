@@ -7,38 +7,57 @@ job imports what it needs when it runs.
 from __future__ import annotations
 
 import sys
+from typing import Annotated
 
 import typer
 
-from crazybilliards.comparison.commands.compare import compare
-from crazybilliards.comparison.commands.explore import explore
+from crazybilliards.comparison.commands import (
+    compare,
+    explore,
+    relax,
+    reproduce,
+    simulate,
+    sweep,
+    theory,
+)
 from crazybilliards.comparison.commands.output import INTERRUPTED
-from crazybilliards.comparison.commands.relax import relax
-from crazybilliards.comparison.commands.reproduce import reproduce
-from crazybilliards.comparison.commands.sweep import sweep
-from crazybilliards.comparison.commands.theory import theory
 
 app = typer.Typer(
     add_completion=False,
-    no_args_is_help=True,
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
 
-@app.callback()
-def crazybilliards() -> None:
+def _show_version(wanted: bool) -> None:
+    if wanted:
+        from importlib.metadata import version
+
+        print(f"crazybilliards {version('crazybilliards')}")
+        raise typer.Exit
+
+
+@app.callback(invoke_without_command=True)
+def crazybilliards(
+    context: typer.Context,
+    version: Annotated[
+        bool,
+        typer.Option("--version", callback=_show_version, is_eager=True, help="Show the version."),
+    ] = False,
+) -> None:
     """Noisy rods on springs colliding in one dimension: simulation and theory side by side.
 
     Lengths are in units of the rod radius R, masses in M, times in sqrt(M/k).
 
     Example: crazybilliards compare --output results
     """
+    if context.invoked_subcommand is None:
+        print(context.get_help())
 
 
-for command in (compare, relax, theory, reproduce, sweep, explore):
-    app.command()(command)
+for module in (compare, simulate, theory, relax, reproduce, sweep, explore):
+    app.command(module.__name__.rpartition(".")[2])(module.command)
 
 
 def main() -> None:

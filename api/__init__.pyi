@@ -1,0 +1,6 @@
+from crazybilliards.comparison import *
+from crazybilliards.kinetic import *
+from crazybilliards.model import *
+from crazybilliards.particles import *
+
+__version__: str

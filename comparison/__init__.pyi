@@ -1,0 +1,29 @@
+from .coverage import coverage_density as coverage_density, smooth as smooth
+from .distances import Deviation as Deviation, deviation as deviation
+from .drawing import overlay as overlay
+from .fits import (
+    ArctanhFit as ArctanhFit,
+    AvalancheFit as AvalancheFit,
+    ExponentialFit as ExponentialFit,
+    GrowthFit as GrowthFit,
+    PowerLawFit as PowerLawFit,
+    ScalingFit as ScalingFit,
+    SingularityFit as SingularityFit,
+    fit_arctanh as fit_arctanh,
+    fit_avalanches as fit_avalanches,
+    fit_border_power_law as fit_border_power_law,
+    fit_exponential as fit_exponential,
+    fit_growth as fit_growth,
+    fit_scaling as fit_scaling,
+    fit_singularity as fit_singularity,
+    tail_length as tail_length,
+)
+from .studies.animation_page import standalone_page as standalone_page
+from .studies.elastic_chain import compare_elastic as compare_elastic
+from .studies.relaxation import compare_relaxation as compare_relaxation
+from .studies.relaxation_figures import animate as animate
+from .studies.restitutions import (
+    compare_restitutions as compare_restitutions,
+    width_deviations as width_deviations,
+)
+from .sweeps import load_sweep as load_sweep

@@ -1,0 +1,135 @@
+"""The command ``crazybilliards simulate``.
+
+Only the standard library and typer are imported up here, so that ``--help`` answers at once.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from crazybilliards.comparison.commands.chain_options import with_chain_options
+from crazybilliards.comparison.commands.output import (
+    check_file,
+    exit_unless_completed,
+    numbers,
+    print_rods,
+)
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from crazybilliards.model import Chain
+
+
+@with_chain_options()
+def command(
+    chain: Chain,
+    output: Annotated[
+        Path | None,
+        typer.Option(help="NetCDF file for the result, FILE.nc; without it nothing is written."),
+    ] = None,
+    observe: Annotated[
+        str,
+        typer.Option(
+            help="What to measure, separated by commas: widths, density, velocities, energy, "
+            "collisions, avalanches, snapshots."
+        ),
+    ] = "widths,density",
+    duration: Annotated[
+        float, typer.Option(help="Time to measure, in each replica [T].")
+    ] = 5_000.0,
+    warmup: Annotated[
+        float | None, typer.Option(help="Time before measuring [T]; default: from the chain.")
+    ] = None,
+    time_step: Annotated[
+        float | None, typer.Option(help="Time step [T]; default: from the chain.")
+    ] = None,
+    every: Annotated[
+        float | None, typer.Option(help="Time between snapshots [T]; default: 10 time steps.")
+    ] = None,
+    average: Annotated[
+        str, typer.Option(help="Average over the time, or over an ensemble of replicas.")
+    ] = "time",
+    replicas: Annotated[int, typer.Option(help="Independent copies of the chain.")] = 1,
+    particles: Annotated[
+        str | None,
+        typer.Option(help="Particles to report, from 1, separated by commas; default: all."),
+    ] = None,
+    method: Annotated[
+        str, typer.Option(help="Collisions: event-driven or contact-dynamics.")
+    ] = "event-driven",
+    stepper: Annotated[str, typer.Option(help="Time stepping: splitting or euler.")] = "splitting",
+    seed: Annotated[int, typer.Option(help="Seed of the random numbers.")] = 0,
+    threads: Annotated[
+        int | None, typer.Option(help="Threads to simulate in; default: one per core.")
+    ] = None,
+    checkpoint: Annotated[
+        Path | None,
+        typer.Option(help="File to keep the state in: the same command goes on from there."),
+    ] = None,
+) -> None:
+    """Simulate one chain and write what was measured to a file.
+
+    Prints how the run ended, and widths and displacements of some rods with their standard
+    errors. In Python, crazybilliards.load(FILE) gives the result.
+
+    Ctrl-C stops early: what has been measured is written to FILE-interrupted.nc.
+
+    Example: crazybilliards simulate --size 50 --restitution 0.9 --output run.nc
+
+    Example: crazybilliards simulate --observe velocities,energy --replicas 4 --output run.nc
+    """
+    from crazybilliards.model import save
+    from crazybilliards.particles import simulate
+
+    if output is not None:
+        check_file(output)
+    result = simulate(
+        chain,
+        duration=duration,
+        warmup=warmup,
+        time_step=time_step,
+        method=method,  # type: ignore[arg-type]
+        stepper=stepper,  # type: ignore[arg-type]
+        seed=seed,
+        observe=[name.strip() for name in observe.split(",")],
+        particles=None if particles is None else numbers("particles", particles, int),
+        replicas=replicas,
+        average=average,  # type: ignore[arg-type]
+        every=every,
+        threads=threads,
+        checkpoint=checkpoint,
+    )
+    status = result.attrs["status"]
+    try:
+        if output is not None:
+            suffix = "" if status == "completed" else f"-{status}"
+            print(f"wrote {save(result, output.with_stem(output.stem + suffix))}")
+    finally:
+        _print(result)  # where nothing can be written any more, this is all there is
+    if output is None:
+        print("Nothing was written; --output FILE.nc keeps the result.")
+    exit_unless_completed(status)
+
+
+def _print(result: xr.Dataset) -> None:
+    import json
+
+    time_step = json.loads(result.attrs["provenance"])["schedule"]["time_step"]
+    print(
+        f"{result.attrs['status']} at t = {result.attrs['end_time']:g}, time step {time_step:.3g}"
+    )
+    if "time_step_error" in result.attrs:
+        print(
+            f"error of the smallest W_v due to the time step: {result.attrs['time_step_error']:.1%}"
+        )
+    if "velocity_width" in result:
+        last = "time" in result.velocity_width.dims
+        print_rods(
+            result.isel(time=-1) if last else result,
+            "Some rods at the last time" if last else "Some rods",
+            "+-: one standard error.",
+        )

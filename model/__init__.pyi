@@ -1,0 +1,3 @@
+from .chain import Chain as Chain
+from .storage import load as load, save as save
+from .vocabulary import chain_of as chain_of

@@ -1,0 +1,58 @@
+"""The parameters of a chain: of each its default, its meaning, its unit and its check.
+
+Nothing here imports numpy, so that the command line can list the parameters in its ``--help``,
+which must answer at once.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field, fields
+from functools import partial
+from typing import Any, Literal, get_args
+
+from crazybilliards.model.checks import check_choice, check_integer, check_real
+
+Spring = Literal["linear", "quadratic"]
+
+_MOST_RODS = 10**9  # 8 GB an array
+
+
+def _parameter(
+    default: Any, meaning: str, unit: str = "", *, check: Callable[[str, Any], Any] = check_real
+) -> Any:
+    """Return a field; ``check(name, value)`` returns the value to keep, or raises a ValueError."""
+    return field(default=default, metadata={"meaning": meaning, "unit": unit, "check": check})
+
+
+@dataclass(frozen=True, kw_only=True)
+class Parameters:
+    """The parameters of a chain, each checked in turn; :class:`Chain` documents them."""
+
+    size: int = _parameter(
+        100, "Number of rods L", check=partial(check_integer, least=1, most=_MOST_RODS)
+    )
+    restitution: float = _parameter(
+        1.0, "Restitution e: below 1 dissipative, above 1 anti-dissipative"
+    )
+    amplitude: float = _parameter(1.0, "Noise amplitude A", "M R/T^(3/2)")
+    damping: float = _parameter(1.0, "Damping gamma", "M/T")
+    stiffness: float = _parameter(1.0, "Stiffness k of the springs", "M/T^2, quadratic M/(R T^2)")
+    gap: float = _parameter(0.0, "Gap g between rods at their anchors", "R")
+    radius: float = _parameter(
+        1.0, "Half a rod's length", "R", check=partial(check_real, positive=True)
+    )
+    mass: float = _parameter(
+        4 * math.pi / 3, "Mass m of a rod", "M", check=partial(check_real, positive=True)
+    )
+    spring: Spring = _parameter(  # noqa: RUF009
+        "linear",
+        "Force of the springs: linear or quadratic",
+        check=partial(check_choice, choices=get_args(Spring)),
+    )
+
+    def __post_init__(self) -> None:
+        for each in fields(self):
+            checked = each.metadata["check"](each.name, getattr(self, each.name))
+            object.__setattr__(self, each.name, checked)

@@ -1,0 +1,91 @@
+"""The command ``simulate``: what the function returns, in a file."""
+
+import os
+
+import pytest
+import xarray as xr
+
+from crazybilliards.model import Chain, chain_of, load
+from crazybilliards.particles import simulate
+
+
+def test_simulate_writes_what_the_function_returns(run, tmp_path):
+    file = tmp_path / "new" / "run.nc"
+    options = ["--size", 6, "--restitution", 0.9, "--duration", 30, "--warmup", 3, "--seed", 7]
+    options += ["--time-step", 0.01, "--every", 0.5, "--replicas", 2, "--particles", "1,6"]
+    options += ["--observe", "widths, energy", "--stepper", "euler", "--threads", 1]
+    options += ["--method", "contact-dynamics", "--checkpoint", tmp_path / "state"]
+    done = run("simulate", *options, "--output", file)
+    assert done.returncode == 0, done.stderr
+    expected = simulate(
+        Chain(size=6, restitution=0.9),
+        duration=30.0,
+        warmup=3.0,
+        time_step=0.01,
+        every=0.5,
+        replicas=2,
+        particles=[1, 6],
+        observe=["widths", "energy"],
+        method="contact-dynamics",
+        stepper="euler",
+        seed=7,
+        progress=False,
+    )
+    xr.testing.assert_identical(load(file), expected)
+    assert f"completed at t = {expected.attrs['end_time']:g}, time step 0.01" in done.stdout
+    assert "error of the smallest W_v due to the time step" in done.stdout
+    first = expected.isel(particle=0)
+    assert f"{first.velocity_width:.4g} +- {first.velocity_width_error:.1g}" in done.stdout
+    assert {path.name for path in tmp_path.iterdir()} == {"new", "state"}
+
+
+def test_simulate_an_ensemble_without_a_file(run, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    options = ["--average", "ensemble", "--size", 3, "--replicas", 2, "--duration", 1]
+    done = run("simulate", *options)
+    assert done.returncode == 0, done.stderr
+    assert "at the last time" in done.stdout
+    assert "Nothing was written" in done.stdout
+    assert "Some rods" not in run("simulate", *options, "--observe", "energy").stdout
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["--observe", "width"], "observe takes any of"),
+        (["--particles", "1,x"], "particles takes numbers"),
+        (["--particles", "1.0"], "particles takes numbers"),
+        (["--particles", "101"], "particles must ascend within 1..100"),
+        (["--method", "guess"], "method must be one of"),
+        (["--stepper", "guess"], "stepper must be one of"),
+        (["--average", "median"], "average must be one of"),
+        (["--time-step", "-1"], "time_step must be"),
+        (["--gap", "-1"], "gap must be"),
+        (["--output", "run.txt"], "a file whose name ends in .nc"),
+        (["--output", "."], "a file whose name ends in .nc"),
+    ],
+)
+def test_simulate_refuses_in_one_line(refused, arguments, message, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    refused(message, "simulate", "--output", "run.nc", *arguments)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_chain_that_diverges_ends_with_status_1(run, tmp_path):
+    options = ["--size", 50, "--restitution", 2, "--damping", 0.01, "--duration", 1e5]
+    done = run("simulate", *options, "--output", tmp_path / "run.nc")
+    assert done.returncode == 1
+    assert "diverged at t = " in done.stdout
+    result = load(tmp_path / "run-diverged.nc")
+    assert (result.attrs["status"], chain_of(result).size) == ("diverged", 50)
+
+
+@pytest.mark.compiled
+@pytest.mark.skipif(os.name == "nt", reason="sends a POSIX signal")
+def test_ctrl_c_saves_what_was_measured(interrupted, tmp_path):
+    done = interrupted("simulate", "--size", 10, "--duration", 1e9, "--output", tmp_path / "run.nc")
+    assert done.returncode == 130, done.stderr
+    assert done.stderr == "crazybilliards: interrupted\n"
+    assert load(tmp_path / "run-interrupted.nc").attrs["status"] == "interrupted"
+    assert [path.name for path in tmp_path.iterdir()] == ["run-interrupted.nc"]

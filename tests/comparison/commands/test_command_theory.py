@@ -1,0 +1,74 @@
+"""The command ``theory``: every theory by its name."""
+
+import functools
+
+import pytest
+
+from crazybilliards.comparison.theories import THEORIES
+from crazybilliards.model import Chain, load
+
+
+@pytest.fixture
+def solved(monkeypatch):
+    """Take down what a command gives to theories, and gets: (chain, settings, result)."""
+    calls = []
+
+    def watched(theory):
+        @functools.wraps(theory.solve)
+        def solve(chain, **settings):
+            calls.append((chain, settings, theory.solve(chain, **settings)))
+            return calls[-1][2]
+
+        return theory._replace(solve=solve)
+
+    for name, theory in THEORIES.items():
+        monkeypatch.setitem(THEORIES, name, watched(theory))
+    return calls
+
+
+@pytest.mark.parametrize("name", THEORIES)
+def test_every_theory_by_its_name(name, run, solved, tmp_path):
+    done = run("theory", name, "--size", 10, "--amplitude", 5, "--output", tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+    [(chain, settings, result)] = solved
+    assert (chain, settings) == (Chain(size=10, amplitude=5), {})
+    assert load(tmp_path / "theory.nc").identical(result)
+    pictures = {"density.png", "profile.png"}
+    pictures |= {"phase_space.png"} if name == "phase_space" else set()
+    assert {path.name for path in tmp_path.iterdir()} == pictures | {"theory.nc"}
+    assert THEORIES[name].title.capitalize() in done.stdout
+    assert f"{result.velocity_width[0]:.4g}" in done.stdout
+    assert name in run("theory", "--help").stdout
+
+
+def test_the_settings_of_a_theory_reach_it(refused, monkeypatch):
+    """The kinetic equation is the theory that is taken if none is named."""
+
+    def solve(chain, tolerance, cells):
+        raise ValueError(f"asked for {tolerance=} {cells=}")
+
+    theory = THEORIES["phase_space"]._replace(solve=solve)
+    monkeypatch.setitem(THEORIES, "phase_space", theory)
+    refused("asked for tolerance=1.0 cells=8", "theory", "--cells", 8, "--tolerance", 1)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["--spring", "cubic"], "spring must be"),
+        (["--size", "0"], "size must be"),
+        (["--tolerance", "0"], "tolerance must be"),
+        (["--amplitude", "0"], "no steady state"),
+        (["--cells", "1"], "cells must be"),
+        (["fluid"], "name must be one of ('equilibrium', "),
+        (["equilibrium", "--tolerance", "0.1"], "tolerance: equilibrium has no such setting"),
+        (["force_balance", "--cells", "9"], "cells: force_balance has no such setting"),
+        (["equilibrium", "--restitution", "0.9"], "restitution must be 1"),
+        (["--critical", "--restitution", "0.95"], "every size has a steady state"),
+        (["--restitution", "1.3", "--damping", "4"], "the energy grows without bound"),
+    ],
+)
+def test_theory_refuses_in_one_line(refused, arguments, message, tmp_path):
+    folder = tmp_path / "results"
+    refused(message, "theory", *arguments, "--output", str(folder))
+    assert not folder.exists()
