@@ -22,8 +22,8 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 from crazybilliards.kinetic.exact.gibbs_measure import equilibrium
-from crazybilliards.kinetic.output_times import output_times
 from crazybilliards.kinetic.requirements import require_chain
+from crazybilliards.kinetic.times import output_times
 from crazybilliards.model import Chain
 from crazybilliards.model.checks import check_real
 from crazybilliards.model.memory import require_memory

@@ -38,7 +38,6 @@ from scipy.integrate import trapezoid
 from crazybilliards.kinetic.fluids.eulerian_frame import solve_on_positions
 from crazybilliards.kinetic.fluids.flow_fields import FlowFields
 from crazybilliards.kinetic.fluids.label_frame import solve_on_labels
-from crazybilliards.kinetic.output_times import output_times
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.kinetic.starts import read_start
 from crazybilliards.kinetic.statics.profiles import (
@@ -47,6 +46,7 @@ from crazybilliards.kinetic.statics.profiles import (
     read_displacement,
     read_velocity_variance,
 )
+from crazybilliards.kinetic.times import output_times
 from crazybilliards.model import Chain
 from crazybilliards.model.checks import check_choice, check_integer, shown
 from crazybilliards.model.grid import position_grid

@@ -48,8 +48,8 @@ from crazybilliards.kinetic.kinetic_equation.weak_form import (
     coefficients,
     mass,
 )
-from crazybilliards.kinetic.output_times import output_times
 from crazybilliards.kinetic.requirements import require_chain
+from crazybilliards.kinetic.times import output_times
 from crazybilliards.model import Chain
 from crazybilliards.model.checks import check_integer, check_real
 from crazybilliards.model.memory import require_memory
