@@ -83,14 +83,13 @@ def compare_relaxation(
     start = _states(chain, release, by, replicas, seed)
     fluid = _fluid(chain, release, by)
     # The fluids first: they take a second, and complain of a wrong duration before the long run.
-    results = {
-        temperature: hydrodynamics(
+    results = {}
+    for temperature in ("isothermal", "evolving"):
+        results[temperature] = hydrodynamics(
             chain, fluid, duration, every=every, temperature=temperature, progress=False
         )
-        for temperature in ("isothermal", "evolving")
-    }
-    if any(fluid.attrs["status"] == "interrupted" for fluid in results.values()):
-        raise KeyboardInterrupt("interrupted before the simulation")
+        if results[temperature].attrs["status"] == "interrupted":
+            raise KeyboardInterrupt("interrupted before the simulation")
     times = results["isothermal"].time.values
     if chain.gap == 0 and chain.spring == "linear":
         results["exact"] = _exact(chain, release, by, times)
