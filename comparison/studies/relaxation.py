@@ -85,14 +85,13 @@ def compare_relaxation(
     start = _states(chain, release, by, replicas, seed)
     fluid = _fluid(chain, release, by)
     # The fluids first: they take a second, and complain of a wrong duration before the long run.
-    results = {
-        name: hydrodynamics(
+    results = {}
+    for name, variance in FLUIDS.items():
+        results[name] = hydrodynamics(
             chain, fluid, duration, every=every, velocity_variance=variance, progress=False
         )
-        for name, variance in FLUIDS.items()
-    }
-    if any(fluid.attrs["status"] == "interrupted" for fluid in results.values()):
-        raise KeyboardInterrupt("interrupted before the simulation")
+        if results[name].attrs["status"] == "interrupted":
+            raise KeyboardInterrupt("interrupted before the simulation")
     if chain.gap == 0 and chain.spring == "linear":
         results["exact"] = _exact(chain, release, by, duration, every)
     ensemble = simulate(

@@ -7,6 +7,7 @@ look at the clock would make two equal runs differ.
 
 from __future__ import annotations
 
+import logging
 import sys
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -14,6 +15,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from pde import CartesianGrid, FieldCollection, MemoryStorage, PDEBase, ProgressTracker, ScalarField
+
+# It would say on standard error that a short run spent more time on storing than on solving.
+logging.getLogger("pde.solvers.controller").setLevel(logging.ERROR)
 
 Array = NDArray[np.float64]
 Rate = Callable[[Array, float], Array]

@@ -4,6 +4,7 @@ import os
 import re
 
 import pytest
+import xarray as xr
 
 from crazybilliards.model import load
 
@@ -61,3 +62,15 @@ def test_ctrl_c_keeps_what_relaxed(interrupted, tmp_path):
     assert "Traceback" not in done.stderr
     assert load(tmp_path / "relaxation-interrupted.nc").attrs["status"] == "interrupted"
     assert (tmp_path / "cloud-interrupted.png").exists()
+
+
+def test_one_ctrl_c_is_enough_while_the_fluids_are_computed(run, monkeypatch):
+    calls = []
+
+    def interrupted(*arguments, **settings):
+        calls.append(settings)
+        return xr.Dataset(attrs={"status": "interrupted"})
+
+    monkeypatch.setattr("crazybilliards.comparison.studies.relaxation.hydrodynamics", interrupted)
+    assert run(*RELAX).returncode == 130
+    assert len(calls) == 1
