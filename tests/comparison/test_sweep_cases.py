@@ -83,7 +83,7 @@ def test_settings_of_a_theory_are_checked_before_any_work():
             Case("phase_space", Chain(size=3), settings)
     with pytest.raises(ValueError, match="restitution must be 1"):
         Case("equilibrium", Chain(restitution=0.5), {})
-    with pytest.raises(ValueError, match="restitution=1 only"):
+    with pytest.raises(ValueError, match="restitution must be 1"):
         Case("force_balance", Chain(restitution=0.5), {})
 
 

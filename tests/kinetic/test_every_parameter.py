@@ -5,7 +5,7 @@ call is refused with a ValueError, or the pair stands in ``MEANINGLESS`` with th
 are read from the class. A new one fails here until ``OTHER`` has another value for it.
 """
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from functools import cache
 
 import numpy as np
@@ -27,6 +27,7 @@ from crazybilliards.kinetic import (
 )
 from crazybilliards.kinetic.kinetic_equation import criticality
 from crazybilliards.model import Chain
+from crazybilliards.model.checks import check_real
 from crazybilliards.particles import simulate
 
 CHAIN = Chain(size=4)
@@ -198,11 +199,11 @@ def differ(one, other):
 
 
 def test_every_field_has_another_value():
-    for field in fields(Chain):
-        assert field.name in OTHER, f"give OTHER a value of {field.name!r} that is not the default"
+    for each in fields(Chain):
+        assert each.name in OTHER, f"give OTHER a value of {each.name!r} that is not the default"
         for chain in (CHAIN, DRIVEN):
-            assert getattr(chain, field.name) != OTHER[field.name]
-            chain.replace(**{field.name: OTHER[field.name]})
+            assert getattr(chain, each.name) != OTHER[each.name]
+            chain.replace(**{each.name: OTHER[each.name]})
 
 
 @pytest.mark.compiled
@@ -223,7 +224,7 @@ def test_a_parameter_changes_the_result_or_is_refused(theory, name):
 class Tilted(Chain):
     """A chain with a parameter that no theory knows."""
 
-    tilt: float = 0.0
+    tilt: float = field(default=0.0, metadata={"check": check_real})
 
 
 @pytest.mark.parametrize("theory", [theory for theory in THEORIES if theory != "simulate"])
