@@ -108,7 +108,7 @@ def read_start(chain: Chain, start: xr.Dataset) -> Start:
     require(start, ("density",))
     if start.density.dims != ("x",):
         raise ValueError(f"start: density must be over x alone, got {start.density.dims}")
-    x, density = start.x.values, start.density.values
+    x, density = (_numbers(start, name) for name in ("x", "density"))
     if not (np.isfinite(density).all() and (np.diff(x) > 0).all() and (density >= 0).all()):
         raise ValueError("start: the density must be finite and not negative, over ascending x")
     if density.max() >= chain.close_packed_density:
@@ -117,7 +117,8 @@ def read_start(chain: Chain, start: xr.Dataset) -> Start:
             f"{chain.close_packed_density:.4g}"
         )
     if "label" in start:
-        label = start.label.values - start.label.values[0]
+        label = _numbers(start, "label")
+        label = label - label[0]
     else:
         label = PchipInterpolator(x, density).antiderivative()(x)
     if abs(label[-1] / chain.size - 1) > _RODS_TOLERANCE:
@@ -128,13 +129,20 @@ def read_start(chain: Chain, start: xr.Dataset) -> Start:
     profiles = {}
     free = _own_variance(chain, start)
     for name, default in (("flow_velocity", 0.0), ("velocity_variance", free)):
-        values = start[name].values if name in start else np.full(x.size, default)
+        values = _numbers(start, name) if name in start else np.full(x.size, default)
         if values.shape != x.shape or not np.isfinite(values).all():
             raise ValueError(f"start: {name} must be finite and over x alone")
         profiles[name] = PchipInterpolator(x, values)
     if (profiles["velocity_variance"](x) <= 0).any():
         raise ValueError("start: velocity_variance must be positive")
     return Start(x, CubicHermiteSpline(x, scale * label, scale * density), *profiles.values())
+
+
+def _numbers(start: xr.Dataset, name: str) -> Array:
+    values = start[name].values
+    if not np.issubdtype(values.dtype, np.number):
+        raise ValueError(f"start: {name} must be numbers, got {values.dtype}")
+    return np.asarray(values, dtype=float)
 
 
 def _own_variance(chain: Chain, start: xr.Dataset) -> float:

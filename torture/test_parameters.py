@@ -224,12 +224,12 @@ def test_a_simulation_is_sound_or_refused(parameters, options):
 
 
 @explored()
-@given(chains(ELASTIC), arguments(n=st.integers(1, 5), seed=st.integers(0, 9)))
+@given(chains(ELASTIC), arguments(replicas=st.integers(1, 5), seed=st.integers(0, 9)))
 def test_an_equilibrium_is_sound_or_refused(parameters, options):
     chain = outcome(Chain, **parameters)
     if chain is not None:
         require_sound(outcome(equilibrium, chain))
-        require_sound(outcome(equilibrium_states, chain, **{"n": 2, **options}))
+        require_sound(outcome(equilibrium_states, chain, **{"replicas": 2, **options}))
 
 
 TABLE = st.sampled_from(

@@ -65,7 +65,7 @@ def critical_size(chain: Chain) -> CriticalValue:
     """Return the number of rods at which the steady state of a chain with e > 1 is lost.
 
     Of the kinetic equation of first order in lambda, for linear springs; ``chain.size`` and
-    ``chain.gap`` do not matter. Takes some ten seconds; the same damping again, none.
+    ``chain.gap`` do not matter. Takes about a second; the same damping again takes none.
 
     Raises
     ------

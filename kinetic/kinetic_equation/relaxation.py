@@ -236,4 +236,7 @@ def _start(chain: Chain, units: Units, start: PhaseSpaceStart, cells: int) -> _F
     box = Box(lattice + swing, swing, lattice + _CORE, _CORE)
     space = VelocitySpace(box, cells, symmetric=False)
     f = space.project(start.f)
-    return _Flow(coefficients(chain, units, order), space, f / (space.whole_mass @ f))
+    total = space.whole_mass @ f
+    if not total > 0:
+        raise ValueError("start: its velocities lie too far apart for the mesh, which misses them")
+    return _Flow(coefficients(chain, units, order), space, f / total)

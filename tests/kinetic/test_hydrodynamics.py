@@ -253,6 +253,7 @@ def test_wrong_starts_are_refused():
         (start.assign(flow_velocity=start.flow_velocity * np.nan), "flow_velocity"),
         (start.assign(velocity_variance=-start.velocity_variance), "positive"),
         (start.drop_vars("density"), "no 'density'"),
+        (start.astype(str), "must be numbers"),
     ):
         with pytest.raises(ValueError, match=message):
             hydrodynamics(chain, wrong, 10, **QUIET)

@@ -148,5 +148,9 @@ def test_bad_starts():
         relax_phase_space(CHAIN, theory[["phase_space_density"]].transpose("velocity", "y"), 5.0)
     with pytest.raises(ValueError, match="finite"):
         relax_phase_space(CHAIN, theory[["phase_space_density"]] * np.nan, 5.0)
+    fast = displaced(CHAIN, 1.0)
+    fast = fast.assign(flow_velocity=fast.flow_velocity + 1e100)
+    with pytest.raises(ValueError, match="too far apart"):
+        relax_phase_space(CHAIN, fast, 5.0, cells=6)
     with pytest.raises(ValueError, match="no steady state"):
         relax_phase_space(CHAIN.replace(damping=0.0), theory, 5.0)
