@@ -11,8 +11,8 @@ independently (molecular chaos) make the density f(y, v, t) of L points obey
 the Kramers-Moyal expansion of the collision operator to second order in lambda: for e < 1 a drag
 towards the local flow, for e > 1 a drive; e = 1 is the Kramers equation. The second-order term is
 the shot noise of encounters at random. For e < 1 it is part of the equation, since collisions slow
-a point down within a fraction of the cloud. For e > 1 it is left out: there fast points matter most,
-and a fast point crosses the whole cloud and so meets each of the L - 1 others exactly once.
+a point down within a fraction of the cloud. For e > 1 it is left out: there fast points matter
+most, and a fast point crosses the whole cloud and so meets each of the L - 1 others exactly once.
 F = F(y - g (N - L/2)) is the spring's force, in mean field: the anchor is that of the label N(y).
 
 Here in units of a length l and a velocity c, and with f normalised to 1:
