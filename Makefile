@@ -33,15 +33,17 @@ help:
 run: $(VENV)/installed
 	$(BIN)/crazybilliards compare --output $(OUTPUT)
 
+# Two processes for two cores: linear algebra in threads of its own would only make them wait.
 test: $(VENV)/installed-test
-	$(BIN)/python -m pytest -n 2
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n 2
 
 # numba's cache is of one version: the two environments would throw out each other's.
 test-lowest: $(OLDEST)/installed
-	NUMBA_CACHE_DIR=$(CURDIR)/$(OLDEST)/numba $(OLDEST)/bin/python -m pytest -n 2
+	OPENBLAS_NUM_THREADS=1 NUMBA_CACHE_DIR=$(CURDIR)/$(OLDEST)/numba \
+	  $(OLDEST)/bin/python -m pytest -n 2
 
 torture: $(VENV)/installed-test
-	$(BIN)/python -m pytest -n 2 torture
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 torture
 
 # One cannot see into compiled kernels: every test that is quick enough without runs them as Python.
 coverage: $(VENV)/installed-coverage

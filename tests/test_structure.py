@@ -42,13 +42,6 @@ FLOORS = {
     ),
 }
 LINES = 300
-# Longer files, and why.
-LONG = {
-    "kinetic/kinetic_equation/velocity_space.py": "one derivation, which the code follows",
-    "tests/comparison/test_explore.py": "one page, tried in one browser",
-    "torture/test_files.py": "one damage after another, on one set of files",
-    "torture/test_parameters.py": "a list of every argument of every function",
-}
 MODULES = architecture.modules()
 
 
@@ -104,7 +97,7 @@ def test_no_file_is_long():
         if "docs/notebooks" not in path.as_posix()
     }
     long = {name: length for name, length in lengths.items() if length >= LINES}
-    assert set(long) <= set(LONG), long
+    assert not long
 
 
 def test_the_picture_of_the_architecture_shows_the_imports():

@@ -10,7 +10,6 @@ HDF5 library sees a byte. Nothing is ever unpickled.
 
 from __future__ import annotations
 
-import ast
 import shutil
 import subprocess
 import sys
@@ -21,8 +20,9 @@ import h5py
 import numpy as np
 import pytest
 import xarray as xr
+from refusals import refused, what_is_wrong
 
-from crazybilliards.comparison.sweeps import load_sweep, read_sweep
+from crazybilliards.comparison.sweeps import load_sweep
 from crazybilliards.comparison.sweeps.case import Case, compute
 from crazybilliards.comparison.sweeps.jobs import JOBS
 from crazybilliards.kinetic import displaced, force_balance, hydrodynamics
@@ -97,23 +97,6 @@ def same(one, other):
     if isinstance(one, xr.Dataset | xr.DataTree):
         return one.identical(other)
     return str(one) == str(other)
-
-
-def refused(read, path):
-    """Whether reading was refused, in one line that names the file."""
-    message = what_is_wrong(read, path)
-    assert "\n" not in message, message
-    assert not message or str(path.parent) in message, message
-    return bool(message)
-
-
-def what_is_wrong(read, *arguments):
-    """Return the message of the ValueError that reading raises; nothing if it succeeds."""
-    try:
-        read(*arguments)
-    except ValueError as error:
-        return str(error)
-    return ""
 
 
 @pytest.mark.parametrize("kind", READERS)
@@ -279,121 +262,6 @@ def test_a_result_names_its_chain_or_is_refused(files, tmp_path):
         assert "\n" not in message
         named += not message
     assert named == 4
-
-
-SWEEP = """[grid]
-size = [3, 4]
-restitution = [0.5, 1.0]
-
-[simulate]
-duration = 200
-observe = ["widths"]
-"""
-
-
-def cases_of(text, path):
-    path.write_bytes(text if isinstance(text, bytes) else text.encode())
-    return read_sweep(path).cases()
-
-
-@pytest.mark.parametrize(
-    "text",
-    [
-        b"\xff\xfe",
-        b"\x00",
-        "grid",
-        "grid = 3",
-        "[grid]\nsize = 3",
-        "[grid]\nsize = []",
-        "[grid]\nsize = [1979-05-27]",
-        "[grid]\nsize = [[3]]",
-        "[grid]\nsize = [{a = 1}]",
-        "[grid]\nsize = [3, 3]",
-        "[grid]\nsize = ['3']",
-        "[grid]\nsize = [true]",
-        f"[grid]\nsize = [{10**400}]",
-        "[grid]\nsize = [1000000000]",
-        "[grid]\namplitude = [nan]",
-        "[grid]\namplitude = [inf, 1e300]",
-        f"[grid]\namplitude = [{10**400}]",
-        "[grid]\nlength = [3]",
-        "[grid]\nobserve = [5]",
-        "[grid]\nparticles = [5]",
-        "[grid]\nseed = [-1]",
-        "[chain]\nsize = 'x'",
-        "[chain]\nname = 1",
-        "[chain]\nsize = [3]",
-        "[simulate]\nduration = 'long'",
-        "[simulate]\nobserve = 3",
-        "[simulate]\nobserve = [[1]]",
-        "[simulate]\nstart = 1",
-        "[simulate]\nthreads = 1",
-        "[simulate]\ncheckpoint = 'state'",
-        "[simulate]\nduration = 1e300",
-        "[simulate]\nreplicas = 1000000000000",
-        "[simulate]\naverage = ['time']",
-        "[phase_space]\ncells = 'x'",
-        "[phase_space]\ntolerance = -1",
-        "[phase_space]\norder = 3",
-        "[grid]\nrestitution = [0.5]\n[equilibrium]",
-        "[grid]\nrestitution = [0.5]\n[force_balance]",
-        "[simulate]\n[phase_space]",
-        "[grid]\nsize = " + "[" * 5000,
-        "[grid]\n"
-        + "\n".join(f"{name} = {list(range(1, 999))}" for name in ("seed", "gap", "size")),
-    ],
-    ids=lambda text: repr(text)[:40],
-)
-def test_a_wrong_sweep_is_refused_before_any_work(text, tmp_path):
-    with pytest.raises(ValueError, match=r"\w") as caught:
-        cases_of(text, tmp_path / "grid.toml")
-    assert "\n" not in str(caught.value)
-    assert len(str(caught.value)) < 500
-
-
-def test_a_sweep_with_flipped_bits_is_another_sweep_or_refused(tmp_path):
-    """A text without checksum: what is still TOML and makes sense is a sweep."""
-    generator = np.random.default_rng(4)
-    whole, refusals = SWEEP.encode(), 0
-    for number in range(FLIPS + CUTS):
-        text = bytearray(whole)
-        if number < FLIPS:
-            text[generator.integers(len(text))] ^= 1 << int(generator.integers(8))
-        else:
-            text = text[: (number - FLIPS) * len(text) // CUTS]
-        message = what_is_wrong(cases_of, bytes(text), tmp_path / "grid.toml")
-        assert "\n" not in message
-        refusals += bool(message)
-    assert FLIPS / 2 < refusals < FLIPS + CUTS
-
-
-FORBIDDEN = {"pickle", "cPickle", "dill", "cloudpickle", "joblib", "shelve", "marshal"}
-
-
-def test_the_package_unpickles_nothing():
-    root = Path(load.__code__.co_filename).parents[1]
-    sources = [
-        path
-        for room in ("model", "particles", "kinetic", "comparison")
-        for path in (root / room).rglob("*.py")
-    ]
-    assert len(sources) > 100
-    for path in sources:
-        for node in ast.walk(ast.parse(path.read_text())):
-            names = {
-                alias.name.split(".")[0]
-                for alias in getattr(node, "names", [])
-                if isinstance(node, ast.Import)
-            }
-            if isinstance(node, ast.ImportFrom):
-                names.add((node.module or "").split(".")[0])
-            assert not names & FORBIDDEN, path
-            if isinstance(node, ast.Call):
-                called = ast.unparse(node.func)
-                assert called not in ("eval", "exec", "compile", "pd.read_pickle"), path
-                if called == "np.load":
-                    given = {each.arg: ast.unparse(each.value) for each in node.keywords}
-                    assert given.get("allow_pickle") == "False", path
 
 
 def test_reading_a_file_runs_no_pickle(files, tmp_path):

@@ -1,0 +1,134 @@
+"""Calls of the hydrodynamics: equal ones, wrong ones, interrupted ones."""
+
+import signal
+import threading
+
+import numpy as np
+import pytest
+
+from crazybilliards.kinetic import (
+    compressed,
+    displaced,
+    force_balance,
+    hydrodynamics,
+    two_clumps,
+)
+from crazybilliards.kinetic.exact.breathing import breathing_cloud
+from crazybilliards.model import Chain
+
+QUIET = {"progress": False}
+
+
+def test_equal_calls_give_equal_bits():
+    chain = Chain(size=20)
+    one, two = (hydrodynamics(chain, displaced(chain, 1), 5, **QUIET) for _ in range(2))
+    assert one.identical(two)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"duration": 0}, "duration must be"),
+        ({"duration": float("nan")}, "duration must be"),
+        ({"every": 100}, "every must be at most"),
+        ({"every": -1}, "every must be"),
+        ({"every": 1e-9}, "outputs"),
+        ({"frame": "polar"}, "frame must be one of"),
+        ({"displacement": "magic"}, "displacement takes a table"),
+        ({"velocity_variance": "cold"}, "velocity_variance must be None, 'evolving', a number"),
+        ({"velocity_variance": lambda x: 1.0}, "needs frame='eulerian'"),
+        ({"velocity_variance": lambda x: -1.0, "frame": "eulerian"}, "finite and positive"),
+        ({"velocity_variance": -1.0}, "velocity_variance must be a finite positive number"),
+        ({"displacement": ([0, 1], [1, 2])}, "needs frame='eulerian'"),
+        ({"cells": 2}, "cells must be"),
+        ({"cells": 10**8}, "at most 100000"),
+        ({"frame": "eulerian", "cells": 10**5, "duration": 1e4}, "use frame='label'"),
+    ],
+)
+def test_wrong_arguments_are_refused_in_one_line(arguments, message):
+    chain = Chain(size=5)
+    arguments = {"duration": 10} | QUIET | arguments
+    with pytest.raises(ValueError, match=message) as caught:
+        hydrodynamics(chain, displaced(chain, 1), **arguments)
+    assert "\n" not in str(caught.value)
+
+
+def test_wrong_starts_are_refused():
+    chain = Chain(size=5)
+    start = displaced(chain, 1)
+    for wrong, message in (
+        (start.assign(density=2 * start.density), "overlap"),
+        (start.drop_vars("label").assign(density=0.5 * start.density), "add up to the chain's 5"),
+        (start.assign(density=-start.density), "not negative"),
+        (start.assign(density=start.density * np.nan), "finite"),
+        (start.assign(flow_velocity=start.flow_velocity * np.nan), "flow_velocity"),
+        (start.assign(velocity_variance=-start.velocity_variance), "positive"),
+        (start.drop_vars("density"), "no 'density'"),
+        (start.astype(str), "must be numbers"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            hydrodynamics(chain, wrong, 10, **QUIET)
+    with pytest.raises(ValueError, match="restitution must be 1"):
+        hydrodynamics(chain.replace(restitution=0.5), start, 10, **QUIET)
+    with pytest.raises(ValueError, match="no steady state"):
+        hydrodynamics(chain.replace(damping=0), start, 10, **QUIET)
+    with pytest.raises(ValueError, match="no steady state"):
+        two_clumps(chain.replace(damping=0), 1.0, 1.0)
+    with pytest.raises(ValueError, match="breathing cloud holds without gap only"):
+        breathing_cloud(Chain(gap=1), 1)
+
+
+@pytest.mark.compiled
+def test_what_the_cells_cannot_hold_ends_with_a_reason():
+    chain = Chain(size=20)
+    with pytest.raises(ValueError, match="too steep"):
+        hydrodynamics(chain, compressed(chain, 5e-4), 1, every=1, **QUIET)
+    narrow = compressed(chain, 0.02)
+    inward = narrow.assign(flow_velocity=-30 * chain.free_velocity_width * np.sign(narrow.x))
+    with pytest.raises(ValueError, match="collapses to less than"):
+        hydrodynamics(chain, inward, 0.01, every=0.001, **QUIET)
+
+
+@pytest.mark.compiled
+def test_ctrl_c_keeps_the_times_before():
+    chain = Chain(size=100)
+    start = force_balance(chain)
+    hydrodynamics(chain, start, 0.01, every=0.01, frame="eulerian", **QUIET)  # compiled
+    timer = threading.Timer(2.0, signal.raise_signal, [signal.SIGINT])
+    timer.start()
+    flow = hydrodynamics(chain, start, 20, every=0.02, frame="eulerian", cells=3000, **QUIET)
+    timer.cancel()
+    assert flow.attrs["status"] == "interrupted"
+    assert flow.attrs["end_time"] == flow.time[-1]
+    assert 1 <= flow.sizes["time"] < 1001
+    assert np.isfinite(flow.density).all()
+
+
+def test_a_plain_density_profile_is_a_start():
+    """Any profile of one's own: no label, no velocity, no provenance."""
+    chain = Chain(size=20, amplitude=5)
+    own = displaced(chain, 3.0)[["density"]].drop_attrs()
+    flow = hydrodynamics(chain, own, 5, every=1, **QUIET)
+    reference = hydrodynamics(chain, displaced(chain, 3.0), 5, every=1, **QUIET)
+    np.testing.assert_allclose(flow.centre, reference.centre, atol=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"duration": 0.0}, "duration must be"),
+        ({"every": 2.0}, "every must be at most"),
+        ({"stretch": 0.0}, "stretch must be"),
+        ({"shift": np.inf}, "shift must be"),
+        ({"start_velocity_variance": -1.0}, "start_velocity_variance must be"),
+    ],
+)
+def test_a_wrong_breathing_cloud_is_refused(arguments, message):
+    with pytest.raises(ValueError, match=message):
+        breathing_cloud(Chain(size=5), **{"duration": 1.0, **arguments})
+
+
+def test_more_outputs_than_memory_holds_are_refused_before_any_work():
+    chain = Chain(size=10**6)
+    with pytest.raises(ValueError, match=r"would take .* GiB of memory"):
+        hydrodynamics(chain, displaced(chain, 1.0), 1.0, every=1e-6, **QUIET)
