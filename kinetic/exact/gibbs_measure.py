@@ -42,6 +42,8 @@ Array = NDArray[np.float64]
 # Grid nodes in the width of the most confined rod, the middle one without gap.
 _NODES_PER_WIDTH = 10
 
+_MOST_STATES = 10**15  # more than any memory holds, and still exact as a float
+
 
 def equilibrium(chain: Chain) -> xr.Dataset:
     """Exact stationary state of the elastic chain: any gap, both springs.
@@ -114,7 +116,7 @@ def equilibrium_states(chain: Chain, replicas: int, seed: int = 0) -> xr.Dataset
     ValueError
         As :func:`equilibrium`; and for a wrong ``replicas`` or ``seed``.
     """
-    replicas = check_integer("replicas", replicas, least=1)
+    replicas = check_integer("replicas", replicas, least=1, most=_MOST_STATES)
     generator = np.random.default_rng(check_integer("seed", seed, least=0))
     require_memory(f"replicas={replicas} of {chain.size} rods", 40.0 * replicas * chain.size)
     recursion = _recursion(chain)

@@ -136,5 +136,6 @@ def test_what_has_no_exact_equilibrium_is_refused(chain, message):
 
 
 def test_the_number_of_states_is_checked():
-    with pytest.raises(ValueError, match="replicas must be"):
-        equilibrium_states(Chain(), 0)
+    for wrong in (0, 10**400):
+        with pytest.raises(ValueError, match="replicas must be"):
+            equilibrium_states(Chain(), wrong)
