@@ -22,7 +22,7 @@ pytestmark = pytest.mark.compiled
 
 @pytest.fixture(scope="module")
 def tree():
-    return compare_elastic(Chain(), duration=100_000, seed=1, progress=False)
+    return compare_elastic(Chain(), duration=30_000, seed=1, progress=False)
 
 
 def test_simulation_and_exact_density_agree(tree):
