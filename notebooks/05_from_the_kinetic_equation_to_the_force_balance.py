@@ -1107,7 +1107,7 @@ assert (area, centre_of_box) == (-2, 1)
 # ```
 #
 # $W^2_t + V W^2_r = -\frac{2W^2V_r}{1-2R\rho} - \frac{2\gamma}{m}\big(W^2-\frac{A^2}{2m\gamma}\big)$:
-# the equation of `hydrodynamics(..., temperature="evolving")`, which
+# the temperature equation of `hydrodynamics`, which
 # [notebook 7](07_the_fluid_in_time.ipynb) solves. In the steady state $V = 0$ it gives the free width
 # of eq. `free`, the same for all rods.
 # </details>

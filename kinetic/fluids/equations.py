@@ -1,23 +1,28 @@
 r"""Hydrodynamics: the density rho(x, t) and the flow velocity V(x, t) of the chain in time.
 
-The paper's continuity and velocity equations (arXiv:1404.7460, analytics section),
+The continuity and the velocity equation of the paper (arXiv:1404.7460, ``eq9`` in its appendix and
+``modeleq``, there also ``continuity_helbing``). The paper uses them at rest only. Here they have
+the mass m and any spring:
 
     rho_t + (rho V)_x = 0,
     V_t + V V_x = -(1/rho) (rho W^2/(1 - 2 R rho))_x - F(<dx>)/m - (gamma/m) V,
 
 with the pressure of hard rods and the springs' force at the mean displacement.
 
-**Closure of the displacement.** ``"label"``: carried by the flow, N_t + V N_x = 0 and
-<dx> = x - (2R + g)(N - L/2), nothing put in. Or the paper's: a frozen profile <dx>(x).
+**Displacement.** By labels, which the flow carries: N_t + V N_x = 0 and
+<dx> = x - (2R + g)(N - L/2); nothing is put in. Or a frozen profile <dx>(x), such as the one that
+the paper fits in the steady state.
 
-**Temperature.** ``"isothermal"``, the paper's: W^2 is the free value at all times. That is right in
-the steady state and wrong in a transient at the reference damping, where heat is exchanged more
-slowly than the chain moves. ``"evolving"``: the velocity variance has an equation of its own,
+**Velocity variance.** The paper writes W_v(r, t), has no equation for it, and takes it constant in
+the steady state at restitution 1. *Isothermal*: W^2 is the free value at all times. That is right
+in the steady state and wrong in a transient at the reference damping, where heat is exchanged more
+slowly than the chain moves. *Evolving*: the velocity variance has an equation of its own,
 
     (W^2)_t + V (W^2)_x = -2 W^2 V_x/(1 - 2 R rho) - (2 gamma/m) (W^2 - A^2/(2 m gamma)),
 
 adiabatic compression of a gas with one degree of freedom plus exchange with the noise, no heat
-flux: without gap exact for Gaussian clouds at restitution 1. Or a prescribed profile W^2(x).
+flux: without gap exact for Gaussian clouds at restitution 1. *Prescribed*: a profile W^2(x) at all
+times.
 
 **Boundary conditions.** Nothing outside: the density falls to zero, no rods enter or leave.
 
@@ -91,7 +96,7 @@ def hydrodynamics(
         ``"label"``: displacements carried by the flow. Or a frozen <dx>(x), in any form that
         ``force_balance`` takes; in the eulerian frame.
     temperature
-        ``"isothermal"`` (the paper's; wrong in transients) or ``"evolving"``. Or a prescribed
+        ``"isothermal"`` (wrong in transients) or ``"evolving"``. Or a prescribed
         W^2(x), in any form that ``force_balance`` takes; in the eulerian frame.
     every
         Time between outputs [T]; None: a hundredth of the duration. Each output takes 100 bytes
