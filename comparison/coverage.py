@@ -2,9 +2,10 @@
 
 The paper divides the line into bins much smaller than R, adds to each bin the fraction of it
 that rods cover, divides by the number of samples and by 2R, and takes a running average over a
-window of 2R. Both steps are rectangular convolutions of the density of the rods' centres with a
-box of length 2R. Compare densities only after the same steps: where A is small, rods form a
-near-crystal whose bare density is a row of spikes.
+window of 2R (its figure ``fig:rho_num_sim`` and the text below). Both steps are rectangular
+convolutions of the density of the rods' centres with a box of length 2R. Compare densities only
+after the same steps: where A is small, rods form a near-crystal whose bare density is a row of
+spikes.
 
 On the package's grid (nodes at multiples of h = 2R/n, n odd) the first step is exact for points
 kept in hat weights: the bin around a node is covered by the mean of the n hats around it.

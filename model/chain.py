@@ -1,12 +1,12 @@
 r"""The chain: L hard rods on springs, its parameters and the scales that follow from them.
 
-Between collisions rod i = 1..L obeys (arXiv:1404.7460, its equation of motion)
+Between collisions rod i = 1..L obeys (arXiv:1404.7460, eq. ``eq:model``)
 
     m x'' = -gamma x' - F(x - x0_i) + A xi(t),
 
 with white noise of unit strength and F(d) = k d (linear) or k d |d| (quadratic spring). The
 anchors x0_i are spaced 2R + g. A collision conserves momentum and reverses the relative
-velocity, v1' - v2' = -e (v1 - v2).
+velocity, v1' - v2' = -e (v1 - v2) (eq. ``eq:rest``).
 
 **The reduced coordinate** takes the rods' own length out:
 
@@ -140,7 +140,7 @@ class Chain(Parameters):
 
     @property
     def free_velocity_width(self) -> float:
-        """W = A / sqrt(2 m gamma), the velocity width without collisions [R/T]."""
+        """W = A / sqrt(2 m gamma), the velocity width without collisions (eq. ``free``) [R/T]."""
         return math.sqrt(self.temperature / self.mass)
 
     @property

@@ -21,8 +21,9 @@
 # moment, *without simulating a single collision*?
 #
 # The picture below says yes, once it is understood. The chain is that of
-# [Mani, Böttcher, Herrmann and Helbing](https://arxiv.org/abs/1404.7460) at restitution 1. What
-# follows about it is not in the paper; it is derived here.
+# [Mani, Böttcher, Herrmann and Helbing](https://arxiv.org/abs/1404.7460) at restitution 1. The
+# paper found in its simulations that all rods then have the same velocity distribution. The exact
+# solution is not in the paper; it is derived here.
 #
 # Lengths are in rod radii $R$, masses in $M$ (a rod has $m = 4\pi/3\,M$), times in
 # $T = \sqrt{M/k}$, $k$ being the stiffness of the springs.
@@ -505,7 +506,8 @@ assert abs(pulls_heat).max() < 5
 # `breathing_cloud` solves the same motion in the variables of a fluid: the width $\sigma$ of the
 # cloud and its temperature. It also gives the mean position of every rod: the cloud stays
 # Gaussian, so rod $i$ is at $\sigma(t)$ times the $i$-th expected order statistic. With
-# `evolving=False` the temperature is held constant: that is the isothermal fluid of the paper.
+# `evolving=False` the temperature is held constant: that is the isothermal fluid, the paper's
+# two equations with a constant $W^2$. (The paper itself uses them at rest only.)
 
 # %%
 isothermal = breathing_cloud(fifty, 30, every=0.5, stretch=squeeze, evolving=False)

@@ -20,7 +20,7 @@
 # back, overshoot and swing? And does a theory that is right *at rest* also know how the chain
 # gets there?
 #
-# We follow one release four times: as rods, as the fluid of
+# We follow one release four times: as rods, as an isothermal fluid with the equations of
 # [Mani, Böttcher, Herrmann and Helbing](https://arxiv.org/abs/1404.7460), as a fluid that has a
 # temperature, and exactly. Two of the other three agree with the rods. Then we clap our
 # hands: how fast does sound travel along the chain, and do rods hear it?
@@ -91,7 +91,8 @@ ax.legend(loc="lower center")
 # $\langle\Delta x\rangle = x - 2R\,(N - L/2)$, and the flow carries its labels with it:
 # $N_t + V N_x = 0$. Nothing is put in from a simulation.
 #
-# **Isothermal**: $W^2$ is constant, as in the paper. **With a temperature** $W^2$ has its own
+# **Isothermal**: $W^2$ is constant. The paper writes $W_v(r,t)$ without an equation for it, takes a
+# constant in the steady state, and solves nothing in time. **With a temperature** $W^2$ has its own
 # equation (derived here, not in the paper):
 #
 # $$(W^2)_t + V(W^2)_x = -\frac{2W^2\,V_x}{1-2R\rho}

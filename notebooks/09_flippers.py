@@ -112,7 +112,9 @@ assert 35 < end.mean() < 45
 # $$\dot E = \frac\gamma m\left(\frac L{L_c} - 1\right)E,\qquad
 # L_c = \frac{\pi\gamma}{(e-1)\sqrt{km}} .$$
 #
-# Above the critical size $L_c$ the energy grows exponentially. This balance is not in the paper.
+# Above the critical size $L_c$ the energy grows exponentially. The paper has this balance in words and
+# proportionalities, $\dot E\sim C_fE-\gamma E$ with an unknown collision frequency $C_f$. The rate and
+# $L_c$ are derived here.
 #
 # **Predict.** What are $L_c$ and the rate here? How much changes if you keep $(e^2-1)/2 = 0.01005$
 # instead of $e - 1 = 0.01$?

@@ -14,8 +14,8 @@ the next are drawn as one, over dt: one noise draw per step. Steps 2-4 are the s
 scheme and 1 and 5 leave every Maxwellian unchanged, so a linear chain without gap has exactly
 the right velocity width at any dt, and <d^2> = (T/k)/(1 - (w0 dt/2)^2).
 
-**euler** (the paper's). v <- v + (dt/m)(-F(d) - gamma v) + (A/m) sqrt(dt) xi, then the drift.
-First order: a free rod without spring has W^2 = (T/m)/(1 - gamma dt/2m).
+**euler** (the paper's, eq. ``eq:discrete``). v <- v + (dt/m)(-F(d) - gamma v) + (A/m) sqrt(dt) xi,
+then the drift. First order: a free rod without spring has W^2 = (T/m)/(1 - gamma dt/2m).
 """
 
 from __future__ import annotations

@@ -53,9 +53,9 @@ def command(
 ) -> None:
     """Release an elastic chain and follow it: rods, two fluids, and the exact solution.
 
-    An ensemble of simulated chains, the isothermal hydrodynamics (the paper's), hydrodynamics
-    with a temperature, and without gap the exact motion start from the same state. Prints how far
-    the rods are from where each theory has them, in thermal lengths.
+    An ensemble of simulated chains, hydrodynamics with a constant temperature,
+    hydrodynamics with a temperature equation, and without gap the exact motion start from the same
+    state. Prints how far the rods are from where each theory has them, in thermal lengths.
 
     Ctrl-C stops early: what has been computed is written under names with "-interrupted".
 

@@ -1,4 +1,4 @@
-"""The paper's arctanh fit of the mean displacement."""
+"""The paper's arctanh fit of the mean displacement (its figure ``fig:atan``)."""
 
 from __future__ import annotations
 

@@ -2,7 +2,7 @@
 
 At e = 1 the stationary state is known exactly at any gap g. With linear springs it is that of R. J.
 Baxter's one-dimensional plasma (Math. Proc. Camb. Phil. Soc. 59, 779 (1963)), and with g = 0 the
-rods are order statistics of one Gaussian. The paper treats e = 1 without gaps only.
+rods are order statistics of one Gaussian. The paper compares with theory without gaps only.
 """
 
 from __future__ import annotations

@@ -1,8 +1,9 @@
 """Relaxation: one start, followed by rods, two fluids and, where there is one, the exact solution.
 
 An elastic chain is released from a displaced or compressed state, or quenched from another driving
-amplitude. Compared are an ensemble of simulated chains, the isothermal fluid (the paper's
-closure), the fluid with a temperature equation, and without gap the exact motion.
+amplitude. Compared are an ensemble of simulated chains, the isothermal fluid (the paper's two
+equations with a constant W^2), the fluid with a temperature equation, and without gap the exact
+motion.
 """
 
 from __future__ import annotations

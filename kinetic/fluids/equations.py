@@ -1,6 +1,8 @@
 r"""Hydrodynamics: the density rho(x, t) and the flow velocity V(x, t) of the chain in time.
 
-The paper's continuity and velocity equations (arXiv:1404.7460, analytics section),
+The continuity and the velocity equation of the paper (arXiv:1404.7460, ``eq9`` in its appendix and
+``modeleq``, there also ``continuity_helbing``). The paper uses them at rest only. Here they have
+the mass m and any spring:
 
     rho_t + (rho V)_x = 0,
     V_t + V V_x = -(1/rho) (rho W^2/(1 - 2 R rho))_x - F(<dx>)/m - (gamma/m) V,
@@ -8,9 +10,11 @@ The paper's continuity and velocity equations (arXiv:1404.7460, analytics sectio
 with the pressure of hard rods and the springs' force at the mean displacement.
 
 **Displacement.** By labels, which the flow carries: N_t + V N_x = 0 and
-<dx> = x - (2R + g)(N - L/2); nothing is put in. Or the paper's: a frozen profile <dx>(x).
+<dx> = x - (2R + g)(N - L/2); nothing is put in. Or a frozen profile <dx>(x), such as the one that
+the paper fits in the steady state.
 
-**Velocity variance.** *Isothermal*, the paper's: W^2 is the free value at all times. That is right
+**Velocity variance.** The paper writes W_v(r, t), has no equation for it, and takes it constant in
+the steady state at restitution 1. *Isothermal*: W^2 is the free value at all times. That is right
 in the steady state and wrong in a transient at the reference damping, where heat is exchanged more
 slowly than the chain moves. *Evolving*: the velocity variance has an equation of its own,
 
@@ -92,7 +96,7 @@ def hydrodynamics(
         None: by labels, which the flow carries. Or a frozen <dx>(x) [R], in any form that
         ``force_balance`` takes; it needs the eulerian frame.
     velocity_variance
-        None: isothermal at the free W^2 (the paper's; wrong in transients). ``"evolving"``: with
+        None: isothermal at the free W^2 (wrong in transients). ``"evolving"``: with
         the temperature equation. Or a prescribed W^2 [R^2/T^2] in any form that ``force_balance``
         takes: a number is isothermal at this value, a profile W^2(x) needs the eulerian frame.
     frame

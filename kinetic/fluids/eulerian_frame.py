@@ -1,4 +1,4 @@
-r"""Hydrodynamics on a grid of positions (Eulerian): the paper's two equations as they stand.
+r"""Hydrodynamics on a grid of positions (Eulerian): ``eq9`` and ``modeleq`` of the paper.
 
 With lengths in thermal lengths s, velocities in W, times in s/W, n = rho s/L and B = 2 R L/s, the
 conserved quantities n, n V and, with a temperature, E = n (V^2 + theta)/2 obey

@@ -1,7 +1,7 @@
 r"""The stationary gas-kinetic force balance for the density rho(x).
 
-The paper (arXiv:1404.7460, last numbered equation of its analytics section) balances the
-gradient of the pressure rho W^2/(1 - 2 R rho) of hard rods against the springs:
+The paper (arXiv:1404.7460, eq. ``diff_gl``; the factor 1/m is in the sentence below it) balances
+the gradient of the pressure rho W^2/(1 - 2 R rho) of hard rods against the springs:
 
     rho' = -(k / (m W^2)) <dx>(x) rho (1 - 2 R rho)^2,                                    (*)
 
@@ -13,7 +13,7 @@ density of the reduced coordinate, rho_y = rho/(1 - 2 R rho), it reads
 
 which stays accurate where 1 - 2 R rho is too small to be stored.
 
-**Closures.** *Prescribed*, the paper's: <dx>(x) is measured (and fitted), see
+**Closures.** *Prescribed*, the paper's: <dx>(x) is measured and fitted (figure ``fig:atan``), see
 :mod:`crazybilliards.kinetic.statics.wright_closure`. *By labels*, with no input: the N-th rod from
 the left belongs to the N-th anchor, so <dx> = x - (2R + g)(N - L/2) with N' = rho, see
 :mod:`crazybilliards.kinetic.statics.label_closure`.
@@ -22,7 +22,8 @@ the left belongs to the N-th anchor, so <dx> = x - (2R + g)(N - L/2) with N' = r
 
     (1/rho) d/dx [rho W^2/(1 - 2 R rho)] = -F(<dx>)/m,                                  (***)
 
-closed by labels in :mod:`crazybilliards.kinetic.statics.variable_temperature`.
+the paper's ``modeleq`` at V = 0. It is closed by labels in
+:mod:`crazybilliards.kinetic.statics.variable_temperature`.
 
 **Boundary conditions.** rho -> 0 on both sides with L rods in between: N(-inf) = 0,
 N(+inf) = L.

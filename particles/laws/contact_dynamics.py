@@ -8,7 +8,7 @@ with b_i = -gap_i/dt for a contact that must only not overlap, and b_i = e (v_i 
 one that would close within the step and is to bounce (e > 0). This linear complementarity problem
 is the optimality condition of "u as close to v as the constraints allow". With B_i the sum of the
 b_j left of i, the constraints say that u_i - B_i ascends: an isotonic regression of v_i - B_i. The
-paper iterates to the same solution at a cost of O(L^2).
+usual programs iterate to this solution; the paper quotes a cost of O(L^2) for its own.
 
 The law is the position form: rods never overlap beyond rounding. Simultaneous contacts share an
 impulse, so Newton's cradle of three rods in contact gives (-1/3, 2/3, 2/3) at e = 1 instead of

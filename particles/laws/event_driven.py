@@ -3,7 +3,7 @@ r"""Drift with collisions one at a time, in order: any restitution e >= 0.
 Within a step points fly freely, y(t) = y + v t, so neighbours meet at t = (y' - y)/(v - v'). The
 earliest meeting is taken from a heap of contacts, the two velocities change by
 
-    v - v' -> -e (v - v')      at constant momentum,
+    v - v' -> -e (v - v')      at constant momentum (eq. ``eq:rest`` of the paper),
 
 and at most three contacts get a new time: O(log L) a collision. Contacts due at the same time are
 taken by closing speed, which makes the operator symmetric under reflection.
