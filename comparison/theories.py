@@ -1,39 +1,58 @@
-"""The stationary theories by name: sweeps compute them, the command ``theory`` prints them."""
+"""The stationary theories by name: sweeps compute them, the command ``theory`` prints them.
+
+A theory is one line of ``THEORIES``. Nothing is imported before it is used, so that the command
+line can list the theories in its ``--help`` at once.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from dataclasses import dataclass
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
-import xarray as xr
-
-from crazybilliards.kinetic import equilibrium, force_balance, phase_space
-from crazybilliards.kinetic.exact.gibbs_measure import check_equilibrium
-from crazybilliards.kinetic.kinetic_equation.stationary import check_phase_space
-from crazybilliards.kinetic.statics.balance import check_force_balance
+if TYPE_CHECKING:
+    import xarray as xr
 
 
-class Theory(NamedTuple):
+@dataclass(frozen=True)
+class Theory:
     """A theory of a chain's steady state.
 
     Attributes
     ----------
+    name
+        The name of the function in ``crazybilliards.kinetic``, ``"equilibrium"`` say.
     title
         What it is called in tables and legends.
-    solve
-        ``solve(chain, **settings)`` gives its result in the common vocabulary.
-    check
-        ``check(chain, **settings)`` raises the ValueError that ``solve`` would raise for a wrong
-        argument, without any work.
+    module
+        The module below ``crazybilliards.kinetic`` that holds the function, and beside it
+        ``check_NAME``.
     """
 
+    name: str
     title: str
-    solve: Callable[..., xr.Dataset]
-    check: Callable[..., Any]
+    module: str
+
+    @property
+    def solve(self) -> Callable[..., xr.Dataset]:
+        """The function: ``solve(chain, **settings)`` gives a result in the common vocabulary."""
+        return self._find(self.name)
+
+    @property
+    def check(self) -> Callable[..., Any]:
+        """Raises the ValueError that ``solve`` would raise for a wrong argument, at no cost."""
+        return self._find(f"check_{self.name}")
+
+    def _find(self, name: str) -> Any:
+        return getattr(import_module(f"crazybilliards.kinetic.{self.module}"), name)
 
 
 THEORIES = {
-    "equilibrium": Theory("exact equilibrium", equilibrium, check_equilibrium),
-    "force_balance": Theory("force balance", force_balance, check_force_balance),
-    "phase_space": Theory("kinetic equation", phase_space, check_phase_space),
+    theory.name: theory
+    for theory in (
+        Theory("equilibrium", "exact equilibrium", "exact.gibbs_measure"),
+        Theory("force_balance", "force balance", "statics.balance"),
+        Theory("phase_space", "kinetic equation", "kinetic_equation.stationary"),
+    )
 }

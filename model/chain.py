@@ -127,6 +127,12 @@ class Chain(Parameters):
         d = np.asarray(displacement, dtype=float)
         return self.stiffness * spring.potential(d, self.potential_exponent)
 
+    def reach(self, energy: float) -> float:
+        """Displacement at which a spring holds this energy, U(d) = energy [R]; inf if k = 0."""
+        if self.stiffness == 0:
+            return math.inf if energy > 0 else 0.0
+        return float(spring.reach(energy / self.stiffness, self.potential_exponent))
+
     # -- heat -------------------------------------------------------------------------------
 
     @property

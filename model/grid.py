@@ -31,8 +31,7 @@ _TAIL = 40.0
 
 def thermal_reach(chain: Chain) -> float:
     """Displacement whose spring energy is 40 T, beyond which no thermal rod is found [R]."""
-    n = chain.potential_exponent
-    return chain.thermal_length * (n * _TAIL) ** (1 / n)
+    return chain.reach(_TAIL * chain.temperature)
 
 
 def require_resolved(chain: Chain, extent: float) -> None:

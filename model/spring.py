@@ -35,6 +35,11 @@ def potential(d: Number, exponent: int) -> Number:
     return abs(d) ** exponent / exponent
 
 
+def reach(energy: Number, exponent: int) -> Number:
+    """Return the d > 0 at which the energy U(d)/k is ``energy``."""
+    return (exponent * energy) ** (1 / exponent)
+
+
 def displacement(f: Number, exponent: int) -> Number:
     """Return the d at which the force F(d)/k is ``f``: the inverse of :func:`force`."""
     return np.sign(f) * abs(f) ** (1 / (exponent - 1))

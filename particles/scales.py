@@ -40,7 +40,7 @@ def spring_rate(chain: Chain) -> float:
             "time_step: a quadratic spring without damping has no typical displacement to choose "
             "a step from; give time_step"
         )
-    displacement = (30 * chain.temperature / chain.stiffness) ** (1 / 3)
+    displacement = chain.reach(10 * chain.temperature)
     return math.sqrt(2 * chain.stiffness * displacement / chain.mass)
 
 
@@ -115,5 +115,4 @@ def start_swing(chain: Chain, y: Array, v: Array) -> float:
     energy = chain.potential(y - chain.reduced_anchors) + chain.mass / 2 * v**2
     if chain.stiffness == 0:
         return 0.0  # no bound, and no grid asks for one
-    n = chain.potential_exponent
-    return float((n * energy.max() / chain.stiffness) ** (1 / n))
+    return chain.reach(float(energy.max()))

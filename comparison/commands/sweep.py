@@ -59,7 +59,7 @@ def command(
 
     The table [grid] of the file holds lists of values of parameters of the chain or settings of
     the job. Every combination of them is a case. The tables [chain] and [simulate] (or
-    [phase_space], [equilibrium], [force_balance]) hold what is the same for all cases.
+    the name of a theory, see crazybilliards theory --help) hold what is the same for all cases.
 
     What the folder holds already is not computed again: after Ctrl-C, a crash, or with a larger
     grid, the same command computes what is missing. Results are computed anew if the source code

@@ -13,6 +13,7 @@ import typer
 
 from crazybilliards.comparison.commands.chain_options import with_chain_options
 from crazybilliards.comparison.commands.output import check_folder, print_rods, write_figures
+from crazybilliards.comparison.theories import THEORIES
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -20,16 +21,13 @@ if TYPE_CHECKING:
     from crazybilliards.comparison.theories import Theory
     from crazybilliards.model import Chain
 
+_NAMES = ", ".join(f"{name} ({theory.title})" for name, theory in THEORIES.items())
+
 
 @with_chain_options()
 def command(
     chain: Chain,
-    name: Annotated[
-        str,
-        typer.Argument(
-            help="phase_space (the kinetic equation), force_balance or equilibrium (exact, e = 1)."
-        ),
-    ] = "phase_space",
+    name: Annotated[str, typer.Argument(help=f"{_NAMES}.")] = "phase_space",
     output: Annotated[
         Path | None,
         typer.Option(
@@ -64,7 +62,6 @@ def command(
     """
     from rich.console import Console
 
-    from crazybilliards.comparison.theories import THEORIES
     from crazybilliards.kinetic import critical_size
     from crazybilliards.model.checks import check_choice
 

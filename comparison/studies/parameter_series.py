@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 import xarray as xr
 
+from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain
 from crazybilliards.model.checks import check_integer, check_real
 from crazybilliards.model.process import terminated_like_interrupted
@@ -32,7 +33,7 @@ def varied_chains(
     if len(chains) != len(checked):
         raise ValueError(f"{name}s must differ in their first six digits, got {list(values)}")
     for each in chains.values():
-        each.require_steady_state()
+        require_chain(each, "the comparison with theories")
         make_schedule(each, duration=duration, replicas=_REPLICAS)
     return chains
 

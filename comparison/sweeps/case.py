@@ -41,7 +41,7 @@ class Case:
     Parameters
     ----------
     job
-        ``"simulate"``, or a theory: ``"equilibrium"``, ``"force_balance"``, ``"phase_space"``.
+        ``"simulate"``, or the name of a theory in :mod:`crazybilliards.comparison.theories`.
     chain
         The chain.
     settings
