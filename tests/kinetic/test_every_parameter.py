@@ -13,13 +13,13 @@ import pytest
 from other_values import other_values
 from scipy.interpolate import CubicSpline
 
+from crazybilliards.comparison.theories import THEORIES as STATIONARY
 from crazybilliards.kinetic import (
     breathing_cloud,
     critical_damping,
     critical_restitution,
     critical_size,
     displaced,
-    equilibrium,
     equilibrium_states,
     force_balance,
     hydrodynamics,
@@ -73,10 +73,9 @@ def flow(frame, velocity_variance=None, displacement=None):
     return solve
 
 
-THEORIES = {
-    "equilibrium": equilibrium,
+# Every stationary theory that there is, then other calls.
+THEORIES = {name: theory.solve for name, theory in STATIONARY.items()} | {
     "equilibrium_states": lambda chain: equilibrium_states(chain, 2),
-    "force_balance": force_balance,
     "force_balance, displacement": lambda chain: force_balance(chain, displacement),
     "force_balance, variance": lambda chain: force_balance(chain, velocity_variance=variance),
     "force_balance, number": lambda chain: force_balance(chain, velocity_variance=0.1),
