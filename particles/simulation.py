@@ -185,7 +185,7 @@ def _compile_kernels() -> None:
     dynamics = make_dynamics(Chain(size=2), 0.1, speed=1.0, counted=True)
     y, v = np.zeros((2, 2))
     y_buffer, v_buffer = np.zeros((2, 1, 2))
-    tally = make_tally(2, contacts=True, waves=False)
+    tally = make_tally(2, contacts=True)
     state = y, v, np.random.default_rng(0), dynamics, make_scratch(2), tally
     advance(*state, 1)
     record(*state, 1, y_buffer, v_buffer)

@@ -100,26 +100,26 @@ def fit_border_power_law(
     if not (np.min([width, weight]) > 0 and np.isfinite([width, weight]).all()):
         raise ValueError("the fit needs positive widths and errors")
     i = np.arange(1.0, size + 1)
-    values, covariance = _best_fit(i, width, weight, size, shifted)
-    origin = float(values[2]) if shifted else 0.0
-    errors = np.sqrt(np.diag(covariance))
-    fit = PowerLawFit(
+    unit = float(width.mean())  # so that the search's tolerances mean the same in any unit
+    values, errors, correlation = _best_fit(i, width / unit, weight / unit, size, shifted)
+    fitted = _sum_of_powers(i, size, values[0] * unit, values[1], values[2])
+    return PowerLawFit(
         size=size,
-        scale=float(values[0]),
+        scale=float(values[0] * unit),
         exponent=float(values[1]),
-        origin=origin,
-        scale_error=float(errors[0]),
+        origin=float(values[2]),
+        scale_error=float(errors[0] * unit),
         exponent_error=float(errors[1]),
-        origin_error=float(errors[2]) if shifted else 0.0,
-        correlation=float(covariance[1, 2] / (errors[1] * errors[2])) if shifted else 0.0,
-        misfit=0.0,
+        origin_error=float(errors[2]),
+        correlation=correlation,
+        misfit=float(np.sqrt(np.mean((fitted / width - 1) ** 2))),
     )
-    misfit = float(np.sqrt(np.mean((fit(i) / width - 1) ** 2)))
-    return PowerLawFit(**(vars(fit) | {"misfit": misfit}))
 
 
-def _best_fit(i: Array, width: Array, weight: Array, size: int, shifted: bool) -> tuple[Array, Array]:
-    """Return the parameters (a, nu and, if ``shifted``, c) and their covariance."""
+def _best_fit(
+    i: Array, width: Array, weight: Array, size: int, shifted: bool
+) -> tuple[Array, Array, float]:
+    """Return a, nu and c, their errors, and the correlation of the last two."""
 
     def model(i: Array, scale: float, nu: float, c: float = 0.0) -> Array:
         return _sum_of_powers(i, size, scale, nu, c)
@@ -127,8 +127,8 @@ def _best_fit(i: Array, width: Array, weight: Array, size: int, shifted: bool) -
     number = 3 if shifted else 2
     bounds = ([0.0, _STEEPEST, -float(size)][:number], [np.inf, 0.0, 1.0][:number])
     best: tuple[float, Array, Array] | None = None
-    for nu, c in _STARTS if shifted else ((-0.5, 0.0),):
-        # The best scale for these two, so that no unit of the widths leads the search astray.
+    for nu, c in _STARTS if shifted else _STARTS[:1]:
+        # The best scale for these two.
         unscaled = model(i, 1.0, nu, c) / weight
         scale = float(unscaled @ (width / weight) / (unscaled @ unscaled))
         try:
@@ -138,23 +138,33 @@ def _best_fit(i: Array, width: Array, weight: Array, size: int, shifted: bool) -
                 width,
                 p0=(scale, nu, c)[:number],
                 sigma=weight,
+                absolute_sigma=True,
                 bounds=bounds,
                 x_scale=(scale, 0.1, 1.0)[:number],
+                ftol=1e-12,
+                xtol=1e-10,
+                gtol=1e-12,
                 max_nfev=2000,
             )
         except RuntimeError:
-            continue
+            continue  # this start leads nowhere; another may
         cost = float(np.sum(((model(i, *values) - width) / weight) ** 2))
         if best is None or cost < best[0]:
             best = cost, values, covariance
     if best is None or not _inside(best[1], bounds) or not np.isfinite(best[2]).all():
         raise ValueError("no power law fits: the widths do not fall like one from the borders")
-    return best[1], best[2]
+    cost, values, covariance = best
+    one = np.sqrt(np.diag(covariance))  # errors for weights of one standard error each
+    correlation = float(covariance[1, 2] / (one[1] * one[2])) if shifted else 0.0
+    errors = one * np.sqrt(cost / (width.size - number))
+    rest = np.zeros(3 - number)
+    return np.append(values, rest), np.append(errors, rest), correlation
 
 
 def _inside(values: Array, bounds: tuple[list[float], list[float]]) -> bool:
     """Whether nu and c are off their bounds, to a thousandth."""
-    return all(low + 1e-3 < value < high - 1e-3 for value, low, high in list(zip(values, *bounds))[1:])
+    triples = list(zip(values, *bounds, strict=True))[1:]
+    return all(low + 1e-3 < value < high - 1e-3 for value, low, high in triples)
 
 
 def _sum_of_powers(i: Array, size: int, scale: float, nu: float, c: float) -> Array:
