@@ -24,8 +24,8 @@ from crazybilliards.comparison.claims.verdicts import Claim
 from crazybilliards.comparison.sweeps import Case
 
 _VERSIONS = ("crazybilliards", "numpy", "numba", "scipy", "scikit-fem", "py-pde", "xarray")
-_OF_PAPER = "Statements of the paper"
-_OWN = "Our own findings"
+OF_PAPER = "Statements of the paper"
+OWN = "Our own findings"
 
 
 @dataclass(frozen=True)
@@ -61,8 +61,8 @@ class Reproduced:
     def parts(self) -> dict[str, list[Claim]]:
         """The claims: those of the paper and our own, each under its title."""
         both = {
-            _OF_PAPER: [claim for claim in self.claims if claim.of_paper],
-            _OWN: [claim for claim in self.claims if not claim.of_paper],
+            OF_PAPER: [claim for claim in self.claims if claim.of_paper],
+            OWN: [claim for claim in self.claims if not claim.of_paper],
         }
         return {title: claims for title, claims in both.items() if claims}
 
@@ -183,11 +183,13 @@ def html(reproduced: list[Reproduced], quality: Quality) -> str:
 def summary(reproduced: list[Reproduced]) -> list[str]:
     """Count the verdicts: a line for the statements of the paper, one for our own findings."""
     lines = []
-    for title in (_OF_PAPER, _OWN):
+    for title in (OF_PAPER, OWN):
         claims = [claim for each in reproduced for claim in each.parts.get(title, ())]
         if claims:
             counts = Counter(claim.verdict for claim in claims)
-            verdicts = ", ".join(f"{number} {verdict}" for verdict, number in sorted(counts.items()))
+            verdicts = ", ".join(
+                f"{number} {verdict}" for verdict, number in sorted(counts.items())
+            )
             lines.append(f"{title}: {verdicts}")
     return lines
 

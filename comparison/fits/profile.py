@@ -73,7 +73,7 @@ def fit_border_power_law(
     weighted
         Weigh the widths by their error bars; those of a theory, which has none, by relative
         deviations. The narrow interior then counts more. False: ordinary least squares. The paper
-        does not say which; at L = 300, e = 0 the exponent is -0.460 without and -0.473 with weights.
+        does not say which. At L = 300, e = 0 the exponent is -0.460 without weights, -0.473 with.
 
     Raises
     ------

@@ -26,7 +26,16 @@ from crazybilliards.particles.observers.widths import Widths
 
 OBSERVERS: dict[str, type[Observer]] = {
     observer.name: observer
-    for observer in (Widths, Density, Velocities, Energy, Collisions, Avalanches, TriggeredCollisions, Raw)
+    for observer in (
+        Widths,
+        Density,
+        Velocities,
+        Energy,
+        Collisions,
+        Avalanches,
+        TriggeredCollisions,
+        Raw,
+    )
 }
 
 __all__ = [

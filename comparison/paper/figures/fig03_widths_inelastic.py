@@ -147,7 +147,7 @@ def fits_in_plot(runs: Iterable[xr.Dataset]) -> tuple[Estimate, float]:
 
 
 def _own_claims(results: Results) -> list[Claim]:
-    """What the exponent depends on."""
+    """Check what the exponent depends on."""
     largest = STEPS[0]
     coarse, fine = (exponent(results, LARGE, step) for step in (largest, STEPS[-1]))
     middle = 300

@@ -17,6 +17,8 @@ from crazybilliards.model import Chain, chain_of
 _RESTITUTIONS = (0.0, 0.75, 0.95)
 _GAPS = (0.05, 0.2, 1.0)
 _NUMBER = {"quick": (2, 60.0, 50.0), "full": (4, 600.0, 100.0)}  # runs, duration, warm-up
+_SOURCE = "appendix, fig:mom_var_gaps"
+_OURS = "the gaps, the restitutions and the time step"
 _FLAT = 0.1  # change of W_v^2 between the middle and half-way to the border
 
 
@@ -52,6 +54,12 @@ def _change(run: xr.Dataset) -> float:
     return float(np.log(half_way / central_width(run) ** 2))
 
 
+def _plateau(run: xr.Dataset) -> float:
+    """Return the share of rods between the first ones beyond 3/2 of the central W_v^2."""
+    beyond = run.velocity_width.values**2 > 1.5 * central_width(run) ** 2
+    return float(np.abs(run.normalized_particle.values[beyond]).min()) if beyond.any() else 1.0
+
+
 def claims(results: Results) -> list[Claim]:
     """Check: a plateau with a gap, none without."""
     claims = []
@@ -65,10 +73,32 @@ def claims(results: Results) -> list[Claim]:
                     what,
                     estimate(results, _name(restitution, gap), _change),
                     _FLAT,
+                    source=_SOURCE,
+                    ours=_OURS,
                     reason="the gap is too small for the interior to become homogeneous",
                 )
             )
-        claims.append(positive_claim(f"none without gap, e = {restitution:g}", what, without))
+        claims.append(
+            positive_claim(
+                f"no plateau without a gap, e = {restitution:g}",
+                what,
+                without,
+                source=_SOURCE,
+                ours=_OURS,
+            )
+        )
+        tight, wide = (estimate(results, _name(restitution, g), _plateau) for g in _GAPS[::2])
+        claims.append(
+            positive_claim(
+                f"the plateau is wider at g = {_GAPS[2]:g} than at {_GAPS[0]:g}, "
+                f"e = {restitution:g}",
+                "share of rods, counted from the centre, up to the first whose W_v^2 is half "
+                f"again as large: {tight} and {wide}, difference",
+                wide.minus(tight),
+                source=_SOURCE,
+                ours=_OURS,
+            )
+        )
     return claims
 
 
