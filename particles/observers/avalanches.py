@@ -50,7 +50,7 @@ class _CountedWaves(Observer):
 
     def coordinates(self) -> dict[str, Array]:
         """Return the sizes N_c."""
-        return {self.along[0]: np.arange(len(self.sizes)) + float(self.smallest)}
+        return {self.along[0]: np.arange(len(self.sizes), dtype=np.float64) + self.smallest}
 
 
 class Avalanches(_CountedWaves):
