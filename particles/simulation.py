@@ -84,8 +84,8 @@ def simulate(
         Any of ``"widths"`` (velocity_width, mean_velocity, mean_displacement, displacement_width
         and the autocorrelation_time that tells whether warm-up and duration were long enough),
         ``"density"``, ``"velocities"`` (velocity_density), ``"energy"`` (kinetic_energy in time),
-        ``"collisions"`` (collision_rate), ``"avalanches"`` (avalanche_count), ``"triggered-collisions"``
-        (triggered_count) and ``"snapshots"``
+        ``"collisions"`` (collision_rate), ``"avalanches"`` (avalanche_count),
+        ``"triggered-collisions"`` (triggered_count) and ``"snapshots"``
         (position and velocity as they are). An observer itself is taken as well, of the package,
         ``Velocities(bins=801)`` say, or of one's own.
     start
