@@ -100,15 +100,14 @@ def fit_border_power_law(
     if not (np.min([width, weight]) > 0 and np.isfinite([width, weight]).all()):
         raise ValueError("the fit needs positive widths and errors")
     i = np.arange(1.0, size + 1)
-    unit = float(width.mean())  # so that the search's tolerances mean the same in any unit
-    values, errors, correlation = _best_fit(i, width / unit, weight / unit, size, shifted)
-    fitted = _sum_of_powers(i, size, values[0] * unit, values[1], values[2])
+    values, errors, correlation = _best_fit(i, width, weight, size, shifted)
+    fitted = _sum_of_powers(i, size, *values)
     return PowerLawFit(
         size=size,
-        scale=float(values[0] * unit),
+        scale=float(values[0]),
         exponent=float(values[1]),
         origin=float(values[2]),
-        scale_error=float(errors[0] * unit),
+        scale_error=float(errors[0]),
         exponent_error=float(errors[1]),
         origin_error=float(errors[2]),
         correlation=correlation,

@@ -134,6 +134,8 @@ def test_distances_in_a_plot_are_the_shortest_to_the_line():
     # Without ranges those of the symbols.
     bare = distances_in_plot([0.0, 2.0], [0.0, 4.0], [0.0, 2.0], [1.0, 1.0])
     assert bare == pytest.approx([0.25, 0.75])
+    bare = distances_in_plot([0.0, 2.0], [0.0, 4.0], [0.5, 0.5], [-100.0, 100.0])
+    assert bare == pytest.approx([0.25, 0.75])
 
 
 def test_estimates_are_written_to_the_second_digit_of_the_error():
