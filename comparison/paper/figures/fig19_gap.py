@@ -54,12 +54,6 @@ def _change(run: xr.Dataset) -> float:
     return float(np.log(half_way / central_width(run) ** 2))
 
 
-def _plateau(run: xr.Dataset) -> float:
-    """Return the share of rods between the first ones beyond 3/2 of the central W_v^2."""
-    beyond = run.velocity_width.values**2 > 1.5 * central_width(run) ** 2
-    return float(np.abs(run.normalized_particle.values[beyond]).min()) if beyond.any() else 1.0
-
-
 def claims(results: Results) -> list[Claim]:
     """Check: a plateau with a gap, none without."""
     claims = []
@@ -83,18 +77,6 @@ def claims(results: Results) -> list[Claim]:
                 f"no plateau without a gap, e = {restitution:g}",
                 what,
                 without,
-                source=_SOURCE,
-                ours=_OURS,
-            )
-        )
-        tight, wide = (estimate(results, _name(restitution, g), _plateau) for g in _GAPS[::2])
-        claims.append(
-            positive_claim(
-                f"the plateau is wider at g = {_GAPS[2]:g} than at {_GAPS[0]:g}, "
-                f"e = {restitution:g}",
-                "share of rods, counted from the centre, up to the first whose W_v^2 is half "
-                f"again as large: {tight} and {wide}, difference",
-                wide.minus(tight),
                 source=_SOURCE,
                 ours=_OURS,
             )
