@@ -14,7 +14,7 @@ from crazybilliards.particles.laws.avalanche import make_tally
 from crazybilliards.particles.laws.law import drift, make_scratch
 
 SIZE, TIME_STEP = 1000, 1e-3
-UNSEEN = make_tally(2, contacts=False, waves=False)
+UNSEEN = make_tally(2, contacts=False)
 
 
 @pytest.fixture(scope="module")

@@ -65,7 +65,7 @@ def test_step(benchmark, work, size):
     dynamics = stepping.make_dynamics(
         chain, time_step, speed=1.0, method=method, counted="e=1" in work
     )
-    unseen = make_tally(size, contacts=False, waves=False)
+    unseen = make_tally(size, contacts=False)
     kernel = (y, v, generator, dynamics, make_scratch(size), unseen)
     stepping.advance(*kernel, max(20_000_000 // size, 50))
     collisions = benchmark(stepping.advance, *kernel, steps)

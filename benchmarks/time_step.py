@@ -91,7 +91,7 @@ def widths(chain: Chain, time_step: float, duration: float, seed: int) -> np.nda
     """W_v, shape (coarse or fine, centre or border), of one run."""
     copies = [make_copy(chain, dt) for dt in (time_step, time_step / FINER)]
     generator = np.random.default_rng(seed)
-    tally = make_tally(chain.size, contacts=False, waves=False)
+    tally = make_tally(chain.size, contacts=False)
     middle = slice(*np.round(chain.size * np.array([0.45, 0.55])).astype(int))
     steps = math.ceil(duration / time_step)
     for taken, measure in ((math.ceil(WARM_UP / time_step), False), (steps, True)):

@@ -33,6 +33,8 @@ VOCABULARY = {
     "collision_rate": ("collisions with the right neighbour per time", "1/T"),
     "avalanche_count": ("waves started by the particle that triggered N_c collisions", "1"),
     "avalanche_size": ("collisions triggered N_c", "1"),
+    "triggered_count": ("hits of the right neighbour that triggered N_c further collisions", "1"),
+    "triggered_collisions": ("collisions triggered after the first N_c", "1"),
     "autocorrelation_time": ("autocorrelation time of the displacement", "T"),
     "displacement": ("mean displacement <dx>(x)", "R"),
     "label": ("number of rods to the left N", "1"),

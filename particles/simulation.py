@@ -84,7 +84,8 @@ def simulate(
         Any of ``"widths"`` (velocity_width, mean_velocity, mean_displacement, displacement_width
         and the autocorrelation_time that tells whether warm-up and duration were long enough),
         ``"density"``, ``"velocities"`` (velocity_density), ``"energy"`` (kinetic_energy in time),
-        ``"collisions"`` (collision_rate), ``"avalanches"`` (avalanche_count) and ``"snapshots"``
+        ``"collisions"`` (collision_rate), ``"avalanches"`` (avalanche_count),
+        ``"triggered-collisions"`` (triggered_count) and ``"snapshots"``
         (position and velocity as they are). An observer itself is taken as well, of the package,
         ``Velocities(bins=801)`` say, or of one's own.
     start
@@ -185,7 +186,7 @@ def _compile_kernels() -> None:
     dynamics = make_dynamics(Chain(size=2), 0.1, speed=1.0, counted=True)
     y, v = np.zeros((2, 2))
     y_buffer, v_buffer = np.zeros((2, 1, 2))
-    tally = make_tally(2, contacts=True, waves=False)
+    tally = make_tally(2, contacts=True)
     state = y, v, np.random.default_rng(0), dynamics, make_scratch(2), tally
     advance(*state, 1)
     record(*state, 1, y_buffer, v_buffer)

@@ -20,6 +20,7 @@ from crazybilliards.comparison.sweeps import Case
 from crazybilliards.model import Chain
 
 _SQUARED = ("velocity_width", "displacement_width")
+_COUNTED = ("avalanche_count", "triggered_count")
 
 
 def repeated(name: str, chain: Chain, number: int, **settings: Any) -> Cases:
@@ -47,7 +48,7 @@ def pooled(results: Results, name: str) -> xr.Dataset:
             joined = (each**2).sum("run") ** 0.5 / len(datasets)
         elif key in _SQUARED:
             joined = (each**2).mean("run") ** 0.5
-        elif key == "avalanche_count":
+        elif key in _COUNTED:
             joined = each.sum("run")
         else:
             joined = each.mean("run")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import io
 import platform
+import re
 from collections import Counter
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
@@ -23,6 +24,8 @@ from crazybilliards.comparison.claims.verdicts import Claim
 from crazybilliards.comparison.sweeps import Case
 
 _VERSIONS = ("crazybilliards", "numpy", "numba", "scipy", "scikit-fem", "py-pde", "xarray")
+OF_PAPER = "Statements of the paper"
+OWN = "Our own findings"
 
 
 @dataclass(frozen=True)
@@ -53,6 +56,15 @@ class Reproduced:
     def embedded(self) -> str:
         """The picture as text, for one self-contained page."""
         return base64.b64encode(self.picture).decode()
+
+    @property
+    def parts(self) -> dict[str, list[Claim]]:
+        """The claims: those of the paper and our own, each under its title."""
+        both = {
+            OF_PAPER: [claim for claim in self.claims if claim.of_paper],
+            OWN: [claim for claim in self.claims if not claim.of_paper],
+        }
+        return {title: claims for title, claims in both.items() if claims}
 
 
 def all_cases(studies: Iterable[Study], quality: Quality) -> list[Case]:
@@ -107,36 +119,49 @@ def describe(cases: Iterable[Case]) -> list[str]:
 
 
 def markdown(reproduced: list[Reproduced], quality: Quality) -> str:
-    """Return the table of claims, and the pictures, as a page of Markdown beside the pictures."""
+    """Return a page of Markdown, to lie beside the pictures: a part for each study.
+
+    Everything is in lists, none of it in tables, so that a narrow screen shows all of it.
+    """
     numbers = _versions()
     rows = [
         "# What is claimed, and what was found",
         "",
-        f"Quality: {quality}. {_summary(reproduced)}. Written by `crazybilliards reproduce`; "
+        f"Quality: {quality}. Written by `crazybilliards reproduce`; "
         f"{', '.join(f'{name} {number}' for name, number in numbers.items())}.",
         "",
-        "| figure | claim | its number | found here | theory | verdict |",
-        "|---|---|---|---|---|---|",
+        *(f"* {line}" for line in summary(reproduced)),
     ]
-    for each in reproduced:
-        for claim in each.claims:
-            verdict = f"**{claim.verdict}**" + (f": {claim.reason}" if claim.reason else "")
-            cells = (
-                each.study.label,
-                claim.statement,
-                claim.paper,
-                claim.measured,
-                claim.theory,
-                verdict,
-            )
-            # <dx> must not be taken for a tag, nor |x| for a column.
-            plain = (escape(cell, quote=False).replace("|", "\\|") for cell in cells)
-            rows.append("| " + " | ".join(plain) + " |")
     for each in reproduced:
         study = each.study
         rows += ["", f"## {study.heading}", ""]
         rows += [f"![{study.title}]({study.file_name})", "", study.caption]
+        for title, claims in each.parts.items():
+            rows += ["", f"### {title}"]
+            for claim in claims:
+                rows += ["", f"**{_plain(claim.statement)}**", ""]
+                rows += [f"* {name}: {_plain(text)}" for name, text in details(claim).items()]
     return "\n".join(rows) + "\n"
+
+
+def _plain(text: str) -> str:
+    """Return text that Markdown leaves as it is: <dx> is no tag, and N_c or * no emphasis."""
+    return re.sub(r"([*_|\[\]])", r"\\\1", escape(text, quote=False))
+
+
+def details(claim: Claim) -> dict[str, str]:
+    """Return what there is to say about a claim, by what it is."""
+    said = {
+        "verdict": claim.verdict,
+        "in the paper": claim.source,
+        "its number": claim.paper,
+        "found here": claim.measured,
+        "theory": claim.theory,
+        "our choice, not given in the paper": claim.ours,
+        "why": claim.reason,
+        "and yet, exactly": claim.exactly,
+    }
+    return {name: text for name, text in said.items() if text}
 
 
 def html(reproduced: list[Reproduced], quality: Quality) -> str:
@@ -148,15 +173,25 @@ def html(reproduced: list[Reproduced], quality: Quality) -> str:
     page: dict[str, Any] = {
         "reproduced": reproduced,
         "quality": quality,
-        "summary": _summary(reproduced),
+        "summary": summary(reproduced),
+        "details": details,
         "versions": _versions(),
     }
     return environment.from_string(template).render(page)
 
 
-def _summary(reproduced: list[Reproduced]) -> str:
-    verdicts = Counter(claim.verdict for each in reproduced for claim in each.claims)
-    return ", ".join(f"{number} {verdict}" for verdict, number in sorted(verdicts.items()))
+def summary(reproduced: list[Reproduced]) -> list[str]:
+    """Count the verdicts: a line for the statements of the paper, one for our own findings."""
+    lines = []
+    for title in (OF_PAPER, OWN):
+        claims = [claim for each in reproduced for claim in each.parts.get(title, ())]
+        if claims:
+            counts = Counter(claim.verdict for claim in claims)
+            verdicts = ", ".join(
+                f"{number} {verdict}" for verdict, number in sorted(counts.items())
+            )
+            lines.append(f"{title}: {verdicts}")
+    return lines
 
 
 def _versions() -> dict[str, str]:

@@ -1,12 +1,33 @@
-"""Claims of the paper, set beside what was measured; the verdict is computed, never typed in.
+"""Claims set beside what was measured; the verdict is computed, never typed in.
 
-A claim with a number p, quoted to a precision d (half a unit of its last digit, or what "about"
-grants), is reproduced if the measured value lies within d plus three standard errors of p, refuted
-if it does not, and undecided if three standard errors exceed a third of p. A claim that something
-is positive, or larger than something else, is reproduced or refuted at three standard errors; one
-that something vanishes, if it is below or above a stated limit by as much. A claim that two things
-are the same is reproduced if no difference exceeds what chance explains: five standard errors for
-the largest of many.
+A claim is either a **statement of the paper**, which names its ``source`` there by the label of
+the figure, equation or section, or a **finding of our own**, without a source. A statement of the
+paper comes out as
+
+* ``reproduced``;
+* ``not reproduced``;
+* ``undecided``, where the statistics do not suffice;
+* ``cannot be decided``, where it fails at a parameter that the paper does not give and that is
+  therefore our choice (``ours`` says which).
+
+A finding of our own is ``confirmed``, ``refuted`` or ``undecided``.
+
+**Rules.** A number p, quoted to a precision d (half a unit of its last digit, or what "about"
+grants), comes out if the measured value lies within d plus three standard errors of p, and is
+undecided if three standard errors exceed a third of p. That something is positive, or larger than
+something else, is decided at three standard errors. That something vanishes is decided by a stated
+limit, at as many. That two things are the same comes out if no difference exceeds what chance
+explains: five standard errors for the largest of many.
+
+**Statements to the eye.** That a curve "matches" points, or that they "can be fitted" or
+"described" by it, is a statement about a plot. It gets two numbers: the largest deviation in units
+of the plot, and its significance in standard errors. It is reproduced if an eye could not see the
+deviation in a plot like the paper's, whatever the significance. The tolerance is 2 % of the
+plotted range. The paper's plots are half a page wide: 2 % of an axis of 5 to 7 cm is 1.0 to 1.4 mm,
+the size of a plotted symbol, and a line that touches every symbol looks right. It was fixed before
+any deviation was worked out. A deviation is the distance of a symbol from the line in the plane of
+the plot, each axis in units of its range (:func:`distances_in_plot`): beside a steep line one sees
+the horizontal distance.
 """
 
 from __future__ import annotations
@@ -15,8 +36,14 @@ import math
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
-Verdict = Literal["reproduced", "refuted", "undecided"]
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
+Verdict = Literal[
+    "reproduced", "not reproduced", "cannot be decided", "undecided", "confirmed", "refuted"
+]
+
+EYE = 0.02  # of the plotted range: what no eye sees
 _SIGNIFICANT = 3.0
 _LARGEST_OF_MANY = 5.0
 
@@ -39,28 +66,45 @@ class Estimate(NamedTuple):
         return Estimate(self.value - other.value, math.hypot(self.error, other.error))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Claim:
-    """One statement of the paper and what became of it.
+    """One statement and what became of it.
 
     Attributes
     ----------
-    statement, paper
-        What the paper says, and its number (empty for a statement without one).
+    statement
+        What is claimed, in our own words.
+    source
+        Where the paper says so: labels of its source, ``fig. 3, eq:power_law``. Empty: a finding
+        of our own.
+    ours
+        Parameters that it depends on, that the paper does not give and that we chose (or "").
+    paper
+        The paper's number (empty for a statement without one).
     measured, theory
         What was found here, with its standard error, and what theory predicts (or "").
     verdict
         Computed from the measured value and its error.
     reason
-        Why a refuted claim does not hold, or what else there is to say.
+        Why it does not hold, if it does not.
+    exactly
+        What is true beyond what an eye can see, whatever the verdict (or "").
     """
 
     statement: str
-    paper: str
     measured: str
-    theory: str
     verdict: Verdict
+    source: str = ""
+    ours: str = ""
+    paper: str = ""
+    theory: str = ""
     reason: str = ""
+    exactly: str = ""
+
+    @property
+    def of_paper(self) -> bool:
+        """Whether the paper says so."""
+        return bool(self.source)
 
 
 def number_claim(
@@ -69,29 +113,51 @@ def number_claim(
     precision: float,
     measured: Estimate,
     *,
+    source: str = "",
+    ours: str = "",
     theory: str = "",
     reason: str = "",
 ) -> Claim:
-    """Compare a measured number with the paper's."""
+    """Compare a measured number with the one quoted."""
     value, error = measured
-    verdict: Verdict = "reproduced"
-    if not _SIGNIFICANT * error < abs(paper) / 3:
-        verdict = "undecided"
-    elif not abs(value - paper) <= precision + _SIGNIFICANT * error:
-        verdict = "refuted"
-    return Claim(statement, f"{paper:g}", str(measured), theory, verdict, _unless(verdict, reason))
+    holds: bool | None = None
+    if _SIGNIFICANT * error < abs(paper) / 3:
+        holds = bool(abs(value - paper) <= precision + _SIGNIFICANT * error)
+    return _claim(
+        statement,
+        str(measured),
+        holds,
+        source=source,
+        ours=ours,
+        paper=f"{paper:g}",
+        theory=theory,
+        reason=reason,
+    )
 
 
 def positive_claim(
-    statement: str, quantity: str, measured: Estimate, *, theory: str = "", reason: str = ""
+    statement: str,
+    quantity: str,
+    measured: Estimate,
+    *,
+    source: str = "",
+    ours: str = "",
+    theory: str = "",
+    reason: str = "",
 ) -> Claim:
-    """Decide whether a number, named ``quantity``, is positive as the paper's statement implies."""
-    verdict: Verdict = "undecided"
-    if measured.value > _SIGNIFICANT * measured.error:
-        verdict = "reproduced"
-    elif measured.value < -_SIGNIFICANT * measured.error:
-        verdict = "refuted"
-    return Claim(statement, "", f"{quantity} {measured}", theory, verdict, _unless(verdict, reason))
+    """Decide whether a number, named ``quantity``, is positive as the statement implies."""
+    holds: bool | None = None
+    if abs(measured.value) > _SIGNIFICANT * measured.error:
+        holds = measured.value > 0
+    return _claim(
+        statement,
+        f"{quantity} {measured}",
+        holds,
+        source=source,
+        ours=ours,
+        theory=theory,
+        reason=reason,
+    )
 
 
 def small_claim(
@@ -100,17 +166,26 @@ def small_claim(
     measured: Estimate,
     limit: float,
     *,
+    source: str = "",
+    ours: str = "",
     theory: str = "",
     reason: str = "",
 ) -> Claim:
-    """Decide whether a number that should vanish is below ``limit``, what an eye would see."""
-    verdict: Verdict = "undecided"
+    """Decide whether a number that should vanish is below ``limit``."""
+    holds: bool | None = None
     if abs(measured.value) + _SIGNIFICANT * measured.error < limit:
-        verdict = "reproduced"
+        holds = True
     elif abs(measured.value) - _SIGNIFICANT * measured.error > limit:
-        verdict = "refuted"
-    found = f"{quantity} {measured} (limit {limit:g})"
-    return Claim(statement, "", found, theory, verdict, _unless(verdict, reason))
+        holds = False
+    return _claim(
+        statement,
+        f"{quantity} {measured} (limit {limit:g})",
+        holds,
+        source=source,
+        ours=ours,
+        theory=theory,
+        reason=reason,
+    )
 
 
 def same_claim(
@@ -118,17 +193,146 @@ def same_claim(
     measured: str,
     deviation: float,
     *,
+    source: str = "",
+    ours: str = "",
     theory: str = "",
     reason: str = "",
 ) -> Claim:
     """Decide whether two things are the same; ``deviation``: the largest, in standard errors."""
+    return _claim(
+        statement,
+        f"{measured}; largest difference {deviation:.1f} standard errors",
+        bool(deviation < _LARGEST_OF_MANY) if math.isfinite(deviation) else None,
+        source=source,
+        ours=ours,
+        theory=theory,
+        reason=reason,
+    )
+
+
+def eye_claim(
+    statement: str,
+    quantity: str,
+    deviation: Estimate,
+    significance: float,
+    *,
+    source: str = "",
+    ours: str = "",
+    theory: str = "",
+    reason: str = "",
+    exactly: str = "",
+) -> Claim:
+    """Decide whether an eye could see that a curve misses the points.
+
+    Parameters
+    ----------
+    statement, source, ours, theory, reason, exactly
+        See :class:`Claim`.
+    quantity
+        Which points, which curve, and what axes the plot has.
+    deviation
+        The largest deviation as a share of the plotted range, with its standard error.
+    significance
+        The largest deviation in standard errors of the points, which may be that of another point.
+    """
+    holds: bool | None = None
+    if deviation.value + _SIGNIFICANT * deviation.error < EYE:
+        holds = True
+    elif deviation.value - _SIGNIFICANT * deviation.error > EYE:
+        holds = False
+    percent = Estimate(100 * deviation.value, 100 * deviation.error)
+    return _claim(
+        statement,
+        f"{quantity}: off by at most {percent} % of the plotted range (visible: "
+        f"{100 * EYE:g} %), {significance:.1f} standard errors",
+        holds,
+        source=source,
+        ours=ours,
+        theory=theory,
+        reason=reason,
+        exactly=exactly,
+    )
+
+
+def distances_in_plot(
+    x: ArrayLike,
+    y: ArrayLike,
+    line_x: ArrayLike,
+    line_y: ArrayLike,
+    *,
+    x_range: tuple[float, float] | None = None,
+    y_range: tuple[float, float] | None = None,
+) -> NDArray[np.float64]:
+    """Distances of symbols from a line in the plane of a plot, shape of ``x``.
+
+    Each axis is in units of its range. Logarithmic axes: hand in logarithms.
+
+    Parameters
+    ----------
+    x, y
+        The symbols.
+    line_x, line_y
+        Points of the line, in order, dense enough to be joined by straight pieces.
+    x_range, y_range
+        What the plot shows; None: from the least to the greatest symbol.
+
+    Examples
+    --------
+    >>> x = np.linspace(0, 1, 11)
+    >>> unit = (0.0, 1.0)
+    >>> distances_in_plot([0.5], [0.6], x, 0 * x, x_range=unit, y_range=(0, 2))
+    array([0.3])
+    >>> distances_in_plot([0.5], [0.6], x, x, x_range=unit, y_range=unit).round(4)  # 0.1 sin 45
+    array([0.0707])
+    """
+    x, y, line_x, line_y = (np.asarray(each, dtype=float) for each in (x, y, line_x, line_y))
+    symbols, corners = (
+        np.stack([_in_range(a, x, x_range), _in_range(b, y, y_range)], axis=-1)
+        for a, b in ((x, y), (line_x, line_y))
+    )
+    begin, piece = corners[:-1], np.diff(corners, axis=0)
+    length = np.maximum((piece**2).sum(axis=-1), np.finfo(float).tiny)
+    distances = np.empty(x.size)
+    for k, symbol in enumerate(symbols):
+        along = np.clip(((symbol - begin) * piece).sum(axis=-1) / length, 0, 1)
+        away = symbol - begin - along[:, None] * piece
+        distances[k] = np.sqrt((away**2).sum(axis=-1).min())
+    return distances
+
+
+def _in_range(
+    values: NDArray[np.float64], symbols: NDArray[np.float64], span: tuple[float, float] | None
+) -> NDArray[np.float64]:
+    low, high = span or (float(symbols.min()), float(symbols.max()))
+    return np.asarray((values - low) / (high - low))
+
+
+def _claim(
+    statement: str,
+    measured: str,
+    holds: bool | None,
+    *,
+    source: str,
+    ours: str,
+    reason: str,
+    paper: str = "",
+    theory: str = "",
+    exactly: str = "",
+) -> Claim:
+    """Return the claim with its verdict; ``holds`` None: the statistics do not suffice."""
     verdict: Verdict = "undecided"
-    if math.isfinite(deviation):
-        verdict = "reproduced" if deviation < _LARGEST_OF_MANY else "refuted"
-    measured = f"{measured}; largest difference {deviation:.1f} standard errors"
-    return Claim(statement, "", measured, theory, verdict, _unless(verdict, reason))
-
-
-def _unless(verdict: Verdict, reason: str) -> str:
-    """Return the reason, where the paper's claim did not come out."""
-    return "" if verdict == "reproduced" else reason
+    if holds is not None and source:
+        verdict = "reproduced" if holds else ("cannot be decided" if ours else "not reproduced")
+    elif holds is not None:
+        verdict = "confirmed" if holds else "refuted"
+    return Claim(
+        statement=statement,
+        measured=measured,
+        verdict=verdict,
+        source=source,
+        ours=ours,
+        paper=paper,
+        theory=theory,
+        reason="" if holds else reason,
+        exactly=exactly,
+    )

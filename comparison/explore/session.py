@@ -153,7 +153,7 @@ class Session:
         speed = typical_speed(chain, math.inf, *rest)
         self._dynamics = make_dynamics(chain, time_step, speed=speed, diverged=_DIVERGED)
         self._scratch = make_scratch(chain.size)
-        self._tally = make_tally(chain.size, contacts=False, waves=False)
+        self._tally = make_tally(chain.size, contacts=False)
         self._offsets = chain.physical(np.zeros(chain.size))
         self._owed = 0.0
 

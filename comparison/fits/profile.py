@@ -10,25 +10,34 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import curve_fit
 
 from crazybilliards.model import chain_of
-from crazybilliards.model.checks import check_integer
 from crazybilliards.model.vocabulary import require
+
+Array = NDArray[np.float64]
+
+_STEEPEST = -5.0  # of the exponents that are tried
+_STARTS = ((-0.5, 0.0), (-0.5, 0.8), (-1.0, -5.0), (-0.1, 0.0))  # of nu and c
+_LEAST_RODS = 5
 
 
 @dataclass(frozen=True)
 class PowerLawFit:
-    """W_v(i) = B [i^nu + (L + 1 - i)^nu] + C, the paper's sum of two power laws from the borders.
+    """W_v(i) = a [(i - c)^nu + (L + 1 - c - i)^nu], the paper's sum of two power laws.
 
-    Callable on particle numbers.
+    Equation ``eq:power_law`` of arXiv:1404.7460. Callable on particle numbers.
 
     Attributes
     ----------
     size
         L.
-    scale, exponent, offset
-        B [R/T], nu and C [R/T], which is 0 unless it was fitted.
-    scale_error, exponent_error, offset_error
+    scale, exponent, origin
+        a [R/T], nu and c. The power laws begin at the particle numbers c and L + 1 - c, beyond
+        the outermost rods: c < 1.
+    scale_error, exponent_error, origin_error
         Their standard errors, from the scatter about the fit. Neighbouring rods move together, so
         the scatter between independent runs is larger and the better measure.
+    correlation
+        Correlation of the errors of c and nu, 0.8 typically: a larger c goes with a flatter law.
+        0 where c was not fitted.
     misfit
         Root mean square of the relative residuals.
     """
@@ -36,41 +45,41 @@ class PowerLawFit:
     size: int
     scale: float
     exponent: float
+    origin: float
     scale_error: float
     exponent_error: float
+    origin_error: float
+    correlation: float
     misfit: float
-    offset: float = 0.0
-    offset_error: float = 0.0
 
-    def __call__(self, particle: ArrayLike) -> NDArray[np.float64]:
-        """Return B [i^nu + (L + 1 - i)^nu] + C."""
+    def __call__(self, particle: ArrayLike) -> Array:
+        """Return a [(i - c)^nu + (L + 1 - c - i)^nu]."""
         i = np.asarray(particle, dtype=float)
-        powers = i**self.exponent + (self.size + 1 - i) ** self.exponent
-        return np.asarray(self.scale * powers + self.offset)
+        return _sum_of_powers(i, self.size, self.scale, self.exponent, self.origin)
 
 
 def fit_border_power_law(
-    source: xr.Dataset, *, skip: int | None = None, offset: bool = False
+    source: xr.Dataset, *, shifted: bool = True, weighted: bool = False
 ) -> PowerLawFit:
-    """Fit the sum of two power laws to the velocity widths of a dissipative chain.
-
-    Widths count by their error bars; those of a theory, which has none, by relative deviations, so
-    that the narrow centre weighs as much as the wide border.
+    """Fit the paper's sum of two power laws to the velocity widths of all rods.
 
     Parameters
     ----------
     source
         A result with ``velocity_width`` of all particles.
-    skip
-        Rods at each border that are left out; None: L/30. The power law is that of the interior:
-        at L = 300, e = 0 the exponent is -0.445 with all rods, -0.461 without 10 at each end.
-    offset
-        Fit the constant C as well. It and the exponent are hard to tell apart: errors grow much.
+    shifted
+        Fit c, as the paper does. False: c = 0, which flattens the exponent by some 0.03 and makes
+        it depend on the size.
+    weighted
+        Weigh the widths by their error bars; those of a theory, which has none, by relative
+        deviations. The narrow interior then counts more. False: ordinary least squares. The paper
+        does not say which. At L = 300, e = 0 the exponent is -0.460 without weights, -0.473 with.
 
     Raises
     ------
     ValueError
-        If fewer than 4 rods are left, or if no power law fits.
+        If the chain has fewer than 5 rods or a width is not positive, or if no such law with
+        -5 < nu < 0 and -L < c < 1 fits: the widths of a chain with e >= 1 for instance.
 
     Examples
     --------
@@ -82,27 +91,80 @@ def fit_border_power_law(
     """
     require(source, ("velocity_width",))
     size = chain_of(source).size
-    skip = size // 30 if skip is None else check_integer("skip", skip, least=0)
-    if source.sizes["particle"] != size or size - 2 * skip < 4:
-        raise ValueError(
-            "the fit needs the widths of all particles, at least 4 without the skipped"
-        )
-    inner = slice(skip, size - skip)
-    i = np.arange(1.0, size + 1)[inner]
-    width = source.velocity_width.values[inner]
-    weight = source.get("velocity_width_error", source.velocity_width).values[inner]
+    if source.sizes["particle"] != size or size < _LEAST_RODS:
+        raise ValueError(f"the fit needs the widths of all particles, at least {_LEAST_RODS}")
+    width = source.velocity_width.values
+    weight = np.ones(size)
+    if weighted:
+        weight = source.get("velocity_width_error", source.velocity_width).values
+    if not (np.min([width, weight]) > 0 and np.isfinite([width, weight]).all()):
+        raise ValueError("the fit needs positive widths and errors")
+    i = np.arange(1.0, size + 1)
+    values, errors, correlation = _best_fit(i, width, weight, size, shifted)
+    fitted = _sum_of_powers(i, size, *values)
+    return PowerLawFit(
+        size=size,
+        scale=float(values[0]),
+        exponent=float(values[1]),
+        origin=float(values[2]),
+        scale_error=float(errors[0]),
+        exponent_error=float(errors[1]),
+        origin_error=float(errors[2]),
+        correlation=correlation,
+        misfit=float(np.sqrt(np.mean((fitted / width - 1) ** 2))),
+    )
 
-    def model(
-        i: NDArray[np.float64], scale: float, nu: float, constant: float = 0.0
-    ) -> NDArray[np.float64]:
-        return np.asarray(scale * (i**nu + (size + 1 - i) ** nu) + constant)
 
-    start = (float(width[0]), -0.5) + ((0.0,) if offset else ())
-    try:
-        values, covariance = curve_fit(model, i, width, p0=start, sigma=weight, maxfev=10_000)
-    except RuntimeError as error:
-        raise ValueError(f"no power law fits: {error}") from error
-    errors = np.sqrt(np.diag(covariance))
-    misfit = np.sqrt(np.mean((model(i, *values) / width - 1) ** 2))
-    numbers = map(float, (values[0], values[1], errors[0], errors[1], misfit))
-    return PowerLawFit(size, *numbers, *map(float, (*values[2:], *errors[2:])))
+def _best_fit(
+    i: Array, width: Array, weight: Array, size: int, shifted: bool
+) -> tuple[Array, Array, float]:
+    """Return a, nu and c, their errors, and the correlation of the last two."""
+
+    def model(i: Array, scale: float, nu: float, c: float = 0.0) -> Array:
+        return _sum_of_powers(i, size, scale, nu, c)
+
+    number = 3 if shifted else 2
+    bounds = ([0.0, _STEEPEST, -float(size)][:number], [np.inf, 0.0, 1.0][:number])
+    best: tuple[float, Array, Array] | None = None
+    for nu, c in _STARTS if shifted else _STARTS[:1]:
+        # The best scale for these two.
+        unscaled = model(i, 1.0, nu, c) / weight
+        scale = float(unscaled @ (width / weight) / (unscaled @ unscaled))
+        try:
+            values, covariance = curve_fit(
+                model,
+                i,
+                width,
+                p0=(scale, nu, c)[:number],
+                sigma=weight,
+                absolute_sigma=True,
+                bounds=bounds,
+                x_scale=(scale, 0.1, 1.0)[:number],
+                ftol=1e-12,
+                xtol=1e-10,
+                gtol=1e-12,
+                max_nfev=2000,
+            )
+        except RuntimeError:
+            continue  # this start leads nowhere; another may
+        cost = float(np.sum(((model(i, *values) - width) / weight) ** 2))
+        if best is None or cost < best[0]:
+            best = cost, values, covariance
+    if best is None or not _inside(best[1], bounds) or not np.isfinite(best[2]).all():
+        raise ValueError("no power law fits: the widths do not fall like one from the borders")
+    cost, values, covariance = best
+    one = np.sqrt(np.diag(covariance))  # errors for weights of one standard error each
+    correlation = float(covariance[1, 2] / (one[1] * one[2])) if shifted else 0.0
+    errors = one * np.sqrt(cost / (width.size - number))
+    rest = np.zeros(3 - number)
+    return np.append(values, rest), np.append(errors, rest), correlation
+
+
+def _inside(values: Array, bounds: tuple[list[float], list[float]]) -> bool:
+    """Whether nu and c are off their bounds, to a thousandth."""
+    triples = list(zip(values, *bounds, strict=True))[1:]
+    return all(low + 1e-3 < value < high - 1e-3 for value, low, high in triples)
+
+
+def _sum_of_powers(i: Array, size: int, scale: float, nu: float, c: float) -> Array:
+    return np.asarray(scale * ((i - c) ** nu + (size + 1 - c - i) ** nu))

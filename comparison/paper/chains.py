@@ -51,7 +51,7 @@ def flippers(size: int, damping: float, quality: Quality) -> Cases:
         chain,
         number,
         duration=duration,
-        observe=["widths", "velocities", "avalanches"],
+        observe=["widths", "velocities", "avalanches", "triggered-collisions"],
     )
 
 

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
+from numpy.typing import NDArray
+from scipy.optimize import curve_fit
 
+from crazybilliards.comparison.claims.verdicts import distances_in_plot
 from crazybilliards.comparison.drawing import COLOURS, SYMBOLS
 
 _LEAST = 1e-5  # of the largest density: below, counts are too few to draw
@@ -28,6 +31,34 @@ def moment(run: xr.Dataset, particles: Sequence[int], order: int) -> float:
         variance = share @ deviation**2
         values.append(share @ deviation**order / variance ** (order / 2))
     return float(np.mean(values))
+
+
+def histogram(
+    run: xr.Dataset, particles: Sequence[int], reach: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return velocities and the mean density of some particles in 41 equal bins to +-``reach``."""
+    v, weight = run.velocity.values, np.gradient(run.velocity.values)
+    p = run.velocity_density.sel(particle=list(particles)).mean("particle").values
+    edges = np.linspace(-reach, reach, _SYMBOLS_DRAWN + 1)
+    share, _ = np.histogram(v, edges, weights=p * weight)
+    width, _ = np.histogram(v, edges, weights=weight)
+    middle, _ = np.histogram(v, edges, weights=v * weight)
+    filled = width > 0
+    return middle[filled] / width[filled], share[filled] / width[filled]
+
+
+def off_in_plot(
+    v: NDArray[np.float64],
+    p: NDArray[np.float64],
+    line: Callable[[NDArray[np.float64]], NDArray[np.float64]],
+    reach: float,
+) -> float:
+    """Return how far off a line the symbols are at most, in a plot to +-``reach`` from p = 0 up."""
+    fine = np.linspace(-reach, reach, 4001)
+    height = (0.0, float(p.max()))
+    return float(
+        distances_in_plot(v, p, fine, line(fine), x_range=(-reach, reach), y_range=height).max()
+    )
 
 
 def draw_distributions(
@@ -59,10 +90,10 @@ def draw_distributions(
             label=f"i = {particle}",
         )
         fine = np.linspace(-5 * width, 5 * width, 201)
-        ax.semilogy(fine, _gauss(fine, width), color=colour, linewidth=1.0)
+        ax.semilogy(fine, gaussian(fine, width), color=colour, linewidth=1.0)
     if free:
         fine = np.linspace(-5, 5, 201)
-        ax.semilogy(fine, _gauss(fine, 1.0), "k:", linewidth=1.2, label="free rod")
+        ax.semilogy(fine, gaussian(fine, 1.0), "k:", linewidth=1.2, label="free rod")
     top = ax.get_ylim()[1]
     ax.set(ylim=(3e-6, top), xlim=(-1.05 * reach, 1.05 * reach))
     ax.set(xlabel="velocity $v/W$", ylabel="probability density $W p(v)$")
@@ -88,5 +119,20 @@ def draw_sizes(
     ax.set(xscale="log", yscale="log", xlabel="avalanche size $N_c$")
 
 
-def _gauss(v: np.ndarray, width: float) -> np.ndarray:
+def gaussian(v: np.ndarray, width: float) -> np.ndarray:
+    """Return the normal density of that width."""
     return np.asarray(np.exp(-((v / width) ** 2) / 2) / (width * np.sqrt(2 * np.pi)))
+
+
+def fit_gaussian(
+    v: NDArray[np.float64], p: NDArray[np.float64], width: float
+) -> Callable[[NDArray[np.float64]], NDArray[np.float64]]:
+    """Return the Gaussian that fits best by least squares, its height, centre and width free."""
+
+    def model(
+        v: NDArray[np.float64], height: float, centre: float, width: float
+    ) -> NDArray[np.float64]:
+        return np.asarray(height * np.exp(-(((v - centre) / width) ** 2) / 2))
+
+    values, _ = curve_fit(model, v, p, p0=(float(p.max()), 0.0, width))
+    return lambda v: model(v, *values)

@@ -1,18 +1,25 @@
 """Avalanches: waves of momentum that run along the chain from collision to collision.
 
-Whenever rod i hits its right neighbour while the momentum of the two points right, a wave starts
-at the origin i with its front on i+1. The next collision of the front decides: if it is with its
-own right neighbour and the momentum points right again, the front moves on; otherwise the wave
-ends, having triggered N_c = front - origin collisions, and is counted at its origin.
+A wave has an origin, the rod i that hit its right neighbour, and a front, i + 1 at first. The next
+collision of the front decides. If it is with the front's own right neighbour and the momentum
+points right, the front moves on by one; otherwise the wave ends and is counted at its origin.
+There are two counts:
+
+**triggered**, the paper's (section ``seq:e_0``)
+    Every hit of i on i + 1 starts a wave, whatever its momentum. A collision's momentum is that of
+    the two rods that meet. N_c = front - origin - 1 is the number of collisions after the first.
+**pushes**, our extension
+    The first hit needs a momentum that points right, too, and counts: N_c = front - origin. Rods
+    that stick together pass a push on from one to the next, in no time: when clusters meet, the
+    collisions run on through the one that is pushed, to its far end, and the momentum is that of
+    both clusters.
 
 Waves with the same front share their future. A front's waves are a linked list that moves as a
 whole, so a collision costs O(1), and its waves' end what their starts have paid for:
 
     collision of c and c+1    rightward: waves on c+1 end, those on c move to c+1, one starts at c
                               otherwise: waves on c and on c+1 end
-
-Rods that stick together pass a push on from one to the next, in no time: when clusters meet, the
-collisions run on through the one that is pushed, to its far end.
+                                         (triggered: and one starts at c)
 """
 
 from __future__ import annotations
@@ -22,73 +29,107 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crazybilliards.model.kernels import kernel
+from crazybilliards.model.kernels import inlined, kernel
 
 Integers = NDArray[np.int64]
+
+
+class Waves(NamedTuple):
+    """Waves under way, and what became of the others. Arrays of length 0: not counted."""
+
+    heads: Integers  # first wave of each front, -1 without any, (L,)
+    following: Integers  # next wave with the same front, or next unused place, -1 at the end
+    origins: Integers  # of each wave
+    unused: Integers  # first unused place, (1,)
+    sizes: Integers  # waves ended, by origin and by front - origin - 1, (L, L)
 
 
 class Tally(NamedTuple):
     """What is kept of single collisions. Arrays of length 0: not kept."""
 
     contacts: Integers  # collisions at each contact, (L - 1,)
-    heads: Integers  # first wave of each front, -1 without any, (L,)
-    following: Integers  # next wave with the same front, or next unused place, -1 at the end
-    origins: Integers  # of each wave
-    unused: Integers  # first unused place, (1,)
-    sizes: Integers  # waves ended, by origin and by N_c - 1, (L, L)
+    pushes: Waves
+    triggered: Waves
 
 
-def make_tally(size: int, *, contacts: bool, waves: bool) -> Tally:
-    """Return an empty tally for ``size`` rods; with ``waves`` it takes 16 L^2 bytes."""
-    fronts = size if waves else 0
+def make_waves(size: int) -> Waves:
+    """Return no waves yet, for ``size`` rods: 16 L^2 bytes; 0: not to be counted."""
     # A front p has at most one wave of each origin below it.
-    places = fronts * (fronts - 1) // 2
+    places = size * (size - 1) // 2
     following = np.arange(1, places + 1, dtype=np.int64)
     following[-1:] = -1
-    return Tally(
-        np.zeros(max(size - 1, 0) if contacts else 0, dtype=np.int64),
-        np.full(fronts, -1, dtype=np.int64),
+    return Waves(
+        np.full(size, -1, dtype=np.int64),
         following,
         np.zeros(places, dtype=np.int64),
         np.zeros(1, dtype=np.int64),
-        np.zeros((fronts, fronts), dtype=np.int64),
+        np.zeros((size, size), dtype=np.int64),
     )
 
 
+def make_tally(size: int, *, contacts: bool) -> Tally:
+    """Return an empty tally for ``size`` rods, without waves."""
+    counted = np.zeros(max(size - 1, 0) if contacts else 0, dtype=np.int64)
+    return Tally(counted, make_waves(0), make_waves(0))
+
+
 @kernel
-def _end(front, tally):  # type: ignore[no-untyped-def]
+def _end(front, waves):  # type: ignore[no-untyped-def]
     """Count all waves of a front at their origins and give their places back."""
-    wave = tally.heads[front]
+    wave = waves.heads[front]
     while wave >= 0:
-        tally.sizes[tally.origins[wave], front - tally.origins[wave] - 1] += 1
-        following = tally.following[wave]
-        tally.following[wave] = tally.unused[0]
-        tally.unused[0] = wave
+        waves.sizes[waves.origins[wave], front - waves.origins[wave] - 1] += 1
+        following = waves.following[wave]
+        waves.following[wave] = waves.unused[0]
+        waves.unused[0] = wave
         wave = following
-    tally.heads[front] = -1
+    waves.heads[front] = -1
 
 
 @kernel
-def record_collision(contact, first, last, momentum, tally):  # type: ignore[no-untyped-def]
+def _start(origin, waves):  # type: ignore[no-untyped-def]
+    """Put a new wave on the front right of its origin, with all that are on the origin."""
+    wave = waves.unused[0]
+    waves.unused[0] = waves.following[wave]
+    waves.origins[wave] = origin
+    waves.following[wave] = waves.heads[origin]
+    waves.heads[origin] = -1
+    waves.heads[origin + 1] = wave
+
+
+@inlined
+def _push(contact, first, last, momentum, waves):  # type: ignore[no-untyped-def]
+    """Take a collision of two clusters down, running on through the one that is pushed."""
+    if momentum > 0:
+        for pushed in range(contact, last):
+            _end(pushed + 1, waves)
+            _start(pushed, waves)
+    else:
+        for pushed in range(contact, first - 1, -1):
+            _end(pushed + 1, waves)
+            _end(pushed, waves)
+
+
+@inlined
+def _trigger(contact, momentum, waves):  # type: ignore[no-untyped-def]
+    """Take a collision of two rods down, as the paper counts."""
+    _end(contact + 1, waves)
+    if momentum <= 0:
+        _end(contact, waves)
+    _start(contact, waves)
+
+
+@kernel
+def record_collision(contact, first, last, v_left, v_right, tally):  # type: ignore[no-untyped-def]
     """Take down a collision of rods ``contact`` and ``contact + 1`` (counted from 0).
 
-    ``first`` and ``last`` are the outermost rods of the two clusters that meet, ``momentum`` is
-    theirs together.
+    ``first`` and ``last`` are the outermost rods of the two clusters that meet, ``v_left`` and
+    ``v_right`` the velocities of these.
     """
     if tally.contacts.size > 0:
         tally.contacts[contact] += 1
-    if tally.heads.size == 0:
-        return
-    if momentum <= 0:
-        for pushed in range(contact, first - 1, -1):
-            _end(pushed + 1, tally)
-            _end(pushed, tally)
-        return
-    for pushed in range(contact, last):
-        _end(pushed + 1, tally)
-        wave = tally.unused[0]
-        tally.unused[0] = tally.following[wave]
-        tally.origins[wave] = pushed
-        tally.following[wave] = tally.heads[pushed]
-        tally.heads[pushed] = -1
-        tally.heads[pushed + 1] = wave
+    if tally.pushes.heads.size > 0:
+        momentum = (contact - first + 1) * v_left + (last - contact) * v_right
+        _push(contact, first, last, momentum, tally.pushes)
+    if tally.triggered.heads.size > 0:
+        _trigger(contact, v_left + v_right, tally.triggered)

@@ -124,7 +124,7 @@ def drift(y, v, dt, restitution, merge_speed, most, integers, floats, tally):  #
         a, b = first[contact], last[contact + 1]
         left, right = contact - a + 1, b - contact
         v_left, v_right = v[contact], v[contact + 1]
-        record_collision(contact, a, b, left * v_left + right * v_right, tally)
+        record_collision(contact, a, b, v_left, v_right, tally)
         # The cluster's or the pair's common velocity, by its smaller change.
         common = v_left + (v_right - v_left) * right / (left + right)
         # Flippers act when rods meet. Rods at rest against one another would otherwise pass one

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Collection
 
 from crazybilliards.model.checks import shown
-from crazybilliards.particles.observers.avalanches import Avalanches
+from crazybilliards.particles.observers.avalanches import Avalanches, TriggeredCollisions
 from crazybilliards.particles.observers.base import (
     Averaged,
     Integers,
@@ -26,7 +26,16 @@ from crazybilliards.particles.observers.widths import Widths
 
 OBSERVERS: dict[str, type[Observer]] = {
     observer.name: observer
-    for observer in (Widths, Density, Velocities, Energy, Collisions, Avalanches, Raw)
+    for observer in (
+        Widths,
+        Density,
+        Velocities,
+        Energy,
+        Collisions,
+        Avalanches,
+        TriggeredCollisions,
+        Raw,
+    )
 }
 
 __all__ = [

@@ -1,13 +1,13 @@
-"""Avalanche sizes by origin."""
+"""Avalanche sizes by origin, in two counts."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Self
+from typing import ClassVar, Self
 
 import numpy as np
 
-from crazybilliards.particles.laws.avalanche import Tally, make_tally
+from crazybilliards.particles.laws.avalanche import Tally, Waves, make_waves
 from crazybilliards.particles.observers.base import (
     Array,
     Integers,
@@ -18,34 +18,20 @@ from crazybilliards.particles.observers.base import (
 from crazybilliards.particles.run import Run
 
 
-class Avalanches(Observer):
-    """avalanche_count: rightward waves started by each particle that triggered N_c collisions.
+class _CountedWaves(Observer):
+    """What both counts share: the kernel counts, this keeps and reports what it has counted."""
 
-    Counted by the collision kernel itself (see ``particles/laws/avalanche.py``) while measuring. By
-    symmetry leftward waves are those of the mirrored particles. In a dissipative chain the counts
-    depend on the time step: rods in contact are kicked anew in every step. 16 L^2 bytes.
-    """
-
-    name = "avalanches"
-    gives = ("avalanche_count",)
-    along = ("avalanche_size",)
     single_collisions = True
     ensemble = False
+    smallest: ClassVar[int]  # least N_c
 
     def prepare(self, run: Run, copies: int) -> None:
         """Make the sums."""
-        tally = make_tally(run.chain.size, contacts=False, waves=True)
-        _, self.heads, self.following, self.origins, self.unused, self.sizes = tally
+        waves = make_waves(run.chain.size)
+        self.heads, self.following, self.origins, self.unused, self.sizes = waves
 
-    def tally(self, tally: Tally) -> Tally:
-        """Return the tally with the waves of this observer."""
-        return tally._replace(
-            heads=self.heads,
-            following=self.following,
-            origins=self.origins,
-            unused=self.unused,
-            sizes=self.sizes,
-        )
+    def _waves(self) -> Waves:
+        return Waves(self.heads, self.following, self.origins, self.unused, self.sizes)
 
     def memory(self, run: Run) -> float:
         """Return the bytes it keeps."""
@@ -59,9 +45,49 @@ class Avalanches(Observer):
         self.sizes = self.sizes + sum(other.sizes for other in others)
 
     def report(self, counts: Integers) -> Variables:
-        """Return avalanche_count."""
-        return {"avalanche_count": (("particle", "avalanche_size"), self.sizes)}
+        """Return the counts."""
+        return {self.gives[0]: (("particle", self.along[0]), self.sizes)}
 
     def coordinates(self) -> dict[str, Array]:
         """Return the sizes N_c."""
-        return {"avalanche_size": np.arange(1.0, len(self.sizes) + 1)}
+        return {self.along[0]: np.arange(len(self.sizes), dtype=np.float64) + self.smallest}
+
+
+class Avalanches(_CountedWaves):
+    """avalanche_count: rightward waves started by each particle that triggered N_c collisions.
+
+    The first hit counts and must have a momentum that points right, and rods that stick together
+    pass a push on: our extension of the paper's count, which :class:`TriggeredCollisions` is.
+
+    Counted by the collision kernel itself (see ``particles/laws/avalanche.py``) while measuring. By
+    symmetry leftward waves are those of the mirrored particles. In a dissipative chain the counts
+    depend on the time step: rods in contact are kicked anew in every step. 16 L^2 bytes.
+    """
+
+    name = "avalanches"
+    gives = ("avalanche_count",)
+    along = ("avalanche_size",)
+    smallest = 1
+
+    def tally(self, tally: Tally) -> Tally:
+        """Return the tally with the waves of this observer."""
+        return tally._replace(pushes=self._waves())
+
+
+class TriggeredCollisions(_CountedWaves):
+    """triggered_count: hits of each particle on its right neighbour that triggered N_c collisions.
+
+    The paper's count, word for word (section ``seq:e_0``). Every hit of i on i + 1 starts a wave,
+    and N_c = 0, 1, 2, ... is the number of collisions after it: with the front's right neighbour,
+    the momentum of the two rods pointing right. Rods that stick together pass nothing on. See
+    :class:`Avalanches`.
+    """
+
+    name = "triggered-collisions"
+    gives = ("triggered_count",)
+    along = ("triggered_collisions",)
+    smallest = 0
+
+    def tally(self, tally: Tally) -> Tally:
+        """Return the tally with the waves of this observer."""
+        return tally._replace(triggered=self._waves())

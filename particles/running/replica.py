@@ -97,7 +97,7 @@ class Replica:
 
     def _warm_up(self, dynamics: Dynamics, schedule: Schedule, stop: Event) -> Iterator[int]:
         scratch = make_scratch(self.y.size)
-        uncounted = make_tally(self.y.size, contacts=False, waves=False)
+        uncounted = make_tally(self.y.size, contacts=False)
         chunk = max(_CHUNK // self.y.size, 1)
         while self.steps < schedule.warmup_steps and not (self.over or stop.is_set()):
             steps = min(chunk, schedule.warmup_steps - self.steps)
@@ -162,7 +162,7 @@ class Replica:
 
     def _tally(self, *, counted: bool) -> Tally:
         """Return what the kernels write collisions into: counts, and what observers add to it."""
-        tally = make_tally(self.y.size, contacts=counted, waves=False)
+        tally = make_tally(self.y.size, contacts=counted)
         for observer in self.observers:
             tally = observer.tally(tally)
         return tally

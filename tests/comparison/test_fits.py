@@ -133,20 +133,81 @@ def profile(width, error=None):
     return result(chain, variables, source="simulation", method={})
 
 
-def test_border_power_law_with_offset():
-    i = np.arange(1.0, 101)
-    width = 0.3 * (i**-0.6 + (101 - i) ** -0.6) + 0.05
-    fit = fit_border_power_law(profile(width), offset=True, skip=0)
-    assert (fit.exponent, fit.offset, fit.scale) == pytest.approx((-0.6, 0.05, 0.3), rel=1e-4)
-    np.testing.assert_allclose(fit(i), width, rtol=1e-6)
-    assert fit_border_power_law(profile(width), skip=0).offset == 0
+def power_laws(size, scale, nu, c):
+    i = np.arange(1.0, size + 1)
+    return scale * ((i - c) ** nu + (size + 1 - c - i) ** nu)
 
 
-def test_border_power_law_counts_widths_by_their_errors():
-    """One wrong rod with a large error bar does no harm."""
-    i = np.arange(1.0, 101)
-    width = 0.3 * (i**-0.5 + (101 - i) ** -0.5)
+@pytest.mark.parametrize("size", [20, 60, 300])
+@pytest.mark.parametrize("unit", [1e-3, 1.0, 1e4])
+@pytest.mark.parametrize(("nu", "c"), [(-0.46, -0.5), (-0.46, 0.7), (-1.5, -4.0), (-0.1, 0.0)])
+def test_two_power_laws_are_found_exactly(size, unit, nu, c):
+    width = power_laws(size, 0.3 * unit, nu, c)
+    for weighted in (False, True):
+        fit = fit_border_power_law(profile(width), weighted=weighted)
+        found = fit.scale / unit, fit.exponent, fit.origin
+        assert found == pytest.approx((0.3, nu, c), rel=1e-3, abs=1e-3)
+        assert fit.misfit < 1e-4
+    np.testing.assert_allclose(fit(np.arange(1, size + 1)), width, rtol=1e-3)
+
+
+def test_the_errors_of_two_power_laws_are_those_of_the_scatter():
+    """Ordinary least squares for equal noise, weighted for noise in proportion to the width."""
+    generator = np.random.default_rng(6)
+    true = power_laws(100, 0.3, -0.46, -0.4)
+    for noise, weighted in ((np.full(100, 2e-3), False), (0.01 * true, True)):
+        fits = [
+            fit_border_power_law(profile(generator.normal(true, noise), noise), weighted=weighted)
+            for _ in range(TRIALS)
+        ]
+        nu, c = ([getattr(fit, name) for fit in fits] for name in ("exponent", "origin"))
+        calibrated(nu, [fit.exponent_error for fit in fits], -0.46)
+        calibrated(c, [fit.origin_error for fit in fits], -0.4)
+        within = [abs(f.exponent + 0.46) < f.exponent_error for f in fits]
+        assert abs(np.mean(within) - 0.683) < 5 * (0.683 * 0.317 / TRIALS) ** 0.5
+        claimed = np.mean([fit.correlation for fit in fits])
+        assert claimed == pytest.approx(np.corrcoef(nu, c)[0, 1], abs=0.05)
+        assert claimed > 0.8
+
+
+def test_dropping_c_flattens_the_exponent():
+    width = power_laws(100, 0.3, -0.46, -0.4)
+    fit = fit_border_power_law(profile(width), shifted=False)
+    assert (fit.origin, fit.origin_error, fit.correlation) == (0, 0, 0)
+    assert -0.44 < fit.exponent < -0.41
+    exact = fit_border_power_law(profile(power_laws(100, 0.3, -0.46, 0.0)), shifted=False)
+    assert (exact.scale, exact.exponent) == pytest.approx((0.3, -0.46), rel=1e-5)
+
+
+def test_the_mirrored_profile_gives_the_same_two_power_laws():
+    generator = np.random.default_rng(7)
+    width = generator.normal(power_laws(50, 0.3, -0.46, -0.4), 0.002)
+    one, other = (vars(fit_border_power_law(profile(each))) for each in (width, width[::-1]))
+    assert one == pytest.approx(other, rel=1e-3)
+
+
+def test_weighted_widths_count_by_their_errors():
+    """One wrong rod with a large error bar does no harm; in ordinary least squares it does."""
+    width = power_laws(100, 0.3, -0.5, -0.4)
     error = 0.01 * width
     width[0], error[0] = width[0] / 3, 1e4 * width[0]
-    assert fit_border_power_law(profile(width, error), skip=0).exponent == pytest.approx(-0.5, 1e-3)
-    assert abs(fit_border_power_law(profile(width), skip=0).exponent + 0.5) > 0.01
+    weighted = fit_border_power_law(profile(width, error), weighted=True)
+    assert weighted.exponent == pytest.approx(-0.5, 1e-3)
+    assert abs(fit_border_power_law(profile(width, error)).exponent + 0.5) > 0.01
+
+
+@pytest.mark.parametrize(
+    ("width", "message"),
+    [
+        ([0.3, 0.2, 0.2, 0.3], "at least 5"),
+        ([0.3, 0.2, np.nan, 0.2, 0.3], "positive widths"),
+        ([0.3, 0.2, 0.0, 0.2, 0.3], "positive widths"),
+        (np.full(50, 0.3), "no power law fits"),  # e = 1
+        (power_laws(50, 0.3, 0.5, 0.0), "no power law fits"),  # a concave profile
+    ],
+)
+def test_widths_that_two_power_laws_do_not_fit(width, message):
+    with pytest.raises(ValueError, match=message):
+        fit_border_power_law(profile(width))
+    with pytest.raises(ValueError, match="all particles"):
+        fit_border_power_law(profile(np.ones(9)).isel(particle=[1, 2]))

@@ -17,7 +17,7 @@ from crazybilliards.particles.laws.law import (
     make_scratch,
 )
 
-UNSEEN = make_tally(2, contacts=False, waves=False)
+UNSEEN = make_tally(2, contacts=False)
 OPERATORS = {"sort": SORT, "isotonic": ISOTONIC, "heap": HEAP, "contacts": CONTACTS}
 
 
@@ -156,7 +156,7 @@ def test_galilean_invariance(state, e, name):
 @given(state=states(), e=restitutions)
 def test_collisions_are_counted_at_their_contacts(state, e):
     y, v, dt = state
-    tally = make_tally(y.size, contacts=True, waves=False)
+    tally = make_tally(y.size, contacts=True)
     _, _, collisions = drifted(HEAP, y, v, dt, e, tally=tally)
     assert tally.contacts.sum() == collisions
 

@@ -15,7 +15,7 @@ from crazybilliards.particles.stepping import advance, make_dynamics, make_step
 def take_steps(chain, y, v, generator, step, steps):
     """Advance an elastic chain in place."""
     dynamics = make_dynamics(chain, step.time_step, speed=1.0)._replace(step=step)
-    tally = make_tally(chain.size, contacts=False, waves=False)
+    tally = make_tally(chain.size, contacts=False)
     scratch = make_scratch(chain.size)
     return advance(y, v, generator, dynamics, scratch, tally, steps)
 

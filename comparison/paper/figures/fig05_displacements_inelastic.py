@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 
 import matplotlib.pyplot as plt
+import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
@@ -32,16 +33,37 @@ def swelling(run: xr.Dataset) -> float:
     return float(place @ run.mean_displacement.values / (place @ place))
 
 
+def _confined(run: xr.Dataset) -> float:
+    """Return W_x of the middle tenth of the rods."""
+    middle = np.abs(run.normalized_particle.values) < 0.1
+    return float(np.sqrt((run.displacement_width.values[middle] ** 2).mean()))
+
+
 def claims(results: Results) -> list[Claim]:
     """Check: displacements decrease with the size."""
     found = {size: estimate(results, dissipative_name(size, 0.0), swelling) for size in _SIZES}
+    spread = {size: estimate(results, dissipative_name(size, 0.0), _confined) for size in _SIZES}
+    source, ours = "section seq:e_0, fig.3_2", "the sizes and the time step"
     return [
-        positive_claim(
-            f"the mean displacement decreases from L = {small} to L = {large}",
-            f"slope of <dx> against i_n: {found[small]} less {found[large]}, difference",
-            found[small].minus(found[large]),
-        )
+        claim
         for small, large in itertools.pairwise(_SIZES)
+        for claim in (
+            positive_claim(
+                f"the mean displacement decreases from L = {small} to L = {large}",
+                f"slope of <dx> against i_n: {found[small]} less {found[large]}, difference",
+                found[small].minus(found[large]),
+                source=source,
+                ours=ours,
+            ),
+            positive_claim(
+                f"the interior is confined more strongly at L = {large} than at L = {small}",
+                f"W_x in the centre, middle tenth: {spread[small]} less {spread[large]}, "
+                "difference",
+                spread[small].minus(spread[large]),
+                source=f"{source}, inset",
+                ours=ours,
+            ),
+        )
     ]
 
 

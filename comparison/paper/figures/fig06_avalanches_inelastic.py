@@ -5,26 +5,40 @@ from __future__ import annotations
 import matplotlib.pyplot as plt
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from crazybilliards.comparison.claims.repetition import estimate, pooled, repeated
 from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
-from crazybilliards.comparison.claims.verdicts import Claim, Estimate, number_claim, positive_claim
+from crazybilliards.comparison.claims.verdicts import (
+    Claim,
+    Estimate,
+    number_claim,
+    positive_claim,
+    small_claim,
+)
 from crazybilliards.comparison.fits import fit_avalanches
 from crazybilliards.comparison.paper.chains import LARGE
 from crazybilliards.comparison.paper.distributions import draw_sizes
 from crazybilliards.model import Chain
 
-_STEPS = (1e-2, 1e-3)
-_DURATION = {"quick": (2, 50.0), "full": (6, 300.0)}
+_STEPS = (1e-1, 1e-2, 1e-3)
+_DURATION = {"quick": (2, 64.0), "full": (4, 200.0)}
 _ORIGINS = {"centre": slice(451, 550), "quarter": slice(201, 300), "border": slice(51, 150)}
-_FITTED = (20, 150)  # sizes: beyond the clusters of one step, below the length of the chain
 _PAPER, _PRECISION = -2.2, 0.1
+# By count: its name, its sizes, and those fitted: all of the paper's count that are not rare;
+# of pushes those beyond the clusters of one step and below the length of the chain.
+_COUNTS = {
+    "triggered_count": ("the paper's count", "triggered_collisions", (3, 20)),
+    "avalanche_count": ("pushes", "avalanche_size", (20, 150)),
+}
+_SOURCE = "section seq:e_0, fig:trigger"
+_OURS = "the time step, the sizes fitted, and what counts as a collision among rods in contact"
 
 
 def cases(quality: Quality) -> Cases:
-    """L = 1000, e = 0, at two time steps."""
+    """L = 1000, e = 0, at three time steps, in both counts."""
     number, duration = _DURATION[quality]
     cases: Cases = {}
     for step in _STEPS:
@@ -35,83 +49,143 @@ def cases(quality: Quality) -> Cases:
             duration=duration,
             warmup=60.0,
             time_step=step,
-            observe=["avalanches"],
+            observe=["avalanches", "triggered-collisions"],
         )
     return cases
 
 
-def _counts(run: xr.Dataset, origin: str) -> NDArray[np.float64]:
-    chosen = run.avalanche_count.sel(particle=_ORIGINS[origin])
-    return np.asarray(chosen.sum("particle"), dtype=float)
+def _counts(run: xr.Dataset, origin: str, count: str) -> NDArray[np.float64]:
+    """Return the numbers of waves of size 1, 2, 3, ..."""
+    chosen = run[count].sel(particle=_ORIGINS[origin])
+    sizes = run[_COUNTS[count][1]].values
+    return np.asarray(chosen.sum("particle").values[sizes >= 1], dtype=float)
 
 
-def _exponent(results: Results, origin: str, step: float) -> Estimate:
-    smallest, largest = _FITTED
+def _exponent(results: Results, origin: str, step: float, count: str) -> Estimate:
+    smallest, largest = _COUNTS[count][2]
 
     def fitted(run: xr.Dataset) -> float:
-        return -fit_avalanches(_counts(run, origin), smallest=smallest, largest=largest).exponent
+        counts = _counts(run, origin, count)
+        return -fit_avalanches(counts, smallest=smallest, largest=largest).exponent
 
     return estimate(results, f"dt={step:g}", fitted)
 
 
+def _ratio(run: xr.Dataset, smallest: int, largest: int) -> float:
+    """Return the mean ratio of p(N_c + 1) to p(N_c) in the paper's count."""
+    counts = _counts(run, "centre", "triggered_count")
+    return float((counts[largest - 1] / counts[smallest - 1]) ** (1 / (largest - smallest)))
+
+
 def claims(results: Results) -> list[Claim]:
-    """Check: a power law near -2.2."""
-    found = {step: _exponent(results, "centre", step) for step in _STEPS}
-    coarse, fine = _STEPS
-    border = _exponent(results, "border", coarse)
-    sizes = f"N_c = {_FITTED[0]} to {_FITTED[1]}"
+    """Check: a power law near -2.2, in both counts; and what it depends on."""
+    found = {
+        count: {step: _exponent(results, "centre", step, count) for step in _STEPS}
+        for count in _COUNTS
+    }
+    border = _exponent(results, "border", _STEPS[1], "avalanche_count")
+    pushes = found["avalanche_count"]
+    difference = pushes[_STEPS[1]].minus(border)
     return [
         *(
-            number_claim(
-                f"p(N_c) ~ N_c^-2.2 near the centre ({sizes}, dt = {step:g})",
-                _PAPER,
-                _PRECISION,
-                found[step],
-                reason="the exponent depends on the time step: rods in contact are kicked apart "
-                "and collide again in every step, and the shorter the step, the sooner a wave "
-                f"meets such a collision; dt = {coarse:g}: {found[coarse]}, dt = {fine:g}: "
-                f"{found[fine]}",
-            )
-            for step in _STEPS
+            _power_law_claim(count, step, each)
+            for count, by_step in found.items()
+            for step, each in by_step.items()
+        ),
+        small_claim(
+            "waves from different rods fall off with the same slope",
+            f"pushes at dt = {_STEPS[1]:g}: exponent of origins 451 to 550 less that of 51 to 150 "
+            f"({border}):",
+            difference,
+            2 * _PRECISION,
+            source=_SOURCE,
+            ours=f"the rods, and {_OURS}",
+            reason="waves from the border end sooner",
+        ),
+        small_claim(
+            "in the paper's count N_c falls off exponentially, without a power law",
+            f"dt = {_STEPS[1]:g}: p(N_c + 1)/p(N_c) is {_mean_ratio(results, 5, 10)} from N_c = 5 "
+            f"to 10 and {_mean_ratio(results, 10, 15)} from 10 to 15 (a power law with -2.2: "
+            f"{2 ** (-2.2 / 5):.2f} and {1.5 ** (-2.2 / 5):.2f}), difference",
+            _mean_ratio(results, 10, 15).minus(_mean_ratio(results, 5, 10)),
+            0.05,
         ),
         positive_claim(
-            "steeper towards the border",
-            f"exponent of the centre less that of origins 51 to 150 ({border}), dt = {coarse:g}:",
-            found[coarse].minus(border),
+            "pushes through rods that stick together: the shorter the step, the steeper",
+            f"exponents {pushes[_STEPS[0]]} at dt = {_STEPS[0]:g} and {pushes[_STEPS[-1]]} at "
+            f"{_STEPS[-1]:g}, difference",
+            pushes[_STEPS[0]].minus(pushes[_STEPS[-1]]),
         ),
     ]
 
 
+def _mean_ratio(results: Results, smallest: int, largest: int) -> Estimate:
+    return estimate(results, f"dt={_STEPS[1]:g}", lambda run: _ratio(run, smallest, largest))
+
+
+def _power_law_claim(count: str, step: float, found: Estimate) -> Claim:
+    name, _, (smallest, largest) = _COUNTS[count]
+    ours = _OURS
+    reason = "every collision passes the momentum on with nearly the same probability"
+    if count == "avalanche_count":
+        ours += "; that rods which stick together pass a push on is our extension"
+        reason = (
+            "rods in contact are kicked apart and collide again in every step: the shorter the "
+            "step, the sooner a wave meets such a collision"
+        )
+    return number_claim(
+        f"p(N_c) falls off with an exponent near -2.2 ({name}, dt = {step:g}, "
+        f"N_c = {smallest} to {largest})",
+        _PAPER,
+        _PRECISION,
+        found,
+        source=_SOURCE,
+        ours=ours,
+        reason=reason,
+    )
+
+
 def draw(results: Results) -> Figure:
-    """Draw p(N_c) by origin for both time steps."""
-    figure, axes = plt.subplots(1, 2, figsize=(9.2, 3.7), layout="constrained", sharey=True)
-    for ax, step in zip(axes, _STEPS, strict=True):
-        run = pooled(results, f"dt={step:g}")
-        for number, origin in enumerate(_ORIGINS):
-            counts = _counts(run, origin)
-            edges = np.unique(np.round(np.geomspace(1, LARGE, 28)).astype(int))
-            total = np.add.reduceat(counts, edges[:-1] - 1)
-            p = total / counts.sum() / np.diff(edges)
-            middle = np.sqrt(edges[:-1] * (edges[1:] - 1.0))
-            at = _ORIGINS[origin]
-            label = f"origins {at.start} to {at.stop}"
-            draw_sizes(ax, middle, p, total, number=number, label=label)
-        line = np.array([3.0, 400.0])
-        anchor = np.interp(30, middle, p)
-        ax.plot(line, anchor * (line / 30) ** _PAPER, "k--", linewidth=1, label="$N_c^{-2.2}$")
-        ax.set(title=f"dt = {step:g}", ylim=(1e-9, 1))
+    """Draw p(N_c) of the centre in both counts for every step, and by origin for one."""
+    figure, axes = plt.subplots(1, 3, figsize=(11.0, 3.7), layout="constrained", sharey=True)
+    for ax, (count, (name, *_)) in zip(axes, _COUNTS.items(), strict=False):
+        for number, step in enumerate(_STEPS):
+            run = pooled(results, f"dt={step:g}")
+            _draw(ax, run, "centre", count, number=number, label=f"dt = {step:g}")
+        ax.set(title=f"{name}, origins 451 to 550")
+    run = pooled(results, f"dt={_STEPS[1]:g}")
+    for number, origin in enumerate(_ORIGINS):
+        at = _ORIGINS[origin]
+        label = f"origins {at.start} to {at.stop}"
+        _draw(axes[2], run, origin, "avalanche_count", number=number, label=label)
+    axes[2].set(title=f"pushes, dt = {_STEPS[1]:g}")
+    line = np.array([3.0, 400.0])
+    for ax in axes:
+        ax.plot(line, 0.06 * (line / 3) ** _PAPER, "k--", linewidth=1, label="$N_c^{-2.2}$")
+        ax.set(ylim=(1e-8, 1), xlim=(0.8, LARGE))
+        ax.legend(frameon=False, fontsize=8)
     axes[0].set_ylabel("probability $p(N_c)$")
-    axes[0].legend(frameon=False, fontsize=8)
     return figure
+
+
+def _draw(ax: Axes, run: xr.Dataset, origin: str, count: str, *, number: int, label: str) -> None:
+    """Draw p(N_c), N_c >= 1, in logarithmic bins."""
+    counts = _counts(run, origin, count)
+    edges = np.unique(np.round(np.geomspace(1, LARGE, 28)).astype(int))
+    edges = edges[edges <= counts.size + 1]
+    total = np.add.reduceat(counts, edges[:-1] - 1)
+    p = total / counts.sum() / np.diff(edges)
+    draw_sizes(ax, np.sqrt(edges[:-1] * (edges[1:] - 1.0)), p, total, number=number, label=label)
 
 
 FIGURE = PaperFigure(
     number=6,
     name="avalanches-inelastic",
     title="Avalanche sizes at e = 0",
-    caption="Probability of a rightward wave of N_c collisions, by origin, L = 1000, e = 0, at two "
-    "time steps. Rods that stick together pass a push on from one to the next. Error bars: "
-    "counting statistics. The exponents in the table are maximum-likelihood estimates.",
+    caption="Probability of a rightward wave of N_c >= 1 collisions, L = 1000, e = 0. Left: the "
+    "paper's count, every hit and the collisions after it. Middle and right: pushes, which rods "
+    "that stick together pass on from one to the next. Error bars: counting statistics. The "
+    "exponents are maximum-likelihood estimates.",
     cases=cases,
     draw=draw,
     claims=claims,

@@ -39,6 +39,7 @@ def claims(results: Results) -> list[Claim]:
             f"the mean displacement grows from e = {low:g} to {high:g}",
             f"slope of <dx> against i_n: {found[low]} and {found[high]}, difference",
             found[high].minus(found[low]),
+            source="section seq:e_larger, fig.5",
             theory=", ".join(f"{e:g}: {predicted[e]:.3f}" for e in (low, high) if e in predicted),
         )
         for low, high in itertools.pairwise(_RESTITUTIONS)

@@ -32,9 +32,10 @@ def claims(results: Results) -> list[Claim]:
     centre = estimate(results, name, central_width)
     return [
         positive_claim(
-            "the centre is the widest",
+            "large velocities are likelier in the centre than at the border",
             "W_v(centre) - W_v(border) =",
             centre.minus(estimate(results, name, border_width)),
+            source="section Anti-Dissipation, fig:mom_hist_antidiss_gamma10",
         )
     ]
 

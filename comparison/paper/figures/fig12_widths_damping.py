@@ -26,6 +26,7 @@ from crazybilliards.model import chain_of
 
 _SIZE = 100
 _RESTITUTION = 1.05
+_SOURCE = "section Anti-Dissipation, fig:mom_var_antidiss_diff_gamma_sq"
 _DAMPINGS = (4.0, 5.0, 6.0, 8.0, 10.0)
 
 
@@ -56,12 +57,14 @@ def claims(results: Results) -> list[Claim]:
             f"convex at gamma = {low:g}",
             "ln of the border's width over the centre's:",
             found[low],
+            source=_SOURCE,
             theory=f"{theory[low]:+.3f}",
         ),
         positive_claim(
             f"concave at gamma = {high:g}",
             f"it changes at gamma = {change[0]:.1f}; ln of the centre's width over the border's:",
             opposite,
+            source=_SOURCE,
             theory=f"{-theory[high]:+.3f}; changes at gamma = {change[1]:.1f}",
         ),
     ]

@@ -7,7 +7,13 @@ import math
 import matplotlib.pyplot as plt
 from matplotlib.figure import Figure
 
-from crazybilliards.comparison.claims.repetition import estimate, members, pooled, repeated
+from crazybilliards.comparison.claims.repetition import (
+    central_width,
+    estimate,
+    members,
+    pooled,
+    repeated,
+)
 from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
 from crazybilliards.comparison.claims.verdicts import Claim, Estimate, positive_claim
 from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_rods
@@ -23,6 +29,7 @@ from crazybilliards.model import Chain, chain_of
 _DAMPING, _RESTITUTION = 4.0, 1.05
 _SIZES = (25, 50, 75, 100, 105)
 _UNSTEADY = 150
+_SOURCE = "section Anti-Dissipation, fig:antidiss_diff_L"
 
 
 def cases(quality: Quality) -> Cases:
@@ -48,19 +55,31 @@ def claims(results: Results) -> list[Claim]:
             f"concave at L = {short}",
             "ln of the centre's width over the border's:",
             Estimate(-found[short].value, found[short].error),
+            source=_SOURCE,
             theory=f"{-theory[short]:+.3f}",
         ),
         positive_claim(
             f"convex at L = {long}",
             "ln of the border's width over the centre's:",
             found[long],
+            source=_SOURCE,
             theory=f"{theory[long]:+.3f}",
+        ),
+        positive_claim(
+            "the longer the chain, the larger W_v",
+            f"W_v in the centre at L = {long} less that at L = {short}:",
+            estimate(results, flippers_name(long, _DAMPING), central_width).minus(
+                estimate(results, flippers_name(short, _DAMPING), central_width)
+            ),
+            source=_SOURCE,
         ),
         positive_claim(
             f"without a steady state at L = {_UNSTEADY}",
             f"{len(times)} of {len(diverged)} runs diverged, released from rest, the last after "
             f"{max(times, default=math.nan):.2g} T; their share:",
             everyone,
+            source=_SOURCE,
+            ours="the size that is too large",
             theory=f"no steady state beyond L = {_critical_size():.0f} (weak damping)",
         ),
     ]

@@ -22,6 +22,7 @@ _CHAINS = {
     spring: Chain(size=100, restitution=1.01, damping=0.4, spring=spring)
     for spring in ("linear", "quadratic")
 }
+_SOURCE = "section Anti-Dissipation, non_linear_vs_linear"
 _NUMBER = {"quick": 6, "full": 24}
 # The quadratic spring stiffens as it is stretched: the step is short enough for the last moments.
 _SETTINGS = {
@@ -78,12 +79,14 @@ def claims(results: Results) -> list[Claim]:
             f"rate {rate} per T; rate of the second half less that of the whole, over the rate:",
             Estimate(bend.value / rate.value, bend.error / rate.value),
             0.1,
+            source=_SOURCE,
             theory=f"(gamma/m)(L/L_c - 1) = {growth_rate(_CHAINS['linear']):.4f} per T",
         ),
         positive_claim(
             "quadratic springs: divergence in finite time, a power law of t_c - t",
             f"{diverged} of {len(all_of_them)} runs diverged, t_c = {time} T; exponent of E",
             exponent,
+            source=f"{_SOURCE}, inset",
             theory="6 without damping if the rods share the energy (frequency ~ E^(1/6), so "
             "dE/dt ~ E^(7/6)); less, as it gathers on ever fewer rods",
         ),

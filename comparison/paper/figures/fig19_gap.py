@@ -17,6 +17,8 @@ from crazybilliards.model import Chain, chain_of
 _RESTITUTIONS = (0.0, 0.75, 0.95)
 _GAPS = (0.05, 0.2, 1.0)
 _NUMBER = {"quick": (2, 60.0, 50.0), "full": (4, 600.0, 100.0)}  # runs, duration, warm-up
+_SOURCE = "appendix, fig:mom_var_gaps"
+_OURS = "the gaps, the restitutions and the time step"
 _FLAT = 0.1  # change of W_v^2 between the middle and half-way to the border
 
 
@@ -65,10 +67,20 @@ def claims(results: Results) -> list[Claim]:
                     what,
                     estimate(results, _name(restitution, gap), _change),
                     _FLAT,
+                    source=_SOURCE,
+                    ours=_OURS,
                     reason="the gap is too small for the interior to become homogeneous",
                 )
             )
-        claims.append(positive_claim(f"none without gap, e = {restitution:g}", what, without))
+        claims.append(
+            positive_claim(
+                f"no plateau without a gap, e = {restitution:g}",
+                what,
+                without,
+                source=_SOURCE,
+                ours=_OURS,
+            )
+        )
     return claims
 
 
