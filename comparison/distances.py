@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike, NDArray
 
 from crazybilliards.model import chain_of
 from crazybilliards.model.vocabulary import require
@@ -83,3 +84,56 @@ def _squared_error(dataset: xr.Dataset, like: xr.DataArray) -> xr.DataArray:
     if "density_error" not in dataset:
         return xr.zeros_like(like)
     return (dataset.density_error**2).reindex_like(like, fill_value=0.0)
+
+
+def distances_in_plot(
+    x: ArrayLike,
+    y: ArrayLike,
+    line_x: ArrayLike,
+    line_y: ArrayLike,
+    *,
+    x_range: tuple[float, float] | None = None,
+    y_range: tuple[float, float] | None = None,
+) -> NDArray[np.float64]:
+    """Distances of symbols from a line in the plane of a plot, shape of ``x``.
+
+    Each axis is in units of its range. Logarithmic axes: hand in logarithms.
+
+    Parameters
+    ----------
+    x, y
+        The symbols.
+    line_x, line_y
+        Points of the line, in order, dense enough to be joined by straight pieces.
+    x_range, y_range
+        What the plot shows; None: from the least to the greatest symbol.
+
+    Examples
+    --------
+    >>> x = np.linspace(0, 1, 11)
+    >>> unit = (0.0, 1.0)
+    >>> distances_in_plot([0.5], [0.6], x, 0 * x, x_range=unit, y_range=(0, 2))
+    array([0.3])
+    >>> distances_in_plot([0.5], [0.6], x, x, x_range=unit, y_range=unit).round(4)  # 0.1 sin 45
+    array([0.0707])
+    """
+    x, y, line_x, line_y = (np.asarray(each, dtype=float) for each in (x, y, line_x, line_y))
+    symbols, corners = (
+        np.stack([_in_range(a, x, x_range), _in_range(b, y, y_range)], axis=-1)
+        for a, b in ((x, y), (line_x, line_y))
+    )
+    begin, piece = corners[:-1], np.diff(corners, axis=0)
+    length = np.maximum((piece**2).sum(axis=-1), np.finfo(float).tiny)
+    distances = np.empty(x.size)
+    for k, symbol in enumerate(symbols):
+        along = np.clip(((symbol - begin) * piece).sum(axis=-1) / length, 0, 1)
+        away = symbol - begin - along[:, None] * piece
+        distances[k] = np.sqrt((away**2).sum(axis=-1).min())
+    return distances
+
+
+def _in_range(
+    values: NDArray[np.float64], symbols: NDArray[np.float64], span: tuple[float, float] | None
+) -> NDArray[np.float64]:
+    low, high = span or (float(symbols.min()), float(symbols.max()))
+    return np.asarray((values - low) / (high - low))

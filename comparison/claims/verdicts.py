@@ -26,8 +26,8 @@ deviation in a plot like the paper's, whatever the significance. The tolerance i
 plotted range. The paper's plots are half a page wide: 2 % of an axis of 5 to 7 cm is 1.0 to 1.4 mm,
 the size of a plotted symbol, and a line that touches every symbol looks right. It was fixed before
 any deviation was worked out. A deviation is the distance of a symbol from the line in the plane of
-the plot, each axis in units of its range (:func:`distances_in_plot`): beside a steep line one sees
-the horizontal distance.
+the plot, each axis in units of its range (``distances_in_plot`` in ``comparison/distances.py``):
+beside a steep line one sees the horizontal distance.
 """
 
 from __future__ import annotations
@@ -35,9 +35,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
-
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 Verdict = Literal[
     "reproduced", "not reproduced", "cannot be decided", "undecided", "confirmed", "refuted"
@@ -252,59 +249,6 @@ def eye_claim(
         reason=reason,
         exactly=exactly,
     )
-
-
-def distances_in_plot(
-    x: ArrayLike,
-    y: ArrayLike,
-    line_x: ArrayLike,
-    line_y: ArrayLike,
-    *,
-    x_range: tuple[float, float] | None = None,
-    y_range: tuple[float, float] | None = None,
-) -> NDArray[np.float64]:
-    """Distances of symbols from a line in the plane of a plot, shape of ``x``.
-
-    Each axis is in units of its range. Logarithmic axes: hand in logarithms.
-
-    Parameters
-    ----------
-    x, y
-        The symbols.
-    line_x, line_y
-        Points of the line, in order, dense enough to be joined by straight pieces.
-    x_range, y_range
-        What the plot shows; None: from the least to the greatest symbol.
-
-    Examples
-    --------
-    >>> x = np.linspace(0, 1, 11)
-    >>> unit = (0.0, 1.0)
-    >>> distances_in_plot([0.5], [0.6], x, 0 * x, x_range=unit, y_range=(0, 2))
-    array([0.3])
-    >>> distances_in_plot([0.5], [0.6], x, x, x_range=unit, y_range=unit).round(4)  # 0.1 sin 45
-    array([0.0707])
-    """
-    x, y, line_x, line_y = (np.asarray(each, dtype=float) for each in (x, y, line_x, line_y))
-    symbols, corners = (
-        np.stack([_in_range(a, x, x_range), _in_range(b, y, y_range)], axis=-1)
-        for a, b in ((x, y), (line_x, line_y))
-    )
-    begin, piece = corners[:-1], np.diff(corners, axis=0)
-    length = np.maximum((piece**2).sum(axis=-1), np.finfo(float).tiny)
-    distances = np.empty(x.size)
-    for k, symbol in enumerate(symbols):
-        along = np.clip(((symbol - begin) * piece).sum(axis=-1) / length, 0, 1)
-        away = symbol - begin - along[:, None] * piece
-        distances[k] = np.sqrt((away**2).sum(axis=-1).min())
-    return distances
-
-
-def _in_range(
-    values: NDArray[np.float64], symbols: NDArray[np.float64], span: tuple[float, float] | None
-) -> NDArray[np.float64]:
-    low, high = span or (float(symbols.min()), float(symbols.max()))
-    return np.asarray((values - low) / (high - low))
 
 
 def _claim(

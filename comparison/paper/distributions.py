@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from numpy.typing import NDArray
 from scipy.optimize import curve_fit
 
-from crazybilliards.comparison.claims.verdicts import distances_in_plot
+from crazybilliards.comparison.distances import distances_in_plot
 from crazybilliards.comparison.drawing import COLOURS, SYMBOLS
 
 _LEAST = 1e-5  # of the largest density: below, counts are too few to draw

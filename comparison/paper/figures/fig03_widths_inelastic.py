@@ -16,12 +16,12 @@ from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, 
 from crazybilliards.comparison.claims.verdicts import (
     Claim,
     Estimate,
-    distances_in_plot,
     eye_claim,
     number_claim,
     positive_claim,
     same_claim,
 )
+from crazybilliards.comparison.distances import distances_in_plot
 from crazybilliards.comparison.drawing import COLOURS, SYMBOLS, draw_rods
 from crazybilliards.comparison.fits import fit_border_power_law
 from crazybilliards.comparison.paper.chains import LARGE

@@ -7,13 +7,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
-from crazybilliards.comparison.claims.verdicts import (
-    Claim,
-    Estimate,
-    distances_in_plot,
-    eye_claim,
-    same_claim,
-)
+from crazybilliards.comparison.claims.verdicts import Claim, Estimate, eye_claim, same_claim
+from crazybilliards.comparison.distances import distances_in_plot
 from crazybilliards.comparison.drawing import COLOURS
 from crazybilliards.comparison.fits import fit_arctanh
 from crazybilliards.comparison.paper.figures.fig17_density import simulation

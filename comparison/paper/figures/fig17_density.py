@@ -7,15 +7,9 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
-from crazybilliards.comparison.claims.verdicts import (
-    Claim,
-    Estimate,
-    distances_in_plot,
-    eye_claim,
-    same_claim,
-)
+from crazybilliards.comparison.claims.verdicts import Claim, Estimate, eye_claim, same_claim
 from crazybilliards.comparison.coverage import smooth
-from crazybilliards.comparison.distances import Deviation
+from crazybilliards.comparison.distances import Deviation, distances_in_plot
 from crazybilliards.comparison.studies.elastic_chain import THEORIES, deviations, elastic_theories
 from crazybilliards.comparison.studies.elastic_figures import draw_density
 from crazybilliards.comparison.studies.parameter_series import SIMULATION

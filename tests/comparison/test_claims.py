@@ -1,0 +1,176 @@
+"""Claims get the verdict that their numbers deserve; independent runs give errors."""
+
+import numpy as np
+import pytest
+
+from crazybilliards.comparison.claims.repetition import (
+    border_width,
+    central_width,
+    estimate,
+    pooled,
+)
+from crazybilliards.comparison.claims.verdicts import (
+    Estimate,
+    eye_claim,
+    number_claim,
+    positive_claim,
+    same_claim,
+    small_claim,
+)
+from crazybilliards.comparison.distances import distances_in_plot
+from crazybilliards.comparison.paper.distributions import moment
+from crazybilliards.model import Chain
+from crazybilliards.model.vocabulary import result
+from crazybilliards.particles import simulate
+
+# -- claims -----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("value", "error", "holds"),
+    [
+        (-0.46, 0.01, True),
+        (-0.471, 0.002, True),  # within precision and three errors
+        (-0.49, 0.002, False),
+        (-0.49, 0.01, True),
+        (-0.46, 0.2, None),
+        (np.nan, 0.01, False),
+        (-0.46, np.nan, None),
+    ],
+)
+def test_numbers(value, error, holds):
+    measured = Estimate(value, error)
+    claim = number_claim("nu", -0.46, 0.01, measured, reason="why")
+    assert claim.verdict == {True: "confirmed", False: "refuted", None: "undecided"}[holds]
+    assert claim.paper == "-0.46"
+    assert claim.reason == ("" if holds else "why")
+    assert not claim.of_paper
+    # The paper is blamed only for what it says, at parameters that it gives.
+    said = number_claim("nu", -0.46, 0.01, measured, source="fig.2")
+    assert said.verdict == {True: "reproduced", False: "not reproduced", None: "undecided"}[holds]
+    assert said.of_paper
+    chosen = number_claim("nu", -0.46, 0.01, measured, source="fig.2", ours="the size")
+    expected = {True: "reproduced", False: "cannot be decided", None: "undecided"}
+    assert chosen.verdict == expected[holds]
+
+
+@pytest.mark.parametrize(
+    ("value", "error", "positive", "small"),
+    [
+        (0.5, 0.1, "confirmed", "refuted"),
+        (-0.5, 0.1, "refuted", "refuted"),
+        (0.02, 0.02, "undecided", "confirmed"),
+        (0.1, 0.02, "confirmed", "undecided"),
+        (np.nan, 0.1, "undecided", "undecided"),
+    ],
+)
+def test_signs_and_limits(value, error, positive, small):
+    measured = Estimate(value, error)
+    assert positive_claim("grows", "change", measured).verdict == positive
+    assert small_claim("vanishes", "it", measured, 0.1).verdict == small
+
+
+def test_sameness():
+    assert same_claim("equal", "both", 3.2).verdict == "confirmed"
+    assert same_claim("equal", "both", 7.0, reason="no").reason == "no"
+    assert same_claim("equal", "both", np.nan).verdict == "undecided"
+
+
+@pytest.mark.parametrize(
+    ("deviation", "verdict"),
+    [
+        (Estimate(0.01, 0.003), "reproduced"),
+        (Estimate(0.018, 0.003), "undecided"),
+        (Estimate(0.03, 0.003), "not reproduced"),
+        (Estimate(np.nan, 0.003), "undecided"),
+    ],
+)
+def test_what_the_eye_sees(deviation, verdict):
+    """However significant a deviation is: below 2 % of the plot it is not seen."""
+    claim = eye_claim("fits", "all rods", deviation, 22.4, source="fig.2", exactly="no arctanh")
+    assert claim.verdict == verdict
+    assert claim.exactly == "no arctanh"
+    assert "22.4 standard errors" in claim.measured
+
+
+def test_distances_in_a_plot_are_the_shortest_to_the_line():
+    x = np.linspace(-2, 3, 26)
+    # A circle of radius 1 in the units of the plot; the line is the x-axis, then a tilted one.
+    unit = {"x_range": (0.0, 10.0), "y_range": (-5.0, 5.0)}
+    y = np.sqrt(np.maximum(9 - x**2, 0))
+    far = np.array([-100.0, 100.0])
+    np.testing.assert_allclose(distances_in_plot(x, y, far, 0 * far, **unit), y / 10)
+    tilted = distances_in_plot(x, y, far, far, **unit)
+    np.testing.assert_allclose(tilted, np.abs(y - x) / 10 / 2**0.5, atol=1e-12)
+    # Beyond the end of a line the distance is that of its end; a step is seen from aside.
+    end = distances_in_plot([4.0], [3.0], [-9.0, 0.0], [0.0, 0.0], **unit)
+    assert end == pytest.approx([0.5])
+    step = np.array([0.0, 5.0, 5.0, 10.0]), np.array([0.0, 0.0, 4.0, 4.0])
+    assert distances_in_plot([5.1], [1.0], *step, **unit) == pytest.approx([0.01])
+    # Without ranges those of the symbols.
+    bare = distances_in_plot([0.0, 2.0], [0.0, 4.0], [0.0, 2.0], [1.0, 1.0])
+    assert bare == pytest.approx([0.25, 0.75])
+    bare = distances_in_plot([0.0, 2.0], [0.0, 4.0], [0.5, 0.5], [-100.0, 100.0])
+    assert bare == pytest.approx([0.25, 0.75])
+
+
+def test_estimates_are_written_to_the_second_digit_of_the_error():
+    assert str(Estimate(-0.46123, 0.00234)) == "-0.4612 ± 0.0023"
+    assert str(Estimate(37.512, 1.234)) == "37.5 ± 1.2"
+    assert str(Estimate(5.0, 0.0)) == "5.0000 ± 0.0000"
+    assert str(Estimate(np.nan, 0.1)) == "not determined"
+    difference = Estimate(3.0, 0.3).minus(Estimate(1.0, 0.4))
+    assert difference == pytest.approx((2.0, 0.5))
+
+
+# -- independent runs -------------------------------------------------------------------------
+
+
+def test_errors_of_estimates_cover_the_truth_however_few_the_runs():
+    """68 % of the estimates from three runs lie within one error, thanks to Student's factor."""
+    generator = np.random.default_rng(5)
+    hits, trials = 0, 300
+    for _ in range(trials):
+        results = {f"a/{k}": generator.normal(1, 0.1) for k in range(3)}  # of runs only the number
+        value, error = estimate(results, "a", float)
+        hits += abs(value - 1) < error
+    assert abs(hits / trials - 0.683) < 5 * (0.683 * 0.317 / trials) ** 0.5
+
+
+def test_pooling_runs_is_averaging_them():
+    chain = Chain(size=4)
+    observe = ["widths", "avalanches", "velocities"]
+    simulated = {
+        f"a/{seed}": simulate(chain, duration=200, seed=seed, observe=observe, progress=False)
+        for seed in range(3)
+    }
+    other = {"ab/0": simulated["a/0"]}
+    run = pooled(simulated | other, "a")
+    square = np.mean([each.velocity_width.values**2 for each in simulated.values()], axis=0)
+    np.testing.assert_allclose(run.velocity_width**2, square)
+    errors = np.sqrt(sum(each.velocity_width_error.values**2 for each in simulated.values())) / 3
+    np.testing.assert_allclose(run.velocity_width_error, errors)
+    counts = sum(each.avalanche_count.values for each in simulated.values())
+    np.testing.assert_array_equal(run.avalanche_count, counts)
+    middle = np.mean([each.mean_position.values for each in simulated.values()], axis=0)
+    np.testing.assert_allclose(run.mean_position, middle)
+    assert run.velocity_width.attrs["units"] == "R/T"
+
+
+def test_widths_of_centre_and_border():
+    width = np.arange(1.0, 101)
+    chain = Chain(size=100)
+    run = result(chain, {"velocity_width": ("particle", width)}, source="theory", method={})
+    assert border_width(run) == pytest.approx(((1 + 100**2) / 2) ** 0.5)
+    assert central_width(run) == pytest.approx((width[45:55] ** 2).mean() ** 0.5)
+
+
+@pytest.mark.compiled
+def test_moments_of_a_gaussian():
+    """Skewness 0 and kurtosis 3, within 5 errors of 2 x 5e4 nearly independent velocities."""
+    run = simulate(
+        Chain(size=2), duration=3e5, every=6.0, observe="velocities", progress=False, seed=3
+    )
+    n = 1e5
+    assert abs(moment(run, [1, 2], 3)) < 5 * (6 / n) ** 0.5 * 1.5
+    assert abs(moment(run, [1, 2], 4) - 3) < 5 * (24 / n) ** 0.5 * 1.5
