@@ -34,7 +34,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal, NamedTuple
+from typing import Literal, NamedTuple, TypedDict, Unpack
 
 Verdict = Literal[
     "reproduced", "not reproduced", "cannot be decided", "undecided", "confirmed", "refuted"
@@ -104,107 +104,50 @@ class Claim:
         return bool(self.source)
 
 
+class About(TypedDict, total=False):
+    """What can be said of any claim besides its number; :class:`Claim` says what each means."""
+
+    source: str
+    ours: str
+    theory: str
+    reason: str
+    exactly: str
+
+
 def number_claim(
-    statement: str,
-    paper: float,
-    precision: float,
-    measured: Estimate,
-    *,
-    source: str = "",
-    ours: str = "",
-    theory: str = "",
-    reason: str = "",
+    statement: str, paper: float, precision: float, measured: Estimate, **about: Unpack[About]
 ) -> Claim:
     """Compare a measured number with the one quoted."""
     value, error = measured
     holds: bool | None = None
     if _SIGNIFICANT * error < abs(paper) / 3:
         holds = bool(abs(value - paper) <= precision + _SIGNIFICANT * error)
-    return _claim(
-        statement,
-        str(measured),
-        holds,
-        source=source,
-        ours=ours,
-        paper=f"{paper:g}",
-        theory=theory,
-        reason=reason,
-    )
+    return _claim(statement, str(measured), holds, paper=f"{paper:g}", **about)
 
 
 def positive_claim(
-    statement: str,
-    quantity: str,
-    measured: Estimate,
-    *,
-    source: str = "",
-    ours: str = "",
-    theory: str = "",
-    reason: str = "",
+    statement: str, quantity: str, measured: Estimate, **about: Unpack[About]
 ) -> Claim:
     """Decide whether a number, named ``quantity``, is positive as the statement implies."""
     holds: bool | None = None
     if abs(measured.value) > _SIGNIFICANT * measured.error:
         holds = measured.value > 0
-    return _claim(
-        statement,
-        f"{quantity} {measured}",
-        holds,
-        source=source,
-        ours=ours,
-        theory=theory,
-        reason=reason,
-    )
+    return _claim(statement, f"{quantity} {measured}", holds, **about)
 
 
 def small_claim(
-    statement: str,
-    quantity: str,
-    measured: Estimate,
-    limit: float,
-    *,
-    source: str = "",
-    ours: str = "",
-    theory: str = "",
-    reason: str = "",
+    statement: str, quantity: str, measured: Estimate, limit: float, **about: Unpack[About]
 ) -> Claim:
     """Decide whether a number that should vanish is below ``limit``."""
-    holds: bool | None = None
-    if abs(measured.value) + _SIGNIFICANT * measured.error < limit:
-        holds = True
-    elif abs(measured.value) - _SIGNIFICANT * measured.error > limit:
-        holds = False
-    return _claim(
-        statement,
-        f"{quantity} {measured} (limit {limit:g})",
-        holds,
-        source=source,
-        ours=ours,
-        theory=theory,
-        reason=reason,
-    )
+    holds = _below(measured, limit)
+    return _claim(statement, f"{quantity} {measured} (limit {limit:g})", holds, **about)
 
 
-def same_claim(
-    statement: str,
-    measured: str,
-    deviation: float,
-    *,
-    source: str = "",
-    ours: str = "",
-    theory: str = "",
-    reason: str = "",
-) -> Claim:
+def same_claim(statement: str, measured: str, deviation: float, **about: Unpack[About]) -> Claim:
     """Decide whether two things are the same; ``deviation``: the largest, in standard errors."""
-    return _claim(
-        statement,
-        f"{measured}; largest difference {deviation:.1f} standard errors",
-        bool(deviation < _LARGEST_OF_MANY) if math.isfinite(deviation) else None,
-        source=source,
-        ours=ours,
-        theory=theory,
-        reason=reason,
-    )
+    holds = bool(deviation < _LARGEST_OF_MANY) if math.isfinite(deviation) else None
+    found = f"{measured}; largest difference {deviation:.1f} standard errors"
+    return _claim(statement, found, holds, **about)
 
 
 def eye_claim(
@@ -212,18 +155,13 @@ def eye_claim(
     quantity: str,
     deviation: Estimate,
     significance: float,
-    *,
-    source: str = "",
-    ours: str = "",
-    theory: str = "",
-    reason: str = "",
-    exactly: str = "",
+    **about: Unpack[About],
 ) -> Claim:
     """Decide whether an eye could see that a curve misses the points.
 
     Parameters
     ----------
-    statement, source, ours, theory, reason, exactly
+    statement, about
         See :class:`Claim`.
     quantity
         Which points, which curve, and what axes the plot has.
@@ -232,51 +170,33 @@ def eye_claim(
     significance
         The largest deviation in standard errors of the points, which may be that of another point.
     """
-    holds: bool | None = None
-    if deviation.value + _SIGNIFICANT * deviation.error < EYE:
-        holds = True
-    elif deviation.value - _SIGNIFICANT * deviation.error > EYE:
-        holds = False
     percent = Estimate(100 * deviation.value, 100 * deviation.error)
-    return _claim(
-        statement,
+    found = (
         f"{quantity}: off by at most {percent} % of the plotted range (visible: "
-        f"{100 * EYE:g} %), {significance:.1f} standard errors",
-        holds,
-        source=source,
-        ours=ours,
-        theory=theory,
-        reason=reason,
-        exactly=exactly,
+        f"{100 * EYE:g} %), {significance:.1f} standard errors"
     )
+    return _claim(statement, found, _below(deviation, EYE), **about)
+
+
+def _below(measured: Estimate, limit: float) -> bool | None:
+    """Whether a magnitude is below a limit; None if its error does not allow to say."""
+    if abs(measured.value) + _SIGNIFICANT * measured.error < limit:
+        return True
+    if abs(measured.value) - _SIGNIFICANT * measured.error > limit:
+        return False
+    return None
 
 
 def _claim(
-    statement: str,
-    measured: str,
-    holds: bool | None,
-    *,
-    source: str,
-    ours: str,
-    reason: str,
-    paper: str = "",
-    theory: str = "",
-    exactly: str = "",
+    statement: str, measured: str, holds: bool | None, *, paper: str = "", **about: Unpack[About]
 ) -> Claim:
     """Return the claim with its verdict; ``holds`` None: the statistics do not suffice."""
     verdict: Verdict = "undecided"
-    if holds is not None and source:
-        verdict = "reproduced" if holds else ("cannot be decided" if ours else "not reproduced")
+    if holds is not None and about.get("source"):
+        failed: Verdict = "cannot be decided" if about.get("ours") else "not reproduced"
+        verdict = "reproduced" if holds else failed
     elif holds is not None:
         verdict = "confirmed" if holds else "refuted"
-    return Claim(
-        statement=statement,
-        measured=measured,
-        verdict=verdict,
-        source=source,
-        ours=ours,
-        paper=paper,
-        theory=theory,
-        reason="" if holds else reason,
-        exactly=exactly,
-    )
+    if holds:
+        about["reason"] = ""
+    return Claim(statement=statement, measured=measured, verdict=verdict, paper=paper, **about)
