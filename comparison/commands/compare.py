@@ -128,7 +128,7 @@ def _print_deviations(tree: xr.DataTree) -> None:
     from rich.table import Table
 
     from crazybilliards.comparison.studies.elastic_chain import (
-        THEORIES,
+        LEGEND,
         deviations,
         largest_width_error,
     )
@@ -139,7 +139,7 @@ def _print_deviations(tree: xr.DataTree) -> None:
         "column is the velocity widths' largest distance from their exact value.",
     )
     table.add_column("A", justify="right")
-    for name in THEORIES.values():
+    for name in LEGEND.values():
         table.add_column(f"{name}\nmax / rms", justify="right")
     table.add_column("exact\nmax [sigma]", justify="right")
     table.add_column("W_v\nmax [sigma]", justify="right")
@@ -151,7 +151,7 @@ def _print_deviations(tree: xr.DataTree) -> None:
                 f"{100 * by_theory[key].maximum:.2f} / {100 * by_theory[key].rms:.2f}"
                 if key in by_theory
                 else "-"
-                for key in THEORIES
+                for key in LEGEND
             ),
             "-" if exact is None else f"{exact.maximum_in_errors or 0:.1f}",
             f"{largest_width_error(tree.children[name]):.1f}",

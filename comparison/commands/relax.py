@@ -121,7 +121,7 @@ def _print_distances(tree: xr.DataTree) -> None:
     from rich.console import Console
     from rich.table import Table
 
-    from crazybilliards.comparison.studies.relaxation import THEORIES, label_distances
+    from crazybilliards.comparison.studies.relaxation import LEGEND, label_distances
 
     table = Table(
         caption="Rms over the rods of their mean position in theory minus simulation, in thermal "
@@ -130,5 +130,5 @@ def _print_distances(tree: xr.DataTree) -> None:
     table.add_column("theory")
     table.add_column("rms distance / s", justify="right")
     for key, distance in label_distances(tree).items():
-        table.add_row(THEORIES[key], f"{distance:.3f}")
+        table.add_row(LEGEND[key], f"{distance:.3f}")
     Console().print(table)

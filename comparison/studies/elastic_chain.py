@@ -24,7 +24,7 @@ from crazybilliards.comparison.studies.parameter_series import (
 from crazybilliards.kinetic import equilibrium, force_balance
 from crazybilliards.model import Chain, chain_of
 
-THEORIES = {
+LEGEND = {
     "exact": "exact",
     "labels": "force balance, by labels",
     "arctanh": "force balance, arctanh fit",
@@ -80,7 +80,7 @@ def deviations(tree: xr.DataTree) -> dict[str, dict[str, Deviation]]:
     return {
         name: {
             key: deviation(smooth(group[SIMULATION].to_dataset()), smooth(group[key].to_dataset()))
-            for key in THEORIES
+            for key in LEGEND
             if key in group
         }
         for name, group in tree.children.items()
@@ -95,7 +95,7 @@ def largest_width_error(group: xr.DataTree) -> float:
 
 
 def elastic_theories(chain: Chain, run: xr.Dataset) -> dict[str, xr.Dataset]:
-    """Return the theories by the names in ``THEORIES``; the arctanh is fitted to the run."""
+    """Return the theories by the names in ``LEGEND``; the arctanh is fitted to the run."""
     theories = {"exact": equilibrium(chain), "labels": force_balance(chain)}
     try:
         fit = fit_arctanh(run)

@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 
 from crazybilliards.comparison.coverage import smooth
 from crazybilliards.comparison.drawing import overlay
-from crazybilliards.comparison.studies.elastic_chain import THEORIES
+from crazybilliards.comparison.studies.elastic_chain import LEGEND
 from crazybilliards.comparison.studies.parameter_series import SIMULATION
 from crazybilliards.model import Chain, chain_of
 
@@ -29,7 +29,7 @@ def draw_density(tree: xr.DataTree) -> Figure:
         _draw(axes, results, "density", unit=chain.close_packed_density)
         axes[0].set(title=_title(chain), ylabel=r"density $\rho$ [1/R]")
         axes[1].set(xlabel="position x [R]", ylabel=r"diff. $\times\, 2R$")
-        reference = results.get(THEORIES["exact"], results[SIMULATION])
+        reference = results.get(LEGEND["exact"], results[SIMULATION])
         inside = reference.density.values > 1e-4 * chain.close_packed_density
         axes[1].set_xlim(*reference.x.values[inside][[0, -1]])
     _one_legend(figure, panels)
@@ -51,7 +51,7 @@ def draw_displacement(tree: xr.DataTree) -> Figure:
 
 def _results(group: xr.DataTree) -> dict[str, xr.Dataset]:
     """Name the results of one amplitude as they are drawn, in drawing order."""
-    names = {SIMULATION: SIMULATION} | THEORIES
+    names = {SIMULATION: SIMULATION} | LEGEND
     return {name: group[key].to_dataset() for key, name in names.items() if key in group}
 
 
@@ -62,9 +62,9 @@ def _draw(axes: list[Axes], results: dict[str, xr.Dataset], quantity: str, unit:
     """
     overlay(results, quantity, along="mean_position", ax=axes[0])
     axes[0].set_xlabel("")
-    if THEORIES["exact"] not in results:
+    if LEGEND["exact"] not in results:
         return
-    reference = results[THEORIES["exact"]][quantity]
+    reference = results[LEGEND["exact"]][quantity]
     differences = {}
     for name, result in results.items():
         difference = ((result[quantity] - reference) / unit).assign_attrs(reference.attrs)

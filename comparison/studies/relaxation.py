@@ -32,7 +32,7 @@ Release = Literal["compressed", "displaced", "quenched"]
 PARTICLES = "particles"
 # What hydrodynamics takes as velocity_variance.
 FLUIDS: dict[str, Literal["evolving"] | None] = {"isothermal": None, "evolving": "evolving"}
-THEORIES = {
+LEGEND = {
     "isothermal": "isothermal fluid",
     "evolving": "fluid with temperature",
     "exact": "exact",
@@ -125,7 +125,7 @@ def label_distances(tree: xr.DataTree) -> dict[str, float]:
     s = chain_of(tree[PARTICLES].to_dataset()).thermal_length
     return {
         key: float(np.sqrt(((tree[key].mean_displacement - rods) ** 2).mean("particle")).max() / s)
-        for key in THEORIES
+        for key in LEGEND
         if key in tree
     }
 

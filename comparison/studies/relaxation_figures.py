@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from crazybilliards.comparison.coverage import smooth
 from crazybilliards.comparison.drawing import overlay
-from crazybilliards.comparison.studies.relaxation import PARTICLES, THEORIES, cloud
+from crazybilliards.comparison.studies.relaxation import LEGEND, PARTICLES, cloud
 from crazybilliards.model import Chain, chain_of
 
 Array = NDArray[np.float64]
@@ -76,7 +76,7 @@ def draw_cloud(tree: xr.DataTree) -> Figure:
     """Width and centre of the cloud in the reduced coordinate against time, in units of s."""
     figure, panels = plt.subplots(1, 2, figsize=(8, 3.6), layout="constrained")
     s = _chain(tree).thermal_length
-    names = {PARTICLES: PARTICLES} | THEORIES
+    names = {PARTICLES: PARTICLES} | LEGEND
     for ax, which, label in zip(
         panels, (1, 0), ("width of the cloud / s", "centre / s"), strict=True
     ):
@@ -142,7 +142,7 @@ def _movers(ax: Axes, densities: dict[str, xr.Dataset]) -> list[Callable[[int], 
 
 def _densities(tree: xr.DataTree) -> dict[str, xr.Dataset]:
     """Return the smoothed densities that there are, by the names they are drawn with."""
-    names = {PARTICLES: PARTICLES} | THEORIES
+    names = {PARTICLES: PARTICLES} | LEGEND
     return {
         name: smooth(tree[key].to_dataset())
         for key, name in names.items()

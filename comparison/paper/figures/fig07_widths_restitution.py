@@ -39,7 +39,7 @@ from crazybilliards.comparison.paper.figures.fig03_widths_inelastic import fits_
 from crazybilliards.comparison.studies.restitutions import width_deviation
 from crazybilliards.model import chain_of
 
-THEORIES = {"quick": (0.95,), "full": (0.85, 0.92, 0.95)}
+SOLVED_FOR = {"quick": (0.95,), "full": (0.85, 0.92, 0.95)}
 _ELASTIC_SIZE = 100
 _SOURCE = "section seq:e_larger, fig.4"
 _OURS = "the restitutions (those of fig.5, and 0.5) and the time step"
@@ -50,7 +50,7 @@ def cases(quality: Quality) -> Cases:
     cases: Cases = {}
     for restitution in RESTITUTIONS:
         cases |= dissipative(LARGE, restitution, quality)
-    for restitution in THEORIES[quality]:
+    for restitution in SOLVED_FOR[quality]:
         cases |= kinetic_equation(LARGE, restitution, 1.0, quality)
     return cases | elastic(_ELASTIC_SIZE, quality)
 

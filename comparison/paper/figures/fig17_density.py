@@ -10,7 +10,7 @@ from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, 
 from crazybilliards.comparison.claims.verdicts import Claim, Estimate, eye_claim, same_claim
 from crazybilliards.comparison.coverage import smooth
 from crazybilliards.comparison.distances import Deviation, distances_in_plot
-from crazybilliards.comparison.studies.elastic_chain import THEORIES, deviations, elastic_theories
+from crazybilliards.comparison.studies.elastic_chain import LEGEND, deviations, elastic_theories
 from crazybilliards.comparison.studies.elastic_figures import draw_density
 from crazybilliards.comparison.studies.parameter_series import SIMULATION
 from crazybilliards.comparison.sweeps import Case
@@ -103,7 +103,7 @@ FIGURE = PaperFigure(
     name="density",
     title="Density at e = 1: simulation and theory",
     caption="L = 100, e = 1, four driving amplitudes. Circles: simulation, smoothed as in the "
-    f"paper. Lines: {', '.join(THEORIES.values())}. Below each: the difference from the exact "
+    f"paper. Lines: {', '.join(LEGEND.values())}. Below each: the difference from the exact "
     "density in units of close packing.",
     cases=cases,
     draw=draw,
