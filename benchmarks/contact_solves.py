@@ -12,6 +12,7 @@ from crazybilliards.model import Chain
 from crazybilliards.particles import stepping
 from crazybilliards.particles.laws.avalanche import make_tally
 from crazybilliards.particles.laws.law import drift, make_scratch
+from crazybilliards.particles.noise import fill, make_noise
 
 SIZE, TIME_STEP = 1000, 1e-3
 UNSEEN = make_tally(2, contacts=False)
@@ -22,15 +23,16 @@ def solver():
     """Return a settled chain's law and fifty successive states, the next kick already given."""
     chain = Chain(size=SIZE, restitution=0)
     dynamics = stepping.make_dynamics(chain, TIME_STEP, speed=1.0, method="contact-dynamics")
-    generator = np.random.Generator(np.random.PCG64(0))
+    noise = make_noise(np.random.SeedSequence(0))
     scratch = make_scratch(SIZE)
     y, v = np.zeros((2, SIZE))
-    kernel = (y, v, generator, dynamics, scratch, UNSEEN)
+    kernel = (y, v, noise, dynamics, scratch, UNSEEN)
     stepping.advance(*kernel, 30_000)
-    states = []
+    states, kicks = [], np.zeros(SIZE)
     for _ in range(50):
         stepping.advance(*kernel, 1)
-        states.append((y.copy(), v + dynamics.step.noise * generator.standard_normal(SIZE)))
+        fill(noise, kicks)
+        states.append((y.copy(), v + dynamics.step.noise * kicks))
     return dynamics.law, scratch, states
 
 

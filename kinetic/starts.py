@@ -16,7 +16,7 @@ from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
 from scipy.optimize import elementwise
 
 from crazybilliards.kinetic.requirements import require_chain
-from crazybilliards.kinetic.statics.label_closure import stationary
+from crazybilliards.kinetic.statics.label_closure import fluid_reach, stationary
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.checks import check_real
 from crazybilliards.model.grid import position_grid, thermal_reach
@@ -48,34 +48,31 @@ def two_clumps(chain: Chain, distance: float, speed: float) -> xr.Dataset:
     distance = check_real("distance", distance, positive=True)
     speed = check_real("speed", speed)
     require_chain(chain, "a start from the stationary state")
-    grid = _grid(chain, distance / 2)
+    grid = position_grid(chain, fluid_reach(chain) + distance / 2)
     apart = np.maximum(np.abs(grid) - distance / 2, 0.0)
     outside = np.abs(grid) >= distance / 2
     density, label = stationary(chain).fields(chain, apart)
     label = chain.size / 2 + np.sign(grid) * (label - chain.size / 2)
-    start = _start(chain, grid, np.where(outside, density, 0.0), label)
     velocity = -np.sign(grid) * speed
-    return start.assign(flow_velocity=("x", velocity))
+    return _start(chain, grid, np.where(outside, density, 0.0), label, velocity)
 
 
 def _stationary_image(chain: Chain, stretch: float = 1.0, shift: float = 0.0) -> xr.Dataset:
     require_chain(chain, "a start from the stationary state")
-    grid = _grid(chain, abs(shift) + (max(stretch, 1.0) - 1) * thermal_reach(chain))
+    # Stretching widens the lattice of anchors as well as the tails beyond it.
+    wider = max(stretch - 1, 0.0) * (chain.lattice_gap * chain.size / 2 + thermal_reach(chain))
+    grid = position_grid(chain, fluid_reach(chain) + abs(shift) + wider)
     density, label = stationary(chain).fields(chain, grid - shift, stretch)
-    return _start(chain, grid, density, label)
+    return _start(chain, grid, density, label, np.zeros(grid.size))
 
 
-def _grid(chain: Chain, extra: float) -> Array:
-    return position_grid(chain, thermal_reach(chain) + extra)
-
-
-def _start(chain: Chain, x: Array, density: Array, label: Array) -> xr.Dataset:
+def _start(chain: Chain, x: Array, density: Array, label: Array, velocity: Array) -> xr.Dataset:
     return result(
         chain,
         {
             "density": ("x", density),
             "label": ("x", label),
-            "flow_velocity": ("x", np.zeros(x.size)),
+            "flow_velocity": ("x", velocity),
             "velocity_variance": ("x", np.full(x.size, chain.free_velocity_width**2)),
         },
         source="start",

@@ -21,7 +21,7 @@ Units: length R, mass M, time sqrt(M/k).
 from __future__ import annotations
 
 import math
-from dataclasses import asdict, dataclass, fields, replace
+from dataclasses import dataclass, fields, replace
 from typing import Any, Self
 
 import numpy as np
@@ -78,7 +78,7 @@ class Chain(Parameters):
 
     def parameters(self) -> dict[str, int | float | str]:
         """Return all parameters as a plain dictionary; ``Chain(**parameters)`` is the inverse."""
-        return asdict(self)
+        return {field.name: getattr(self, field.name) for field in fields(self)}
 
     # -- geometry ---------------------------------------------------------------------------
 
@@ -96,6 +96,11 @@ class Chain(Parameters):
     def reduced_anchors(self) -> NDArray[np.float64]:
         """Anchors in the reduced coordinate, y0_i = g (i - (L+1)/2) [R], shape (L,)."""
         return self.gap * self.rank
+
+    @property
+    def lattice_gap(self) -> float:
+        """The gap g that theories of a continuous fluid take; 0 for one rod, without neighbours."""
+        return self.gap if self.size > 1 else 0.0
 
     def reduced(self, x: ArrayLike) -> NDArray[np.float64]:
         """Reduced coordinates y of rod centres ``x``, shape (..., L)."""
@@ -156,7 +161,7 @@ class Chain(Parameters):
             return 0.0
         if self.stiffness == 0:
             return math.inf
-        return (self.temperature / self.stiffness) ** (1 / self.potential_exponent)
+        return float(spring.root(self.temperature / self.stiffness, self.potential_exponent))
 
     def require_steady_state(self) -> None:
         """Raise a ValueError that says why, if this chain has no steady state to compute."""

@@ -4,39 +4,110 @@ numba's cache notices when the file of a kernel changes, but not when a kernel t
 changes in another file: it would go on running the old one. So the cache entries made here also
 carry a fingerprint of the files of all kernels that a kernel calls, directly or not, and of the
 constants that these take from elsewhere.
+
+The cache only saves time. Where it cannot be kept, kernels are compiled in every process, with one
+warning: in a container without a home, on a full disk.
 """
 
 from __future__ import annotations
 
 import inspect
+import multiprocessing
+import warnings
 from collections.abc import Callable
+from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+import numpy as np
 from numba import njit
 
 from crazybilliards.model.fingerprint import fingerprint_of
+from crazybilliards.model.process import interrupts_held_back
+
+_ANEW = "the kernels are compiled anew in every process, which takes some seconds"
+_warned: set[str] = set()
 
 
-def kernel(function: Callable[..., Any]) -> Any:
-    """Compile ``function`` when it is first called; a decorator."""
-    dispatcher = njit(cache=True, nogil=True, error_model="numpy")(function)
-    # numba has no public way to add to the stamp. Where this one is gone (or compilation is
-    # disabled), the cache works as numba made it.
-    entries = getattr(getattr(dispatcher, "_cache", None), "_cache_file", None)
-    stamp = getattr(entries, "_source_stamp", None)
-    if entries is not None and stamp is not None:
-        entries._source_stamp = (stamp, _fingerprint(function))
+def kernel(function: Callable[..., Any] | None = None, *, fused: bool = False) -> Any:
+    """Compile ``function`` when it is first called; a decorator.
+
+    ``fused``: a multiplication and an addition may become one instruction with one rounding.
+    """
+    if function is None:
+        return partial(kernel, fused=fused)
+    fast = {"contract"} if fused else False
+    dispatcher: Any = njit(nogil=True, error_model="numpy", fastmath=fast)(function)
+    if not hasattr(dispatcher, "enable_caching"):  # compilation is disabled
+        # Compiled code does not warn where it divides by zero.
+        return np.errstate(divide="ignore", invalid="ignore")(dispatcher)
+    # Ctrl-C while numba registers its functions would leave it without them in this process.
+    dispatcher.compile = interrupts_held_back()(dispatcher.compile)
+    try:
+        dispatcher.enable_caching()
+    except RuntimeError:
+        # The process that started this one has said it already.
+        if multiprocessing.current_process().name == "MainProcess":
+            _warn(_ANEW, "there is no folder for numba's cache; NUMBA_CACHE_DIR can name one")
+        return dispatcher
+    # numba has no public way to add to the stamp, or to let a cache fail. Where what is used here
+    # is gone, the cache works as numba made it.
+    if (kept := getattr(dispatcher, "_cache", None)) is not None:
+        _add_fingerprint(kept, function)
+        _let_it_fail(kept)
     return dispatcher
 
 
-def inlined(function: Callable[..., Any]) -> Any:
+def _add_fingerprint(kept: Any, function: Callable[..., Any]) -> None:
+    """Add to what tells numba whether a cache is of today."""
+    entries = getattr(kept, "_cache_file", None)
+    stamp = getattr(entries, "_source_stamp", None)
+    if entries is not None and stamp is not None:
+        entries._source_stamp = (stamp, _fingerprint(function))
+
+
+def _let_it_fail(kept: Any) -> None:
+    """Make a cache that cannot be read or written a warning; numba makes it an error."""
+    load, save = kept.load_overload, kept.save_overload
+
+    def load_or_none(*arguments: Any) -> Any:
+        try:
+            return load(*arguments)
+        # Whatever unpickling makes of a damaged file. What is compiled now takes its place.
+        except Exception as error:
+            _warn("numba's cache cannot be read, compiling anew", f"{kept.cache_path}: {error}")
+            with suppress(OSError):
+                kept.flush()
+            return None
+
+    def save_if_possible(*arguments: Any) -> None:
+        try:
+            save(*arguments)
+        except Exception as error:  # saving reads what is there, too
+            _warn(_ANEW, f"{kept.cache_path}: {error}; NUMBA_CACHE_DIR can name another folder")
+
+    kept.load_overload, kept.save_overload = load_or_none, save_if_possible
+
+
+def _warn(problem: str, reason: str) -> None:
+    """Warn of a problem once, not for every kernel that has it."""
+    if problem not in _warned:
+        _warned.add(problem)
+        warnings.warn(f"{problem}: {reason}", RuntimeWarning, stacklevel=3)
+
+
+def inlined(function: Callable[..., Any] | None = None, *, fused: bool = False) -> Any:
     """Compile ``function`` into every kernel that calls it; a decorator.
 
-    For helpers that take many arrays, which cost more to hand over than to work on.
+    For helpers that take many arrays, which cost more to hand over than to work on. ``fused``: as
+    in :func:`kernel`.
     """
-    return njit(nogil=True, error_model="numpy", forceinline=True)(function)
+    if function is None:
+        return partial(inlined, fused=fused)
+    fast = {"contract"} if fused else False
+    return njit(nogil=True, error_model="numpy", forceinline=True, fastmath=fast)(function)
 
 
 def _fingerprint(function: Callable[..., Any]) -> str:

@@ -10,10 +10,13 @@ from __future__ import annotations
 
 import math
 import os
+import time
 from contextlib import suppress
+from functools import lru_cache
 from pathlib import Path
 
 _GIB = 2**30
+_LATELY = 0.1  # seconds; looking takes half a millisecond, and a sweep asks for every case
 
 # Limit, usage, and what of it the system can take back, in the two versions of control groups.
 _VERSION_1 = ("memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file")
@@ -23,14 +26,20 @@ _VERSION_2 = ("memory.max", "memory.current", "inactive_file")
 def require_memory(wanted: str, needed: float) -> None:
     """Raise a ValueError with both numbers unless ``needed`` bytes are available.
 
-    ``wanted`` says what for, and begins with the name of the argument to change.
+    ``wanted`` says what for, and begins with the name of the argument to change. What is available
+    is looked up at most ten times a second.
     """
-    available = available_memory()
+    available = _available_lately(int(time.monotonic() / _LATELY))
     if needed > available:
         raise ValueError(
             f"{wanted} would take {needed / _GIB:.3g} GiB of memory, "
             f"{available / _GIB:.3g} GiB are available"
         )
+
+
+@lru_cache(maxsize=1)
+def _available_lately(moment: int) -> float:
+    return available_memory()
 
 
 def available_memory() -> float:

@@ -32,6 +32,24 @@ def announced(progress: bool) -> Iterator[None]:
 
 
 @contextmanager
+def interrupts_held_back() -> Iterator[None]:
+    """Let a Ctrl-C that comes meanwhile act afterwards; also a decorator."""
+    in_main = threading.current_thread() is threading.main_thread()
+    if not in_main or signal.getsignal(signal.SIGINT) is None:
+        yield  # only the main thread receives signals; a handler of C cannot be put back
+        return
+    # Blocking the signal in this thread would not do: another thread would take it and pass it on.
+    came: list[int] = []
+    before = signal.signal(signal.SIGINT, lambda number, _: came.append(number))
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+        if came:
+            signal.raise_signal(signal.SIGINT)
+
+
+@contextmanager
 def terminated_like_interrupted() -> Iterator[None]:
     """Let SIGTERM, which batch systems send before they kill, act like Ctrl-C meanwhile."""
     if threading.current_thread() is not threading.main_thread():

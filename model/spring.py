@@ -37,7 +37,12 @@ def potential(d: Number, exponent: int) -> Number:
 
 def reach(energy: Number, exponent: int) -> Number:
     """Return the d > 0 at which the energy U(d)/k is ``energy``."""
-    return (exponent * energy) ** (1 / exponent)
+    return root(exponent * energy, exponent)
+
+
+def root(power: Number, exponent: int) -> Number:
+    """Return power^(1/n). Unlike ``**``, these roots scale by powers of two to the bit."""
+    return np.sqrt(power) if exponent == 2 else np.cbrt(power)
 
 
 def displacement(f: Number, exponent: int) -> Number:

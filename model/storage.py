@@ -1,8 +1,11 @@
 """Saving and loading results: NetCDF files, written atomically and checked when read.
 
-A file is an ordinary NetCDF-4 file followed by a trailer with the SHA-256 of everything before
+A file is an ordinary NetCDF file followed by a trailer with the SHA-256 of everything before
 it (NetCDF readers ignore what follows the data). :func:`load` compares the two before any
 NetCDF library sees the bytes, so a damaged or truncated file can never give a wrong result.
+
+:func:`save` writes NetCDF-4, which can hold everything and costs tens of milliseconds a file. The
+many small files of a sweep are classic NetCDF, which costs one or two.
 """
 
 from __future__ import annotations
@@ -18,10 +21,13 @@ from pathlib import Path
 from typing import Any
 
 import h5py
+import numpy as np
 import xarray as xr
+from xarray.backends import ScipyDataStore
 
 from crazybilliards.model.locks import open_locked
 
+_CLASSIC = b"CDF"
 _MARK = b"\ncrazybilliards-1 sha256 "
 _TRAILER = len(_MARK) + 64 + 1  # hexadecimal digest and a newline
 
@@ -58,6 +64,8 @@ def load(path: str | os.PathLike[str]) -> xr.Dataset | xr.DataTree:
     """
     content = read_sealed(Path(path))
     try:
+        if content.startswith(_CLASSIC):
+            return _load_classic(content)
         tree = xr.open_datatree(io.BytesIO(content), engine="h5netcdf").load()
     # Whatever the libraries make of bytes that are sealed but no NetCDF.
     except Exception as error:
@@ -69,14 +77,35 @@ def load(path: str | os.PathLike[str]) -> xr.Dataset | xr.DataTree:
 def load_attributes(path: str | os.PathLike[str]) -> dict[str, Any]:
     """Read only the attributes of a result that :func:`save` wrote; raises as :func:`load`.
 
-    Fifty times faster, and the whole file is checked all the same.
+    Faster, and the whole file is checked all the same.
     """
     content = read_sealed(Path(path))
     try:
+        if content.startswith(_CLASSIC):
+            with ScipyDataStore(io.BytesIO(content)) as store:
+                return dict(store.get_attrs())
         with h5py.File(io.BytesIO(content)) as file:
             return dict(file.attrs)
     except Exception as error:
         raise ValueError(f"{path}: not a result, though crazybilliards wrote it") from error
+
+
+def small_netcdf(result: xr.Dataset) -> bytes:
+    """Return a result as a classic NetCDF file, or as NetCDF-4 if that is needed to hold it.
+
+    Classic NetCDF has no integers beyond 32 bits. :func:`load` gives them their 64 bits back.
+    """
+    try:
+        return bytes(result.to_netcdf(engine="scipy", format="NETCDF3_64BIT"))
+    except ValueError:
+        return bytes(result.to_netcdf(engine="h5netcdf"))
+
+
+def _load_classic(content: bytes) -> xr.Dataset:
+    with xr.open_dataset(io.BytesIO(content), engine="scipy") as file:
+        result = file.load()
+    narrow = [name for name, each in result.variables.items() if each.dtype == np.int32]
+    return result.assign({name: result.variables[name].astype(np.int64) for name in narrow})
 
 
 def write_sealed(path: Path, content: bytes) -> None:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 import platform
 from collections.abc import Iterable, Mapping
+from functools import cache
 from importlib.metadata import version
 from typing import Any
 
@@ -57,6 +58,8 @@ VOCABULARY = {
     "normalized_particle": ("normalized particle i_n", "1"),
 }
 
+_RODS_TOLERANCE = 1e-6
+
 
 def result(
     chain: Chain,
@@ -91,7 +94,14 @@ def result(
         How well a theory's equations are satisfied; what it measures its function says.
     particles
         The particles, from 1, that variables over ``particle`` are given for; None: all.
+
+    Raises
+    ------
+    ValueError
+        If the label does not grow by the number of the chain's rods, to 1e-6 of it.
     """
+    if "label" in variables:
+        _require_all_rods(chain, variables["label"][1])
     along: dict[str, Any] = {
         name: (name, np.asarray(values, dtype=float))
         for name, values in (coordinates or {}).items()
@@ -121,6 +131,18 @@ def result(
     return dataset
 
 
+def _require_all_rods(chain: Chain, label: ArrayLike) -> None:
+    """Raise a ValueError if the label, whose last axis is x, does not count all rods."""
+    ends = np.asarray(label)[..., [0, -1]]
+    rods = ends[..., 1] - ends[..., 0]
+    worst = float(rods.flat[np.argmax(np.abs(rods - chain.size))])
+    if not abs(worst - chain.size) <= _RODS_TOLERANCE * chain.size:
+        raise ValueError(
+            f"the solution holds {worst:.8g} of the chain's {chain.size} rods: the others lie "
+            "beyond its grid of positions, or the equations were not solved"
+        )
+
+
 def chain_of(dataset: xr.Dataset) -> Chain:
     """Return the chain a result was computed for, read from its provenance."""
     try:
@@ -137,6 +159,7 @@ def require(dataset: xr.Dataset, names: Iterable[str]) -> None:
             raise ValueError(f"the result has no {name!r}; it has {has}")
 
 
+@cache
 def _versions() -> dict[str, str]:
     packages = ("crazybilliards", "numpy", "numba", "scipy", "xarray")
     return {"python": platform.python_version()} | {name: version(name) for name in packages}

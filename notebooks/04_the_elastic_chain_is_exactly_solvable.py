@@ -625,6 +625,6 @@ assert abs(exact_heat.min() / W**2 - 0.54) < 0.01
 # print(float(lossy.mean_displacement[-1] / s), float(exact.mean_displacement[-1] / s))
 # ```
 #
-# It does not: the simulation gives $1.283 \pm 0.006\;s$, the order statistic $1.867\;s$. Inelastic
+# It does not: the simulation gives $1.285 \pm 0.005\;s$, the order statistic $1.867\;s$. Inelastic
 # rods do not just swap their velocities. They cool each other, and a colder chain is shorter.
 # </details>

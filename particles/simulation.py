@@ -17,6 +17,7 @@ from crazybilliards.model.grid import deposit
 from crazybilliards.model.process import announced, cores
 from crazybilliards.particles.laws.avalanche import make_tally
 from crazybilliards.particles.laws.law import Method, make_scratch
+from crazybilliards.particles.noise import make_noise
 from crazybilliards.particles.observers import Observer, find_observers
 from crazybilliards.particles.run import Run
 from crazybilliards.particles.running.checkpoint import Checkpoint, identity
@@ -182,12 +183,13 @@ def _replicas(run: Run) -> list[Replica]:
 
 def _compile_kernels() -> None:
     """Compile every kernel, or load it from numba's cache, by running a chain of two rods."""
-    # Counting collisions compiles the heap, and with it all that the other operators need.
+    # Counting collisions compiles event_driven.drift, and all that the other operators need.
     dynamics = make_dynamics(Chain(size=2), 0.1, speed=1.0, counted=True)
     y, v = np.zeros((2, 2))
     y_buffer, v_buffer = np.zeros((2, 1, 2))
     tally = make_tally(2, contacts=True)
-    state = y, v, np.random.default_rng(0), dynamics, make_scratch(2), tally
+    noise = make_noise(np.random.SeedSequence(0))
+    state = y, v, noise, dynamics, make_scratch(2), tally
     advance(*state, 1)
     record(*state, 1, y_buffer, v_buffer)
     bounded(y, v, dynamics.fastest)

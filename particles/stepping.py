@@ -28,12 +28,22 @@ from numpy.typing import NDArray
 
 from crazybilliards.model import Chain, spring
 from crazybilliards.model.kernels import inlined, kernel
+from crazybilliards.particles.laws.closed_contacts import (
+    CLOSED_KICK,
+    CRITICAL_RESTITUTION,
+    find_clusters,
+    second_half,
+    strengthen,
+)
 from crazybilliards.particles.laws.law import Law, Method, drift, make_law
+from crazybilliards.particles.noise import fill
 from crazybilliards.particles.scales import spring_rate
 
 MERGING = 0.03  # in velocity kicks of one step: rods that separate more slowly move as one
 
 Stepper = Literal["splitting", "euler"]
+
+FIRST, WHOLE, LAST = range(3)  # parts of a kick
 
 _pull = inlined(spring.force)
 
@@ -49,6 +59,8 @@ class Step(NamedTuple):
     kick: float  # velocity kick per unit of F/k, one half of it for the splitting
     exponent: int  # of the spring's potential
     symmetric: bool  # splitting: half kicks of spring and noise after the drift
+    closed: float  # strength of the noise that opens closed contacts; 1: as all other noise
+    closed_outer: float  # the same for the half kick after a snapshot
 
 
 class Dynamics(NamedTuple):
@@ -87,13 +99,15 @@ def make_dynamics(
     """
     return Dynamics(
         chain.reduced_anchors,
-        make_step(chain, time_step, stepper),
+        make_step(chain, time_step, stepper, method),
         make_law(chain, time_step, method, merging, speed, counted=counted),
         diverged * speed if speed > 0 else math.inf,
     )
 
 
-def make_step(chain: Chain, time_step: float, stepper: Stepper) -> Step:
+def make_step(
+    chain: Chain, time_step: float, stepper: Stepper, method: Method = "event-driven"
+) -> Step:
     """Return the numbers of one step of the chain under the named scheme."""
     m, gamma = chain.mass, chain.damping
     full_kick = chain.stiffness * time_step / m
@@ -101,9 +115,13 @@ def make_step(chain: Chain, time_step: float, stepper: Stepper) -> Step:
     if stepper == "euler":
         decay = 1 - gamma * time_step / m
         noise = chain.amplitude / m * math.sqrt(time_step)
-        return Step(time_step, decay, noise, decay, noise, full_kick, exponent, False)
+        return Step(time_step, decay, noise, decay, noise, full_kick, exponent, False, 1.0, 1.0)
     inner, outer = (_ornstein_uhlenbeck(chain, duration) for duration in (time_step, time_step / 2))
-    return Step(time_step, *inner, *outer, full_kick / 2, exponent, True)
+    # Contact Dynamics is left as the paper describes it.
+    sticking = chain.restitution < CRITICAL_RESTITUTION and method == "event-driven"
+    strength = CLOSED_KICK if sticking else 1.0
+    outer_strength = second_half(strength, outer[0])
+    return Step(time_step, *inner, *outer, full_kick / 2, exponent, True, strength, outer_strength)
 
 
 def longest_step(chain: Chain, stepper: Stepper) -> float:
@@ -129,48 +147,55 @@ def _ornstein_uhlenbeck(chain: Chain, duration: float) -> tuple[float, float]:
 
 
 @kernel
-def kick(y, v, anchors, step, decay, before, after):  # type: ignore[no-untyped-def]
-    """Damp the velocities by ``decay``, with ``before`` and ``after`` spring kicks around it."""
+def kick(y, v, anchors, kicks, step, part):  # type: ignore[no-untyped-def]
+    """Kick the rods by spring, damping and noise; ``kicks``: normal numbers, shape (L,).
+
+    ``part``: FIRST, a first half, or the whole of a step without halves; WHOLE, the second half of
+    a step and the first of the next; LAST, a second half.
+    """
+    decay = step.decay if part == WHOLE else step.outer_decay
+    noise = step.noise if part == WHOLE else step.outer_noise
+    before = 0.0 if part == FIRST else 1.0
+    after = 0.0 if part == LAST else 1.0
     for i in range(y.size):
         pull = step.kick * _pull(y[i] - anchors[i], step.exponent)
-        v[i] = decay * (v[i] - before * pull) - after * pull
+        v[i] = decay * (v[i] - before * pull) - after * pull + noise * kicks[i]
 
 
 @kernel
-def shake(v, noise, generator):  # type: ignore[no-untyped-def]
-    """Add white noise of standard deviation ``noise`` to the velocities.
-
-    Not one loop with :func:`kick`: the call of the generator would keep that from working on
-    several rods at a time, as vector instructions do.
-    """
-    for i in range(v.size):
-        v[i] += noise * generator.standard_normal()
-
-
-@kernel
-def advance(y, v, generator, dynamics, scratch, tally, steps):  # type: ignore[no-untyped-def]
+def advance(y, v, noise, dynamics, scratch, tally, steps):  # type: ignore[no-untyped-def]
     """Take ``steps`` steps of the chain in place; return the collisions, or -1 if diverged.
 
-    ``y``, ``v``: float arrays of shape (L,) in the reduced coordinate; ``generator``: a numpy
-    Generator of this thread's own; ``scratch``: see ``laws/law.py``; ``tally``: see
+    ``y``, ``v``: float arrays of shape (L,) in the reduced coordinate; ``noise``: a stream of this
+    thread's own, see ``noise.py``; ``scratch``: see ``laws/law.py``; ``tally``: see
     ``laws/avalanche.py``.
     """
-    anchors, step, law = dynamics.anchors, dynamics.step, dynamics.law
-    collisions = 0
-    decay, noise = step.outer_decay, step.outer_noise
-    half_due = 0.0  # 1 after the first step: its second half kick is merged into the next one
-    for _ in range(steps):
-        kick(y, v, anchors, step, decay, half_due, 1.0)
-        shake(v, noise, generator)
-        decay, noise = step.decay, step.noise
-        met = drift(y, v, step.time_step, law, scratch, tally)
+    if steps == 0:
+        return 0
+    anchors, step, kicks = dynamics.anchors, dynamics.step, scratch.kicks
+    if step.closed != 1.0:
+        find_clusters(y, scratch.clusters)
+    collisions, row, rows = 0, 0, 0
+    # The second half kick of a step is merged into the first one of the next.
+    part, closed = FIRST, step.closed_outer
+    due = steps + 1 if step.symmetric else steps
+    for taken in range(due):
+        if row == rows:  # noise for several steps at once
+            row, rows = 0, min(kicks.shape[0], due - taken)
+            fill(noise, kicks.ravel()[: rows * y.size])
+        if taken == steps:
+            kick(y, v, anchors, kicks[row], step, LAST)
+            break
+        if closed != 1.0:
+            strengthen(kicks[row], scratch.clusters, closed)
+        kick(y, v, anchors, kicks[row], step, part)
+        row += 1
+        met = drift(y, v, step.time_step, dynamics.law, scratch, tally)
         if met < 0:
             return -1
         collisions += met
-        half_due = 1.0 if step.symmetric else 0.0
-    if step.symmetric and steps > 0:
-        kick(y, v, anchors, step, step.outer_decay, 1.0, 0.0)
-        shake(v, step.outer_noise, generator)
+        if step.symmetric:
+            part, closed = WHOLE, step.closed
     return collisions
 
 
@@ -185,7 +210,7 @@ def bounded(y, v, fastest):  # type: ignore[no-untyped-def]
 
 @kernel
 def record(  # type: ignore[no-untyped-def]
-    y, v, generator, dynamics, scratch, tally, stride, y_buffer, v_buffer
+    y, v, noise, dynamics, scratch, tally, stride, y_buffer, v_buffer
 ):
     """Fill the buffers, shape (snapshots, L), with the state after every ``stride`` steps.
 
@@ -195,7 +220,7 @@ def record(  # type: ignore[no-untyped-def]
     """
     contacts = tally.contacts.copy()
     for snapshot in range(y_buffer.shape[0]):
-        met = advance(y, v, generator, dynamics, scratch, tally, stride)
+        met = advance(y, v, noise, dynamics, scratch, tally, stride)
         if met < 0 or not bounded(y, v, dynamics.fastest):
             tally.contacts[:] = contacts
             return snapshot

@@ -1,6 +1,10 @@
 """Shared by all tests."""
 
+import signal
+import threading
+
 import matplotlib as mpl
+import pytest
 from hypothesis import settings
 
 mpl.use("Agg")
@@ -8,3 +12,27 @@ mpl.use("Agg")
 # The first example of a kernel compiles it, which is no sign of a slow test.
 settings.register_profile("crazybilliards", deadline=None, derandomize=True)
 settings.load_profile("crazybilliards")
+
+
+@pytest.fixture
+def ctrl_c(monkeypatch):
+    """Let Ctrl-C come when a method was called often enough, however long a busy machine takes."""
+
+    def ctrl_c(owner, name, enough):
+        """``enough(callers)``: of these objects the method was called, in this order."""
+        method, callers, sent = getattr(owner, name), [], []
+
+        def watched(self, *arguments, **settings):
+            result = method(self, *arguments, **settings)
+            callers.append(self)
+            if not sent and enough(callers):
+                sent.append(True)
+                if hasattr(signal, "pthread_kill"):  # wakes the main thread if it is waiting
+                    signal.pthread_kill(threading.main_thread().ident, signal.SIGINT)
+                else:
+                    signal.raise_signal(signal.SIGINT)
+            return result
+
+        monkeypatch.setattr(owner, name, watched)
+
+    return ctrl_c

@@ -19,7 +19,7 @@ STANDS_ON = {
 # What stands on one floor may import what stands there or below, but never in a circle.
 FLOORS = {
     "particles": (
-        {"scales", "stepping", "laws"},
+        {"scales", "noise", "stepping", "laws"},
         {"schedule", "start"},
         {"run"},
         {"observers"},

@@ -23,7 +23,7 @@ from crazybilliards.particles import simulate
 
 EXAMPLES = 300
 PATIENCE = 2.0  # seconds until Ctrl-C
-HANG = 90.0  # seconds after Ctrl-C until the process is given up, with its traceback
+HANG = 600.0  # seconds after Ctrl-C until the process is given up, with its traceback
 ROOM = 24 * 2**30  # bytes of address space; more is asked for by mistake only
 
 STRANGE = st.sampled_from(

@@ -17,7 +17,7 @@ from typer.main import get_command
 
 from crazybilliards.comparison.commands.line import app, main
 
-PATIENCE, HANG = 2.0, 120.0
+PATIENCE, HANG = 2.0, 600.0
 NASTY = [
     *(
         "",

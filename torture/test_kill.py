@@ -34,7 +34,7 @@ from crazybilliards.particles import simulate
 pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="forks, reads /proc")
 
 SEQUENCES, KILLS = 10, 10  # one after another, and in a row
-PATIENCE = 120.0  # for what must come to an end
+PATIENCE = 600.0  # for what must come to an end
 SIGNALS = (signal.SIGKILL, signal.SIGTERM, signal.SIGINT)
 GRID = """
 [grid]

@@ -141,7 +141,7 @@ def run(start, *arguments):
 )
 def test_the_guard_sees_what_is_asked_and_refuses_it(guarded, attempt, event):
     done = guarded("-c", f"import socket; {attempt}", stderr=subprocess.PIPE)
-    assert "OSError: no network" in done.communicate(timeout=300)[1]
+    assert "OSError: no network" in done.communicate(timeout=600)[1]
     assert guarded.log.read_text().startswith(event)
     guarded.log.write_text("")
 
@@ -243,9 +243,9 @@ import json, subprocess, sys
 from urllib.request import ProxyHandler, build_opener
 page = subprocess.Popen([sys.executable, "-c", {script!r}], stdout=subprocess.PIPE, text=True)
 address = page.stdout.readline().split()[0]
-answer = build_opener(ProxyHandler({{}})).open(address, timeout=300).read().decode()
+answer = build_opener(ProxyHandler({{}})).open(address, timeout=600).read().decode()
 page.send_signal({int(signal.SIGINT)})
-assert page.wait(120) == 130
+assert page.wait(600) == 130
 print(json.dumps(answer))
 """
     answer = json.loads(run(guarded, "-c", reader))

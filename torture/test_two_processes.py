@@ -1,7 +1,7 @@
 """Two processes in one place: the second is refused, and a dead one holds up nobody.
 
-A checkpoint, the folder of a sweep and that of `reproduce` belong to one process at a time. Real
-processes hold them here, are stopped and killed.
+A checkpoint and what a command writes to belong to one process at a time. Real processes hold them
+here, are stopped and killed.
 """
 
 import os
@@ -79,14 +79,25 @@ def test_a_second_run_on_a_checkpoint_is_refused_until_the_first_is_dead(first, 
     assert [path.name for path in tmp_path.iterdir()] == ["state"]
 
 
-@pytest.mark.parametrize("command", ["sweep", "reproduce"])
-def test_a_second_command_in_a_folder_is_refused_and_overwrites_nothing(command, first, tmp_path):
-    grid, folder = tmp_path / "grid.toml", tmp_path / "results"
-    grid.write_text(GRID)
-    what = ["sweep", grid] if command == "sweep" else ["reproduce", "all"]
-    arguments = [*map(str, what), "--output", str(folder), "--processes", "1"]
+@pytest.mark.parametrize(
+    ("what", "other"),
+    [
+        (["sweep", "grid.toml", "--processes", "1"], ["--processes", "2"]),
+        (["reproduce", "all", "--processes", "1"], ["--processes", "2"]),
+        (["compare", "--duration", "1e9"], ["--size", "3"]),
+        (["relax", "--replicas", "100000"], ["--size", "3"]),
+    ],
+    ids=lambda what: what[0],
+)
+def test_a_second_command_in_a_folder_is_refused_and_overwrites_nothing(
+    what, other, first, tmp_path, monkeypatch
+):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "grid.toml").write_text(GRID)
+    folder = tmp_path / "results"
+    arguments = [*what, "--output", str(folder)]
     holder = first(folder / ".lock", *COMMAND, *arguments)
-    for second in (arguments, [*arguments, "--processes", "2"]):
+    for second in (arguments, [*arguments, *other]):
         done = subprocess.run(
             [*COMMAND, *second], capture_output=True, text=True, timeout=PATIENCE, check=False
         )

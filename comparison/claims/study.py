@@ -70,7 +70,7 @@ class Study:
 
 @dataclass(frozen=True, kw_only=True)
 class PaperFigure(Study):
-    """A figure of arXiv:1404.7460, computed anew; its claims are those of the paper.
+    """A figure of arXiv:1404.7460, computed anew; its claims are the paper's and our own findings.
 
     Attributes
     ----------

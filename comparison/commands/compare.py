@@ -6,16 +6,18 @@ Only the standard library and typer are imported up here, so that ``--help`` ans
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from crazybilliards.comparison.commands.chain_options import with_chain_options
 from crazybilliards.comparison.commands.output import (
-    check_folder,
     exit_unless_completed,
     numbers,
+    place,
+    print_table,
     write_figures,
+    writing_to,
 )
 
 if TYPE_CHECKING:
@@ -31,7 +33,9 @@ def command(
         Path | None,
         typer.Option(
             help="Folder for the figures and comparison.nc, made if missing; without it nothing is "
-            "written."
+            "written.",
+            parser=place,
+            metavar="FOLDER",
         ),
     ] = None,
     amplitudes: Annotated[
@@ -70,45 +74,47 @@ def command(
 
     Example: crazybilliards compare --output results --restitution 0.9,0.95,0.98
     """
-    if output is not None:
-        check_folder(output)
-    if restitution is None:
-        if chain.size < 3:
-            raise ValueError(
-                f"size must be at least 3 to compare with an arctanh fit, got {chain.size}"
-            )
-        from crazybilliards.comparison.studies.elastic_chain import compare_elastic
-
-        tree = compare_elastic(
-            chain,
-            numbers("amplitudes", "1,3,10,30" if amplitudes is None else amplitudes, float),
-            duration=200_000.0 if duration is None else duration,
-            seed=seed,
-            threads=threads,
-        )
-        write, show = _write_comparison, _print_deviations
-    else:
-        if amplitudes is not None:
-            raise ValueError("amplitudes only set the scale here: give restitution or amplitudes")
-        from crazybilliards.comparison.studies.restitutions import compare_restitutions
-
-        tree = compare_restitutions(
-            chain,
-            numbers("restitution", restitution, float),
-            duration=5_000.0 if duration is None else duration,
-            seed=seed,
-            threads=threads,
-        )
-        write, show = _write_restitutions, _print_widths
-    status = tree.attrs["status"]
-    try:
-        if output is not None:
-            write(tree, output, "" if status == "completed" else f"-{status}")
-    finally:
-        show(tree)  # where nothing can be written any more, this is all there is
+    settings: dict[str, Any] = {"seed": seed, "threads": threads}
+    if duration is not None:
+        settings["duration"] = duration
+    with writing_to(output):
+        if restitution is None:
+            tree = _elastic(chain, amplitudes, **settings)
+            write, show = _write_comparison, _print_deviations
+        else:
+            if amplitudes is not None:
+                raise ValueError(
+                    "amplitudes only set the scale here: give restitution or amplitudes"
+                )
+            tree = _inelastic(chain, restitution, **settings)
+            write, show = _write_restitutions, _print_widths
+        status = tree.attrs["status"]
+        try:
+            if output is not None:
+                write(tree, output, "" if status == "completed" else f"-{status}")
+        finally:
+            show(tree)  # where nothing can be written any more, this is all there is
     if output is None:
         print("Nothing was written; --output FOLDER keeps the figures and the data.")
     exit_unless_completed(status)
+
+
+def _elastic(chain: Chain, amplitudes: str | None, **settings: Any) -> xr.DataTree:
+    if chain.size < 3:
+        raise ValueError(
+            f"size must be at least 3 to compare with an arctanh fit, got {chain.size}"
+        )
+    from crazybilliards.comparison.studies.elastic_chain import compare_elastic
+
+    values = numbers("amplitudes", "1,3,10,30" if amplitudes is None else amplitudes, float)
+    return compare_elastic(chain, values, **settings)
+
+
+def _inelastic(chain: Chain, restitution: str, **settings: Any) -> xr.DataTree:
+    from crazybilliards.comparison.studies.restitutions import compare_restitutions
+
+    values = numbers("restitution", restitution, float)
+    return compare_restitutions(chain, values, **settings)
 
 
 def _write_comparison(tree: xr.DataTree, folder: Path, suffix: str) -> None:
@@ -124,7 +130,6 @@ def _write_comparison(tree: xr.DataTree, folder: Path, suffix: str) -> None:
 
 
 def _print_deviations(tree: xr.DataTree) -> None:
-    from rich.console import Console
     from rich.table import Table
 
     from crazybilliards.comparison.studies.elastic_chain import (
@@ -156,7 +161,7 @@ def _print_deviations(tree: xr.DataTree) -> None:
             "-" if exact is None else f"{exact.maximum_in_errors or 0:.1f}",
             f"{largest_width_error(tree.children[name]):.1f}",
         )
-    Console().print(table)
+    print_table(table)
 
 
 def _write_restitutions(tree: xr.DataTree, folder: Path, suffix: str) -> None:
@@ -176,7 +181,6 @@ def _write_restitutions(tree: xr.DataTree, folder: Path, suffix: str) -> None:
 
 
 def _print_widths(tree: xr.DataTree) -> None:
-    from rich.console import Console
     from rich.table import Table
 
     from crazybilliards.comparison.studies.restitutions import width_deviations
@@ -198,4 +202,4 @@ def _print_widths(tree: xr.DataTree) -> None:
         status = group["simulation"].attrs["status"]
         note = "" if status == "completed" else f" ({status})"
         table.add_row(name.removeprefix("restitution_") + note, *values)
-    Console().print(table)
+    print_table(table)

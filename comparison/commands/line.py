@@ -21,6 +21,7 @@ from crazybilliards.comparison.commands import (
     theory,
 )
 from crazybilliards.comparison.commands.output import INTERRUPTED
+from crazybilliards.comparison.commands.streams import READER_GONE, plain_streams
 
 app = typer.Typer(
     add_completion=False,
@@ -62,6 +63,16 @@ for module in (compare, simulate, theory, relax, reproduce, sweep, explore):
 
 def main() -> None:
     """Entry point: a user's mistake is one line on standard error and exit status 2."""
+    with plain_streams() as output:
+        status = _run()
+    if isinstance(output.failed, BrokenPipeError):  # crazybilliards ... | head, say
+        status = status or READER_GONE
+    elif output.failed is not None:
+        status = _complain(f"standard output: {output.failed.strerror}")
+    sys.exit(status)
+
+
+def _run() -> int | None:
     try:
         status = app(standalone_mode=False)
         if status == INTERRUPTED:
@@ -72,7 +83,7 @@ def main() -> None:
         status = _complain(str(error))
     except OSError as error:
         status = _complain(f"{error.filename or 'file'}: {error.strerror or error}")
-    sys.exit(status)
+    return status
 
 
 def _complain(message: str) -> int:

@@ -6,7 +6,8 @@ Standard library and typer only up here, so that ``--help`` answers at once.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
@@ -15,8 +16,10 @@ import typer
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
+    from rich.table import Table
 
 INTERRUPTED = 130
+_ANY_WIDTH = 10_000
 
 Number = TypeVar("Number", int, float)
 
@@ -32,13 +35,52 @@ def numbers(name: str, text: str, kind: Callable[[str], Number]) -> list[Number]
         raise ValueError(message) from error
 
 
+def place(text: str) -> Path:
+    """Read the name of a file or a folder. An empty one would be the current folder."""
+    if not str(text):
+        raise typer.BadParameter("an empty name; the current folder is .")
+    return Path(text)
+
+
+@contextmanager
+def writing_to(output: Path | None, *, file: bool = False) -> Iterator[None]:
+    """Hold what a command writes to, a folder or a file, against other processes meanwhile.
+
+    Raises
+    ------
+    ValueError
+        Before any work, if ``output`` cannot become or is not a folder, or a result's file.
+    OSError
+        If another process holds it, or nothing can be written there.
+    """
+    if output is None:
+        yield
+        return
+    from crazybilliards.model.locks import locked
+    from crazybilliards.model.storage import make_folder
+
+    (check_file if file else check_folder)(output)
+    folder = output.parent if file else output
+    made = [each for each in (folder, *folder.parents) if not each.exists()]
+    make_folder(folder)
+    try:
+        with locked(output):
+            yield
+    finally:
+        for each in made:  # a folder in which nothing was written
+            with suppress(OSError):
+                each.rmdir()
+
+
 def check_folder(path: Path) -> None:
     """Raise, before any work, if ``path`` cannot become or is not a folder to write to."""
-    existing = next(each for each in (path, *path.absolute().parents) if each.exists())
-    if not existing.is_dir():
-        raise ValueError(f"output must be a folder, but {existing} is a file")
-    if not os.access(existing, os.W_OK | os.X_OK):
-        raise ValueError(f"output: no permission to write to {existing}")
+    found = next(each for each in (path, *path.absolute().parents) if os.path.lexists(each))
+    if not found.exists():
+        raise ValueError(f"output must be a folder, but {found} is a link that leads nowhere")
+    if not found.is_dir():
+        raise ValueError(f"output must be a folder, but {found} is a file")
+    if not os.access(found, os.W_OK | os.X_OK):
+        raise ValueError(f"output: no permission to write to {found}")
 
 
 def check_file(path: Path) -> None:
@@ -71,7 +113,6 @@ _COLUMNS = {
 
 def print_rods(result: xr.Dataset, title: str, caption: str) -> None:
     """Print widths and displacements of some rods, with their standard errors if there are any."""
-    from rich.console import Console
     from rich.table import Table
 
     columns = {name: text for name, text in _COLUMNS.items() if name in result}
@@ -82,7 +123,23 @@ def print_rods(result: xr.Dataset, title: str, caption: str) -> None:
     for i in sorted({1, 2, max(L // 10, 1), max(L // 4, 1), max(L // 2, 1)} & set(range(1, L + 1))):
         rod = result.isel(particle=i - 1)
         table.add_row(str(rod.particle.item()), *(_measured(rod, name) for name in columns))
-    Console().print(table)
+    print_table(table)
+
+
+def print_table(table: Table) -> None:
+    """Print a table without cutting a number: headings wrap, and lines get as long as they must."""
+    from rich.cells import cell_len
+    from rich.console import Console
+
+    console = Console(markup=False)  # [sigma] is a unit, not a style
+    wide = console.options.update(max_width=_ANY_WIDTH)
+    if console.measure(table, options=wide).maximum > console.width:
+        for column in table.columns:
+            if column.justify == "right":
+                words = [*map(str, column.cells), *str(column.header).split()]
+                column.width = max(map(cell_len, words))
+        console.width = max(console.width, console.measure(table, options=wide).minimum)
+    console.print(table)
 
 
 def _measured(rod: xr.Dataset, name: str) -> str:

@@ -12,9 +12,11 @@ import typer
 
 from crazybilliards.comparison.commands.chain_options import with_chain_options
 from crazybilliards.comparison.commands.output import (
-    check_folder,
     exit_unless_completed,
+    place,
+    print_table,
     write_figures,
+    writing_to,
 )
 
 if TYPE_CHECKING:
@@ -30,7 +32,9 @@ def command(
         Path | None,
         typer.Option(
             help="Folder for relaxation.nc, spacetime.png, profiles.png, cloud.png, "
-            "relaxation.html and relaxation.gif, made if missing; without it nothing is written."
+            "relaxation.html and relaxation.gif, made if missing; without it nothing is written.",
+            parser=place,
+            metavar="FOLDER",
         ),
     ] = None,
     release: Annotated[
@@ -66,22 +70,23 @@ def command(
 
     defaults = {"compressed": 0.3, "displaced": 2.0, "quenched": 3.0}
     check_choice("release", release, tuple(defaults))
-    if output is not None:
-        check_folder(output)
-    tree = compare_relaxation(
-        chain,
-        release,  # type: ignore[arg-type]
-        defaults[release] if by is None else by,
-        duration=duration,
-        every=every,
-        replicas=replicas,
-        seed=seed,
-        threads=threads,
-    )
-    status = tree.attrs["status"]
-    if output is not None:
-        _write_relaxation(tree, output, "" if status == "completed" else f"-{status}")
-    _print_distances(tree)
+    with writing_to(output):
+        tree = compare_relaxation(
+            chain,
+            release,  # type: ignore[arg-type]
+            defaults[release] if by is None else by,
+            duration=duration,
+            every=every,
+            replicas=replicas,
+            seed=seed,
+            threads=threads,
+        )
+        status = tree.attrs["status"]
+        try:
+            if output is not None:
+                _write_relaxation(tree, output, "" if status == "completed" else f"-{status}")
+        finally:
+            _print_distances(tree)  # where nothing can be written any more, this is all there is
     if output is None:
         print("Nothing was written; --output FOLDER keeps the figures and the data.")
     exit_unless_completed(status)
@@ -118,7 +123,6 @@ def _write_relaxation(tree: xr.DataTree, folder: Path, suffix: str) -> None:
 
 
 def _print_distances(tree: xr.DataTree) -> None:
-    from rich.console import Console
     from rich.table import Table
 
     from crazybilliards.comparison.studies.relaxation import LEGEND, label_distances
@@ -131,4 +135,4 @@ def _print_distances(tree: xr.DataTree) -> None:
     table.add_column("rms distance / s", justify="right")
     for key, distance in label_distances(tree).items():
         table.add_row(LEGEND[key], f"{distance:.3f}")
-    Console().print(table)
+    print_table(table)

@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from crazybilliards.comparison.commands.output import check_folder
+from crazybilliards.comparison.commands.output import place, print_table, writing_to
 from crazybilliards.comparison.commands.sweep import (
     Dask,
     KeepOld,
     Processes,
     Scheduler,
-    compute_missing,
+    compute_cases,
     engine,
 )
 
@@ -53,7 +53,12 @@ def command(
         typer.Option(help="All figures take 4 minutes (quick) or an hour (full) on two cores."),
     ] = Quality.QUICK,
     output: Annotated[
-        Path, typer.Option(help="Folder for pictures, report and results; made if missing.")
+        Path,
+        typer.Option(
+            help="Folder for pictures, report and results; made if missing.",
+            parser=place,
+            metavar="FOLDER",
+        ),
     ] = Path("reproduced"),
     processes: Processes = None,
     dask: Dask = False,
@@ -79,20 +84,11 @@ def command(
         _print_list()
         return
     wanted = find_studies(which)
-    check_folder(output)
     from crazybilliards.comparison.claims.report import all_cases
-    from crazybilliards.comparison.sweeps.running import missing_cases
-    from crazybilliards.model.locks import locked
-    from crazybilliards.model.storage import make_folder
 
     computing = engine(processes, dask, scheduler)
-    make_folder(output)
-    with locked(output):
-        kept = output / "cases"
-        cases = all_cases(wanted, quality.value)
-        missing = missing_cases(cases, kept, keep_old=keep_old)
-        print(f"{len(cases)} cases, {len(cases) - len(missing)} of them in {kept} already")
-        compute_missing(missing, kept, computing)
+    with writing_to(output):
+        compute_cases(all_cases(wanted, quality.value), output / "cases", computing, keep_old)
         reproduced = _draw(wanted, quality, output, keep_old)
         _print_claims(reproduced)
         if which in _REPORTS:
@@ -140,7 +136,6 @@ def _write_report(
 
 
 def _print_claims(reproduced: list[Reproduced]) -> None:
-    from rich.console import Console
     from rich.table import Table
 
     table = Table(title="Claims")
@@ -155,4 +150,4 @@ def _print_claims(reproduced: list[Reproduced]) -> None:
                 claim.theory,
                 claim.verdict,
             )
-    Console().print(table)
+    print_table(table)

@@ -12,10 +12,11 @@ import typer
 
 from crazybilliards.comparison.commands.chain_options import with_chain_options
 from crazybilliards.comparison.commands.output import (
-    check_file,
     exit_unless_completed,
     numbers,
+    place,
     print_rods,
+    writing_to,
 )
 
 if TYPE_CHECKING:
@@ -29,7 +30,11 @@ def command(
     chain: Chain,
     output: Annotated[
         Path | None,
-        typer.Option(help="NetCDF file for the result, FILE.nc; without it nothing is written."),
+        typer.Option(
+            help="NetCDF file for the result, FILE.nc; without it nothing is written.",
+            parser=place,
+            metavar="FILE",
+        ),
     ] = None,
     observe: Annotated[
         str,
@@ -68,7 +73,11 @@ def command(
     ] = None,
     checkpoint: Annotated[
         Path | None,
-        typer.Option(help="File to keep the state in: the same command goes on from there."),
+        typer.Option(
+            help="File to keep the state in: the same command goes on from there.",
+            parser=place,
+            metavar="FILE",
+        ),
     ] = None,
 ) -> None:
     """Simulate one chain and write what was measured to a file.
@@ -85,31 +94,30 @@ def command(
     from crazybilliards.model import save
     from crazybilliards.particles import simulate
 
-    if output is not None:
-        check_file(output)
-    result = simulate(
-        chain,
-        duration=duration,
-        warmup=warmup,
-        time_step=time_step,
-        method=method,  # type: ignore[arg-type]
-        stepper=stepper,  # type: ignore[arg-type]
-        seed=seed,
-        observe=[name.strip() for name in observe.split(",")],
-        particles=None if particles is None else numbers("particles", particles, int),
-        replicas=replicas,
-        average=average,  # type: ignore[arg-type]
-        every=every,
-        threads=threads,
-        checkpoint=checkpoint,
-    )
-    status = result.attrs["status"]
-    try:
-        if output is not None:
-            suffix = "" if status == "completed" else f"-{status}"
-            print(f"wrote {save(result, output.with_stem(output.stem + suffix))}")
-    finally:
-        _print(result)  # where nothing can be written any more, this is all there is
+    with writing_to(output, file=True):
+        result = simulate(
+            chain,
+            duration=duration,
+            warmup=warmup,
+            time_step=time_step,
+            method=method,  # type: ignore[arg-type]
+            stepper=stepper,  # type: ignore[arg-type]
+            seed=seed,
+            observe=[name.strip() for name in observe.split(",")],
+            particles=None if particles is None else numbers("particles", particles, int),
+            replicas=replicas,
+            average=average,  # type: ignore[arg-type]
+            every=every,
+            threads=threads,
+            checkpoint=checkpoint,
+        )
+        status = result.attrs["status"]
+        try:
+            if output is not None:
+                suffix = "" if status == "completed" else f"-{status}"
+                print(f"wrote {save(result, output.with_stem(output.stem + suffix))}")
+        finally:
+            _print(result)  # where nothing can be written any more, this is all there is
     if output is None:
         print("Nothing was written; --output FILE.nc keeps the result.")
     exit_unless_completed(status)

@@ -6,13 +6,13 @@ Only the standard library and typer are imported up here, so that ``--help`` ans
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from crazybilliards.comparison.commands.output import INTERRUPTED, check_folder
+from crazybilliards.comparison.commands.output import INTERRUPTED, check_folder, place
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
@@ -48,7 +48,12 @@ def command(
         ),
     ],
     output: Annotated[
-        Path, typer.Option(help="Folder for the results, one file a case; made if missing.")
+        Path,
+        typer.Option(
+            help="Folder for the results, one file a case; made if missing.",
+            parser=place,
+            metavar="FOLDER",
+        ),
     ],
     processes: Processes = None,
     dask: Dask = False,
@@ -70,12 +75,8 @@ def command(
     """
     check_folder(output)
     from crazybilliards.comparison.sweeps import read_sweep
-    from crazybilliards.comparison.sweeps.running import missing_cases
 
-    cases = read_sweep(file).cases()
-    missing = missing_cases(cases, output, keep_old=keep_old)
-    print(f"{len(cases)} cases, {len(cases) - len(missing)} of them in {output} already")
-    compute_missing(missing, output, engine(processes, dask, scheduler))
+    compute_cases(read_sweep(file), output, engine(processes, dask, scheduler), keep_old)
 
 
 def engine(
@@ -94,33 +95,45 @@ def engine(
     return process_pool(processes)
 
 
-def compute_missing(
-    missing: Sequence[Case], folder: Path, executor: AbstractContextManager[Executor]
+def compute_cases(
+    cases: Iterable[Case],
+    folder: Path,
+    executor: AbstractContextManager[Executor],
+    keep_old: bool,
 ) -> None:
-    """Compute cases; end the command, saying what there is and why, unless all succeed."""
-    from crazybilliards.comparison.sweeps import run_cases
-    from crazybilliards.comparison.sweeps.running import missing_cases
+    """Compute what is missing; end the command, and say why, unless all succeed."""
+    from crazybilliards.comparison.sweeps.missing import check_cases, find_missing
+    from crazybilliards.comparison.sweeps.running import Outcome, compute_missing
+    from crazybilliards.model.locks import locked
+    from crazybilliards.model.storage import make_folder
 
-    if not missing:
+    checked = check_cases(cases)
+    if not len(checked):
         return
-    reason, status = "", 0
-    try:
-        with executor as workers:
-            failed = run_cases(missing, folder, workers)
-    except KeyboardInterrupt:
-        status = INTERRUPTED  # which says so itself
-    except RuntimeError as error:
-        reason, status = str(error), 1
-    else:
-        if failed:
-            case, first = next(iter(failed.items()))
-            reason = f"{len(failed)} cases failed, the first, {case.canonical}, with {first}"
-            status = 1
-    kept = len(missing) - len(missing_cases(missing, folder))
-    print(f"computed {kept} cases into {folder}")
+    make_folder(folder)
+    with locked(folder):
+        missing = find_missing(checked, folder, keep_old=keep_old)
+        print(f"{len(checked)} cases, {len(checked) - len(missing)} of them in {folder} already")
+        if not len(missing):
+            return
+        outcome, reason, status = Outcome(), "", 0
+        try:
+            with executor as workers:
+                compute_missing(missing, workers, outcome)
+        except KeyboardInterrupt:
+            status = INTERRUPTED  # which says so itself
+        except RuntimeError as error:
+            reason, status = str(error), 1
+    if outcome.failed:
+        case, first = next(iter(outcome.failed.items()))
+        reason = reason or (
+            f"{len(outcome.failed)} cases failed, the first, {case.canonical}, with {first}"
+        )
+        status = status or 1
+    print(f"computed {outcome.written} cases into {folder}")
     if reason:
         print(f"crazybilliards: {reason}", file=sys.stderr)
     if status:
-        if kept < len(missing):
+        if outcome.written < len(missing):
             print("The same command computes what is missing.", file=sys.stderr)
         raise typer.Exit(status)

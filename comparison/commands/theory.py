@@ -12,7 +12,12 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from crazybilliards.comparison.commands.chain_options import with_chain_options
-from crazybilliards.comparison.commands.output import check_folder, print_rods, write_figures
+from crazybilliards.comparison.commands.output import (
+    place,
+    print_rods,
+    write_figures,
+    writing_to,
+)
 from crazybilliards.comparison.theories import THEORIES
 
 if TYPE_CHECKING:
@@ -32,7 +37,9 @@ def command(
         Path | None,
         typer.Option(
             help="Folder for theory.nc, density.png, profile.png and, of the kinetic equation, "
-            "phase_space.png, made if missing; without it nothing is written."
+            "phase_space.png, made if missing; without it nothing is written.",
+            parser=place,
+            metavar="FOLDER",
         ),
     ] = None,
     tolerance: Annotated[
@@ -71,17 +78,27 @@ def command(
     for key in settings:
         if key not in inspect.signature(theory.solve).parameters:
             raise ValueError(f"{key}: {name} has no such setting")
-    if output is not None:
-        check_folder(output)
     waiting = Console(stderr=True)  # shows nothing unless it is a terminal
-    if critical:
-        with waiting.status("working out the critical size"):
-            value, error = critical_size(chain)
-        print(f"critical size: {value:.1f} +- {error:.1f} rods")
-    with waiting.status(f"solving: {theory.title}"):
-        result = theory.solve(chain, **settings)
-    if output is not None:
-        _write(theory, result, output)
+    with writing_to(output):
+        if critical:
+            with waiting.status("working out the critical size"):
+                value, error = critical_size(chain)
+            print(f"critical size: {value:.1f} +- {error:.1f} rods")
+        with waiting.status(f"solving: {theory.title}"):
+            result = theory.solve(chain, **settings)
+        try:
+            if output is not None:
+                _write(theory, result, output)
+        finally:
+            _print(theory, result)  # where nothing can be written any more, this is all there is
+    if output is None:
+        print("Nothing was written; --output FOLDER keeps the figures and the data.")
+
+
+def _print(theory: Theory, result: xr.Dataset) -> None:
+    from crazybilliards.model.vocabulary import chain_of
+
+    chain = chain_of(result)
     accuracy = {"residual": "Residual", "mesh_error": "Error due to the mesh"}
     print_rods(
         result,
@@ -93,8 +110,6 @@ def command(
             if key in result.attrs
         ),
     )
-    if output is None:
-        print("Nothing was written; --output FOLDER keeps the figures and the data.")
 
 
 def _write(theory: Theory, result: xr.Dataset, folder: Path) -> None:

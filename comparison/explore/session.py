@@ -20,6 +20,7 @@ from crazybilliards.model.grid import deposit, position_grid, thermal_reach
 from crazybilliards.model.vocabulary import result
 from crazybilliards.particles.laws.avalanche import make_tally
 from crazybilliards.particles.laws.law import make_scratch
+from crazybilliards.particles.noise import make_noise
 from crazybilliards.particles.scales import default_time_step, relaxation_time, typical_speed
 from crazybilliards.particles.stepping import advance, bounded, make_dynamics
 
@@ -73,7 +74,7 @@ class Session:
     """
 
     def __init__(self, chain: Chain, seed: int = 0) -> None:
-        self._generator = np.random.default_rng(seed)
+        self._noise = make_noise(np.random.SeedSequence(seed))
         self._owed = 0.0  # steps
         self._prepare(chain)
         self.restart()
@@ -170,7 +171,7 @@ class Session:
     def _take(self, steps: int) -> None:
         """Take some steps and a snapshot; nothing of it if the chain blows up on the way."""
         before = self.y.copy(), self.v.copy()
-        state = self.y, self.v, self._generator
+        state = self.y, self.v, self._noise
         met = advance(*state, self._dynamics, self._scratch, self._tally, steps)
         if met < 0 or not bounded(self.y, self.v, self._dynamics.fastest):
             self.y, self.v = before

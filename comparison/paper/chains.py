@@ -43,7 +43,7 @@ def dissipative_name(size: int, restitution: float, amplitude: float = 1.0) -> s
 
 
 def flippers(size: int, damping: float, quality: Quality) -> Cases:
-    """Return runs at e = 1.05, with avalanches."""
+    """Return runs at e = 1.05, with collision rates and avalanches."""
     chain = Chain(size=size, restitution=1.05, damping=damping)
     number, duration = {"quick": (3, 1000.0), "full": (8, 8000.0)}[quality]
     return repeated(
@@ -51,7 +51,7 @@ def flippers(size: int, damping: float, quality: Quality) -> Cases:
         chain,
         number,
         duration=duration,
-        observe=["widths", "velocities", "avalanches", "triggered-collisions"],
+        observe=["widths", "velocities", "collisions", "avalanches", "triggered-collisions"],
     )
 
 

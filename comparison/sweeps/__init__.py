@@ -1,8 +1,9 @@
 """Many chains: a grid of parameters, one file per case, nothing computed twice or lost."""
 
 from crazybilliards.comparison.sweeps.case import Case, OutdatedError
+from crazybilliards.comparison.sweeps.engines import dask_cluster, process_pool
 from crazybilliards.comparison.sweeps.grid import Sweep, load_sweep, read_sweep
-from crazybilliards.comparison.sweeps.running import dask_cluster, process_pool, run_cases
+from crazybilliards.comparison.sweeps.running import run_cases
 
 __all__ = [
     "Case",

@@ -16,18 +16,19 @@ import sys
 import time
 from collections.abc import Mapping
 from contextlib import nullcontext
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import cache, cached_property, lru_cache
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray as xr
-from threadpoolctl import threadpool_limits
+from threadpoolctl import ThreadpoolController
 
 from crazybilliards.comparison.sweeps.jobs import JOBS
 from crazybilliards.model import Chain, load
-from crazybilliards.model.storage import load_attributes
+from crazybilliards.model.storage import load_attributes, small_netcdf
 
 
 class OutdatedError(ValueError):
@@ -47,6 +48,11 @@ class Case:
     settings
         Arguments of the job, plain values only; those not given take their defaults.
 
+    Attributes
+    ----------
+    work
+        Particle steps to do, to put long cases first and to foresee how long all take.
+
     Raises
     ------
     ValueError
@@ -62,6 +68,7 @@ class Case:
     job: str
     chain: Chain
     settings: Mapping[str, Any]
+    work: float = field(init=False)
 
     def __post_init__(self) -> None:
         if self.job not in JOBS:
@@ -70,9 +77,9 @@ class Case:
         for name in self.settings:
             if name not in job.settings:
                 raise ValueError(f"{self.job} takes any of {sorted(job.settings)}, got {name!r}")
-        settings = {name: _plain(name, value) for name, value in self.settings.items()}
-        object.__setattr__(self, "settings", {**_plain_all(job.settings), **settings})
-        job.check(self.chain, **self.settings)
+        settings = {name: plain(name, value) for name, value in self.settings.items()}
+        object.__setattr__(self, "settings", {**_default_settings(self.job), **settings})
+        object.__setattr__(self, "work", job.work(self.chain, **self.settings))
 
     @property
     def parameters(self) -> dict[str, Any]:
@@ -85,12 +92,12 @@ class Case:
         defaults = _defaults(self.job)
         return {name: value for name, value in self.parameters.items() if value != defaults[name]}
 
-    @property
+    @cached_property
     def canonical(self) -> str:
         """All parameters as text, the same for equal cases."""
         return json.dumps(self.parameters, sort_keys=True)
 
-    @property
+    @cached_property
     def _digest(self) -> str:
         """Hash of the job and of the changed parameters."""
         text = json.dumps({"job": self.job, **self.changed}, sort_keys=True)
@@ -111,11 +118,6 @@ class Case:
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Case) and self.canonical == other.canonical
-
-    @property
-    def work(self) -> float:
-        """Particle steps to do, to put long cases first and to foresee how long all take."""
-        return JOBS[self.job].work(self.chain, **self.settings)
 
     @property
     def source(self) -> str:
@@ -170,25 +172,37 @@ def compute(case: Case, source: str) -> bytes:
     refuses: its result would be taken for one of the sender's code.
     """
     if case.source != source:
-        number = version("crazybilliards")
-        raise ValueError(f"the worker runs other source code of crazybilliards (version {number})")
+        raise ValueError(
+            f"the worker runs other source code of crazybilliards (version {_version()})"
+        )
     begin = time.perf_counter()
     own = {"seed": case.own_seed} if "seed" in case.settings else {}
     # Linear algebra in threads sums in another order, and workers beside it would only wait.
-    with threadpool_limits(1):
+    with _libraries(len(sys.modules)).limit(limits=1):
         result = JOBS[case.job].function(case.chain, **{**case.settings, **own})
     if result.attrs["status"] == "interrupted":
         raise KeyboardInterrupt
     result.attrs |= {
         "case": case.canonical,
         "source_fingerprint": source,
-        "package_version": version("crazybilliards"),
+        "package_version": _version(),
         "seconds": time.perf_counter() - begin,
     }
     # On a dask worker xarray would lock the file all over the cluster; these are bytes in memory.
     alone = sys.modules["dask"].config.set(scheduler="sync") if "dask" in sys.modules else None
     with alone or nullcontext():
-        return bytes(result.to_netcdf(engine="h5netcdf"))
+        return small_netcdf(result)
+
+
+@lru_cache(maxsize=1)
+def _libraries(modules: int) -> ThreadpoolController:
+    """Find the libraries of linear algebra anew if modules were imported, which may bring one."""
+    return ThreadpoolController()
+
+
+@cache
+def _version() -> str:
+    return version("crazybilliards")
 
 
 def stored_parameters(attributes: Mapping[Any, Any]) -> dict[str, Any]:
@@ -205,21 +219,27 @@ def stored_parameters(attributes: Mapping[Any, Any]) -> dict[str, Any]:
     return defaults | stored if "size" in stored else {}  # every version has stored the size
 
 
+@cache
 def _defaults(job: str) -> dict[str, Any]:
     """Return the parameters of a case of which nothing is given."""
-    return {"job": job, **_plain_all(Chain().parameters()), **_plain_all(JOBS[job].settings)}
+    return {"job": job, **_plain_all(Chain().parameters()), **_default_settings(job)}
+
+
+@cache
+def _default_settings(job: str) -> dict[str, Any]:
+    return _plain_all(JOBS[job].settings)
 
 
 def _plain_all(values: Mapping[str, Any]) -> dict[str, Any]:
-    return {name: _plain(name, value) for name, value in values.items()}
+    return {name: plain(name, value) for name, value in values.items()}
 
 
-def _plain(name: str, value: Any) -> Any:
+def plain(name: str, value: Any) -> Any:
     """Return a value as JSON writes it, 5, 5.0 and numpy's 5 all the same way."""
     if isinstance(value, np.generic | np.ndarray):
         value = value.tolist()
     if isinstance(value, list | tuple | range):
-        return [_plain(name, each) for each in value]
+        return [plain(name, each) for each in value]
     if isinstance(value, float):
         return int(value) if value.is_integer() and abs(value) < 1e15 else value
     if value is None or isinstance(value, str | int):

@@ -15,22 +15,22 @@ observe = ["widths"]
 
 from __future__ import annotations
 
-import itertools
 import json
 import math
 import tomllib
 import warnings
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
 import xarray as xr
 
-from crazybilliards.comparison.sweeps.case import Case, stored_parameters
+from crazybilliards.comparison.sweeps.case import Case, plain, stored_parameters
 from crazybilliards.comparison.sweeps.jobs import JOBS
 from crazybilliards.model import Chain, load
+from crazybilliards.model.checks import shown
 
 _MOST_CASES = 1_000_000
 _CHAIN = [field.name for field in fields(Chain)]
@@ -38,7 +38,7 @@ _CHAIN = [field.name for field in fields(Chain)]
 
 @dataclass(frozen=True)
 class Sweep:
-    """A grid of cases.
+    """A grid of cases, each of which is made, and checked, when it is asked for.
 
     Parameters
     ----------
@@ -48,42 +48,56 @@ class Sweep:
         As in :class:`Case`.
     chain, settings
         Parameters of the chain and settings of the job that are the same for all.
+
+    Raises
+    ------
+    ValueError
+        For values that come twice, for an empty grid, for more than a million cases.
     """
 
     grid: Mapping[str, Sequence[Any]]
     job: str
     chain: Mapping[str, Any]
     settings: Mapping[str, Any]
+    _chain: Chain = field(init=False, repr=False, compare=False)  # what the cases have in common
 
-    def cases(self) -> list[Case]:
-        """Return every case of the grid, all of them checked.
+    def __post_init__(self) -> None:
+        for name, values in self.grid.items():
+            if not isinstance(values, list | tuple) or not values:
+                raise ValueError(f"grid: {name} must be a list of values, got {shown(values)}")
+            if name in self.chain or name in self.settings:
+                raise ValueError(f"{name} is given twice: in the grid, and the same for all")
+            if len({_scalar(plain(name, value)) for value in values}) < len(values):
+                raise ValueError(f"grid: {name} holds a value twice")
+        if len(self) > _MOST_CASES:
+            raise ValueError(f"the grid has {len(self)} cases, more than {_MOST_CASES}")
+        object.__setattr__(self, "_chain", Chain().replace(**self.chain))
+
+    def __len__(self) -> int:
+        return math.prod(map(len, self.grid.values()))
+
+    def __iter__(self) -> Iterator[Case]:
+        return map(self.case, range(len(self)))
+
+    def case(self, number: int) -> Case:
+        """Return one case, counted from 0, the last parameter of the grid varying first.
 
         Raises
         ------
         ValueError
-            For the first case that is wrong, for values that come twice, for an empty grid.
+            If the case is wrong.
         """
-        for name, values in self.grid.items():
-            if not isinstance(values, list | tuple) or not values:
-                raise ValueError(f"grid: {name} must be a list of values, got {values!r}")
-            if name in self.chain or name in self.settings:
-                raise ValueError(f"{name} is given twice: in the grid, and the same for all")
-        number = math.prod(map(len, self.grid.values()))
-        if number > _MOST_CASES:
-            raise ValueError(f"the grid has {number} cases, more than {_MOST_CASES}")
-        cases = [
-            self._case(dict(zip(self.grid, values, strict=True)))
-            for values in itertools.product(*self.grid.values())
-        ]
-        if len(set(cases)) < len(cases):
-            raise ValueError("the grid holds a value twice")
-        return cases
+        here: dict[str, Any] = {}
+        settings = dict(self.settings)
+        for name in reversed(list(self.grid)):
+            values = self.grid[name]
+            number, place = divmod(number, len(values))
+            (here if name in _CHAIN else settings)[name] = values[place]
+        return Case(self.job, self._chain.replace(**here) if here else self._chain, settings)
 
-    def _case(self, point: dict[str, Any]) -> Case:
-        here = {name: value for name, value in point.items() if name in _CHAIN}
-        settings = {name: value for name, value in point.items() if name not in _CHAIN}
-        chain = Chain().replace(**self.chain, **here)
-        return Case(self.job, chain, {**self.settings, **settings})
+    def cases(self) -> list[Case]:
+        """Return all cases; raises a ValueError for the first one that is wrong."""
+        return list(self)
 
 
 def read_sweep(path: Path) -> Sweep:

@@ -18,7 +18,6 @@ from crazybilliards.comparison.theories import THEORIES
 from crazybilliards.model import Chain
 from crazybilliards.model.fingerprint import room_fingerprint
 from crazybilliards.particles import simulate
-from crazybilliards.particles.run import Run
 from crazybilliards.particles.simulation import make_run
 
 # Arguments that no number depends on, and those that are no plain values.
@@ -36,11 +35,9 @@ class Job:
     function
         ``function(chain, **settings)`` gives a result in the common vocabulary. A setting ``seed``
         is replaced by a seed of the case's own.
-    check
-        ``check(chain, **settings)`` raises the ValueError that the function would raise for a
-        wrong argument, without its work.
     work
-        ``work(chain, **settings)``: how long it takes, in particle steps.
+        ``work(chain, **settings)``: how long it takes, in particle steps. Raises the ValueError
+        that the function would raise for a wrong argument, without its work.
     settings
         The names of the settings with their defaults.
     source
@@ -50,7 +47,6 @@ class Job:
     """
 
     function: Callable[..., xr.Dataset]
-    check: Callable[..., Any]
     work: Callable[..., float]
     settings: Mapping[str, Any]
     source: str
@@ -62,23 +58,19 @@ def _settings(function: Callable[..., Any]) -> dict[str, Any]:
     return {name: each.default for name, each in arguments if name not in _NO_SETTINGS}
 
 
-def _run(chain: Chain, **settings: Any) -> Run:
-    return make_run(chain, start=None, **settings)
-
-
 def _steps(chain: Chain, **settings: Any) -> float:
-    run = _run(chain, **settings)
+    run = make_run(chain, start=None, **settings)
     return float(run.schedule.steps) * chain.size * run.replicas
 
 
-def _theory_work(chain: Chain, **settings: Any) -> float:
+def _theory_work(check: Callable[..., Any], chain: Chain, **settings: Any) -> float:
+    check(chain, **settings)
     return _THEORY_WORK
 
 
 JOBS: dict[str, Job] = {
     "simulate": Job(
         function=partial(simulate, threads=1, progress=False),
-        check=_run,
         work=_steps,
         settings=_settings(simulate),
         source=room_fingerprint("model", "particles"),
@@ -86,8 +78,7 @@ JOBS: dict[str, Job] = {
 } | {
     name: Job(
         function=theory.solve,
-        check=theory.check,
-        work=_theory_work,
+        work=partial(_theory_work, theory.check),
         settings=_settings(theory.solve),
         source=room_fingerprint("model", "kinetic"),
     )

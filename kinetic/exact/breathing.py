@@ -80,28 +80,29 @@ def breathing_cloud(
         hot = check_real("start_velocity_variance", start_velocity_variance, positive=True)
     require_memory(f"every: {times.size} outputs", 32.0 * times.size * chain.size)
     order_statistics = equilibrium(chain).mean_displacement.values / chain.thermal_length
-    damping, pull = chain.damping / chain.mass, chain.stiffness / chain.mass
+    # From here on lengths are in s and velocities in W, so that k/m is 1.
+    s, W = chain.thermal_length, chain.free_velocity_width
+    damping = chain.damping * s / (chain.mass * W)
 
     def equations(time: float, state: NDArray[np.float64]) -> list[float]:
         place, speed, width, rate, heat = state
-        warming = -2 * heat * rate / width - 2 * damping * (heat - free) if evolving else 0.0
+        warming = -2 * heat * rate / width - 2 * damping * (heat - 1) if evolving else 0.0
         return [
             speed,
-            -pull * place - damping * speed,
+            -place - damping * speed,
             rate,
-            heat / width - pull * width - damping * rate,
+            heat / width - width - damping * rate,
             warming,
         ]
 
-    s, W = chain.thermal_length, chain.free_velocity_width
-    start = [shift, 0.0, stretch * s, 0.0, hot]
-    smallest = 1e-12 * np.array([s, W, s, W, W**2])
+    start = [shift / s, 0.0, stretch, 0.0, hot / free]
+    scaled = times * W / s
     solution = solve_ivp(
-        equations, (0.0, times[-1]), start, "DOP853", times, rtol=1e-11, atol=smallest
+        equations, (0.0, scaled[-1]), start, "DOP853", scaled, rtol=1e-11, atol=1e-12
     )
     if not solution.success:
         raise ValueError(f"the cloud could not be followed: {solution.message}")
-    place, _, width, _, heat = solution.y
+    place, width, heat = s * solution.y[0], s * solution.y[2], free * solution.y[4]
     mean = place[:, np.newaxis] + width[:, np.newaxis] * order_statistics
     return result(
         chain,

@@ -199,14 +199,15 @@ def _recursion(chain: Chain) -> _Recursion:
     log_f = np.empty((chain.size, 2 * half + 1))
     recursion = _Recursion(chain, spacing, centres, half, log_f)
     for i in range(chain.size):
-        log_f[i] = _log_cumulative(recursion.log_weight(i)[1] + recursion.log_below(i), spacing)
+        log_f[i] = _log_cumulative(recursion.log_weight(i)[1] + recursion.log_below(i))
     return recursion
 
 
-def _log_cumulative(phi: Array, spacing: float) -> Array:
+def _log_cumulative(phi: Array) -> Array:
     """Logarithm of the cumulative integral of exp(phi) on a uniform grid, from -infinity.
 
-    In each cell phi is the parabola through its ends with the curvature c of the neighbourhood:
+    The spacing is the unit of length. In each cell phi is the parabola through its ends with the
+    curvature c of the neighbourhood:
     int_0^1 exp(a t - c t(1-t)/2) dt = exp(a/2) sinh(a/2)/(a/2) exp(-c r(a)/2) + O(c^2), where
     r = (a coth(a/2) - 2)/a^2 is the mean of t(1-t) under exp(a t).
     """
@@ -218,9 +219,9 @@ def _log_cumulative(phi: Array, spacing: float) -> Array:
     )
     size = np.maximum(np.abs(a), 0.05)
     r = np.where(np.abs(a) > 0.05, (size / np.tanh(size / 2) - 2) / size**2, 1 / 6 - a**2 / 360)
-    cells = np.log(spacing) + (phi[1:] + phi[:-1]) / 2 + log_sinhc - c * r / 2
+    cells = (phi[1:] + phi[:-1]) / 2 + log_sinhc - c * r / 2
     # Left of the grid the integrand falls off exponentially, at the rate of the first cell.
-    tail = phi[0] - np.log(max(a[0], 1e-300) / spacing)
+    tail = phi[0] - np.log(max(a[0], 1e-300))
     return np.logaddexp.accumulate(np.concatenate([[tail], cells]))
 
 

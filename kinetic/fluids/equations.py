@@ -39,7 +39,7 @@ import xarray as xr
 from numpy.typing import NDArray
 from scipy.integrate import trapezoid
 
-from crazybilliards.kinetic.fluids.eulerian_frame import solve_on_positions
+from crazybilliards.kinetic.fluids.eulerian_frame import MOST_CELLS, solve_on_positions
 from crazybilliards.kinetic.fluids.flow_fields import FlowFields
 from crazybilliards.kinetic.fluids.label_frame import solve_on_labels
 from crazybilliards.kinetic.requirements import require_chain
@@ -63,7 +63,6 @@ Frame = Literal["label", "eulerian"]
 Evolving = Literal["evolving"]
 
 _OUTPUTS = 100
-_MOST_CELLS = 100_000
 _BYTES_PER_NODE = 100  # and output: the fields while they are computed, and in the result
 
 
@@ -106,7 +105,9 @@ def hydrodynamics(
         Time between outputs [T]; None: a hundredth of the duration. Each output takes 100 bytes
         for each node of its grid x (21 or more in a rod length) and for each rod.
     cells
-        Number of cells; None: chosen from the chain's scales.
+        Number of cells; None: chosen from the chain's scales. In the eulerian frame they may be
+        half a thermal length wide at most, which makes errors of up to 3 % of it in positions; the
+        default is a tenth of it.
     progress
         Show a progress bar, if standard error is a terminal.
 
@@ -144,8 +145,8 @@ def hydrodynamics(
     times = output_times(duration, every, _OUTPUTS)
     if cells is not None:
         cells = check_integer("cells", cells, least=8)
-        if cells > _MOST_CELLS:
-            raise ValueError(f"cells must be at most {_MOST_CELLS}, got {cells}")
+        if cells > MOST_CELLS:
+            raise ValueError(f"cells must be at most {MOST_CELLS}, got {cells}")
     known = read_start(chain, start)
     nodes = position_grid(chain, float(np.abs(known.x).max())).size + chain.size
     require_memory(f"every: {times.size} outputs", _BYTES_PER_NODE * float(nodes) * times.size)
@@ -224,7 +225,7 @@ def _result(
             "density": (along, fields.density),
             "flow_velocity": (along, fields.velocity),
             "velocity_variance": (along, fields.variance),
-            "displacement": (along, reduced - chain.gap * (label - chain.size / 2)),
+            "displacement": (along, reduced - chain.lattice_gap * (label - chain.size / 2)),
             "label": (along, label),
             "mean_displacement": (particles, fields.rods - chain.anchors),
             "mean_velocity": (particles, fields.rod_velocities),

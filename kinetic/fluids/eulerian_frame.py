@@ -44,7 +44,10 @@ _COURANT = 0.5
 _MOST_COURANT = 1.0  # beyond, four-stage Runge-Kutta with second-order fluxes is not stable
 _HALVINGS = 6
 _CELL = 0.1  # default width in thermal lengths
-_MOST_CELLS = 50_000
+_WIDEST_CELL = 0.5  # in thermal lengths; the scheme's error is then 0.01 to 0.03 of s
+_MOST_BY_DEFAULT = 50_000
+MOST_CELLS = 100_000
+_POPULATED = 1e-12  # of the largest density; how far thinner places swing does not matter
 _JUST_INSIDE = 1 - 1e-9  # an arctanh is infinite at its end
 _ROOM = 9.5  # beyond the lattice of anchors, in thermal lengths
 _MARGIN = 3.0  # beyond the farthest swing
@@ -100,7 +103,7 @@ def make_constants(
         theta,
         frozen,
         crowd=2 * chain.radius * L / s,
-        lam=chain.gap * L / s,
+        lam=chain.lattice_gap * L / s,
         gamma=chain.damping * s / (chain.mass * W),
         exponent=chain.potential_exponent,
     )
@@ -150,13 +153,21 @@ def _frozen(profile: Profile, x: Array) -> Array:
 def make_faces(chain: Chain, start: Start, number: int | None, wider: float) -> Array:
     """Return the scaled positions of the cells' faces: room for the farthest swing and more."""
     s, W, L = chain.thermal_length, chain.free_velocity_width, chain.size
-    there = start.label(start.x, 1) > 1e-12 * L
+    density = start.label(start.x, 1)
+    there = density > _POPULATED * density.max()
     label = start.label(start.x)
-    u = (start.x - (2 * chain.radius + chain.gap) * (label - L / 2))[there] / s
+    u = (start.x - (2 * chain.radius + chain.lattice_gap) * (label - L / 2))[there] / s
     swing = float(np.hypot(u, start.velocity(start.x)[there] / W).max())
-    half = (chain.radius + chain.gap / 2) * L / s + wider * max(_ROOM, swing + _MARGIN)
+    half = (chain.radius + chain.lattice_gap / 2) * L / s + wider * max(_ROOM, swing + _MARGIN)
     if number is None:
-        number = min(math.ceil(2 * half / _CELL), _MOST_CELLS)
+        number = min(math.ceil(2 * half / _CELL), _MOST_BY_DEFAULT)
+    enough = 2 * half / _WIDEST_CELL
+    if number < enough:
+        advice = f"give cells={math.ceil(enough)}" if enough <= MOST_CELLS else "use frame='label'"
+        raise ValueError(
+            f"frame='eulerian' with {number} cells: each is {2 * half / number:.3g} thermal "
+            f"lengths wide, {_WIDEST_CELL:g} at most resolve the flow; {advice}"
+        )
     return np.linspace(-half, half, number + 1)
 
 

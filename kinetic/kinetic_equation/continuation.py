@@ -16,7 +16,12 @@ from numpy.typing import NDArray
 
 from crazybilliards.kinetic.kinetic_equation.velocity_moments import fitting_box
 from crazybilliards.kinetic.kinetic_equation.velocity_space import Box, VelocitySpace
-from crazybilliards.kinetic.kinetic_equation.weak_form import Units, coefficients, stationary_state
+from crazybilliards.kinetic.kinetic_equation.weak_form import (
+    NotSolvedError,
+    Units,
+    coefficients,
+    stationary_state,
+)
 from crazybilliards.kinetic.statics.label_closure import stationary
 from crazybilliards.model import Chain
 
@@ -51,7 +56,7 @@ def free_units(chain: Chain) -> Units:
 def elastic_state(chain: Chain, order: int, cells: int) -> State:
     """Return the state at restitution 1: Maxwellian, with the density of the force balance."""
     elastic = chain.replace(restitution=1.0)
-    lattice = chain.gap * chain.size / (2 * chain.thermal_length)
+    lattice = chain.lattice_gap * chain.size / (2 * chain.thermal_length)
     reach = 6.5 if chain.spring == "linear" else 4.5
     space = VelocitySpace(Box(lattice + reach, 6.5, lattice + 1.5, 1.5), cells)
     y, v = space.axes
@@ -77,10 +82,10 @@ def continued(chain: Chain, state: State) -> State:
             except ValueError as error:
                 halvings += 1
                 if halvings > _MOST_HALVINGS:
-                    raise ValueError(_no_steady_state(chain, trial)) from error
+                    raise _no_steady_state(chain, trial) from error
                 continue
             if chain.restitution > 1 and abs(goal) > (limit := _limit(state, found)):
-                raise ValueError(_no_steady_state(chain, limit))
+                raise _no_steady_state(chain, limit)
             state, drag = found, trial
             halvings = max(halvings - 1, 0)
     return state
@@ -139,14 +144,14 @@ def _require_physical(found: State, before: State) -> None:
         raise ValueError("the density became negative")
 
 
-def _no_steady_state(chain: Chain, drag: float) -> str:
+def _no_steady_state(chain: Chain, drag: float) -> ValueError:
     e = 1 + 2 * abs(drag) / chain.size
     if chain.restitution > 1:
-        return (
+        return ValueError(
             f"no steady state: with {chain.size} rods and damping={chain.damping:g} the energy "
             f"grows without bound before restitution {e:.4g}, asked for is {chain.restitution:g}; "
-            "critical_size tells how many rods there may be"
+            "critical_size (crazybilliards theory --critical) tells how many rods there may be"
         )
-    return (
+    return NotSolvedError(
         f"the kinetic equation could not be solved at restitution {1 - 2 * drag / chain.size:.4g}"
     )

@@ -11,6 +11,11 @@ the drag lambda L that belongs to each tau as an unknown. Nothing diverges on th
 drag depends on the damping alone, on Gamma = gamma/sqrt(k m), and the gap drops out with the noise:
 
     L_c = 2 kappa_c(Gamma)/(e - 1).
+
+Weakly damped, each pair meets once in half a period and gains what damping takes out in it:
+kappa_c = (pi/2) Gamma. The equation gives that to 3e-6 at Gamma = 1e-3; below, where its matrices
+become ever harder to factorise, the closed form is taken. Strongly damped, Newton's method finds no
+critical state beyond Gamma = 3.5.
 """
 
 from __future__ import annotations
@@ -46,6 +51,8 @@ _FITTED = 4  # the last ones, for the limit
 _TOLERANCE = 1e-6
 _MOST_STEPS = 12
 _MOST_HALVINGS = 4
+_WEAK, _STRONG = 1e-3, 3.5  # Gamma: the closed form below, nothing beyond
+_EXTRAPOLATED = 0.2  # the error, as a share of the way to the limit
 
 
 class _State(NamedTuple):
@@ -70,7 +77,8 @@ def critical_size(chain: Chain) -> CriticalValue:
     Raises
     ------
     ValueError
-        For e <= 1, where every size has a steady state; for quadratic springs, where none has.
+        For e <= 1, where every size has a steady state; for quadratic springs, where none has; for
+        a damping gamma/sqrt(k m) above 3.5, for which the equation is not solved.
 
     Examples
     --------
@@ -136,10 +144,17 @@ def _require_drive(chain: Chain) -> float:
 @lru_cache(maxsize=256)
 def _critical_drag(damping: float) -> tuple[float, float]:
     """Return kappa_c = |lambda| L, and its error: a fifth of the way that is extrapolated."""
+    if damping < _WEAK:
+        return math.pi / 2 * damping, _EXTRAPOLATED * _NOISE[-1] * math.pi / 2 * damping
+    if damping > _STRONG:
+        raise ValueError(
+            f"gamma/sqrt(k m) = {damping:.3g} is too strong a damping: the critical state is known "
+            f"up to {_STRONG:g}"
+        )
     drags = drag_at_noise(damping, _NOISE)
     tau, kappa = np.array(_NOISE[-_FITTED:]), drags[-_FITTED:]
     limit = float(np.polynomial.Polynomial.fit(tau, kappa, _FITTED - 1)(0.0))
-    return limit, 0.2 * abs(limit - float(drags[-1]))
+    return limit, _EXTRAPOLATED * abs(limit - float(drags[-1]))
 
 
 @one_thread

@@ -230,7 +230,7 @@ def _midway(now: Mean, before: Mean | None) -> Mean:
 
 def _start(chain: Chain, units: Units, start: PhaseSpaceStart, cells: int) -> _Flow:
     order = 2 if chain.restitution <= 1 else 1
-    lattice = chain.gap * chain.size / (2 * units.length)
+    lattice = chain.lattice_gap * chain.size / (2 * units.length)
     # A harmonic oscillation turns an extent along y into one along v.
     swing = max(REACH, start.length - lattice, start.velocity)
     box = Box(lattice + swing, swing, lattice + _CORE, _CORE)

@@ -63,7 +63,7 @@ def _maxwellian(chain: Chain, units: Units, start: xr.Dataset) -> PhaseSpaceStar
     log_density, flow, variance = (
         PchipInterpolator(y[kept], values[kept], extrapolate=False)
         for values in (
-            np.log(np.maximum(reduced, reduced.max() * 1e-30)),
+            np.log(np.maximum(reduced / reduced.max(), 1e-30)),
             known.velocity(x) / velocity,
             known.variance(x) / velocity**2,
         )

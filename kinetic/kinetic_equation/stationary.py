@@ -34,6 +34,7 @@ from crazybilliards.kinetic.kinetic_equation.continuation import (
 from crazybilliards.kinetic.kinetic_equation.order_statistics import Rods, rods
 from crazybilliards.kinetic.kinetic_equation.positions import density_and_label
 from crazybilliards.kinetic.kinetic_equation.velocity_moments import moments
+from crazybilliards.kinetic.kinetic_equation.weak_form import NotSolvedError, coefficients
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain
 from crazybilliards.model.checks import check_integer, check_real
@@ -45,10 +46,13 @@ Array = NDArray[np.float64]
 
 _CELLS = 22
 _FINER = 1.5
-_MOST_CELLS = 60
+_MOST_CELLS = 60  # of a mesh that is not asked for: 22, 33 and 50 cells are tried
 _LARGEST_MESH = 150
 _BYTES_PER_CELL = 4e4
 _MOST_RODS = 100_000
+# Where the equation was solved at e = 0.95 and 100 rods; s, W: a free rod's widths.
+_SOLVED_DAMPINGS = 0.01, 25.0
+_LARGEST_SOLVED_LATTICE = 80.0
 
 
 def phase_space(
@@ -97,7 +101,8 @@ def phase_space(
     ------
     ValueError
         For a wrong argument; if the chain has no steady state: no noise, damping or spring, or
-        e > 1 and too many rods.
+        e > 1 and too many rods; if the equation cannot be solved, which is known for dampings
+        outside 0.01 to 25 m W/s and gaps above 80 s/L (s and W: widths of a free rod).
 
     Examples
     --------
@@ -106,24 +111,52 @@ def phase_space(
     array([0.259, 0.167, 0.151])
     """
     order = check_phase_space(chain, order=order, tolerance=tolerance, cells=cells)
+    try:
+        return _assemble(*_solve(chain, order, tolerance, cells))
+    except NotSolvedError as error:
+        raise ValueError(f"{error}: {_out_of_range(chain, order)}") from error
+
+
+def _solve(
+    chain: Chain, order: Literal[1, 2], tolerance: float, cells: int | None
+) -> tuple[State, Rods, float]:
+    """Return the state on a mesh fine enough, its rods, and the error due to the mesh."""
     state = continued(chain, elastic_state(chain, order, _CELLS))
     state = refined(state, cells or _CELLS)
     of_rods = _rods(state)
-    error = np.nan
-    while cells is None:
-        finer = refined(state, round(_FINER * state.space.cells))
+    if cells is not None:
+        return state, of_rods, np.nan
+    while True:
+        more = round(_FINER * state.space.cells)
+        _require_mesh(more)
+        finer = refined(state, more)
         before, state, of_rods = of_rods, finer, _rods(finer)
         error = float(
             np.abs(np.sqrt(before.velocity_variance / of_rods.velocity_variance) - 1).max()
         )
         if error < tolerance:
-            break
+            return state, of_rods, error
         if state.space.cells * _FINER > _MOST_CELLS:
             raise ValueError(
                 f"the kinetic equation's widths are accurate to {error:.1e} only, not to "
-                f"tolerance={tolerance:g}; give cells to accept that"
+                f"tolerance={tolerance:g}; phase_space(..., cells={state.space.cells}) or "
+                f"crazybilliards theory --cells {state.space.cells} accepts that"
             )
-    return _assemble(state, of_rods, error)
+
+
+def _out_of_range(chain: Chain, order: Literal[1, 2]) -> str:
+    """Say which numbers of a chain are none for which the equation has been solved."""
+    numbers = coefficients(chain, free_units(chain), order)
+    values = {
+        "damping, as a multiple of m W/s": (numbers.damping, *_SOLVED_DAMPINGS),
+        "gap * size, as a multiple of s": (numbers.gap, 0.0, _LARGEST_SOLVED_LATTICE),
+    }
+    reasons = [
+        f"{name}, is {value:.3g} (solved for {low:g} to {high:g})"
+        for name, (value, low, high) in values.items()
+        if not low <= value <= high
+    ] or ["the mesh cannot follow it"]
+    return "; ".join([*reasons, "simulate takes any chain, and equilibrium any with restitution 1"])
 
 
 def check_phase_space(
@@ -133,13 +166,18 @@ def check_phase_space(
     check_real("tolerance", tolerance, positive=True)
     if cells is not None:
         check_integer("cells", cells, least=4, most=_LARGEST_MESH)
-    require_memory(f"cells={cells or _MOST_CELLS}", _BYTES_PER_CELL * (cells or _MOST_CELLS) ** 2)
+    # Found on 22 cells, then refined at least once, for two meshes to be compared.
+    _require_mesh(max(_CELLS, cells or round(_FINER * _CELLS)))
     if chain.size > _MOST_RODS:
         raise ValueError(f"size must be at most {_MOST_RODS}, got {chain.size}")
     if order is not None:
         check_integer("order", order, least=1, most=2)
     require_chain(chain, "the kinetic equation")
     return order or (2 if chain.restitution <= 1 else 1)
+
+
+def _require_mesh(cells: int) -> None:
+    require_memory(f"cells={cells}", _BYTES_PER_CELL * cells**2)
 
 
 def _rods(state: State) -> Rods:
@@ -154,7 +192,7 @@ def _assemble(state: State, of_rods: Rods, mesh_error: float) -> xr.Dataset:
     # With a gap rods are held by anchors of their own, not drawn from one distribution.
     widths = (
         {"displacement_width": ("particle", np.sqrt(of_rods.position_variance))}
-        if chain.gap == 0
+        if chain.lattice_gap == 0
         else {}
     )
     dataset = result(
@@ -202,7 +240,7 @@ def _fields(state: State) -> dict[str, Array]:
         "x": x,
         "density": density,
         "label": label,
-        "displacement": x - (2 * R + chain.gap) * (label - L / 2),
+        "displacement": x - (2 * R + chain.lattice_gap) * (label - L / 2),
         "velocity_variance": velocity**2 * _continued_flat(over_x(profiles.variance, 1)),
         "flow_velocity": velocity * np.nan_to_num(over_x(profiles.flux / alive, -1)),
         "heat_flux": chain.mass

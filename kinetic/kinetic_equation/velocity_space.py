@@ -30,7 +30,7 @@ Array = NDArray[np.float64]
 
 _MISFIT = 1.15  # factor that a box may be off
 
-_PIVOT = 1e-3  # of the largest entry below it, the least a diagonal pivot may be
+_PIVOT = 1e-5  # of the largest entry below it, the least a diagonal pivot may be; see factorised
 _ORDER = 5  # of the quadrature: three Gauss points along each side of a cell
 
 

@@ -79,7 +79,7 @@ def coefficients(chain: Chain, units: Units, order: int) -> Coefficients:
     return Coefficients(
         spring=chain.stiffness * length**n / (m * velocity**2),
         exponent=n,
-        gap=chain.gap * chain.size / length,
+        gap=chain.lattice_gap * chain.size / length,
         damping=chain.damping * length / (m * velocity),
         noise=chain.amplitude**2 * length / (2 * m**2 * velocity**3),
         drag=share * chain.size,
@@ -168,6 +168,10 @@ class Equation:
         return change
 
 
+class NotSolvedError(ValueError):
+    """Newton's method found no solution, which does not say that there is none."""
+
+
 class Solution(NamedTuple):
     """A stationary distribution, and the size of the last Newton step relative to max f."""
 
@@ -197,7 +201,7 @@ def stationary_state(
             break
         if size < tolerance:
             return Solution(f, size)
-    raise ValueError(f"the kinetic equation did not converge in {_MOST_STEPS} Newton steps")
+    raise NotSolvedError(f"the kinetic equation did not converge in {_MOST_STEPS} Newton steps")
 
 
 def newton_step(

@@ -34,7 +34,7 @@ from scipy.special import gamma, gammaincc
 from scipy.stats import gennorm
 
 from crazybilliards.model import Chain, spring
-from crazybilliards.model.grid import position_grid
+from crazybilliards.model.grid import position_grid, thermal_reach
 from crazybilliards.model.vocabulary import result
 
 Array = NDArray[np.float64]
@@ -46,8 +46,9 @@ _EDGE_DEPTH = {2: 40.0, 3: 1e4}  # where the plateau is reached, by exponent n
 def solve_label_closure(chain: Chain) -> xr.Dataset:
     """Solve the force balance closed by labels; see ``force_balance``, which checks the chain."""
     state = stationary(chain)
-    x = position_grid(chain)
+    x = position_grid(chain, fluid_reach(chain))
     density, label = state.fields(chain, x)
+    lattice = (2 * chain.radius + chain.lattice_gap) * (label - chain.size / 2)
     # The middle of rod i has the label i - 1/2.
     rods = chain.thermal_length * state.at(chain.rank / chain.size)[0]
     return result(
@@ -55,7 +56,7 @@ def solve_label_closure(chain: Chain) -> xr.Dataset:
         {
             "density": ("x", density),
             "label": ("x", label),
-            "displacement": ("x", x - (2 * chain.radius + chain.gap) * (label - chain.size / 2)),
+            "displacement": ("x", x - lattice),
             "mean_displacement": ("particle", rods - chain.reduced_anchors),
             "velocity_width": ("particle", np.full(chain.size, chain.free_velocity_width)),
         },
@@ -182,7 +183,15 @@ class Stationary:
         return density, L / 2 + np.sign(x) * L * (0.5 - share)
 
 
+def fluid_reach(chain: Chain) -> float:
+    """Distance from the outer anchor beyond which there is no fluid at rest [R].
+
+    The fluid's lattice of anchors ends half a cell, R + g/2, beyond the outermost anchor.
+    """
+    return thermal_reach(chain) + chain.radius + chain.lattice_gap / 2
+
+
 def stationary(chain: Chain) -> Stationary:
     """Solve for the stationary state of ``chain`` at its temperature."""
-    lam = chain.gap * chain.size / chain.thermal_length
+    lam = chain.lattice_gap * chain.size / chain.thermal_length
     return Stationary(solve_edge(chain.potential_exponent, lam))

@@ -1,9 +1,9 @@
 """The force balance with a prescribed displacement <dx>(x) and a prescribed W^2(x).
 
-In the log pressure P = ln(w rho_y), w = W^2(x)/W^2, equation (***) of
-:mod:`crazybilliards.kinetic.statics.balance` reads
+In the log pressure P = ln(w rho_y s/L), w = W^2(x)/W^2, with lengths in thermal lengths s of the
+free chain and B = 2 R L/s, equation (***) of :mod:`crazybilliards.kinetic.statics.balance` reads
 
-    P' = -(F(<dx>)/T) / (w + 2 R exp(P)),      N' = exp(P) / (w + 2 R exp(P)),
+    P' = -(F(<dx>) s/T) / (w + B exp(P)),      n = (N/L)' = exp(P) / (w + B exp(P)),
 
 without a derivative of w. It is integrated outward from x = 0 to both sides with
 ``scipy.integrate.solve_ivp``; the one free number, P(0), is the root of "L rods in all". (With
@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq, elementwise
 
+from crazybilliards.kinetic.statics.label_closure import fluid_reach
 from crazybilliards.kinetic.statics.profiles import Profile
 from crazybilliards.model import Chain
 from crazybilliards.model.grid import position_grid
@@ -42,10 +43,11 @@ def solve_prescribed_closure(chain: Chain, profile: Profile, variance: Profile) 
 
     def excess(log_pressure: float) -> float:
         sides = [_integrate(chain, profile, warmth, log_pressure, side) for side in (-1, 1)]
-        return sum(solution.y[1, -1] for solution in sides) / chain.size - 1
+        return sum(solution.y[1, -1] for solution in sides) - 1
 
     # A chain without gap has rho_y = L/s at its centre, one with a wide gap 1/g.
-    guess = np.log(min(chain.size / chain.thermal_length, 1 / max(chain.gap, 1e-60)))
+    lam = chain.lattice_gap * chain.size / chain.thermal_length
+    guess = -np.log(max(1.0, lam))
     bracket: Any = elementwise.bracket_root(
         np.vectorize(excess), guess, xmin=guess - _WIDEST, xmax=guess + _WIDEST
     )
@@ -59,24 +61,26 @@ def solve_prescribed_closure(chain: Chain, profile: Profile, variance: Profile) 
 def _integrate(
     chain: Chain, profile: Profile, warmth: Warmth, log_pressure: float, side: int
 ) -> Any:
-    """Integrate (P, rods passed) from 0 outward over the distance |x|; side -1 or +1.
+    """Integrate (P, share of the rods passed) from 0 outward over |x|/s; side -1 or +1.
 
     Ends in the far tail, at the end of the profile, or with more rods than there are.
     """
-    length = 2 * chain.radius
+    s = chain.thermal_length
+    crowd = 2 * chain.radius * chain.size / s
 
     def equations(distance: float, state: Array) -> list[float]:
+        x = side * s * distance
         pressure = np.exp(min(state[0], 700.0))
-        room = float(warmth(side * distance)) + length * pressure
+        room = float(warmth(x)) + crowd * pressure
         with np.errstate(all="ignore"):
-            force = float(side * chain.force(profile.function(side * distance)))
+            force = float(side * chain.force(profile.function(x)))
         if not np.isfinite(force):
             raise ValueError(
-                f"displacement is not finite at x = {side * distance:g}; an attribute `support` "
+                f"displacement is not finite at x = {x:g}; an attribute `support` "
                 "can tell the interval on which it is"
             )
         return [
-            -force / chain.temperature / room,
+            -force * s / chain.temperature / room,
             pressure / room,
         ]
 
@@ -84,7 +88,7 @@ def _integrate(
         return state[0] - log_pressure + _TAIL
 
     def too_many(distance: float, state: Array) -> float:
-        return state[1] - 2 * chain.size
+        return state[1] - 2.0
 
     in_the_tail.terminal = too_many.terminal = True  # type: ignore[attr-defined]
     edge = profile.right if side > 0 else -profile.left
@@ -93,7 +97,7 @@ def _integrate(
     # Just inside: an arctanh is infinite at the end itself, though its integral is finite.
     return solve_ivp(
         equations,
-        (0.0, min(edge * (1 - 1e-12), farthest)),
+        (0.0, min(edge * (1 - 1e-12), farthest) / s),
         [log_pressure, 0.0],
         method="LSODA",
         rtol=1e-9,
@@ -105,20 +109,22 @@ def _integrate(
 
 def _assemble(chain: Chain, profile: Profile, warmth: Warmth, centre: float) -> xr.Dataset:
     """Put both sides onto the position grid."""
-    x = position_grid(chain)
+    solutions = {side: _integrate(chain, profile, warmth, centre, side) for side in (-1, 1)}
+    s, L = chain.thermal_length, chain.size
+    farthest = s * max(solution.t[-1] for solution in solutions.values())
+    x = position_grid(chain, max(farthest - float(chain.anchors[-1]), fluid_reach(chain)))
     density, label, displacement = np.zeros((3, x.size))
     passed = {}
-    for side in (-1, 1):
-        solution = _integrate(chain, profile, warmth, centre, side)
-        end = solution.t[-1]
+    for side, solution in solutions.items():
+        end = s * solution.t[-1]
         if solution.status == 0 and profile.left < side * end * 1.01 < profile.right:
             raise ValueError(f"displacement does not hold the rods together at x = {side * end:g}")
-        passed[side] = solution.y[1, -1]
+        passed[side] = L * solution.y[1, -1]
         here = np.flatnonzero((side * x >= 0) & (side * x <= end))
-        log_pressure, count = solution.sol(side * x[here])
-        reduced = np.exp(log_pressure) / warmth(x[here])
+        log_pressure, share = solution.sol(side * x[here] / s)
+        reduced = L / s * np.exp(log_pressure) / warmth(x[here])
         density[here] = reduced / (1 + 2 * chain.radius * reduced)
-        label[here] = side * count
+        label[here] = side * L * share
         label[side * x > end] = side * passed[side]
         displacement[here] = profile.function(x[here])
     return result(

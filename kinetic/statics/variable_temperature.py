@@ -34,7 +34,7 @@ from skfem.helpers import grad
 from crazybilliards.kinetic.statics.label_closure import stationary
 from crazybilliards.kinetic.statics.profiles import Profile
 from crazybilliards.model import Chain
-from crazybilliards.model.grid import position_grid, thermal_reach
+from crazybilliards.model.grid import position_grid
 from crazybilliards.model.vocabulary import result
 
 Array = NDArray[np.float64]
@@ -43,9 +43,11 @@ Warmth = Callable[[Array], Array]
 _CELLS = 1200
 _MESHES = 3
 _MOST_STEPS = 200
+_WIDENINGS = 4  # of the mesh, for a W^2(x) that grows outwards
 _CAP = 2.0
 _DEPTH = 6.0  # from an edge into a plateau where cells begin to grow, in thermal lengths
 _DEAD = 30.0  # a pressure lower than the highest by exp(-30) is none
+_VACUUM = 18.0  # so much must the log pressure have fallen at the ends of the mesh
 _REACH = 9.0  # of the mesh beyond the lattice of anchors, in the hottest thermal length
 
 
@@ -67,13 +69,12 @@ def _residual(v, w):  # type: ignore[no-untyped-def]
 def solve_variable_temperature(chain: Chain, variance: Profile) -> xr.Dataset:
     """Solve for the density at a given W^2(x); see ``force_balance``, which checks both."""
     s, L, R = chain.thermal_length, chain.size, chain.radius
-    crowd, lam = 2 * R * L / s, chain.gap * L / s
+    crowd, lam = 2 * R * L / s, chain.lattice_gap * L / s
 
     def warmth(x: Array) -> Array:
         return np.asarray(variance.function(s * x)) / chain.free_velocity_width**2
 
-    hottest = float(np.sqrt(warmth(chain.anchors / s).max()))
-    end = lam / 2 + _REACH * max(hottest, 0.05)
+    end = _end(warmth, crowd, lam)
     even = np.linspace(0, end, 100_001)
     growth = 1 + np.maximum(lam / 2 - _DEPTH - even, 0) / _DEPTH
     cells_up_to = cumulative_trapezoid(1 / growth, even, initial=0)
@@ -89,7 +90,17 @@ def solve_variable_temperature(chain: Chain, variance: Profile) -> xr.Dataset:
         nodes = _adapted(basis, P, label, crowd, warmth)
         order = np.argsort(basis.doflocs[0])
         guess = PchipInterpolator(basis.doflocs[0][order], P[order])
+    _require_vacuum(basis, P, s)
     return _assemble(chain, basis, P, label, warmth)
+
+
+def _end(warmth: Warmth, crowd: float, lam: float) -> float:
+    """Return where the mesh ends, less B/2: as far out as the hottest place in it asks for."""
+    end = lam / 2
+    for _ in range(_WIDENINGS):
+        places = np.linspace(-1, 1, 10_001) * (end + crowd / 2)
+        end = lam / 2 + _REACH * max(float(np.sqrt(warmth(places).max())), 0.05)
+    return end
 
 
 def _newton(basis: Basis, P: Array, warmth: Warmth, crowd: float, lam: float) -> Array:
@@ -113,6 +124,17 @@ def _newton(basis: Basis, P: Array, warmth: Warmth, crowd: float, lam: float) ->
         if largest < 1e-10:
             return P
     raise ValueError(f"the force balance did not converge in {_MOST_STEPS} Newton steps")
+
+
+def _require_vacuum(basis: Basis, P: Array, s: float) -> None:
+    """Raise unless the pressure has fallen to nothing at the ends of the mesh."""
+    places = basis.doflocs[0]
+    for end in (np.argmin(places), np.argmax(places)):
+        if P[end] > P.max() - _VACUUM:
+            raise ValueError(
+                "velocity_variance is so high outside the chain that rods are found beyond "
+                f"x = {s * places[end]:.4g}, where its equations are no longer solved"
+            )
 
 
 def _labels(basis: Basis, P: Array, warmth: Warmth, crowd: float) -> Array:
@@ -156,13 +178,13 @@ def _assemble(chain: Chain, basis: Basis, P: Array, label: Array, warmth: Warmth
     vertices = basis.mesh.p[0]
     count = CubicHermiteSpline(vertices, label / label[-1], share(vertices))
     farthest = s * vertices[-1] - float(chain.anchors[-1])
-    x = position_grid(chain, min(thermal_reach(chain), farthest))
+    x = position_grid(chain, farthest)
     here = np.clip(x / s, vertices[0], vertices[-1])
     labels = L * np.clip(count(here), 0.0, 1.0)
-    displacement = x - (2 * chain.radius + chain.gap) * (labels - L / 2)
+    displacement = x - (2 * chain.radius + chain.lattice_gap) * (labels - L / 2)
     # Displacements by label, not positions: positions of many rods drown them in rounding.
     known, first = np.unique(label / label[-1] - 0.5, return_index=True)
-    at_vertices = vertices[first] - (crowd + chain.gap * L / s) * known
+    at_vertices = vertices[first] - (crowd + chain.lattice_gap * L / s) * known
     mean = s * PchipInterpolator(known, at_vertices)(chain.rank / L)
     return result(
         chain,

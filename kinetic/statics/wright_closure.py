@@ -24,6 +24,7 @@ from scipy.interpolate import PchipInterpolator
 from scipy.optimize import brentq
 from scipy.special import wrightomega
 
+from crazybilliards.kinetic.statics.label_closure import fluid_reach
 from crazybilliards.kinetic.statics.profiles import Profile
 from crazybilliards.model import Chain
 from crazybilliards.model.grid import position_grid, thermal_reach
@@ -33,6 +34,7 @@ Array = NDArray[np.float64]
 
 _POINTS = 5  # of the quadrature in a cell
 _NOTHING = 1e-12  # of the largest density, at the end of the grid
+_VACUUM = 1e-16  # of the largest density: there are no rods beyond
 
 
 def solve_wright_closure(chain: Chain, profile: Profile) -> xr.Dataset:
@@ -60,13 +62,15 @@ def solve_wright_closure(chain: Chain, profile: Profile) -> xr.Dataset:
         if high > 1e15:
             raise ValueError("displacement: no density of this profile adds up to the chain's rods")
     constant = brentq(excess, -700.0, high, xtol=1e-13, rtol=1e-14)
-    ends = density(constant, at_edges[[0, -1]])
+    found = density(constant, at_edges)
+    ends = found[[0, -1]]
     for value, end, limit in zip(ends, edges[[0, -1]], (profile.left, profile.right), strict=True):
         if math.isinf(limit) and value > _NOTHING * chain.close_packed_density:
             raise ValueError(f"displacement does not hold the rods together at x = {end:g}")
 
     rods = ((half * density(constant, potential)) @ weights).cumsum()
-    grid = position_grid(chain)
+    farthest = float(np.abs(edges[found > _VACUUM * found.max()]).max() - chain.anchors[-1])
+    grid = position_grid(chain, max(farthest, fluid_reach(chain)))
     here = np.clip(grid, edges[0], edges[-1])
     inside = (grid > profile.left) & (grid < profile.right)
     values = density(constant, PchipInterpolator(edges, at_edges)(here))

@@ -47,7 +47,7 @@ def drift(y, v, dt, restitution, integers, floats):  # type: ignore[no-untyped-d
         violations[count] = i + 1
         count += INDEX(free < before)
         before = free
-    merged = pool(shifted, shifted, violations, count, firsts, lasts, sums, unused)
+    _, merged = pool(shifted, shifted, violations, count, firsts, lasts, sums, unused)
     total, before = 0.0, -np.inf
     for i in range(y.size):
         # The bound of the next contact needs this rod's state before it is overwritten.

@@ -1,12 +1,21 @@
 r"""Drift with collisions one at a time, in order: any restitution e >= 0.
 
 Within a step points fly freely, y(t) = y + v t, so neighbours meet at t = (y' - y)/(v - v'). The
-earliest meeting is taken from a heap of contacts, the two velocities change by
+contact that closes first is found, the velocities of its two rods change by
 
     v - v' -> -e (v - v')      at constant momentum (eq. ``eq:rest`` of the paper),
 
 and at most three contacts get a new time: O(log L) a collision. Contacts due at the same time are
-taken by closing speed, which makes the operator symmetric under reflection.
+taken by closing speed, which makes the operator symmetric under reflection, and from left to right
+if that is the same, too.
+
+**A knockout tournament** finds the contact that closes first. The contacts are the leaves of a
+binary tree, and every node above them holds the earlier one of its two children, so that the root
+holds the next collision. Node k has the children 2k and 2k + 1, the root is node 1, and contact c
+is leaf L - 1 + c. A collision changes three leaves, which climb to the root together: the first
+one until it meets the path of the second one, and so on. A heap needs as many comparisons, but a
+processor cannot guess their outcomes, on which the heap's next step depends. In the tournament
+they only select numbers.
 
 **Inelastic collapse.** For e < 1 neighbours may collide infinitely often in a finite time. Where
 the speed of separation e |v - v'| would be below ``merge_speed``, the two become a *cluster* that
@@ -23,108 +32,113 @@ that nothing has to be moved before the end: a collision at t changes it by (v_b
 A cluster's state stands at its outermost members, the only ones with contacts to others.
 """
 
+import numpy as np
+
 from crazybilliards.model.kernels import inlined, kernel
 from crazybilliards.particles.laws.avalanche import record_collision
 
-
-@inlined
-def _before(a, b, due, speed):  # type: ignore[no-untyped-def]
-    """Whether contact a is to be taken before contact b."""
-    return due[a] < due[b] or (due[a] == due[b] and speed[a] > speed[b])
+# Unsigned indices: compiled code then need not ask whether one counts from the array's end.
+INDEX = np.uint64
+_0, _1 = INDEX(0), INDEX(1)
 
 
 @inlined
-def _sift(place, heap, places, size, due, speed):  # type: ignore[no-untyped-def]
-    """Move the contact at ``place`` of the heap up or down to where it belongs."""
-    contact = heap[place]
-    while place > 0:
-        parent = (place - 1) // 2
-        if not _before(contact, heap[parent], due, speed):
-            break
-        heap[place] = heap[parent]
-        places[heap[place]] = place
-        place = parent
-    while True:
-        child = 2 * place + 1
-        if child >= size:
-            break
-        if child + 1 < size and _before(heap[child + 1], heap[child], due, speed):
-            child += 1
-        if not _before(heap[child], contact, due, speed):
-            break
-        heap[place] = heap[child]
-        places[heap[place]] = place
-        place = child
-    heap[place] = contact
-    places[contact] = place
+def _meeting(closing, gap, now, dt):  # type: ignore[no-untyped-def]
+    """When two points meet next, not before ``now``; infinity if not within the step.
 
-
-@inlined
-def _remove(contact, heap, places, size, due, speed):  # type: ignore[no-untyped-def]
-    """Take a contact out of the heap; return the heap's new size."""
-    place = places[contact]
-    places[contact] = -1
-    size -= 1
-    if place < size:
-        heap[place] = heap[size]
-        places[heap[place]] = place
-        _sift(place, heap, places, size, due, speed)
-    return size
-
-
-@inlined
-def _schedule(contact, now, dt, y, v, heap, places, size, due, speed):  # type: ignore[no-untyped-def]
-    """Work out when the contact closes next, if within the step; return the heap's size."""
-    closing = v[contact] - v[contact + 1]
-    gap = y[contact + 1] - y[contact]
-    place = places[contact]
+    The division is made in any case, and a random branch avoided that would cost more.
+    """
+    time = gap / closing
+    # Rounding can put a meeting just before the event that caused it.
+    time = time if time > now else now
     # Multiplying instead of dividing: no overflow, and false where either is NaN.
-    if closing > 0 and gap < dt * closing:
-        # Rounding can put a meeting just before the event that caused it.
-        due[contact] = max(gap / closing, now)
-        speed[contact] = closing
-        if place < 0:
-            place = size
-            heap[place] = contact
-            size += 1
-        _sift(place, heap, places, size, due, speed)
-    elif place >= 0:
-        size = _remove(contact, heap, places, size, due, speed)
-    return size
+    return time if (closing > 0) & (gap < dt * closing) else np.inf
 
 
 @kernel
-def drift(y, v, dt, restitution, merge_speed, most, integers, floats, tally):  # type: ignore[no-untyped-def]
+def _climb(node, until, due, winner, v):  # type: ignore[no-untyped-def]
+    """Decide again all that follows from ``node``, until it meets the path of node ``until``.
+
+    ``until`` 0: up to the root. The node met is the opponent that ``until`` finds on its own way.
+    """
+    # Compiled code counts the references to arrays that a helper is handed, unless the helper is
+    # as simple as this one: a loop that calls nothing. The counting would cost most of the time.
+    time = due[node]
+    while node > _1 and node ^ until > _1:
+        opponent = node ^ _1
+        other_time = due[opponent]
+        first = node ^ INDEX(other_time < time)
+        # Equal times (or nearly, by underflow). Two infinities are not: their difference is NaN.
+        # As a single comparison that is hardly ever true, this costs nothing.
+        difference = other_time - time
+        if difference * difference <= 0.0:
+            a, b = INDEX(winner[node]), INDEX(winner[opponent])
+            speed_a, speed_b = v[a] - v[a + _1], v[b] - v[b + _1]
+            faster = speed_b > speed_a or (speed_b == speed_a and b < a)
+            first = node ^ INDEX(other_time < time or (other_time == time and faster))
+        time = other_time if other_time < time else time
+        node, until = node >> _1, until >> _1
+        due[node], winner[node] = time, winner[first]
+
+
+@kernel
+def _finish(y, v, dt, last, clusters):  # type: ignore[no-untyped-def]
+    """Move the rods to the end of the step, and take down those that are in contact."""
+    a = number = 0
+    while a < y.size:
+        b = last[a]
+        position = y[a] + dt * v[a]
+        if a > 0 and position < y[a - 1]:
+            position = y[a - 1]
+        y[a] = position
+        if b > a:
+            clusters.firsts[number], clusters.lasts[number] = a, b + 1
+            number += 1
+            for i in range(a + 1, b + 1):
+                y[i] = position
+                v[i] = v[a]
+        a = b + 1
+    clusters.number[0] = number
+
+
+@kernel
+def drift(y, v, dt, restitution, merge_speed, most, integers, floats, clusters, tally):  # type: ignore[no-untyped-def]
     """Advance ``y`` and ``v`` in place by ``dt``; return the collisions, or -1 if too many.
 
-    ``integers`` (4, L) and ``floats`` (2, L) are scratch space. ``tally`` (an
-    ``avalanche.Tally``) takes down every collision. After ``most`` collisions the drift
-    gives up: the state is then worthless, the chain has diverged.
+    ``integers`` (4, L) and ``floats`` (2, L) are scratch space. ``clusters`` takes down the rods
+    that ended up in contact, ``tally`` (an ``avalanche.Tally``) every collision. After ``most``
+    collisions the drift gives up: the state is then worthless, the chain has diverged.
     """
-    n = y.size
-    first, last, heap, places = integers[0], integers[1], integers[2], integers[3]
-    due, speed = floats[0], floats[1]
-    size = 0
-    for i in range(n):
+    contacts = INDEX(y.size - 1)
+    first, last = integers[0], integers[1]
+    # The tournament: who has won at each node, and when that contact is due.
+    winner, due = integers[2:].ravel(), floats[:2].ravel()
+    tallied = tally.contacts.size + tally.pushes.heads.size + tally.triggered.heads.size > 0
+    for i in range(y.size):
         first[i] = i
         last[i] = i
-        places[i] = -1
-    for contact in range(n - 1):
-        # The test of _schedule once more: few contacts close in a step, most end here.
-        closing = v[contact] - v[contact + 1]
-        if closing > 0 and y[contact + 1] - y[contact] < dt * closing:
-            size = _schedule(contact, 0.0, dt, y, v, heap, places, size, due, speed)
+    # A single rod has no contact that would stand at the root. And where leaves have two depths,
+    # the first ones climb past nodes that are decided only later.
+    due[:] = np.inf
+    for contact in range(contacts):
+        closing, gap = v[contact] - v[contact + _1], y[contact + _1] - y[contact]
+        due[contacts + contact] = _meeting(closing, gap, 0.0, dt)
+        winner[contacts + contact] = contact
+    leaves = contacts + contacts
+    for leaf in range(contacts, leaves):
+        _climb(leaf, leaf + _1 if leaf + _1 < leaves else _0, due, winner, v)
     collisions = 0
-    while size > 0:
-        contact = heap[0]
-        now = due[contact]
+    while due[1] < np.inf:
+        now, contact = due[1], INDEX(winner[1])
         collisions += 1
         if collisions > most:
             return -1
-        a, b = first[contact], last[contact + 1]
-        left, right = contact - a + 1, b - contact
-        v_left, v_right = v[contact], v[contact + 1]
-        record_collision(contact, a, b, v_left, v_right, tally)
+        neighbour = contact + _1
+        a, b = INDEX(first[contact]), INDEX(last[neighbour])
+        left, right = float(neighbour - a), float(b - contact)
+        v_left, v_right = v[contact], v[neighbour]
+        if tallied:
+            record_collision(np.int64(contact), np.int64(a), np.int64(b), v_left, v_right, tally)
         # The cluster's or the pair's common velocity, by its smaller change.
         common = v_left + (v_right - v_left) * right / (left + right)
         # Flippers act when rods meet. Rods at rest against one another would otherwise pass one
@@ -137,32 +151,28 @@ def drift(y, v, dt, restitution, merge_speed, most, integers, floats, tally):  #
             v[a] = v[b] = common
             y[a] = y[b] = y_common
             # v of the inner members is stale from here on; their contact never closes again.
-            v[contact] = v[contact + 1] = common
-            y[contact] = y[contact + 1] = y_common
+            v[contact] = v[neighbour] = common
+            y[contact] = y[neighbour] = y_common
         else:
             new_left = common - rebound * right / (left + right)
             new_right = common + rebound * left / (left + right)
             y_left = y[contact] + (v_left - new_left) * now
-            y_right = y[contact + 1] + (v_right - new_right) * now
+            y_right = y[neighbour] + (v_right - new_right) * now
             v[a] = v[contact] = new_left
             y[a] = y[contact] = y_left
-            v[b] = v[contact + 1] = new_right
-            y[b] = y[contact + 1] = y_right
+            v[b] = v[neighbour] = new_right
+            y[b] = y[neighbour] = y_right
         # The two now separate or are one.
-        size = _remove(contact, heap, places, size, due, speed)
-        if a > 0:
-            size = _schedule(a - 1, now, dt, y, v, heap, places, size, due, speed)
-        if b < n - 1:
-            size = _schedule(b, now, dt, y, v, heap, places, size, due, speed)
-    a = 0
-    while a < n:
-        b = last[a]
-        position = y[a] + dt * v[a]
-        if a > 0 and position < y[a - 1]:
-            position = y[a - 1]
-        velocity = v[a]
-        for i in range(a, b + 1):
-            y[i] = position
-            v[i] = velocity
-        a = b + 1
+        low = high = leaf = contacts + contact
+        due[leaf] = np.inf
+        if a > _0:
+            low = contacts + a - _1
+            due[low] = _meeting(v[a - _1] - v[a], y[a] - y[a - _1], now, dt)
+        if b < contacts:
+            high = contacts + b
+            due[high] = _meeting(v[b] - v[b + _1], y[b + _1] - y[b], now, dt)
+        _climb(low, leaf, due, winner, v)
+        _climb(leaf, high, due, winner, v)
+        _climb(high, _0, due, winner, v)
+    _finish(y, v, dt, last, clusters)
     return collisions

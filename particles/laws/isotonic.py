@@ -21,7 +21,10 @@ _0, _1, _2 = INDEX(0), INDEX(1), INDEX(2)
 
 @kernel
 def pool(values, carried, violations, count, firsts, lasts, sums, carried_sums):  # type: ignore[no-untyped-def]
-    """Isotonic regression of ``values`` with equal weights, in place; return the merged pairs.
+    """Isotonic regression of ``values`` with equal weights, in place.
+
+    Return the number of blocks of more than one rod, and that of the pairs merged in them. The
+    blocks stand in ``firsts`` and ``lasts``, in order; a block ends before its last.
 
     ``carried`` (it may be ``values``) are averaged over the same blocks. ``violations``: the first
     ``count`` entries are the indices i with values[i] < values[i - 1], in order. The last four,
@@ -92,16 +95,16 @@ def pool(values, carried, violations, count, firsts, lasts, sums, carried_sums):
             values[i] = mean
             carried[i] = carried_mean
         merged += last - first - _1
-    return merged
+    return blocks, merged
 
 
 @kernel
-def drift(y, v, dt, integers, floats):  # type: ignore[no-untyped-def]
+def drift(y, v, dt, violations, floats, clusters):  # type: ignore[no-untyped-def]
     """Advance ``y`` and ``v`` in place by ``dt``; return the contacts that ended up closed.
 
-    ``integers`` and ``floats``, at least three and two rows of L, are scratch space.
+    ``violations``, L integers, and ``floats``, at least two rows of L, are scratch space.
+    ``clusters`` takes down the rods that ended up in contact.
     """
-    violations, firsts, lasts = integers[0], integers[1], integers[2]
     count = _0
     before = -np.inf
     for i in range(y.size):
@@ -110,4 +113,7 @@ def drift(y, v, dt, integers, floats):  # type: ignore[no-untyped-def]
         violations[count] = i
         count += INDEX(position < before)
         before = position
-    return np.int64(pool(y, v, violations, count, firsts, lasts, floats[0], floats[1]))
+    firsts, lasts = clusters.firsts, clusters.lasts
+    blocks, merged = pool(y, v, violations, count, firsts, lasts, floats[0], floats[1])
+    clusters.number[0] = blocks
+    return np.int64(merged)

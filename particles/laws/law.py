@@ -2,8 +2,8 @@
 
 An operator advances y and v over one step of free flight with collisions and returns how many
 there were, or -1 if it gave up. ``method="event-driven"`` takes collisions one at a time: by
-sorting at e = 1, by isotonic regression at e = 0 (both give the event-driven result in O(L)), by a
-heap otherwise, or if every collision is to be counted at its contact.
+sorting at e = 1, by isotonic regression at e = 0 (both give the event-driven result in O(L)), in
+their order (``EVENTS``) otherwise, or if every collision is to be counted at its contact.
 ``method="contact-dynamics"`` solves all contacts of a step at once.
 """
 
@@ -18,10 +18,12 @@ from numpy.typing import NDArray
 from crazybilliards.model import Chain
 from crazybilliards.model.kernels import kernel
 from crazybilliards.particles.laws import contact_dynamics, event_driven, isotonic, sort
+from crazybilliards.particles.laws.closed_contacts import Clusters, make_clusters
+from crazybilliards.particles.noise import BLOCK
 
 Method = Literal["event-driven", "contact-dynamics"]
 
-SORT, ISOTONIC, HEAP, CONTACTS = range(4)
+SORT, ISOTONIC, EVENTS, CONTACTS = range(4)
 
 
 class Law(NamedTuple):
@@ -34,17 +36,21 @@ class Law(NamedTuple):
 
 
 class Scratch(NamedTuple):
-    """Arrays the operators work in, made once for each replica."""
+    """Arrays the kernels work in, made once for each replica."""
 
     integers: NDArray[np.int64]
     floats: NDArray[np.float64]
+    clusters: Clusters  # rods that the last drift left in contact, if that matters
+    kicks: NDArray[np.float64]  # of the noise, for one step or several, (steps, L)
 
 
 def make_scratch(size: int) -> Scratch:
-    """Return the scratch space for ``size`` rods: 56 bytes a rod."""
+    """Return the scratch space for ``size`` rods: 80 bytes a rod."""
     return Scratch(
         np.zeros((4, size), dtype=np.int64),
         np.zeros((3, size)),
+        make_clusters(size),
+        np.zeros((max(1, BLOCK // size), size)),
     )
 
 
@@ -65,9 +71,9 @@ def make_law(
     if method == "contact-dynamics":
         operator = CONTACTS
     elif counted:
-        operator = HEAP
+        operator = EVENTS
     else:
-        operator = {1.0: SORT, 0.0: ISOTONIC}.get(chain.restitution, HEAP)
+        operator = {1.0: SORT, 0.0: ISOTONIC}.get(chain.restitution, EVENTS)
     kick = chain.amplitude / chain.mass * math.sqrt(time_step)
     merge_speed = max(merging * kick, 1e-9 * speed) if chain.restitution < 1 else 0.0
     return Law(operator, chain.restitution, merge_speed, 1_000 * chain.size + 1_000_000)
@@ -79,7 +85,7 @@ def drift(y, v, dt, law, scratch, tally):  # type: ignore[no-untyped-def]
     if law.operator == SORT:
         return sort.drift(y, v, dt, scratch.floats[0], scratch.floats[1])
     if law.operator == ISOTONIC:
-        return isotonic.drift(y, v, dt, scratch.integers, scratch.floats)
+        return isotonic.drift(y, v, dt, scratch.integers[0], scratch.floats, scratch.clusters)
     if law.operator == CONTACTS:
         return contact_dynamics.drift(y, v, dt, law.restitution, scratch.integers, scratch.floats)
     return event_driven.drift(
@@ -91,5 +97,6 @@ def drift(y, v, dt, law, scratch, tally):  # type: ignore[no-untyped-def]
         law.most,
         scratch.integers,
         scratch.floats,
+        scratch.clusters,
         tally,
     )

@@ -1,6 +1,6 @@
 """Checkpoints: the whole state of a run in one file, so that it can go on where it stopped.
 
-A checkpoint holds, for every replica, positions, velocities, the random generator and what its
+A checkpoint holds, for every replica, positions, velocities, the state of the noise and what its
 observers have summed up. It also holds the identity of the run: parameters, schedule, seed, and a
 fingerprint of the source code, without which an edited kernel would continue the old run. It is
 written atomically, sealed with a checksum, and kept by one process at a time. Replicas are caught
@@ -84,8 +84,6 @@ class Checkpoint:
             with replica.lock:
                 for name, value in replica.state().items():
                     arrays[f"{number}/{name}"] = np.array(value)
-                generator = replica.generator.bit_generator.state
-            arrays[f"{number}/generator"] = _text(generator)
         buffer = io.BytesIO()
         np.savez(buffer, **arrays)  # type: ignore[arg-type]
         write_sealed(self.path, buffer.getvalue())
@@ -141,7 +139,6 @@ def _restore_replica(replica: Replica, number: int, arrays: Mapping[str, np.ndar
         for name, value in arrays.items()
         if name.startswith(prefix)
     }
-    replica.generator.bit_generator.state = json.loads(bytes(state.pop("generator")))
     replica.restore(state)
 
 

@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from crazybilliards.particles.laws.avalanche import Tally, make_tally
-from crazybilliards.particles.laws.law import HEAP, Scratch, make_scratch
+from crazybilliards.particles.laws.law import EVENTS, Scratch, make_scratch
+from crazybilliards.particles.noise import STATE, make_noise
 from crazybilliards.particles.observers import Observer, Snapshots, restore
 from crazybilliards.particles.schedule import Schedule
 from crazybilliards.particles.stepping import Dynamics, advance, bounded, record
@@ -51,7 +52,7 @@ class Replica:
     def _start(self) -> None:
         """Put the chain at the start of the present copy."""
         self.y, self.v = (np.array(each) for each in self.starts[self.copy])
-        self.generator = np.random.Generator(np.random.PCG64(self.streams[self.copy]))
+        self.noise = make_noise(self.streams[self.copy])
         self.steps, self.snapshots, self.over = 0, 0, False
 
     @property
@@ -60,8 +61,9 @@ class Replica:
         return self.reached < NEVER
 
     def state(self) -> dict[str, ArrayLike]:
-        """Return all that changes while running, but the generator's state."""
+        """Return all that changes while running."""
         state: dict[str, ArrayLike] = {name: getattr(self, name) for name in _CHANGING}
+        state |= {f"noise {name}": getattr(self.noise, name) for name in STATE}
         for number, observer in enumerate(self.observers):
             for name, value in observer.state().items():
                 state[f"observer {number} {name}"] = value
@@ -71,6 +73,8 @@ class Replica:
         """Take over what :meth:`state` returned."""
         for name in _CHANGING:
             restore(self, name, state[name])
+        for name in STATE:
+            getattr(self.noise, name)[...] = state[f"noise {name}"]
         for number, observer in enumerate(self.observers):
             for name in observer.state():
                 restore(observer, name, state[f"observer {number} {name}"])
@@ -109,7 +113,7 @@ class Replica:
 
     def _measure(self, dynamics: Dynamics, schedule: Schedule, stop: Event) -> Iterator[int]:
         scratch = make_scratch(self.y.size)
-        tally = self._tally(counted=dynamics.law.operator == HEAP)
+        tally = self._tally(counted=dynamics.law.operator == EVENTS)
         per_block = schedule.snapshots_per_block
         chunk = max(_CHUNK // self.y.size, 1)
         rows = max(chunk // schedule.stride, 1)
@@ -130,7 +134,7 @@ class Replica:
                 good = record(
                     self.y,
                     self.v,
-                    self.generator,
+                    self.noise,
                     dynamics,
                     scratch,
                     tally,
@@ -154,7 +158,7 @@ class Replica:
 
     def _advance(self, dynamics: Dynamics, scratch: Scratch, tally: Tally, steps: int) -> bool:
         """Take steps without snapshots; return whether the chain did not diverge in them."""
-        met = advance(self.y, self.v, self.generator, dynamics, scratch, tally, steps)
+        met = advance(self.y, self.v, self.noise, dynamics, scratch, tally, steps)
         return bool(met >= 0 and bounded(self.y, self.v, dynamics.fastest))
 
     def _diverge(self, block: int) -> None:

@@ -96,9 +96,9 @@ def test_a_short_duration_is_not_lost():
 def test_a_budget_ends_what_would_take_for_ever():
     session = Session(Chain(size=10))
     session.advance(1.0)
-    begin = time.monotonic()
+    begin = time.process_time()
     session.advance(1e9, budget=0.01)
-    assert time.monotonic() - begin < 5.0
+    assert time.process_time() - begin < 5.0
     assert session.time > 1.0
 
 

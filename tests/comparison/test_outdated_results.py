@@ -11,13 +11,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from missing_cases import missing_cases
 
 import crazybilliards.model
 from crazybilliards.comparison import load_sweep
 from crazybilliards.comparison.sweeps import Case, run_cases
 from crazybilliards.comparison.sweeps.case import compute
 from crazybilliards.comparison.sweeps.jobs import JOBS
-from crazybilliards.comparison.sweeps.running import missing_cases
 from crazybilliards.model import Chain, load, save
 from crazybilliards.model.storage import write_sealed
 
@@ -116,7 +116,7 @@ def test_after_an_edit_of_a_theory_its_sweep_gives_the_new_number(tmp_path):
             [*COMMAND, "sweep", "grid.toml", "--output", "results", "--processes", "1", *options],
             capture_output=True,
             text=True,
-            timeout=300,
+            timeout=600,
             check=True,
             cwd=tmp_path,
             env={**os.environ, "PYTHONPATH": str(tmp_path), "PYTHONDONTWRITEBYTECODE": "1"},

@@ -1,13 +1,17 @@
 """Sweeps on every engine, and their command: the same results, nothing lost to a kill."""
 
+import json
+import logging
 import os
 import signal
 import subprocess
 import sys
 import threading
 import time
+from concurrent.futures import Executor
 
 import pytest
+from missing_cases import missing_cases
 
 from crazybilliards.comparison import load_sweep
 from crazybilliards.comparison.commands.line import main
@@ -19,11 +23,12 @@ from crazybilliards.comparison.sweeps import (
     run_cases,
 )
 from crazybilliards.comparison.sweeps.case import compute
-from crazybilliards.comparison.sweeps.running import missing_cases
 from crazybilliards.model import Chain
 from crazybilliards.model.storage import write_sealed
 
 COMMAND = [sys.executable, "-c", "from crazybilliards.comparison.commands.line import main; main()"]
+SCHEDULER = "distributed.cli.dask_scheduler"
+PATIENCE = 600.0  # seconds
 GRID = """
 [grid]
 size = [3, 5]
@@ -47,11 +52,19 @@ def grid(tmp_path):
 
 @pytest.fixture
 def long_grid(tmp_path):
-    """Return a grid of cases that take a third of a second each."""
+    """Return a grid that takes a minute, of cases that take a third of a second each."""
     path = tmp_path / "long.toml"
-    many = GRID.format(duration=5e4).replace("[3, 5]", str(list(range(20, 32))))
-    path.write_text(many.replace("[0.5, 1.0]", "[1.0]"))
+    many = GRID.format(duration=5e4).replace("size = [3, 5]", f"seed = {list(range(200))}")
+    path.write_text(many.replace("[0.5, 1.0]", "[1.0]").replace("[chain]", "[chain]\nsize = 20"))
     return path
+
+
+def until(condition):
+    """Wait for a condition to be true, for as long as a busy machine may take."""
+    deadline = time.monotonic() + PATIENCE
+    while not condition():
+        assert time.monotonic() < deadline, "waited for too long"
+        time.sleep(0.05)
 
 
 # -- engines ----------------------------------------------------------------------------------
@@ -91,8 +104,7 @@ def test_a_dask_worker_killed_in_the_middle_costs_nothing(cluster, tmp_path):
 
     def kill_one():
         # As soon as a first result is there, others are being worked on.
-        while not list(tmp_path.glob("*.nc")):
-            time.sleep(0.05)
+        until(lambda: list(tmp_path.glob("*.nc")))
         with Client(address, set_as_default=False) as client:
             victim = next(iter(client.run(os.getpid).values()))
         os.kill(victim, signal.SIGKILL)
@@ -105,6 +117,47 @@ def test_a_dask_worker_killed_in_the_middle_costs_nothing(cluster, tmp_path):
         killer.join()
     assert killed
     assert missing_cases(cases, tmp_path) == []
+
+
+@pytest.fixture
+def scheduler(tmp_path):
+    """Start a scheduler of its own, without workers; return its process and its address."""
+    file = tmp_path / "scheduler.json"
+    arguments = ["--host", "127.0.0.1", "--port", "0", "--no-dashboard"]
+    process = subprocess.Popen(
+        [sys.executable, "-m", SCHEDULER, *arguments, "--scheduler-file", str(file)],
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+    )
+    until(lambda: process.poll() is not None or (file.exists() and file.stat().st_size))
+    yield process, json.loads(file.read_text())["address"]
+    process.kill()
+    process.wait()
+
+
+@pytest.mark.parametrize("number", [1, 1100], ids=["all submitted", "not all submitted"])
+def test_the_death_of_the_scheduler_is_one_line(number, scheduler, tmp_path, monkeypatch, caplog):
+    process, address = scheduler
+    cases = [Case("simulate", Chain(size=2), {"duration": 100, "seed": i}) for i in range(number)]
+
+    class Killing(Executor):
+        def submit(self, function, /, *arguments):
+            future = executor.submit(function, *arguments)
+            submitted.append(future)
+            if len(submitted) == min(number, 1000):  # as many as may be under way
+                process.kill()
+            return future
+
+    submitted = []
+    # What people see of these logs, from warnings on, does not come here by itself.
+    monkeypatch.setattr(logging.getLogger("distributed"), "propagate", True)
+    monkeypatch.setattr(logging.getLogger("distributed.client"), "propagate", True)
+    with (
+        pytest.raises(RuntimeError, match="the dask scheduler is gone; what was finished is kept"),
+        dask_cluster(address) as executor,
+    ):
+        run_cases(cases, tmp_path / "results", Killing(), progress=False)
+    assert [each for each in caplog.records if each.levelno >= logging.WARNING] == []
 
 
 def test_no_scheduler_at_the_address():
@@ -193,13 +246,11 @@ def test_a_sweep_that_is_killed_keeps_what_is_finished_and_leaves_no_workers(
         text=True,
     )
     try:
-        deadline = time.monotonic() + 200
-        while len(list(folder.glob("*.nc"))) < 1 and time.monotonic() < deadline:
-            time.sleep(0.05)
+        until(lambda: list(folder.glob("*.nc")))
         workers = workers_of(process.pid)
         assert workers
         process.send_signal(how)
-        _, errors = process.communicate(timeout=60)
+        _, errors = process.communicate(timeout=PATIENCE)
     finally:
         process.kill()
     if how == signal.SIGINT:
@@ -213,8 +264,5 @@ def test_a_sweep_that_is_killed_keeps_what_is_finished_and_leaves_no_workers(
     cases = read_sweep(long_grid).cases()
     missing = missing_cases(cases, folder)
     assert 0 < len(missing) < len(cases)
-    deadline = time.monotonic() + 20
-    while any(os.path.exists(f"/proc/{pid}") for pid in workers) and time.monotonic() < deadline:
-        time.sleep(0.1)
-    assert not any(os.path.exists(f"/proc/{pid}") for pid in workers)
+    until(lambda: not any(os.path.exists(f"/proc/{pid}") for pid in workers))
     assert load_sweep(folder).status.size >= 1

@@ -11,12 +11,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import xarray as xr
+from missing_cases import missing_cases
 
 from crazybilliards.comparison import load_sweep
 from crazybilliards.comparison.sweeps import Case, Sweep, read_sweep, run_cases
 from crazybilliards.comparison.sweeps.case import compute
 from crazybilliards.comparison.sweeps.jobs import JOBS
-from crazybilliards.comparison.sweeps.running import missing_cases
 from crazybilliards.model import Chain, load, save
 from crazybilliards.model.locks import locked
 from crazybilliards.model.storage import write_sealed
@@ -153,17 +153,37 @@ def test_whatever_is_wrong_with_a_case_does_not_cost_the_others(tmp_path, monkey
 
 def test_what_was_finished_before_a_worker_died_is_written(tmp_path):
     class Dying(AtOnce):
+        """Gives the first case back last, and with it the news that its worker died."""
+
         def submit(self, function, /, case, source):
-            if case == cases[0]:
-                future = Future()
-                future.set_exception(BrokenProcessPool("terminated abruptly"))
-                return future
+            submitted.append(case)
+            if case == submitted[0]:
+                return dead
+            if len(submitted) == len(cases):
+                dead.set_exception(BrokenProcessPool("terminated abruptly"))
             return super().submit(function, case, source)
 
-    cases = sweep().cases()
+    dead, submitted, cases = Future(), [], sweep().cases()
     with pytest.raises(RuntimeError, match="a worker process died"):
         run_cases(cases, tmp_path, Dying(), progress=False)
-    assert missing_cases(cases, tmp_path) == [cases[0]]
+    assert missing_cases(cases, tmp_path) == [submitted[0]]
+
+
+@pytest.mark.parametrize("raised", [True, False], ids=["when submitted", "when asked"])
+def test_nothing_is_submitted_to_workers_that_died(raised, tmp_path):
+    class Dead(Executor):
+        def submit(self, function, /, case, source):
+            submitted.append(case)
+            if raised:
+                raise BrokenProcessPool("terminated abruptly")
+            future = Future()
+            future.set_exception(BrokenProcessPool("terminated abruptly"))
+            return future
+
+    submitted = []
+    with pytest.raises(RuntimeError, match="a worker process died"):
+        run_cases(sweep().cases(), tmp_path, Dead(), progress=False)
+    assert len(submitted) == 1
 
 
 def test_a_folder_is_filled_by_one_process_at_a_time(tmp_path):

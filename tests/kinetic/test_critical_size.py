@@ -41,6 +41,29 @@ def test_critical_damping_undoes_the_critical_size():
     assert damping / np.sqrt(chain.mass) == pytest.approx(30 * 0.05 / np.pi, rel=0.02)
 
 
+@pytest.mark.compiled
+def test_the_closed_form_takes_over_from_the_equation():
+    """Where both are solved they agree: below gamma/sqrt(k m) = 1e-3 the closed form is taken."""
+    weak, weaker = (
+        critical_size(WEAK.replace(damping=damping * np.sqrt(WEAK.mass)))
+        for damping in (1.001e-3, 0.999e-3)
+    )
+    assert weak.value / 1.001 == pytest.approx(weaker.value / 0.999, rel=1e-5)
+    assert weak.error == pytest.approx(weaker.error, rel=0.01)
+    # Small, weakly driven chains lie there; no equation is solved.
+    few = WEAK.replace(size=2, restitution=1.001)
+    unit = np.sqrt(few.mass)
+    assert critical_damping(few).value == pytest.approx(0.002 / np.pi * unit, rel=1e-6)
+
+
+def test_stronger_damping_than_is_known_is_refused_at_once():
+    message = r"gamma/sqrt\(k m\) = .* is too strong a damping: .* known up to 3.5"
+    with pytest.raises(ValueError, match=message):
+        critical_size(WEAK.replace(damping=50.0))
+    with pytest.raises(ValueError, match=message):
+        critical_damping(WEAK.replace(size=1000))
+
+
 @pytest.mark.parametrize(
     ("changes", "message"),
     [

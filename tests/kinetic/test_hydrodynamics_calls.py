@@ -1,10 +1,8 @@
 """Calls of the hydrodynamics: equal ones, wrong ones, interrupted ones."""
 
-import signal
-import threading
-
 import numpy as np
 import pytest
+from pde import MemoryStorage
 
 from crazybilliards.kinetic import (
     compressed,
@@ -53,6 +51,33 @@ def test_wrong_arguments_are_refused_in_one_line(arguments, message):
     assert "\n" not in str(caught.value)
 
 
+@pytest.mark.parametrize(
+    ("chain", "cells", "advice"),
+    [
+        (Chain(size=100, amplitude=1.0), 100, "give cells=613"),
+        (Chain(size=20_000), None, "use frame='label'"),
+    ],
+)
+def test_cells_too_wide_to_resolve_the_thermal_length_are_refused(chain, cells, advice):
+    start = displaced(chain, 0.5)
+    with pytest.raises(ValueError, match=f"thermal lengths wide, 0.5 at most .*{advice}"):
+        hydrodynamics(chain, start, 1, frame="eulerian", cells=cells, **QUIET)
+
+
+@pytest.mark.compiled
+def test_the_number_of_cells_that_is_called_enough_is():
+    """Their centre is right to a hundredth of a thermal length."""
+    chain = Chain(size=20)
+    start = displaced(chain, chain.thermal_length)
+    arguments = {"duration": 6.0, "every": 1.0, "frame": "eulerian"} | QUIET
+    with pytest.raises(ValueError, match="give cells=") as caught:
+        hydrodynamics(chain, start, cells=60, **arguments)
+    cells = int(str(caught.value).rpartition("=")[2])
+    rough = hydrodynamics(chain, start, cells=cells, **arguments)
+    fine = hydrodynamics(chain, start, **arguments)
+    np.testing.assert_allclose(rough.centre, fine.centre, atol=0.01 * chain.thermal_length)
+
+
 def test_wrong_starts_are_refused():
     chain = Chain(size=5)
     start = displaced(chain, 1)
@@ -90,17 +115,14 @@ def test_what_the_cells_cannot_hold_ends_with_a_reason():
 
 
 @pytest.mark.compiled
-def test_ctrl_c_keeps_the_times_before():
+def test_ctrl_c_keeps_the_times_before(ctrl_c):
     chain = Chain(size=100)
     start = force_balance(chain)
-    hydrodynamics(chain, start, 0.01, every=0.01, frame="eulerian", **QUIET)  # compiled
-    timer = threading.Timer(2.0, signal.raise_signal, [signal.SIGINT])
-    timer.start()
+    ctrl_c(MemoryStorage, "append", lambda storages: len(storages) == 5)
     flow = hydrodynamics(chain, start, 20, every=0.02, frame="eulerian", cells=3000, **QUIET)
-    timer.cancel()
     assert flow.attrs["status"] == "interrupted"
     assert flow.attrs["end_time"] == flow.time[-1]
-    assert 1 <= flow.sizes["time"] < 1001
+    assert 5 <= flow.sizes["time"] < 1001
     assert np.isfinite(flow.density).all()
 
 

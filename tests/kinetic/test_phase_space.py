@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from crazybilliards.kinetic import equilibrium, force_balance, phase_space
+from crazybilliards.kinetic.kinetic_equation import stationary
 from crazybilliards.kinetic.kinetic_equation.continuation import (
     continued,
     elastic_state,
@@ -148,9 +149,16 @@ def test_too_many_flippers_have_no_steady_state():
         ({}, {"cells": 100_000}, "cells must be"),
         ({"size": 10**6}, {}, "size must be at most"),
         ({}, {"order": 3}, "order"),
-        ({"restitution": 0.95}, {"tolerance": 1e-9}, "accurate to"),
+        ({"restitution": 0.95}, {"tolerance": 1e-9}, "accurate to .* theory --cells 50 accepts"),
+        ({"damping": 1000.0}, {}, "multiple of m W/s, is 489 .*0.01 to 25.*; simulate takes any"),
     ],
 )
 def test_bad_input(changes, options, message):
     with pytest.raises(ValueError, match=message):
         phase_space(Chain(**changes), **options)
+
+
+def test_a_wide_gap_is_named_where_the_equation_cannot_be_solved():
+    message = stationary._out_of_range(Chain(gap=2.0), 2)
+    assert "gap * size, as a multiple of s, is 283 (solved for 0 to 80)" in message
+    assert "damping" not in message

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from all_rods import require_all_rods
 
 from crazybilliards.comparison import smooth
 from crazybilliards.kinetic import force_balance
@@ -90,6 +91,19 @@ def test_the_measured_widths_give_nearly_the_measured_density(e, off):
     free = force_balance(chain.replace(restitution=1))
     assert close_packing(chain, smooth(theory), smooth(run)) == pytest.approx(off, abs=0.015)
     assert close_packing(chain, smooth(free), smooth(run)) > 0.25
+
+
+def test_the_mesh_reaches_as_far_as_hot_rods():
+    """The variance grows beyond the anchors; where it grows like x^2, nothing holds them."""
+    chain = Chain(size=10)
+    free, end = chain.free_velocity_width**2, chain.anchors[-1]
+
+    def grown(factor, power):
+        return lambda x: free * (1 + factor * np.maximum(np.abs(x) / end - 1, 0) ** power)
+
+    require_all_rods(force_balance(chain, velocity_variance=grown(20, 1)), chain.size)
+    with pytest.raises(ValueError, match="rods are found beyond x = "):
+        force_balance(chain, velocity_variance=grown(300, 2))
 
 
 def test_bad_profiles_are_refused_in_one_line():

@@ -1,4 +1,4 @@
-"""The kernel cache must notice a change in anything that a kernel calls, wherever it stands."""
+"""The kernel cache notices a change in anything a kernel calls, and costs no run if it fails."""
 
 import linecache
 import os
@@ -69,3 +69,93 @@ def test_a_kernel_of_a_notebook_has_no_file():
         exec(compile(source, name, "exec"), scope)
         found.add(kernels._fingerprint(scope["scaled"]))
     assert len(found) == 2
+
+
+TWO = """
+from crazybilliards.model.kernels import kernel
+
+@kernel
+def doubled(x):
+    return 2 * x
+
+@kernel
+def tripled(x):
+    return 3 * x
+
+print(doubled(1), tripled(1))
+"""
+FULL = "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (100, 100))"
+
+
+def run_two(folder, text=TWO, **environment):
+    """Run kernels of two files; no cache can be kept but where ``environment`` says."""
+    (folder / "file").touch()
+    (folder / "__pycache__").touch()
+    (folder / "two.py").write_text(text)
+    nowhere = dict.fromkeys(("HOME", "XDG_CACHE_HOME", "NUMBA_CACHE_DIR"), str(folder / "file/x"))
+    done = subprocess.run(
+        [sys.executable, "-B", "two.py"],
+        cwd=folder,
+        env=os.environ | nowhere | environment,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (done.returncode, done.stdout) == (0, "2 3\n"), done.stderr
+    return [line for line in done.stderr.splitlines() if "Warning" in line]
+
+
+@pytest.mark.compiled
+def test_without_a_folder_for_the_cache_kernels_are_compiled_all_the_same(tmp_path):
+    (warning,) = run_two(tmp_path)
+    assert "compiled anew in every process" in warning
+    assert "NUMBA_CACHE_DIR" in warning
+
+
+@pytest.mark.compiled
+@pytest.mark.skipif(sys.platform == "win32", reason="limits the size of a file")
+def test_a_cache_that_cannot_be_written_or_read_costs_no_run(tmp_path):
+    cache = tmp_path / "cache"
+    (warning,) = run_two(tmp_path, FULL + TWO, NUMBA_CACHE_DIR=str(cache))
+    assert f"{cache}" in warning
+    assert "File too large" in warning
+    assert run_two(tmp_path, NUMBA_CACHE_DIR=str(cache)) == []  # there is room again
+    for kind in ("nbi", "nbc"):
+        damaged = next(cache.rglob(f"*.{kind}"))
+        damaged.write_bytes(damaged.read_bytes()[:-10])
+        (warning,) = run_two(tmp_path, NUMBA_CACHE_DIR=str(cache))
+        assert f"{cache}" in warning
+        assert "cannot be read" in warning
+
+
+INTERRUPTED = """
+import signal
+from numba.core.base import BaseContext
+
+register, calls = BaseContext.insert_func_defn, []
+
+def and_interrupt(self, *arguments):
+    calls.append(1)
+    if len(calls) == 100:
+        signal.raise_signal(signal.SIGINT)
+    return register(self, *arguments)
+
+BaseContext.insert_func_defn = and_interrupt
+from crazybilliards.model.kernels import kernel
+
+@kernel
+def doubled(x):
+    return x.sum()
+
+import numpy as np
+try:
+    doubled(np.ones(2))
+except KeyboardInterrupt:
+    print(int(doubled(np.ones(2))), 3)
+"""
+
+
+@pytest.mark.compiled
+def test_ctrl_c_while_a_kernel_is_compiled_leaves_it_usable(tmp_path):
+    """Without its functions, which are registered once, numba would not know ``sum`` any more."""
+    assert run_two(tmp_path, INTERRUPTED, NUMBA_CACHE_DIR=str(tmp_path / "cache")) == []

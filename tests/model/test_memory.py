@@ -107,6 +107,16 @@ def test_what_a_user_asks_for_is_checked_before_it_is_allocated(call):
 
 
 def test_the_mesh_is_checked(monkeypatch):
-    monkeypatch.setattr("crazybilliards.model.memory.available_memory", lambda: 1e6)
+    monkeypatch.setattr(memory, "_available_lately", lambda moment: 1e6)
     with pytest.raises(ValueError, match=r"cells=22 would take"):
         phase_space(Chain(size=3), cells=22)
+
+
+def test_only_the_meshes_that_are_used_are_checked(monkeypatch):
+    """22 and 33 cells are enough for a small chain: 44 MB; the next mesh takes 100 MB."""
+    monkeypatch.setattr("crazybilliards.model.memory.available_memory", lambda: 5e7)
+    assert phase_space(Chain(size=3)).attrs["cells"] == 33
+    with pytest.raises(ValueError, match=r"cells=50 would take"):
+        phase_space(Chain(size=3), tolerance=1e-12)
+    with pytest.raises(ValueError, match=r"cells=40 would take"):
+        phase_space(Chain(size=3), cells=40)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from crazybilliards.model import Chain, spring
-from crazybilliards.particles.stepping import kick, make_step
+from crazybilliards.particles.stepping import FIRST, kick, make_step
 
 D = np.concatenate([-np.geomspace(10, 0.01, 30), np.geomspace(0.01, 10, 30)])
 
@@ -35,5 +35,6 @@ def test_chain_and_kernel_follow_the_law(kind):
     np.testing.assert_array_equal(chain.force(D), 2.5 * spring.force(D, n))
     np.testing.assert_array_equal(chain.potential(D), 2.5 * spring.potential(D, n))
     v = np.zeros(D.size)
-    kick(D.copy(), v, np.zeros(D.size), make_step(chain, 0.1, "euler"), 1.0, 0.0, 1.0)
+    without = np.zeros(D.size)
+    kick(D.copy(), v, without, without, make_step(chain, 0.1, "euler"), FIRST)
     np.testing.assert_allclose(v, -0.1 / 1.5 * chain.force(D), rtol=1e-14)

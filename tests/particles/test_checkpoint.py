@@ -44,13 +44,13 @@ def run(script, checkpoint, output, how=None, after=0.0):
                 assert process.poll() is None
             time.sleep(after)
             process.send_signal(how)
-        return process.wait(120)
+        return process.wait(600)
 
 
 @pytest.mark.compiled
 @pytest.mark.parametrize("e", [1.0, 0.7])
 def test_killed_at_random_moments_and_resumed_it_is_the_undisturbed_run(e, tmp_path):
-    script = SCRIPT.format(e=e, duration=150_000 if e == 1 else 4_000)
+    script = SCRIPT.format(e=e, duration=150_000 if e == 1 else 40_000)
     undisturbed, output = tmp_path / "undisturbed.nc", tmp_path / "run.nc"
     checkpoint = tmp_path / "state"
     assert run(script, "", undisturbed) == 0
@@ -195,12 +195,11 @@ def test_ctrl_c_during_the_last_writing_keeps_everything(tmp_path, monkeypatch):
     assert resumed.attrs["status"] == "completed"
 
 
-def test_a_checkpoint_that_cannot_be_written_is_an_error_before_any_work(tmp_path):
+def test_a_checkpoint_that_cannot_be_written_is_an_error_before_any_work(tmp_path, monkeypatch):
     (tmp_path / "file").write_text("")
-    begin = time.monotonic()
+    monkeypatch.setattr(Replica, "work", lambda *_: pytest.fail("it works"))
     with pytest.raises(OSError, match="file"):
         simulate(Chain(size=100), duration=1e8, checkpoint=tmp_path / "file" / "state")
-    assert time.monotonic() - begin < 20
 
 
 def test_a_sealed_file_that_is_no_checkpoint_is_refused_and_kept(tmp_path):
@@ -222,7 +221,7 @@ def test_a_checkpoint_without_a_part_is_refused(tmp_path):
     path = tmp_path / "state"
     simulate(chain, checkpoint=path, **options)
     whole = dict(np.load(io.BytesIO(read_sealed(path))))
-    for missing in ("0/y", "0/generator", "0/observer 0 sums"):
+    for missing in ("0/y", "0/noise lanes", "0/noise taken", "0/observer 0 sums"):
         buffer = io.BytesIO()
         np.savez(buffer, **{name: value for name, value in whole.items() if name != missing})
         write_sealed(path, buffer.getvalue())

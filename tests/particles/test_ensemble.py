@@ -1,8 +1,5 @@
 """Ensembles: averages over replicas at equal times, against exact evolutions; raw snapshots."""
 
-import signal
-import threading
-
 import numpy as np
 import pytest
 import xarray as xr
@@ -12,6 +9,7 @@ from crazybilliards.comparison import smooth
 from crazybilliards.kinetic import equilibrium_states
 from crazybilliards.model import Chain
 from crazybilliards.particles import given_start, simulate
+from crazybilliards.particles.observers.widths import Widths
 
 
 def oscillator_covariance(chain, covariance, times):
@@ -112,15 +110,13 @@ def test_replicas_are_the_same_whatever_the_threads_and_however_cut(e, tmp_path)
 
 
 @pytest.mark.compiled
-def test_ctrl_c_keeps_the_replicas_that_were_done_and_a_checkpoint_the_rest(tmp_path):
+def test_ctrl_c_keeps_the_replicas_that_were_done_and_a_checkpoint_the_rest(tmp_path, ctrl_c):
     chain = Chain(size=40)
     arguments = SMALL | {"replicas": 200, "duration": 200, "every": 20}
     undisturbed = simulate(chain, **arguments)
-    timer = threading.Timer(0.4, signal.raise_signal, [signal.SIGINT])
-    timer.start()
+    ctrl_c(Widths, "observe", lambda observers: len(observers) == 1000)  # of 2200
     checkpoint = tmp_path / "state"
     partial = simulate(chain, checkpoint=checkpoint, **arguments)
-    timer.cancel()
     for name in ("mean_displacement", "velocity_width", "density"):
         assert np.isfinite(partial[name]).all()
     finished = simulate(chain, checkpoint=checkpoint, **arguments)

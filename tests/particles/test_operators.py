@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from crazybilliards.particles.laws.avalanche import make_tally
 from crazybilliards.particles.laws.law import (
     CONTACTS,
-    HEAP,
+    EVENTS,
     ISOTONIC,
     SORT,
     Law,
@@ -18,7 +18,7 @@ from crazybilliards.particles.laws.law import (
 )
 
 UNSEEN = make_tally(2, contacts=False)
-OPERATORS = {"sort": SORT, "isotonic": ISOTONIC, "heap": HEAP, "contacts": CONTACTS}
+OPERATORS = {"sort": SORT, "isotonic": ISOTONIC, "events": EVENTS, "contacts": CONTACTS}
 
 
 def drifted(operator, y, v, dt, restitution, merge_speed=1e-9, tally=UNSEEN):
@@ -43,7 +43,7 @@ def states(draw, touching=True):
 restitutions = st.sampled_from([0.0, 0.3, 0.8, 0.95, 1.0, 1.05])
 
 
-@given(state=states(), e=restitutions, operator=st.sampled_from([HEAP, CONTACTS]))
+@given(state=states(), e=restitutions, operator=st.sampled_from([EVENTS, CONTACTS]))
 def test_order_momentum_and_centre_of_mass(state, e, operator):
     y, v, dt = state
     after_y, after_v, _ = drifted(operator, y, v, dt, e)
@@ -55,7 +55,7 @@ def test_order_momentum_and_centre_of_mass(state, e, operator):
 @given(state=states(), e=st.sampled_from([0.0, 0.3, 0.8, 0.95, 1.0]))
 def test_energy_never_grows_below_or_at_restitution_one(state, e):
     y, v, dt = state
-    _, after, _ = drifted(HEAP, y, v, dt, e)
+    _, after, _ = drifted(EVENTS, y, v, dt, e)
     assert (after**2).sum() <= (v**2).sum() * (1 + 1e-12)
 
 
@@ -63,7 +63,7 @@ def test_energy_never_grows_below_or_at_restitution_one(state, e):
 def test_energy_loss_of_a_binary_collision(e, closing, drift_speed):
     """(1 - e^2) m dv^2 / 4, and the relative velocity reversed by e."""
     v = np.array([drift_speed + closing, drift_speed])
-    _, after, collisions = drifted(HEAP, np.array([0.0, 0.01]), v, 1.0, e, merge_speed=0.0)
+    _, after, collisions = drifted(EVENTS, np.array([0.0, 0.01]), v, 1.0, e, merge_speed=0.0)
     assert collisions == 1
     assert after[1] - after[0] == pytest.approx(e * closing)
     lost = (v**2).sum() / 2 - (after**2).sum() / 2
@@ -74,7 +74,7 @@ def test_energy_loss_of_a_binary_collision(e, closing, drift_speed):
 def test_isotonic_is_event_driven_without_restitution(state):
     y, v, dt = state
     for ours, theirs in zip(
-        drifted(ISOTONIC, y, v, dt, 0.0)[:2], drifted(HEAP, y, v, dt, 0.0)[:2], strict=True
+        drifted(ISOTONIC, y, v, dt, 0.0)[:2], drifted(EVENTS, y, v, dt, 0.0)[:2], strict=True
     ):
         np.testing.assert_allclose(ours, theirs, atol=1e-11)
 
@@ -109,7 +109,7 @@ def test_a_cluster_may_swallow_two_rods_at_a_time():
 @given(state=states(touching=False))
 def test_sort_is_event_driven_at_restitution_one(state):
     y, v, dt = state
-    sort, heap = drifted(SORT, y, v, dt, 1.0), drifted(HEAP, y, v, dt, 1.0)
+    sort, heap = drifted(SORT, y, v, dt, 1.0), drifted(EVENTS, y, v, dt, 1.0)
     np.testing.assert_allclose(sort[0], heap[0], atol=1e-11)
     np.testing.assert_allclose(sort[1], heap[1], atol=1e-11)
     assert sort[2] == heap[2]
@@ -157,7 +157,7 @@ def test_galilean_invariance(state, e, name):
 def test_collisions_are_counted_at_their_contacts(state, e):
     y, v, dt = state
     tally = make_tally(y.size, contacts=True)
-    _, _, collisions = drifted(HEAP, y, v, dt, e, tally=tally)
+    _, _, collisions = drifted(EVENTS, y, v, dt, e, tally=tally)
     assert tally.contacts.sum() == collisions
 
 
@@ -167,7 +167,7 @@ def test_newtons_cradle_sends_off_the_last_rod(rods):
     y[0] = -1.0
     v = np.zeros(rods)
     v[0] = 1.0
-    for operator in (SORT, HEAP):
+    for operator in (SORT, EVENTS):
         np.testing.assert_array_equal(drifted(operator, y, v, 1.5, 1.0)[1], v[::-1])
 
 
@@ -182,15 +182,15 @@ def test_inelastic_collapse_takes_a_bounded_number_of_collisions():
     generator = np.random.default_rng(4)
     y = np.sort(generator.random(100))
     v = 0.5 - y + 0.1 * generator.normal(size=100)
-    _, after, collisions = drifted(HEAP, y, v, 100.0, 0.5, merge_speed=1e-3)
+    _, after, collisions = drifted(EVENTS, y, v, 100.0, 0.5, merge_speed=1e-3)
     assert 100 < collisions < 10_000
     assert (np.diff(after) >= 0).all()
     assert len(np.unique(after)) < 60
     # Without clusters the same drift does not end.
-    assert drift(y, v, 100.0, Law(HEAP, 0.5, 0.0, 100_000), make_scratch(100), UNSEEN) == -1
+    assert drift(y, v, 100.0, Law(EVENTS, 0.5, 0.0, 100_000), make_scratch(100), UNSEEN) == -1
 
 
 def test_too_many_collisions_are_given_up_not_endured():
     y, v = np.linspace(0, 1, 100), np.linspace(1, -1, 100)
-    law = Law(HEAP, 0.99, 0.0, 50)
+    law = Law(EVENTS, 0.99, 0.0, 50)
     assert drift(y, v, 10.0, law, make_scratch(100), UNSEEN) == -1

@@ -1,7 +1,5 @@
 """simulate(): against the exact equilibrium, reproducible, interruptible, strict."""
 
-import signal
-import threading
 import tracemalloc
 
 import numpy as np
@@ -11,6 +9,8 @@ import xarray as xr
 from crazybilliards.kinetic import equilibrium, equilibrium_states
 from crazybilliards.model import Chain
 from crazybilliards.particles import given_start, simulate
+from crazybilliards.particles.observers.widths import Widths
+from crazybilliards.particles.running.replica import Replica
 from crazybilliards.particles.scales import relaxation_time
 from crazybilliards.particles.schedule import make_schedule
 from crazybilliards.particles.stepping import longest_step
@@ -137,10 +137,8 @@ def test_a_spring_without_a_rate_takes_a_time_step():
 
 
 @pytest.mark.compiled
-def test_ctrl_c_keeps_what_was_measured():
-    timer = threading.Timer(0.5, signal.raise_signal, [signal.SIGINT])
-    simulate(Chain(size=2), duration=100, progress=False)  # compiled before the clock starts
-    timer.start()
+def test_ctrl_c_keeps_what_was_measured(ctrl_c):
+    ctrl_c(Widths, "observe", lambda observers: len(set(map(id, observers))) == 2)  # both replicas
     run = simulate(Chain(size=50), duration=1e9, replicas=2, progress=False)
     assert run.attrs["status"] == "interrupted"
     assert 0 < run.attrs["end_time"] < 1e9
@@ -164,10 +162,8 @@ def test_long_times_between_snapshots_are_taken_in_parts(average, observe, monke
     xr.testing.assert_allclose(simulate(chain, **options), whole, rtol=1e-9, atol=1e-9)
 
 
-def test_ctrl_c_before_anything_was_measured_is_raised():
-    timer = threading.Timer(0.5, signal.raise_signal, [signal.SIGINT])
-    simulate(Chain(size=2), duration=100, progress=False)
-    timer.start()
+def test_ctrl_c_before_anything_was_measured_is_raised(ctrl_c):
+    ctrl_c(Replica, "_advance", bool)
     with pytest.raises(KeyboardInterrupt):
         simulate(Chain(size=50), duration=100, warmup=1e9, progress=False)
 
@@ -284,10 +280,3 @@ def test_schedule_rounds_up_to_whole_blocks():
     assert schedule.blocks == 22
     assert 1000 <= schedule.duration < 1000 + 22 * 10 * schedule.time_step
     assert schedule.warmup == pytest.approx(12 * relaxation_time(Chain()), abs=schedule.time_step)
-
-
-@pytest.mark.parametrize("damping", [0.1, 4.0, 50.0])
-def test_relaxation_time_is_that_of_the_slowest_mode(damping):
-    chain = Chain(damping=damping)
-    roots = np.roots([chain.mass, chain.damping, chain.stiffness])
-    assert relaxation_time(chain) == pytest.approx(1 / np.abs(roots.real).min())

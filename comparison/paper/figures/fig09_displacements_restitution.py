@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import functools
 import itertools
 
 import matplotlib.pyplot as plt
+import xarray as xr
 from matplotlib.figure import Figure
 
 from crazybilliards.comparison.claims.repetition import estimate, pooled
 from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
-from crazybilliards.comparison.claims.verdicts import Claim, positive_claim
+from crazybilliards.comparison.claims.verdicts import About, Claim, Estimate, positive_claim
 from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_rods
 from crazybilliards.comparison.paper.chains import LARGE, dissipative, dissipative_name
 from crazybilliards.comparison.paper.figures import fig07_widths_restitution
@@ -29,12 +31,12 @@ def cases(quality: Quality) -> Cases:
 
 
 def claims(results: Results) -> list[Claim]:
-    """Check: displacements grow with e."""
+    """Check: displacements grow with e, and the border has the larger energy at large e."""
     found = {e: estimate(results, dissipative_name(LARGE, e), swelling) for e in _RESTITUTIONS}
     predicted = {
         e: swelling(theory) for e, theory in fig07_widths_restitution.theories(results).items()
     }
-    return [
+    growing = [
         positive_claim(
             f"the mean displacement grows from e = {low:g} to {high:g}",
             f"slope of <dx> against i_n: {found[low]} and {found[high]}, difference",
@@ -44,6 +46,42 @@ def claims(results: Results) -> list[Claim]:
         )
         for low, high in itertools.pairwise(_RESTITUTIONS)
     ]
+    return growing + _energy_claims(results)
+
+
+def _energy_claims(results: Results) -> list[Claim]:
+    e = _RESTITUTIONS[-1]
+    potential, kinetic = (
+        estimate(results, dissipative_name(LARGE, e), functools.partial(_excess, name=name))
+        for name in ("potential", "kinetic")
+    )
+    what = f"border's less centre's, in units of m W^2/2: potential {potential}, kinetic {kinetic}"
+    about: About = {"source": "section seq:e_larger", "ours": "the restitution"}
+    both = Estimate(potential.value + kinetic.value, potential.error + kinetic.error)
+    return [
+        positive_claim(
+            f"the energy is larger at the border, e = {e:g}", f"{what}; their sum", both, **about
+        ),
+        positive_claim(
+            f"because the potential energy is, e = {e:g}",
+            f"{what}; potential less kinetic",
+            Estimate(potential.value - kinetic.value, both.error),
+            **about,
+        ),
+    ]
+
+
+def _excess(run: xr.Dataset, name: str) -> float:
+    """Mean energy of the two border rods less that of the middle tenth, in units of m W^2/2."""
+    chain = chain_of(run)
+    if name == "kinetic":
+        energy = (run.velocity_width.values / chain.free_velocity_width) ** 2
+    else:
+        squares = run.mean_displacement.values**2 + run.displacement_width.values**2
+        energy = squares / chain.thermal_length**2
+    half = max(energy.size // 20, 1)
+    middle = energy[energy.size // 2 - half : energy.size // 2 + half]
+    return float(energy[[0, -1]].mean() - middle.mean())
 
 
 def draw(results: Results) -> Figure:

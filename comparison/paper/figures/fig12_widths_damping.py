@@ -14,8 +14,10 @@ from crazybilliards.comparison.claims.repetition import (
     pooled,
 )
 from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
-from crazybilliards.comparison.claims.verdicts import Claim, Estimate, positive_claim
+from crazybilliards.comparison.claims.verdicts import EYE, Claim, Estimate, positive_claim
+from crazybilliards.comparison.distances import distances_in_plot
 from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_rods
+from crazybilliards.comparison.fits import fit_border_power_law
 from crazybilliards.comparison.paper.chains import (
     flippers,
     flippers_name,
@@ -45,7 +47,7 @@ def bulge(run: xr.Dataset) -> float:
 
 
 def claims(results: Results) -> list[Claim]:
-    """Check: convex at gamma = 4, concave at gamma = 10, and where it changes."""
+    """Check: convex at gamma = 4, concave at gamma = 10; where rods collide; no power law."""
     found = {g: estimate(results, flippers_name(_SIZE, g), bulge) for g in _DAMPINGS}
     theory = {g: bulge(results[kinetic_name(_SIZE, _RESTITUTION, g)]) for g in _DAMPINGS}
     low, high = _DAMPINGS[0], _DAMPINGS[-1]
@@ -67,7 +69,60 @@ def claims(results: Results) -> list[Claim]:
             source=_SOURCE,
             theory=f"{-theory[high]:+.3f}; changes at gamma = {change[1]:.1f}",
         ),
+        *(_frequency_claim(results, damping) for damping in (high, low)),
+        _power_law_claim(results),
     ]
+
+
+def _frequency_claim(results: Results, damping: float) -> Claim:
+    return positive_claim(
+        f"rods collide more often in the bulk than at the border, gamma = {damping:g}",
+        "ln of the collision rate of the middle tenth of the contacts over that of the outermost:",
+        estimate(results, flippers_name(_SIZE, damping), _crowding),
+        source=_SOURCE,
+    )
+
+
+def _crowding(run: xr.Dataset) -> float:
+    rate = run.collision_rate.values[:-1]  # the last rod has no right neighbour
+    half = max(rate.size // 20, 1)
+    middle = rate[rate.size // 2 - half : rate.size // 2 + half + 1]
+    return float(np.log(middle.mean() / rate[[0, -1]].mean()))
+
+
+def _power_law_claim(results: Results) -> Claim:
+    """Decide whether the best sum of two power laws is visibly off in a plot like the paper's."""
+    damping = _DAMPINGS[0]
+    try:
+        off, fit = _distance_from_power_laws(results, damping)
+    except ValueError:
+        off, fit = Estimate(1.0, 0.0), "no such law fits"
+    return positive_claim(
+        f"the convex profile at gamma = {damping:g} cannot be described by a power law",
+        f"gamma W_v against i for the five dampings, both axes linear: {fit}; by how much the "
+        f"largest deviation, as a share of the plotted range, exceeds what an eye sees, {EYE:g}:",
+        Estimate(off.value - EYE, off.error),
+        source=_SOURCE,
+        ours="whether the axes are linear",
+        reason="a sum of two flat power laws fits",
+    )
+
+
+def _distance_from_power_laws(results: Results, damping: float) -> tuple[Estimate, str]:
+    """Return the largest distance in the plot as a share of its range, and the fit in words."""
+    runs = {g: pooled(results, flippers_name(_SIZE, g)) for g in _DAMPINGS}
+    plotted = np.concatenate([g * run.velocity_width.values for g, run in runs.items()])
+    shown = float(plotted.min()), float(plotted.max())
+    run = runs[damping]
+    fit = fit_border_power_law(run)
+    i = run.particle.values
+    fine = np.linspace(1, _SIZE, 2000)
+    off = distances_in_plot(
+        i, damping * run.velocity_width, fine, damping * fit(fine), y_range=shown
+    )
+    at = int(off.argmax())
+    error = damping * float(run.velocity_width_error[at]) / (shown[1] - shown[0])
+    return Estimate(float(off[at]), error), f"nu = {fit.exponent:.3f} fits best"
 
 
 def _crossing(values: np.ndarray) -> float:

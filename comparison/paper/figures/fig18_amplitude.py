@@ -15,7 +15,12 @@ from crazybilliards.comparison.paper.chains import LARGE, dissipative, dissipati
 
 _RESTITUTIONS = (0.0, 0.95)
 _AMPLITUDES = (1.0, 3.0, 10.0)
-_SCALED = ("velocity_variance", "mean_displacement")
+_DRAWN = ("velocity_variance", "mean_displacement")
+_SCALED = {
+    "velocity_variance": "W_v^2/A^2",
+    "mean_displacement": "<dx>/A",
+    "mean_square_displacement": "<dx^2>/A^2",
+}
 
 
 def cases(quality: Quality) -> Cases:
@@ -28,12 +33,18 @@ def cases(quality: Quality) -> Cases:
 
 
 def _scaled(results: Results, restitution: float, amplitude: float) -> xr.Dataset:
-    """Return W_v^2/A^2 and <dx>/A with their errors."""
+    """Return W_v^2/A^2, <dx>/A and <dx^2>/A^2 with their errors."""
     run = pooled(results, dissipative_name(LARGE, restitution, amplitude))
     error = 2 * run.velocity_width * run.velocity_width_error
+    mean, width = run.mean_displacement, run.displacement_width
+    square_error = 2 * np.hypot(
+        mean * run.mean_displacement_error, width * run.displacement_width_error
+    )
     return run.assign(
         velocity_variance=run.velocity_width**2 / amplitude**2,
         velocity_variance_error=error / amplitude**2,
+        mean_square_displacement=(mean**2 + width**2) / amplitude**2,
+        mean_square_displacement_error=square_error / amplitude**2,
         mean_displacement=run.mean_displacement / amplitude,
         mean_displacement_error=run.mean_displacement_error / amplitude,
     )
@@ -44,7 +55,7 @@ def claims(results: Results) -> list[Claim]:
     claims = []
     for restitution in _RESTITUTIONS:
         reference, *others = (_scaled(results, restitution, a) for a in _AMPLITUDES)
-        for name, symbol in zip(_SCALED, ("W_v^2/A^2", "<dx>/A"), strict=True):
+        for name, symbol in _SCALED.items():
             largest = max(_largest(reference, other, name) for other in others)
             claims.append(
                 same_claim(
@@ -72,7 +83,7 @@ def draw(results: Results) -> Figure:
     for row, restitution in zip(axes, _RESTITUTIONS, strict=True):
         for number, amplitude in enumerate(_AMPLITUDES):
             scaled = _scaled(results, restitution, amplitude)
-            for ax, name, label in zip(row, _SCALED, labels, strict=True):
+            for ax, name, label in zip(row, _DRAWN, labels, strict=True):
                 draw_rods(ax, scaled, name, number=number, label=f"A = {amplitude:g}")
                 ax.set(ylabel=label, title=f"e = {restitution:g}")
         row[0].set_yscale("log")

@@ -1,0 +1,96 @@
+"""What carries out cases: processes of this machine, or a dask cluster."""
+
+from __future__ import annotations
+
+import logging
+import multiprocessing
+import os
+import signal
+import threading
+from collections.abc import Iterator
+from concurrent.futures import Executor, ProcessPoolExecutor
+from contextlib import contextmanager
+
+from tqdm import tqdm
+
+from crazybilliards.model.process import cores
+
+_PATIENCE = "20s"  # for a scheduler to answer
+
+
+@contextmanager
+def process_pool(processes: int | None = None) -> Iterator[Executor]:
+    """Run cases in processes of this machine, one for each core unless told otherwise.
+
+    Leaving by an exception, Ctrl-C say, kills them.
+    """
+    before = set(multiprocessing.active_children())
+    pool = ProcessPoolExecutor(
+        processes or cores(),
+        mp_context=multiprocessing.get_context("spawn"),
+        initializer=_prepare_worker,
+    )
+    try:
+        yield pool
+    except BaseException:
+        for process in set(multiprocessing.active_children()) - before:
+            process.kill()
+        pool.shutdown(wait=False, cancel_futures=True)
+        raise
+    pool.shutdown()
+
+
+def _prepare_worker() -> None:
+    """Leave Ctrl-C to the parent, and do not outlive it however it dies."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    # Its own lock is one for processes, of which a worker that is killed leaves something behind.
+    tqdm.set_lock(threading.RLock())
+    threading.Thread(target=_follow_parent, daemon=True).start()
+
+
+def _follow_parent() -> None:
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(1)
+
+
+@contextmanager
+def dask_cluster(address: str | None = None) -> Iterator[Executor]:
+    """Run cases on the dask cluster whose scheduler is at ``address``; None: one of this machine.
+
+    A case whose worker dies is given to another one.
+
+    Raises
+    ------
+    ValueError
+        If dask is not installed, or no scheduler answers there.
+    """
+    try:
+        from distributed import Client, LocalCluster
+        from distributed.comm import get_address_host_port
+    except ImportError as error:
+        raise ValueError(
+            "dask is not installed: python -m pip install 'crazybilliards[sweep]'"
+        ) from error
+    if address is None:
+        with (
+            LocalCluster(threads_per_worker=1, dashboard_address=None) as cluster,
+            Client(cluster, set_as_default=False) as client,
+        ):
+            yield client.get_executor(pure=False)
+        return
+    try:
+        get_address_host_port(address, strict=True)
+        client = Client(address, set_as_default=False, timeout=_PATIENCE)
+    except (OSError, ValueError) as error:
+        raise ValueError(f"no dask scheduler answers at {address}: {error}") from error
+    log = logging.getLogger("distributed.client")
+    before = log.level
+    # The loss of the scheduler comes back with every case; the log would add two tracebacks.
+    log.setLevel(logging.CRITICAL)
+    try:
+        with client:
+            yield client.get_executor(pure=False)
+    finally:
+        log.setLevel(before)

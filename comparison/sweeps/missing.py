@@ -1,0 +1,158 @@
+"""Which cases of a sweep are missing in a folder, and in which order they are computed.
+
+A sweep may have a million cases. None is kept here, only two numbers for each: it is made anew
+when its turn comes.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+from tqdm import tqdm
+
+from crazybilliards.comparison.sweeps.case import Case, OutdatedError
+from crazybilliards.comparison.sweeps.grid import Sweep
+
+_Item = TypeVar("_Item")
+
+
+@dataclass(frozen=True)
+class Cases:
+    """Different cases, all of them checked.
+
+    Attributes
+    ----------
+    source
+        Where they come from.
+    work
+        The particle steps of each, shape (cases,).
+    """
+
+    source: Sweep | list[Case]
+    work: NDArray[np.float64]
+
+    def __len__(self) -> int:
+        return self.work.size
+
+    def __getitem__(self, number: int) -> Case:
+        return self.source.case(number) if isinstance(self.source, Sweep) else self.source[number]
+
+
+@dataclass(frozen=True)
+class Missing:
+    """The cases of which a folder has no valid file, the longest first.
+
+    Attributes
+    ----------
+    cases
+        All cases.
+    numbers
+        The numbers of the missing ones.
+    folder
+        The folder.
+    damaged
+        What is wrong with the files that are there but not sound.
+    outdated
+        How many files are there that other source code computed.
+    """
+
+    cases: Cases
+    numbers: NDArray[np.int64]
+    folder: Path
+    damaged: list[str]
+    outdated: int
+
+    @property
+    def work(self) -> float:
+        """Particle steps of all of them."""
+        return float(self.cases.work[self.numbers].sum())
+
+    def __len__(self) -> int:
+        return self.numbers.size
+
+    def __iter__(self) -> Iterator[Case]:
+        return (self.cases[number] for number in self.numbers.tolist())
+
+    def report(self) -> None:
+        """Say on standard error which files are there but are replaced, and why."""
+        for problem in self.damaged:
+            print(f"crazybilliards: {problem}; computing it anew", file=sys.stderr)
+        if self.outdated:
+            print(
+                f"crazybilliards: other source code of crazybilliards computed {self.outdated} "
+                f"cases in {self.folder}; computing them anew (keep_old=True or --keep-old: take "
+                "them as they are)",
+                file=sys.stderr,
+            )
+
+
+def check_cases(cases: Iterable[Case], *, progress: bool = True) -> Cases:
+    """Check every case of a sweep, and leave out those that are there twice.
+
+    Raises
+    ------
+    ValueError
+        For the first case that is wrong.
+    """
+    if isinstance(cases, Sweep):
+        return Cases(cases, _check_sweep(cases, progress))
+    source = list(dict.fromkeys(cases))
+    return Cases(source, np.array([case.work for case in source], dtype=float))
+
+
+def _check_sweep(sweep: Sweep, progress: bool) -> NDArray[np.float64]:
+    """Return the particle steps of each case of a grid, all of them checked.
+
+    Whether a seed is right, and how long the case takes, has nothing to do with the other
+    parameters: all seeds are checked with one chain, all chains with one seed.
+    """
+    chains = dict(sweep.grid)
+    if "seed" in chains:
+        first = {name: values[:1] for name, values in chains.items()}
+        for _ in replace(sweep, grid=first | {"seed": chains["seed"]}):
+            pass
+        chains["seed"] = first["seed"]
+    bar = _bar(replace(sweep, grid=chains), f"checking {len(sweep)} cases", progress)
+    work = np.array([case.work for case in bar]).reshape([*map(len, chains.values())])
+    return np.broadcast_to(work, [*map(len, sweep.grid.values())]).ravel()
+
+
+def find_missing(
+    cases: Cases, folder: Path, *, keep_old: bool = False, progress: bool = True
+) -> Missing:
+    """Return the cases that ``folder`` has no valid file of.
+
+    A file is valid if it is sound, holds the case, and was computed by the source code of today;
+    with ``keep_old`` other source code may have computed it.
+    """
+    numbers = np.arange(len(cases))
+    damaged: list[str] = []
+    outdated = 0
+    if any(folder.glob("*.nc")):
+        missing = []
+        for number in _bar(numbers.tolist(), f"checking {len(cases)} cases", progress):
+            try:
+                cases[number].check_file(folder, keep_old=keep_old)
+            except OutdatedError:
+                outdated += 1
+            except ValueError as error:
+                damaged.append(str(error))
+            except FileNotFoundError:
+                pass
+            else:
+                continue
+            missing.append(number)
+        numbers = np.array(missing, dtype=np.int64)
+    longest_first = np.argsort(-cases.work[numbers], kind="stable")
+    return Missing(cases, numbers[longest_first], folder, damaged, outdated)
+
+
+def _bar(items: Iterable[_Item], title: str, progress: bool) -> Iterable[_Item]:
+    """Show, if it takes longer than a second, how far a loop is."""
+    return tqdm(items, desc=title, unit="", delay=1, disable=None if progress else True)

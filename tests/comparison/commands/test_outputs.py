@@ -1,0 +1,120 @@
+"""Where commands write to: a wrong place costs no work, and what is written arrives whole."""
+
+import os
+import subprocess
+import sys
+import warnings
+
+import pytest
+from rich.table import Table
+
+from crazybilliards.comparison.commands.output import print_table
+from crazybilliards.model.locks import locked
+
+SMALL = {
+    "compare": ["--size", "4", "--duration", "300", "--amplitudes", "10"],
+    "relax": ["--size", "4", "--duration", "1", "--replicas", "2"],
+    "reproduce": ["1"],
+    "simulate": ["--size", "4", "--duration", "100"],
+    "theory": ["equilibrium", "--size", "4"],
+}
+FOLDERS = ["compare", "relax", "reproduce", "theory"]
+THEORY = ["theory", *SMALL["theory"]]
+COMMAND = [sys.executable, "-m", "crazybilliards"]
+
+
+@pytest.fixture
+def arguments(tmp_path):
+    """Give a small job of a command."""
+    grid = tmp_path / "grid.toml"
+    grid.write_text("[grid]\nsize = [3]\n[simulate]\nduration = 100\n")
+    return lambda command: [command, *(SMALL | {"sweep": [grid]})[command]]
+
+
+@pytest.mark.parametrize("command", [*SMALL, "sweep"])
+def test_an_empty_name_is_no_folder(command, arguments, refused, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    refused("an empty name", *arguments(command), "--output", "")
+
+
+@pytest.mark.parametrize("command", [*FOLDERS, "sweep"])
+def test_a_link_that_leads_nowhere_is_no_folder(command, arguments, refused, tmp_path):
+    link = tmp_path / "link"
+    link.symlink_to(tmp_path / "nothing")
+    for place in (link, link / "below"):
+        refused(f"{link} is a link that leads nowhere", *arguments(command), "--output", place)
+
+
+@pytest.mark.parametrize("command", [*FOLDERS, "sweep"])
+def test_a_folder_belongs_to_one_process_at_a_time(command, arguments, run, tmp_path):
+    folder = tmp_path / "results"
+    folder.mkdir()
+    with locked(folder):
+        done = run(*arguments(command), "--output", folder)
+    assert (done.returncode, done.stderr.count("\n")) == (2, 1), done.stderr
+    assert f"{folder}: in use by process {os.getpid()}" in done.stderr
+    assert list(folder.iterdir()) == []
+
+
+def test_a_file_belongs_to_one_process_at_a_time(arguments, refused, run, tmp_path):
+    file = tmp_path / "run.nc"
+    with locked(file):
+        refused(f"{file}: in use by process", *arguments("simulate"), "--output", file)
+    assert run(*arguments("simulate"), "--output", file).returncode == 0
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["grid.toml", "run.nc"]
+
+
+def test_a_mistake_leaves_no_folder(refused, tmp_path):
+    for output in (tmp_path / "new", tmp_path / "new" / "deep"):
+        refused("amplitudes", "compare", "--amplitudes", "x", "--output", output)
+        assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="pipes are other things there")
+def test_a_reader_that_goes_costs_no_work(tmp_path):
+    reading, writing = os.pipe()
+    os.close(reading)
+    done = subprocess.run(
+        [*COMMAND, *THEORY, "--output", tmp_path],
+        env=os.environ | {"PYTHONUNBUFFERED": "1"},
+        stdout=writing,
+        stderr=subprocess.PIPE,
+        check=False,
+    )
+    os.close(writing)
+    assert (done.returncode, done.stderr) == (141, b"")
+    assert {path.name for path in tmp_path.iterdir()} == {"theory.nc", "density.png", "profile.png"}
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="needs a device that is full")
+def test_standard_output_to_a_full_disk_is_one_line():
+    with open("/dev/full", "w") as full:
+        done = subprocess.run(
+            [*COMMAND, *THEORY], stdout=full, stderr=subprocess.PIPE, text=True, check=False
+        )
+    assert done.returncode == 2
+    assert done.stderr == ("crazybilliards: error: standard output: No space left on device\n")
+
+
+def test_numbers_in_tables_are_never_cut(monkeypatch, capsys):
+    monkeypatch.setenv("COLUMNS", "30")
+    table = Table(title="A long title of a table that wraps", caption="A caption that wraps too")
+    numbers = ["0.001234 +- 0.0005", "123456789.0123", "-1.234e-300", "4.17 / 1.58"]
+    for number in numbers:
+        table.add_column(f"a long heading [of {len(number)} words]", justify="right")
+    table.add_row(*numbers)
+    print_table(table)
+    printed = capsys.readouterr().out
+    assert all(number in printed for number in numbers)
+    assert "…" not in printed
+    assert "[of" in printed
+
+
+def test_a_warning_is_one_plain_line(run):
+    with warnings.catch_warnings():
+        warnings.simplefilter("default")
+        done = run("compare", "--size", "3", "--amplitudes", "1", "--duration", "2000")
+    assert done.returncode == 0
+    lines = [line for line in done.stderr.splitlines() if "compiling" not in line]
+    (line,) = lines
+    assert line.startswith("crazybilliards: warning: A = 1 goes without the arctanh: ")

@@ -1,0 +1,189 @@
+"""Large sweeps: the first result comes at once, few cases are held, each is looked at once."""
+
+from concurrent.futures import Executor, Future
+from dataclasses import replace
+from queue import SimpleQueue
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from crazybilliards.comparison.sweeps import Case, Sweep, run_cases, running
+from crazybilliards.comparison.sweeps.jobs import JOBS
+from crazybilliards.comparison.sweeps.missing import check_cases
+from crazybilliards.model import Chain, load
+from crazybilliards.model.storage import read_sealed
+
+CASES = 3000
+
+
+def many(number=CASES):
+    """Return a sweep of as many chains."""
+    return Sweep({"amplitude": [1 + i / number for i in range(number)]}, "equilibrium", {}, {})
+
+
+class Counting(Executor):
+    """Computes nothing; what is submitted comes back when somebody waits for it."""
+
+    def __init__(self, monkeypatch):
+        self.submitted, self.most_under_way = 0, 0
+        self.waiting = []
+
+        counting = self
+
+        class Queue(SimpleQueue):
+            def get(self):
+                if self.empty():
+                    counting.give_back()
+                return super().get()
+
+        monkeypatch.setattr(running, "SimpleQueue", Queue)
+
+    def submit(self, function, /, *arguments):
+        self.submitted += 1
+        future = Future()
+        self.waiting.append(future)
+        self.most_under_way = max(self.most_under_way, len(self.waiting))
+        return future
+
+    def give_back(self):
+        waiting, self.waiting = self.waiting, []
+        for each in waiting:
+            each.set_exception(ValueError("not computed"))
+
+
+@pytest.fixture
+def counting(monkeypatch):
+    return Counting(monkeypatch)
+
+
+@pytest.fixture
+def planned(monkeypatch):
+    """Count how often a case is planned."""
+    calls = []
+    job = JOBS["equilibrium"]
+
+    def work(chain, **settings):
+        calls.append(chain)
+        return job.work(chain, **settings)
+
+    monkeypatch.setitem(JOBS, "equilibrium", replace(job, work=work))
+    return calls
+
+
+def test_few_cases_are_submitted_at_a_time(counting, tmp_path):
+    failed = run_cases(many(), tmp_path, counting, progress=False)
+    assert len(failed) == counting.submitted == CASES
+    assert counting.most_under_way == 1000
+
+
+def test_a_case_of_a_grid_is_planned_when_it_is_checked_and_when_it_is_computed(
+    planned, counting, tmp_path
+):
+    run_cases(many(), tmp_path, counting, progress=False)
+    assert len(planned) == 2 * CASES
+
+
+def test_ctrl_c_ends_a_sweep_without_another_look_at_its_cases(planned, tmp_path):
+    class Interrupted(Executor):
+        def submit(self, function, /, *arguments):
+            planned.clear()
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        run_cases(many(), tmp_path, Interrupted(), progress=False)
+    assert len(planned) <= 1
+
+
+def test_the_longest_cases_come_first(tmp_path):
+    class Noting(Executor):
+        def submit(self, function, /, case, source):
+            sizes.append(case.chain.size)
+            future = Future()
+            future.set_exception(ValueError("not computed"))
+            return future
+
+    sizes = []
+    grid = {"seed": [1, 2], "size": [5, 50, 10]}
+    run_cases(Sweep(grid, "simulate", {}, {"duration": 100}), tmp_path, Noting(), progress=False)
+    assert sizes == [50, 50, 10, 10, 5, 5]
+
+
+def test_a_wrong_case_at_the_end_of_a_grid_is_found_before_any_work(counting, tmp_path):
+    grid = {"gap": [0.0, 1.0], "restitution": [1.0, 0.5]}
+    with pytest.raises(ValueError, match="restitution must be 1"):
+        run_cases(Sweep(grid, "equilibrium", {}, {}), tmp_path / "results", counting)
+    assert not (tmp_path / "results").exists()
+
+
+def test_all_seeds_and_all_chains_are_checked_and_their_work_known(tmp_path):
+    """Not every chain with every seed: a million such cases are checked in a moment."""
+    settings = {"duration": 100}
+    sweep = Sweep({"size": [3, 9], "seed": [1, 2, 3], "gap": [0, 1]}, "simulate", {}, settings)
+    assert check_cases(sweep).work.tolist() == [case.work for case in sweep]
+    for wrong in ({"size": [3, 4], "seed": [1, -2]}, {"seed": [1, 2], "gap": [0, -1]}):
+        with pytest.raises(ValueError, match=r"(seed|gap) must be .*, got -"):
+            check_cases(Sweep(wrong, "simulate", {}, settings))
+
+
+def test_a_sweep_gives_the_cases_of_its_grid():
+    sweep = Sweep({"size": [3, 4], "seed": [1, 2, 3]}, "simulate", {"gap": 1}, {"duration": 100})
+    assert len(sweep) == 6
+    assert [(case.chain.size, case.settings["seed"]) for case in sweep] == [
+        (size, seed) for size in (3, 4) for seed in (1, 2, 3)
+    ]
+    assert list(sweep) == sweep.cases() == [sweep.case(number) for number in range(6)]
+    assert sweep.case(4) == Case("simulate", Chain(size=4, gap=1), {"duration": 100, "seed": 2})
+
+
+# -- the files of cases -----------------------------------------------------------------------
+
+
+class Here(Executor):
+    """Carries out what is submitted, here and now."""
+
+    def submit(self, function, /, *arguments):
+        future = Future()
+        future.set_result(function(*arguments))
+        return future
+
+
+@pytest.mark.parametrize(
+    "case",
+    [
+        Case("equilibrium", Chain(size=3), {}),
+        Case("simulate", Chain(size=3), {"duration": 100, "observe": ["widths", "density"]}),
+        Case(
+            "simulate",
+            Chain(size=3, restitution=0.5),
+            {"duration": 100, "observe": ["avalanches", "collisions", "snapshots"]},
+        ),
+    ],
+    ids=["theory", "widths", "avalanches"],
+)
+def test_a_case_is_read_back_with_its_types(case, tmp_path):
+    """A classic NetCDF file has no integers of 64 bits, which sums and products may need."""
+    assert run_cases([case], tmp_path, Here(), progress=False) == {}
+    assert read_sealed(case.file(tmp_path)).startswith(b"CDF")
+    seed = {"seed": case.own_seed} if case.job == "simulate" else {}
+    direct = JOBS[case.job].function(case.chain, **{**case.settings, **seed})
+    loaded = case.load(tmp_path)
+    assert {name: each.dtype for name, each in loaded.variables.items()} == {
+        name: each.dtype for name, each in direct.variables.items()
+    }
+    for name in ("case", "source_fingerprint", "package_version", "seconds"):
+        del loaded.attrs[name]
+    xr.testing.assert_identical(loaded, direct)
+
+
+def test_counts_beyond_32_bits_are_kept(tmp_path, monkeypatch):
+    job = JOBS["equilibrium"]
+
+    def counting(chain):
+        return job.function(chain).assign(count=("particle", np.array([1, 2**40, 2**62])))
+
+    monkeypatch.setitem(JOBS, "equilibrium", replace(job, function=counting))
+    case = Case("equilibrium", Chain(size=3), {})
+    assert run_cases([case], tmp_path, Here(), progress=False) == {}
+    assert load(case.file(tmp_path))["count"].values.tolist() == [1, 2**40, 2**62]
+    case.check_file(tmp_path)

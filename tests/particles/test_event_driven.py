@@ -1,0 +1,69 @@
+"""Collisions in their order, to the bit, against the twin that looks through all contacts."""
+
+import next_collision
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from crazybilliards.particles.laws.avalanche import make_tally, make_waves
+from crazybilliards.particles.laws.law import EVENTS, Law, drift, make_scratch
+
+MOST = 400
+
+
+def everything(size):
+    """Return a tally that keeps all there is."""
+    waves = {"pushes": make_waves(size), "triggered": make_waves(size)}
+    return make_tally(size, contacts=True)._replace(**waves)
+
+
+def numbers(tally):
+    """Return all arrays of a tally."""
+    return [tally.contacts, *tally.pushes, *tally.triggered]
+
+
+@st.composite
+def states(draw):
+    """Draw points, some in contact or on a lattice, thrown at one another or not, and a step."""
+    generator = np.random.default_rng(draw(st.integers(0, 2**32)))
+    size = draw(st.integers(1, 40))
+    gaps, v = generator.exponential(size=size), generator.normal(size=size)
+    kind = draw(st.sampled_from(["random", "touching", "lattice", "coarse", "compressed"]))
+    if kind == "touching":
+        gaps[generator.random(size) < 0.5] = 0
+    if kind in ("lattice", "coarse"):  # meetings at the same time
+        gaps[:] = 1
+        if kind == "coarse":  # and with the same speed
+            v = np.round(v)
+    y = np.cumsum(gaps)
+    if kind == "compressed":  # towards inelastic collapse
+        v = 0.1 * v + (y.mean() - y) / size
+    return y, v, draw(st.floats(0.01, 20))
+
+
+@settings(max_examples=150)
+@given(
+    state=states(),
+    e=st.sampled_from([0.0, 0.1, 0.5, 0.95, 1.0, 1.05]),
+    merge_speed=st.sampled_from([1e-9, 1e-3, 0.1]),
+)
+def test_every_bit_is_that_of_the_twin(state, e, merge_speed):
+    """Positions, velocities, clusters, collisions, waves; and the same without a tally."""
+    y, v, dt = state
+    merge_speed = merge_speed if e < 1 else 0.0
+    expected_tally = everything(y.size)
+    *expected, clusters, collisions = next_collision.drift(
+        y, v, dt, e, merge_speed, MOST, expected_tally
+    )
+    law, scratch = Law(EVENTS, e, merge_speed, MOST), make_scratch(y.size)
+    for tally in (everything(y.size), make_tally(y.size, contacts=False)):
+        after_y, after_v = y.copy(), v.copy()
+        assert drift(after_y, after_v, dt, law, scratch, tally) == collisions
+        if collisions < 0:
+            return
+        np.testing.assert_array_equal((after_y, after_v), expected)
+        firsts, lasts, number = scratch.clusters
+        assert list(zip(firsts[: number[0]], lasts[: number[0]], strict=True)) == clusters
+        if tally.contacts.size:
+            for kept, other in zip(numbers(tally), numbers(expected_tally), strict=True):
+                np.testing.assert_array_equal(kept, other)

@@ -1,0 +1,223 @@
+"""White noise: its bits against a readable twin, its functions against numpy, its statistics."""
+
+import itertools
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.special import factorial2
+from scipy.stats import kstest, norm
+
+from crazybilliards.particles import noise as module
+from crazybilliards.particles.noise import BLOCK, LANES, STATE, fill, make_noise
+
+WORD = 2**64 - 1
+QUARTER_BITS = 50
+FIVE_SIGMA = 2 * norm.sf(5)
+
+
+def stream(seed):
+    return make_noise(np.random.SeedSequence(seed))
+
+
+def numbers(noise, count):
+    values = np.empty(count)
+    fill(noise, values)
+    return values
+
+
+def xoshiro(state):
+    """Yield the numbers of xoshiro256++, as Blackman and Vigna write it; changes the state."""
+
+    def rotated(word, by):
+        return (word << by | word >> (64 - by)) & WORD
+
+    while True:
+        yield (rotated((state[0] + state[3]) & WORD, 23) + state[0]) & WORD
+        shifted = state[1] << 17 & WORD
+        state[2] ^= state[0]
+        state[3] ^= state[1]
+        state[1] ^= state[2]
+        state[0] ^= state[3]
+        state[2] ^= shifted
+        state[3] = rotated(state[3], 45)
+
+
+def box_muller(bits):
+    """Return normal numbers: the first half of the bits gives radii, the second angles."""
+    first, second = np.split(bits, 2)
+    radius = np.sqrt(-2 * np.log(((first >> np.uint64(12)) + 0.5) * 2.0**-52))
+    fraction = (second >> np.uint64(12)) & np.uint64(2**QUARTER_BITS - 1)
+    angle = ((fraction + 0.5) * 2.0**-QUARTER_BITS - 0.5) * np.pi / 2
+    backward, turned = (second >> np.uint64(bit) & np.uint64(1) for bit in (62, 63))
+    direction = np.where(turned, 0, np.pi / 2) + np.where(backward, 0, np.pi) - angle
+    return np.concatenate([radius * np.cos(direction), radius * np.sin(direction)])
+
+
+def test_the_twin_gives_the_published_numbers():
+    """Those of state 1, 2, 3, 4, which the test of every other implementation uses."""
+    published = [41943041, 58720359, 3588806011781223, 3591011842654386, 9228616714210784205]
+    assert list(itertools.islice(xoshiro([1, 2, 3, 4]), 5)) == published
+
+
+def test_every_lane_is_a_generator_of_its_own():
+    lanes, bits = stream(3).lanes, np.zeros((3, BLOCK), dtype=np.uint64)
+    states = lanes.T.tolist()
+    for row in bits:
+        module._draw_bits(lanes, row)
+    for state, drawn in zip(states, bits.reshape(-1, LANES).T, strict=True):
+        assert list(itertools.islice(xoshiro(state), drawn.size)) == drawn.tolist()
+
+
+def test_no_two_words_of_a_state_are_alike():
+    """As a seed of zeros, or one for all lanes, would make them."""
+    assert len(np.unique(stream(0).lanes)) == 4 * LANES
+
+
+def test_numbers_are_those_of_box_and_muller():
+    noise, bits = stream(4), np.zeros(BLOCK, dtype=np.uint64)
+    lanes = noise.lanes.copy()
+    for _ in range(4):
+        module._draw_bits(lanes, bits)
+        np.testing.assert_allclose(numbers(noise, BLOCK), box_muller(bits), rtol=0, atol=8e-15)
+
+
+def plain(function):
+    """Return the function as it was before numba compiled it."""
+    return getattr(function, "py_func", function)
+
+
+def test_polynomials_are_right_to_a_unit_in_the_last_place_or_three():
+    z = np.linspace(1e-9, (np.sqrt(2) - 1) / (np.sqrt(2) + 1), 10_001)
+    a = np.linspace(1e-9, np.pi / 4, 10_001)
+    for function, exact, x in (
+        (module._logarithm, lambda z: 2 * np.arctanh(z), z),
+        (module._sine, np.sin, a),
+        (module._cosine, np.cos, a),
+    ):
+        for sign in (1, -1):
+            np.testing.assert_allclose(plain(function)(sign * x), exact(sign * x), rtol=7e-16)
+
+
+def test_radii_are_right_from_the_smallest_to_the_largest():
+    """The uniform number is neither 0, of which the logarithm is infinite, nor 1."""
+    b = [2**k + n for k in range(1, 52) for n in (-1, 0, 1)]
+    b = np.array([0, *b, *(2**52 - 2**k for k in range(52)), 2**52 - 1], dtype=np.uint64)
+    bits, radii = (b << np.uint64(12)) + np.uint64(77), np.empty(b.size)  # lower bits are not used
+    reals = bits.view(np.int64)
+    module._radii(reals, reals.view(np.float64), radii)
+    u = b + 0.5
+    expected = np.sqrt(-2 * np.where(u < 2**51, np.log(u * 2.0**-52), np.log1p(u * 2.0**-52 - 1)))
+    np.testing.assert_allclose(radii, expected, rtol=1e-15)
+    assert radii.max() == pytest.approx(8.571674348652905)
+    assert radii.min() == pytest.approx(2.0**-26)
+
+
+def test_directions_are_symmetric_to_the_bit():
+    """Angles lie in the middle of their cells: those of f and of its complement are opposite."""
+    most = 2**QUARTER_BITS - 1
+    some = np.random.default_rng(5).integers(0, most, 1000)
+    fractions = np.array([0, 1, most // 2, most // 2 + 1, *some], dtype=np.uint64)
+    points = []
+    for each in (fractions, np.uint64(most) - fractions):
+        bits = each << np.uint64(12) | np.uint64(1) << np.uint64(62)
+        first, second = np.empty((2, bits.size))
+        module._rotate(bits, np.ones(bits.size), first, second)
+        points.append((first, second))
+    (sine, cosine), (other_sine, other_cosine) = points
+    np.testing.assert_array_equal(sine, -other_sine)
+    np.testing.assert_array_equal(cosine, other_cosine)
+    assert sine[3] == pytest.approx(np.pi / 2 * 2.0**-51, rel=1e-15)
+    assert (cosine >= np.sqrt(0.5) - 1e-15).all()
+
+
+@given(pieces=st.lists(st.integers(0, 2 * BLOCK) | st.integers(0, 20), max_size=8))
+def test_numbers_do_not_depend_on_how_many_are_taken_at_a_time(pieces):
+    taken = stream(6)
+    found = np.concatenate([[], *(numbers(taken, piece) for piece in pieces)])
+    np.testing.assert_array_equal(found, numbers(stream(6), sum(pieces)))
+
+
+@pytest.mark.parametrize("taken", [0, 1, BLOCK - 1, BLOCK, BLOCK + 1])
+def test_the_state_is_complete(taken):
+    noise, other = stream(7), stream(8)
+    numbers(noise, taken)
+    numbers(other, 100)
+    for name in STATE:
+        getattr(other, name)[...] = getattr(noise, name)
+    np.testing.assert_array_equal(numbers(other, 3000), numbers(noise, 3000))
+
+
+UNCOMPILED = """
+from crazybilliards.model import Chain
+from crazybilliards.particles import simulate
+simulate(Chain(size=3, restitution=0), duration=65, time_step=0.1, warmup=0, progress=False)
+"""
+
+
+def test_a_chain_moves_without_compilation_and_without_a_warning():
+    """The measurement of coverage runs it so; numpy's scalars warn where they wrap around."""
+    command = [sys.executable, "-W", "error", "-c", UNCOMPILED]
+    subprocess.run(command, env={**os.environ, "NUMBA_DISABLE_JIT": "1"}, check=True, timeout=120)
+
+
+@pytest.fixture(scope="module")
+def million():
+    return numbers(stream(9), 1_000_000)
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("k", range(1, 9))
+def test_moments(million, k):
+    exact = 0 if k % 2 else factorial2(k - 1)
+    error = np.sqrt((factorial2(2 * k - 1) - exact**2) / million.size)
+    assert abs((million**k).mean() - exact) < 5 * error
+
+
+@pytest.mark.compiled
+def test_the_distribution_is_normal(million):
+    assert kstest(million, "norm").pvalue > FIVE_SIGMA
+    # Both halves of the blocks: the two projections of the radii.
+    for half in np.split(million[: 900 * BLOCK].reshape(900, BLOCK), 2, axis=1):
+        assert kstest(half.ravel(), "norm").pvalue > FIVE_SIGMA
+
+
+@pytest.mark.compiled
+def test_tails(million):
+    for sigmas in (3.0, 4.0, 4.5):
+        for tail in (million > sigmas, million < -sigmas):
+            expected = million.size * norm.sf(sigmas)
+            assert abs(tail.sum() - expected) < 5 * np.sqrt(expected)
+
+
+def normalized(x):
+    return (x - x.mean()) / x.std()
+
+
+def correlation(x, y):
+    """Coefficient of correlation times the root of the number: normal of variance 1."""
+    return x @ y / np.sqrt(x.size)
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("power", [1, 2])
+def test_numbers_do_not_know_of_earlier_ones(million, power):
+    """512 is half a block, from one projection of a radius to the other."""
+    x = normalized(million**power)
+    for lag in (*range(1, 65), 512, BLOCK):
+        assert abs(correlation(x[lag:], x[:-lag])) < 5, lag
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("power", [1, 2])
+def test_streams_of_one_seed_are_independent(power):
+    root = np.random.SeedSequence(10)
+    streams = [root, *root.spawn(4), *np.random.SeedSequence(11).spawn(4)]
+    drawn = [normalized(numbers(make_noise(each), 100_000) ** power) for each in streams]
+    for x, y in itertools.combinations(drawn, 2):
+        for lag in (0, 1, LANES, BLOCK):
+            assert abs(correlation(x[lag:], y[: y.size - lag])) < 5

@@ -1,0 +1,58 @@
+"""Event-driven collisions as one would write them down: look for the next one, take it, repeat.
+
+The independent twin of the tournament: clusters are a list, and all contacts are looked through
+for every collision. The arithmetic is the same, so that results must agree to the last bit.
+"""
+
+import math
+from itertools import pairwise
+
+from crazybilliards.particles.laws.avalanche import record_collision
+
+
+def drift(y, v, dt, restitution, merge_speed, most, tally):
+    """Positions, velocities, runs of rods in contact, and the collisions, or -1 if too many."""
+    bodies = [(float(y[i]), float(v[i]), i, i) for i in range(len(y))]  # first and last rod
+    due = [meeting(*pair, 0.0, dt) for pair in pairwise(bodies)]
+    collisions = 0
+    while min(due, default=math.inf) < math.inf:
+        closing = [one[1] - other[1] for one, other in pairwise(bodies)]
+        k = min(range(len(due)), key=lambda k: (due[k], -closing[k]))  # of equal ones the leftmost
+        now = due[k]
+        y_left, v_left, first, middle = bodies[k]
+        y_right, v_right, _, last = bodies[k + 1]
+        collisions += 1
+        if collisions > most:
+            return None, None, None, -1
+        record_collision(middle, first, last, v_left, v_right, tally)
+        left, right = middle - first + 1, last - middle
+        common = v_left + (v_right - v_left) * right / (left + right)
+        e = min(restitution, 1.0) if now == 0 else restitution
+        rebound = e * (v_left - v_right)
+        if rebound <= merge_speed:
+            bodies[k : k + 2] = [(y_left + (v_left - common) * now, common, first, last)]
+            del due[k]
+            changed = (k - 1, k)
+        else:
+            new_left = common - rebound * right / (left + right)
+            new_right = common + rebound * left / (left + right)
+            bodies[k] = (y_left + (v_left - new_left) * now, new_left, first, middle)
+            bodies[k + 1] = (y_right + (v_right - new_right) * now, new_right, middle + 1, last)
+            due[k] = math.inf
+            changed = (k - 1, k + 1)
+        for contact in changed:
+            if 0 <= contact < len(due):
+                due[contact] = meeting(bodies[contact], bodies[contact + 1], now, dt)
+    positions, velocities, clusters = [], [], []
+    for position, velocity, first, last in bodies:
+        end = max([position + dt * velocity, *positions[-1:]])
+        positions += [end] * (last - first + 1)
+        velocities += [velocity] * (last - first + 1)
+        clusters += [(first, last + 1)] if last > first else []
+    return positions, velocities, clusters, collisions
+
+
+def meeting(left, right, now, dt):
+    """When two neighbours meet next, infinity if not within the step."""
+    gap, closing = right[0] - left[0], left[1] - right[1]
+    return max(gap / closing, now) if closing > 0 and gap < dt * closing else math.inf
