@@ -28,8 +28,8 @@ WORK = {
     "sort": (1.0, "event-driven", 1e-3),
     "sort, default step": (1.0, "event-driven", None),
     "isotonic": (0.0, "event-driven", 1e-3),
-    "heap, e=0.95": (0.95, "event-driven", 1e-3),
-    "heap, e=1, default step": (1.0, "event-driven", None),
+    "events, e=0.95": (0.95, "event-driven", 1e-3),
+    "events, e=1, default step": (1.0, "event-driven", None),
     "contact dynamics, e=0": (0.0, "contact-dynamics", 1e-3),
 }
 NOISE = "noise alone"
@@ -48,14 +48,14 @@ def draw_noise(noise, kicks, steps):
 @pytest.mark.parametrize("work", [NOISE, *WORK])
 def test_step(benchmark, work, size):
     benchmark.group = f"L={size:7d}"
-    # The heap takes seconds for a step of a million rods, to which the last half kick adds little.
-    steps = max(PARTICLE_STEPS // size, 1 if work.startswith("heap") else LEAST_STEPS)
+    # The order of events takes seconds for a step of a million rods, to which the last half kick adds little.
+    steps = max(PARTICLE_STEPS // size, 1 if work.startswith("events") else LEAST_STEPS)
     benchmark.extra_info.update(work=work, size=size, particle_steps=steps * size)
     noise, scratch = make_noise(np.random.SeedSequence(0)), make_scratch(size)
     if work == NOISE:
         benchmark(draw_noise, noise, scratch.kicks, steps)
         return
-    if work == "heap, e=1, default step" and size > 1000:
+    if work == "events, e=1, default step" and size > 1000:
         pytest.skip("hundreds of collisions a rod and step: that is what sorting is for")
     restitution, method, time_step = WORK[work]
     chain = Chain(size=size, restitution=restitution)
