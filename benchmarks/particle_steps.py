@@ -48,7 +48,7 @@ def draw_noise(noise, kicks, steps):
 @pytest.mark.parametrize("work", [NOISE, *WORK])
 def test_step(benchmark, work, size):
     benchmark.group = f"L={size:7d}"
-    # The order of events takes seconds for a step of a million rods, to which the last half kick adds little.
+    # Events take seconds for a step of a million rods, to which the last half kick adds little.
     steps = max(PARTICLE_STEPS // size, 1 if work.startswith("events") else LEAST_STEPS)
     benchmark.extra_info.update(work=work, size=size, particle_steps=steps * size)
     noise, scratch = make_noise(np.random.SeedSequence(0)), make_scratch(size)
