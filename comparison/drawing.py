@@ -69,12 +69,14 @@ def overlay(
         own = [name for name in ("x", "time") if name in values.dims]
         abscissa = dataset[own[0] if own else along]
         if dataset.attrs.get("source") == "simulation":
-            every = -(-abscissa.size // _MOST_SYMBOLS)
+            # The first and the last are always among them: at the border theories differ most.
+            count = min(abscissa.size, _MOST_SYMBOLS)
+            shown = np.linspace(0, abscissa.size - 1, count).round().astype(int)
             error = dataset.get(f"{quantity}_error")
             ax.errorbar(
-                abscissa[::every],
-                values[::every],
-                None if error is None else error[::every],
+                abscissa[shown],
+                values[shown],
+                None if error is None else error[shown],
                 fmt="o",
                 markersize=4.5,
                 markerfacecolor="none",
