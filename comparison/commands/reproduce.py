@@ -136,8 +136,13 @@ def _write_report(
 
 
 def _print_claims(reproduced: list[Reproduced]) -> None:
+    """Print the claims of the figures, if there are any, and how many came out how."""
     from rich.table import Table
 
+    from crazybilliards.comparison.claims.report import summary
+
+    if not any(each.claims for each in reproduced):
+        return
     table = Table(title="Claims")
     for name in ("figure", "claim", "found here", "theory", "verdict"):
         table.add_column(name)
@@ -151,3 +156,5 @@ def _print_claims(reproduced: list[Reproduced]) -> None:
                 claim.verdict,
             )
     print_table(table)
+    for line in summary(reproduced):
+        print(line)

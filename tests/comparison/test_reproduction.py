@@ -119,6 +119,12 @@ def test_list_needs_no_folder(command, tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
+def test_a_figure_without_claims_prints_no_table(command, tmp_path):
+    status, printed, errors = command("1")
+    assert (status, errors) == (0, "")
+    assert printed.splitlines() == ["wrote reproduced/fig01_model.png"]
+
+
 def test_an_unknown_figure_is_one_line_and_nothing_written(command, tmp_path):
     status, _, errors = command("20")
     assert status == 2
@@ -135,7 +141,7 @@ def test_a_figure_its_claims_and_nothing_computed_twice(command, tmp_path, monke
     assert "1 cases, 0 of them" in printed
     folder = tmp_path / "reproduced"
     assert {path.name for path in folder.iterdir()} == {"cases", "fig16_arctanh.png"}
-    assert "reproduced" in printed
+    assert "Statements of the paper: 1 reproduced" in printed
     # Again: nothing is computed, the same claims come out.
     status, again, _ = command("16")
     assert status == 0
