@@ -1,9 +1,10 @@
 """How far a time step is from the limit dt -> 0: a table for the documentation.
 
     python benchmarks/time_step.py [--size 100 ...] [--restitution 0 ...] [--longer 1] [--share 1]
+                                   [--runs 8]
 
 For restitutions and sizes: widths, displacements and the kurtosis of the velocities at the default
-step (or ``--longer`` times it) and at a quarter of it, from eight runs. Both steps are driven by
+step (or ``--longer`` times it) and at a quarter of it, from eight runs unless told otherwise. Both steps are driven by
 the same noise, so that much of the statistical error cancels in their ratio. What the finer step
 is still off is taken from an error ~ dt^(3/2). The whole table takes hours on one core;
 ``--share 0.1`` takes a tenth of the time.
@@ -24,7 +25,6 @@ from crazybilliards.particles.noise import fill, make_noise
 from crazybilliards.particles.scales import default_time_step
 from crazybilliards.particles.stepping import Step, make_step
 
-RUNS = 8
 WARM_UP = 60.0
 FINER = 4
 ORDER = 1.5  # of the error in the time step
@@ -153,6 +153,7 @@ def main() -> None:
     parser.add_argument("--restitution", type=float, nargs="*", default=[])
     parser.add_argument("--longer", type=float, default=1.0, help="in default time steps")
     parser.add_argument("--share", type=float, default=1.0, help="of the full duration")
+    parser.add_argument("--runs", type=int, default=8, help="that the duration is shared by")
     asked = parser.parse_args()
     print(f"| e | L | time step | {' | '.join(QUANTITIES)} |  (in %)")
     print("|---" * (3 + len(QUANTITIES)) + "|")
@@ -161,10 +162,10 @@ def main() -> None:
             continue
         chain = Chain(size=size, restitution=restitution, damping=damping)
         step = asked.longer * default_time_step(chain)
-        each = asked.share * duration / RUNS
-        found = [compared(chain, step, each, seed) for seed in range(RUNS)]
+        each = asked.share * duration / asked.runs
+        found = [compared(chain, step, each, seed) for seed in range(asked.runs)]
         deviation = 100 / (1 - FINER**-ORDER) * np.array(found)
-        mean, error = deviation.mean(axis=0), deviation.std(axis=0, ddof=1) / math.sqrt(RUNS)
+        mean, error = deviation.mean(axis=0), deviation.std(axis=0, ddof=1) / math.sqrt(asked.runs)
         shown = [f"{d:+.2f} ± {s:.2f}" for d, s in zip(mean, error, strict=True)]
         print(f"| {restitution} | {size} | {step:.1e} | {' | '.join(shown)} |", flush=True)
 
