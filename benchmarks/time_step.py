@@ -4,10 +4,10 @@
                                    [--runs 8]
 
 For restitutions and sizes: widths, displacements and the kurtosis of the velocities at the default
-step (or ``--longer`` times it) and at a quarter of it, from eight runs unless told otherwise. Both steps are driven by
-the same noise, so that much of the statistical error cancels in their ratio. What the finer step
-is still off is taken from an error ~ dt^(3/2). The whole table takes hours on one core;
-``--share 0.1`` takes a tenth of the time.
+step (or ``--longer`` times it) and at a quarter of it, from eight runs unless told otherwise. Both
+steps are driven by the same noise, so that much of the statistical error cancels in their ratio.
+What the finer step is still off is taken from an error ~ dt^(3/2). The whole table takes hours on
+one core; ``--share 0.1`` takes a tenth of the time.
 """
 
 import argparse
