@@ -152,7 +152,7 @@ def simulate(
     if checkpoint is not None:
         keeper = Checkpoint(Path(checkpoint), identity(run), checkpoint_interval)
     with nullcontext() if keeper is None else keeper.resumed(copies):
-        interrupted = run_all(run, copies, threads, keeper, progress)
+        interrupted = run_all(copies, threads, keeper, progress)
     return collect(run, copies, interrupted)
 
 
@@ -170,8 +170,11 @@ def make_run(chain: Chain, *, observe: Any, **arguments: Any) -> Run:
 def _replicas(run: Run) -> list[Replica]:
     """Deal the replicas out to groups, each with observers of its own."""
     streams = np.random.SeedSequence(run.seed).spawn(run.replicas)
+    dynamics = run.dynamics()
     return [
         Replica(
+            run.schedule,
+            dynamics,
             [run.starts[i] for i in members],
             [streams[i] for i in members],
             [observer.prepared(run, members.size) for observer in run.observers],
