@@ -147,7 +147,7 @@ def simulate(
     run = make_run(**asked)
     copies = _replicas(run)
     with announced(progress):
-        _compile_kernels()
+        compile_kernels()
     keeper = None
     if checkpoint is not None:
         keeper = Checkpoint(Path(checkpoint), identity(run), checkpoint_interval)
@@ -184,7 +184,7 @@ def _replicas(run: Run) -> list[Replica]:
     ]
 
 
-def _compile_kernels() -> None:
+def compile_kernels() -> None:
     """Compile every kernel, or load it from numba's cache, by running a chain of two rods."""
     # Counting collisions compiles event_driven.drift, and all that the other operators need.
     dynamics = make_dynamics(Chain(size=2), 0.1, speed=1.0, counted=True)

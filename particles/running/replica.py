@@ -141,8 +141,7 @@ class Replica:
                     self._diverge(block)
                     return
             else:
-                buffers = y_buffer[..., :n, :], v_buffer[..., :n, :]
-                good = self._record(scratch, tally, due, *buffers)
+                good = self._record(scratch, tally, due, n, y_buffer, v_buffer)
                 steps = good * due
             self._observe(block, y_buffer[..., :good, :], v_buffer[..., :good, :], tally)
             # All before the yield, where a checkpoint may be taken.
@@ -168,9 +167,10 @@ class Replica:
         met = advance(self.y, self.v, self.noise, self.dynamics, scratch, tally, steps)
         return bool(met >= 0 and bounded(self.y, self.v, self.dynamics.fastest))
 
-    def _record(self, scratch: Any, tally: Tally, due: int, y: Array, v: Array) -> int:
-        """Fill the buffers with snapshots ``due`` steps apart; return how many are good."""
-        return int(record(self.y, self.v, self.noise, self.dynamics, scratch, tally, due, y, v))
+    def _record(self, scratch: Any, tally: Tally, due: int, n: int, y: Array, v: Array) -> int:
+        """Fill ``n`` rows of the buffers, ``due`` steps apart; return how many are good."""
+        state = self.y, self.v, self.noise, self.dynamics, scratch, tally
+        return int(record(*state, due, y[:n], v[:n]))
 
     def _block(self) -> tuple[int, int]:
         """Return the block under way, and how many snapshots it has room for."""

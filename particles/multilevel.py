@@ -1,0 +1,282 @@
+r"""The limit of a vanishing time step as a sum over levels: multilevel Monte Carlo.
+
+(Giles, Oper. Res. 56, 607, 2008; Acta Numerica 24, 259, 2015.) For any average Q
+
+    lim Q(dt) = <Q(dt_0)> + <Q(dt_1) - Q(dt_0)> + ... + <Q(dt_n) - Q(dt_(n-1))> + bias.
+
+The base, the first term, takes most of the statistics and is cheap, because its step is long. In a
+difference both chains have the same noise (``coupling.py``): it fluctuates little and needs few of
+the short steps. Its terms are independent, and each has the value of all its groups of snapshots
+together, with the standard error of the jackknife over the groups (``sampler.py``).
+
+**How long.** With V the variance times the duration and C the steps of a rod per time, the least
+work for an error s takes durations t_l = sqrt(V_l/C_l) sum_k sqrt(V_k C_k)/s^2. V is that of W_v in
+the centre, measured in a pilot round of 64 relaxation times a level, which counts, too. **From which
+step.** Steps that are too long to be correlated with the next shorter one do not pay: the base is
+the level from which the work, (sum_k sqrt(V_k C_k))^2, is least. If that is the last level, nothing
+is left to subtract, and the run is a plain one at the shortest step.
+
+**How short.** The last step is such that its error is expected to be a third of the accuracy
+(``scales.time_step_error``, and that of the springs, (w0 dt)^2/8). What is left is then estimated
+from the last difference D, which has M times as long a step: D/(M^p - 1) with the order p of the
+scheme in dt. It is 3/2 below the critical restitution, 3/4 above, where the error is ~ r^(3/2) and
+r ~ sqrt(dt). If W_v in the centre is further off than 0.7 of the accuracy, a level with a third
+of the step is added. Every error bar is the root of the squared standard errors and this bias. For
+a plain run nothing is subtracted, and the bias is the expected relative one.
+"""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Sequence
+from copy import deepcopy
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crazybilliards.model import Chain
+from crazybilliards.particles.laws.closed_contacts import CRITICAL_RESTITUTION
+from crazybilliards.particles.observers import Observer
+from crazybilliards.particles.observers.error_bars import jackknife_error
+from crazybilliards.particles.running.sampler import Sampler, groups_of
+from crazybilliards.particles.scales import (
+    centre_width,
+    default_time_step,
+    relaxation_time,
+    spring_rate,
+    time_step_error,
+)
+
+Array = NDArray[np.float64]
+
+CENTRAL = "central_velocity_width"
+GROUPS = 16  # of a level: a standard error is then known to a fifth
+_RATIO, _NARROW_RATIO = 9, 3  # of successive steps; of an added one
+_EXPECTED, _LARGEST_BIAS = 0.35, 0.7  # in units of the accuracy
+_LONGEST_KICK = 1.5  # in W_v: with a longer step nothing is correlated
+_SPRINGS = 0.5  # longest step, over that of spring or damping
+_PILOT = 64.0  # relaxation times
+_STRIDE = 10  # default time steps from snapshot to snapshot
+_GROWTH = 4  # of a level in one round: its variance is not known well before
+_WORTH = 1.1  # a round that makes no level longer than this does not pay
+
+
+class Steps(NamedTuple):
+    """The levels in whole numbers: the steps, the longest first, and when they are measured."""
+
+    time_steps: list[float]
+    ratios: list[int]  # of the step before to this one; 1 for the first
+    warmup: int  # longest steps
+    stride: int  # longest steps from snapshot to snapshot
+    pilot: int  # snapshots of a group in the pilot round
+
+    @property
+    def interval(self) -> float:
+        """Time from snapshot to snapshot."""
+        return self.stride * self.time_steps[0]
+
+    def per_step(self, level: int) -> int:
+        """Return how many steps of a level the longest one has."""
+        return math.prod(self.ratios[: level + 1])
+
+
+def relative_bias(chain: Chain, time_step: float, width: float) -> float:
+    """Relative error of a velocity width that a step is expected to cause."""
+    return time_step_error(chain, time_step, width) + (spring_rate(chain) * time_step) ** 2 / 8
+
+
+def plan_steps(chain: Chain, accuracy: float, warmup: float | None, replicas: int) -> Steps:
+    """Choose the steps of the levels; the last one is only taken if the bias asks for it."""
+    width = centre_width(chain) * chain.free_velocity_width
+    fastest = max(spring_rate(chain), chain.damping / chain.mass)
+    longest = step = _SPRINGS / fastest
+    while relative_bias(chain, step, width) > _EXPECTED * accuracy:
+        step *= 0.98
+    ratios = [1]
+    if chain.restitution != 1:
+        kick = chain.amplitude / chain.mass / width
+        longest = min(longest, (_LONGEST_KICK / kick) ** 2)
+        while step * math.prod(ratios) * _RATIO <= longest:
+            ratios.append(_RATIO)
+        ratios.append(_NARROW_RATIO)
+        step /= _NARROW_RATIO
+    time_steps = [step * math.prod(ratios[level + 1 :]) for level in range(len(ratios))]
+    first = time_steps[0]
+    stride = max(round(_STRIDE * default_time_step(chain) / first), 1)
+    relaxation = relaxation_time(chain)
+    warm = math.ceil((12 * relaxation if warmup is None else warmup) / first)
+    groups = -(-GROUPS // replicas) * replicas
+    pilot = math.ceil(_PILOT * relaxation / (groups * stride * first))
+    return Steps(time_steps, ratios, warm, stride, max(pilot, 1))
+
+
+class Estimate(NamedTuple):
+    """One term of the sum: every variable, its variance, and W_v in the centre in detail."""
+
+    values: dict[str, Array]
+    dimensions: dict[str, tuple[str, ...]]
+    variances: dict[str, Array]
+    snapshots: int
+    correlation: float  # of the widths of both chains; 0 if there is one
+
+    @property
+    def spread(self) -> float:
+        """Variance of W_v in the centre, times the number of snapshots."""
+        return float(self.variances[CENTRAL]) * self.snapshots
+
+
+def _reported(
+    groups: Sequence[Sequence[Sequence[Observer]]], chain: int, counts: NDArray[np.int64]
+) -> dict[str, tuple[tuple[str, ...], Array]]:
+    """Return what the observers of some groups measured together of the finer or coarser chain."""
+    found: dict[str, tuple[tuple[str, ...], Array]] = {}
+    for first, *others in zip(*(group[chain] for group in groups), strict=True):
+        joined = deepcopy(first)
+        joined.join(others)
+        for name, (dimensions, values) in joined.report(counts).items():
+            array = np.asarray(values, dtype=float)
+            if name.endswith("_error") or "block" in dimensions:
+                continue
+            if "time" in dimensions:  # of a steady state: all times are the same
+                array = array.mean(axis=dimensions.index("time"))
+                dimensions = tuple(each for each in dimensions if each != "time")
+            found[name] = dimensions, array
+    rods = found["velocity_width"][1]
+    rank = np.abs(np.arange(rods.size) - (rods.size - 1) / 2)
+    middle = rods[rank <= max(0.05 * rods.size, 0.5)]
+    found[CENTRAL] = (), np.sqrt(np.mean(middle**2))
+    return found
+
+
+def estimate(samplers: Sequence[Sampler], *, difference: bool) -> Estimate:
+    """Return the finer chain's averages, or by how much they exceed the coarser one's."""
+    groups, counts = groups_of(samplers)
+    whole = [_reported(groups, chain, counts) for chain in range(1 + difference)]
+    left_out: list[dict[str, list[Array]]] = [{name: [] for name in whole[0]} for _ in whole]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # said already, of all of them together
+        for out in range(len(groups)):
+            rest = groups[:out] + groups[out + 1 :]
+            for chain, each in enumerate(left_out):
+                for name, (_, values) in _reported(rest, chain, np.delete(counts, out)).items():
+                    each[name].append(values)
+    values, variances = {}, {}
+    for name in whole[0]:
+        value = whole[0][name][1] - (whole[1][name][1] if difference else 0)
+        without = np.array(left_out[0][name]) - (np.array(left_out[1][name]) if difference else 0)
+        values[name] = np.asarray(value)
+        variances[name] = jackknife_error(values[name], without, counts) ** 2
+    widths = [np.array(each[CENTRAL]) for each in left_out]
+    correlation = float(np.corrcoef(*widths)[0, 1]) if difference else 0.0
+    dimensions = {name: each[0] for name, each in whole[0].items()}
+    return Estimate(values, dimensions, variances, int(counts.sum()), correlation)
+
+
+class Levels:
+    """The samplers of all levels, by level and replica: how much each measures, and the sum."""
+
+    def __init__(
+        self, chain: Chain, accuracy: float, steps: Steps, samplers: list[list[Sampler]]
+    ) -> None:
+        self.chain, self.accuracy, self.steps, self.samplers = chain, accuracy, steps, samplers
+        self.groups = sum(sampler.counts.size for sampler in samplers[0])
+
+    @property
+    def used(self) -> range:
+        """The levels of the sum, the base first."""
+        begun = [level for level, each in enumerate(self.samplers) if each[0].target]
+        base = max(level for level in begun if self.samplers[level][0].coarser is None)
+        return range(base, begun[-1] + 1)
+
+    def start(self) -> None:
+        """Ask for the pilot round; the last level is one in reserve if there are several."""
+        for samplers in self.samplers[: max(len(self.samplers) - 1, 1)]:
+            self._extend(samplers, self.steps.pilot)
+
+    def extend(self) -> bool:
+        """Ask for what is missing; return whether anything is. It follows from what is measured."""
+        if all(self.samplers[level][0].target == self.steps.pilot for level in self.used):
+            self._choose_base()
+        terms = self.terms()
+        width = sum(float(each.values[CENTRAL]) for each in terms)
+        bias = float(self.bias(terms)[CENTRAL]) / width
+        reserve = self.samplers[-1]
+        if bias > _LARGEST_BIAS * self.accuracy and len(terms) > 1 and not reserve[0].target:
+            self._extend(reserve, self.steps.pilot)
+            return True
+        # Where the bias takes too much, the rest need not be paid for without end.
+        noise = max(self.accuracy**2 - bias**2, self.accuracy**2 / 4) * width**2
+        costs = [self._cost(level, level > self.used[0]) for level in self.used]
+        work = sum(math.sqrt(each.spread * c) for each, c in zip(terms, costs, strict=True))
+        grown = False
+        for level, term, cost in zip(self.used, terms, costs, strict=True):
+            wanted = math.ceil(math.sqrt(term.spread / cost) * work / noise / self.groups)
+            target = self.samplers[level][0].target
+            if wanted > _WORTH * target:
+                self._extend(self.samplers[level], min(wanted, _GROWTH * target))
+                grown = True
+        return grown
+
+    def terms(self) -> list[Estimate]:
+        """Return the base and the differences, as far as they are measured."""
+        return [estimate(self.samplers[each], difference=each > self.used[0]) for each in self.used]
+
+    def bias(self, terms: Sequence[Estimate]) -> dict[str, Array]:
+        """Return what is left of every variable's error from the time step."""
+        if len(terms) == 1:
+            values = terms[0].values
+            step = self.steps.time_steps[self.used[-1]]
+            relative = relative_bias(self.chain, step, float(values[CENTRAL]))
+            return {name: relative * np.abs(value) for name, value in values.items()}
+        order = 1.5 if self.chain.restitution < CRITICAL_RESTITUTION else 0.75
+        rest = self.steps.ratios[self.used[-1]] ** order - 1
+        return {name: np.abs(value) / rest for name, value in terms[-1].values.items()}
+
+    def described(self, terms: Sequence[Estimate]) -> list[dict[str, Any]]:
+        """Return the levels for the provenance; the shares are those in W_v of the centre."""
+        work = sum(sampler.done for samplers in self.samplers for sampler in samplers)
+        variance = sum(float(each.variances[CENTRAL]) for each in terms)
+        return [
+            {
+                "time_step": self.steps.time_steps[level],
+                "subtracted_time_step": self.steps.time_steps[level - 1] if place else None,
+                "snapshots": term.snapshots,
+                "duration": term.snapshots * self.steps.interval,
+                "rod_steps": sum(sampler.done for sampler in self.samplers[level]),
+                "share_of_work": sum(s.done for s in self.samplers[level]) / work,
+                "share_of_variance": float(term.variances[CENTRAL]) / variance,
+                "value": float(term.values[CENTRAL]),
+                "error": math.sqrt(float(term.variances[CENTRAL])),
+                "correlation": term.correlation if place else None,
+            }
+            for place, (level, term) in enumerate(zip(self.used, terms, strict=True))
+        ]
+
+    def _extend(self, samplers: Sequence[Sampler], target: int) -> None:
+        for sampler in samplers:
+            sampler.extend(target)
+
+    def _cost(self, level: int, coupled: bool) -> float:
+        """Return the steps of a rod from snapshot to snapshot; a snapshot costs about one, too."""
+        steps = self.steps.per_step(level) + (self.steps.per_step(level - 1) if coupled else 0)
+        return float(steps * self.steps.stride + 1 + coupled)
+
+    def _choose_base(self) -> None:
+        """Leave out the levels whose steps are too long to save any work."""
+        levels = list(self.used)
+        pairs = [0.0]
+        for level in levels[1:]:
+            spread = estimate(self.samplers[level], difference=True).spread
+            pairs.append(math.sqrt(spread * self._cost(level, coupled=True)))
+        work = []
+        for place, level in enumerate(levels):
+            alone = estimate(self.samplers[level], difference=False).spread
+            own = math.sqrt(alone * self._cost(level, coupled=False))
+            work.append(own + sum(pairs[place + 1 :]))
+        samplers = self.samplers[levels[int(np.argmin(work))]]
+        if samplers[0].coarser is not None:
+            correlation = estimate(samplers, difference=True).correlation
+            for sampler in samplers:
+                sampler.uncouple(correlation)
