@@ -21,8 +21,6 @@ contacts are closed (``laws/closed_contacts.py``).
 
 from __future__ import annotations
 
-import numpy as np
-
 from crazybilliards.model.kernels import kernel
 from crazybilliards.particles.laws.closed_contacts import find_clusters
 from crazybilliards.particles.noise import fill

@@ -11,10 +11,12 @@ together, with the standard error of the jackknife over the groups (``sampler.py
 
 **How long.** With V the variance times the duration and C the steps of a rod per time, the least
 work for an error s takes durations t_l = sqrt(V_l/C_l) sum_k sqrt(V_k C_k)/s^2. V is that of W_v in
-the centre, measured in a pilot round of 64 relaxation times a level, which counts, too. **From which
-step.** Steps that are too long to be correlated with the next shorter one do not pay: the base is
-the level from which the work, (sum_k sqrt(V_k C_k))^2, is least. If that is the last level, nothing
-is left to subtract, and the run is a plain one at the shortest step.
+the centre. It is measured in a pilot round, which counts, too: 64 relaxation times of the base and
+16 of each difference.
+
+**From which step.** Steps that are too long to be correlated with the next shorter one do not pay:
+the base is the level from which the work, (sum_k sqrt(V_k C_k))^2, is least. If that is the last
+level, nothing is left to subtract, and the run is a plain one at the shortest step.
 
 **How short.** The last step is such that its error is expected to be a third of the accuracy
 (``scales.time_step_error``, and that of the springs, (w0 dt)^2/8). What is left is then estimated
@@ -57,7 +59,7 @@ _RATIO, _NARROW_RATIO = 9, 3  # of successive steps; of an added one
 _EXPECTED, _LARGEST_BIAS = 0.35, 0.7  # in units of the accuracy
 _LONGEST_KICK = 1.5  # in W_v: with a longer step nothing is correlated
 _SPRINGS = 0.5  # longest step, over that of spring or damping
-_PILOT = 64.0  # relaxation times
+_LEAST, _PILOT = 64.0, 16.0  # relaxation times: of the base, of a difference
 _STRIDE = 10  # default time steps from snapshot to snapshot
 _GROWTH = 4  # of a level in one round: its variance is not known well before
 _WORTH = 1.1  # a round that makes no level longer than this does not pay
@@ -70,7 +72,8 @@ class Steps(NamedTuple):
     ratios: list[int]  # of the step before to this one; 1 for the first
     warmup: int  # longest steps
     stride: int  # longest steps from snapshot to snapshot
-    pilot: int  # snapshots of a group in the pilot round
+    least: int  # snapshots of a group of the base
+    pilot: int  # of a group of a difference, in the pilot round
 
     @property
     def interval(self) -> float:
@@ -108,8 +111,11 @@ def plan_steps(chain: Chain, accuracy: float, warmup: float | None, replicas: in
     relaxation = relaxation_time(chain)
     warm = math.ceil((12 * relaxation if warmup is None else warmup) / first)
     groups = -(-GROUPS // replicas) * replicas
-    pilot = math.ceil(_PILOT * relaxation / (groups * stride * first))
-    return Steps(time_steps, ratios, warm, stride, max(pilot, 1))
+    least, pilot = (
+        max(math.ceil(each * relaxation / (groups * stride * first)), 1)
+        for each in (_LEAST, _PILOT)
+    )
+    return Steps(time_steps, ratios, warm, stride, least, pilot)
 
 
 class Estimate(NamedTuple):
@@ -192,12 +198,12 @@ class Levels:
 
     def start(self) -> None:
         """Ask for the pilot round; the last level is one in reserve if there are several."""
-        for samplers in self.samplers[: max(len(self.samplers) - 1, 1)]:
-            self._extend(samplers, self.steps.pilot)
+        for level, samplers in enumerate(self.samplers[: max(len(self.samplers) - 1, 1)]):
+            self._extend(samplers, self._first(level))
 
     def extend(self) -> bool:
         """Ask for what is missing; return whether anything is. It follows from what is measured."""
-        if all(self.samplers[level][0].target == self.steps.pilot for level in self.used):
+        if all(self.samplers[level][0].target == self._first(level) for level in self.used):
             self._choose_base()
         terms = self.terms()
         width = sum(float(each.values[CENTRAL]) for each in terms)
@@ -213,6 +219,8 @@ class Levels:
         grown = False
         for level, term, cost in zip(self.used, terms, costs, strict=True):
             wanted = math.ceil(math.sqrt(term.spread / cost) * work / noise / self.groups)
+            if level == self.used[0]:
+                wanted = max(wanted, self.steps.least)
             target = self.samplers[level][0].target
             if wanted > _WORTH * target:
                 self._extend(self.samplers[level], min(wanted, _GROWTH * target))
@@ -254,6 +262,10 @@ class Levels:
             for place, (level, term) in enumerate(zip(self.used, terms, strict=True))
         ]
 
+    def _first(self, level: int) -> int:
+        """Return the snapshots of a group of a level in the pilot round."""
+        return self.steps.pilot if level else self.steps.least
+
     def _extend(self, samplers: Sequence[Sampler], target: int) -> None:
         for sampler in samplers:
             sampler.extend(target)
@@ -264,17 +276,22 @@ class Levels:
         return float(steps * self.steps.stride + 1 + coupled)
 
     def _choose_base(self) -> None:
-        """Leave out the levels whose steps are too long to save any work."""
+        """Leave out the levels whose steps are too long to save any work.
+
+        The spread of a single chain is taken to be the same at all steps: two measured ones would
+        differ by more than they really do.
+        """
         levels = list(self.used)
         pairs = [0.0]
         for level in levels[1:]:
-            spread = estimate(self.samplers[level], difference=True).spread
-            pairs.append(math.sqrt(spread * self._cost(level, coupled=True)))
-        work = []
-        for place, level in enumerate(levels):
-            alone = estimate(self.samplers[level], difference=False).spread
-            own = math.sqrt(alone * self._cost(level, coupled=False))
-            work.append(own + sum(pairs[place + 1 :]))
+            difference, alone = (
+                estimate(self.samplers[level], difference=each).spread for each in (True, False)
+            )
+            pairs.append(math.sqrt(difference / alone * self._cost(level, coupled=True)))
+        work = [
+            math.sqrt(self._cost(level, coupled=False)) + sum(pairs[place + 1 :])
+            for place, level in enumerate(levels)
+        ]
         samplers = self.samplers[levels[int(np.argmin(work))]]
         if samplers[0].coarser is not None:
             correlation = estimate(samplers, difference=True).correlation

@@ -42,7 +42,7 @@ def jackknife(
 
 
 def jackknife_error(value: Array, left_out: Array, counts: NDArray[np.int64]) -> Array:
-    """Standard error of a value from those with one block left out each, (blocks, ...).
+    """Return the standard error of a value from those with one block left out each, (blocks, ...).
 
     ``counts`` as in :func:`jackknife`.
     """
