@@ -6,8 +6,8 @@ step, whole steps, half a step. If the ratio is three, say, then in units of the
     finer    | 1/2 |  1  |  1  |  1  |  1  |  1  | 1/2 |
     coarser  |    3/2    |        3        |    3/2    |        two coarser steps
 
-each coarser kick covers exactly the time of some finer ones. This is so for every odd ratio; with an
-even one the end of a coarser kick would fall into a finer one. Damping and noise alone give a
+each coarser kick covers exactly the time of some finer ones. This is so for every odd ratio; with
+an even one the end of a coarser kick would fall into a finer one. Damping and noise alone give a
 velocity, after kicks of the durations t_j, the noise
 
     eta = sum_j exp(-(gamma/m) sum_(k > j) t_k) sigma(t_j) xi_j,
@@ -15,8 +15,9 @@ velocity, after kicks of the durations t_j, the noise
 sigma(t)^2 = (T/m)(1 - exp(-2 gamma t/m)). Its variance is sigma(sum_j t_j)^2, that of one kick of
 the whole duration. The coarser chain is kicked by eta: by the finer one's noise, exactly. The
 eta/sigma of successive kicks are independent normal numbers, since no xi is in two of them, so that
-the coarser chain has the law of a chain at its own step. The finer chain even has its bits. The noise of closed contacts is made stronger in each chain where its own
-contacts are closed (``laws/closed_contacts.py``).
+the coarser chain has the law of a chain at its own step. The finer chain even has its bits. The
+noise of closed contacts is made stronger in each chain where its own contacts are closed
+(``laws/closed_contacts.py``).
 """
 
 from __future__ import annotations
