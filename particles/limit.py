@@ -23,7 +23,8 @@ from crazybilliards.model.vocabulary import result
 from crazybilliards.particles.coupling import advance_pair, record_pair
 from crazybilliards.particles.laws.avalanche import make_tally
 from crazybilliards.particles.laws.law import make_scratch
-from crazybilliards.particles.multilevel import CENTRAL, GROUPS, Levels, plan_steps
+from crazybilliards.particles.level_steps import GROUPS, plan_steps
+from crazybilliards.particles.multilevel import CENTRAL, Levels
 from crazybilliards.particles.noise import make_noise
 from crazybilliards.particles.observers import Observer, find_observers
 from crazybilliards.particles.run import Run

@@ -12,19 +12,18 @@ together, with the standard error of the jackknife over the groups (``sampler.py
 **How long.** With V the variance times the duration and C the steps of a rod per time, the least
 work for an error s takes durations t_l = sqrt(V_l/C_l) sum_k sqrt(V_k C_k)/s^2. V is that of W_v in
 the centre. It is measured in a pilot round, which counts, too: 64 relaxation times of the base and
-16 of each difference.
+16 of each difference, or four times, sixteen times as long where far more will be needed.
 
 **From which step.** Steps that are too long to be correlated with the next shorter one do not pay:
 the base is the level from which the work, (sum_k sqrt(V_k C_k))^2, is least. If that is the last
 level, nothing is left to subtract, and the run is a plain one at the shortest step.
 
-**How short.** The last step is such that its error is expected to be a third of the accuracy
-(``scales.time_step_error``, and that of the springs, (w0 dt)^2/8). What is left is then estimated
-from the last difference D, which has M times as long a step: D/(M^p - 1) with the order p of the
-scheme in dt. It is 3/2 below the critical restitution, 3/4 above, where the error is ~ r^(3/2) and
-r ~ sqrt(dt). If W_v in the centre is further off than 0.7 of the accuracy, a level with a third
-of the step is added. Every error bar is the root of the squared standard errors and this bias. For
-a plain run nothing is subtracted, and the bias is the expected relative one.
+**What is left.** The last step is chosen beforehand (``level_steps.py``). The error that it leaves
+is estimated from the last difference D, whose other step is M times as long: D/(M^p - 1) with the
+order p of the scheme in dt. It is 3/2 below the critical restitution, 3/4 above, where the error is
+~ r^(3/2) and r ~ sqrt(dt). If W_v in the centre is further off than 0.7 of the accuracy, a level
+with a third of the step is added. Every error bar is the root of the squared standard errors and
+this bias. For a plain run nothing is subtracted, and the bias is the expected relative one.
 """
 
 from __future__ import annotations
@@ -40,82 +39,17 @@ from numpy.typing import NDArray
 
 from crazybilliards.model import Chain
 from crazybilliards.particles.laws.closed_contacts import CRITICAL_RESTITUTION
+from crazybilliards.particles.level_steps import Steps, relative_bias
 from crazybilliards.particles.observers import Observer
 from crazybilliards.particles.observers.error_bars import jackknife_error
 from crazybilliards.particles.running.sampler import Sampler, groups_of
-from crazybilliards.particles.scales import (
-    centre_width,
-    default_time_step,
-    relaxation_time,
-    spring_rate,
-    time_step_error,
-)
 
 Array = NDArray[np.float64]
 
 CENTRAL = "central_velocity_width"
-GROUPS = 16  # of a level: a standard error is then known to a fifth
-_RATIO, _NARROW_RATIO = 9, 3  # of successive steps; of an added one
-_EXPECTED, _LARGEST_BIAS = 0.35, 0.7  # in units of the accuracy
-_LONGEST_KICK = 1.5  # in W_v: with a longer step nothing is correlated
-_SPRINGS = 0.5  # longest step, over that of spring or damping
-_LEAST, _PILOT = 64.0, 16.0  # relaxation times: of the base, of a difference
-_STRIDE = 10  # default time steps from snapshot to snapshot
+_LARGEST_BIAS = 0.7  # largest bias without another level, in units of the accuracy
 _GROWTH = 4  # of a level in one round: its variance is not known well before
 _WORTH = 1.1  # a round that makes no level longer than this does not pay
-
-
-class Steps(NamedTuple):
-    """The levels in whole numbers: the steps, the longest first, and when they are measured."""
-
-    time_steps: list[float]
-    ratios: list[int]  # of the step before to this one; 1 for the first
-    warmup: int  # longest steps
-    stride: int  # longest steps from snapshot to snapshot
-    least: int  # snapshots of a group of the base
-    pilot: int  # of a group of a difference, in the pilot round
-
-    @property
-    def interval(self) -> float:
-        """Time from snapshot to snapshot."""
-        return self.stride * self.time_steps[0]
-
-    def per_step(self, level: int) -> int:
-        """Return how many steps of a level the longest one has."""
-        return math.prod(self.ratios[: level + 1])
-
-
-def relative_bias(chain: Chain, time_step: float, width: float) -> float:
-    """Relative error of a velocity width that a step is expected to cause."""
-    return time_step_error(chain, time_step, width) + (spring_rate(chain) * time_step) ** 2 / 8
-
-
-def plan_steps(chain: Chain, accuracy: float, warmup: float | None, replicas: int) -> Steps:
-    """Choose the steps of the levels; the last one is only taken if the bias asks for it."""
-    width = centre_width(chain) * chain.free_velocity_width
-    fastest = max(spring_rate(chain), chain.damping / chain.mass)
-    longest = step = _SPRINGS / fastest
-    while relative_bias(chain, step, width) > _EXPECTED * accuracy:
-        step *= 0.98
-    ratios = [1]
-    if chain.restitution != 1:
-        kick = chain.amplitude / chain.mass / width
-        longest = min(longest, (_LONGEST_KICK / kick) ** 2)
-        while step * math.prod(ratios) * _RATIO <= longest:
-            ratios.append(_RATIO)
-        ratios.append(_NARROW_RATIO)
-        step /= _NARROW_RATIO
-    time_steps = [step * math.prod(ratios[level + 1 :]) for level in range(len(ratios))]
-    first = time_steps[0]
-    stride = max(round(_STRIDE * default_time_step(chain) / first), 1)
-    relaxation = relaxation_time(chain)
-    warm = math.ceil((12 * relaxation if warmup is None else warmup) / first)
-    groups = -(-GROUPS // replicas) * replicas
-    least, pilot = (
-        max(math.ceil(each * relaxation / (groups * stride * first)), 1)
-        for each in (_LEAST, _PILOT)
-    )
-    return Steps(time_steps, ratios, warm, stride, least, pilot)
 
 
 class Estimate(NamedTuple):
@@ -198,34 +132,43 @@ class Levels:
 
     def start(self) -> None:
         """Ask for the pilot round; the last level is one in reserve if there are several."""
-        for level, samplers in enumerate(self.samplers[: max(len(self.samplers) - 1, 1)]):
-            self._extend(samplers, self._first(level))
+        for level in range(max(len(self.samplers) - 1, 1)):
+            self._extend(level, self._first(level))
 
     def extend(self) -> bool:
         """Ask for what is missing; return whether anything is. It follows from what is measured."""
-        if all(self.samplers[level][0].target == self._first(level) for level in self.used):
-            self._choose_base()
+        factors = {self._target(level) / self._first(level) for level in self.used}
+        if len(factors) == 1 and not self._choose_base():
+            for level in self.used:
+                self._extend(level, _GROWTH * self._target(level))
+            return True
         terms = self.terms()
         width = sum(float(each.values[CENTRAL]) for each in terms)
         bias = float(self.bias(terms)[CENTRAL]) / width
-        reserve = self.samplers[-1]
-        if bias > _LARGEST_BIAS * self.accuracy and len(terms) > 1 and not reserve[0].target:
-            self._extend(reserve, self.steps.pilot)
+        last = len(self.samplers) - 1
+        if bias > _LARGEST_BIAS * self.accuracy and len(terms) > 1 and not self._target(last):
+            self._extend(last, self._first(last))
             return True
-        # Where the bias takes too much, the rest need not be paid for without end.
-        noise = max(self.accuracy**2 - bias**2, self.accuracy**2 / 4) * width**2
-        costs = [self._cost(level, level > self.used[0]) for level in self.used]
-        work = sum(math.sqrt(each.spread * c) for each, c in zip(terms, costs, strict=True))
+        wanted = self._wanted([each.spread for each in terms], width, bias)
         grown = False
-        for level, term, cost in zip(self.used, terms, costs, strict=True):
-            wanted = math.ceil(math.sqrt(term.spread / cost) * work / noise / self.groups)
-            if level == self.used[0]:
-                wanted = max(wanted, self.steps.least)
-            target = self.samplers[level][0].target
-            if wanted > _WORTH * target:
-                self._extend(self.samplers[level], min(wanted, _GROWTH * target))
+        for level, snapshots in zip(self.used, wanted, strict=True):
+            if snapshots > _WORTH * self._target(level):
+                self._extend(level, min(snapshots, _GROWTH * self._target(level)))
                 grown = True
         return grown
+
+    def _wanted(self, spreads: Sequence[float], width: float, bias: float) -> list[int]:
+        """Return the snapshots that a group of each of the last levels should have."""
+        levels = self.used[-len(spreads) :]
+        costs = [self._cost(level, level > levels[0]) for level in levels]
+        work = sum(math.sqrt(v * c) for v, c in zip(spreads, costs, strict=True))
+        # Where the bias takes too much, the rest need not be paid for without end.
+        noise = max(self.accuracy**2 - bias**2, self.accuracy**2 / 4) * width**2
+        wanted = [
+            math.ceil(math.sqrt(v / c) * work / noise / self.groups)
+            for v, c in zip(spreads, costs, strict=True)
+        ]
+        return [max(wanted[0], self.steps.least), *wanted[1:]]
 
     def terms(self) -> list[Estimate]:
         """Return the base and the differences, as far as they are measured."""
@@ -266,8 +209,11 @@ class Levels:
         """Return the snapshots of a group of a level in the pilot round."""
         return self.steps.pilot if level else self.steps.least
 
-    def _extend(self, samplers: Sequence[Sampler], target: int) -> None:
-        for sampler in samplers:
+    def _target(self, level: int) -> int:
+        return self.samplers[level][0].target
+
+    def _extend(self, level: int, target: int) -> None:
+        for sampler in self.samplers[level]:
             sampler.extend(target)
 
     def _cost(self, level: int, coupled: bool) -> float:
@@ -275,25 +221,33 @@ class Levels:
         steps = self.steps.per_step(level) + (self.steps.per_step(level - 1) if coupled else 0)
         return float(steps * self.steps.stride + 1 + coupled)
 
-    def _choose_base(self) -> None:
+    def _choose_base(self) -> bool:
         """Leave out the levels whose steps are too long to save any work.
 
-        The spread of a single chain is taken to be the same at all steps: two measured ones would
-        differ by more than they really do.
+        Return False if the pilot round is too short to tell: if a pair is to run many times as
+        long. The spread of a single chain is taken to be the same at all steps: two measured ones
+        would differ by more than they really do.
         """
         levels = list(self.used)
-        pairs = [0.0]
-        for level in levels[1:]:
-            difference, alone = (
-                estimate(self.samplers[level], difference=each).spread for each in (True, False)
-            )
-            pairs.append(math.sqrt(difference / alone * self._cost(level, coupled=True)))
-        work = [
-            math.sqrt(self._cost(level, coupled=False)) + sum(pairs[place + 1 :])
-            for place, level in enumerate(levels)
-        ]
-        samplers = self.samplers[levels[int(np.argmin(work))]]
+        alone = [estimate(self.samplers[level], difference=False) for level in levels]
+        spread, width = alone[0].spread, float(alone[-1].values[CENTRAL])
+        spreads = [spread]
+        for level, single in zip(levels[1:], alone[1:], strict=True):
+            difference = estimate(self.samplers[level], difference=True)
+            spreads.append(difference.spread / single.spread * spread)
+        work = []
+        for place, level in enumerate(levels):
+            pairs = zip(spreads[place + 1 :], levels[place + 1 :], strict=True)
+            costs = [math.sqrt(v * self._cost(each, coupled=True)) for v, each in pairs]
+            work.append(math.sqrt(spread * self._cost(level, coupled=False)) + sum(costs))
+        base = int(np.argmin(work))
+        wanted = self._wanted([spread, *spreads[base + 1 :]], width, 0.0)
+        for level, snapshots in zip(levels[base:], wanted, strict=True):
+            if level and snapshots > _GROWTH * self._target(level):
+                return False
+        samplers = self.samplers[levels[base]]
         if samplers[0].coarser is not None:
             correlation = estimate(samplers, difference=True).correlation
             for sampler in samplers:
                 sampler.uncouple(correlation)
+        return True
