@@ -23,7 +23,7 @@ from crazybilliards.model.vocabulary import result
 from crazybilliards.particles.coupling import advance_pair, record_pair
 from crazybilliards.particles.laws.avalanche import make_tally
 from crazybilliards.particles.laws.law import make_scratch
-from crazybilliards.particles.level_steps import GROUPS, plan_steps
+from crazybilliards.particles.level_steps import GROUPS, Steps, plan_steps
 from crazybilliards.particles.multilevel import CENTRAL, Levels
 from crazybilliards.particles.noise import make_noise
 from crazybilliards.particles.observers import Observer, find_observers
@@ -127,7 +127,7 @@ def simulate_limit(
     """
     threads = check_integer("threads", cores() if threads is None else threads, least=1)
     checkpoint_interval = check_real("checkpoint_interval", checkpoint_interval)
-    levels = make_levels(
+    steps, runs = make_runs(
         chain,
         accuracy=accuracy,
         warmup=warmup,
@@ -137,6 +137,7 @@ def simulate_limit(
         particles=particles,
         replicas=replicas,
     )
+    levels = Levels(chain, float(accuracy), steps, _samplers(runs, seed, replicas))
     samplers = [sampler for level in levels.samplers for sampler in level]
     with announced(progress):
         compile_kernels()
@@ -157,7 +158,7 @@ def simulate_limit(
     return _collect(levels, interrupted, progress)
 
 
-def make_levels(
+def make_runs(
     chain: Chain,
     *,
     accuracy: float,
@@ -167,7 +168,7 @@ def make_levels(
     observe: Any,
     particles: Sequence[int] | None,
     replicas: int,
-) -> Levels:
+) -> tuple[Steps, list[LevelRun]]:
     """Check all arguments of :func:`simulate_limit` and plan its levels, without any work.
 
     Raises
@@ -217,13 +218,12 @@ def make_levels(
     require_memory(
         "observe (ask for fewer particles)", (chains * groups + _JOINED * replicas * groups) * kept
     )
-    return Levels(chain, accuracy, steps, _samplers(runs, seed, replicas, groups))
+    return steps, runs
 
 
-def _samplers(
-    runs: Sequence[LevelRun], seed: int, replicas: int, groups: int
-) -> list[list[Sampler]]:
+def _samplers(runs: Sequence[LevelRun], seed: int, replicas: int) -> list[list[Sampler]]:
     """Return the samplers by level and replica, each with noise of its own."""
+    groups = -(-GROUPS // replicas)
     return [
         [
             Sampler(
