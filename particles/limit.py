@@ -8,7 +8,7 @@ import sys
 from collections.abc import Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import Any
 
@@ -20,21 +20,17 @@ from crazybilliards.model.checks import check_integer, check_real
 from crazybilliards.model.memory import require_memory
 from crazybilliards.model.process import announced, cores
 from crazybilliards.model.vocabulary import result
-from crazybilliards.particles.coupling import advance_pair, record_pair
-from crazybilliards.particles.laws.avalanche import make_tally
-from crazybilliards.particles.laws.law import make_scratch
 from crazybilliards.particles.level_steps import GROUPS, Steps, plan_steps
 from crazybilliards.particles.multilevel import CENTRAL, Levels
-from crazybilliards.particles.noise import make_noise
 from crazybilliards.particles.observers import Observer, find_observers
 from crazybilliards.particles.run import Run
 from crazybilliards.particles.running.checkpoint import Checkpoint, identity
 from crazybilliards.particles.running.collecting import only_chosen
-from crazybilliards.particles.running.sampler import Sampler
+from crazybilliards.particles.running.sampler import Sampler, compile_pair
 from crazybilliards.particles.running.threads import run_all
 from crazybilliards.particles.schedule import Schedule
 from crazybilliards.particles.simulation import compile_kernels
-from crazybilliards.particles.stepping import MERGING, make_dynamics
+from crazybilliards.particles.stepping import MERGING
 
 _OPEN = 2**40  # snapshots: how many a group gets turns out later
 _JOINED = 3  # copies of what observers keep, while they are joined
@@ -141,7 +137,7 @@ def simulate_limit(
     samplers = [sampler for level in levels.samplers for sampler in level]
     with announced(progress):
         compile_kernels()
-        _compile_pair()
+        compile_pair()
     keeper = None
     if checkpoint is not None:
         own = {"accuracy": levels.accuracy, "replicas": replicas, "levels": levels.steps}
@@ -242,38 +238,39 @@ def _collect(levels: Levels, interrupted: bool, progress: bool) -> xr.Dataset:
     """Add the levels up to one result."""
     used = [sampler for level in levels.used for sampler in levels.samplers[level]]
     diverged = any(sampler.diverged for samplers in levels.samplers for sampler in samplers)
-    status = "interrupted" if interrupted else "diverged" if diverged else "completed"
     finest = used[-1].finer
-    method = finest.provenance()
+    method = finest.provenance() | {
+        "accuracy": levels.accuracy,
+        "replicas": len(levels.samplers[0]),
+    }
     del method["schedule"]
-    method |= {"accuracy": levels.accuracy, "replicas": len(levels.samplers[0])}
-    options = {"source": "simulation", "status": status, "particles": finest.chosen + 1}
     ends = [sampler.steps * sampler.schedule.time_step for sampler in used]
+    collected = partial(
+        result,
+        levels.chain,
+        source="simulation",
+        status="interrupted" if interrupted else "diverged" if diverged else "completed",
+        end_time=min(ends),
+        particles=finest.chosen + 1,
+    )
     if diverged:  # what long steps do alone is no limit
-        return result(levels.chain, {}, method=method, end_time=min(ends), **options)
+        return collected({}, method=method)
     if min(np.count_nonzero(sampler.counts) for sampler in used) < 2:
         raise KeyboardInterrupt("not every level was measured yet")
     terms = levels.terms()
     bias = levels.bias(terms)
-    method["levels"] = levels.described(terms)
     variables: dict[str, Any] = {}
     for name, dimensions in terms[0].dimensions.items():
         value = sum(term.values[name] for term in terms)
         error = np.sqrt(sum(term.variances[name] for term in terms) + bias[name] ** 2)
         for each, values in ((name, value), (f"{name}_error", error)):
             variables[each] = only_chosen(finest.chosen, levels.chain.size, dimensions, values)
-    coordinates = {}
+    coordinates: dict[str, Any] = {}
     for observer in used[-1].measured[0][0]:
         coordinates |= observer.coordinates()
-    coordinates.pop("time", None)
-    limit = result(
-        levels.chain,
-        variables,
-        coordinates=coordinates,
-        method=method,
-        end_time=min(ends),
-        **options,
-    )
+    coordinates.pop("time", None)  # there is none
+    method["levels"] = levels.described(terms)
+    limit = collected(variables, coordinates=coordinates, method=method)
     limit.attrs["time_step_error"] = float(bias[CENTRAL] / limit[CENTRAL])
     _describe_coupling(levels, limit, progress)
     return limit
@@ -294,14 +291,3 @@ def _describe_coupling(levels: Levels, limit: xr.Dataset, progress: bool) -> Non
             f"{correlation:.2f} only: plain runs at {short:.2g} were cheaper",
             file=sys.stderr,
         )
-
-
-def _compile_pair() -> None:
-    """Compile the kernels of a pair, or load them from numba's cache."""
-    dynamics = tuple(make_dynamics(Chain(size=2), step, speed=1.0) for step in (0.1, 0.3))
-    y, v = np.zeros((2, 2, 2))
-    scratch = make_scratch(2), make_scratch(2)
-    noise, tally = make_noise(np.random.SeedSequence(0)), make_tally(2, contacts=False)
-    pair = y, v, noise, dynamics, 3, scratch, tally, 1
-    advance_pair(*pair)
-    record_pair(*pair, 1, *np.zeros((2, 2, 1, 2)))

@@ -100,16 +100,19 @@ def estimate(samplers: Sequence[Sampler], *, difference: bool) -> Estimate:
         for out in range(len(groups)):
             rest = groups[:out] + groups[out + 1 :]
             for chain, each in enumerate(left_out):
-                for name, (_, values) in _reported(rest, chain, np.delete(counts, out)).items():
-                    each[name].append(values)
-    values, variances = {}, {}
+                for name, (_, found) in _reported(rest, chain, np.delete(counts, out)).items():
+                    each[name].append(found)
+    values: dict[str, Array] = {}
+    variances: dict[str, Array] = {}
+    signs = (1.0, -1.0)[: len(whole)]
     for name in whole[0]:
-        value = whole[0][name][1] - (whole[1][name][1] if difference else 0)
-        without = np.array(left_out[0][name]) - (np.array(left_out[1][name]) if difference else 0)
-        values[name] = np.asarray(value)
+        values[name], without = (
+            np.asarray(sum(sign * np.array(part) for sign, part in zip(signs, parts, strict=True)))
+            for parts in ([each[name][1] for each in whole], [each[name] for each in left_out])
+        )
         variances[name] = jackknife_error(values[name], without, counts) ** 2
-    widths = [np.array(each[CENTRAL]) for each in left_out]
-    correlation = float(np.corrcoef(*widths)[0, 1]) if difference else 0.0
+    widths = np.array([each[CENTRAL] for each in left_out])
+    correlation = float(np.corrcoef(widths)[0, 1]) if difference else 0.0
     dimensions = {name: each[0] for name, each in whole[0].items()}
     return Estimate(values, dimensions, variances, int(counts.sum()), correlation)
 

@@ -16,14 +16,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from crazybilliards.model import Chain
 from crazybilliards.particles.coupling import advance_pair, record_pair
 from crazybilliards.particles.laws.avalanche import Tally, make_tally
 from crazybilliards.particles.laws.law import make_scratch
-from crazybilliards.particles.noise import STATE
+from crazybilliards.particles.noise import STATE, make_noise
 from crazybilliards.particles.observers import Observer, Snapshots, restore
 from crazybilliards.particles.run import Run
 from crazybilliards.particles.running.replica import Replica
-from crazybilliards.particles.stepping import bounded
+from crazybilliards.particles.stepping import bounded, make_dynamics
 
 Array = NDArray[np.float64]
 
@@ -182,3 +183,14 @@ def groups_of(samplers: Sequence[Sampler]) -> tuple[list[list[list[Observer]]], 
     groups = [group for sampler in samplers for group in sampler.measured]
     counts = np.concatenate([sampler.counts for sampler in samplers if sampler.measured])
     return [group for group, n in zip(groups, counts, strict=True) if n], counts[counts > 0]
+
+
+def compile_pair() -> None:
+    """Compile the kernels of a pair, or load them from numba's cache."""
+    dynamics = tuple(make_dynamics(Chain(size=2), step, speed=1.0) for step in (0.1, 0.3))
+    y, v = np.zeros((2, 2, 2))
+    scratch = make_scratch(2), make_scratch(2)
+    noise, tally = make_noise(np.random.SeedSequence(0)), make_tally(2, contacts=False)
+    pair = y, v, noise, dynamics, 3, scratch, tally, 1
+    advance_pair(*pair)
+    record_pair(*pair, 1, *np.zeros((2, 2, 1, 2)))
