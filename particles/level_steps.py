@@ -1,6 +1,6 @@
 """The time steps of the levels of a limit dt -> 0, chosen before anything is computed.
 
-The shortest step is such that its error is expected to be a third of the accuracy: that of the
+The shortest step is such that its error is expected to be a quarter of the accuracy: that of the
 noise (``scales.time_step_error``) and that of the springs, (w0 dt)^2/8. The others are longer by
 nine each. Runs at two steps are correlated by about as much whether one is three or nine times as
 long (0.97 to 0.99 for 100 rods at e = 0), and with nine fewer levels do. A step whose velocity
@@ -27,7 +27,7 @@ from crazybilliards.particles.scales import (
 
 GROUPS = 16  # of a level: a standard error is then known to a fifth
 _RATIO, _NARROW_RATIO = 9, 3  # of successive steps; of the one in reserve
-_EXPECTED = 0.35  # bias, in units of the accuracy
+_EXPECTED = 0.25  # bias, in units of the accuracy
 _LONGEST_KICK = 1.5  # in W_v: with a longer step nothing is correlated
 _SPRINGS = 0.5  # longest step, over that of spring or damping
 _LEAST, _PILOT = 64.0, 16.0  # relaxation times: of the base, of a difference
