@@ -12,7 +12,8 @@ together, with the standard error of the jackknife over the groups (``sampler.py
 **How long.** With V the variance times the duration and C the steps of a rod per time, the least
 work for an error s takes durations t_l = sqrt(V_l/C_l) sum_k sqrt(V_k C_k)/s^2. V is that of W_v in
 the centre. It is measured in a pilot round, which counts, too: 64 relaxation times of the base and
-16 of each difference, or four times, sixteen times as long where far more will be needed.
+16 of each difference, or four times, sixteen times as long while that is less than a quarter of the
+work to come.
 
 **From which step.** Steps that are too long to be correlated with the next shorter one do not pay:
 the base is the level from which the work, (sum_k sqrt(V_k C_k))^2, is least. If that is the last
@@ -49,6 +50,7 @@ Array = NDArray[np.float64]
 CENTRAL = "central_velocity_width"
 _LARGEST_BIAS = 0.7  # largest bias without another level, in units of the accuracy
 _GROWTH = 4  # of a level in one round: its variance is not known well before
+_PILOT_SHARE = 0.25  # of the work, for a longer pilot round
 _WORTH = 1.1  # a round that makes no level longer than this does not pay
 
 
@@ -227,9 +229,9 @@ class Levels:
     def _choose_base(self) -> bool:
         """Leave out the levels whose steps are too long to save any work.
 
-        Return False if the pilot round is too short to tell: if a pair is to run many times as
-        long. The spread of a single chain is taken to be the same at all steps: two measured ones
-        would differ by more than they really do.
+        Return False if the pilot round is too short to tell, and a longer one costs little. The
+        spread of a single chain is taken to be the same at all steps: two measured ones would
+        differ by more than they really do.
         """
         levels = list(self.used)
         alone = [estimate(self.samplers[level], difference=False) for level in levels]
@@ -245,9 +247,13 @@ class Levels:
             work.append(math.sqrt(spread * self._cost(level, coupled=False)) + sum(costs))
         base = int(np.argmin(work))
         wanted = self._wanted([spread, *spreads[base + 1 :]], width, 0.0)
-        for level, snapshots in zip(levels[base:], wanted, strict=True):
-            if level and snapshots > _GROWTH * self._target(level):
-                return False
+        pilot = sum(self._target(level) * self._cost(level, level > levels[0]) for level in levels)
+        needed = sum(
+            snapshots * self._cost(level, level > levels[base])
+            for level, snapshots in zip(levels[base:], wanted, strict=True)
+        )
+        if _GROWTH * pilot < _PILOT_SHARE * needed:
+            return False
         samplers = self.samplers[levels[base]]
         if samplers[0].coarser is not None:
             correlation = estimate(samplers, difference=True).correlation
