@@ -27,6 +27,7 @@ VOCABULARY = {
     "mean_displacement": ("mean displacement <x_i - x0_i>", "R"),
     "displacement_width": ("displacement width W_x", "R"),
     "velocity_width": ("velocity width W_v", "R/T"),
+    "central_velocity_width": ("velocity width of the middle tenth of the rods", "R/T"),
     "mean_velocity": ("mean velocity <v_i>", "R/T"),
     "velocity_density": ("probability density of v_i", "T/R"),
     "velocity_outside": ("share of velocities beyond the bins", "1"),

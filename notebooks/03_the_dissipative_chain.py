@@ -39,7 +39,7 @@ import numpy as np
 
 from crazybilliards.comparison import fit_avalanches, fit_border_power_law, fit_scaling
 from crazybilliards.model import Chain
-from crazybilliards.particles import simulate
+from crazybilliards.particles import simulate, simulate_limit
 
 BLUE, ORANGE, GREEN, PINK = "#0072B2", "#E69F00", "#009E73", "#CC79A7"
 
@@ -536,6 +536,25 @@ assert estimated < 0.005
 # the default corrects nothing; there the estimate is $0.06\,r^{3/2}$: at $e = 0.2$ and 0.3 the centre of
 # 100 rods is 0.7 % too cold at the step that `simulate` chooses. A time-step study is part of any result
 # about a dissipative chain.
+
+# %% [markdown]
+# **Does your result depend on $dt$?** Such a study by hand is one way to answer. `simulate_limit` is another:
+# it runs the chain at a long step, and corrects it by differences between pairs of runs under the same noise,
+# at this step and one nine times as short. Two such runs stay close to each other, so the difference is known
+# well after a short time. What it returns is the limit $dt \to 0$, with one error bar for the statistics and for
+# what is left of the time step.
+
+# %%
+vanishing = simulate_limit(sticky, accuracy=0.01, seed=1, observe="widths", progress=False)
+for level in json.loads(vanishing.attrs["provenance"])["levels"]:
+    print(
+        f"dt = {level['time_step']:.4f}: {level['value']:+.4f} ± {level['error']:.4f} "
+        f"from {level['duration']:.0f} time units"
+    )
+third, bar = centre_width(vanishing, share=1 / 3), 0.01 * limit
+print(f"middle third as dt -> 0: {third:.4f}, by the straight line {limit:.4f} ± {limit_error:.4f}")
+assert vanishing.attrs["coupling"] == "strong"
+assert abs(third - limit) < 5 * np.hypot(bar, limit_error)
 
 # %% [markdown]
 # ## Exercises

@@ -45,6 +45,7 @@ class Measurement(Protocol):
     along: ClassVar[tuple[str, ...]]
     single_collisions: ClassVar[bool]
     ensemble: ClassVar[bool]
+    limit: ClassVar[bool]
 
     def memory(self, run: Run) -> float:
         """Return the bytes it would keep for one replica, or one group of an ensemble's."""

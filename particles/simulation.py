@@ -147,12 +147,12 @@ def simulate(
     run = make_run(**asked)
     copies = _replicas(run)
     with announced(progress):
-        _compile_kernels()
+        compile_kernels()
     keeper = None
     if checkpoint is not None:
         keeper = Checkpoint(Path(checkpoint), identity(run), checkpoint_interval)
     with nullcontext() if keeper is None else keeper.resumed(copies):
-        interrupted = run_all(run, copies, threads, keeper, progress)
+        interrupted = run_all(copies, threads, keeper, progress)
     return collect(run, copies, interrupted)
 
 
@@ -170,8 +170,11 @@ def make_run(chain: Chain, *, observe: Any, **arguments: Any) -> Run:
 def _replicas(run: Run) -> list[Replica]:
     """Deal the replicas out to groups, each with observers of its own."""
     streams = np.random.SeedSequence(run.seed).spawn(run.replicas)
+    dynamics = run.dynamics()
     return [
         Replica(
+            run.schedule,
+            dynamics,
             [run.starts[i] for i in members],
             [streams[i] for i in members],
             [observer.prepared(run, members.size) for observer in run.observers],
@@ -181,7 +184,7 @@ def _replicas(run: Run) -> list[Replica]:
     ]
 
 
-def _compile_kernels() -> None:
+def compile_kernels() -> None:
     """Compile every kernel, or load it from numba's cache, by running a chain of two rods."""
     # Counting collisions compiles event_driven.drift, and all that the other operators need.
     dynamics = make_dynamics(Chain(size=2), 0.1, speed=1.0, counted=True)

@@ -163,6 +163,23 @@ def kick(y, v, anchors, kicks, step, part):  # type: ignore[no-untyped-def]
 
 
 @kernel
+def take_step(y, v, kicks, part, dynamics, scratch, tally):  # type: ignore[no-untyped-def]
+    """Kick the rods and, unless it was the LAST half, let them drift; changes ``kicks``, (L,).
+
+    Return the collisions, or -1 if the chain diverged.
+    """
+    step = dynamics.step
+    if part == LAST:
+        kick(y, v, dynamics.anchors, kicks, step, LAST)
+        return 0
+    strength = step.closed_outer if part == FIRST else step.closed
+    if strength != 1.0:
+        strengthen(kicks, scratch.clusters, strength)
+    kick(y, v, dynamics.anchors, kicks, step, part)
+    return drift(y, v, step.time_step, dynamics.law, scratch, tally)
+
+
+@kernel
 def advance(y, v, noise, dynamics, scratch, tally, steps):  # type: ignore[no-untyped-def]
     """Take ``steps`` steps of the chain in place; return the collisions, or -1 if diverged.
 
@@ -172,30 +189,26 @@ def advance(y, v, noise, dynamics, scratch, tally, steps):  # type: ignore[no-un
     """
     if steps == 0:
         return 0
-    anchors, step, kicks = dynamics.anchors, dynamics.step, scratch.kicks
+    step, kicks = dynamics.step, scratch.kicks
     if step.closed != 1.0:
         find_clusters(y, scratch.clusters)
     collisions, row, rows = 0, 0, 0
     # The second half kick of a step is merged into the first one of the next.
-    part, closed = FIRST, step.closed_outer
+    part = FIRST
     due = steps + 1 if step.symmetric else steps
     for taken in range(due):
         if row == rows:  # noise for several steps at once
             row, rows = 0, min(kicks.shape[0], due - taken)
             fill(noise, kicks.ravel()[: rows * y.size])
         if taken == steps:
-            kick(y, v, anchors, kicks[row], step, LAST)
-            break
-        if closed != 1.0:
-            strengthen(kicks[row], scratch.clusters, closed)
-        kick(y, v, anchors, kicks[row], step, part)
-        row += 1
-        met = drift(y, v, step.time_step, dynamics.law, scratch, tally)
+            part = LAST
+        met = take_step(y, v, kicks[row], part, dynamics, scratch, tally)
         if met < 0:
             return -1
+        row += 1
         collisions += met
         if step.symmetric:
-            part, closed = WHOLE, step.closed
+            part = WHOLE
     return collisions
 
 

@@ -19,12 +19,13 @@ STANDS_ON = {
 # What stands on one floor may import what stands there or below, but never in a circle.
 FLOORS = {
     "particles": (
-        {"scales", "noise", "stepping", "laws"},
-        {"schedule", "start"},
+        {"scales", "noise", "stepping", "coupling", "laws"},
+        {"schedule", "start", "level_steps"},
         {"run"},
         {"observers"},
         {"running"},
-        {"simulation"},
+        {"simulation", "multilevel"},
+        {"limit"},
     ),
     "kinetic": (
         {"requirements", "times"},

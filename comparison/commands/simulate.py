@@ -6,7 +6,7 @@ Only the standard library and typer are imported up here, so that ``--help`` ans
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -52,6 +52,13 @@ def command(
     time_step: Annotated[
         float | None, typer.Option(help="Time step [T]; default: from the chain.")
     ] = None,
+    accuracy: Annotated[
+        float | None,
+        typer.Option(
+            help="Relative error wanted of W_v in the centre, 0.01 say: simulates the limit of a "
+            "vanishing time step, for as long as that takes."
+        ),
+    ] = None,
     every: Annotated[
         float | None, typer.Option(help="Time between snapshots [T]; default: 10 time steps.")
     ] = None,
@@ -90,27 +97,38 @@ def command(
     Example: crazybilliards simulate --size 50 --restitution 0.9 --output run.nc
 
     Example: crazybilliards simulate --observe velocities,energy --replicas 4 --output run.nc
+
+    Example: crazybilliards simulate --restitution 0 --accuracy 0.005 --output limit.nc
     """
     from crazybilliards.model import save
-    from crazybilliards.particles import simulate
+    from crazybilliards.particles import simulate, simulate_limit
 
+    common: dict[str, Any] = {
+        "warmup": warmup,
+        "seed": seed,
+        "observe": [name.strip() for name in observe.split(",")],
+        "particles": None if particles is None else numbers("particles", particles, int),
+        "replicas": replicas,
+        "threads": threads,
+        "checkpoint": checkpoint,
+    }
+    if accuracy is not None:
+        _refuse(duration=duration, time_step=time_step, every=every, average=average)
+        _refuse(method=method, stepper=stepper)
     with writing_to(output, file=True):
-        result = simulate(
-            chain,
-            duration=duration,
-            warmup=warmup,
-            time_step=time_step,
-            method=method,  # type: ignore[arg-type]
-            stepper=stepper,  # type: ignore[arg-type]
-            seed=seed,
-            observe=[name.strip() for name in observe.split(",")],
-            particles=None if particles is None else numbers("particles", particles, int),
-            replicas=replicas,
-            average=average,  # type: ignore[arg-type]
-            every=every,
-            threads=threads,
-            checkpoint=checkpoint,
-        )
+        if accuracy is None:
+            result = simulate(
+                chain,
+                duration=duration,
+                time_step=time_step,
+                method=method,  # type: ignore[arg-type]
+                stepper=stepper,  # type: ignore[arg-type]
+                average=average,  # type: ignore[arg-type]
+                every=every,
+                **common,
+            )
+        else:
+            result = simulate_limit(chain, accuracy=accuracy, **common)
         status = result.attrs["status"]
         try:
             if output is not None:
@@ -123,13 +141,30 @@ def command(
     exit_unless_completed(status)
 
 
+def _refuse(**given: object) -> None:
+    """Refuse settings of one run that mean nothing for a limit, unless they are the defaults."""
+    from inspect import signature
+
+    from crazybilliards.particles import simulate
+
+    for name, value in given.items():
+        if value != signature(simulate).parameters[name].default:
+            raise ValueError(f"--{name.replace('_', '-')} has no meaning with --accuracy")
+
+
 def _print(result: xr.Dataset) -> None:
     import json
 
-    time_step = json.loads(result.attrs["provenance"])["schedule"]["time_step"]
+    how = json.loads(result.attrs["provenance"])
+    runs = how.get("levels", [how.get("schedule")])
+    steps = ", ".join(f"{each['time_step']:.3g}" for each in runs if each)
     print(
-        f"{result.attrs['status']} at t = {result.attrs['end_time']:g}, time step {time_step:.3g}"
+        f"{result.attrs['status']} at t = {result.attrs['end_time']:g}, "
+        f"time step{'s' * (len(runs) > 1)} {steps}"
     )
+    if "central_velocity_width" in result:
+        width, error = result.central_velocity_width, result.central_velocity_width_error
+        print(f"W_v in the centre as dt -> 0: {width.item():.5g} +- {error.item():.2g}")
     if "time_step_error" in result.attrs:
         print(
             f"error of the smallest W_v due to the time step: {result.attrs['time_step_error']:.1%}"

@@ -42,7 +42,8 @@ class Case:
     Parameters
     ----------
     job
-        ``"simulate"``, or the name of a theory in :mod:`crazybilliards.comparison.theories`.
+        ``"simulate"``, ``"simulate_limit"`` or the name of a theory in
+        :mod:`crazybilliards.comparison.theories`.
     chain
         The chain.
     settings

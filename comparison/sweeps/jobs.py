@@ -1,4 +1,4 @@
-"""The jobs of a sweep, by name: the simulation and every stationary theory.
+"""The jobs of a sweep, by name: the simulation, its limit, and every stationary theory.
 
 A job is one entry of ``JOBS``. A theory that is added to ``THEORIES``, in
 :mod:`crazybilliards.comparison.theories`, is a job at once.
@@ -17,7 +17,8 @@ import xarray as xr
 from crazybilliards.comparison.theories import THEORIES
 from crazybilliards.model import Chain
 from crazybilliards.model.fingerprint import room_fingerprint
-from crazybilliards.particles import simulate
+from crazybilliards.particles import simulate, simulate_limit
+from crazybilliards.particles.limit import make_runs
 from crazybilliards.particles.simulation import make_run
 
 # Arguments that no number depends on, and those that are no plain values.
@@ -63,6 +64,15 @@ def _steps(chain: Chain, **settings: Any) -> float:
     return float(run.schedule.steps) * chain.size * run.replicas
 
 
+def _limit_steps(chain: Chain, **settings: Any) -> float:
+    """Return the steps before anything is measured, and those of the base that it takes roughly."""
+    steps, runs = make_runs(chain, **settings)
+    warm_up = float(sum(run.warmup_steps for run in runs[:-1] or runs)) * settings["replicas"]
+    # W_v in the centre fluctuates by a half in a time unit: for 10 to 1000 rods, to a factor of 2.
+    measured = (0.5 / settings["accuracy"]) ** 2 / steps.time_steps[0]
+    return chain.size * (warm_up + 2 * measured)
+
+
 def _theory_work(check: Callable[..., Any], chain: Chain, **settings: Any) -> float:
     check(chain, **settings)
     return _THEORY_WORK
@@ -74,7 +84,13 @@ JOBS: dict[str, Job] = {
         work=_steps,
         settings=_settings(simulate),
         source=room_fingerprint("model", "particles"),
-    )
+    ),
+    "simulate_limit": Job(
+        function=partial(simulate_limit, threads=1, progress=False),
+        work=_limit_steps,
+        settings=_settings(simulate_limit),
+        source=room_fingerprint("model", "particles"),
+    ),
 } | {
     name: Job(
         function=theory.solve,

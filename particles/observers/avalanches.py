@@ -23,6 +23,7 @@ class _CountedWaves(Observer):
 
     single_collisions = True
     ensemble = False
+    limit = False
     smallest: ClassVar[int]  # least N_c
 
     def prepare(self, run: Run, copies: int) -> None:

@@ -57,6 +57,8 @@ class Observer(ABC):
         Whether it needs every single collision, not only snapshots.
     ensemble
         Whether it can be averaged over replicas at equal times.
+    limit
+        Whether it reports averages that have a limit of a vanishing time step.
     """
 
     name: ClassVar[str]
@@ -64,6 +66,7 @@ class Observer(ABC):
     along: ClassVar[tuple[str, ...]] = ()
     single_collisions: ClassVar[bool] = False
     ensemble: ClassVar[bool] = True
+    limit: ClassVar[bool] = True
 
     def __str__(self) -> str:
         """Return the name and, if there are any, the parameters."""

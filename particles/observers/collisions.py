@@ -19,6 +19,7 @@ class Collisions(Averaged):
     gives = ("collision_rate",)
     single_collisions = True
     ensemble = False
+    limit = False
 
     def prepare(self, run: Run, copies: int) -> None:
         """Make the sums."""

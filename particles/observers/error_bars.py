@@ -38,6 +38,16 @@ def jackknife(
             for part, divisor in zip(sums, divisors, strict=True)
         ]
     )
+    return value, jackknife_error(value, left_out, counts)
+
+
+def jackknife_error(value: Array, left_out: Array, counts: NDArray[np.int64]) -> Array:
+    """Return the standard error of a value from those with one block left out each, (blocks, ...).
+
+    ``counts`` as in :func:`jackknife`.
+    """
+    number = counts.sum(axis=0)
+    used = (counts > 0) & (number - counts > 0)
     blocks = _behind(used.sum(axis=0), value.ndim)
     used, ratio = (
         _behind(each, left_out.ndim) for each in (used, number / np.where(used, counts, 1))
@@ -47,7 +57,7 @@ def jackknife(
     pseudovalues = ratio * value - (ratio - 1) * left_out
     terms = used * (pseudovalues - mean) ** 2 / (ratio - 1)
     variance = terms.sum(axis=0) / np.maximum(blocks, 1)
-    return value, np.where(blocks < 2, np.inf, np.sqrt(variance))
+    return np.where(blocks < 2, np.inf, np.sqrt(variance))
 
 
 def _behind(array: NDArray[Any], dimensions: int) -> NDArray[Any]:

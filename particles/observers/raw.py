@@ -29,6 +29,7 @@ class Raw(Observer):
     name = "snapshots"
     gives = ("position", "velocity")
     along = ("time",)
+    limit = False
 
     def prepare(self, run: Run, copies: int) -> None:
         """Make the sums."""

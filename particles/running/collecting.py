@@ -42,7 +42,7 @@ def collect(run: Run, replicas: list[Replica], interrupted: bool) -> xr.Dataset:
     diverged = reached < NEVER
     measured = result(
         chain,
-        {name: _only(run.chosen, chain.size, *each) for name, each in variables.items()},
+        {name: only_chosen(run.chosen, chain.size, *each) for name, each in variables.items()},
         coordinates=coordinates,
         source="simulation",
         status="interrupted" if interrupted else "diverged" if diverged else "completed",
@@ -65,7 +65,7 @@ def collect(run: Run, replicas: list[Replica], interrupted: bool) -> xr.Dataset:
     return measured
 
 
-def _only(
+def only_chosen(
     chosen: Integers, size: int, dimensions: tuple[str, ...], values: ArrayLike
 ) -> tuple[tuple[str, ...], ArrayLike]:
     """Keep the chosen particles of a variable that was measured for all of them."""

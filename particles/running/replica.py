@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from crazybilliards.particles.laws.avalanche import Tally, make_tally
-from crazybilliards.particles.laws.law import EVENTS, Scratch, make_scratch
+from crazybilliards.particles.laws.law import EVENTS, make_scratch
 from crazybilliards.particles.noise import STATE, make_noise
 from crazybilliards.particles.observers import Observer, Snapshots, restore
 from crazybilliards.particles.schedule import Schedule
@@ -35,6 +35,8 @@ class Replica:
     them take no more memory than a few.
     """
 
+    schedule: Schedule
+    dynamics: Dynamics
     starts: Sequence[tuple[Array, Array]]
     streams: Sequence[np.random.SeedSequence]
     observers: list[Observer]
@@ -79,75 +81,69 @@ class Replica:
             for name in observer.state():
                 restore(observer, name, state[f"observer {number} {name}"])
 
-    def work(self, dynamics: Dynamics, schedule: Schedule, stop: Event) -> Iterator[int]:
-        """Run, holding the lock during each chunk; yield the steps of every chunk."""
-        chunks = self.run(dynamics, schedule, stop)
+    @property
+    def total(self) -> float:
+        """Time that it has to simulate, warm-up included."""
+        return len(self.starts) * self.schedule.steps * self.schedule.time_step
+
+    @property
+    def done(self) -> float:
+        """Time that it has simulated."""
+        return (self.copy * self.schedule.steps + self.steps) * self.schedule.time_step
+
+    def work(self, stop: Event) -> Iterator[float]:
+        """Run, holding the lock during each chunk; yield what was ``done`` in every chunk."""
+        chunks = self.run(stop)
         while True:
             with self.lock:
-                steps = next(chunks, None)
-            if steps is None:
-                return
-            yield steps
+                before = self.done
+                if next(chunks, None) is None:
+                    return
+                after = self.done
+            yield after - before
 
-    def run(self, dynamics: Dynamics, schedule: Schedule, stop: Event) -> Iterator[int]:
+    def run(self, stop: Event) -> Iterator[int]:
         """Warm up and measure, copy by copy; yield the number of steps after every chunk."""
         while True:
-            yield from self._warm_up(dynamics, schedule, stop)
-            yield from self._measure(dynamics, schedule, stop)
+            yield from self._warm_up(stop)
+            yield from self._measure(stop)
             if stop.is_set() or self.copy + 1 == len(self.starts):
                 return
             self.copy += 1
             self._start()
 
-    def _warm_up(self, dynamics: Dynamics, schedule: Schedule, stop: Event) -> Iterator[int]:
-        scratch = make_scratch(self.y.size)
-        uncounted = make_tally(self.y.size, contacts=False)
-        chunk = max(_CHUNK // self.y.size, 1)
-        while self.steps < schedule.warmup_steps and not (self.over or stop.is_set()):
-            steps = min(chunk, schedule.warmup_steps - self.steps)
-            if not self._advance(dynamics, scratch, uncounted, steps):
+    def _warm_up(self, stop: Event) -> Iterator[int]:
+        scratch = self._scratch()
+        uncounted = make_tally(self.y.shape[-1], contacts=False)
+        while self.steps < self.schedule.warmup_steps and not (self.over or stop.is_set()):
+            steps = min(self._chunk(), self.schedule.warmup_steps - self.steps)
+            if not self._advance(scratch, uncounted, steps):
                 self._diverge(0)
                 return
             self.steps += steps
             yield steps
 
-    def _measure(self, dynamics: Dynamics, schedule: Schedule, stop: Event) -> Iterator[int]:
-        scratch = make_scratch(self.y.size)
-        tally = self._tally(counted=dynamics.law.operator == EVENTS)
-        per_block = schedule.snapshots_per_block
-        chunk = max(_CHUNK // self.y.size, 1)
-        rows = max(chunk // schedule.stride, 1)
-        y_buffer, v_buffer = np.empty((2, min(rows, per_block), self.y.size))
+    def _measure(self, stop: Event) -> Iterator[int]:
+        schedule, chunk = self.schedule, self._chunk()
+        scratch, tally = self._scratch(), self._tally()
+        rows = min(max(chunk // schedule.stride, 1), schedule.snapshots_per_block)
+        y_buffer, v_buffer = np.empty((2, *self.y.shape[:-1], rows, self.y.shape[-1]))
         while self.snapshots < schedule.snapshots and not (self.over or stop.is_set()):
-            block, taken = divmod(self.snapshots, per_block)
-            n = min(len(y_buffer), per_block - taken)
+            block, left = self._block()
+            n = min(rows, left)
             due = schedule.step_of(self.snapshots) - self.steps
             tally.contacts[:] = 0
             if due == 0:  # the start of an ensemble
                 y_buffer[0], v_buffer[0], good, steps = self.y, self.v, 1, 0
             elif due > chunk:  # no snapshot yet, but Ctrl-C and checkpoints must not wait for it
                 n, good, steps = 0, 0, chunk
-                if not self._advance(dynamics, scratch, tally, steps):
+                if not self._advance(scratch, tally, steps):
                     self._diverge(block)
                     return
             else:
-                good = record(
-                    self.y,
-                    self.v,
-                    self.noise,
-                    dynamics,
-                    scratch,
-                    tally,
-                    due,
-                    y_buffer[:n],
-                    v_buffer[:n],
-                )
+                good = self._record(scratch, tally, due, n, y_buffer, v_buffer)
                 steps = good * due
-            snapshots = Snapshots(
-                block, self.snapshots, self.copy, y_buffer[:good], v_buffer[:good], tally.contacts
-            )
-            for observer in self.observers:
-                observer.observe(snapshots)
+            self._observe(block, y_buffer[..., :good, :], v_buffer[..., :good, :], tally)
             # All before the yield, where a checkpoint may be taken.
             self.counts[block] += good
             self.snapshots += good
@@ -156,17 +152,43 @@ class Replica:
                 self._diverge(block)
             yield steps
 
-    def _advance(self, dynamics: Dynamics, scratch: Scratch, tally: Tally, steps: int) -> bool:
+    # What a pair of coupled chains does in its own way, see ``sampler.py``.
+
+    def _chunk(self) -> int:
+        """Return the steps between two looks at Ctrl-C."""
+        return max(_CHUNK // self.y.shape[-1], 1)
+
+    def _scratch(self) -> Any:
+        """Return the arrays that the kernels work in."""
+        return make_scratch(self.y.size)
+
+    def _advance(self, scratch: Any, tally: Tally, steps: int) -> bool:
         """Take steps without snapshots; return whether the chain did not diverge in them."""
-        met = advance(self.y, self.v, self.noise, dynamics, scratch, tally, steps)
-        return bool(met >= 0 and bounded(self.y, self.v, dynamics.fastest))
+        met = advance(self.y, self.v, self.noise, self.dynamics, scratch, tally, steps)
+        return bool(met >= 0 and bounded(self.y, self.v, self.dynamics.fastest))
+
+    def _record(self, scratch: Any, tally: Tally, due: int, n: int, y: Array, v: Array) -> int:
+        """Fill ``n`` rows of the buffers, ``due`` steps apart; return how many are good."""
+        state = self.y, self.v, self.noise, self.dynamics, scratch, tally
+        return int(record(*state, due, y[:n], v[:n]))
+
+    def _block(self) -> tuple[int, int]:
+        """Return the block under way, and how many snapshots it has room for."""
+        block, taken = divmod(self.snapshots, self.schedule.snapshots_per_block)
+        return block, self.schedule.snapshots_per_block - taken
+
+    def _observe(self, block: int, y: Array, v: Array, tally: Tally) -> None:
+        """Hand snapshots of a block to the observers."""
+        snapshots = Snapshots(block, self.snapshots, self.copy, y, v, tally.contacts)
+        for observer in self.observers:
+            observer.observe(snapshots)
 
     def _diverge(self, block: int) -> None:
         self.over, self.reached = True, min(self.reached, block)
 
-    def _tally(self, *, counted: bool) -> Tally:
+    def _tally(self) -> Tally:
         """Return what the kernels write collisions into: counts, and what observers add to it."""
-        tally = make_tally(self.y.size, contacts=counted)
+        tally = make_tally(self.y.size, contacts=self.dynamics.law.operator == EVENTS)
         for observer in self.observers:
             tally = observer.tally(tally)
         return tally

@@ -2,30 +2,32 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from concurrent.futures import FIRST_EXCEPTION, Future, ThreadPoolExecutor, wait
 from threading import Event
 
 from tqdm import tqdm
 
 from crazybilliards.model.process import terminated_like_interrupted
-from crazybilliards.particles.run import Run
 from crazybilliards.particles.running.checkpoint import Checkpoint
 from crazybilliards.particles.running.replica import Replica
 
 
 def run_all(
-    run: Run, replicas: list[Replica], threads: int, keeper: Checkpoint | None, progress: bool
+    replicas: Sequence[Replica],
+    threads: int,
+    keeper: Checkpoint | None,
+    progress: bool,
+    unit: str = " time units",
 ) -> bool:
     """Run the replicas in threads; return whether Ctrl-C or SIGTERM stopped them."""
     stop = Event()
-    schedule, dynamics = run.schedule, run.dynamics()
-    done = sum(replica.copy * schedule.steps + replica.steps for replica in replicas)
     with (
         tqdm(
-            total=run.replicas * schedule.steps * schedule.time_step,
-            initial=done * schedule.time_step,
+            total=sum(replica.total for replica in replicas),
+            initial=sum(replica.done for replica in replicas),
             desc="simulating",
-            unit=" time units",
+            unit=unit,
             unit_scale=True,
             disable=None if progress else True,
         ) as bar,
@@ -34,8 +36,8 @@ def run_all(
     ):
 
         def work(replica: Replica) -> None:
-            for steps in replica.work(dynamics, schedule, stop):
-                bar.update(steps * schedule.time_step)
+            for done in replica.work(stop):
+                bar.update(done)
 
         futures: list[Future[None]] = []
         interrupted = False
@@ -52,7 +54,7 @@ def run_all(
 
 
 def _finish(
-    futures: list[Future[None]], replicas: list[Replica], keeper: Checkpoint | None
+    futures: list[Future[None]], replicas: Sequence[Replica], keeper: Checkpoint | None
 ) -> None:
     """Wait for all, or for the first that fails, and keep the checkpoint; see signals soon."""
     timeout = 0.5 if keeper is None else min(0.5, keeper.interval)

@@ -52,7 +52,7 @@ def test_key_and_seed_follow_from_what_is_not_the_default():
 
 
 def test_every_theory_is_a_job():
-    assert set(JOBS) == {"simulate", *THEORIES}
+    assert set(JOBS) == {"simulate", "simulate_limit", *THEORIES}
     for name, theory in THEORIES.items():
         assert Case(name, Chain(size=3), {}).key
         assert JOBS[name].function is theory.solve
@@ -69,6 +69,8 @@ def test_every_theory_is_a_job():
         ("simulate", {"duration": -1}, "duration must be"),
         ("simulate", {"duration": {"a": 1}}, "plain value"),
         ("simulate", {"observe": ["heat"]}, "observe takes any of"),
+        ("simulate_limit", {"accuracy": 2}, "accuracy must lie between"),
+        ("simulate_limit", {"duration": 100}, "simulate_limit takes any of"),
         ("phase_space", {"duration": 1}, "phase_space takes any of"),
     ],
 )

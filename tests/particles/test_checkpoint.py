@@ -146,8 +146,8 @@ def test_between_two_snapshots_far_apart_a_run_can_be_stopped_and_resumed(tmp_pa
     whole = simulate(chain, **options)
     measure = Replica._measure
 
-    def stopped(replica, dynamics, schedule, stop):
-        for number, steps in enumerate(measure(replica, dynamics, schedule, stop)):
+    def stopped(replica, stop):
+        for number, steps in enumerate(measure(replica, stop)):
             if number == 3:
                 os.kill(os.getpid(), signal.SIGINT)
                 assert stop.wait(120)

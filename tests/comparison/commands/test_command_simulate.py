@@ -6,7 +6,7 @@ import pytest
 import xarray as xr
 
 from crazybilliards.model import Chain, chain_of, load
-from crazybilliards.particles import simulate
+from crazybilliards.particles import simulate, simulate_limit
 
 
 def test_simulate_writes_what_the_function_returns(run, tmp_path):
@@ -39,6 +39,19 @@ def test_simulate_writes_what_the_function_returns(run, tmp_path):
     assert {path.name for path in tmp_path.iterdir()} == {"new", "state"}
 
 
+@pytest.mark.compiled
+def test_an_accuracy_gives_the_limit(run, tmp_path):
+    options = ["--size", 6, "--restitution", 0, "--accuracy", 0.05, "--seed", 2]
+    options += ["--warmup", 20, "--observe", "widths", "--threads", 1]
+    done = run("simulate", *options, "--output", tmp_path / "limit.nc")
+    assert done.returncode == 0, done.stderr
+    settings = {"seed": 2, "warmup": 20.0, "observe": "widths", "progress": False}
+    expected = simulate_limit(Chain(size=6, restitution=0), accuracy=0.05, **settings)
+    xr.testing.assert_identical(load(tmp_path / "limit.nc"), expected)
+    width = expected.central_velocity_width.item()
+    assert f"W_v in the centre as dt -> 0: {width:.5g} +- " in done.stdout
+
+
 def test_simulate_an_ensemble_without_a_file(run, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     options = ["--average", "ensemble", "--size", 3, "--replicas", 2, "--duration", 1]
@@ -62,6 +75,8 @@ def test_simulate_an_ensemble_without_a_file(run, tmp_path, monkeypatch):
         (["--average", "median"], "average must be one of"),
         (["--time-step", "-1"], "time_step must be"),
         (["--gap", "-1"], "gap must be"),
+        (["--accuracy", "2"], "accuracy must lie between"),
+        (["--accuracy", "0.01", "--duration", "50"], "--duration has no meaning with --accuracy"),
         (["--output", "run.txt"], "a file whose name ends in .nc"),
         (["--output", "."], "a file whose name ends in .nc"),
     ],

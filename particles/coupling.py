@@ -1,0 +1,91 @@
+r"""Two chains under the same noise, one at a step some times as long as the other.
+
+Between two snapshots a chain is kicked by the noise of these durations (``stepping.py``): half a
+step, whole steps, half a step. If the ratio is three, say, then in units of the finer step
+
+    finer    | 1/2 |  1  |  1  |  1  |  1  |  1  | 1/2 |
+    coarser  |    3/2    |        3        |    3/2    |        two coarser steps
+
+each coarser kick covers exactly the time of some finer ones. This is so for every odd ratio; with
+an even one the end of a coarser kick would fall into a finer one. Damping and noise alone give a
+velocity, after kicks of the durations t_j, the noise
+
+    eta = sum_j exp(-(gamma/m) sum_(k > j) t_k) sigma(t_j) xi_j,
+
+sigma(t)^2 = (T/m)(1 - exp(-2 gamma t/m)). Its variance is sigma(sum_j t_j)^2, that of one kick of
+the whole duration. The coarser chain is kicked by eta: by the finer one's noise, exactly. The
+eta/sigma of successive kicks are independent normal numbers, since no xi is in two of them, so that
+the coarser chain has the law of a chain at its own step. The finer chain even has its bits. The
+noise of closed contacts is made stronger in each chain where its own contacts are closed
+(``laws/closed_contacts.py``).
+"""
+
+from __future__ import annotations
+
+from crazybilliards.model.kernels import kernel
+from crazybilliards.particles.laws.closed_contacts import find_clusters
+from crazybilliards.particles.noise import fill
+from crazybilliards.particles.stepping import FIRST, LAST, WHOLE, bounded, take_step
+
+REFINEMENT = 3
+
+
+@kernel
+def advance_pair(  # type: ignore[no-untyped-def]
+    y, v, noise, dynamics, ratio, scratch, tally, steps
+):
+    """Take ``steps`` coarser steps of ``ratio`` finer ones each; return -1 if a chain diverged.
+
+    ``y``, ``v``: shape (2, L), the finer chain first; ``dynamics``, ``scratch``: of both, in this
+    order. For the others see ``stepping.advance``.
+    """
+    if steps == 0:
+        return 0
+    finer, coarser = dynamics
+    if finer.step.closed != 1.0:
+        find_clusters(y[0], scratch[0].clusters)
+        find_clusters(y[1], scratch[1].clusters)
+    kicks, together = scratch[0].kicks, scratch[1].kicks[0]
+    together[:] = 0.0
+    row, rows = 0, 0
+    last, middle = ratio * steps, ratio // 2
+    for taken in range(last + 1):
+        if row == rows:  # noise for several steps at once
+            row, rows = 0, min(kicks.shape[0], last + 1 - taken)
+            fill(noise, kicks.ravel()[: rows * y.shape[1]])
+        xi = kicks[row]
+        row += 1
+        part = FIRST if taken == 0 else LAST if taken == last else WHOLE
+        decay = finer.step.decay if part == WHOLE else finer.step.outer_decay
+        sigma = finer.step.noise if part == WHOLE else finer.step.outer_noise
+        for i in range(xi.size):
+            together[i] = decay * together[i] + sigma * xi[i]
+        if take_step(y[0], v[0], xi, part, finer, scratch[0], tally) < 0:
+            return -1
+        if taken % ratio != middle and part != LAST:
+            continue
+        if taken == middle:
+            part = FIRST
+        together /= coarser.step.noise if part == WHOLE else coarser.step.outer_noise
+        if take_step(y[1], v[1], together, part, coarser, scratch[1], tally) < 0:
+            return -1
+        together[:] = 0.0
+    return 0
+
+
+@kernel
+def record_pair(  # type: ignore[no-untyped-def]
+    y, v, noise, dynamics, ratio, scratch, tally, stride, snapshots, y_buffer, v_buffer
+):
+    """Write the states after every ``stride`` coarser steps into the buffers, (2, rows, L).
+
+    Return how many of the ``snapshots`` are good, as ``stepping.record`` does.
+    """
+    for snapshot in range(snapshots):
+        met = advance_pair(y, v, noise, dynamics, ratio, scratch, tally, stride)
+        for chain in range(2):
+            if met < 0 or not bounded(y[chain], v[chain], dynamics[chain].fastest):
+                return snapshot
+            y_buffer[chain, snapshot] = y[chain]
+            v_buffer[chain, snapshot] = v[chain]
+    return snapshots

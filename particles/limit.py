@@ -1,0 +1,293 @@
+"""What the simulation tends to for a vanishing time step: :func:`simulate_limit`."""
+
+from __future__ import annotations
+
+import math
+import os
+import sys
+from collections.abc import Sequence
+from contextlib import nullcontext
+from dataclasses import dataclass
+from functools import cached_property, partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from crazybilliards.model import Chain
+from crazybilliards.model.checks import check_integer, check_real
+from crazybilliards.model.memory import require_memory
+from crazybilliards.model.process import announced, cores
+from crazybilliards.model.vocabulary import result
+from crazybilliards.particles.level_steps import GROUPS, Steps, plan_steps
+from crazybilliards.particles.multilevel import CENTRAL, Levels
+from crazybilliards.particles.observers import Observer, find_observers
+from crazybilliards.particles.run import Run
+from crazybilliards.particles.running.checkpoint import Checkpoint, identity
+from crazybilliards.particles.running.collecting import only_chosen
+from crazybilliards.particles.running.sampler import Sampler, compile_pair
+from crazybilliards.particles.running.threads import run_all
+from crazybilliards.particles.schedule import Schedule
+from crazybilliards.particles.simulation import compile_kernels
+from crazybilliards.particles.stepping import MERGING
+
+_OPEN = 2**40  # snapshots: how many a group gets turns out later
+_JOINED = 3  # copies of what observers keep, while they are joined
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class LevelRun(Run):
+    """The run of one level: steps and snapshots in whole numbers, sums of one block without end."""
+
+    warmup_steps: int
+    stride: int
+
+    @cached_property
+    def schedule(self) -> Schedule:
+        """The steps; as many snapshots as one likes."""
+        assert self.time_step is not None
+        return Schedule(self.time_step, self.warmup_steps, self.stride, 1, _OPEN)
+
+
+def simulate_limit(
+    chain: Chain,
+    *,
+    accuracy: float = 0.01,
+    warmup: float | None = None,
+    merging: float = MERGING,
+    seed: int = 0,
+    observe: str | Observer | Sequence[str | Observer] = ("widths", "density"),
+    particles: Sequence[int] | None = None,
+    replicas: int = 1,
+    threads: int | None = None,
+    checkpoint: str | os.PathLike[str] | None = None,
+    checkpoint_interval: float = 30.0,
+    progress: bool = True,
+) -> xr.Dataset:
+    """Simulate the steady state of the chain in the limit of a vanishing time step.
+
+    The averages of a run at a long step are corrected by those of coupled runs at shorter and
+    shorter ones, until W_v in the centre is as good as asked for: multilevel Monte Carlo. How
+    steps, levels and durations are chosen stands in ``multilevel.py``.
+
+    Parameters
+    ----------
+    chain
+        The chain, with damping and noise: it needs a steady state.
+    accuracy
+        Relative error wanted of the velocity width in the centre (root of the mean <v^2> of the
+        middle tenth of the rods): standard error and bias together. From 1e-4 to 0.1. The work
+        grows as 1/accuracy^2 and a little faster.
+    warmup
+        Time before measuring [T], at every level; None: 12 relaxation times.
+    merging, seed, particles
+        As in :func:`simulate`.
+    observe
+        As in :func:`simulate`, ``"widths"`` among them. ``"snapshots"`` are no averages;
+        collisions and avalanches are counted by the step and have no limit.
+    replicas
+        Independent trajectories at every level; each is warmed up. ``threads`` of all those
+        (None: one per core) run at a time.
+    checkpoint, checkpoint_interval, progress
+        As in :func:`simulate`.
+
+    Returns
+    -------
+    xarray.Dataset
+        In the common vocabulary, every NAME with its NAME_error: one standard error and the
+        remaining bias, squared and added. ``central_velocity_width`` is what ``accuracy`` is
+        about; ``kinetic_energy`` has no time. Densities are sums of differences, and may be
+        negative by an error or so where hardly any rod comes.
+        ``attrs["status"]`` is as of :func:`simulate`; an interrupted run has the errors that it
+        came to. ``attrs["time_step_error"]`` is the remaining relative bias in the centre,
+        ``attrs["coupling"]`` is ``strong``, or ``weak`` where plain runs at the shortest step
+        were cheaper, ``attrs["correlation"]`` that of the widths at the last two steps.
+        The provenance holds every level.
+
+    Raises
+    ------
+    ValueError
+        For a wrong argument, before any work.
+    OSError
+        If the checkpoint cannot be written, before any work. Later on that is a warning.
+    KeyboardInterrupt
+        On Ctrl-C before every level was measured twice.
+
+    Examples
+    --------
+    >>> from crazybilliards.model import Chain
+    >>> limit = simulate_limit(Chain(size=3, restitution=0), accuracy=0.05, progress=False)
+    >>> bool(limit.central_velocity_width_error < 0.06 * limit.central_velocity_width)
+    True
+    """
+    threads = check_integer("threads", cores() if threads is None else threads, least=1)
+    checkpoint_interval = check_real("checkpoint_interval", checkpoint_interval)
+    steps, runs = make_runs(
+        chain,
+        accuracy=accuracy,
+        warmup=warmup,
+        merging=merging,
+        seed=seed,
+        observe=observe,
+        particles=particles,
+        replicas=replicas,
+    )
+    levels = Levels(chain, float(accuracy), steps, _samplers(runs, seed, replicas))
+    samplers = [sampler for level in levels.samplers for sampler in level]
+    with announced(progress):
+        compile_kernels()
+        compile_pair()
+    keeper = None
+    if checkpoint is not None:
+        own = {"accuracy": levels.accuracy, "replicas": replicas, "levels": levels.steps}
+        keeper = Checkpoint(
+            Path(checkpoint), identity(samplers[0].finer) | own, checkpoint_interval
+        )
+    levels.start()
+    with nullcontext() if keeper is None else keeper.resumed(samplers):
+        while True:
+            interrupted = run_all(samplers, threads, keeper, progress, " rod steps")
+            diverged = any(sampler.diverged for sampler in samplers)
+            if interrupted or diverged or not levels.extend():
+                break
+    return _collect(levels, interrupted, progress)
+
+
+def make_runs(
+    chain: Chain,
+    *,
+    accuracy: float,
+    warmup: float | None,
+    merging: float,
+    seed: int,
+    observe: Any,
+    particles: Sequence[int] | None,
+    replicas: int,
+) -> tuple[Steps, list[LevelRun]]:
+    """Check all arguments of :func:`simulate_limit` and plan its levels, without any work.
+
+    Raises
+    ------
+    ValueError
+        For a wrong argument, or if the levels would not fit into memory.
+    """
+    accuracy = check_real("accuracy", accuracy, positive=True)
+    if not 1e-4 <= accuracy <= 0.1:
+        raise ValueError(f"accuracy must lie between 1e-4 and 0.1, got {accuracy:g}")
+    if warmup is not None:
+        warmup = check_real("warmup", warmup)
+    replicas = check_integer("replicas", replicas, least=1)
+    if chain.damping == 0 or chain.amplitude == 0:
+        raise ValueError("the limit of a steady state needs damping and amplitude above 0")
+    observers = find_observers(observe)
+    if not any(observer.name == "widths" for observer in observers):
+        raise ValueError("observe must name 'widths', whose accuracy is asked for")
+    for observer in observers:
+        if not observer.limit:
+            raise ValueError(f"observe: {observer.name!r} has no limit of a vanishing time step")
+    steps = plan_steps(chain, accuracy, warmup, replicas)
+    runs = [
+        LevelRun(
+            chain=chain,
+            duration=math.inf,
+            warmup=None,
+            time_step=time_step,
+            method="event-driven",
+            stepper="splitting",
+            merging=merging,
+            seed=seed,
+            observers=observers,
+            start=None,
+            particles=particles,
+            replicas=1,
+            average="time",
+            every=None,
+            warmup_steps=steps.warmup * steps.per_step(level),
+            stride=steps.stride * steps.per_step(level),
+        )
+        for level, time_step in enumerate(steps.time_steps)
+    ]
+    groups = -(-GROUPS // replicas)
+    kept = sum(observer.memory(runs[0]) for observer in observers)
+    chains = replicas * (2 * len(runs) - 1)
+    require_memory(
+        "observe (ask for fewer particles)", (chains * groups + _JOINED * replicas * groups) * kept
+    )
+    return steps, runs
+
+
+def _samplers(runs: Sequence[LevelRun], seed: int, replicas: int) -> list[list[Sampler]]:
+    """Return the samplers by level and replica, each with noise of its own."""
+    groups = -(-GROUPS // replicas)
+    return [
+        [
+            Sampler(
+                run,
+                runs[level - 1] if level else None,
+                np.random.SeedSequence(seed, spawn_key=(level, replica)),
+                groups,
+            )
+            for replica in range(replicas)
+        ]
+        for level, run in enumerate(runs)
+    ]
+
+
+def _collect(levels: Levels, interrupted: bool, progress: bool) -> xr.Dataset:
+    """Add the levels up to one result."""
+    used = [sampler for level in levels.used for sampler in levels.samplers[level]]
+    diverged = any(sampler.diverged for samplers in levels.samplers for sampler in samplers)
+    finest = used[-1].finer
+    method = finest.provenance() | {
+        "accuracy": levels.accuracy,
+        "replicas": len(levels.samplers[0]),
+    }
+    del method["schedule"]
+    ends = [sampler.steps * sampler.schedule.time_step for sampler in used]
+    collected = partial(
+        result,
+        levels.chain,
+        source="simulation",
+        status="interrupted" if interrupted else "diverged" if diverged else "completed",
+        end_time=min(ends),
+        particles=finest.chosen + 1,
+    )
+    if diverged:  # what long steps do alone is no limit
+        return collected({}, method=method)
+    if min(np.count_nonzero(sampler.counts) for sampler in used) < 2:
+        raise KeyboardInterrupt("not every level was measured yet")
+    terms = levels.terms()
+    bias = levels.bias(terms)
+    variables: dict[str, Any] = {}
+    for name, dimensions in terms[0].dimensions.items():
+        value = sum(term.values[name] for term in terms)
+        error = np.sqrt(sum(term.variances[name] for term in terms) + bias[name] ** 2)
+        for each, values in ((name, value), (f"{name}_error", error)):
+            variables[each] = only_chosen(finest.chosen, levels.chain.size, dimensions, values)
+    coordinates: dict[str, Any] = {}
+    for observer in used[-1].measured[0][0]:
+        coordinates |= observer.coordinates()
+    coordinates.pop("time", None)  # there is none
+    method["levels"] = levels.described(terms)
+    limit = collected(variables, coordinates=coordinates, method=method)
+    limit.attrs["time_step_error"] = float(bias[CENTRAL] / limit[CENTRAL])
+    _describe_coupling(levels, limit, progress)
+    return limit
+
+
+def _describe_coupling(levels: Levels, limit: xr.Dataset, progress: bool) -> None:
+    """Say how well runs at the last two steps are correlated, if there were any."""
+    last = levels.used[-1]
+    if last == 0:  # elastic: one step is all it takes
+        return
+    plain = len(levels.used) == 1
+    correlation = levels.samplers[last][0].correlation if plain else levels.terms()[-1].correlation
+    limit.attrs |= {"coupling": "weak" if plain else "strong", "correlation": correlation}
+    if plain and progress:
+        long, short = levels.steps.time_steps[last - 1 : last + 1]
+        print(
+            f"crazybilliards: runs at the steps {long:.2g} and {short:.2g} are correlated by "
+            f"{correlation:.2f} only: plain runs at {short:.2g} were cheaper",
+            file=sys.stderr,
+        )

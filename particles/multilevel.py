@@ -1,0 +1,262 @@
+r"""The limit of a vanishing time step as a sum over levels: multilevel Monte Carlo.
+
+(Giles, Oper. Res. 56, 607, 2008; Acta Numerica 24, 259, 2015.) For any average Q
+
+    lim Q(dt) = <Q(dt_0)> + <Q(dt_1) - Q(dt_0)> + ... + <Q(dt_n) - Q(dt_(n-1))> + bias.
+
+The base, the first term, takes most of the statistics and is cheap, because its step is long. In a
+difference both chains have the same noise (``coupling.py``): it fluctuates little and needs few of
+the short steps. Its terms are independent, and each has the value of all its groups of snapshots
+together, with the standard error of the jackknife over the groups (``sampler.py``).
+
+**How long.** With V the variance times the duration and C the steps of a rod per time, the least
+work for an error s takes durations t_l = sqrt(V_l/C_l) sum_k sqrt(V_k C_k)/s^2. V is that of W_v in
+the centre. It is measured in a pilot round, which counts, too: 64 relaxation times of the base and
+16 of each difference, or four times, sixteen times as long while that is less than a quarter of the
+work to come.
+
+**From which step.** Steps that are too long to be correlated with the next shorter one do not pay:
+the base is the level from which the work, (sum_k sqrt(V_k C_k))^2, is least. If that is the last
+level, nothing is left to subtract, and the run is a plain one at the shortest step.
+
+**What is left.** The last step is chosen beforehand (``level_steps.py``). The error that it leaves
+is estimated from the last difference D, whose other step is M times as long: D/(M^p - 1) with the
+order p of the scheme in dt. It is 3/2 below the critical restitution, 3/4 above, where the error is
+~ r^(3/2) and r ~ sqrt(dt). If W_v in the centre is further off than 0.7 of the accuracy, a level
+with a third of the step is added. Every error bar is the root of the squared standard errors and
+this bias. For a plain run nothing is subtracted, and the bias is the expected relative one.
+"""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Sequence
+from copy import deepcopy
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crazybilliards.model import Chain
+from crazybilliards.particles.laws.closed_contacts import CRITICAL_RESTITUTION
+from crazybilliards.particles.level_steps import Steps, relative_bias
+from crazybilliards.particles.observers import Observer
+from crazybilliards.particles.observers.error_bars import jackknife_error
+from crazybilliards.particles.running.sampler import Sampler, groups_of
+
+Array = NDArray[np.float64]
+
+CENTRAL = "central_velocity_width"
+_LARGEST_BIAS = 0.7  # largest bias without another level, in units of the accuracy
+_GROWTH = 4  # of a level in one round: its variance is not known well before
+_PILOT_SHARE = 0.25  # of the work, for a longer pilot round
+_WORTH = 1.1  # a round that makes no level longer than this does not pay
+
+
+class Estimate(NamedTuple):
+    """One term of the sum: every variable, its variance, and W_v in the centre in detail."""
+
+    values: dict[str, Array]
+    dimensions: dict[str, tuple[str, ...]]
+    variances: dict[str, Array]
+    snapshots: int
+    correlation: float  # of the widths of both chains; 0 if there is one
+
+    @property
+    def spread(self) -> float:
+        """Variance of W_v in the centre, times the number of snapshots."""
+        return float(self.variances[CENTRAL]) * self.snapshots
+
+
+def _reported(
+    groups: Sequence[Sequence[Sequence[Observer]]], chain: int, counts: NDArray[np.int64]
+) -> dict[str, tuple[tuple[str, ...], Array]]:
+    """Return what the observers of some groups measured together of the finer or coarser chain."""
+    found: dict[str, tuple[tuple[str, ...], Array]] = {}
+    for first, *others in zip(*(group[chain] for group in groups), strict=True):
+        joined = deepcopy(first)
+        joined.join(others)
+        for name, (dimensions, values) in joined.report(counts).items():
+            array = np.asarray(values, dtype=float)
+            if name.endswith("_error") or "block" in dimensions:
+                continue
+            if "time" in dimensions:  # of a steady state: all times are the same
+                array = array.mean(axis=dimensions.index("time"))
+                dimensions = tuple(each for each in dimensions if each != "time")
+            found[name] = dimensions, array
+    rods = found["velocity_width"][1]
+    rank = np.abs(np.arange(rods.size) - (rods.size - 1) / 2)
+    middle = rods[rank <= max(0.05 * rods.size, 0.5)]
+    found[CENTRAL] = (), np.sqrt(np.mean(middle**2))
+    return found
+
+
+def estimate(samplers: Sequence[Sampler], *, difference: bool) -> Estimate:
+    """Return the finer chain's averages, or by how much they exceed the coarser one's."""
+    groups, counts = groups_of(samplers)
+    whole = [_reported(groups, chain, counts) for chain in range(1 + difference)]
+    left_out: list[dict[str, list[Array]]] = [{name: [] for name in whole[0]} for _ in whole]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # said already, of all of them together
+        for out in range(len(groups)):
+            rest = groups[:out] + groups[out + 1 :]
+            for chain, each in enumerate(left_out):
+                for name, (_, found) in _reported(rest, chain, np.delete(counts, out)).items():
+                    each[name].append(found)
+    values: dict[str, Array] = {}
+    variances: dict[str, Array] = {}
+    signs = (1.0, -1.0)[: len(whole)]
+    for name in whole[0]:
+        values[name], without = (
+            np.asarray(sum(sign * np.array(part) for sign, part in zip(signs, parts, strict=True)))
+            for parts in ([each[name][1] for each in whole], [each[name] for each in left_out])
+        )
+        variances[name] = jackknife_error(values[name], without, counts) ** 2
+    widths = np.array([each[CENTRAL] for each in left_out])
+    correlation = float(np.corrcoef(widths)[0, 1]) if difference else 0.0
+    dimensions = {name: each[0] for name, each in whole[0].items()}
+    return Estimate(values, dimensions, variances, int(counts.sum()), correlation)
+
+
+class Levels:
+    """The samplers of all levels, by level and replica: how much each measures, and the sum."""
+
+    def __init__(
+        self, chain: Chain, accuracy: float, steps: Steps, samplers: list[list[Sampler]]
+    ) -> None:
+        self.chain, self.accuracy, self.steps, self.samplers = chain, accuracy, steps, samplers
+        self.groups = sum(sampler.counts.size for sampler in samplers[0])
+
+    @property
+    def used(self) -> range:
+        """The levels of the sum, the base first."""
+        begun = [level for level, each in enumerate(self.samplers) if each[0].target]
+        base = max(level for level in begun if self.samplers[level][0].coarser is None)
+        return range(base, begun[-1] + 1)
+
+    def start(self) -> None:
+        """Ask for the pilot round; the last level is one in reserve if there are several."""
+        for level in range(max(len(self.samplers) - 1, 1)):
+            self._extend(level, self._first(level))
+
+    def extend(self) -> bool:
+        """Ask for what is missing; return whether anything is. It follows from what is measured."""
+        factors = {self._target(level) / self._first(level) for level in self.used}
+        if len(factors) == 1 and not self._choose_base():
+            for level in self.used:
+                self._extend(level, _GROWTH * self._target(level))
+            return True
+        terms = self.terms()
+        width = sum(float(each.values[CENTRAL]) for each in terms)
+        bias = float(self.bias(terms)[CENTRAL]) / width
+        last = len(self.samplers) - 1
+        if bias > _LARGEST_BIAS * self.accuracy and len(terms) > 1 and not self._target(last):
+            self._extend(last, self._first(last))
+            return True
+        wanted = self._wanted([each.spread for each in terms], width, bias)
+        grown = False
+        for level, snapshots in zip(self.used, wanted, strict=True):
+            if snapshots > _WORTH * self._target(level):
+                self._extend(level, min(snapshots, _GROWTH * self._target(level)))
+                grown = True
+        return grown
+
+    def _wanted(self, spreads: Sequence[float], width: float, bias: float) -> list[int]:
+        """Return the snapshots that a group of each of the last levels should have."""
+        levels = self.used[-len(spreads) :]
+        costs = [self._cost(level, level > levels[0]) for level in levels]
+        work = sum(math.sqrt(v * c) for v, c in zip(spreads, costs, strict=True))
+        # Where the bias takes too much, the rest need not be paid for without end.
+        noise = max(self.accuracy**2 - bias**2, self.accuracy**2 / 4) * width**2
+        wanted = [
+            math.ceil(math.sqrt(v / c) * work / noise / self.groups)
+            for v, c in zip(spreads, costs, strict=True)
+        ]
+        return [max(wanted[0], self.steps.least), *wanted[1:]]
+
+    def terms(self) -> list[Estimate]:
+        """Return the base and the differences, as far as they are measured."""
+        return [estimate(self.samplers[each], difference=each > self.used[0]) for each in self.used]
+
+    def bias(self, terms: Sequence[Estimate]) -> dict[str, Array]:
+        """Return what is left of every variable's error from the time step."""
+        if len(terms) == 1:
+            values = terms[0].values
+            step = self.steps.time_steps[self.used[-1]]
+            relative = relative_bias(self.chain, step, float(values[CENTRAL]))
+            return {name: relative * np.abs(value) for name, value in values.items()}
+        order = 1.5 if self.chain.restitution < CRITICAL_RESTITUTION else 0.75
+        rest = self.steps.ratios[self.used[-1]] ** order - 1
+        return {name: np.abs(value) / rest for name, value in terms[-1].values.items()}
+
+    def described(self, terms: Sequence[Estimate]) -> list[dict[str, Any]]:
+        """Return the levels for the provenance; the shares are those in W_v of the centre."""
+        work = sum(sampler.done for samplers in self.samplers for sampler in samplers)
+        variance = sum(float(each.variances[CENTRAL]) for each in terms)
+        return [
+            {
+                "time_step": self.steps.time_steps[level],
+                "subtracted_time_step": self.steps.time_steps[level - 1] if place else None,
+                "snapshots": term.snapshots,
+                "duration": term.snapshots * self.steps.interval,
+                "rod_steps": sum(sampler.done for sampler in self.samplers[level]),
+                "share_of_work": sum(s.done for s in self.samplers[level]) / work,
+                "share_of_variance": float(term.variances[CENTRAL]) / variance,
+                "value": float(term.values[CENTRAL]),
+                "error": math.sqrt(float(term.variances[CENTRAL])),
+                "correlation": term.correlation if place else None,
+            }
+            for place, (level, term) in enumerate(zip(self.used, terms, strict=True))
+        ]
+
+    def _first(self, level: int) -> int:
+        """Return the snapshots of a group of a level in the pilot round."""
+        return self.steps.pilot if level else self.steps.least
+
+    def _target(self, level: int) -> int:
+        return self.samplers[level][0].target
+
+    def _extend(self, level: int, target: int) -> None:
+        for sampler in self.samplers[level]:
+            sampler.extend(target)
+
+    def _cost(self, level: int, coupled: bool) -> float:
+        """Return the steps of a rod from snapshot to snapshot; a snapshot costs about one, too."""
+        steps = self.steps.per_step(level) + (self.steps.per_step(level - 1) if coupled else 0)
+        return float(steps * self.steps.stride + 1 + coupled)
+
+    def _choose_base(self) -> bool:
+        """Leave out the levels whose steps are too long to save any work.
+
+        Return False if the pilot round is too short to tell, and a longer one costs little. The
+        spread of a single chain is taken to be the same at all steps: two measured ones would
+        differ by more than they really do.
+        """
+        levels = list(self.used)
+        alone = [estimate(self.samplers[level], difference=False) for level in levels]
+        spread, width = alone[0].spread, float(alone[-1].values[CENTRAL])
+        spreads = [spread]
+        for level, single in zip(levels[1:], alone[1:], strict=True):
+            difference = estimate(self.samplers[level], difference=True)
+            spreads.append(difference.spread / single.spread * spread)
+        work = []
+        for place, level in enumerate(levels):
+            pairs = zip(spreads[place + 1 :], levels[place + 1 :], strict=True)
+            costs = [math.sqrt(v * self._cost(each, coupled=True)) for v, each in pairs]
+            work.append(math.sqrt(spread * self._cost(level, coupled=False)) + sum(costs))
+        base = int(np.argmin(work))
+        wanted = self._wanted([spread, *spreads[base + 1 :]], width, 0.0)
+        pilot = sum(self._target(level) * self._cost(level, level > levels[0]) for level in levels)
+        needed = sum(
+            snapshots * self._cost(level, level > levels[base])
+            for level, snapshots in zip(levels[base:], wanted, strict=True)
+        )
+        if _GROWTH * pilot < _PILOT_SHARE * needed:
+            return False
+        samplers = self.samplers[levels[base]]
+        if samplers[0].coarser is not None:
+            correlation = estimate(samplers, difference=True).correlation
+            for sampler in samplers:
+                sampler.uncouple(correlation)
+        return True

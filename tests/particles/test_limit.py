@@ -1,0 +1,287 @@
+"""The limit of a vanishing time step: right, with the errors it states, and nothing lost."""
+
+import json
+import signal
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from crazybilliards.kinetic import equilibrium
+from crazybilliards.model import Chain, load
+from crazybilliards.particles import simulate, simulate_limit
+from crazybilliards.particles.level_steps import plan_steps
+from crazybilliards.particles.running.sampler import Sampler
+from crazybilliards.particles.scales import default_time_step, time_step_error
+
+WIDTHS = ("velocity_width", "displacement_width", "mean_displacement", "mean_velocity")
+
+
+def levels(limit):
+    return json.loads(limit.attrs["provenance"])["levels"]
+
+
+def off(one, other, name):
+    """Return the largest deviation in standard errors."""
+    error = np.hypot(one[f"{name}_error"], other[f"{name}_error"])
+    return float(np.abs((one[name] - other[name]) / error.where(error > 0)).max())
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("restitution", [0.0, 0.5])
+def test_it_agrees_with_runs_at_a_far_shorter_step(restitution):
+    chain = Chain(size=10, restitution=restitution)
+    limit = simulate_limit(
+        chain,
+        accuracy=0.003 if restitution == 0 else 0.004,
+        seed=3,
+        observe="widths",
+        progress=False,
+    )
+    step = default_time_step(chain) / 16
+    run = simulate(
+        chain, time_step=step, duration=30_000, replicas=2, seed=3, observe="widths", progress=False
+    )
+    _, *differences = levels(limit)
+    assert differences
+    assert limit.attrs["coupling"] == "strong"
+    for name in WIDTHS:
+        assert off(limit, run, name) < 5, name
+    if restitution == 0:  # the base alone would not do: its step is too long by far
+        correction = abs(sum(each["value"] for each in differences))
+        assert correction > 4 * limit.central_velocity_width_error
+    error = limit.central_velocity_width_error / limit.central_velocity_width
+    assert 0.002 < error < 0.005
+
+
+@pytest.mark.compiled
+def test_one_rod_has_its_exact_widths_and_distribution():
+    """At e = 0, but it meets nobody: several levels, and a limit that is known."""
+    chain = Chain(size=1, restitution=0)
+    observe = ("widths", "velocities", "energy", "density")
+    limit = simulate_limit(chain, accuracy=0.003, seed=1, observe=observe, progress=False)
+    W, s = chain.free_velocity_width, chain.thermal_length
+    exact = {
+        "velocity_width": W,
+        "displacement_width": s,
+        "mean_displacement": 0,
+        "kinetic_energy": chain.temperature / 2,
+        "central_velocity_width": W,
+    }
+    for name, value in exact.items():
+        assert abs((limit[name] - value) / limit[f"{name}_error"]).max() < 5, name
+        assert (limit[f"{name}_error"] < 0.03 * max(W, s)).all()
+    for name, width in (("velocity_density", W), ("density", s)):
+        values = limit[name].squeeze()
+        middle = values[values.dims[0]]
+        gauss = np.exp(-((middle / width) ** 2) / 2) / (np.sqrt(2 * np.pi) * width)
+        inside = gauss > 0.2 * gauss.max()
+        deviation = ((values - gauss) / limit[f"{name}_error"].squeeze()).where(inside)
+        # Bins as wide as 5 % of v have other means than their centres by less than 1e-3.
+        assert float(abs(deviation).max()) < 5, name
+    assert limit.kinetic_energy.dims == ()
+
+
+@pytest.mark.compiled
+def test_an_elastic_chain_takes_one_step():
+    """There is nothing to resolve but the springs, whose error is known."""
+    chain = Chain(size=10)
+    limit = simulate_limit(chain, accuracy=0.005, seed=1, progress=False)
+    exact = equilibrium(chain)
+    [level] = levels(limit)
+    assert 1 < level["time_step"] / default_time_step(chain) < 3
+    assert "coupling" not in limit.attrs
+    for name in WIDTHS[:3]:
+        error = limit[f"{name}_error"]
+        assert float(np.abs((limit[name] - exact[name]) / error).max()) < 5, name
+
+
+@pytest.mark.compiled
+def test_where_coupling_is_weak_it_says_so_and_runs_plainly(capsys):
+    chain = Chain(size=10, restitution=0.95)
+    limit = simulate_limit(chain, accuracy=0.02, seed=1, observe="widths", threads=1)
+    assert limit.attrs["coupling"] == "weak"
+    assert limit.attrs["correlation"] < 0.6
+    [level] = levels(limit)
+    assert level["subtracted_time_step"] is None
+    step, width = level["time_step"], float(limit.central_velocity_width)
+    expected = time_step_error(chain, step, width) + (chain.stiffness / chain.mass * step**2) / 8
+    assert limit.attrs["time_step_error"] == pytest.approx(expected)
+    assert "only: plain runs at" in capsys.readouterr().err
+
+
+@pytest.mark.compiled
+def test_the_error_holds_both_parts():
+    limit = simulate_limit(Chain(size=50, restitution=0), accuracy=0.01, seed=4, progress=False)
+    parts = levels(limit)
+    bias = limit.attrs["time_step_error"] * limit.central_velocity_width
+    whole = np.sqrt(sum(each["error"] ** 2 for each in parts) + bias**2)
+    assert float(limit.central_velocity_width_error) == pytest.approx(float(whole))
+    assert float(bias) == pytest.approx(abs(parts[-1]["value"]) / (9**1.5 - 1))
+    total = sum(each["value"] for each in parts)
+    assert float(limit.central_velocity_width) == pytest.approx(total)
+    assert sum(each["share_of_variance"] for each in parts) == pytest.approx(1)
+
+
+def test_successive_steps_have_odd_ratios_and_common_snapshots():
+    for restitution in (0.0, 0.5, 0.95, 1.0, 1.05):
+        chain = Chain(size=30, restitution=restitution)
+        for accuracy in (1e-3, 0.03):
+            steps = plan_steps(chain, accuracy, None, 1)
+            assert len(steps.time_steps) == len(steps.ratios)
+            for level, step in enumerate(steps.time_steps):
+                assert step * steps.per_step(level) == pytest.approx(steps.time_steps[0])
+            assert all(ratio % 2 == 1 for ratio in steps.ratios)
+            shorter = plan_steps(chain, accuracy / 4, None, 1)
+            assert shorter.time_steps[-1] < steps.time_steps[-1]
+
+
+OPTIONS = {"accuracy": 0.01, "seed": 5, "progress": False, "warmup": 30.0}
+
+
+@pytest.mark.compiled
+def test_the_same_seed_gives_the_same_bits_whatever_the_threads():
+    chain = Chain(size=50, restitution=0)
+    one, two = (simulate_limit(chain, replicas=2, threads=n, **OPTIONS) for n in (1, 2))
+    xr.testing.assert_identical(one, two)
+    other = simulate_limit(chain, replicas=2, **{**OPTIONS, "seed": 6})
+    assert (other.velocity_width != one.velocity_width).all()
+    assert len(levels(one)) > 1
+
+
+@pytest.mark.compiled
+def test_only_chosen_particles_are_reported():
+    chain = Chain(size=6, restitution=0)
+    observe = ("widths", "velocities")
+    every = simulate_limit(chain, observe=observe, **OPTIONS)
+    some = simulate_limit(chain, observe=observe, particles=[1, 4], **OPTIONS)
+    for name in ("velocity_width", "velocity_width_error", "velocity_density"):
+        xr.testing.assert_identical(every[name].sel(particle=[1, 4]), some[name])
+    assert some.central_velocity_width == every.central_velocity_width
+
+
+@pytest.mark.compiled
+def test_ctrl_c_gives_the_limit_with_the_errors_so_far(ctrl_c, tmp_path):
+    chain = Chain(size=12, restitution=0)
+    options = {**OPTIONS, "accuracy": 0.01, "checkpoint": tmp_path / "state"}
+    whole = simulate_limit(chain, **{**options, "checkpoint": None})
+    pilot = {}
+
+    def enough(callers):
+        """Every level has had its pilot round, and some go on."""
+        for sampler in callers:
+            pilot[id(sampler)] = sampler.before
+        return any(pilot.values()) and len(callers) % 3 == 0
+
+    ctrl_c(Sampler, "_block", enough)
+    cut = simulate_limit(chain, **options)
+    assert cut.attrs["status"] == "interrupted"
+    assert cut.central_velocity_width_error > whole.central_velocity_width_error
+    deviation = abs(cut.central_velocity_width - whole.central_velocity_width)
+    assert deviation < 5 * cut.central_velocity_width_error
+    resumed = simulate_limit(chain, **options)
+    xr.testing.assert_identical(resumed, whole)
+
+
+@pytest.mark.compiled
+def test_ctrl_c_before_every_level_was_measured_is_raised(ctrl_c):
+    ctrl_c(Sampler, "_advance", bool)
+    with pytest.raises(KeyboardInterrupt, match="not every level"):
+        simulate_limit(Chain(size=50, restitution=0), warmup=1e6, progress=False)
+
+
+SCRIPT = """
+import sys
+from crazybilliards.model import Chain, save
+from crazybilliards.particles import simulate_limit
+checkpoint, output = sys.argv[1:]
+limit = simulate_limit(
+    Chain(size=50, restitution={e}), accuracy=0.01, replicas=2, threads=2, seed=4,
+    observe=("widths", "density", "energy", "velocities"), progress=False,
+    checkpoint=checkpoint or None, checkpoint_interval=0.05,
+)
+save(limit, output)
+"""
+
+
+def run(script, checkpoint, output, how=None, after=0.0):
+    """Run the script; send it a signal some time ``after`` it has first written its checkpoint."""
+    before = checkpoint.stat().st_mtime_ns if how and checkpoint.exists() else None
+    with subprocess.Popen([sys.executable, "-c", script, str(checkpoint), str(output)]) as process:
+        if how is not None:
+            while not checkpoint.exists() or checkpoint.stat().st_mtime_ns == before:
+                time.sleep(0.01)
+                assert process.poll() is None
+            time.sleep(after)
+            process.send_signal(how)
+        return process.wait(600)
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("e", [0.0, 0.95])
+def test_killed_at_random_moments_and_resumed_it_is_the_undisturbed_run(e, tmp_path):
+    script = SCRIPT.format(e=e)
+    undisturbed, output = tmp_path / "undisturbed.nc", tmp_path / "run.nc"
+    checkpoint = tmp_path / "state"
+    assert run(script, "", undisturbed) == 0
+    generator = np.random.default_rng(int(10 * e))
+    for how in (signal.SIGKILL, signal.SIGTERM, signal.SIGKILL):
+        run(script, checkpoint, output, how, after=generator.random())
+    assert run(script, checkpoint, output) == 0
+    resumed = load(output)
+    assert resumed.attrs["status"] == "completed"
+    xr.testing.assert_identical(resumed, load(undisturbed))
+
+
+@pytest.mark.compiled
+def test_the_checkpoint_of_another_run_is_refused(ctrl_c, tmp_path):
+    ctrl_c(Sampler, "_advance", bool)
+    chain = Chain(size=50, restitution=0)
+    path = tmp_path / "state"
+    with pytest.raises(KeyboardInterrupt):
+        simulate_limit(chain, checkpoint=path, progress=False)
+    for change, reason in (
+        ({"accuracy": 0.02}, "time_step is"),
+        ({"replicas": 2}, "replicas is 1 there and 2 here"),
+        ({"seed": 1}, "seed is 0 there and 1 here"),
+    ):
+        with pytest.raises(ValueError, match=reason):
+            simulate_limit(chain, checkpoint=path, progress=False, **change)
+    with pytest.raises(ValueError, match="a checkpoint of another run"):
+        simulate(chain, checkpoint=path, progress=False)
+
+
+@pytest.mark.parametrize(
+    ("change", "settings", "reason"),
+    [
+        ({}, {"accuracy": 0}, "accuracy must be"),
+        ({}, {"accuracy": 0.5}, "accuracy must lie between 1e-4 and 0.1"),
+        ({}, {"replicas": 0}, "replicas must be"),
+        ({}, {"warmup": -1.0}, "warmup must be"),
+        ({}, {"observe": "density"}, "observe must name 'widths'"),
+        ({}, {"observe": ("widths", "snapshots")}, "'snapshots' has no limit"),
+        ({}, {"observe": ("widths", "collisions")}, "'collisions' has no limit"),
+        ({}, {"observe": ("widths", "avalanches")}, "'avalanches' has no limit"),
+        ({}, {"observe": ("widths", "triggered-collisions")}, "has no limit"),
+        ({}, {"particles": [99]}, "particles must ascend"),
+        ({"amplitude": 0}, {}, "needs damping and amplitude"),
+        ({"damping": 0}, {}, "needs damping and amplitude"),
+        ({"size": 3_000_000}, {"observe": ("widths", "velocities")}, "GiB"),
+    ],
+)
+def test_wrong_arguments_are_refused_before_any_work(change, settings, reason, monkeypatch):
+    monkeypatch.setattr(Sampler, "run", lambda *_: pytest.fail("it works"))
+    with pytest.raises(ValueError, match=reason):
+        simulate_limit(Chain(size=4).replace(**change), progress=False, **settings)
+
+
+@pytest.mark.compiled
+def test_a_chain_without_a_steady_state_is_marked_diverged():
+    chain = Chain(size=150, restitution=1.05, damping=4)
+    limit = simulate_limit(chain, accuracy=0.1, warmup=200.0, observe="widths", progress=False)
+    assert limit.attrs["status"] == "diverged"
+    assert limit.attrs["end_time"] < 200
+    assert "velocity_width" not in limit
