@@ -1,0 +1,287 @@
+r"""The kinetic equation with pair correlations: rods that have hit one another before.
+
+The kinetic equation of :mod:`..kinetic_equation.stationary` lets every collision be one of
+strangers. Here its collision terms carry the factor a(l) of :mod:`.closure`, which follows from the
+covariances of pairs of rods of :mod:`.pair_covariance`; these follow from the density and the
+temperature that the kinetic equation has. Both are solved in turn until they agree:
+
+    f with the factor a  ->  T(l), n_E(l)  ->  covariances h  ->  Theta, n, F, p  ->  a.
+
+No number is fitted, and nothing from a simulation goes in. At e = 1 all h vanish.
+
+Moments of rod i: W_v(i)^2 is the mean of T over the labels of the i-th of L independent points, as
+for independent points, but without a term for the centre of mass, which h contains. With s the
+compression of :mod:`.closure` and q_i the width of independent points,
+
+    <y_i> = y_i(independent)/s,      W_x(i)^2 = q_i^2/s^2 + h_uu(i).
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+from scipy.interpolate import PchipInterpolator
+
+from crazybilliards.kinetic.correlations.cells import Cells, make_cells, of_cells
+from crazybilliards.kinetic.correlations.closure import Closure, background, implied
+from crazybilliards.kinetic.correlations.collision_moments import collision_moments
+from crazybilliards.kinetic.correlations.fixed_point import NoFixedPointError, fixed_point
+from crazybilliards.kinetic.correlations.one_rod import one_rod
+from crazybilliards.kinetic.correlations.pair_covariance import (
+    Background,
+    PairCovariance,
+    linear_response,
+    pair_covariance,
+)
+from crazybilliards.kinetic.correlations.training import model_error
+from crazybilliards.kinetic.kinetic_equation.continuation import (
+    State,
+    continued,
+    elastic_state,
+    fitted,
+    free_units,
+    refined,
+    solved,
+)
+from crazybilliards.kinetic.kinetic_equation.order_statistics import mirrored, points
+from crazybilliards.kinetic.kinetic_equation.profiles import profiles_over_x
+from crazybilliards.kinetic.kinetic_equation.velocity_moments import moments
+from crazybilliards.kinetic.kinetic_equation.velocity_space import one_thread
+from crazybilliards.kinetic.kinetic_equation.weak_form import NotSolvedError, coefficients
+from crazybilliards.kinetic.requirements import require_chain
+from crazybilliards.model import Chain
+from crazybilliards.model.checks import check_integer, check_real
+from crazybilliards.model.memory import require_memory
+from crazybilliards.model.vocabulary import result
+
+Array = NDArray[np.float64]
+
+_CELLS = 22  # of the mesh on which one rod and pairs are brought to agreement
+_FINER = 1.5
+_MOST_CELLS = 60
+_LARGEST_MESH = 150
+_BYTES_PER_CELL = 4e4
+_ROUGHLY = 1e-6
+_AGREEMENT = 0.5  # of the tolerance: what ln a may be off; a width changes by less than half of it
+_MOST_ITERATIONS = 40
+# Where the theory was tested against simulations.
+_LEAST_RESTITUTION = 0.5
+_SIZES = 10, 1000
+_DAMPINGS = 0.14, 1.5  # gamma/sqrt(k m)
+
+
+class Correlated(NamedTuple):
+    """One rod and pairs in agreement."""
+
+    state: State
+    closure: Closure
+    background: Background
+    pairs: PairCovariance
+    residual: float
+    iterations: int
+
+
+def correlated_phase_space(
+    chain: Chain, *, tolerance: float = 2e-3, cells: int | None = None
+) -> xr.Dataset:
+    """Solve the kinetic equation with pair correlations for the stationary state.
+
+    Parameters
+    ----------
+    chain
+        10 to 1000 rods on linear springs without gap, restitution 0.5 to 1, damping 0.14 to 1.5
+        sqrt(k m): where the theory was tested against simulations.
+    tolerance
+        One rod and pairs are brought to agree, and the mesh is refined, until no velocity width
+        changes by more, relatively.
+    cells
+        Cells from the centre to the end of the mesh, in each direction, instead of a refinement;
+        up to 150, which takes 0.9 GB: 40 kB times their square.
+
+    Returns
+    -------
+    xarray.Dataset
+        What ``phase_space`` returns, and over ``contact`` (i with i + 1):
+        ``neighbour_covariance`` <v_i v_{i+1}>, ``relative_temperature`` <(v_i - v_{i+1})^2>/2,
+        ``contact_force``, the mean force between the two, and ``contact_loss``, the power that
+        collisions take; over ``mode`` the ``mode_velocity_variance`` <|v_q|^2> of the waves
+        cos(pi q (i - 1/2)/L), q = 0 being the centre of mass.
+        ``attrs``: ``residual``, the largest disagreement of one rod and pairs, relative;
+        ``iterations``; ``mesh_error``, the largest relative change of a velocity width in the
+        last refinement (NaN if ``cells`` was given); ``cells``; ``model_error``, the largest
+        relative error of W_v over particles 3 to L - 2 in the table of docs/correlations.md at
+        restitutions like this one.
+
+    Raises
+    ------
+    ValueError
+        For a wrong argument; for a chain outside the range above, which names what to use there;
+        if one rod and pairs cannot be brought to agree.
+
+    Examples
+    --------
+    >>> theory = correlated_phase_space(Chain(size=30, restitution=0.9), cells=16)
+    >>> theory.velocity_width.values[[0, 7, 14]].round(3)
+    array([0.257, 0.205, 0.192])
+    """
+    check_correlated_phase_space(chain, tolerance=tolerance, cells=cells)
+    try:
+        found, mesh_error = _solve(chain, tolerance, cells)
+    except (NotSolvedError, NoFixedPointError) as error:
+        raise ValueError(
+            f"the kinetic equation with pair correlations could not be solved: {error}; "
+            "phase_space and simulate take this chain"
+        ) from error
+    return _assemble(found, mesh_error)
+
+
+def check_correlated_phase_space(chain: Chain, *, tolerance: float, cells: int | None) -> None:
+    """Raise for what ``correlated_phase_space`` does not take."""
+    check_real("tolerance", tolerance, positive=True)
+    if cells is not None:
+        check_integer("cells", cells, least=4, most=_LARGEST_MESH)
+    finest = max(_CELLS, cells or round(_FINER * _CELLS))
+    require_memory(f"cells={finest}", _BYTES_PER_CELL * finest**2)
+    theory = "the kinetic equation with pair correlations"
+    require_chain(chain, theory, linear=True, gapless=True)
+    damping = coefficients(chain, free_units(chain), 2).damping
+    for name, value, (low, high), remedy in (
+        ("restitution", chain.restitution, (_LEAST_RESTITUTION, 1.0), "phase_space and simulate"),
+        ("size", chain.size, _SIZES, "phase_space and simulate"),
+        ("damping/sqrt(k m)", damping, _DAMPINGS, "phase_space and simulate"),
+    ):
+        if not low <= value <= high:
+            raise ValueError(
+                f"{theory} was tested for {name} from {low:g} to {high:g} only, got {value:.4g}; "
+                f"{remedy} take other values"
+            )
+
+
+@one_thread
+def _solve(chain: Chain, tolerance: float, cells: int | None) -> tuple[Correlated, float]:
+    found = _agree(chain, tolerance)
+    if cells is not None:
+        return found._replace(state=refined(found.state, cells)), np.nan
+    while True:
+        more = round(_FINER * found.state.space.cells)
+        require_memory(f"cells={more}", _BYTES_PER_CELL * more**2)
+        finer = found._replace(state=refined(found.state, more))
+        error = float(np.abs(np.sqrt(_variances(found.state) / _variances(finer.state)) - 1).max())
+        found = finer
+        if error < tolerance:
+            return found, error
+        if more * _FINER > _MOST_CELLS:
+            raise ValueError(
+                f"the widths are accurate to {error:.1e} only, not to tolerance={tolerance:g}; "
+                f"correlated_phase_space(..., cells={more}) accepts that"
+            )
+
+
+def _agree(chain: Chain, tolerance: float) -> Correlated:
+    """Bring one rod and pairs to agreement, from the state of independent points."""
+    state = refined(continued(chain, elastic_state(chain, 2, _CELLS)), _CELLS)
+    cells, of_collisions = make_cells(chain.size), collision_moments(chain.restitution)
+    damping = coefficients(chain, free_units(chain), 2).damping
+    labels = cells.contacts / chain.size - 0.5
+    known: list[Correlated] = []
+
+    def image(vector: Array) -> Array:
+        nonlocal state
+        closure = Closure.unpacked(vector)
+        factor = PchipInterpolator(labels, np.exp(closure.log_factor))
+        state = fitted(solved(replace(state, factor=factor), _ROUGHLY))
+        rod = one_rod(cells, state)
+        around = background(rod, closure, chain.restitution, damping)
+        pairs = pair_covariance(cells, around, of_collisions, damping)
+        known[:] = [Correlated(state, closure, around, pairs, np.nan, 0)]
+        return implied(chain.size, cells, rod, around, pairs).packed()
+
+    start = Closure.independent(cells).packed()
+    end = fixed_point(image, start, _AGREEMENT * tolerance, _MOST_ITERATIONS)
+    found = known[0]._replace(residual=end.residual, iterations=end.evaluations)
+    growth = linear_response(cells, found.background, of_collisions, damping).largest_growth()
+    if growth > 0:
+        raise NoFixedPointError(f"the state is not stable: deviations grow at the rate {growth:g}")
+    return found
+
+
+def _variances(state: State) -> Array:
+    whole = mirrored(moments(state.space, state.f))
+    return points(state.chain.size, whole).velocity_variance
+
+
+def _assemble(found: Correlated, mesh_error: float) -> xr.Dataset:
+    """Put the solution into the common vocabulary."""
+    state = found.state
+    chain, (length, velocity) = state.chain, free_units(state.chain)
+    cells, rods = make_cells(chain.size), np.arange(chain.size) + 0.5
+    of = points(chain.size, mirrored(moments(state.space, state.f)))
+    y, v, f = state.space.sampled(state.f)
+    fields = profiles_over_x(state)
+    compression = np.exp(found.closure.log_compression)
+    shared_place = np.interp(rods, cells.centres, np.diag(found.pairs.displacement))
+    dataset = result(
+        chain,
+        {
+            "phase_space_density": (("y", "velocity"), chain.size / (length * velocity) * f),
+            **{name: ("x", values) for name, values in fields.items() if name != "x"},
+            "velocity_width": ("particle", velocity * np.sqrt(of.velocity_variance)),
+            "mean_displacement": ("particle", length * of.position / compression),
+            "displacement_width": (
+                "particle",
+                length * np.sqrt(of.position_variance / compression**2 + shared_place),
+            ),
+            **_of_pairs(found, cells),
+        },
+        coordinates={
+            "x": fields["x"],
+            "y": length * y,
+            "velocity": velocity * v,
+            "contact": rods[1:] - 0.5,
+            "mode": np.arange(cells.rods.size),
+        },
+        source="theory",
+        method={"theory": "kinetic equation with pair correlations", "cells": state.space.cells},
+        residual=found.residual,
+    )
+    dataset.attrs |= {
+        "iterations": found.iterations,
+        "mesh_error": mesh_error,
+        "cells": state.space.cells,
+        "model_error": model_error(chain.restitution),
+    }
+    return dataset
+
+
+def _of_pairs(found: Correlated, cells: Cells) -> dict[str, tuple[str, Array]]:
+    chain, (length, velocity) = found.state.chain, free_units(found.state.chain)
+    around, contacts = found.background, np.arange(1.0, chain.size)
+    rate = velocity**3 / length
+    energy = around.strength * collision_moments(chain.restitution).energy
+    energy = energy * around.density * around.temperature**1.5
+    along = {
+        "neighbour_covariance": velocity**2 * around.shared,
+        "relative_temperature": velocity**2 * around.temperature,
+        "contact_force": chain.mass * velocity**2 / length * around.pressure,
+        "contact_loss": chain.mass / 2 * rate * energy,
+    }
+    return {
+        name: ("contact", np.interp(contacts, cells.contacts, values))
+        for name, values in along.items()
+    } | {"mode_velocity_variance": ("mode", velocity**2 * _mode_variances(found, cells))}
+
+
+def _mode_variances(found: Correlated, cells: Cells) -> Array:
+    """Return <|v_q|^2>, v_q = sum_i sqrt((2 or, for q = 0, 1)/L) cos(pi q (i - 1/2)/L) v_i."""
+    size, M = found.state.chain.size, cells.rods.size
+    q = np.arange(M)[:, None]
+    waves = np.sqrt(np.where(q == 0, 1, 2) / size) * np.cos(np.pi * q * cells.centres / size)
+    local = cells.rods * of_cells(found.background.temperature)
+    weighted = waves * cells.rods
+    return np.asarray(
+        (waves**2) @ local + np.einsum("qi,ij,qj->q", weighted, found.pairs.velocity, weighted)
+    )

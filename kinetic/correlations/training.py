@@ -1,0 +1,5 @@
+"""placeholder"""
+
+
+def model_error(e):
+    return 0.0
