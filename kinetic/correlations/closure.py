@@ -48,15 +48,23 @@ from crazybilliards.kinetic.correlations.pair_covariance import Background, Pair
 Array = NDArray[np.float64]
 
 _NEIGHBOUR = 1.0  # rod
+_LEAST = 0.02  # bound of Theta/T, F and 1/s^2 on the way; at the end they must be far from it
 
 
 class Closure(NamedTuple):
     """The unknowns that one-rod distribution and pair covariance must agree on."""
 
     log_factor: Array  # ln a, at contacts
-    shared: Array  # h_c/T, at contacts
+    log_relative: Array  # ln Theta/T, at contacts
     log_clustering: Array  # ln F, at contacts
     log_compression: float  # ln s
+
+    @property
+    def is_possible(self) -> bool:
+        """Whether it is off the bounds that ``implied`` keeps an iteration within."""
+        bound = 0.5 * np.log(_LEAST)
+        lowest = min(self.log_relative.min(), self.log_clustering.min())
+        return bool(lowest > bound and -2 * self.log_compression > bound)
 
     def packed(self) -> Array:
         """Return them as one vector."""
@@ -65,8 +73,8 @@ class Closure(NamedTuple):
     @classmethod
     def unpacked(cls, vector: Array) -> Closure:
         """Return the unknowns of a vector."""
-        factor, shared, clustering = np.split(vector[:-1], 3)
-        return cls(factor, shared, clustering, float(vector[-1]))
+        factor, relative, clustering = np.split(vector[:-1], 3)
+        return cls(factor, relative, clustering, float(vector[-1]))
 
     @classmethod
     def independent(cls, cells: Cells) -> Closure:
@@ -90,7 +98,7 @@ def background(rod: OneRod, closure: Closure, restitution: float, damping: float
     """Return what pairs fluctuate about."""
     compression = np.exp(closure.log_compression)
     density = compression * rod.density
-    temperature = rod.temperature * (1 - closure.shared)
+    temperature = rod.temperature * np.exp(closure.log_relative)
     before = recovery(restitution, damping, density, temperature)
     tails = rod.cubes / (rod.density * rod.temperature**1.5)
     return Background(
@@ -99,7 +107,7 @@ def background(rod: OneRod, closure: Closure, restitution: float, damping: float
         temperature=temperature,
         pressure=rod.force / compression,
         strength=before * np.exp(closure.log_clustering) * tails,
-        shared=closure.shared * rod.temperature,
+        shared=rod.temperature - temperature,
     )
 
 
@@ -114,14 +122,12 @@ def implied(
     )
     clustering = 1 + gap - 1.5 * mixed + 0.375 * temperature
     collective = float(cells.rods @ np.diag(pairs.displacement)) / size
-    if not (clustering.min() > 0 and collective < rod.spread):
-        raise ValueError("the correlations are too large for a linear theory of them")
     loss = around.strength * around.density * around.temperature**1.5
     return Closure(
         np.log(_even((1 - 1 / size) * loss / rod.cubes)),
-        _even(shared / rod.temperature),
-        np.log(_even(clustering)),
-        -0.5 * float(np.log1p(-collective / rod.spread)),
+        np.log(np.maximum(_even(1 - shared / rod.temperature), _LEAST)),
+        np.log(np.maximum(_even(clustering), _LEAST)),
+        -0.5 * float(np.log(max(1 - collective / rod.spread, _LEAST))),
     )
 
 

@@ -17,6 +17,7 @@ Array = NDArray[np.float64]
 _KEPT = 5
 _MIXED = 0.5  # share of the residual in a step
 _LONGEST = 0.4  # change of any unknown in a step
+_MOST_HALVINGS = 6
 _LEAST_DIRECTION = 1e-3  # singular values below this share of the largest say nothing
 
 
@@ -35,22 +36,37 @@ class NoFixedPointError(ValueError):
 def fixed_point(
     image: Callable[[Array], Array], start: Array, tolerance: float, most: int
 ) -> FixedPoint:
-    """Find x = image(x), to ``tolerance`` in its largest component."""
-    x, points, residuals = start, [], []  # type: Array, list[Array], list[Array]
+    """Find x = image(x), to ``tolerance`` in its largest component.
+
+    Where ``image`` raises a ValueError, half the step is tried, as far as six times.
+    """
+    points: list[Array] = []
+    residuals: list[Array] = []
+    x, size, halvings = start, np.nan, 0
     for evaluation in range(1, most + 1):
-        residual = image(x) - x
-        size = float(np.abs(residual).max())
-        if not np.isfinite(size):
-            break
+        try:
+            residual = image(x) - x
+        except ValueError:
+            halvings += 1
+            if not points or halvings > _MOST_HALVINGS:
+                raise
+            x = (x + points[-1]) / 2
+            continue
+        size, halvings = float(np.abs(residual).max()), 0
         if size < tolerance:
             return FixedPoint(x, size, evaluation)
         points, residuals = [*points, x][-_KEPT:], [*residuals, residual][-_KEPT:]
-        step = _MIXED * residual
-        if len(points) > 1:
-            moves, changes = (np.diff(np.array(each), axis=0).T for each in (points, residuals))
-            shares = np.linalg.lstsq(changes, residual, rcond=_LEAST_DIRECTION)[0]
-            step = step - (moves + _MIXED * changes) @ shares
-        x = x + np.clip(step, -_LONGEST, _LONGEST)
+        x = x + _step(points, residuals)
     raise NoFixedPointError(
-        f"one rod and pairs do not agree after {evaluation} iterations: they differ by {size:.2g}"
+        f"one rod and pairs do not agree after {most} iterations: they differ by {size:.2g}"
     )
+
+
+def _step(points: list[Array], residuals: list[Array]) -> Array:
+    """Return the step from the last point, from the way the residuals changed on the last few."""
+    step = _MIXED * residuals[-1]
+    if len(points) > 1:
+        moves, changes = (np.diff(np.array(each), axis=0).T for each in (points, residuals))
+        shares = np.linalg.lstsq(changes, residuals[-1], rcond=_LEAST_DIRECTION)[0]
+        step = step - (moves + _MIXED * changes) @ shares
+    return np.clip(step, -_LONGEST, _LONGEST)

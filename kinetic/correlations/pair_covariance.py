@@ -2,9 +2,9 @@ r"""Stationary covariances of pairs of rods: fluctuating hydrodynamics in the fr
 
 Rods carry slow fields along the chain: displacement u and velocity V of a place, relative
 temperature Theta and third moment q = <c^3> of the velocities about V. With n(l) rods per length
-and the mean gap g(l) at label l, Lambda the energy that collisions take from a contact (of sum v^2, per time), P the
-force between neighbours over the mass, all in units of the free rod (k/m = 1, W = 1, Gamma its
-damping), small deviations from the steady state obey
+and the mean gap g(l) at label l, Lambda what collisions at a contact take from the sum of v^2 per
+time, P the force between neighbours over the mass, all in units of the free rod (k/m = 1, W = 1,
+Gamma its damping), small deviations from the steady state obey
 
     u' = V,
     V' = -Gamma V - u - d_l dPi,       dPi = P (dTheta/Theta - dg/g),   dg = d_l u,

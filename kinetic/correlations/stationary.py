@@ -26,6 +26,7 @@ import xarray as xr
 from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
+from crazybilliards.kinetic.correlations.accuracy import accuracy
 from crazybilliards.kinetic.correlations.cells import Cells, make_cells, of_cells
 from crazybilliards.kinetic.correlations.closure import Closure, background, implied
 from crazybilliards.kinetic.correlations.collision_moments import collision_moments
@@ -34,10 +35,10 @@ from crazybilliards.kinetic.correlations.one_rod import one_rod
 from crazybilliards.kinetic.correlations.pair_covariance import (
     Background,
     PairCovariance,
+    dissipation,
     linear_response,
     pair_covariance,
 )
-from crazybilliards.kinetic.correlations.training import model_error
 from crazybilliards.kinetic.kinetic_equation.continuation import (
     State,
     continued,
@@ -112,9 +113,10 @@ def correlated_phase_space(
         cos(pi q (i - 1/2)/L), q = 0 being the centre of mass.
         ``attrs``: ``residual``, the largest disagreement of one rod and pairs, relative;
         ``iterations``; ``mesh_error``, the largest relative change of a velocity width in the
-        last refinement (NaN if ``cells`` was given); ``cells``; ``model_error``, the largest
-        relative error of W_v over particles 3 to L - 2 in the table of docs/correlations.md at
-        restitutions like this one.
+        last refinement (NaN if ``cells`` was given); ``cells``; ``model_error`` and
+        ``border_error``, the largest relative errors of W_v, of particles 3 to L - 2 and of the
+        two at the ends, that simulations show at restitutions like this one (the table of the
+        page on correlations).
 
     Raises
     ------
@@ -203,6 +205,8 @@ def _agree(chain: Chain, tolerance: float) -> Correlated:
     start = Closure.independent(cells).packed()
     end = fixed_point(image, start, _AGREEMENT * tolerance, _MOST_ITERATIONS)
     found = known[0]._replace(residual=end.residual, iterations=end.evaluations)
+    if not found.closure.is_possible:
+        raise NoFixedPointError("the correlations are too large for a linear theory of them")
     growth = linear_response(cells, found.background, of_collisions, damping).largest_growth()
     if growth > 0:
         raise NoFixedPointError(f"the state is not stable: deviations grow at the rate {growth:g}")
@@ -235,7 +239,7 @@ def _assemble(found: Correlated, mesh_error: float) -> xr.Dataset:
                 "particle",
                 length * np.sqrt(of.position_variance / compression**2 + shared_place),
             ),
-            **_of_pairs(found, cells),
+            **_of_pairs(found, cells, of.velocity_variance),
         },
         coordinates={
             "x": fields["x"],
@@ -252,35 +256,44 @@ def _assemble(found: Correlated, mesh_error: float) -> xr.Dataset:
         "iterations": found.iterations,
         "mesh_error": mesh_error,
         "cells": state.space.cells,
-        "model_error": model_error(chain.restitution),
+        "model_error": accuracy(chain.restitution).inner,
+        "border_error": accuracy(chain.restitution).border,
     }
     return dataset
 
 
-def _of_pairs(found: Correlated, cells: Cells) -> dict[str, tuple[str, Array]]:
+def _of_pairs(
+    found: Correlated, cells: Cells, velocity_variance: Array
+) -> dict[str, tuple[str, Array]]:
     chain, (length, velocity) = found.state.chain, free_units(found.state.chain)
     around, contacts = found.background, np.arange(1.0, chain.size)
-    rate = velocity**3 / length
-    energy = around.strength * collision_moments(chain.restitution).energy
-    energy = energy * around.density * around.temperature**1.5
+    lost = dissipation(around, collision_moments(chain.restitution))
+    shared, pressure, loss = (
+        np.interp(contacts, cells.contacts, values)
+        for values in (around.shared, around.pressure, lost)
+    )
+    own = (velocity_variance[1:] + velocity_variance[:-1]) / 2
     along = {
-        "neighbour_covariance": velocity**2 * around.shared,
-        "relative_temperature": velocity**2 * around.temperature,
-        "contact_force": chain.mass * velocity**2 / length * around.pressure,
-        "contact_loss": chain.mass / 2 * rate * energy,
+        "neighbour_covariance": velocity**2 * shared,
+        "relative_temperature": velocity**2 * (own - shared),
+        "contact_force": chain.mass * velocity**2 / length * pressure,
+        "contact_loss": chain.mass / 2 * velocity**3 / length * loss,
     }
-    return {
-        name: ("contact", np.interp(contacts, cells.contacts, values))
-        for name, values in along.items()
-    } | {"mode_velocity_variance": ("mode", velocity**2 * _mode_variances(found, cells))}
+    return {name: ("contact", values) for name, values in along.items()} | {
+        "mode_velocity_variance": (
+            "mode",
+            velocity**2 * _mode_variances(found, cells, velocity_variance),
+        )
+    }
 
 
-def _mode_variances(found: Correlated, cells: Cells) -> Array:
+def _mode_variances(found: Correlated, cells: Cells, velocity_variance: Array) -> Array:
     """Return <|v_q|^2>, v_q = sum_i sqrt((2 or, for q = 0, 1)/L) cos(pi q (i - 1/2)/L) v_i."""
     size, M = found.state.chain.size, cells.rods.size
     q = np.arange(M)[:, None]
     waves = np.sqrt(np.where(q == 0, 1, 2) / size) * np.cos(np.pi * q * cells.centres / size)
-    local = cells.rods * of_cells(found.background.temperature)
+    own = np.interp(cells.centres, np.arange(size) + 0.5, velocity_variance)
+    local = cells.rods * (own - of_cells(found.background.shared))
     weighted = waves * cells.rods
     return np.asarray(
         (waves**2) @ local + np.einsum("qi,ij,qj->q", weighted, found.pairs.velocity, weighted)
