@@ -22,7 +22,7 @@ from crazybilliards.particles.scales import default_time_step
 RESTITUTIONS = (0.95, 0.9, 0.75, 0.5)
 DURATIONS = {30: 40_000.0, 100: 20_000.0, 300: 8_000.0}
 CHAINS = [Chain(size=size, restitution=e) for size in DURATIONS for e in RESTITUTIONS] + [
-    Chain(size=100, restitution=0.75, damping=damping) for damping in (0.3, 3.0)
+    Chain(size=100, restitution=0.75, damping=damping) for damping in (0.5, 3.0)
 ]
 FINER = 4  # than the default time step
 EVERY = 0.5

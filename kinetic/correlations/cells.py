@@ -27,11 +27,11 @@ class Cells(NamedTuple):
 
 def make_cells(size: int, most: int = MOST) -> Cells:
     """Divide ``size`` rods into at most ``most`` cells, symmetric about the centre."""
-    s = np.linspace(0, 1, min(size, most) + 1)
-    ends = size * s
+    ends = np.arange(size + 1.0)
     if size > most:
+        s = np.linspace(0, 1, most + 1)
         ends = size * (s - np.sin(2 * np.pi * s) / (4 * np.pi))
-    ends = (ends + size - ends[::-1]) / 2  # symmetric to the last bit
+        ends = (ends + size - ends[::-1]) / 2  # symmetric but for rounding
     rods, centres = np.diff(ends), (ends[1:] + ends[:-1]) / 2
     return Cells(rods, centres, ends[1:-1], np.diff(centres))
 

@@ -72,7 +72,7 @@ _MOST_ITERATIONS = 40
 # Where the theory was tested against simulations.
 _LEAST_RESTITUTION = 0.5
 _SIZES = 10, 1000
-_DAMPINGS = 0.14, 1.5  # gamma/sqrt(k m)
+_DAMPINGS = 0.24, 1.5  # gamma/sqrt(k m)
 
 
 class Correlated(NamedTuple):
@@ -94,7 +94,7 @@ def correlated_phase_space(
     Parameters
     ----------
     chain
-        10 to 1000 rods on linear springs without gap, restitution 0.5 to 1, damping 0.14 to 1.5
+        10 to 1000 rods on linear springs without gap, restitution 0.5 to 1, damping 0.24 to 1.5
         sqrt(k m): where the theory was tested against simulations.
     tolerance
         One rod and pairs are brought to agree, and the mesh is refined, until no velocity width
