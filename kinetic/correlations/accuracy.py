@@ -28,7 +28,7 @@ class Accuracy(NamedTuple):
     border: float  # the first and the last
 
 
-def accuracy(restitution: float) -> Accuracy:
+def expected_accuracy(restitution: float) -> Accuracy:
     """Return the larger errors of the two measured restitutions on both sides of this one."""
     above = min(e for e in _MEASURED if e >= restitution)
     below = max(e for e in _MEASURED if e <= restitution)

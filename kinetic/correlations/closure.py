@@ -55,16 +55,19 @@ class Closure(NamedTuple):
     """The unknowns that one-rod distribution and pair covariance must agree on."""
 
     log_factor: Array  # ln a, at contacts
-    log_relative: Array  # ln Theta/T, at contacts
+    shared: Array  # h_c/T, at contacts
     log_clustering: Array  # ln F, at contacts
     log_compression: float  # ln s
 
     @property
     def is_possible(self) -> bool:
         """Whether it is off the bounds that ``implied`` keeps an iteration within."""
-        bound = 0.5 * np.log(_LEAST)
-        lowest = min(self.log_relative.min(), self.log_clustering.min())
-        return bool(lowest > bound and -2 * self.log_compression > bound)
+        lowest = min(
+            float((1 - self.shared).min()),
+            float(np.exp(self.log_clustering).min()),
+            float(np.exp(-2 * self.log_compression)),
+        )
+        return lowest > 2 * _LEAST
 
     def packed(self) -> Array:
         """Return them as one vector."""
@@ -73,8 +76,8 @@ class Closure(NamedTuple):
     @classmethod
     def unpacked(cls, vector: Array) -> Closure:
         """Return the unknowns of a vector."""
-        factor, relative, clustering = np.split(vector[:-1], 3)
-        return cls(factor, relative, clustering, float(vector[-1]))
+        factor, shared, clustering = np.split(vector[:-1], 3)
+        return cls(factor, shared, clustering, float(vector[-1]))
 
     @classmethod
     def independent(cls, cells: Cells) -> Closure:
@@ -98,7 +101,7 @@ def background(rod: OneRod, closure: Closure, restitution: float, damping: float
     """Return what pairs fluctuate about."""
     compression = np.exp(closure.log_compression)
     density = compression * rod.density
-    temperature = rod.temperature * np.exp(closure.log_relative)
+    temperature = rod.temperature * np.maximum(1 - closure.shared, _LEAST)
     before = recovery(restitution, damping, density, temperature)
     tails = rod.cubes / (rod.density * rod.temperature**1.5)
     return Background(
@@ -125,7 +128,7 @@ def implied(
     loss = around.strength * around.density * around.temperature**1.5
     return Closure(
         np.log(_even((1 - 1 / size) * loss / rod.cubes)),
-        np.log(np.maximum(_even(1 - shared / rod.temperature), _LEAST)),
+        np.minimum(_even(shared / rod.temperature), 1 - _LEAST),
         np.log(np.maximum(_even(clustering), _LEAST)),
         -0.5 * float(np.log(max(1 - collective / rod.spread, _LEAST))),
     )

@@ -47,7 +47,7 @@ class CollisionMoments(NamedTuple):
     decay: float
 
 
-def collision_moments(restitution: float) -> CollisionMoments:
+def moments_of_collisions(restitution: float) -> CollisionMoments:
     """Return the moments for a restitution between 0 and 1; all vanish at 1."""
     share = (1 - restitution) / 2
 

@@ -33,7 +33,7 @@ class NoFixedPointError(ValueError):
     """The iteration did not come to an end."""
 
 
-def fixed_point(
+def find_fixed_point(
     image: Callable[[Array], Array], start: Array, tolerance: float, most: int
 ) -> FixedPoint:
     """Find x = image(x), to ``tolerance`` in its largest component.

@@ -36,7 +36,7 @@ class OneRod(NamedTuple):
     spread: float  # <y^2>
 
 
-def one_rod(cells: Cells, state: State) -> OneRod:
+def profiles_of_one_rod(cells: Cells, state: State) -> OneRod:
     """Return the profiles at the contacts."""
     profiles, size = moments(state.space, state.f), state.chain.size
     whole, below = mirrored(profiles), cells.contacts

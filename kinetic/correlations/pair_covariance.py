@@ -92,7 +92,7 @@ def dissipation(state: Background, moments: CollisionMoments) -> Array:
     return np.asarray(state.strength * moments.energy * state.density * state.temperature**1.5)
 
 
-def pair_covariance(
+def solve_pairs(
     cells: Cells, state: Background, moments: CollisionMoments, damping: float
 ) -> PairCovariance:
     """Solve the Lyapunov equation of this module."""

@@ -19,26 +19,22 @@ compression of :mod:`.closure` and q_i the width of independent points,
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
-from crazybilliards.kinetic.correlations.accuracy import accuracy
-from crazybilliards.kinetic.correlations.cells import Cells, make_cells, of_cells
+from crazybilliards.kinetic.correlations.cells import make_cells
 from crazybilliards.kinetic.correlations.closure import Closure, background, implied
-from crazybilliards.kinetic.correlations.collision_moments import collision_moments
-from crazybilliards.kinetic.correlations.fixed_point import NoFixedPointError, fixed_point
-from crazybilliards.kinetic.correlations.one_rod import one_rod
+from crazybilliards.kinetic.correlations.collision_moments import moments_of_collisions
+from crazybilliards.kinetic.correlations.fixed_point import NoFixedPointError, find_fixed_point
+from crazybilliards.kinetic.correlations.one_rod import profiles_of_one_rod
 from crazybilliards.kinetic.correlations.pair_covariance import (
-    Background,
-    PairCovariance,
-    dissipation,
     linear_response,
-    pair_covariance,
+    solve_pairs,
 )
+from crazybilliards.kinetic.correlations.stationary_result import Correlated, assemble
 from crazybilliards.kinetic.kinetic_equation.continuation import (
     State,
     continued,
@@ -49,7 +45,6 @@ from crazybilliards.kinetic.kinetic_equation.continuation import (
     solved,
 )
 from crazybilliards.kinetic.kinetic_equation.order_statistics import mirrored, points
-from crazybilliards.kinetic.kinetic_equation.profiles import profiles_over_x
 from crazybilliards.kinetic.kinetic_equation.velocity_moments import moments
 from crazybilliards.kinetic.kinetic_equation.velocity_space import one_thread
 from crazybilliards.kinetic.kinetic_equation.weak_form import NotSolvedError, coefficients
@@ -57,7 +52,6 @@ from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain
 from crazybilliards.model.checks import check_integer, check_real
 from crazybilliards.model.memory import require_memory
-from crazybilliards.model.vocabulary import result
 
 Array = NDArray[np.float64]
 
@@ -73,17 +67,6 @@ _MOST_ITERATIONS = 40
 _LEAST_RESTITUTION = 0.5
 _SIZES = 10, 1000
 _DAMPINGS = 0.24, 1.5  # gamma/sqrt(k m)
-
-
-class Correlated(NamedTuple):
-    """One rod and pairs in agreement."""
-
-    state: State
-    closure: Closure
-    background: Background
-    pairs: PairCovariance
-    residual: float
-    iterations: int
 
 
 def correlated_phase_space(
@@ -128,7 +111,7 @@ def correlated_phase_space(
     --------
     >>> theory = correlated_phase_space(Chain(size=30, restitution=0.9), cells=16)
     >>> theory.velocity_width.values[[0, 7, 14]].round(3)
-    array([0.257, 0.205, 0.192])
+    array([0.256, 0.204, 0.193])
     """
     check_correlated_phase_space(chain, tolerance=tolerance, cells=cells)
     try:
@@ -138,7 +121,7 @@ def correlated_phase_space(
             f"the kinetic equation with pair correlations could not be solved: {error}; "
             "phase_space and simulate take this chain"
         ) from error
-    return _assemble(found, mesh_error)
+    return assemble(found, mesh_error)
 
 
 def check_correlated_phase_space(chain: Chain, *, tolerance: float, cells: int | None) -> None:
@@ -186,7 +169,7 @@ def _solve(chain: Chain, tolerance: float, cells: int | None) -> tuple[Correlate
 def _agree(chain: Chain, tolerance: float) -> Correlated:
     """Bring one rod and pairs to agreement, from the state of independent points."""
     state = refined(continued(chain, elastic_state(chain, 2, _CELLS)), _CELLS)
-    cells, of_collisions = make_cells(chain.size), collision_moments(chain.restitution)
+    cells, of_collisions = make_cells(chain.size), moments_of_collisions(chain.restitution)
     damping = coefficients(chain, free_units(chain), 2).damping
     labels = cells.contacts / chain.size - 0.5
     known: list[Correlated] = []
@@ -196,14 +179,14 @@ def _agree(chain: Chain, tolerance: float) -> Correlated:
         closure = Closure.unpacked(vector)
         factor = PchipInterpolator(labels, np.exp(closure.log_factor))
         state = fitted(solved(replace(state, factor=factor), _ROUGHLY))
-        rod = one_rod(cells, state)
+        rod = profiles_of_one_rod(cells, state)
         around = background(rod, closure, chain.restitution, damping)
-        pairs = pair_covariance(cells, around, of_collisions, damping)
+        pairs = solve_pairs(cells, around, of_collisions, damping)
         known[:] = [Correlated(state, closure, around, pairs, np.nan, 0)]
         return implied(chain.size, cells, rod, around, pairs).packed()
 
     start = Closure.independent(cells).packed()
-    end = fixed_point(image, start, _AGREEMENT * tolerance, _MOST_ITERATIONS)
+    end = find_fixed_point(image, start, _AGREEMENT * tolerance, _MOST_ITERATIONS)
     found = known[0]._replace(residual=end.residual, iterations=end.evaluations)
     if not found.closure.is_possible:
         raise NoFixedPointError("the correlations are too large for a linear theory of them")
@@ -216,85 +199,3 @@ def _agree(chain: Chain, tolerance: float) -> Correlated:
 def _variances(state: State) -> Array:
     whole = mirrored(moments(state.space, state.f))
     return points(state.chain.size, whole).velocity_variance
-
-
-def _assemble(found: Correlated, mesh_error: float) -> xr.Dataset:
-    """Put the solution into the common vocabulary."""
-    state = found.state
-    chain, (length, velocity) = state.chain, free_units(state.chain)
-    cells, rods = make_cells(chain.size), np.arange(chain.size) + 0.5
-    of = points(chain.size, mirrored(moments(state.space, state.f)))
-    y, v, f = state.space.sampled(state.f)
-    fields = profiles_over_x(state)
-    compression = np.exp(found.closure.log_compression)
-    shared_place = np.interp(rods, cells.centres, np.diag(found.pairs.displacement))
-    dataset = result(
-        chain,
-        {
-            "phase_space_density": (("y", "velocity"), chain.size / (length * velocity) * f),
-            **{name: ("x", values) for name, values in fields.items() if name != "x"},
-            "velocity_width": ("particle", velocity * np.sqrt(of.velocity_variance)),
-            "mean_displacement": ("particle", length * of.position / compression),
-            "displacement_width": (
-                "particle",
-                length * np.sqrt(of.position_variance / compression**2 + shared_place),
-            ),
-            **_of_pairs(found, cells, of.velocity_variance),
-        },
-        coordinates={
-            "x": fields["x"],
-            "y": length * y,
-            "velocity": velocity * v,
-            "contact": rods[1:] - 0.5,
-            "mode": np.arange(cells.rods.size),
-        },
-        source="theory",
-        method={"theory": "kinetic equation with pair correlations", "cells": state.space.cells},
-        residual=found.residual,
-    )
-    dataset.attrs |= {
-        "iterations": found.iterations,
-        "mesh_error": mesh_error,
-        "cells": state.space.cells,
-        "model_error": accuracy(chain.restitution).inner,
-        "border_error": accuracy(chain.restitution).border,
-    }
-    return dataset
-
-
-def _of_pairs(
-    found: Correlated, cells: Cells, velocity_variance: Array
-) -> dict[str, tuple[str, Array]]:
-    chain, (length, velocity) = found.state.chain, free_units(found.state.chain)
-    around, contacts = found.background, np.arange(1.0, chain.size)
-    lost = dissipation(around, collision_moments(chain.restitution))
-    shared, pressure, loss = (
-        np.interp(contacts, cells.contacts, values)
-        for values in (around.shared, around.pressure, lost)
-    )
-    own = (velocity_variance[1:] + velocity_variance[:-1]) / 2
-    along = {
-        "neighbour_covariance": velocity**2 * shared,
-        "relative_temperature": velocity**2 * (own - shared),
-        "contact_force": chain.mass * velocity**2 / length * pressure,
-        "contact_loss": chain.mass / 2 * velocity**3 / length * loss,
-    }
-    return {name: ("contact", values) for name, values in along.items()} | {
-        "mode_velocity_variance": (
-            "mode",
-            velocity**2 * _mode_variances(found, cells, velocity_variance),
-        )
-    }
-
-
-def _mode_variances(found: Correlated, cells: Cells, velocity_variance: Array) -> Array:
-    """Return <|v_q|^2>, v_q = sum_i sqrt((2 or, for q = 0, 1)/L) cos(pi q (i - 1/2)/L) v_i."""
-    size, M = found.state.chain.size, cells.rods.size
-    q = np.arange(M)[:, None]
-    waves = np.sqrt(np.where(q == 0, 1, 2) / size) * np.cos(np.pi * q * cells.centres / size)
-    own = np.interp(cells.centres, np.arange(size) + 0.5, velocity_variance)
-    local = cells.rods * (own - of_cells(found.background.shared))
-    weighted = waves * cells.rods
-    return np.asarray(
-        (waves**2) @ local + np.einsum("qi,ij,qj->q", weighted, found.pairs.velocity, weighted)
-    )

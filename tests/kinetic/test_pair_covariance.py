@@ -6,13 +6,13 @@ from scipy.integrate import dblquad
 
 from crazybilliards.kinetic.correlations.cells import at_distance, make_cells
 from crazybilliards.kinetic.correlations.closure import recovery
-from crazybilliards.kinetic.correlations.collision_moments import collision_moments
-from crazybilliards.kinetic.correlations.fixed_point import NoFixedPointError, fixed_point
+from crazybilliards.kinetic.correlations.collision_moments import moments_of_collisions
+from crazybilliards.kinetic.correlations.fixed_point import NoFixedPointError, find_fixed_point
 from crazybilliards.kinetic.correlations.pair_covariance import (
     Background,
     dissipation,
     linear_response,
-    pair_covariance,
+    solve_pairs,
 )
 
 
@@ -46,7 +46,7 @@ def third(v):
 
 @pytest.mark.parametrize("restitution", [0.5, 0.9])
 def test_collision_moments_are_the_integrals(restitution):
-    found = collision_moments(restitution)
+    found = moments_of_collisions(restitution)
     for name, psi, phi in (
         ("energy", first, first),
         ("temperature", second, second),
@@ -74,8 +74,8 @@ def test_what_a_collision_takes_is_what_it_correlates():
     after, partner = v - share * (v - u), u + share * (v - u)
     lost = np.abs(v - u) * (v**2 + u**2 - after**2 - partner**2) / 2
     error = lost.std() / np.sqrt(v.size)
-    assert abs(lost.mean() - collision_moments(0.6).energy) < 5 * error
-    assert set(collision_moments(1.0)) == {0.0}
+    assert abs(lost.mean() - moments_of_collisions(0.6).energy) < 5 * error
+    assert set(moments_of_collisions(1.0)) == {0.0}
 
 
 @pytest.mark.parametrize("size", [10, 130, 131, 300, 1000])
@@ -135,8 +135,8 @@ def some_background(size):
 def test_the_centre_of_mass_gets_what_collisions_take(size):
     """It is an oscillator of its own, which collisions cannot cool."""
     cells, state = some_background(size)
-    moments, damping = collision_moments(0.7), 0.3
-    pairs = pair_covariance(cells, state, moments, damping)
+    moments, damping = moments_of_collisions(0.7), 0.3
+    pairs = solve_pairs(cells, state, moments, damping)
     N = cells.rods
     fed = cells.distances @ dissipation(state, moments)
     edges = np.concatenate([[state.shared[0]], state.shared, [state.shared[-1]]])
@@ -148,11 +148,11 @@ def test_the_centre_of_mass_gets_what_collisions_take(size):
 @pytest.mark.parametrize("size", [11, 60])
 def test_covariances_are_stationary_symmetric_and_possible(size):
     cells, state = some_background(size)
-    response = linear_response(cells, state, collision_moments(0.7), 0.3)
+    response = linear_response(cells, state, moments_of_collisions(0.7), 0.3)
     h, M, Q = response.stationary(), response.generator, response.noise
     np.testing.assert_allclose(M @ h + h @ M.T, -Q, atol=1e-9 * np.abs(M @ h).max())
     assert response.largest_growth() < 0
-    pairs = pair_covariance(cells, state, collision_moments(0.7), 0.3)
+    pairs = solve_pairs(cells, state, moments_of_collisions(0.7), 0.3)
     for each in (pairs.velocity, pairs.displacement, pairs.gap, pairs.temperature):
         np.testing.assert_allclose(each, each.T, atol=1e-9 * np.abs(each).max())
         np.testing.assert_allclose(each, each[::-1, ::-1], atol=1e-9 * np.abs(each).max())
@@ -164,7 +164,7 @@ def test_covariances_are_stationary_symmetric_and_possible(size):
 def test_free_rods_keep_what_they_have():
     """Without damping and collisions waves neither grow nor decay."""
     cells, state = some_background(40)
-    response = linear_response(cells, state, collision_moments(1.0), 0.0)
+    response = linear_response(cells, state, moments_of_collisions(1.0), 0.0)
     rates = np.linalg.eigvals(response.generator)
     assert np.abs(rates.real).max() < 1e-6 * np.abs(rates.imag).max()
 
@@ -172,17 +172,17 @@ def test_free_rods_keep_what_they_have():
 def test_elastic_rods_are_not_correlated():
     cells, state = some_background(40)
     strangers = state._replace(shared=0 * state.shared)
-    for each in pair_covariance(cells, strangers, collision_moments(1.0), 0.3):
+    for each in solve_pairs(cells, strangers, moments_of_collisions(1.0), 0.3):
         np.testing.assert_array_equal(each, 0)
 
 
 def test_the_fixed_point_is_found_or_refused():
     matrix = np.array([[0.5, -0.9], [0.8, -1.4]])  # a plain iteration would grow
-    found = fixed_point(lambda x: matrix @ x + 1, np.zeros(2), 1e-10, 40)
+    found = find_fixed_point(lambda x: matrix @ x + 1, np.zeros(2), 1e-10, 40)
     np.testing.assert_allclose(found.x, np.linalg.solve(np.eye(2) - matrix, [1, 1]), rtol=1e-8)
     assert found.residual < 1e-10
     with pytest.raises(NoFixedPointError, match="do not agree after 5 iterations"):
-        fixed_point(lambda x: x + 1, np.zeros(2), 1e-3, 5)
+        find_fixed_point(lambda x: x + 1, np.zeros(2), 1e-3, 5)
 
 
 def test_the_fixed_point_goes_back_from_where_there_is_nothing():
@@ -191,7 +191,7 @@ def test_the_fixed_point_goes_back_from_where_there_is_nothing():
             raise ValueError("nothing here")
         return 2 * x**2 + 0.1
 
-    found = fixed_point(image, np.zeros(1), 1e-8, 40)
+    found = find_fixed_point(image, np.zeros(1), 1e-8, 40)
     np.testing.assert_allclose(found.x, (1 - np.sqrt(0.2)) / 4, atol=1e-7)
     with pytest.raises(ValueError, match="nothing here"):
-        fixed_point(image, np.ones(1), 1e-8, 40)
+        find_fixed_point(image, np.ones(1), 1e-8, 40)
