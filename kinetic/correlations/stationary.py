@@ -141,8 +141,8 @@ def check_correlated_phase_space(chain: Chain, *, tolerance: float, cells: int |
     ):
         if not low <= value <= high:
             raise ValueError(
-                f"{theory} has been solved for {name} from {low:g} to {high:g} only, got {value:.4g}; "
-                f"{remedy} take other values"
+                f"{theory} has been solved for {name} from {low:g} to {high:g} only, got "
+                f"{value:.4g}; {remedy} take other values"
             )
 
 

@@ -169,6 +169,18 @@ def test_free_rods_keep_what_they_have():
     assert np.abs(rates.real).max() < 1e-6 * np.abs(rates.imag).max()
 
 
+def test_free_rods_are_compressed_adiabatically():
+    """In one dimension Theta g^2 stays: a gap that grows cools twice as fast."""
+    size, n, Theta = 20, 50.0, 0.3
+    one = np.ones(size - 1)
+    state = Background(n * one, one / n, Theta * one, n * Theta * one, one, 0 * one)
+    generator = linear_response(make_cells(size), state, moments_of_collisions(1.0), 0.0).generator
+    fields = np.zeros(4 * size - 3)
+    fields[size : 2 * size] = np.arange(size) / np.sqrt(Theta)  # V, in units of sqrt(Theta)
+    change = (generator @ fields)[2 * size : 3 * size - 1]  # of Theta, in units of Theta
+    np.testing.assert_allclose(change, -2 * n, rtol=1e-12)
+
+
 def test_elastic_rods_are_not_correlated():
     cells, state = some_background(40)
     strangers = state._replace(shared=0 * state.shared)
