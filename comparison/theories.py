@@ -54,5 +54,10 @@ THEORIES = {
         Theory("equilibrium", "exact equilibrium", "exact.gibbs_measure"),
         Theory("force_balance", "force balance", "statics.balance"),
         Theory("phase_space", "kinetic equation", "kinetic_equation.stationary"),
+        Theory(
+            "correlated_phase_space",
+            "kinetic equation with pair correlations",
+            "correlations.stationary",
+        ),
     )
 }

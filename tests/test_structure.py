@@ -32,6 +32,7 @@ FLOORS = {
         {"statics", "exact"},
         {"starts"},
         {"fluids", "kinetic_equation"},
+        {"correlations"},
     ),
     "comparison": (
         {"coverage", "distances", "drawing", "fits", "theories"},

@@ -11,6 +11,7 @@ import pytest
 from crazybilliards.kinetic import (
     breathing_cloud,
     compressed,
+    correlated_phase_space,
     critical_damping,
     critical_restitution,
     critical_size,
@@ -137,6 +138,10 @@ SOLVERS = {
         lambda chain, units: breathing_cloud(chain, 2 * units.time, stretch=0.5),
     ),
     "phase_space": (DISSIPATIVE, lambda chain, _: phase_space(chain, cells=8)),
+    "correlated_phase_space": (
+        GAPLESS.replace(size=10, restitution=0.9),
+        lambda chain, _: correlated_phase_space(chain, cells=8),
+    ),
     "relax_phase_space": (
         DISSIPATIVE,
         lambda chain, units: relax_phase_space(

@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.interpolate import PchipInterpolator
 
 from crazybilliards.kinetic.kinetic_equation.velocity_moments import fitting_box
 from crazybilliards.kinetic.kinetic_equation.velocity_space import Box, VelocitySpace
@@ -42,6 +43,7 @@ class State:
     space: VelocitySpace
     f: Array
     residual: float
+    factor: PchipInterpolator | None = None  # of the collision terms along the label
 
     def energy(self) -> float:
         """Mean of v^2, 1 at restitution 1."""
@@ -62,7 +64,7 @@ def elastic_state(chain: Chain, order: int, cells: int) -> State:
     y, v = space.axes
     log_density = stationary(elastic).profile(y)[1]
     maxwellian = space.nodal(np.exp(log_density[:, None] - v**2 / 2))
-    return _solved(State(elastic, order, space, maxwellian, np.nan))
+    return solved(State(elastic, order, space, maxwellian, np.nan))
 
 
 def continued(chain: Chain, state: State) -> State:
@@ -76,7 +78,7 @@ def continued(chain: Chain, state: State) -> State:
             # The last step exactly to the goal, not to its neighbour by rounding.
             e = chain.restitution if trial == goal else 1 - 2 * trial / chain.size
             try:
-                found = _solved(replace(state, chain=chain.replace(restitution=e)), _ROUGHLY)
+                found = solved(replace(state, chain=chain.replace(restitution=e)), _ROUGHLY)
                 _require_physical(found, state)
                 found = fitted(found)
             except ValueError as error:
@@ -115,24 +117,25 @@ def fitted(state: State) -> State:
         wanted = fitting_box(state.space, state.f)
         if wanted.fits(state.space.box):
             return state
-        state = _solved(_moved(state, VelocitySpace(wanted, state.space.cells)), _ROUGHLY)
+        state = solved(_moved(state, VelocitySpace(wanted, state.space.cells)), _ROUGHLY)
     return state
 
 
 def refined(state: State, cells: int) -> State:
     """Return the state on as many cells, accurately."""
-    return _solved(_moved(state, VelocitySpace(state.space.box, cells)))
+    return solved(_moved(state, VelocitySpace(state.space.box, cells)))
 
 
 def _moved(state: State, space: VelocitySpace) -> State:
     return replace(state, space=space, f=space.take_over(state.space, state.f))
 
 
-def _solved(guess: State, tolerance: float = 1e-10) -> State:
+def solved(guess: State, tolerance: float = 1e-10) -> State:
+    """Return the steady state of the chain and mesh of ``guess``, found from it."""
     space = guess.space
     f = guess.f / (space.whole_mass @ guess.f)
     numbers = coefficients(guess.chain, free_units(guess.chain), guess.order)
-    f, residual = stationary_state(space, numbers, f, tolerance)
+    f, residual = stationary_state(space, numbers, f, tolerance, guess.factor)
     return replace(guess, f=f, residual=residual)
 
 

@@ -56,21 +56,37 @@ class Rods(NamedTuple):
     velocity_variance: Array
 
 
+class LabelAverage:
+    """Averages of functions of the label over Beta distributions of it, such as that of a rod."""
+
+    def __init__(self, profiles: Moments) -> None:
+        share = np.maximum(profiles.density * profiles.weights, 0.0)
+        self.share = share = share / share.sum()
+        below, beyond = _cumulated(share), _cumulated(share[::-1])[::-1]
+        self.kept = (np.minimum(below, beyond) > _FARTHEST) & (share > _FARTHEST * share.max())
+        # The smaller of the two labels is the more accurate one.
+        self._score = np.where(below < beyond, ndtri(below), -ndtri(beyond))[self.kept]
+
+    def nodes(self, values: Array, first: Array, second: Array) -> Array:
+        """Return values, given along the profiles, at quadrature nodes of Beta(first, second)."""
+        places = np.clip(_scores(first, second), self._score[0], self._score[-1])
+        return np.asarray(PchipInterpolator(self._score, values[self.kept])(places))
+
+    def mean(self, values: Array, first: Array, second: Array) -> Array:
+        """Return the means over Beta(first, second); ``second`` is ``first`` backwards."""
+        return np.asarray(self.nodes(values, first, second) @ _hermite()[1])
+
+
 def points(size: int, profiles: Moments) -> Points:
     """Average over the order statistics of ``size`` points drawn from a distribution."""
-    share = np.maximum(profiles.density * profiles.weights, 0.0)
-    share = share / share.sum()
-    below, beyond = _cumulated(share), _cumulated(share[::-1])[::-1]
+    labels = LabelAverage(profiles)
+    share, kept, weights = labels.share, labels.kept, _hermite()[1]
     mean = float(share @ profiles.y)
     lever = _cumulated((share * (profiles.y - mean))[::-1])[::-1]
-    kept = (np.minimum(below, beyond) > _FARTHEST) & (share > _FARTHEST * share.max())
-    # The smaller of the two labels is the more accurate one.
-    score = np.where(below < beyond, ndtri(below), -ndtri(beyond))[kept]
-    places = np.clip(_scores(size), score[0], score[-1])
-    weights = _hermite()[1]
+    i = np.arange(1.0, size + 1)
 
     def over(values: Array) -> Array:
-        return np.asarray(PchipInterpolator(score, values[kept])(places))
+        return labels.nodes(values, i, size + 1 - i)
 
     position = over(profiles.y)
     flow = np.divide(profiles.flux, profiles.density, out=np.zeros_like(share), where=kept)
@@ -90,7 +106,7 @@ def points(size: int, profiles: Moments) -> Points:
 def rods(chain: Chain, profiles: Moments, length: float, velocity: float) -> Rods:
     """Return the moments of the rods of a steady state, the centre of mass set right."""
     L = chain.size
-    profiles = _mirrored(profiles)
+    profiles = mirrored(profiles)
     of = points(L, profiles)
     share = profiles.density * profiles.weights
     spread = float((share * profiles.y**2).sum() / share.sum())
@@ -106,7 +122,7 @@ def rods(chain: Chain, profiles: Moments, length: float, velocity: float) -> Rod
     )
 
 
-def _mirrored(half: Moments) -> Moments:
+def mirrored(half: Moments) -> Moments:
     """Return both halves of a symmetric state."""
 
     def both(values: Array, parity: int) -> Array:
@@ -133,10 +149,9 @@ def _hermite() -> tuple[Array, Array]:
     return nodes, weights / math.sqrt(2 * math.pi)
 
 
-def _scores(size: int) -> Array:
-    """Return normal scores of all order statistics at the quadrature's nodes, shape (L, nodes)."""
-    i = np.arange(1, size + 1)[:, None]
+def _scores(first: Array, second: Array) -> Array:
+    """Return normal scores of labels distributed as Beta(first, second), shape (..., nodes)."""
     probability = ndtr(_hermite()[0])
     # Smaller labels are the more accurate ones: the upper half by reflection.
-    lower = ndtri(betaincinv(i, size + 1 - i, probability))
-    return np.where(i <= size / 2, lower, -lower[::-1, ::-1])
+    lower = ndtri(betaincinv(first[:, None], second[:, None], probability))
+    return np.where((first <= second)[:, None], lower, -lower[::-1, ::-1])

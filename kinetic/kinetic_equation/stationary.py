@@ -22,7 +22,6 @@ from typing import Literal
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
-from scipy.interpolate import PchipInterpolator
 
 from crazybilliards.kinetic.kinetic_equation.continuation import (
     State,
@@ -32,13 +31,12 @@ from crazybilliards.kinetic.kinetic_equation.continuation import (
     refined,
 )
 from crazybilliards.kinetic.kinetic_equation.order_statistics import Rods, rods
-from crazybilliards.kinetic.kinetic_equation.positions import density_and_label
+from crazybilliards.kinetic.kinetic_equation.profiles import profiles_over_x
 from crazybilliards.kinetic.kinetic_equation.velocity_moments import moments
 from crazybilliards.kinetic.kinetic_equation.weak_form import NotSolvedError, coefficients
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain
 from crazybilliards.model.checks import check_integer, check_real
-from crazybilliards.model.grid import position_grid
 from crazybilliards.model.memory import require_memory
 from crazybilliards.model.vocabulary import result
 
@@ -188,7 +186,7 @@ def _assemble(state: State, of_rods: Rods, mesh_error: float) -> xr.Dataset:
     """Put the solution into the common vocabulary."""
     chain, (length, velocity) = state.chain, free_units(state.chain)
     y, v, f = state.space.sampled(state.f)
-    fields = _fields(state)
+    fields = profiles_over_x(state)
     # With a gap rods are held by anchors of their own, not drawn from one distribution.
     widths = (
         {"displacement_width": ("particle", np.sqrt(of_rods.position_variance))}
@@ -211,49 +209,3 @@ def _assemble(state: State, of_rods: Rods, mesh_error: float) -> xr.Dataset:
     )
     dataset.attrs |= {"mesh_error": mesh_error, "cells": state.space.cells}
     return dataset
-
-
-def _fields(state: State) -> dict[str, Array]:
-    """Density and velocity moments over the positions x = y + 2 R (N - L/2)."""
-    chain, (length, velocity) = state.chain, free_units(state.chain)
-    profiles = moments(state.space, state.f)
-    L, R = chain.size, chain.radius
-    reach = length * state.space.box.length - float(chain.reduced_anchors[-1])
-    x = position_grid(chain, max(reach, length))
-    places = length * profiles.y + 2 * R * L * profiles.label
-
-    def over_x(values: Array, parity: int) -> Array:
-        both = np.concatenate([parity * values[::-1], values])
-        curve = PchipInterpolator(np.concatenate([-places[::-1], places]), both, extrapolate=False)
-        return np.asarray(curve(x))
-
-    y, points = length * profiles.y, L / length * np.maximum(profiles.density, 0.0)
-    density, label = density_and_label(
-        chain,
-        x,
-        np.concatenate([-y[::-1], y]),
-        np.concatenate([points[::-1], points]),
-        L / 2 + L * np.concatenate([-profiles.label[::-1], profiles.label]),
-    )
-    alive = np.maximum(profiles.density, profiles.density.max() * 1e-6)
-    return {
-        "x": x,
-        "density": density,
-        "label": label,
-        "displacement": x - (2 * R + chain.lattice_gap) * (label - L / 2),
-        "velocity_variance": velocity**2 * _continued_flat(over_x(profiles.variance, 1)),
-        "flow_velocity": velocity * np.nan_to_num(over_x(profiles.flux / alive, -1)),
-        "heat_flux": chain.mass
-        * velocity**3
-        * L
-        / length
-        * np.nan_to_num(over_x(profiles.heat_flux, -1)),
-    }
-
-
-def _continued_flat(values: Array) -> Array:
-    """Continue beyond the last known value, which are NaN: a variance stays positive."""
-    known = np.flatnonzero(np.isfinite(values))
-    filled = values.copy()
-    filled[: known[0]], filled[known[-1] + 1 :] = values[known[0]], values[known[-1]]
-    return np.maximum(filled, np.finfo(float).tiny)

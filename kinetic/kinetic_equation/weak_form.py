@@ -24,6 +24,9 @@ Here in units of a length l and a velocity c, and with f normalised to 1:
     I1 = int |v-u| (v-u) f(y,u) du,      I3 = int |v-u|^3 f(y,u) du,
     phi = F l/m c^2,   Gamma = gamma l/m c,   D = A^2 l/2 m^2 c^3,
     kappa = lambda L,  kappa_2 = lambda^2 L/2.
+
+Other theories may put a factor before both collision terms, a function of the label: they do not
+take the collisions for those of points that meet independently.
 """
 
 from __future__ import annotations
@@ -34,6 +37,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.interpolate import PchipInterpolator
 from scipy.sparse import csc_matrix, hstack, vstack
 from scipy.sparse.linalg import LinearOperator, gmres
 from skfem import BilinearForm, LinearForm
@@ -120,22 +124,37 @@ class Mean(NamedTuple):
 class Equation:
     """The weak form on one mesh with one set of coefficients."""
 
-    def __init__(self, space: VelocitySpace, numbers: Coefficients) -> None:
+    def __init__(
+        self, space: VelocitySpace, numbers: Coefficients, factor: PchipInterpolator | None = None
+    ) -> None:
+        """Take the factor before the collision terms as a function of the label N/L - 1/2."""
         self.space, self.numbers = space, numbers
+        self._factor = factor
+        self._slope = factor.derivative() if factor else None
 
     def mean(self, f: Array) -> Mean:
         """Return force and collision integrals for a distribution."""
         table = self.space.table(self.space.interpolate(f)[0])
-        return Mean(self._force(self._displacement(table)), *self._integrals(table))
+        label = self._label(table)
+        force = self._force(self.space.y - self.numbers.gap * label)
+        return Mean(force, *self._integrals(table, self._along_label(label)[0]))
 
-    def _integrals(self, table: Array) -> list[Array]:
-        return [table @ kernel.T for kernel in self.space.kernels]
+    def _integrals(self, table: Array, factor: Array) -> list[Array]:
+        return [factor * (table @ kernel.T) for kernel in self.space.kernels]
 
-    def _displacement(self, table: Array) -> Array:
-        """Distance from the anchor of the label at each y, in mean field."""
+    def _label(self, table: Array) -> Array:
+        """Label N/L - 1/2 at each y: the share of the points between the centre and there."""
         label = self.space.cumulative(table @ self.space.v_weights)
-        centre = 0.0 if self.space.symmetric else 0.5
-        return self.space.y - self.numbers.gap * (label - centre)
+        return label if self.space.symmetric else label - 0.5
+
+    def _along_label(self, label: Array) -> tuple[Array, Array]:
+        """Return the factor of the collision terms and its derivative, as columns."""
+        if self._factor is None or self._slope is None:
+            return np.ones((label.size, 1)), np.zeros((label.size, 1))
+        ends = self._factor.x[[0, -1]]
+        within = np.clip(label, *ends)
+        slope = np.where(within == label, self._slope(within), 0.0)
+        return self._factor(within)[:, None], slope[:, None]
 
     def _force(self, displacement: Array) -> Array:
         force = self.numbers.spring * spring.force(displacement, self.numbers.exponent)
@@ -153,19 +172,27 @@ class Equation:
         """Return the function that maps a change of f to that of the weak form via the means."""
         space, numbers = self.space, self.numbers
         f_table, slope = (space.table(each) for each in space.interpolate(f))
-        displacement = self._displacement(f_table)
+        label = self._label(f_table)
+        displacement = space.y - numbers.gap * label
         stiffness = numbers.spring * spring.stiffness(displacement, numbers.exponent)
+        factor, factor_slope = self._along_label(label)
+        of_f = self._collisions(f_table, slope, self._integrals(f_table, factor_slope))
 
         def change(df: Array) -> Array:
             table = space.table(space.interpolate(df)[0])
-            I1, I3, I3v = self._integrals(table)
-            flux = numbers.drag * f_table * I1 + numbers.diffusion * (slope * I3 + f_table * I3v)
-            if numbers.gap > 0:
-                label = space.cumulative(table @ space.v_weights)
-                flux = flux - (stiffness * numbers.gap * label)[:, None] * f_table
+            flux = self._collisions(f_table, slope, self._integrals(table, factor))
+            if numbers.gap > 0 or self._factor is not None:
+                shift = space.cumulative(table @ space.v_weights)
+                flux = flux - (stiffness * numbers.gap * shift)[:, None] * f_table
+                flux = flux + shift[:, None] * of_f
             return space.assemble(along_velocity, flux=space.field(flux))
 
         return change
+
+    def _collisions(self, f: Array, slope: Array, integrals: list[Array]) -> Array:
+        """Return the flux along v that collisions cause, drag and diffusion."""
+        I1, I3, I3v = integrals
+        return self.numbers.drag * f * I1 + self.numbers.diffusion * (slope * I3 + f * I3v)
 
 
 class NotSolvedError(ValueError):
@@ -181,14 +208,19 @@ class Solution(NamedTuple):
 
 @one_thread
 def stationary_state(
-    space: VelocitySpace, numbers: Coefficients, guess: Array, tolerance: float = 1e-10
+    space: VelocitySpace,
+    numbers: Coefficients,
+    guess: Array,
+    tolerance: float = 1e-10,
+    factor: PchipInterpolator | None = None,
 ) -> Solution:
     """Solve the stationary equation with int f = 1 by Newton's method.
 
     The Jacobian's sparse part (integrals frozen) is factorised; it preconditions GMRES for the
     whole, which the integrals make dense. ``tolerance``: of the last step, relative to max f.
+    ``factor``: of the collision terms, see ``Equation``.
     """
-    f, equation = guess, Equation(space, numbers)
+    f, equation = guess, Equation(space, numbers, factor)
     for _ in range(_MOST_STEPS):
         matrix = equation.matrix(equation.mean(f))
         residual = np.append(-(matrix @ f), 1 - space.whole_mass @ f)

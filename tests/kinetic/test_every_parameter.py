@@ -33,6 +33,7 @@ from crazybilliards.particles import simulate
 
 CHAIN = Chain(size=4)
 DRIVEN = Chain(size=4, restitution=1.1)
+LONGER = Chain(size=10)
 # A start and profiles that do not depend on the chain, so that they cannot hide what it ignores.
 START = displaced(CHAIN, 0.3)[["density", "label", "flow_velocity", "velocity_variance"]]
 START = START.drop_attrs()
@@ -179,6 +180,8 @@ def on_common_positions(values):
 
 
 def start_chain(theory):
+    if theory.startswith("correlated"):
+        return LONGER
     return DRIVEN if theory.startswith("critical") else CHAIN
 
 
@@ -192,7 +195,7 @@ def differ(one, other):
 
 def test_every_field_has_another_value():
     for each in fields(Chain):
-        for chain in (CHAIN, DRIVEN):
+        for chain in (CHAIN, DRIVEN, LONGER):
             assert getattr(chain, each.name) != OTHER[each.name]
             chain.replace(**{each.name: OTHER[each.name]})
 

@@ -1,0 +1,1 @@
+"""The kinetic equation of rods that have hit one another before: pair correlations."""

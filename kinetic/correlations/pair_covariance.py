@@ -1,0 +1,215 @@
+r"""Stationary covariances of pairs of rods: fluctuating hydrodynamics in the frame of labels.
+
+Rods carry slow fields along the chain: displacement u and velocity V of a place, relative
+temperature Theta and third moment q = <c^3> of the velocities about V. With n(l) rods per length
+and the mean gap g(l) at label l, Lambda what collisions at a contact take from the sum of v^2 per
+time, P the force between neighbours over the mass, all in units of the free rod (k/m = 1, W = 1,
+Gamma its damping), small deviations from the steady state obey
+
+    u' = V,
+    V' = -Gamma V - u - d_l dPi,       dPi = P (dTheta/Theta - dg/g),   dg = d_l u,
+    dTheta' = -2 P d_l V - d_l (n q) - 2 Gamma dTheta - Lambda (1.5 dTheta/Theta - dg/g),
+    q' = -3 n Theta d_l dTheta - (3 Gamma + b c n sqrt(Theta)) q:
+
+rods that pass freely, with <c^4> closed as that of a Gaussian, springs, damping and cooling. c is
+``decay`` of :mod:`.collision_moments` and b the strength of collisions. There are no forces beyond
+the ends. Written x' = M x, the covariance of all fields is a local part, that of independent rods
+(Theta delta(l - l') for velocities, g^2 delta(l - l') for gaps), plus h, and
+
+    M h + h M^T + Q = 0.
+
+Q is what collisions do to two independent rods, [psi, phi] of :mod:`.collision_moments`:
+
+    V V:            Lambda + 2 Gamma h_c      Theta Theta:  b [H2, H2] n Theta^(5/2)
+    V q:            b [v, H3] n Theta^(5/2)   q q:          b [H3, H3] n Theta^(7/2)
+    g Theta:        Lambda g, as rods that are close by chance collide, and cool, more often.
+
+**The noise of the velocities** is exact in its sum. Noise feeds the total momentum with 2 Gamma W^2
+per rod, collisions with nothing. The local part holds Theta of it, which damping takes out at the
+rate 2 Gamma Theta. What feeds h is the rest, 2 Gamma (W^2 - Theta), and with the energy of all
+rods, Gamma sum (W^2 - T) = sum Lambda/2, and Theta = T - h_c, that is Lambda + 2 Gamma h_c. The
+centre of mass then has the variance W^2/L whatever e is, as it must.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import block_diag, eigvals, solve_continuous_lyapunov
+
+from crazybilliards.kinetic.correlations.cells import Cells, of_cells
+from crazybilliards.kinetic.correlations.collision_moments import CollisionMoments
+
+Array = NDArray[np.float64]
+
+
+class Background(NamedTuple):
+    """The steady state that pairs fluctuate about, at the M - 1 contacts, in free units."""
+
+    density: Array  # n, rods per length where they collide
+    gap: Array  # g, the mean gap of two rods
+    temperature: Array  # Theta
+    pressure: Array  # P
+    strength: Array  # b
+    shared: Array  # h_c, the covariance of neighbours' velocities
+
+
+class PairCovariance(NamedTuple):
+    """Stationary covariances h between M cells or M - 1 contacts, in free units."""
+
+    velocity: Array  # of cells
+    displacement: Array  # of cells
+    gap: Array  # of contacts, relative to the mean gaps
+    gap_temperature: Array  # of contacts, relative to both means
+    temperature: Array  # of contacts, relative to the means
+
+
+class LinearResponse(NamedTuple):
+    """M and Q for a chain, in even and odd halves under its mirror image."""
+
+    generator: Array
+    noise: Array
+    bases: tuple[Array, Array]  # columns: even, odd
+
+    def stationary(self) -> Array:
+        """Return h."""
+        h = np.zeros_like(self.noise)
+        for basis in self.bases:
+            generator, noise = (basis.T @ each @ basis for each in (self.generator, self.noise))
+            half = solve_continuous_lyapunov(generator, -noise)
+            h += basis @ ((half + half.T) / 2) @ basis.T
+        return h
+
+    def largest_growth(self) -> float:
+        """Return the largest rate at which a deviation grows; negative: all of them decay."""
+        return max(float(eigvals(b.T @ self.generator @ b).real.max()) for b in self.bases)
+
+
+def dissipation(state: Background, moments: CollisionMoments) -> Array:
+    """Return Lambda at the contacts."""
+    return np.asarray(state.strength * moments.energy * state.density * state.temperature**1.5)
+
+
+def solve_pairs(
+    cells: Cells, state: Background, moments: CollisionMoments, damping: float
+) -> PairCovariance:
+    """Solve the Lyapunov equation of this module."""
+    scale = _scales(cells, state)
+    h = linear_response(cells, state, moments, damping).stationary() * np.outer(scale, scale)
+    u, V, Th, _ = _parts(cells.rods.size)
+    relative = _steps(cells) / _mean_gaps(cells, state)[:, None]
+    return PairCovariance(
+        velocity=h[V, V],
+        displacement=h[u, u],
+        gap=relative @ h[u, u] @ relative.T,
+        gap_temperature=relative @ h[u, Th] / state.temperature,
+        temperature=h[Th, Th] / np.outer(state.temperature, state.temperature),
+    )
+
+
+def linear_response(
+    cells: Cells, state: Background, moments: CollisionMoments, damping: float
+) -> LinearResponse:
+    """Return M and Q, every field in units of its own size, which keeps them well conditioned."""
+    M, scale = cells.rods.size, _scales(cells, state)
+    generator = _generator(cells, state, moments, damping) * scale / scale[:, None]
+    noise = _noise(cells, state, moments, damping) / np.outer(scale, scale)
+    fields = ((M, -1), (M, -1), (M - 1, 1), (M - 2, -1))  # u, V and q change sign in the mirror
+    even, odd = (
+        block_diag(*(_mirror_basis(size, parity * sign) for size, sign in fields))
+        for parity in (1, -1)
+    )
+    return LinearResponse(generator, noise, (even, odd))
+
+
+def _generator(cells: Cells, state: Background, moments: CollisionMoments, damping: float) -> Array:
+    M, N, apart, step = cells.rods.size, cells.rods, cells.distances, _steps(cells)
+    n, Theta, P, gaps = state.density, state.temperature, state.pressure, _mean_gaps(cells, state)
+    energy = dissipation(state, moments)
+    u, V, Th, q = _parts(M)
+    A = np.zeros((4 * M - 3, 4 * M - 3))
+    force = step.T / N[:, None]  # minus the difference of the pressures on both sides
+    A[u, V] = np.eye(M)
+    A[V, V] = -damping * np.eye(M)
+    A[V, u] = -np.eye(M) - force @ (step * (P / gaps)[:, None])
+    A[V, Th] = force * (P / Theta)
+    A[Th, V] = -2 * (P / apart)[:, None] * step
+    A[Th, u] = (energy / gaps)[:, None] * step
+    A[Th, Th] = -np.diag(2 * damping + 1.5 * energy / Theta)
+    inner_n, inner_Theta, inner_b = (_means(each) for each in (n, Theta, state.strength))
+    A[Th, q] = -step[:, 1:-1] * inner_n / apart[:, None]
+    across = np.diff(np.eye(M - 1), axis=0)
+    A[q, Th] = -3 * (inner_n * inner_Theta / N[1:-1])[:, None] * across
+    A[q, q] = -np.diag(3 * damping + inner_b * moments.decay * inner_n * np.sqrt(inner_Theta))
+    return A
+
+
+def _noise(cells: Cells, state: Background, moments: CollisionMoments, damping: float) -> Array:
+    M, N = cells.rods.size, cells.rods
+    n, Theta, b = state.density, state.temperature, state.strength
+    energy = dissipation(state, moments)
+    u, V, Th, q = _parts(M)
+    Q = np.zeros((4 * M - 3, 4 * M - 3))
+    kept = 2 * damping * of_cells(state.shared) / N
+    Q[V, V] = np.diag(_of_cell_means(cells, energy) + kept)
+    # Displacements as sums of gaps, the centre of mass at rest.
+    sums = np.tril(np.ones((M, M - 1)), -1)
+    Q[u, Th] = (sums - N @ sums / N.sum()) * (energy * state.gap)
+    Q[Th, u] = Q[u, Th].T
+    Q[Th, Th] = np.diag(b * moments.temperature * n * Theta**2.5 / cells.distances)
+    velocity_heat = np.diag(_of_cell_means(cells, b * moments.velocity_heat * n * Theta**2.5))
+    Q[V, q] = velocity_heat[:, 1:-1]
+    Q[q, V] = Q[V, q].T
+    Q[q, q] = np.diag(_of_cell_means(cells, b * moments.heat * n * Theta**3.5)[1:-1])
+    return Q
+
+
+def _of_cell_means(cells: Cells, strength: Array) -> Array:
+    """Return the noise of cells' means: a contact gives each of its two sides one half."""
+    halves = cells.distances * strength / 2
+    return np.asarray((np.append(halves, 0.0) + np.append(0.0, halves)) / cells.rods**2)
+
+
+def _parts(M: int) -> tuple[slice, slice, slice, slice]:
+    """Places of u and V (cells), Theta (contacts) and q (cells but those at the ends)."""
+    return (
+        slice(0, M),
+        slice(M, 2 * M),
+        slice(2 * M, 3 * M - 1),
+        slice(3 * M - 1, 4 * M - 3),
+    )
+
+
+def _steps(cells: Cells) -> Array:
+    """Matrix from cells to contacts: the next cell minus this one."""
+    return np.diff(np.eye(cells.rods.size), axis=0)
+
+
+def _mean_gaps(cells: Cells, state: Background) -> Array:
+    return cells.distances * state.gap
+
+
+def _means(at_contacts: Array) -> Array:
+    return (at_contacts[1:] + at_contacts[:-1]) / 2
+
+
+def _scales(cells: Cells, state: Background) -> Array:
+    gap = np.full(cells.rods.size, _mean_gaps(cells, state).mean())
+    inner = _means(state.temperature)
+    return np.concatenate(
+        [gap, np.sqrt(of_cells(state.temperature)), state.temperature, inner**1.5]
+    )
+
+
+def _mirror_basis(size: int, sign: int) -> Array:
+    """Return the orthonormal basis of vectors whose mirror image is ``sign`` times themselves."""
+    half = size // 2
+    basis = np.zeros((size, half + (size % 2 if sign == 1 else 0)))
+    rows = np.arange(half)
+    basis[rows, rows] = np.sqrt(0.5)
+    basis[size - 1 - rows, rows] = sign * np.sqrt(0.5)
+    if basis.shape[1] > half:
+        basis[half, half] = 1.0
+    return basis

@@ -1,0 +1,201 @@
+r"""The kinetic equation with pair correlations: rods that have hit one another before.
+
+The kinetic equation of :mod:`..kinetic_equation.stationary` lets every collision be one of
+strangers. Here its collision terms carry the factor a(l) of :mod:`.closure`, which follows from the
+covariances of pairs of rods of :mod:`.pair_covariance`; these follow from the density and the
+temperature that the kinetic equation has. Both are solved in turn until they agree:
+
+    f with the factor a  ->  T(l), n_E(l)  ->  covariances h  ->  Theta, n, F, p  ->  a.
+
+No number is fitted, and nothing from a simulation goes in. At e = 1 all h vanish.
+
+Moments of rod i: W_v(i)^2 is the mean of T over the labels of the i-th of L independent points, as
+for independent points, but without a term for the centre of mass, which h contains. With s the
+compression of :mod:`.closure` and q_i the width of independent points,
+
+    <y_i> = y_i(independent)/s,      W_x(i)^2 = q_i^2/s^2 + h_uu(i).
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+from scipy.interpolate import PchipInterpolator
+
+from crazybilliards.kinetic.correlations.cells import make_cells
+from crazybilliards.kinetic.correlations.closure import Closure, background, implied
+from crazybilliards.kinetic.correlations.collision_moments import moments_of_collisions
+from crazybilliards.kinetic.correlations.fixed_point import NoFixedPointError, find_fixed_point
+from crazybilliards.kinetic.correlations.one_rod import profiles_of_one_rod
+from crazybilliards.kinetic.correlations.pair_covariance import (
+    linear_response,
+    solve_pairs,
+)
+from crazybilliards.kinetic.correlations.stationary_result import Correlated, assemble
+from crazybilliards.kinetic.kinetic_equation.continuation import (
+    State,
+    continued,
+    elastic_state,
+    fitted,
+    free_units,
+    refined,
+    solved,
+)
+from crazybilliards.kinetic.kinetic_equation.order_statistics import mirrored, points
+from crazybilliards.kinetic.kinetic_equation.velocity_moments import moments
+from crazybilliards.kinetic.kinetic_equation.velocity_space import one_thread
+from crazybilliards.kinetic.kinetic_equation.weak_form import NotSolvedError, coefficients
+from crazybilliards.kinetic.requirements import require_chain
+from crazybilliards.model import Chain
+from crazybilliards.model.checks import check_integer, check_real
+from crazybilliards.model.memory import require_memory
+
+Array = NDArray[np.float64]
+
+_CELLS = 22  # of the mesh on which one rod and pairs are brought to agreement
+_FINER = 1.5
+_MOST_CELLS = 60
+_LARGEST_MESH = 150
+_BYTES_PER_CELL = 4e4
+_ROUGHLY = 1e-6
+_AGREEMENT = 0.5  # of the tolerance: what ln a may be off; a width changes by less than half of it
+_MOST_ITERATIONS = 40
+# Where the theory was solved. Simulations were compared from 30 to 300 rods.
+_LEAST_RESTITUTION = 0.5
+_SIZES = 10, 1000
+_DAMPINGS = 0.24, 1.5  # gamma/sqrt(k m)
+
+
+def correlated_phase_space(
+    chain: Chain, *, tolerance: float = 2e-3, cells: int | None = None
+) -> xr.Dataset:
+    """Solve the kinetic equation with pair correlations for the stationary state.
+
+    Parameters
+    ----------
+    chain
+        10 to 1000 rods on linear springs without gap, restitution 0.5 to 1, damping 0.24 to 1.5
+        sqrt(k m). It was compared with simulations of 30 to 300 rods.
+    tolerance
+        One rod and pairs are brought to agree, and the mesh is refined, until no velocity width
+        changes by more, relatively.
+    cells
+        Cells from the centre to the end of the mesh, in each direction, instead of a refinement;
+        up to 150, which takes 0.9 GB: 40 kB times their square.
+
+    Returns
+    -------
+    xarray.Dataset
+        What ``phase_space`` returns, and over ``contact`` (i with i + 1):
+        ``neighbour_covariance`` <v_i v_{i+1}>, ``relative_temperature`` <(v_i - v_{i+1})^2>/2,
+        ``contact_force``, the mean force between the two, and ``contact_loss``, the power that
+        collisions take; over ``mode`` the ``mode_velocity_variance`` <|v_q|^2> of the waves
+        cos(pi q (i - 1/2)/L), q = 0 being the centre of mass.
+        ``attrs``: ``residual``, the largest disagreement of one rod and pairs, relative;
+        ``iterations``; ``mesh_error``, the largest relative change of a velocity width in the
+        last refinement (NaN if ``cells`` was given); ``cells``; ``model_error`` and
+        ``border_error``, the largest relative errors of W_v, of particles 3 to L - 2 and of the
+        two at the ends, that simulations show at restitutions like this one (the table of the
+        page on correlations).
+
+    Raises
+    ------
+    ValueError
+        For a wrong argument; for a chain outside the range above, which names what to use there;
+        if one rod and pairs cannot be brought to agree.
+
+    Examples
+    --------
+    >>> theory = correlated_phase_space(Chain(size=30, restitution=0.9), cells=16)
+    >>> theory.velocity_width.values[[0, 7, 14]].round(3)
+    array([0.256, 0.204, 0.193])
+    """
+    check_correlated_phase_space(chain, tolerance=tolerance, cells=cells)
+    try:
+        found, mesh_error = _solve(chain, tolerance, cells)
+    except (NotSolvedError, NoFixedPointError) as error:
+        raise ValueError(
+            f"the kinetic equation with pair correlations could not be solved: {error}; "
+            "phase_space and simulate take this chain"
+        ) from error
+    return assemble(found, mesh_error)
+
+
+def check_correlated_phase_space(chain: Chain, *, tolerance: float, cells: int | None) -> None:
+    """Raise for what ``correlated_phase_space`` does not take."""
+    check_real("tolerance", tolerance, positive=True)
+    if cells is not None:
+        check_integer("cells", cells, least=4, most=_LARGEST_MESH)
+    finest = max(_CELLS, cells or round(_FINER * _CELLS))
+    require_memory(f"cells={finest}", _BYTES_PER_CELL * finest**2)
+    theory = "the kinetic equation with pair correlations"
+    require_chain(chain, theory, linear=True, gapless=True)
+    damping = coefficients(chain, free_units(chain), 2).damping
+    for name, value, (low, high), remedy in (
+        ("restitution", chain.restitution, (_LEAST_RESTITUTION, 1.0), "phase_space and simulate"),
+        ("size", chain.size, _SIZES, "phase_space and simulate"),
+        ("damping/sqrt(k m)", damping, _DAMPINGS, "phase_space and simulate"),
+    ):
+        if not low <= value <= high:
+            raise ValueError(
+                f"{theory} has been solved for {name} from {low:g} to {high:g} only, got "
+                f"{value:.4g}; {remedy} take other values"
+            )
+
+
+@one_thread
+def _solve(chain: Chain, tolerance: float, cells: int | None) -> tuple[Correlated, float]:
+    found = _agree(chain, tolerance)
+    if cells is not None:
+        return found._replace(state=refined(found.state, cells)), np.nan
+    while True:
+        more = round(_FINER * found.state.space.cells)
+        require_memory(f"cells={more}", _BYTES_PER_CELL * more**2)
+        finer = found._replace(state=refined(found.state, more))
+        error = float(np.abs(np.sqrt(_variances(found.state) / _variances(finer.state)) - 1).max())
+        found = finer
+        if error < tolerance:
+            return found, error
+        if more * _FINER > _MOST_CELLS:
+            raise ValueError(
+                f"the widths are accurate to {error:.1e} only, not to tolerance={tolerance:g}; "
+                f"correlated_phase_space(..., cells={more}) accepts that"
+            )
+
+
+def _agree(chain: Chain, tolerance: float) -> Correlated:
+    """Bring one rod and pairs to agreement, from the state of independent points."""
+    state = refined(continued(chain, elastic_state(chain, 2, _CELLS)), _CELLS)
+    cells, of_collisions = make_cells(chain.size), moments_of_collisions(chain.restitution)
+    damping = coefficients(chain, free_units(chain), 2).damping
+    labels = cells.contacts / chain.size - 0.5
+    known: list[Correlated] = []
+
+    def image(vector: Array) -> Array:
+        nonlocal state
+        closure = Closure.unpacked(vector)
+        factor = PchipInterpolator(labels, np.exp(closure.log_factor))
+        state = fitted(solved(replace(state, factor=factor), _ROUGHLY))
+        rod = profiles_of_one_rod(cells, state)
+        around = background(rod, closure, chain.restitution, damping)
+        pairs = solve_pairs(cells, around, of_collisions, damping)
+        known[:] = [Correlated(state, closure, around, pairs, np.nan, 0)]
+        return implied(chain.size, cells, rod, around, pairs).packed()
+
+    start = Closure.independent(cells).packed()
+    end = find_fixed_point(image, start, _AGREEMENT * tolerance, _MOST_ITERATIONS)
+    found = known[0]._replace(residual=end.residual, iterations=end.evaluations)
+    if not found.closure.is_possible:
+        raise NoFixedPointError("the correlations are too large for a linear theory of them")
+    growth = linear_response(cells, found.background, of_collisions, damping).largest_growth()
+    if growth > 0:
+        raise NoFixedPointError(f"the state is not stable: deviations grow at the rate {growth:g}")
+    return found
+
+
+def _variances(state: State) -> Array:
+    whole = mirrored(moments(state.space, state.f))
+    return points(state.chain.size, whole).velocity_variance

@@ -1,0 +1,60 @@
+"""Profiles over the positions x of a steady state f(y, v)."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import PchipInterpolator
+
+from crazybilliards.kinetic.kinetic_equation.continuation import State, free_units
+from crazybilliards.kinetic.kinetic_equation.positions import density_and_label
+from crazybilliards.kinetic.kinetic_equation.velocity_moments import moments
+from crazybilliards.model.grid import position_grid
+
+Array = NDArray[np.float64]
+
+
+def profiles_over_x(state: State) -> dict[str, Array]:
+    """Return density and velocity moments over the positions x = y + 2 R (N - L/2)."""
+    chain, (length, velocity) = state.chain, free_units(state.chain)
+    profiles = moments(state.space, state.f)
+    L, R = chain.size, chain.radius
+    reach = length * state.space.box.length - float(chain.reduced_anchors[-1])
+    x = position_grid(chain, max(reach, length))
+    places = length * profiles.y + 2 * R * L * profiles.label
+
+    def over_x(values: Array, parity: int) -> Array:
+        both = np.concatenate([parity * values[::-1], values])
+        curve = PchipInterpolator(np.concatenate([-places[::-1], places]), both, extrapolate=False)
+        return np.asarray(curve(x))
+
+    y, points = length * profiles.y, L / length * np.maximum(profiles.density, 0.0)
+    density, label = density_and_label(
+        chain,
+        x,
+        np.concatenate([-y[::-1], y]),
+        np.concatenate([points[::-1], points]),
+        L / 2 + L * np.concatenate([-profiles.label[::-1], profiles.label]),
+    )
+    alive = np.maximum(profiles.density, profiles.density.max() * 1e-6)
+    return {
+        "x": x,
+        "density": density,
+        "label": label,
+        "displacement": x - (2 * R + chain.lattice_gap) * (label - L / 2),
+        "velocity_variance": velocity**2 * _continued_flat(over_x(profiles.variance, 1)),
+        "flow_velocity": velocity * np.nan_to_num(over_x(profiles.flux / alive, -1)),
+        "heat_flux": chain.mass
+        * velocity**3
+        * L
+        / length
+        * np.nan_to_num(over_x(profiles.heat_flux, -1)),
+    }
+
+
+def _continued_flat(values: Array) -> Array:
+    """Continue beyond the last known value, which are NaN: a variance stays positive."""
+    known = np.flatnonzero(np.isfinite(values))
+    filled = values.copy()
+    filled[: known[0]], filled[known[-1] + 1 :] = values[known[0]], values[known[-1]]
+    return np.maximum(filled, np.finfo(float).tiny)

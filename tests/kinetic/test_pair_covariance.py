@@ -1,0 +1,209 @@
+"""The pair correlations' ingredients: what is exact about each of them."""
+
+import numpy as np
+import pytest
+from scipy.integrate import dblquad
+
+from crazybilliards.kinetic.correlations.cells import at_distance, make_cells
+from crazybilliards.kinetic.correlations.closure import recovery
+from crazybilliards.kinetic.correlations.collision_moments import moments_of_collisions
+from crazybilliards.kinetic.correlations.fixed_point import NoFixedPointError, find_fixed_point
+from crazybilliards.kinetic.correlations.pair_covariance import (
+    Background,
+    dissipation,
+    linear_response,
+    solve_pairs,
+)
+
+
+def gaussian(v, u):
+    return np.exp(-(v**2 + u**2) / 2) / (2 * np.pi)
+
+
+def by_quadrature(restitution, psi, phi):
+    share = (1 - restitution) / 2
+
+    def made(v, u):
+        w = v - u
+        change = psi(v - share * w) * phi(u + share * w) - psi(v) * phi(u)
+        return abs(w) * change * gaussian(v, u)
+
+    above = dblquad(made, -9, 9, -9, lambda v: v, epsabs=1e-9)[0]
+    return above + dblquad(made, -9, 9, lambda v: v, 9, epsabs=1e-9)[0]
+
+
+def first(v):
+    return v
+
+
+def second(v):
+    return v**2 - 1
+
+
+def third(v):
+    return v**3 - 3 * v
+
+
+@pytest.mark.parametrize("restitution", [0.5, 0.9])
+def test_collision_moments_are_the_integrals(restitution):
+    found = moments_of_collisions(restitution)
+    for name, psi, phi in (
+        ("energy", first, first),
+        ("temperature", second, second),
+        ("velocity_heat", first, third),
+        ("heat", third, third),
+    ):
+        assert getattr(found, name) == pytest.approx(by_quadrature(restitution, psi, phi), abs=1e-7)
+    share = (1 - restitution) / 2
+
+    def lost(v, u):
+        change = third(v - share * (v - u)) - third(v)
+        return -abs(v - u) * change * (third(v) + third(u)) / 6 * gaussian(v, u)
+
+    decay = sum(
+        dblquad(lost, -9, 9, *sides, epsabs=1e-9)[0] for sides in ((-9, lambda v: v), (first, 9))
+    )
+    assert found.decay == pytest.approx(decay, abs=1e-7)
+
+
+def test_what_a_collision_takes_is_what_it_correlates():
+    """Momentum is conserved: <v*u* - vu> is half of what v^2 + u^2 lose."""
+    rng = np.random.default_rng(1)
+    v, u = rng.normal(size=(2, 400_000))
+    share = (1 - 0.6) / 2
+    after, partner = v - share * (v - u), u + share * (v - u)
+    lost = np.abs(v - u) * (v**2 + u**2 - after**2 - partner**2) / 2
+    error = lost.std() / np.sqrt(v.size)
+    assert abs(lost.mean() - moments_of_collisions(0.6).energy) < 5 * error
+    assert set(moments_of_collisions(1.0)) == {0.0}
+
+
+@pytest.mark.parametrize("size", [10, 130, 131, 300, 1000])
+def test_cells_hold_all_rods(size):
+    cells = make_cells(size)
+    assert cells.rods.sum() == pytest.approx(size)
+    assert (cells.rods > 0.5).all()
+    np.testing.assert_allclose(cells.rods, cells.rods[::-1], rtol=1e-12)
+    np.testing.assert_allclose(cells.centres + cells.centres[::-1], size)
+    np.testing.assert_allclose(np.diff(cells.centres), cells.distances)
+    if size <= 130:
+        np.testing.assert_allclose(cells.rods, 1)
+
+
+@pytest.mark.parametrize("size", [20, 400])
+def test_covariances_are_continued_linearly_to_a_short_distance(size):
+    cells = make_cells(size, most=100)
+    apart = np.abs(cells.centres[:, None] - cells.centres)
+    middle = (cells.centres[:, None] + cells.centres) / 2
+    covariance = 3 - 0.01 * apart + 0.002 * middle + 7 * np.eye(cells.rods.size)
+    found = at_distance(covariance, cells.centres, cells.contacts, 1.0)
+    np.testing.assert_allclose(found, 3 - 0.01 + 0.002 * cells.contacts, rtol=2e-3)
+
+
+@pytest.mark.parametrize("restitution", [0.5, 0.75, 0.9])
+def test_recovery_between_collisions(restitution):
+    """Rods that collide all the time do not recover, those that hardly do forget."""
+    one = np.ones(1)
+    never, always = (recovery(restitution, damping, one, one)[0] for damping in (1e-9, 1e9))
+    assert never == pytest.approx(2 / (1 + restitution**2), rel=1e-6)
+    assert always == pytest.approx(1, rel=1e-6)
+    between = recovery(restitution, 1.0, one, one)[0]
+    # The cycle itself: w^2 = 1 - c exp(-z t), its end, once multiplied by e^2, being its start.
+    z = 2 * np.sqrt(np.pi)
+    t = (np.arange(200_000) + 0.5) / 200_000
+    c = (1 - restitution**2) / (1 - restitution**2 * np.exp(-z))
+    cycle = 1 - c * np.exp(-z * t)
+    assert between == pytest.approx((1 - c * np.exp(-z)) / cycle.mean(), rel=1e-6)
+
+
+def some_background(size):
+    cells = make_cells(size, most=60)
+    place = 2 * cells.contacts / size - 1
+    density = 40 * (1 - 0.8 * place**2)
+    temperature = 0.1 + 0.3 * place**2
+    return cells, Background(
+        density=density,
+        gap=1.1 / density,
+        temperature=temperature,
+        pressure=1.2 * density * temperature,
+        strength=1.3 + 0.1 * place**2,
+        shared=0.05 + 0.03 * place**2,
+    )
+
+
+@pytest.mark.parametrize("size", [11, 60, 200])
+def test_the_centre_of_mass_gets_what_collisions_take(size):
+    """It is an oscillator of its own, which collisions cannot cool."""
+    cells, state = some_background(size)
+    moments, damping = moments_of_collisions(0.7), 0.3
+    pairs = solve_pairs(cells, state, moments, damping)
+    N = cells.rods
+    fed = cells.distances @ dissipation(state, moments)
+    edges = np.concatenate([[state.shared[0]], state.shared, [state.shared[-1]]])
+    held = 2 * damping * (N @ ((edges[1:] + edges[:-1]) / 2))
+    assert N @ pairs.velocity @ N == pytest.approx((fed + held) / (2 * damping), rel=1e-9)
+    assert N @ pairs.displacement @ N == pytest.approx(N @ pairs.velocity @ N, rel=1e-9)
+
+
+@pytest.mark.parametrize("size", [11, 60])
+def test_covariances_are_stationary_symmetric_and_possible(size):
+    cells, state = some_background(size)
+    response = linear_response(cells, state, moments_of_collisions(0.7), 0.3)
+    h, M, Q = response.stationary(), response.generator, response.noise
+    np.testing.assert_allclose(M @ h + h @ M.T, -Q, atol=1e-9 * np.abs(M @ h).max())
+    assert response.largest_growth() < 0
+    pairs = solve_pairs(cells, state, moments_of_collisions(0.7), 0.3)
+    for each in (pairs.velocity, pairs.displacement, pairs.gap, pairs.temperature):
+        np.testing.assert_allclose(each, each.T, atol=1e-9 * np.abs(each).max())
+        np.testing.assert_allclose(each, each[::-1, ::-1], atol=1e-9 * np.abs(each).max())
+    local = np.interp(cells.centres, cells.contacts, state.temperature) / cells.rods
+    assert np.linalg.eigvalsh(pairs.velocity + np.diag(local)).min() > 0
+    assert np.linalg.eigvalsh(pairs.displacement).min() > 0
+
+
+def test_free_rods_keep_what_they_have():
+    """Without damping and collisions waves neither grow nor decay."""
+    cells, state = some_background(40)
+    response = linear_response(cells, state, moments_of_collisions(1.0), 0.0)
+    rates = np.linalg.eigvals(response.generator)
+    assert np.abs(rates.real).max() < 1e-6 * np.abs(rates.imag).max()
+
+
+def test_free_rods_are_compressed_adiabatically():
+    """In one dimension Theta g^2 stays: a gap that grows cools twice as fast."""
+    size, n, Theta = 20, 50.0, 0.3
+    one = np.ones(size - 1)
+    state = Background(n * one, one / n, Theta * one, n * Theta * one, one, 0 * one)
+    generator = linear_response(make_cells(size), state, moments_of_collisions(1.0), 0.0).generator
+    fields = np.zeros(4 * size - 3)
+    fields[size : 2 * size] = np.arange(size) / np.sqrt(Theta)  # V, in units of sqrt(Theta)
+    change = (generator @ fields)[2 * size : 3 * size - 1]  # of Theta, in units of Theta
+    np.testing.assert_allclose(change, -2 * n, rtol=1e-12)
+
+
+def test_elastic_rods_are_not_correlated():
+    cells, state = some_background(40)
+    strangers = state._replace(shared=0 * state.shared)
+    for each in solve_pairs(cells, strangers, moments_of_collisions(1.0), 0.3):
+        np.testing.assert_array_equal(each, 0)
+
+
+def test_the_fixed_point_is_found_or_refused():
+    matrix = np.array([[0.5, -0.9], [0.8, -1.4]])  # a plain iteration would grow
+    found = find_fixed_point(lambda x: matrix @ x + 1, np.zeros(2), 1e-10, 40)
+    np.testing.assert_allclose(found.x, np.linalg.solve(np.eye(2) - matrix, [1, 1]), rtol=1e-8)
+    assert found.residual < 1e-10
+    with pytest.raises(NoFixedPointError, match="do not agree after 5 iterations"):
+        find_fixed_point(lambda x: x + 1, np.zeros(2), 1e-3, 5)
+
+
+def test_the_fixed_point_goes_back_from_where_there_is_nothing():
+    def image(x):
+        if x > 0.55:
+            raise ValueError("nothing here")
+        return 2 * x**2 + 0.1
+
+    found = find_fixed_point(image, np.zeros(1), 1e-8, 40)
+    np.testing.assert_allclose(found.x, (1 - np.sqrt(0.2)) / 4, atol=1e-7)
+    with pytest.raises(ValueError, match="nothing here"):
+        find_fixed_point(image, np.ones(1), 1e-8, 40)
