@@ -162,7 +162,7 @@ def kick(y, v, anchors, kicks, step, part):  # type: ignore[no-untyped-def]
         v[i] = decay * (v[i] - before * pull) - after * pull + noise * kicks[i]
 
 
-@kernel
+@inlined
 def take_step(y, v, kicks, part, dynamics, scratch, tally):  # type: ignore[no-untyped-def]
     """Kick the rods and, unless it was the LAST half, let them drift; changes ``kicks``, (L,).
 
