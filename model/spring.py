@@ -31,8 +31,8 @@ def stiffness(d: Number, exponent: int) -> Number:
 
 
 def potential(d: Number, exponent: int) -> Number:
-    """Return the energy U(d)/k."""
-    return abs(d) ** exponent / exponent
+    """Return the energy U(d)/k. Unlike ``**``, products scale by powers of two to the bit."""
+    return d * force(d, exponent) / exponent
 
 
 def reach(energy: Number, exponent: int) -> Number:
@@ -42,9 +42,14 @@ def reach(energy: Number, exponent: int) -> Number:
 
 def root(power: Number, exponent: int) -> Number:
     """Return power^(1/n). Unlike ``**``, these roots scale by powers of two to the bit."""
-    return np.sqrt(power) if exponent == 2 else np.cbrt(power)
+    if exponent == 2:
+        return np.sqrt(power)
+    # On some machines cbrt rounds differently above and below 1: one below 4 is taken.
+    fraction, doublings = np.frexp(power)
+    thirds = doublings // 3
+    return np.ldexp(np.cbrt(np.ldexp(fraction, doublings - 3 * thirds)), thirds)
 
 
 def displacement(f: Number, exponent: int) -> Number:
     """Return the d at which the force F(d)/k is ``f``: the inverse of :func:`force`."""
-    return np.sign(f) * abs(f) ** (1 / (exponent - 1))
+    return f if exponent == 2 else np.sign(f) * np.sqrt(abs(f))

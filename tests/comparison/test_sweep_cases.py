@@ -54,7 +54,7 @@ def test_key_and_seed_follow_from_what_is_not_the_default():
 def test_every_theory_is_a_job():
     assert set(JOBS) == {"simulate", "simulate_limit", *THEORIES}
     for name, theory in THEORIES.items():
-        assert Case(name, Chain(size=3), {}).key
+        assert Case(name, Chain(size=10), {}).key
         assert JOBS[name].function is theory.solve
         assert JOBS[name].source == room_fingerprint("model", "kinetic")
     assert JOBS["simulate"].source == room_fingerprint("model", "particles")
