@@ -33,20 +33,26 @@ def announced(progress: bool) -> Iterator[None]:
 
 @contextmanager
 def interrupts_held_back() -> Iterator[None]:
-    """Let a Ctrl-C that comes meanwhile act afterwards; also a decorator."""
-    in_main = threading.current_thread() is threading.main_thread()
-    if not in_main or signal.getsignal(signal.SIGINT) is None:
-        yield  # only the main thread receives signals; a handler of C cannot be put back
+    """Let a Ctrl-C, or a SIGTERM that acts like one, act afterwards; also a decorator."""
+    if threading.current_thread() is not threading.main_thread():
+        yield  # only the main thread receives signals
         return
-    # Blocking the signal in this thread would not do: another thread would take it and pass it on.
+    # Blocking the signals in this thread would not do: another thread would take and pass them on.
     came: list[int] = []
-    before = signal.signal(signal.SIGINT, lambda number, _: came.append(number))
+    before = {
+        number: handler
+        for number in (signal.SIGINT, signal.SIGTERM)
+        if callable(handler := signal.getsignal(number))  # one of C cannot be put back
+    }
+    for number in before:
+        signal.signal(number, lambda number, _: came.append(number))
     try:
         yield
     finally:
-        signal.signal(signal.SIGINT, before)
+        for number, handler in before.items():
+            signal.signal(number, handler)
         if came:
-            signal.raise_signal(signal.SIGINT)
+            signal.raise_signal(came[0])
 
 
 @contextmanager

@@ -24,6 +24,7 @@ import numpy as np
 
 from crazybilliards.model.fingerprint import room_fingerprint
 from crazybilliards.model.locks import locked
+from crazybilliards.model.process import interrupts_held_back
 from crazybilliards.model.storage import make_folder, read_sealed, write_sealed
 from crazybilliards.particles.run import Run
 from crazybilliards.particles.running.replica import Replica
@@ -85,7 +86,8 @@ class Checkpoint:
                 for name, value in replica.state().items():
                     arrays[f"{number}/{name}"] = np.array(value)
         buffer = io.BytesIO()
-        np.savez(buffer, **arrays)  # type: ignore[arg-type]
+        with interrupts_held_back():  # in the middle of an archive it would end as another error
+            np.savez(buffer, **arrays)  # type: ignore[arg-type]
         write_sealed(self.path, buffer.getvalue())
         self.saved = time.monotonic()
 

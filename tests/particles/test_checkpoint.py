@@ -15,6 +15,7 @@ import xarray as xr
 
 from crazybilliards.model import Chain, load, save
 from crazybilliards.model.locks import locked
+from crazybilliards.model.process import terminated_like_interrupted
 from crazybilliards.model.storage import read_sealed, write_sealed
 from crazybilliards.particles import simulate
 from crazybilliards.particles.running import checkpoint
@@ -193,6 +194,25 @@ def test_ctrl_c_during_the_last_writing_keeps_everything(tmp_path, monkeypatch):
     resumed = simulate(Chain(size=10), **arguments)
     xr.testing.assert_equal(resumed, run)
     assert resumed.attrs["status"] == "completed"
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_in_the_middle_of_an_archive_acts_when_it_is_whole(tmp_path, monkeypatch, number):
+    """The archive would end as another error: it cannot be closed in the middle."""
+    whole, interrupted = [], np.savez
+
+    def savez(*arguments, **arrays):
+        signal.raise_signal(number)
+        interrupted(*arguments, **arrays)
+        whole.append(True)
+
+    monkeypatch.setattr(np, "savez", savez)
+    path = tmp_path / "state"
+    with pytest.raises(KeyboardInterrupt), terminated_like_interrupted():
+        simulate(Chain(size=3), duration=80, progress=False, checkpoint=path)
+    assert whole
+    assert not path.exists()
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
 
 
 def test_a_checkpoint_that_cannot_be_written_is_an_error_before_any_work(tmp_path, monkeypatch):
