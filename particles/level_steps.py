@@ -25,7 +25,7 @@ from crazybilliards.particles.scales import (
     time_step_error,
 )
 
-GROUPS = 16  # of a level: a standard error is then known to a fifth
+GROUPS = 32  # of a level: a standard error is then known to an eighth
 _RATIO, _NARROW_RATIO = 9, 3  # of successive steps; of the one in reserve
 _EXPECTED = 0.25  # bias, in units of the accuracy
 _LONGEST_KICK = 1.5  # in W_v: with a longer step nothing is correlated

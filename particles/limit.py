@@ -97,8 +97,8 @@ def simulate_limit(
     xarray.Dataset
         In the common vocabulary, every NAME with its NAME_error: one standard error and the
         remaining bias, squared and added. ``central_velocity_width`` is what ``accuracy`` is
-        about; ``kinetic_energy`` has no time. Densities are sums of differences, and may be
-        negative by an error or so where hardly any rod comes.
+        about; ``kinetic_energy`` has no time. ``mean_velocity`` is left out: it is 0. Densities
+        are sums of differences, and may be negative by an error or so where hardly any rod comes.
         ``attrs["status"]`` is as of :func:`simulate`; an interrupted run has the errors that it
         came to. ``attrs["time_step_error"]`` is the remaining relative bias in the centre,
         ``attrs["coupling"]`` is ``strong``, or ``weak`` where plain runs at the shortest step
@@ -282,7 +282,11 @@ def _describe_coupling(levels: Levels, limit: xr.Dataset, progress: bool) -> Non
     if last == 0:  # elastic: one step is all it takes
         return
     plain = len(levels.used) == 1
-    correlation = levels.samplers[last][0].correlation if plain else levels.terms()[-1].correlation
+    correlation = (
+        levels.samplers[last][0].correlation
+        if plain
+        else levels.terms(only="widths")[-1].correlation
+    )
     limit.attrs |= {"coupling": "weak" if plain else "strong", "correlation": correlation}
     if plain and progress:
         long, short = levels.steps.time_steps[last - 1 : last + 1]

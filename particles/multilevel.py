@@ -37,17 +37,23 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import ndtr, stdtrit
 
 from crazybilliards.model import Chain
 from crazybilliards.particles.laws.closed_contacts import CRITICAL_RESTITUTION
 from crazybilliards.particles.level_steps import Steps, relative_bias
 from crazybilliards.particles.observers import Observer
+from crazybilliards.particles.observers.base import Averaged
 from crazybilliards.particles.observers.error_bars import jackknife_error
 from crazybilliards.particles.running.sampler import Sampler, groups_of
 
 Array = NDArray[np.float64]
 
 CENTRAL = "central_velocity_width"
+# The one follows from an error bar and is no average. The other is zero, and the error of a
+# derivative's mean is not that of groups: what one group has too much of, the next one lacks.
+_LEFT_OUT = ("autocorrelation_time", "mean_velocity")
+_ONE_SIGMA = ndtr(1.0)
 _LARGEST_BIAS = 0.7  # largest bias without another level, in units of the accuracy
 _GROWTH = 4  # of a level in one round: its variance is not known well before
 _PILOT_SHARE = 0.25  # of the work, for a longer pilot round
@@ -75,11 +81,14 @@ def _reported(
     """Return what the observers of some groups measured together of the finer or coarser chain."""
     found: dict[str, tuple[tuple[str, ...], Array]] = {}
     for first, *others in zip(*(group[chain] for group in groups), strict=True):
-        joined = deepcopy(first)
+        joined, snapshots = deepcopy(first), counts
         joined.join(others)
-        for name, (dimensions, values) in joined.report(counts).items():
+        if isinstance(joined, Averaged):  # else it works out an error, each time
+            joined.pool()
+            snapshots = counts.sum(keepdims=True)
+        for name, (dimensions, values) in joined.report(snapshots).items():
             array = np.asarray(values, dtype=float)
-            if name.endswith("_error") or "block" in dimensions:
+            if name in _LEFT_OUT or name.endswith("_error") or "block" in dimensions:
                 continue
             if "time" in dimensions:  # of a steady state: all times are the same
                 array = array.mean(axis=dimensions.index("time"))
@@ -92,9 +101,14 @@ def _reported(
     return found
 
 
-def estimate(samplers: Sequence[Sampler], *, difference: bool) -> Estimate:
-    """Return the finer chain's averages, or by how much they exceed the coarser one's."""
+def estimate(samplers: Sequence[Sampler], *, difference: bool, only: str | None = None) -> Estimate:
+    """Return the finer chain's averages, or by how much they exceed the coarser one's.
+
+    ``only``: name of the only observer to ask, which is quicker.
+    """
     groups, counts = groups_of(samplers)
+    if only is not None:
+        groups = [[[o for o in chain if o.name == only] for chain in group] for group in groups]
     whole = [_reported(groups, chain, counts) for chain in range(1 + difference)]
     left_out: list[dict[str, list[Array]]] = [{name: [] for name in whole[0]} for _ in whole]
     with warnings.catch_warnings():
@@ -104,6 +118,8 @@ def estimate(samplers: Sequence[Sampler], *, difference: bool) -> Estimate:
             for chain, each in enumerate(left_out):
                 for name, (_, found) in _reported(rest, chain, np.delete(counts, out)).items():
                     each[name].append(found)
+    # So few groups: with Student's factor 68 % of the values lie within one error.
+    student = float(stdtrit(counts.size - 1, _ONE_SIGMA)) if counts.size > 1 else 1.0
     values: dict[str, Array] = {}
     variances: dict[str, Array] = {}
     signs = (1.0, -1.0)[: len(whole)]
@@ -112,7 +128,7 @@ def estimate(samplers: Sequence[Sampler], *, difference: bool) -> Estimate:
             np.asarray(sum(sign * np.array(part) for sign, part in zip(signs, parts, strict=True)))
             for parts in ([each[name][1] for each in whole], [each[name] for each in left_out])
         )
-        variances[name] = jackknife_error(values[name], without, counts) ** 2
+        variances[name] = (student * jackknife_error(values[name], without, counts)) ** 2
     widths = np.array([each[CENTRAL] for each in left_out])
     correlation = float(np.corrcoef(widths)[0, 1]) if difference else 0.0
     dimensions = {name: each[0] for name, each in whole[0].items()}
@@ -147,7 +163,7 @@ class Levels:
             for level in self.used:
                 self._extend(level, _GROWTH * self._target(level))
             return True
-        terms = self.terms()
+        terms = self.terms(only="widths")
         width = sum(float(each.values[CENTRAL]) for each in terms)
         bias = float(self.bias(terms)[CENTRAL]) / width
         last = len(self.samplers) - 1
@@ -175,9 +191,13 @@ class Levels:
         ]
         return [max(wanted[0], self.steps.least), *wanted[1:]]
 
-    def terms(self) -> list[Estimate]:
+    def terms(self, only: str | None = None) -> list[Estimate]:
         """Return the base and the differences, as far as they are measured."""
-        return [estimate(self.samplers[each], difference=each > self.used[0]) for each in self.used]
+        base = self.used[0]
+        return [
+            estimate(self.samplers[level], difference=level > base, only=only)
+            for level in self.used
+        ]
 
     def bias(self, terms: Sequence[Estimate]) -> dict[str, Array]:
         """Return what is left of every variable's error from the time step."""
@@ -234,11 +254,11 @@ class Levels:
         differ by more than they really do.
         """
         levels = list(self.used)
-        alone = [estimate(self.samplers[level], difference=False) for level in levels]
+        alone = [estimate(self.samplers[each], difference=False, only="widths") for each in levels]
         spread, width = alone[0].spread, float(alone[-1].values[CENTRAL])
         spreads = [spread]
         for level, single in zip(levels[1:], alone[1:], strict=True):
-            difference = estimate(self.samplers[level], difference=True)
+            difference = estimate(self.samplers[level], difference=True, only="widths")
             spreads.append(difference.spread / single.spread * spread)
         work = []
         for place, level in enumerate(levels):
@@ -256,7 +276,7 @@ class Levels:
             return False
         samplers = self.samplers[levels[base]]
         if samplers[0].coarser is not None:
-            correlation = estimate(samplers, difference=True).correlation
+            correlation = estimate(samplers, difference=True, only="widths").correlation
             for sampler in samplers:
                 sampler.uncouple(correlation)
         return True

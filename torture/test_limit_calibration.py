@@ -36,10 +36,10 @@ def reference():
     rank = np.abs(CHAIN.rank)
     widths = run.velocity_width.values
     values = {name: run[name].values for name in run.data_vars if f"{name}_error" in run}
+    del values["mean_velocity"]  # is zero
     values["velocity_density"] = run.velocity_density.values
     values["central_velocity_width"] = np.sqrt((widths[rank <= 1.5] ** 2).mean())
     values["kinetic_energy"] = run.kinetic_energy.values.mean()
-    values["mean_velocity"] = np.zeros(CHAIN.size)  # exactly
     # Mirrored, a chain has the same law: half the error for nothing.
     for name in ("velocity_width", "displacement_width"):
         values[name] = (values[name] + values[name][::-1]) / 2
@@ -58,7 +58,7 @@ def test_a_limit_lies_within_its_error_as_often_as_it_should():
     inside, coupled = {}, 0
     for seed in range(RUNS):
         limit = simulate_limit(
-            CHAIN, accuracy=0.01, observe=OBSERVE, seed=100 + seed, progress=False
+            CHAIN, accuracy=0.01, observe=OBSERVE, seed=600 + seed, progress=False
         )
         coupled += len(json.loads(limit.attrs["provenance"])["levels"]) > 1
         for name, value in values.items():

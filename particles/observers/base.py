@@ -143,6 +143,10 @@ class Averaged(Observer):
         parts = [self.sums, *(other.sums for other in others)]
         self.sums = np.stack(parts) if self.schedule.ensemble else np.concatenate(parts)
 
+    def pool(self) -> None:
+        """Add all blocks up into one: averages are the same, and nothing is known of errors."""
+        self.sums = self.sums.sum(axis=0, keepdims=True)
+
     def averages(
         self,
         quantities: Mapping[str, Callable[[Array], Array]],

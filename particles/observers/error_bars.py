@@ -29,6 +29,8 @@ def jackknife(
     """
     total, number = sums.sum(axis=0), counts.sum(axis=0)
     value = function(total / _behind(number, total.ndim))
+    if len(sums) < 2:
+        return value, np.full_like(value, np.inf)
     rest = number - counts
     used = (counts > 0) & (rest > 0)
     divisors = np.where(used, rest, 1)
