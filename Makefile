@@ -42,8 +42,9 @@ test-lowest: $(OLDEST)/installed
 	OPENBLAS_NUM_THREADS=1 NUMBA_CACHE_DIR=$(CURDIR)/$(OLDEST)/numba \
 	  $(OLDEST)/bin/python -m pytest -n 2
 
+# Three processes for two cores: these tests wait a lot for others that they kill.
 torture: $(VENV)/installed-test
-	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 torture
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n 3 --dist worksteal torture
 
 # One cannot see into compiled kernels: every test that is quick enough without runs them as Python.
 coverage: $(VENV)/installed-coverage

@@ -4,14 +4,12 @@ import errno
 import io
 import os
 import signal
-import subprocess
-import sys
-import time
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
 import xarray as xr
+from killed import run_and_signal
 
 from crazybilliards.model import Chain, load, save
 from crazybilliards.model.locks import locked
@@ -35,33 +33,20 @@ save(run, output)
 """
 
 
-def run(script, checkpoint, output, how=None, after=0.0):
-    """Run the script; send it a signal some time ``after`` it has first written its checkpoint."""
-    before = checkpoint.stat().st_mtime_ns if how and checkpoint.exists() else None
-    with subprocess.Popen([sys.executable, "-c", script, str(checkpoint), str(output)]) as process:
-        if how is not None:
-            while not checkpoint.exists() or checkpoint.stat().st_mtime_ns == before:
-                time.sleep(0.01)
-                assert process.poll() is None
-            time.sleep(after)
-            process.send_signal(how)
-        return process.wait(600)
-
-
 @pytest.mark.compiled
 @pytest.mark.parametrize("e", [1.0, 0.7])
 def test_killed_at_random_moments_and_resumed_it_is_the_undisturbed_run(e, tmp_path):
     script = SCRIPT.format(e=e, duration=150_000 if e == 1 else 40_000)
     undisturbed, output = tmp_path / "undisturbed.nc", tmp_path / "run.nc"
     checkpoint = tmp_path / "state"
-    assert run(script, "", undisturbed) == 0
+    assert run_and_signal(script, "", undisturbed) == 0
     generator = np.random.default_rng(int(10 * e))
     for how in (signal.SIGTERM, signal.SIGKILL, signal.SIGKILL, signal.SIGINT):
-        run(script, checkpoint, output, how, after=generator.random() / 2)
+        run_and_signal(script, checkpoint, output, how, after=generator.random() / 2)
         if how == signal.SIGTERM:
             assert load(output).attrs["status"] == "interrupted"
     # However far it came, now to the end.
-    assert run(script, checkpoint, output) == 0
+    assert run_and_signal(script, checkpoint, output) == 0
     resumed = load(output)
     assert resumed.attrs["status"] == "completed"
     xr.testing.assert_identical(resumed, load(undisturbed))

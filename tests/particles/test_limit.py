@@ -2,13 +2,11 @@
 
 import json
 import signal
-import subprocess
-import sys
-import time
 
 import numpy as np
 import pytest
 import xarray as xr
+from killed import run_and_signal
 
 from crazybilliards.kinetic import equilibrium
 from crazybilliards.model import Chain, load
@@ -207,30 +205,17 @@ save(limit, output)
 """
 
 
-def run(script, checkpoint, output, how=None, after=0.0):
-    """Run the script; send it a signal some time ``after`` it has first written its checkpoint."""
-    before = checkpoint.stat().st_mtime_ns if how and checkpoint.exists() else None
-    with subprocess.Popen([sys.executable, "-c", script, str(checkpoint), str(output)]) as process:
-        if how is not None:
-            while not checkpoint.exists() or checkpoint.stat().st_mtime_ns == before:
-                time.sleep(0.01)
-                assert process.poll() is None
-            time.sleep(after)
-            process.send_signal(how)
-        return process.wait(600)
-
-
 @pytest.mark.compiled
 @pytest.mark.parametrize("e", [0.0, 0.95])
 def test_killed_at_random_moments_and_resumed_it_is_the_undisturbed_run(e, tmp_path):
     script = SCRIPT.format(e=e)
     undisturbed, output = tmp_path / "undisturbed.nc", tmp_path / "run.nc"
     checkpoint = tmp_path / "state"
-    assert run(script, "", undisturbed) == 0
+    assert run_and_signal(script, "", undisturbed) == 0
     generator = np.random.default_rng(int(10 * e))
     for how in (signal.SIGKILL, signal.SIGTERM, signal.SIGKILL):
-        run(script, checkpoint, output, how, after=generator.random())
-    assert run(script, checkpoint, output) == 0
+        run_and_signal(script, checkpoint, output, how, after=generator.random())
+    assert run_and_signal(script, checkpoint, output) == 0
     resumed = load(output)
     assert resumed.attrs["status"] == "completed"
     xr.testing.assert_identical(resumed, load(undisturbed))
