@@ -13,7 +13,6 @@ import numpy as np
 import xarray as xr
 
 from crazybilliards.comparison.claims.repetition import (
-    border_width,
     central_width,
     estimate,
     members,
@@ -68,16 +67,22 @@ def common_bias(runs: list[xr.Dataset]) -> float:
     return float(np.mean([run.attrs["time_step_error"] for run in runs]))
 
 
-def limit_exponent(
-    results: Results, size: int, exponent: Callable[[xr.Dataset], float]
+def limit_estimate(
+    results: Results, size: int, quantity: Callable[[xr.Dataset], float]
 ) -> Estimate:
-    """Return an exponent of W_v(i) for dt -> 0 at e = 0.
+    """Return a number drawn from W_v(i) for dt -> 0 at e = 0, an exponent say.
 
-    Its statistics are the scatter between the limits. The time step that is left is felt most in
-    the centre, where the rods are slowest. If it changes W_v there by a share b and at the border
-    not at all, it changes the exponent by b/ln(W_v(border)/W_v(centre)) of itself: its bias.
+    Its statistics are the scatter between the limits. Its bias is by how much it moves if W_v is
+    off by what is left of the time step: in the centre by that share, elsewhere by less, as r^3,
+    r being the velocity kick of a step over W_v.
     """
     runs = members(results, limit_name(size))
-    found = estimate(results, limit_name(size), exponent)
-    span = float(np.mean([math.log(border_width(run) / central_width(run)) for run in runs]))
-    return Estimate(found.value, math.hypot(found.error, found.value * common_bias(runs) / span))
+    found = estimate(results, limit_name(size), quantity)
+    moved = float(np.mean([quantity(_with_a_step(run)) for run in runs]))
+    return Estimate(found.value, math.hypot(found.error, moved - found.value))
+
+
+def _with_a_step(run: xr.Dataset) -> xr.Dataset:
+    width = run.velocity_width
+    share = float(run.attrs["time_step_error"]) * (central_width(run) / width) ** 3
+    return run.assign(velocity_width=width * (1 + share))

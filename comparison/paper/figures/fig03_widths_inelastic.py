@@ -26,7 +26,7 @@ from crazybilliards.comparison.paper.chains import LARGE
 from crazybilliards.comparison.paper.limits import (
     LABEL,
     common_bias,
-    limit_exponent,
+    limit_estimate,
     limit_name,
     limits,
 )
@@ -166,7 +166,7 @@ def _own_claims(results: Results) -> list[Claim]:
 
 def _limit_claims(results: Results, found: dict[int, Estimate]) -> list[Claim]:
     """Check the same exponents in the limit dt -> 0, and what the default step does to them."""
-    limit = {size: limit_exponent(results, size, _exponent) for size in _SIZES}
+    limit = {size: limit_estimate(results, size, _exponent) for size in _SIZES}
     shifts = {size: found[size].minus(limit[size]) for size in _SIZES}
     return [
         *(
@@ -221,9 +221,7 @@ def draw(results: Results) -> Figure:
         half = np.geomspace(1, size, 200)
         fit = fit_border_power_law(run)(half) / unit
         widths.plot(half, fit, color=COLOURS[number], linewidth=1)
-        over = _over_limit(
-            run, members(results, limit_name(size)), pooled(results, limit_name(size))
-        )
+        over = _over_limit(results, size)
         draw_rods(ratio, over, "velocity_width", number=number, along="particle", label="")
     widths.set(xscale="log", yscale="log", ylabel="velocity width $W_v/W$")
     widths.legend(frameon=False, title="symbols: simulation\nlines: fits of two power laws")
@@ -261,7 +259,7 @@ def _draw_steps(ax: Axes, results: Results) -> None:
             linewidth=0.8,
         )
         at = first * 1.25 ** (number - 1.5)  # beside one another
-        limit = limit_exponent(results, size, _exponent)
+        limit = limit_estimate(results, size, _exponent)
         style = {"color": COLOURS[number], "markersize": 5, "linewidth": 0.8}
         ax.errorbar(at, limit.value, limit.error, fmt=SYMBOLS[number], **style)
     ax.axhline(_PAPER, color="0.4", linestyle="--", linewidth=1)
