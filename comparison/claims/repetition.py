@@ -24,7 +24,7 @@ _COUNTED = ("avalanche_count", "triggered_count")
 
 
 def repeated(
-    name: str, chain: Chain, number: int, *, job: str = "simulate", **settings: Any
+    name: str, chain: Chain, number: int, job: str = "simulate", /, **settings: Any
 ) -> Cases:
     """Return cases ``NAME/0``, ``NAME/1``, ... that differ in their random numbers only.
 

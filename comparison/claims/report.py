@@ -26,6 +26,7 @@ from crazybilliards.comparison.sweeps import Case
 _VERSIONS = ("crazybilliards", "numpy", "numba", "scipy", "scikit-fem", "py-pde", "xarray")
 OF_PAPER = "Statements of the paper"
 OWN = "Our own findings"
+_LIMIT = "the limit dt -> 0; the error holds what is left of the step"
 
 
 @dataclass(frozen=True)
@@ -156,7 +157,9 @@ def details(claim: Claim) -> dict[str, str]:
         "in the paper": claim.source,
         "its number": claim.paper,
         "found here": claim.measured,
-        "time step": "the limit dt -> 0; the error holds what is left of it" if claim.limit else "",
+        "time step": "the limit dt -> 0; the error holds what is left of it"
+        if claim.in_limit
+        else "",
         "theory": claim.theory,
         "our choice, not given in the paper": claim.ours,
         "why": claim.reason,
@@ -192,7 +195,7 @@ def summary(reproduced: list[Reproduced]) -> list[str]:
                 f"{number} {verdict}" for verdict, number in sorted(counts.items())
             )
             lines.append(f"{title}: {verdicts}")
-    limits = sum(claim.limit for each in reproduced for claim in each.claims)
+    limits = sum(claim.in_limit for each in reproduced for claim in each.claims)
     if limits:
         lines.append(
             f"Limits of a vanishing time step: the numbers of {limits} claims, marked so; every "

@@ -37,7 +37,7 @@ def limits(size: int, restitution: float, quality: Quality) -> Cases:
         limit_name(size, restitution),
         Chain(size=size, restitution=restitution),
         number,
-        job="simulate_limit",
+        "simulate_limit",
         accuracy=accuracy,
         observe=["widths"],
     )

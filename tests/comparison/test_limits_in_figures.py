@@ -197,9 +197,9 @@ def test_the_page_of_claims_says_which_number_is_a_limit():
         Reproduced(figure, b"", right_claims(number), [], 0.0)
         for number, figure in WITH_LIMITS.items()
     ]
-    marked = [claim for each in reproduced for claim in each.claims if claim.limit]
+    marked = [claim for each in reproduced for claim in each.claims if claim.in_limit]
     assert {
-        number: sum(c.limit for c in each.claims)
+        number: sum(c.in_limit for c in each.claims)
         for number, each in zip(WITH_LIMITS, reproduced, strict=True)
     } == {3: 5, 4: 2, 7: 1}
     assert all("in the limit dt -> 0" in claim.statement for claim in marked)
@@ -208,7 +208,7 @@ def test_the_page_of_claims_says_which_number_is_a_limit():
     assert f"the numbers of {len(marked)} claims" in page
     assert html(reproduced, "quick").count("<dt>time step</dt>") == len(marked)
     without = [
-        Reproduced(figure, b"", [c for c in each.claims if not c.limit], [], 0.0)
+        Reproduced(figure, b"", [c for c in each.claims if not c.in_limit], [], 0.0)
         for figure, each in zip(WITH_LIMITS.values(), reproduced, strict=True)
     ]
     assert "imits of a vanishing" not in markdown(without, "quick").split("##")[0]

@@ -175,7 +175,7 @@ def _limit_claims(results: Results, found: dict[int, Estimate]) -> list[Claim]:
                 _PAPER,
                 _PRECISION,
                 each,
-                limit=True,
+                in_limit=True,
                 reason="the sum of two power laws is no exact law, and its exponent depends on L",
             )
             for size, each in limit.items()
@@ -184,7 +184,7 @@ def _limit_claims(results: Results, found: dict[int, Estimate]) -> list[Claim]:
             "the same exponent for all L in the limit dt -> 0",
             _listed(limit),
             _deviation(limit),
-            limit=True,
+            in_limit=True,
             reason="the sum of two power laws is no exact law, and its exponent depends on L",
         ),
         same_claim(
@@ -260,12 +260,21 @@ def _draw_steps(ax: Axes, results: Results) -> None:
         )
         at = first * 1.25 ** (number - 1.5)  # beside one another
         limit = limit_estimate(results, size, _exponent)
-        style = {"color": COLOURS[number], "markersize": 5, "linewidth": 0.8}
-        ax.errorbar(at, limit.value, limit.error, fmt=SYMBOLS[number], **style)
+        ax.errorbar(
+            at,
+            limit.value,
+            limit.error,
+            fmt=SYMBOLS[number],
+            color=COLOURS[number],
+            markersize=5,
+            linewidth=0.8,
+        )
     ax.axhline(_PAPER, color="0.4", linestyle="--", linewidth=1)
     ax.text(STEPS[0], _PAPER, " paper", va="bottom", ha="right", color="0.3", fontsize=8)
     ax.set(xscale="log", xlabel="time step dt [T]", ylabel=r"exponent $\nu$")
     ax.set_xticks([first, 1e-3, 1e-2], [r"$\to 0$", "$10^{-3}$", "$10^{-2}$"])
+    ax.set_xticks([tenth * k for tenth in (1e-3, 1e-2) for k in range(2, 10)], minor=True)
+    ax.set_xlim(0.5 * first, 4e-2)
 
 
 def chain_step(results: Results, size: int) -> float:

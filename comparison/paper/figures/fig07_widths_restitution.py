@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import matplotlib.pyplot as plt
 import numpy as np
 import xarray as xr
@@ -44,7 +46,7 @@ SOLVED_FOR = {"quick": (0.95,), "full": (0.85, 0.92, 0.95)}
 IN_LIMIT = {"quick": (0.0, 0.95), "full": RESTITUTIONS}
 _ELASTIC_SIZE = 100
 _SOURCE = "section seq:e_larger, fig.4"
-_OPEN = {"fmt": SYMBOLS[0], "color": "black", "markerfacecolor": "none"}
+_OPEN: dict[str, Any] = {"fmt": SYMBOLS[0], "color": "black", "markerfacecolor": "none"}
 _OURS = "the restitutions (those of fig.5, and 0.5) and the time step"
 
 
@@ -179,7 +181,7 @@ def _limit_claims(results: Results) -> list[Claim]:
             "in the limit dt -> 0, too, the larger e the faster the centre",
             f"W_v in the centre by e: {by_e}; at {high:g} less at {low:g}:",
             limit[high].minus(limit[low]),
-            limit=True,
+            in_limit=True,
         ),
         same_claim(
             "the default time step gives W_v in the centre as in the limit dt -> 0",
@@ -228,13 +230,13 @@ def draw(results: Results) -> Figure:
 
 def _draw_centre(ax: Axes, results: Results) -> None:
     unit = chain_of(results[f"{dissipative_name(LARGE, 0.0)}/0"]).free_velocity_width
-    full = {"color": COLOURS[0], "markersize": 4, "linestyle": "none"}
-    for found, style in (
-        (_central_widths(results), {**_OPEN, "label": "default step"}),
-        (_central_limits(results), {**full, "marker": SYMBOLS[2], "label": LABEL}),
+    full: dict[str, Any] = {"fmt": SYMBOLS[2], "color": COLOURS[0], "markersize": 4}
+    for found, label, style in (
+        (_central_widths(results), "default step", _OPEN),
+        (_central_limits(results), LABEL, full),
     ):
         values, errors = np.array(list(found.values())).T / unit
-        ax.errorbar(list(found), values, errors, **style)
+        ax.errorbar(list(found), values, errors, label=label, **style)
     predicted = {e: central_width(theory) / unit for e, theory in theories(results).items()}
     ax.plot(list(predicted), list(predicted.values()), "x", color=COLOURS[4])
     ax.set(xlabel="restitution e", ylabel="central width $W_v^{\\min}/W$")
