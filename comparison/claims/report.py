@@ -157,9 +157,7 @@ def details(claim: Claim) -> dict[str, str]:
         "in the paper": claim.source,
         "its number": claim.paper,
         "found here": claim.measured,
-        "time step": "the limit dt -> 0; the error holds what is left of it"
-        if claim.in_limit
-        else "",
+        "time step": _LIMIT if claim.in_limit else "",
         "theory": claim.theory,
         "our choice, not given in the paper": claim.ours,
         "why": claim.reason,
