@@ -13,7 +13,7 @@ from crazybilliards.comparison.claims.repetition import central_width
 from crazybilliards.comparison.claims.report import Reproduced, html, markdown
 from crazybilliards.comparison.fits import fit_border_power_law
 from crazybilliards.comparison.paper.figures import FIGURES
-from crazybilliards.comparison.paper.limits import (
+from crazybilliards.comparison.paper.vanishing_step import (
     central_limit,
     limit_estimate,
     limit_name,

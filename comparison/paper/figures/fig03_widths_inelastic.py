@@ -23,15 +23,15 @@ from crazybilliards.comparison.claims.verdicts import (
 from crazybilliards.comparison.drawing import COLOURS, SYMBOLS, draw_rods
 from crazybilliards.comparison.fits import fit_border_power_law
 from crazybilliards.comparison.paper.chains import LARGE
-from crazybilliards.comparison.paper.limits import (
+from crazybilliards.comparison.paper.power_laws import fits_in_plot
+from crazybilliards.comparison.paper.time_steps import STEPS, at_steps, step_name
+from crazybilliards.comparison.paper.vanishing_step import (
     LABEL,
     common_bias,
     limit_estimate,
     limit_name,
     limits,
 )
-from crazybilliards.comparison.paper.power_laws import fits_in_plot
-from crazybilliards.comparison.paper.time_steps import STEPS, at_steps, step_name
 from crazybilliards.model import chain_of
 
 _SIZES = (30, 100, 300, LARGE)

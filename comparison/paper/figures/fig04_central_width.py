@@ -20,8 +20,8 @@ from crazybilliards.comparison.claims.verdicts import (
 from crazybilliards.comparison.drawing import COLOURS, SYMBOLS
 from crazybilliards.comparison.fits import ScalingFit, fit_scaling
 from crazybilliards.comparison.paper.chains import SIZES
-from crazybilliards.comparison.paper.limits import LABEL, central_limit, limits
 from crazybilliards.comparison.paper.time_steps import STEPS, at_steps, step_name
+from crazybilliards.comparison.paper.vanishing_step import LABEL, central_limit, limits
 from crazybilliards.model import Chain
 
 _PAPER, _PRECISION = -0.38, 0.015

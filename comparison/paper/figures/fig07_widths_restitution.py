@@ -37,8 +37,8 @@ from crazybilliards.comparison.paper.chains import (
     kinetic_equation,
     kinetic_name,
 )
-from crazybilliards.comparison.paper.limits import LABEL, central_limit, limit_name, limits
 from crazybilliards.comparison.paper.power_laws import fits_in_plot
+from crazybilliards.comparison.paper.vanishing_step import LABEL, central_limit, limit_name, limits
 from crazybilliards.comparison.studies.restitutions import width_deviation
 from crazybilliards.model import chain_of
 
