@@ -71,8 +71,8 @@ class Checkpoint:
             self._write(replicas)
         except OSError as error:
             warnings.warn(
-                f"{self.path}: no checkpoint written: {error.strerror}; the run goes on, and what "
-                "was written before stays valid",
+                f"{self.path}: no checkpoint written: {error.strerror}; the run continues, and the "
+                "last checkpoint stays valid",
                 RuntimeWarning,
                 stacklevel=2,
             )
