@@ -4,7 +4,7 @@ r"""From the density f(y, v) of points to the rods: order statistics, and the ce
 from f, the i-th in order has a label N/L distributed as Beta(i, L + 1 - i). An average over rod i
 is that of a function of the label over this distribution. This is exact at e = 1.
 
-**Centre of mass.** For e != 1 the rods are not independent, and the largest correction comes from
+**Centre of mass.** For e != 1 the rods are not independent, and the leading correction is that of
 the centre of mass. The noise drives every mode equally, but collisions conserve momentum and do not
 act on the centre of mass. On linear springs it is a damped oscillator of mass L m for every e, with
 <V^2> = W^2/L and <Y^2> = s^2/L, where W and s are those of the free rod. They replace the share
