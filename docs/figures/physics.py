@@ -1,6 +1,6 @@
 """Draw the pictures of the physics pages: a collision, isotonic regression, a breathing cloud.
 
-Run it, and it writes collision.svg, isotonic.svg and breathing.svg beside itself.
+Run it to write collision.svg, isotonic.svg and breathing.svg beside it.
 """
 
 from pathlib import Path
