@@ -1,5 +1,5 @@
-# Everything a newcomer, the CI and a developer need. Each target does its own set-up, in a
-# private environment that is made once and reused; only Python >= 3.11, pip and make are needed.
+# Targets for newcomers, developers and the CI. Each target sets up what it needs in a private
+# environment, which is made once and reused. Only Python >= 3.11, pip and make are needed.
 
 PYTHON ?= python3
 VENV   := .venv
@@ -18,14 +18,14 @@ ROOMS  := model particles kinetic comparison
 help:
 	@echo "make run        compare simulation and theory at e = 1; figures into $(OUTPUT)/"
 	@echo "make test       run the tests"
-	@echo "make test-lowest  the same with the oldest version of every package that is allowed"
-	@echo "make torture    faults, bad input, long runs: docs/reliability.md, tested (8 min)"
-	@echo "make coverage   which lines the tests reach, kernels included (12 min)"
-	@echo "make check      lint, format and type checks"
+	@echo "make test-lowest  run the tests with the oldest allowed version of every package"
+	@echo "make torture    test kills, full disks, bad input and long runs (8 min; docs/reliability.md)"
+	@echo "make coverage   show which lines the tests reach, kernels included (12 min)"
+	@echo "make check      check lint, format and types"
 	@echo "make audit      look up known vulnerabilities of every package used (needs the network)"
-	@echo "make reproduce  every figure and claim of the paper into reproduced/ (4 min; QUALITY=full 1 h)"
+	@echo "make reproduce  draw every figure and check every claim of the paper (4 min; QUALITY=full 1 h)"
 	@echo "make notebooks  execute the notebooks, into build/notebooks/"
-	@echo "make docs       the documentation as a web site, into build/docs/; its examples are executed"
+	@echo "make docs       build the documentation into build/docs/ and execute its examples"
 	@echo "make linkcheck  look up every address the pages point to (needs the network)"
 	@echo "make benchmark  measure the speed"
 	@echo "make clean      remove the environment and everything built"
@@ -33,11 +33,11 @@ help:
 run: $(VENV)/installed
 	$(BIN)/crazybilliards compare --output $(OUTPUT)
 
-# Two processes for two cores: linear algebra in threads of its own would only make them wait.
+# Two processes use two cores. Threads of the linear algebra would only make them wait.
 test: $(VENV)/installed-test
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n 2
 
-# numba's cache is of one version: the two environments would throw out each other's.
+# numba's cache belongs to one version, so each environment needs a cache of its own.
 test-lowest: $(OLDEST)/installed
 	OPENBLAS_NUM_THREADS=1 NUMBA_CACHE_DIR=$(CURDIR)/$(OLDEST)/numba \
 	  $(OLDEST)/bin/python -m pytest -n 2
@@ -46,7 +46,7 @@ test-lowest: $(OLDEST)/installed
 torture: $(VENV)/installed-test
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n 3 --dist worksteal torture
 
-# One cannot see into compiled kernels: every test that is quick enough without runs them as Python.
+# Coverage cannot be measured in compiled kernels. Tests that are quick enough run them as Python.
 coverage: $(VENV)/installed-coverage
 	$(BIN)/coverage erase
 	NUMBA_DISABLE_JIT=1 $(BIN)/coverage run -m pytest -n 2 -m "not compiled"
@@ -59,7 +59,7 @@ check: $(VENV)/installed-check build/types
 	$(BIN)/ruff format --check .
 	MYPYPATH=build/types $(BIN)/mypy -p crazybilliards
 
-# Strict: a package that could not be looked up is a failure, not a footnote.
+# --strict: a package that could not be looked up is a failure.
 audit: $(VENV)/installed-test $(VENV)/installed-docs $(VENV)/installed-audit
 	mkdir -p build
 	$(BIN)/python -m pip freeze --all --exclude-editable > build/audit.txt
@@ -68,7 +68,7 @@ audit: $(VENV)/installed-test $(VENV)/installed-docs $(VENV)/installed-audit
 reproduce: $(VENV)/installed
 	$(BIN)/crazybilliards reproduce all --quality $(QUALITY)
 
-# Copies are executed, with their outputs: the documentation shows those.
+# Copies of the notebooks are executed, and the documentation shows their outputs.
 notebooks: $(VENV)/installed-notebooks
 	rm -rf build/notebooks
 	mkdir -p build/notebooks
@@ -79,14 +79,14 @@ notebooks: $(VENV)/installed-notebooks
 build/notebooks/executed: $(wildcard notebooks/*.ipynb)
 	$(MAKE) notebooks
 
-# A browser for the test of the page, which is skipped without: Debian's, where one may install it.
+# The test of the page needs a browser and is skipped without one. Root on Debian can install it.
 browser:
 	@command -v chromium >/dev/null && command -v chromedriver >/dev/null || \
 	  { command -v apt-get >/dev/null && [ "$$(id -u)" = 0 ] && apt-get update -qq && \
 	    apt-get install -y -qq --no-install-recommends chromium chromium-driver >/dev/null; } || \
 	  echo "install chromium and chromedriver to test the page of crazybilliards explore"
 
-# Warnings are errors: links and anchors that lead nowhere, examples that fail.
+# Warnings are errors, for example links that lead nowhere and examples that fail.
 docs: $(VENV)/installed-docs build/notebooks/executed
 	$(BIN)/python -m sphinx -W --keep-going -b html docs build/docs
 	@echo "open build/docs/index.html"
@@ -100,7 +100,7 @@ benchmark: $(VENV)/installed-benchmark
 	  --benchmark-max-time=0.3 --benchmark-min-rounds=3 --benchmark-json=$(OUTPUT)/benchmark.json
 	$(BIN)/python benchmarks/report.py $(OUTPUT)/benchmark.json $(OUTPUT)/cost.png
 
-# mypy does not see through an editable install: it reads the rooms through this farm of links.
+# mypy cannot read an editable install. It reads the rooms through these links.
 build/types: Makefile
 	mkdir -p $@/crazybilliards
 	for file in __init__.py __init__.pyi __main__.py py.typed; do \

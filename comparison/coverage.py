@@ -2,13 +2,13 @@
 
 The paper divides the line into bins much smaller than R, adds to each bin the fraction of it
 that rods cover, divides by the number of samples and by 2R, and takes a running average over a
-window of 2R (its figure ``fig:rho_num_sim`` and the text below). Both steps are rectangular
-convolutions of the density of the rods' centres with a box of length 2R. Compare densities only
-after the same steps: where A is small, rods form a near-crystal whose bare density is a row of
-spikes.
+window of 2R (its figure ``fig:rho_num_sim`` and the text below). Both steps are convolutions of the
+density of the rods' centres with a box of length 2R. Densities should be compared only after the
+same steps: for small A the rods form a near-crystal, and their bare density is a row of spikes.
 
 On the package's grid (nodes at multiples of h = 2R/n, n odd) the first step is exact for points
-kept in hat weights: the bin around a node is covered by the mean of the n hats around it.
+kept in hat weights, because the covered fraction of the bin around a node is the mean of the n hats
+around it.
 """
 
 from __future__ import annotations
@@ -38,8 +38,8 @@ def coverage_density(source: xr.Dataset) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        ``density`` over x, for a simulation with ``density_error`` and ``density_block``, the
-        error being that of the convolved density.
+        ``density`` over x. A simulation also has ``density_error``, that of the convolved
+        density, and ``density_block``.
 
     Raises
     ------
@@ -97,9 +97,9 @@ def _hat_density_of_states(chain: Chain, source: xr.Dataset) -> xr.Dataset:
 def _hat_density_of_theory(source: xr.Dataset) -> xr.Dataset:
     """Hat weights of a smooth density: second differences of the integral of the label.
 
-    The integral over a cell is Hermite's, from N and N' = rho at both ends, kept between its
-    bounds h N(left) and h N(right): the weights are positive and add up to the rods exactly,
-    even where the peaks of rho are narrower than a cell.
+    The integral over a cell is that of the Hermite cubic from N and N' = rho at both ends, kept
+    between its bounds h N(left) and h N(right). The weights are therefore positive and add up to
+    the number of rods exactly, even if the peaks of rho are narrower than a cell.
     """
     h = float(source.x[1] - source.x[0])
     label, density = source.label.values, source.density.values

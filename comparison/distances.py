@@ -1,4 +1,4 @@
-"""How far apart two results are: in one number, and in units of the error bar."""
+"""Distances between two results, absolute and in units of the error bar."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ class Deviation:
     maximum, rms
         Largest and root-mean-square difference, in units of the close-packed density 1/(2R).
     integrated
-        int |difference| dx / L: the share of the rods that is in the wrong place, times two.
+        int |difference| dx / L, which is twice the share of the rods in the wrong place.
     maximum_in_errors, rms_in_errors
         The same with each difference divided by its standard error; None if neither result has
-        one. About 3-4 and 1 if the two agree.
+        errors. They are about 3-4 and 1 if the two agree.
     """
 
     maximum: float
@@ -40,12 +40,12 @@ def deviation(result: xr.Dataset, reference: xr.Dataset, floor: float = 1e-3) ->
     Parameters
     ----------
     result, reference
-        Two results with ``density`` over x on grids of the same spacing (those of one chain
-        are), smoothed alike. Where a grid ends, its density is 0.
+        Two results with ``density`` over x, smoothed in the same way, on grids of the same
+        spacing (as for results of one chain). Beyond the end of a grid the density is 0.
     floor
-        Differences are measured where either density exceeds this fraction of close packing,
-        and in units of errors where both do: further out a simulation has met too few rods for
-        its error bars to mean anything.
+        Differences count where either density exceeds this fraction of close packing, and
+        differences in units of errors where both do. Further out a simulation has too few rods
+        for a reliable error bar.
 
     Raises
     ------
@@ -59,7 +59,7 @@ def deviation(result: xr.Dataset, reference: xr.Dataset, floor: float = 1e-3) ->
         raise ValueError("the two densities lie on grids of different spacing")
     chain = chain_of(reference)
     unit = chain.close_packed_density
-    # Nodes are whole multiples of the spacing: numbering them aligns the grids exactly.
+    # Nodes are whole multiples of the spacing, so their numbers align the grids exactly.
     ours, theirs = (
         dataset.assign_coords(x=np.rint(dataset.x / spacing).astype(int))
         for dataset in (result, reference)
@@ -97,7 +97,7 @@ def distances_in_plot(
 ) -> NDArray[np.float64]:
     """Distances of symbols from a line in the plane of a plot, shape of ``x``.
 
-    Each axis is in units of its range. Logarithmic axes: hand in logarithms.
+    Each axis is in units of its range. For logarithmic axes give logarithms.
 
     Parameters
     ----------
@@ -106,7 +106,7 @@ def distances_in_plot(
     line_x, line_y
         Points of the line, in order, dense enough to be joined by straight pieces.
     x_range, y_range
-        What the plot shows; None: from the least to the greatest symbol.
+        Range of the plot; None: from the least to the greatest symbol.
 
     Examples
     --------

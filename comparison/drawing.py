@@ -13,7 +13,7 @@ from matplotlib.axes import Axes
 
 from crazybilliards.model.vocabulary import require
 
-# Okabe and Ito's colours, told apart with any colour vision; symbols and line styles differ too.
+# Okabe and Ito's colours, distinct for any colour vision; symbols and line styles differ too.
 COLOURS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#D55E00", "#56B4E9", "#000000")
 SYMBOLS = "osD^v<>"
 _SYMBOL_COLOUR = "#000000"
@@ -33,7 +33,7 @@ def overlay(
     along: Literal["normalized_particle", "mean_position"] = "normalized_particle",
     ax: Axes | None = None,
 ) -> Axes:
-    """Draw one quantity of several results into one picture.
+    """Draw one quantity of several results in one picture.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ def overlay(
         ``{label: result}``. Simulations are drawn as circles with their standard errors,
         theories as lines, in the order given.
     quantity
-        A variable over x, time or particle. Densities should be smoothed alike first.
+        A variable over x, time or particle. Smooth all densities in the same way first.
     along
         Abscissa of a quantity over particle: i_n in -1..1, or the mean position of the rods.
     ax
@@ -50,13 +50,13 @@ def overlay(
     Raises
     ------
     ValueError
-        If a result lacks the quantity, or has it over other than one of x, time and particle: a
-        density over time and x, say, of which one time must be chosen first.
+        If a result lacks the quantity, or has it over other dimensions than one of x, time and
+        particle. For example, one time of a density over time and x must be chosen first.
 
     Returns
     -------
     matplotlib.axes.Axes
-        Without a legend yet: call its ``legend()``.
+        The axes without a legend; call its ``legend()``.
     """
     for label, dataset in results.items():
         require(dataset, (quantity,))
@@ -69,7 +69,7 @@ def overlay(
         own = [name for name in ("x", "time") if name in values.dims]
         abscissa = dataset[own[0] if own else along]
         if dataset.attrs.get("source") == "simulation":
-            # The first and the last are always among them: at the border theories differ most.
+            # The first and last rods are always drawn, because theories differ most at the border.
             count = min(abscissa.size, _MOST_SYMBOLS)
             shown = np.linspace(0, abscissa.size - 1, count).round().astype(int)
             error = dataset.get(f"{quantity}_error")
@@ -112,16 +112,16 @@ def draw_rods(
     unit: float = 1.0,
     along: str = "normalized_particle",
 ) -> None:
-    """Draw a quantity of the rods as symbols with error bars, some of the rods of a long chain.
+    """Draw a quantity of the rods as symbols with error bars; a long chain shows some rods.
 
     Parameters
     ----------
     number
-        Which of the colours and symbols to take.
+        Number of the colour and symbol.
     unit
-        What to divide by.
+        Unit to divide by.
     along
-        Abscissa; over ``particle``, meant for a logarithmic axis, they are spaced like that.
+        Abscissa. ``particle`` is meant for a logarithmic axis and spaces the symbols for it.
     """
     spaced = np.geomspace if along == "particle" else np.linspace
     last = run.particle.size

@@ -1,7 +1,7 @@
 """The stationary theories by name: sweeps compute them, the command ``theory`` prints them.
 
-A theory is one line of ``THEORIES``. Nothing is imported before it is used, so that the command
-line can list the theories in its ``--help`` at once.
+A theory is one line of ``THEORIES``. A module is imported when it is first used, so the command
+line can list the theories in its ``--help`` without a delay.
 """
 
 from __future__ import annotations
@@ -22,12 +22,11 @@ class Theory:
     Attributes
     ----------
     name
-        The name of the function in ``crazybilliards.kinetic``, ``"equilibrium"`` say.
+        The name of the function in ``crazybilliards.kinetic``, e.g. ``"equilibrium"``.
     title
-        What it is called in tables and legends.
+        Its name in tables and legends.
     module
-        The module below ``crazybilliards.kinetic`` that holds the function, and beside it
-        ``check_NAME``.
+        The module below ``crazybilliards.kinetic`` that has the function and ``check_NAME``.
     """
 
     name: str
@@ -41,7 +40,7 @@ class Theory:
 
     @property
     def check(self) -> Callable[..., Any]:
-        """Raises the ValueError that ``solve`` would raise for a wrong argument, at no cost."""
+        """Raise the ValueError that ``solve`` would raise for a wrong argument."""
         return self._find(f"check_{self.name}")
 
     def _find(self, name: str) -> Any:

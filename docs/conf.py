@@ -10,6 +10,7 @@ from docutils.nodes import SkipNode
 from docutils.utils.math import MathError
 from docutils.utils.math.latex2mathml import tex2mathml
 from sphinx.util import logging
+from sphinx.util.math import get_node_equation_number
 
 logger = logging.getLogger(__name__)
 
@@ -42,6 +43,8 @@ highlight_language = "none"  # of blocks that do not name one: equations, comman
 myst_enable_extensions = ["dollarmath", "amsmath", "deflist"]
 myst_heading_anchors = 3
 myst_dmath_double_inline = True
+# Equations are numbered within the numbered pages, so that a number has one meaning everywhere.
+numfig = True
 
 # The notebooks come with the outputs that `make notebooks` has given them. The examples in the
 # how-to pages have none and are executed; what fails fails the build.
@@ -163,7 +166,8 @@ def write_formula(translator, node) -> None:
     translator.body.append(translator.starttag(node, "div", CLASS="math"))
     translator.body.append(mathml(node, as_block=True))
     tag = _TAG.search(node.astext())
-    if number := tag[1] if tag else node.get("number"):
+    if tag or node["number"]:
+        number = tag[1] if tag else get_node_equation_number(translator, node)
         translator.body.append(f'<span class="eqno">({number})</span>')
     translator.body.append("</div>\n")
     raise SkipNode

@@ -1,4 +1,4 @@
-"""What a theory asks of a chain, checked in one place for all theories."""
+"""The conditions of the theories on a chain, checked in one place."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def require_chain(
     steady: bool = True,
     remedy: str = "",
 ) -> None:
-    """Raise the ValueError that says why ``theory`` does not hold for this chain, if so.
+    """Raise a ValueError with the reason if ``theory`` does not hold for this chain.
 
     Every theory calls this once, before any work. A chain with a parameter that the theories do
     not know passes only if that parameter has its default value.
@@ -42,13 +42,13 @@ def require_chain(
     Parameters
     ----------
     chain
-        The chain that the theory is asked about.
+        The chain to check.
     theory
-        What the theory is called in the error.
+        The name of the theory in the error.
     elastic, linear, gapless
-        Whether it asks for restitution 1, for linear springs, for no gap.
+        Whether the theory needs restitution 1, linear springs, no gap.
     steady
-        Whether it asks for a chain that has a steady state.
+        Whether the theory needs a chain that has a steady state.
     remedy
         What to do for a restitution other than 1; the end of that error.
     """

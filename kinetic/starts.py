@@ -1,8 +1,8 @@
-r"""Starts of the hydrodynamics: reading any density and velocity profile, and making common ones.
+r"""Starts of the hydrodynamics: checks given profiles, and makes common ones.
 
 A start is a result with ``density`` over x (one time), and optionally ``label``, ``flow_velocity``
-and ``velocity_variance``. ``force_balance`` of another chain is a quench; the functions here make
-the other usual ones out of the stationary state.
+and ``velocity_variance``. ``force_balance`` of another chain gives a quench. The functions here
+make other common starts from the stationary state.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ def displaced(chain: Chain, shift: float) -> xr.Dataset:
 def compressed(chain: Chain, factor: float) -> xr.Dataset:
     """Return the stationary state with its reduced coordinate y multiplied by ``factor`` > 0.
 
-    Rods never overlap: only the room between them shrinks (or grows, for a factor above 1).
+    Rods never overlap, because only the free room between them shrinks (or grows).
     """
     return _stationary_image(chain, stretch=check_real("factor", factor, positive=True))
 
@@ -43,7 +43,7 @@ def compressed(chain: Chain, factor: float) -> xr.Dataset:
 def two_clumps(chain: Chain, distance: float, speed: float) -> xr.Dataset:
     """Return the stationary state cut in half: two clumps, ``distance`` [R] apart.
 
-    They approach one another with ``speed`` [R/T] each.
+    Each approaches the other with ``speed`` [R/T].
     """
     distance = check_real("distance", distance, positive=True)
     speed = check_real("speed", speed)
@@ -82,7 +82,7 @@ def _start(chain: Chain, x: Array, density: Array, label: Array, velocity: Array
 
 
 class Start(NamedTuple):
-    """A start that was checked, as functions of x."""
+    """A checked start, as functions of x."""
 
     x: Array
     label: CubicHermiteSpline  # N
@@ -96,7 +96,7 @@ class Start(NamedTuple):
         low, high = self.x[cell], self.x[cell + 1]
         find_root: Any = elementwise.find_root  # its stubs know no args
         root = find_root(lambda x, wanted: self.label(x) - wanted, (low, high), args=(labels,))
-        # Where a cell is empty, any x in it has the label; a bracket may then have no sign change.
+        # Every x in an empty cell has the same label. A bracket may then have no sign change.
         return np.asarray(np.where(root.success, root.x, (low + high) / 2))
 
 
@@ -143,7 +143,7 @@ def _numbers(start: xr.Dataset, name: str) -> Array:
 
 
 def _own_variance(chain: Chain, start: xr.Dataset) -> float:
-    """Return the free W^2 of the chain the start belongs to: after a quench another one."""
+    """Return the free W^2 of the chain of the start, which differs from ``chain`` in a quench."""
     if "provenance" in start.attrs:
         chain = chain_of(start)
     return chain.free_velocity_width**2

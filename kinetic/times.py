@@ -1,4 +1,4 @@
-"""The output times that every theory in time takes, as a duration and a time between outputs."""
+"""Output times of theories in time, from a duration and a time between outputs."""
 
 from __future__ import annotations
 

@@ -33,7 +33,7 @@ from crazybilliards.model.parameters import Parameters
 
 @dataclass(frozen=True, kw_only=True)
 class Chain(Parameters):
-    """The parameters of one chain, checked; the defaults are the paper's reference at e = 1.
+    """The checked parameters of one chain; the defaults are the paper's reference at e = 1.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ class Chain(Parameters):
     Raises
     ------
     ValueError
-        For the first parameter that is wrong, naming it, what it got and what it takes.
+        For the first wrong parameter. The error names it, its value and what it accepts.
 
     Examples
     --------
@@ -99,7 +99,7 @@ class Chain(Parameters):
 
     @property
     def lattice_gap(self) -> float:
-        """The gap g that theories of a continuous fluid take; 0 for one rod, without neighbours."""
+        """The gap g that theories of a fluid use; 0 for one rod, which has no neighbours."""
         return self.gap if self.size > 1 else 0.0
 
     def reduced(self, x: ArrayLike) -> NDArray[np.float64]:
@@ -112,7 +112,7 @@ class Chain(Parameters):
 
     @property
     def close_packed_density(self) -> float:
-        """The largest density rods can have, 1/(2R) [1/R]."""
+        """The largest density of the rods, 1/(2R) [1/R]."""
         return 1 / (2 * self.radius)
 
     # -- spring -----------------------------------------------------------------------------
@@ -123,7 +123,7 @@ class Chain(Parameters):
         return 2 if self.spring == "linear" else 3
 
     def force(self, displacement: ArrayLike) -> NDArray[np.float64]:
-        """Restoring force F(d) = k d or k d |d|, the sign being that of d [M R/T^2]."""
+        """Restoring force F(d) = k d or k d |d|, with the sign of d [M R/T^2]."""
         d = np.asarray(displacement, dtype=float)
         return self.stiffness * spring.force(d, self.potential_exponent)
 
@@ -133,7 +133,7 @@ class Chain(Parameters):
         return self.stiffness * spring.potential(d, self.potential_exponent)
 
     def reach(self, energy: float) -> float:
-        """Displacement at which a spring holds this energy, U(d) = energy [R]; inf if k = 0."""
+        """Displacement at which a spring has this energy, U(d) = energy [R]; inf if k = 0."""
         if self.stiffness == 0:
             return math.inf if energy > 0 else 0.0
         return float(spring.reach(energy / self.stiffness, self.potential_exponent))
@@ -142,7 +142,7 @@ class Chain(Parameters):
 
     @property
     def temperature(self) -> float:
-        """T = m W^2 = A^2 / (2 gamma) of the free case [M R^2/T^2]; inf if nothing damps."""
+        """Temperature T = m W^2 = A^2 / (2 gamma) [M R^2/T^2]; inf without damping."""
         if self.amplitude == 0:
             return 0.0
         if self.damping == 0:
@@ -164,7 +164,7 @@ class Chain(Parameters):
         return float(spring.root(self.temperature / self.stiffness, self.potential_exponent))
 
     def require_steady_state(self) -> None:
-        """Raise a ValueError that says why, if this chain has no steady state to compute."""
+        """Raise a ValueError with the reason if this chain has no steady state."""
         reason = None
         if self.amplitude == 0:
             reason = "amplitude=0: without noise the rods come to rest, the density is singular"

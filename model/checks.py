@@ -1,4 +1,4 @@
-"""Checks of arguments: each returns the value, or raises the one ValueError that says why not."""
+"""Checks of arguments: each returns the value, or raises one ValueError that gives the reason."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ _SHORTLY.maxstring = _SHORTLY.maxother = _SHORTLY.maxlong = 80
 
 
 def shown(value: object) -> str:
-    """Return a wrong value as an error shows it: on one line, long ones cut in the middle."""
+    """Return a wrong value in the form for an error: on one line, cut in the middle if long."""
     return " ".join(_SHORTLY.repr(value).split())
 
 
 def check_real(name: str, value: object, *, positive: bool = False, signed: bool = False) -> float:
-    """Return ``value`` as a float, or raise the one ValueError that says what ``name`` takes.
+    """Return ``value`` as a float, or raise one ValueError that says what ``name`` accepts.
 
     Accepts real numbers (Python's or numpy's) that are finite and whose magnitude lies within
     1e-60..1e60, or 0 unless ``positive``; negative ones only if ``signed``.
@@ -41,7 +41,7 @@ def check_real(name: str, value: object, *, positive: bool = False, signed: bool
 
 
 def check_integer(name: str, value: object, *, least: int, most: int | None = None) -> int:
-    """Return ``value`` as an int, or raise the one ValueError that says what ``name`` takes."""
+    """Return ``value`` as an int, or raise one ValueError that says what ``name`` accepts."""
     wanted = f"an integer >= {least}" if most is None else f"an integer from {least} to {most}"
     if (
         isinstance(value, bool)
@@ -54,7 +54,7 @@ def check_integer(name: str, value: object, *, least: int, most: int | None = No
 
 
 def check_choice(name: str, value: object, choices: tuple[str, ...]) -> str:
-    """Return ``value``, or raise a ValueError unless it is one of the words ``name`` takes."""
+    """Return ``value``, or raise a ValueError if ``name`` does not accept this word."""
     if not isinstance(value, str) or value not in choices:
         raise ValueError(f"{name} must be one of {choices}, got {shown(value)}")
     return value

@@ -1,8 +1,8 @@
-"""Fingerprints of source code: they tell whether a stored thing was made by the code of today.
+"""Fingerprints of source code show whether the current code computed a stored result.
 
-The version of the package does not tell it: between two releases it stays the same whatever is
-edited. A fingerprint is a hash of the source files themselves. An installed release has the same
-one wherever it is installed, so what it has computed stays valid.
+The version of the package cannot show this, because it does not change when the code is edited
+between two releases. A fingerprint is a hash of the source files themselves. A release has the
+same fingerprint on every machine, so its results stay valid everywhere.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ def fingerprint_of(sources: Iterable[Path], *others: str) -> str:
 
 @cache
 def room_fingerprint(*rooms: str) -> str:
-    """Return the fingerprint of all modules of some rooms, ``"model"`` and ``"particles"`` say.
+    """Return the fingerprint of all modules of some rooms, e.g. ``"model"`` and ``"particles"``.
 
-    20 hexadecimal digits; computed once in a process, in some milliseconds.
+    It has 20 hexadecimal digits. A process computes it once, in some milliseconds.
     """
     return fingerprint_of(file for room in rooms for file in (_PACKAGE / room).rglob("*.py"))[:20]
 

@@ -2,9 +2,9 @@
 
 Nodes are whole multiples of a spacing h = 2R/n with n **odd**. Then a bin of width h centred on
 a node, convolved with a rod of length 2R centred on a point, is exactly the mean of n hat
-functions centred on nodes: whoever keeps a density in hat weights (each point shared linearly
-between its two neighbouring nodes) can form the fraction of a bin that rods cover without any
-error, later and in O(1) per bin.
+functions centred on nodes. A density is kept in hat weights: each point is shared linearly
+between its two neighbouring nodes. The fraction of a bin that rods cover then follows from the
+weights without any error, in O(1) per bin.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ _BINS_PER_ROD = 21  # "bins much smaller than R": h = 0.095 R
 _MOST_NODES = 2**18
 _BYTES_PER_NODE = 200  # some 25 arrays of a theory
 
-# Of the chain's length: displacements of this size keep seven digits in a position.
+# In units of the chain's length: displacements of this size keep seven digits in a position.
 _SMALLEST_REACH = 1e-9
 
 # exp(-40) = 4e-18: nothing that double precision sees lies further out than U(d) = 40 T.
@@ -68,8 +68,8 @@ def position_grid(chain: Chain, reach: float | None = None) -> NDArray[np.float6
     Raises
     ------
     ValueError
-        If 200 bytes for each node are not available, which the solution of a theory takes; if the
-        chain is so long that displacements are lost in the rounding of positions.
+        If the 200 bytes per node that a theory needs are not available, or if the chain is so
+        long that displacements are lost in the rounding of positions.
     """
     half_width = _half_width(chain, reach)
     require_resolved(chain, half_width)

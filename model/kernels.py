@@ -1,12 +1,12 @@
 """How kernels are compiled: cached on disk, without the global interpreter lock, IEEE arithmetic.
 
-numba's cache notices when the file of a kernel changes, but not when a kernel that it calls
-changes in another file: it would go on running the old one. So the cache entries made here also
+numba's cache notices when the file of a kernel changes. It does not notice when a kernel that it
+calls changes in another file, and would run the old one. Cache entries made here therefore also
 carry a fingerprint of the files of all kernels that a kernel calls, directly or not, and of the
-constants that these take from elsewhere.
+constants that these import.
 
-The cache only saves time. Where it cannot be kept, kernels are compiled in every process, with one
-warning: in a container without a home, on a full disk.
+The cache only saves time. If it cannot be written, as in a container without a home or on a full
+disk, kernels are compiled in every process, with one warning.
 """
 
 from __future__ import annotations
@@ -48,12 +48,12 @@ def kernel(function: Callable[..., Any] | None = None, *, fused: bool = False) -
     try:
         dispatcher.enable_caching()
     except RuntimeError:
-        # The process that started this one has said it already.
+        # The process that started this one has already warned.
         if multiprocessing.current_process().name == "MainProcess":
             _warn(_ANEW, "there is no folder for numba's cache; NUMBA_CACHE_DIR can name one")
         return dispatcher
-    # numba has no public way to add to the stamp, or to let a cache fail. Where what is used here
-    # is gone, the cache works as numba made it.
+    # numba has no public way to add to the stamp, or to let a cache fail. If a later numba lacks
+    # the private names used here, its cache works unchanged.
     if (kept := getattr(dispatcher, "_cache", None)) is not None:
         _add_fingerprint(kept, function)
         _let_it_fail(kept)
@@ -61,7 +61,7 @@ def kernel(function: Callable[..., Any] | None = None, *, fused: bool = False) -
 
 
 def _add_fingerprint(kept: Any, function: Callable[..., Any]) -> None:
-    """Add to what tells numba whether a cache is of today."""
+    """Add the fingerprint to the stamp by which numba recognises an outdated cache."""
     entries = getattr(kept, "_cache_file", None)
     stamp = getattr(entries, "_source_stamp", None)
     if entries is not None and stamp is not None:
@@ -75,7 +75,7 @@ def _let_it_fail(kept: Any) -> None:
     def load_or_none(*arguments: Any) -> Any:
         try:
             return load(*arguments)
-        # Whatever unpickling makes of a damaged file. What is compiled now takes its place.
+        # Unpickling a damaged file can raise anything. The newly compiled kernel replaces it.
         except Exception as error:
             _warn("numba's cache cannot be read, compiling anew", f"{kept.cache_path}: {error}")
             with suppress(OSError):
@@ -92,7 +92,7 @@ def _let_it_fail(kept: Any) -> None:
 
 
 def _warn(problem: str, reason: str) -> None:
-    """Warn of a problem once, not for every kernel that has it."""
+    """Warn of a problem once, and not again for every kernel."""
     if problem not in _warned:
         _warned.add(problem)
         warnings.warn(f"{problem}: {reason}", RuntimeWarning, stacklevel=3)
@@ -101,7 +101,7 @@ def _warn(problem: str, reason: str) -> None:
 def inlined(function: Callable[..., Any] | None = None, *, fused: bool = False) -> Any:
     """Compile ``function`` into every kernel that calls it; a decorator.
 
-    For helpers that take many arrays, which cost more to hand over than to work on. ``fused``: as
+    For helpers with many arrays, for which the call costs more than the work. ``fused``: as
     in :func:`kernel`.
     """
     if function is None:
@@ -111,7 +111,7 @@ def inlined(function: Callable[..., Any] | None = None, *, fused: bool = False) 
 
 
 def _fingerprint(function: Callable[..., Any]) -> str:
-    """Return the fingerprint of all that the compiled ``function`` depends on."""
+    """Return the fingerprint of all source code that the compiled ``function`` depends on."""
     files: set[Path] = set()
     constants: set[str] = set()
     known: set[Callable[..., Any]] = set()
@@ -135,7 +135,7 @@ def _fingerprint(function: Callable[..., Any]) -> str:
 
 
 def _named(function: Callable[..., Any]) -> list[tuple[str, Any]]:
-    """Return what a function names outside itself, also through modules: ``sort.drift``, say."""
+    """Return the objects outside a function that it names, also as ``module.name``."""
     scope = {**function.__globals__, **inspect.getclosurevars(function).nonlocals}
     names = (*function.__code__.co_names, *function.__code__.co_freevars)
     found = [(name, scope[name]) for name in names if name in scope]

@@ -1,10 +1,10 @@
 """Locks: one process at a time writes a file, keeps a checkpoint or fills a folder.
 
 The operating system holds a lock on an open file and frees it when the process ends, however it
-dies: nobody waits for a dead one. What a kill leaves is a small file that the next run takes
-over; on NFS the server frees what a lost node held. The package filelock takes these locks, on
-Unix and on Windows. Some file systems have none. There work goes on without: files are whole all
-the same, only two processes may then do the same work twice.
+ends. A dead process therefore blocks nobody. A kill leaves a small lock file, which the next run
+takes over. On NFS the server frees the locks of a lost node. The package filelock takes the locks,
+on Unix and on Windows. Some file systems have no locks. There two processes may do the same work
+twice, but every file is still complete.
 """
 
 from __future__ import annotations
@@ -19,22 +19,22 @@ from pathlib import Path
 
 from filelock import FileLock, Timeout, lock_descriptor
 
-# What the system answers where it cannot lock.
+# Errors of file systems without locks.
 _NO_LOCKS = {errno.ENOLCK, errno.ENOSYS, errno.ENOTSUP, errno.EOPNOTSUPP}
-# A lock whose file its former holder removes just then is made anew, at the next attempt [s].
+# If the former holder removes the lock file at that moment, the next attempt makes a new one [s].
 _PATIENCE, _BETWEEN = 0.1, 0.01
 
 
 @contextmanager
 def locked(path: Path) -> Iterator[None]:
-    """Hold the lock of a file, or of a folder that exists, against all other processes meanwhile.
+    """Hold the lock of a file, or of an existing folder, within the ``with`` block.
 
     Raises
     ------
     BlockingIOError
-        If another process, or another thread of this one, holds it.
+        If another process, or another thread of this one, holds the lock.
     OSError
-        If nothing can be written there.
+        If the lock file cannot be written.
     """
     file = path / ".lock" if path.is_dir() else path.with_name(f".{path.name}.lock")
     lock = FileLock(
@@ -63,23 +63,23 @@ def locked(path: Path) -> Iterator[None]:
 
 
 def open_locked(path: Path) -> int | None:
-    """Open a file to write, made if missing, and lock it; None where there are no locks.
+    """Open a file for writing, make it if needed, and lock it; None if there are no locks.
 
-    A file that is renamed while its writer holds the lock cannot be a ``FileLock``. That would
-    take the renamed file, which whoever waited finds open, for a lock still to be had; here it is
-    told by its name. Windows does not rename open files, so it has no such locks.
+    The file is renamed while its writer holds the lock, so it cannot be a ``FileLock``: a process
+    that waited would lock the renamed file and believe it holds this one. Here the name of the
+    open file is checked. Windows does not rename open files, so it has no such locks.
 
     Raises
     ------
     BlockingIOError
-        If another process holds it.
+        If another process holds the lock.
     OSError
-        If it cannot be opened.
+        If the file cannot be opened.
     """
     if sys.platform == "win32":
         return None
     while True:
-        # A foreign link of that name must not lead to another file.
+        # O_NOFOLLOW: somebody's link of this name must not make us write to another file.
         descriptor = os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o666)
         try:
             free = lock_descriptor(descriptor, blocking=False)
@@ -92,7 +92,7 @@ def open_locked(path: Path) -> int | None:
         os.close(descriptor)
         if not free:
             raise BlockingIOError(errno.EAGAIN, os.strerror(errno.EAGAIN), str(path))
-        # Its holder renamed or removed it just then.
+        # Its holder renamed or removed the file at this moment: try again.
 
 
 def _is_named(descriptor: int, path: Path) -> bool:
@@ -103,10 +103,10 @@ def _is_named(descriptor: int, path: Path) -> bool:
 
 
 def _sign(descriptor: int, file: Path) -> None:
-    """Write into the lock whose it is; shows as well that there is room to write."""
+    """Write the owner into the lock file. This also shows that the disk has room."""
     try:
         os.ftruncate(descriptor, 0)
-        # Nobody else can read the first byte on Windows, which is the one that is locked.
+        # On Windows the first byte is locked and no other process can read it.
         os.write(descriptor, f"\nprocess {os.getpid()} on {platform.node()}".encode())
     except OSError as error:
         _remove_held(file)
@@ -119,10 +119,10 @@ def _owner(file: Path) -> str:
             content.seek(1)
             return content.read().decode(errors="replace") or "another process"
     except OSError:
-        return "another process"  # which has just ended
+        return "another process"  # it has just ended
 
 
 def _remove_held(file: Path) -> None:
-    """Remove a lock that is held, so that nobody can have taken it over."""
-    if sys.platform != "win32":  # where filelock does it, after the file is closed
+    """Remove a lock file while its lock is held, so that nobody can have taken it over."""
+    if sys.platform != "win32":  # there filelock removes it after closing the file
         file.unlink(missing_ok=True)

@@ -1,9 +1,9 @@
-"""Whether there is memory for what is asked for, before any of it is taken.
+"""Check that there is enough memory, before any of it is allocated.
 
-Linux grants more memory than there is and kills the process when it is used: a program that
-allocates first and looks afterwards loses everything. So whoever is about to allocate in
-proportion to what a user gave says how much, by the formula that its docstring states, and is
-refused in time.
+Linux grants more memory than there is, and kills the process when the memory is used. A process
+that allocates without checking can therefore lose its results. A function whose memory grows with
+its arguments estimates it by the formula in its docstring and calls :func:`require_memory`, which
+raises a ValueError if the estimate is too large.
 """
 
 from __future__ import annotations
@@ -16,9 +16,9 @@ from functools import lru_cache
 from pathlib import Path
 
 _GIB = 2**30
-_LATELY = 0.1  # seconds; looking takes half a millisecond, and a sweep asks for every case
+_LATELY = 0.1  # seconds; a look-up takes half a millisecond, and a sweep makes one for every case
 
-# Limit, usage, and what of it the system can take back, in the two versions of control groups.
+# Names of the limit, the usage, and the reclaimable part, in the two versions of control groups.
 _VERSION_1 = ("memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file")
 _VERSION_2 = ("memory.max", "memory.current", "inactive_file")
 
@@ -26,8 +26,8 @@ _VERSION_2 = ("memory.max", "memory.current", "inactive_file")
 def require_memory(wanted: str, needed: float) -> None:
     """Raise a ValueError with both numbers unless ``needed`` bytes are available.
 
-    ``wanted`` says what for, and begins with the name of the argument to change. What is available
-    is looked up at most ten times a second.
+    ``wanted`` says what the memory is for, and begins with the name of the argument to change. The
+    available memory is looked up at most ten times a second.
     """
     available = _available_lately(int(time.monotonic() / _LATELY))
     if needed > available:
@@ -43,10 +43,10 @@ def _available_lately(moment: int) -> float:
 
 
 def available_memory() -> float:
-    """Return the bytes that can be taken without swapping; where nobody knows, infinity.
+    """Return the bytes that can be allocated without swapping; infinity if this is not known.
 
-    A container or a batch job may have less than the machine: Linux kills what goes beyond the
-    limit of its control group, or of a group around it. The smallest number counts.
+    A container or a batch job may have less memory than the machine: Linux kills a process that
+    exceeds the limit of its control group or of an enclosing group. The smallest number counts.
     """
     return min(_of_the_machine(), _of_the_groups(Path("/")))
 
@@ -66,7 +66,7 @@ def _of_the_machine() -> float:
 
 
 def _of_the_groups(root: Path) -> float:
-    """Return what the control groups of this process leave it, below a root of the file system."""
+    """Return the bytes that the control groups of this process leave; ``root`` is for tests."""
     try:
         lines = (root / "proc/self/cgroup").read_text().splitlines()
     except OSError:
@@ -81,14 +81,14 @@ def _of_the_groups(root: Path) -> float:
         else:
             continue
         group = top / path.lstrip("/")
-        # In a container the path may be the one outside; in here only its top is to be seen.
+        # In a container the path may be that of the host, of which only the top exists here.
         around = (group, *group.parents)
         left = min([left, *(_left(each, *names) for each in around if each.is_relative_to(top))])
     return left
 
 
 def _left(group: Path, limit: str, usage: str, reclaimable: str) -> float:
-    """Return the limit of a group less what it uses; files kept in memory can be dropped."""
+    """Return the limit of a group minus its usage, without the cached files it can drop."""
     try:
         text = (group / limit).read_text().strip()
         if text == "max":

@@ -1,7 +1,7 @@
-"""The parameters of a chain: of each its default, its meaning, its unit and its check.
+"""The parameters of a chain, each with its default, meaning, unit and check.
 
-Nothing here imports numpy, so that the command line can list the parameters in its ``--help``,
-which must answer at once.
+This module does not import numpy, so that the command line can list the parameters in its
+``--help`` without a delay.
 """
 
 from __future__ import annotations

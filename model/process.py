@@ -20,7 +20,7 @@ def cores() -> int:
 
 @contextmanager
 def announced(progress: bool) -> Iterator[None]:
-    """Say that kernels are being compiled, if it takes long enough to wonder."""
+    """Print that kernels are being compiled, if this takes long enough to be noticed."""
     message = "crazybilliards: compiling the kernels, once (they are cached) ..."
     timer = Timer(0.7, lambda: print(message, file=sys.stderr, flush=True))
     if progress:
@@ -33,16 +33,16 @@ def announced(progress: bool) -> Iterator[None]:
 
 @contextmanager
 def interrupts_held_back() -> Iterator[None]:
-    """Let a Ctrl-C, or a SIGTERM that acts like one, act afterwards; also a decorator."""
+    """Delay Ctrl-C, and a SIGTERM that acts like it, to the end of the block or function."""
     if threading.current_thread() is not threading.main_thread():
         yield  # only the main thread receives signals
         return
-    # Blocking the signals in this thread would not do: another thread would take and pass them on.
+    # Blocking the signals in this thread is not enough: another thread would receive them.
     came: list[int] = []
     before = {
         number: handler
         for number in (signal.SIGINT, signal.SIGTERM)
-        if callable(handler := signal.getsignal(number))  # one of C cannot be put back
+        if callable(handler := signal.getsignal(number))  # one set in C cannot be restored
     }
     for number in before:
         signal.signal(number, lambda number, _: came.append(number))
@@ -57,7 +57,7 @@ def interrupts_held_back() -> Iterator[None]:
 
 @contextmanager
 def terminated_like_interrupted() -> Iterator[None]:
-    """Let SIGTERM, which batch systems send before they kill, act like Ctrl-C meanwhile."""
+    """Make SIGTERM, which batch systems send before they kill, act like Ctrl-C in this block."""
     if threading.current_thread() is not threading.main_thread():
         yield  # only the main thread may change handlers, and only it receives signals
         return

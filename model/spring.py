@@ -1,4 +1,4 @@
-r"""The law of the springs, in units of the stiffness k: the one place where it stands.
+r"""The law of the springs in units of the stiffness k; no other module repeats it.
 
 A spring stretched by d has the potential U, pulls back with the force F = U' and has the local
 stiffness F':
@@ -31,7 +31,7 @@ def stiffness(d: Number, exponent: int) -> Number:
 
 
 def potential(d: Number, exponent: int) -> Number:
-    """Return the energy U(d)/k. Unlike ``**``, products scale by powers of two to the bit."""
+    """Return the energy U(d)/k, by products: unlike ``**``, they scale exactly by powers of two."""
     return d * force(d, exponent) / exponent
 
 
@@ -41,10 +41,10 @@ def reach(energy: Number, exponent: int) -> Number:
 
 
 def root(power: Number, exponent: int) -> Number:
-    """Return power^(1/n). Unlike ``**``, these roots scale by powers of two to the bit."""
+    """Return power^(1/n), by roots that, unlike ``**``, scale exactly by powers of two."""
     if exponent == 2:
         return np.sqrt(power)
-    # On some machines cbrt rounds differently above and below 1: one below 4 is taken.
+    # On some machines cbrt rounds differently above and below 1, so its argument is kept below 4.
     fraction, doublings = np.frexp(power)
     thirds = doublings // 3
     return np.ldexp(np.cbrt(np.ldexp(fraction, doublings - 3 * thirds)), thirds)

@@ -5,7 +5,7 @@ it (NetCDF readers ignore what follows the data). :func:`load` compares the two 
 NetCDF library sees the bytes, so a damaged or truncated file can never give a wrong result.
 
 :func:`save` writes NetCDF-4, which can hold everything and costs tens of milliseconds a file. The
-many small files of a sweep are classic NetCDF, which costs one or two.
+many small files of a sweep are classic NetCDF, which costs one or two milliseconds a file.
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ def load(path: str | os.PathLike[str]) -> xr.Dataset | xr.DataTree:
         if content.startswith(_CLASSIC):
             return _load_classic(content)
         tree = xr.open_datatree(io.BytesIO(content), engine="h5netcdf").load()
-    # Whatever the libraries make of bytes that are sealed but no NetCDF.
+    # The libraries may raise anything for a file with a valid checksum that is not NetCDF.
     except Exception as error:
         raise ValueError(f"{path}: not a result, though crazybilliards wrote it") from error
     tree.close()
@@ -77,7 +77,7 @@ def load(path: str | os.PathLike[str]) -> xr.Dataset | xr.DataTree:
 def load_attributes(path: str | os.PathLike[str]) -> dict[str, Any]:
     """Read only the attributes of a result that :func:`save` wrote; raises as :func:`load`.
 
-    Faster, and the whole file is checked all the same.
+    This is faster than :func:`load`, and the whole file is still checked.
     """
     content = read_sealed(Path(path))
     try:
@@ -115,7 +115,7 @@ def write_sealed(path: Path, content: bytes) -> None:
 
 
 def read_sealed(path: Path) -> bytes:
-    """Return what :func:`write_sealed` wrote, or raise a ValueError if it is not as it was."""
+    """Return the content that :func:`write_sealed` wrote; ValueError if it was changed since."""
     if path.exists() and not path.is_file():
         raise ValueError(f"{path}: a folder or a device, not a file")
     raw = path.read_bytes()
@@ -148,7 +148,7 @@ def write_atomically(path: Path, content: bytes) -> None:
 
 
 def make_folder(path: Path) -> None:
-    """Make a folder, and those it lies in, unless it is there."""
+    """Make a folder and its parents, unless they exist."""
     try:
         path.mkdir(parents=True, exist_ok=True)
     except FileExistsError as error:
@@ -157,10 +157,10 @@ def make_folder(path: Path) -> None:
 
 @contextmanager
 def _unfinished(path: Path) -> Iterator[Path]:
-    """Give the name of the file that becomes ``path`` when it is complete, and remove it if not.
+    """Yield the name for the unfinished file of ``path``; remove the file if writing fails.
 
-    It is always the same, so that the next writing takes over what a kill left. Where somebody
-    else is writing just then, or nothing can be locked, it is one of its own.
+    The name is always the same, so that the next write takes over a file that a kill left. If
+    another process is writing at this moment, or there are no locks, the name is a random one.
     """
     name = path.with_name(f".{path.name}.part")
     try:

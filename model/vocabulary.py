@@ -1,7 +1,7 @@
-"""The names, dimensions and units that every result of this package is written in.
+"""The names, dimensions and units of every result of this package.
 
-Simulations and theories return an :class:`xarray.Dataset` built by :func:`result`, so anything
-can be laid over anything. A measured ``NAME`` comes with ``NAME_error``, one standard error.
+Simulations and theories return an :class:`xarray.Dataset` built by :func:`result`, so any two of
+them can be compared. A measured ``NAME`` comes with ``NAME_error``, one standard error.
 """
 
 from __future__ import annotations
@@ -94,12 +94,12 @@ def result(
     method
         How it was computed, for the provenance: anything JSON can hold.
     coordinates
-        Values along the dimensions x, y, time and velocity, where there are any; the particles
-        number themselves.
+        Values along the dimensions x, y, time and velocity, if the result has them; the
+        particles get their numbers.
     status, end_time
         ``completed``, ``diverged`` or ``interrupted``, and the time reached.
     residual
-        How well a theory's equations are satisfied; what it measures its function says.
+        How well a theory's equations are satisfied, as its function defines.
     particles
         The particles, from 1, that variables over ``particle`` are given for; None: all.
 

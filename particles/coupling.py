@@ -1,22 +1,23 @@
-r"""Two chains under the same noise, one at a step some times as long as the other.
+r"""Two chains under the same noise; the step of one is a multiple of the step of the other.
 
 Between two snapshots a chain is kicked by the noise of these durations (``stepping.py``): half a
-step, whole steps, half a step. If the ratio is three, say, then in units of the finer step
+step, whole steps, half a step. For a ratio of three, in units of the finer step,
 
     finer    | 1/2 |  1  |  1  |  1  |  1  |  1  | 1/2 |
     coarser  |    3/2    |        3        |    3/2    |        two coarser steps
 
-each coarser kick covers exactly the time of some finer ones. This is so for every odd ratio; with
-an even one the end of a coarser kick would fall into a finer one. Damping and noise alone give a
-velocity, after kicks of the durations t_j, the noise
+each coarser kick covers exactly the time of some finer ones. This holds for every odd ratio. With
+an even ratio the end of a coarser kick would fall inside a finer one. After kicks of the durations
+t_j, damping and noise alone have added to a velocity
 
     eta = sum_j exp(-(gamma/m) sum_(k > j) t_k) sigma(t_j) xi_j,
 
 sigma(t)^2 = (T/m)(1 - exp(-2 gamma t/m)). Its variance is sigma(sum_j t_j)^2, that of one kick of
-the whole duration. The coarser chain is kicked by eta: by the finer one's noise, exactly. The
-eta/sigma of successive kicks are independent normal numbers, since no xi is in two of them, so that
-the coarser chain has the law of a chain at its own step. The finer chain even has its bits. The
-noise of closed contacts is made stronger in each chain where its own contacts are closed
+the whole duration. eta is the kick of the coarser chain, so both chains have exactly the same
+noise. The eta/sigma of successive kicks are independent normal numbers, because no xi is in two of
+them. The coarser chain therefore has the law of a chain at its own step. The finer chain even has
+the bits of a single chain. The noise of closed contacts is made stronger in each chain where its
+own contacts are closed
 (``laws/closed_contacts.py``).
 """
 
@@ -36,8 +37,8 @@ def advance_pair(  # type: ignore[no-untyped-def]
 ):
     """Take ``steps`` coarser steps of ``ratio`` finer ones each; return -1 if a chain diverged.
 
-    ``y``, ``v``: shape (2, L), the finer chain first; ``dynamics``, ``scratch``: of both, in this
-    order. For the others see ``stepping.advance``.
+    ``y`` and ``v`` have the shape (2, L), with the finer chain first. ``dynamics`` and ``scratch``
+    are pairs in the same order. The other arguments are those of ``stepping.advance``.
     """
     if steps == 0:
         return 0
@@ -79,7 +80,7 @@ def record_pair(  # type: ignore[no-untyped-def]
 ):
     """Write the states after every ``stride`` coarser steps into the buffers, (2, rows, L).
 
-    Return how many of the ``snapshots`` are good, as ``stepping.record`` does.
+    Return the number of valid snapshots, as ``stepping.record`` does.
     """
     for snapshot in range(snapshots):
         met = advance_pair(y, v, noise, dynamics, ratio, scratch, tally, stride)

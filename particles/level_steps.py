@@ -1,14 +1,14 @@
 """The time steps of the levels of a limit dt -> 0, chosen before anything is computed.
 
-The shortest step is such that its error is expected to be a quarter of the accuracy: that of the
-noise (``scales.time_step_error``) and that of the springs, (w0 dt)^2/8. The others are longer by
-nine each. Runs at two steps are correlated by about as much whether one is three or nine times as
-long (0.97 to 0.99 for 100 rods at e = 0), and with nine fewer levels do. A step whose velocity
-kicks exceed 1.5 W_v is correlated with no other. One level of a third of the shortest step is
-planned in reserve, in case it turns out to be too long.
+The shortest step is chosen so that its expected error is a quarter of the accuracy. This error is
+that of the noise (``scales.time_step_error``) plus that of the springs, (w0 dt)^2/8. Each longer
+step is nine times the one before. Runs at two steps are correlated about equally for the ratios
+three and nine (0.97 to 0.99 for 100 rods at e = 0), and nine needs fewer levels. A step whose
+velocity kicks exceed 1.5 W_v is not correlated with any other. One level with a third of the
+shortest step is planned in reserve, in case the shortest step turns out to be too long.
 
-At restitution 1 noise need not be resolved. The error of the step is that of the springs, which is
-known, and one level is enough.
+For e = 1 the step need not resolve the noise. Its error is that of the springs, which is known, and
+one level is enough.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ _RELAXATIONS = 12  # of the warm-up
 
 
 class Steps(NamedTuple):
-    """The levels in whole numbers: the steps, the longest first, and when they are measured."""
+    """The levels in whole numbers: the steps, the longest first, and their snapshots."""
 
     time_steps: list[float]
     ratios: list[int]  # of the step before to this one; 1 for the first
@@ -61,7 +61,7 @@ def relative_bias(chain: Chain, time_step: float, width: float) -> float:
 
 
 def plan_steps(chain: Chain, accuracy: float, warmup: float | None, replicas: int) -> Steps:
-    """Choose the steps of the levels; the last one is only taken if the bias asks for it."""
+    """Choose the steps of the levels; the last one is used only if the bias is too large."""
     width = centre_width(chain) * chain.free_velocity_width
     fastest = max(spring_rate(chain), chain.damping / chain.mass)
     longest = step = _SPRINGS / fastest

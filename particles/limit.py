@@ -1,4 +1,4 @@
-"""What the simulation tends to for a vanishing time step: :func:`simulate_limit`."""
+"""The limit of the simulation for a vanishing time step: :func:`simulate_limit`."""
 
 from __future__ import annotations
 
@@ -38,14 +38,14 @@ _JOINED = 3  # copies of what observers keep, while they are joined
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class LevelRun(Run):
-    """The run of one level: steps and snapshots in whole numbers, sums of one block without end."""
+    """The run of one level, with steps and snapshots in whole numbers and one unlimited block."""
 
     warmup_steps: int
     stride: int
 
     @cached_property
     def schedule(self) -> Schedule:
-        """The steps; as many snapshots as one likes."""
+        """The steps of the level; the number of snapshots is not limited."""
         assert self.time_step is not None
         return Schedule(self.time_step, self.warmup_steps, self.stride, 1, _OPEN)
 
@@ -67,52 +67,53 @@ def simulate_limit(
 ) -> xr.Dataset:
     """Simulate the steady state of the chain in the limit of a vanishing time step.
 
-    The averages of a run at a long step are corrected by those of coupled runs at shorter and
-    shorter ones, until W_v in the centre is as good as asked for: multilevel Monte Carlo. How
-    steps, levels and durations are chosen stands in ``multilevel.py``.
+    The method is multilevel Monte Carlo. Averages of a run at a long step are corrected by those of
+    coupled runs at shorter and shorter steps, until W_v in the centre has the wanted accuracy.
+    ``multilevel.py`` explains how steps, levels and durations are chosen.
 
     Parameters
     ----------
     chain
-        The chain, with damping and noise: it needs a steady state.
+        The chain. It needs a steady state, and therefore damping and noise.
     accuracy
-        Relative error wanted of the velocity width in the centre (root of the mean <v^2> of the
-        middle tenth of the rods): standard error and bias together. From 1e-4 to 0.1. The work
-        grows as 1/accuracy^2 and a little faster.
+        Wanted relative error of the velocity width in the centre (root of the mean <v^2> of the
+        middle tenth of the rods), standard error and bias together; 1e-4 to 0.1. The work grows
+        a little faster than 1/accuracy^2.
     warmup
         Time before measuring [T], at every level; None: 12 relaxation times.
     merging, seed, particles
         As in :func:`simulate`.
     observe
-        As in :func:`simulate`, ``"widths"`` among them. ``"snapshots"`` are no averages;
-        collisions and avalanches are counted by the step and have no limit.
+        As in :func:`simulate`; must include ``"widths"``. ``"snapshots"`` are refused because
+        they are not averages, collisions and avalanches because they have no limit.
     replicas
-        Independent trajectories at every level; each is warmed up. ``threads`` of all those
-        (None: one per core) run at a time.
+        Independent trajectories at every level, each with a warm-up. ``threads`` of them (None:
+        one per core) run at a time.
     checkpoint, checkpoint_interval, progress
         As in :func:`simulate`.
 
     Returns
     -------
     xarray.Dataset
-        In the common vocabulary, every NAME with its NAME_error: one standard error and the
-        remaining bias, squared and added. ``central_velocity_width`` is what ``accuracy`` is
-        about; ``kinetic_energy`` has no time. ``mean_velocity`` is left out: it is 0. Densities
-        are sums of differences, and may be negative by an error or so where hardly any rod comes.
-        ``attrs["status"]`` is as of :func:`simulate`; an interrupted run has the errors that it
-        came to. ``attrs["time_step_error"]`` is the remaining relative bias in the centre,
-        ``attrs["coupling"]`` is ``strong``, or ``weak`` where plain runs at the shortest step
-        were cheaper, ``attrs["correlation"]`` that of the widths at the last two steps.
-        The provenance holds every level.
+        In the common vocabulary. Every NAME has a NAME_error, the root of the sum of the squares
+        of one standard error and of the remaining bias. ``accuracy`` applies to
+        ``central_velocity_width``. ``kinetic_energy`` has no time. ``mean_velocity`` is left out,
+        because it is 0. Densities are sums of differences. Where hardly any rod comes they may be
+        negative by about one error.
+        ``attrs["status"]`` is as in :func:`simulate`; an interrupted run has the errors reached
+        so far. ``attrs["time_step_error"]`` is the remaining relative bias in the centre.
+        ``attrs["coupling"]`` is ``strong``, or ``weak`` if plain runs at the shortest step were
+        cheaper. ``attrs["correlation"]`` is that of the widths at the last two steps. Both are
+        missing if one step was enough from the beginning. The provenance describes every level.
 
     Raises
     ------
     ValueError
         For a wrong argument, before any work.
     OSError
-        If the checkpoint cannot be written, before any work. Later on that is a warning.
+        If the checkpoint cannot be written at the start. Later this is only a warning.
     KeyboardInterrupt
-        On Ctrl-C before every level was measured twice.
+        On Ctrl-C before every level has two measurements.
 
     Examples
     --------
@@ -253,7 +254,7 @@ def _collect(levels: Levels, interrupted: bool, progress: bool) -> xr.Dataset:
         end_time=min(ends),
         particles=finest.chosen + 1,
     )
-    if diverged:  # what long steps do alone is no limit
+    if diverged:  # an average at long steps alone is not the limit
         return collected({}, method=method)
     if min(np.count_nonzero(sampler.counts) for sampler in used) < 2:
         raise KeyboardInterrupt("not every level was measured yet")
@@ -277,9 +278,9 @@ def _collect(levels: Levels, interrupted: bool, progress: bool) -> xr.Dataset:
 
 
 def _describe_coupling(levels: Levels, limit: xr.Dataset, progress: bool) -> None:
-    """Say how well runs at the last two steps are correlated, if there were any."""
+    """Print the correlation of runs at the last two steps, if there were any."""
     last = levels.used[-1]
-    if last == 0:  # elastic: one step is all it takes
+    if last == 0:  # one step is enough: always at e = 1, elsewhere if little is asked for
         return
     plain = len(levels.used) == 1
     correlation = (

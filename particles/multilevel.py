@@ -4,27 +4,29 @@ r"""The limit of a vanishing time step as a sum over levels: multilevel Monte Ca
 
     lim Q(dt) = <Q(dt_0)> + <Q(dt_1) - Q(dt_0)> + ... + <Q(dt_n) - Q(dt_(n-1))> + bias.
 
-The base, the first term, takes most of the statistics and is cheap, because its step is long. In a
-difference both chains have the same noise (``coupling.py``): it fluctuates little and needs few of
-the short steps. Its terms are independent, and each has the value of all its groups of snapshots
-together, with the standard error of the jackknife over the groups (``sampler.py``).
+The first term is the base. It needs most of the statistics and is cheap, because its step is long.
+In a difference both chains have the same noise (``coupling.py``). The difference therefore
+fluctuates little and needs few of the expensive short steps. The terms are independent. The value
+of a term is that of all its groups of snapshots together, and its standard error is the jackknife
+over the groups (``sampler.py``).
 
-**How long.** With V the variance times the duration and C the steps of a rod per time, the least
-work for an error s takes durations t_l = sqrt(V_l/C_l) sum_k sqrt(V_k C_k)/s^2. V is that of W_v in
-the centre. It is measured in a pilot round, which counts, too: 64 relaxation times of the base and
-16 of each difference, or four times, sixteen times as long while that is less than a quarter of the
-work to come.
+**Durations.** Let V be the variance of W_v in the centre times the duration, and C the number of
+steps of a rod per time. The work for an error s is least for the durations t_l = sqrt(V_l/C_l)
+sum_k sqrt(V_k C_k)/s^2. V is measured in a pilot round, whose snapshots count as well. It takes 64
+relaxation times of the base and 16 of each difference, or four or sixteen times as long while this
+is less than a quarter of the work to come.
 
-**From which step.** Steps that are too long to be correlated with the next shorter one do not pay:
-the base is the level from which the work, (sum_k sqrt(V_k C_k))^2, is least. If that is the last
-level, nothing is left to subtract, and the run is a plain one at the shortest step.
+**The first step.** A step that is too long to be correlated with the next shorter one saves no
+work. The base is the level from which on the work, (sum_k sqrt(V_k C_k))^2, is least. If this is
+the last level, there is no difference, and the run is a plain one at the shortest step.
 
-**What is left.** The last step is chosen beforehand (``level_steps.py``). The error that it leaves
-is estimated from the last difference D, whose other step is M times as long: D/(M^p - 1) with the
-order p of the scheme in dt. It is 3/2 below the critical restitution, 3/4 above, where the error is
-~ r^(3/2) and r ~ sqrt(dt). If W_v in the centre is further off than 0.7 of the accuracy, a level
-with a third of the step is added. Every error bar is the root of the squared standard errors and
-this bias. For a plain run nothing is subtracted, and the bias is the expected relative one.
+**The remaining bias.** The last step is chosen beforehand (``level_steps.py``). Its error is
+estimated from the last difference D, whose other step is M times as long, as D/(M^p - 1) with the
+order p of the scheme in dt. The order is 3/2 below the critical restitution. Above it is 3/4,
+because the error is ~ r^(3/2) and r ~ sqrt(dt). If the bias of W_v in the centre exceeds 0.7 of the
+accuracy, a level with a third of the step is added. Every error bar is the root of the sum of the
+squared standard errors and the squared bias. A plain run has no difference, and its bias is the
+expected relative one.
 """
 
 from __future__ import annotations
@@ -78,7 +80,7 @@ class Estimate(NamedTuple):
 def _reported(
     groups: Sequence[Sequence[Sequence[Observer]]], chain: int, counts: NDArray[np.int64]
 ) -> dict[str, tuple[tuple[str, ...], Array]]:
-    """Return what the observers of some groups measured together of the finer or coarser chain."""
+    """Return the joint measurements of some groups, of the finer or the coarser chain."""
     found: dict[str, tuple[tuple[str, ...], Array]] = {}
     for first, *others in zip(*(group[chain] for group in groups), strict=True):
         joined, snapshots = deepcopy(first), counts
@@ -136,7 +138,7 @@ def estimate(samplers: Sequence[Sampler], *, difference: bool, only: str | None 
 
 
 class Levels:
-    """The samplers of all levels, by level and replica: how much each measures, and the sum."""
+    """The samplers of all levels, by level and replica; plans their work and sums them up."""
 
     def __init__(
         self, chain: Chain, accuracy: float, steps: Steps, samplers: list[list[Sampler]]
@@ -157,7 +159,7 @@ class Levels:
             self._extend(level, self._first(level))
 
     def extend(self) -> bool:
-        """Ask for what is missing; return whether anything is. It follows from what is measured."""
+        """Request the snapshots that the variances require; return whether any are missing."""
         factors = {self._target(level) / self._first(level) for level in self.used}
         if len(factors) == 1 and not self._choose_base():
             for level in self.used:
@@ -183,7 +185,8 @@ class Levels:
         levels = self.used[-len(spreads) :]
         costs = [self._cost(level, level > levels[0]) for level in levels]
         work = sum(math.sqrt(v * c) for v, c in zip(spreads, costs, strict=True))
-        # Where the bias takes too much, the rest need not be paid for without end.
+        # If the bias is a large part of the error, the statistics must not be required without
+        # limit.
         noise = max(self.accuracy**2 - bias**2, self.accuracy**2 / 4) * width**2
         wanted = [
             math.ceil(math.sqrt(v / c) * work / noise / self.groups)
@@ -200,7 +203,7 @@ class Levels:
         ]
 
     def bias(self, terms: Sequence[Estimate]) -> dict[str, Array]:
-        """Return what is left of every variable's error from the time step."""
+        """Return the remaining time-step error of every variable."""
         if len(terms) == 1:
             values = terms[0].values
             step = self.steps.time_steps[self.used[-1]]
@@ -242,16 +245,16 @@ class Levels:
             sampler.extend(target)
 
     def _cost(self, level: int, coupled: bool) -> float:
-        """Return the steps of a rod from snapshot to snapshot; a snapshot costs about one, too."""
+        """Return the steps of a rod per snapshot; taking the snapshot costs about one step, too."""
         steps = self.steps.per_step(level) + (self.steps.per_step(level - 1) if coupled else 0)
         return float(steps * self.steps.stride + 1 + coupled)
 
     def _choose_base(self) -> bool:
         """Leave out the levels whose steps are too long to save any work.
 
-        Return False if the pilot round is too short to tell, and a longer one costs little. The
-        spread of a single chain is taken to be the same at all steps: two measured ones would
-        differ by more than they really do.
+        Return False if the pilot round is too short to decide and a longer one costs little. The
+        spread of a single chain is assumed to be the same at all steps, because two measured
+        spreads would differ more than the true ones.
         """
         levels = list(self.used)
         alone = [estimate(self.samplers[each], difference=False, only="widths") for each in levels]

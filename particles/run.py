@@ -1,7 +1,7 @@
-"""What a run is: the arguments of ``simulate`` that its numbers follow from, checked, in one place.
+"""The description of a run: the checked arguments of ``simulate`` that determine its numbers.
 
-A :class:`Run` is made once, before any work. Observers, kernels, checkpoints and the provenance
-of the result take from it what they need.
+A :class:`Run` is made once, before any work. Observers, kernels, checkpoints and the provenance of
+the result read it.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ Array = NDArray[np.float64]
 
 _GROUPS = 32  # of an ensemble: enough for an error bar good to an eighth
 
-# Peak memory, measured: observers are joined and averaged in copies; chunks of snapshots.
+# Measured peak memory: copies while observers are joined and averaged, and chunks of snapshots.
 _COPIES = 7
 _BYTES_PER_ROD = 100
 _BYTES_PER_REPLICA = 10_000
@@ -38,7 +38,7 @@ _CHUNKS = 4e7
 
 
 class Measurement(Protocol):
-    """What a run has to know of an observer before it begins; see ``observers/base.py``."""
+    """The part of an observer that a run needs before it begins; see ``observers/base.py``."""
 
     name: ClassVar[str]
     gives: ClassVar[tuple[str, ...]]
@@ -48,15 +48,15 @@ class Measurement(Protocol):
     limit: ClassVar[bool]
 
     def memory(self, run: Run) -> float:
-        """Return the bytes it would keep for one replica, or one group of an ensemble's."""
+        """Return the bytes it would keep for one replica, or for one group of an ensemble."""
 
     def prepared(self, run: Run, copies: int) -> Any:
-        """Return an observer with the same parameters that can begin."""
+        """Return an observer with the same parameters that is ready to measure."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Run:
-    """A run that can be carried out; the fields are the arguments of ``simulate``.
+    """A checked run; its fields are the arguments of ``simulate``.
 
     Raises
     ------
@@ -87,7 +87,7 @@ class Run:
         object.__setattr__(self, "merging", check_real("merging", self.merging))
         object.__setattr__(self, "seed", check_integer("seed", self.seed, least=0))
         object.__setattr__(self, "replicas", check_integer("replicas", self.replicas, least=1))
-        # Each of these raises for what is wrong with its own arguments.
+        # Each of these properties checks its own arguments and raises if they are wrong.
         own = self.replicas * (_BYTES_PER_ROD * float(self.chain.size) + _BYTES_PER_REPLICA)
         require_memory(f"replicas={self.replicas} of {self.chain.size} rods", own + _CHUNKS)
         _check_observers(self)
@@ -134,7 +134,7 @@ class Run:
 
     @cached_property
     def swing(self) -> float:
-        """How far the energy of the start takes a rod from its anchor [R]."""
+        """Largest distance from its anchor that the energy of the start gives a rod [R]."""
         return max(start_swing(self.chain, y, v) for y, v in self.starts)
 
     @property
@@ -153,7 +153,7 @@ class Run:
         return any(observer.single_collisions for observer in self.observers)
 
     def dynamics(self) -> Dynamics:
-        """Return what the kernels need to know."""
+        """Return the numbers and arrays that the kernels need."""
         duration = self.schedule.warmup + self.schedule.duration
         return make_dynamics(
             self.chain,
@@ -166,7 +166,7 @@ class Run:
         )
 
     def provenance(self) -> dict[str, Any]:
-        """Return all but the chain that the numbers follow from, as JSON can hold it."""
+        """Return everything except the chain that determines the numbers, in a form for JSON."""
         states = (state.tobytes() for start in self.starts for state in start)
         return {
             "method": self.method,
@@ -184,7 +184,7 @@ class Run:
 
 
 def _check_observers(run: Run) -> None:
-    """Raise if an observer cannot do its work in this run, or two would give one name."""
+    """Raise if an observer cannot work in this run, or if two report the same variable."""
     given: dict[str, str] = {}
     for observer in run.observers:
         if run.average == "ensemble" and not observer.ensemble:

@@ -3,34 +3,36 @@ r"""The physical scales of a chain, from which a run is planned.
 The scales of a chain are the spring's rate w0 = sqrt(F'(d)/m), taken for a quadratic spring at
 the displacement d that ten times the temperature reaches, and the damping rate gamma/m.
 
-**Time step.** 0.05 / max(w0, gamma/m), which gives the splitting scheme W_x right to 3e-4 (linear
-springs, no gap). For e != 1 the noise must be resolved too, most where the chain is coldest, in the
-centre. What counts is r = (A sqrt(dt)/m)/W_v, the velocity kick of one step over W_v. It is held at
-0.3, W_v being estimated by :func:`centre_width`; W_v then comes out wrong by 1 % at most. Whatever
-the step, the result states this error (:func:`time_step_error`).
+**Time step.** The step is 0.05 / max(w0, gamma/m). The splitting scheme then has W_x right to 3e-4
+(linear springs, no gap). For e != 1 the step must also be short enough to resolve the noise, most
+of all in the centre, where the chain is coldest. What matters is r = (A sqrt(dt)/m)/W_v, the ratio
+of the velocity kick of one step to W_v. It is held at 0.3, with the estimate of W_v by
+:func:`centre_width`. The error of W_v is then at most 1 %. For every step the result states the
+expected error (:func:`time_step_error`).
 
 **Relaxation time.** A rod on a linear spring k' relaxes with its slowest mode,
 
     1/tau = Re [b - sqrt(b^2 - k'/m)],      b = gamma/2m:
 
-2m/gamma if weakly damped, gamma/k' if strongly. A quadratic spring has no stiffness of its own, but
-strongly damped its rod diffuses in the potential k |d|^3/3, and the slowest mode of that decays at
-the rate 1.241 k s/gamma, s = (T/k)^(1/3): the smallest eigenvalue but 0 of the Fokker-Planck
-operator -d^2/dz^2 + z|z| d/dz, z = d/s. So k' = 1.241 k s is right in this limit. Weakly damped,
-2m/gamma is an upper estimate for quadratic springs: the energy relaxes at the rate 6 gamma/5m
-(virial theorem), and the phases mix faster; at gamma s/m W = 0.2 it is twice too long.
+so tau is 2m/gamma for weak damping and gamma/k' for strong damping. A quadratic spring has no
+constant stiffness. With strong damping its rod diffuses in the potential k |d|^3/3. The slowest
+mode of this diffusion decays at the rate 1.241 k s/gamma, s = (T/k)^(1/3), which is the smallest
+eigenvalue above 0 of the Fokker-Planck operator -d^2/dz^2 + z|z| d/dz, z = d/s. So k' = 1.241 k s
+is right in this limit. With weak damping 2m/gamma is an upper estimate for quadratic springs: the
+energy relaxes at the rate 6 gamma/5m (virial theorem), and the phases mix faster. At gamma s/m W =
+0.2 the estimate is twice too long.
 
-In a chain, rods that collide move together, and the stiffness that holds a group is the mean of
-2 k |d| over its rods, whose displacements are smaller than those of a free rod, s. Two parts make
-them up. Fluctuations: neighbours a gap g apart are coupled by T/g^2, the stiffness of a gas of
-points, so that <d^2> = (g/2) sqrt(T/k'); with k' = 2 k <|d|> this is <d^2> = 0.78 s^2 z^2 with
-z = (0.54 g/s)^(2/5). The pressure, which pushes rods from their anchors within some s of the ends
-of a lattice of length g L: on average by about s/(1 + g L/2s). Together
+In a chain, rods that collide move together. The stiffness that holds a group is the mean of 2 k |d|
+over its rods, whose displacements are smaller than those of a free rod, s. The displacements have
+two causes. (1) Fluctuations: neighbours a gap g apart are coupled by T/g^2, the stiffness of a gas
+of points, so that <d^2> = (g/2) sqrt(T/k'). With k' = 2 k <|d|> this is <d^2> = 0.78 s^2 z^2 with z
+= (0.54 g/s)^(2/5). (2) Pressure: it pushes rods from their anchors within some s of the ends of a
+lattice of length g L, on average by about s/(1 + g L/2s). Together
 
     k' = 1.241 k s min[1, sqrt(z^2 + 1/(1 + g L/2s)^2)],
 
-1 without gap (rods pass their velocities on and are free in all but name), less in a long, dense
-lattice. It is right to a third for 1 to 300 rods with gaps from 0.03 s to s, at restitution 1.
+The minimum is 1 without a gap, where relabelled rods are free, and less in a long, dense lattice.
+The estimate is right to a third for 1 to 300 rods with gaps from 0.03 s to s, at restitution 1.
 """
 
 from __future__ import annotations
@@ -68,7 +70,7 @@ def spring_rate(chain: Chain) -> float:
 
 
 def centre_width(chain: Chain) -> float:
-    """Estimate of W_v in the centre of the chain over the free one, within a fifth for e < 1.
+    """Estimate the ratio of W_v in the centre of the chain to W, within a fifth for e < 1.
 
     Heating by the noise balances damping and collisions, whose cooling grows as the chain cools
     and contracts: 1/w^2 = 1 + q with q = c (1 - e^2) n sqrt(k m)/gamma, n the number of rods that
@@ -84,7 +86,7 @@ def centre_width(chain: Chain) -> float:
 
 
 def default_time_step(chain: Chain) -> float:
-    """Resolve spring, damping and, for e != 1, the noise; see the top of this module."""
+    """Return a step that resolves spring, damping and, for e != 1, the noise; see the module."""
     fastest = max(spring_rate(chain), chain.damping / chain.mass)
     if fastest == 0:
         raise ValueError(
@@ -108,12 +110,12 @@ def time_step_error(
 
     * 0.1 r^3 below the critical restitution, with the correction for closed contacts
       (``laws/closed_contacts.py``);
-    * 0.24 r^(3/2) there without it, in the Euler scheme and with Contact Dynamics: excursions from
-      one contact to the next have lengths t > dt in a number ~ dt^(-1/4), and each loses what one
-      kick gave it, ~ dt;
-    * 0.06 r^(3/2) at higher restitutions: what is found at e = 0.2 and 0.3, less above.
+    * 0.24 r^(3/2) there without the correction, that is in the Euler scheme and with Contact
+      Dynamics: the number of excursions from one contact to the next that last longer than dt is
+      ~ dt^(-1/4), and each loses the energy of one kick, ~ dt;
+    * 0.06 r^(3/2) at higher restitutions. This was found at e = 0.2 and 0.3; above it is less.
 
-    Mean displacements are off by about as much.
+    The relative errors of mean displacements are about as large.
     """
     if chain.restitution == 1 or velocity_width == 0:
         return 0.0
@@ -125,9 +127,9 @@ def time_step_error(
 
 
 def relaxation_time(chain: Chain) -> float:
-    """Time constant of the slowest mode of a chain [T]; 0 where nothing relaxes.
+    """Time constant of the slowest mode of a chain [T]; 0 if nothing relaxes.
 
-    Exact for linear springs at restitution 1; for quadratic ones see the top of this module.
+    It is exact for linear springs at restitution 1. For quadratic springs see the module.
     """
     if chain.damping == 0:
         return 0.0
@@ -162,7 +164,7 @@ def typical_speed(chain: Chain, duration: float, y: Array, v: Array) -> float:
 
 
 def start_swing(chain: Chain, y: Array, v: Array) -> float:
-    """Largest displacement that the start's own energy takes a free rod to [R]."""
+    """Largest displacement of a free rod with the energy of the start [R]."""
     energy = chain.potential(y - chain.reduced_anchors) + chain.mass / 2 * v**2
     if chain.stiffness == 0:
         return 0.0  # no bound, and no grid asks for one

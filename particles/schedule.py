@@ -1,8 +1,8 @@
-"""How long and how finely to simulate: a run in whole numbers of steps, blocks and snapshots.
+"""The schedule of a run: whole numbers of steps, blocks and snapshots.
 
 * time step: see :func:`crazybilliards.particles.scales.default_time_step`.
-* warm-up: 12 relaxation times of the slowest mode, so the start has decayed to exp(-12); none
-  with a given start or for an ensemble, whose time begins with the start.
+* warm-up: 12 relaxation times of the slowest mode, so that the start has decayed to exp(-12). There
+  is none with a given start or for an ensemble, whose time begins with the start.
 * snapshots: every 10 steps; for an ensemble every hundredth of the duration.
 """
 
@@ -58,7 +58,7 @@ class Schedule:
         return self.warmup_steps + (self.snapshots - self.ensemble) * self.stride
 
     def step_of(self, snapshot: int) -> int:
-        """Return the steps that a replica has taken when a snapshot, counted from 0, is due."""
+        """Return the number of steps before a snapshot, which is counted from 0."""
         return self.warmup_steps + (snapshot + (not self.ensemble)) * self.stride
 
     @property
@@ -72,7 +72,7 @@ class Schedule:
         return self.time(np.arange(float(self.snapshots)))
 
     def time(self, snapshot: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Time of snapshots by their numbers, from 0; of a half, the middle of two."""
+        """Time of snapshots by their numbers from 0; a half number is the middle of two."""
         count = snapshot + (not self.ensemble)
         return np.asarray(self.warmup + count * (self.stride * self.time_step))
 
@@ -89,11 +89,11 @@ def make_schedule(
     stepper: Stepper = "splitting",
     started: bool = False,
 ) -> Schedule:
-    """Check the times a user gave, fill in those not given, and return whole numbers of steps.
+    """Check the given times, choose the others, and return whole numbers of steps.
 
-    For averages in time 64 blocks in all give the standard errors; the measured duration is
-    rounded up so that they are equally long. ``every``, the time between snapshots, is kept
-    exactly: the step becomes a whole fraction of it.
+    Averages in time get their standard errors from 64 blocks in all. The measured duration is
+    rounded up so that the blocks are equally long. ``every``, the time between snapshots, is kept
+    exactly, and the step becomes a whole fraction of it.
     """
     ensemble = average == "ensemble"
     duration = check_real("duration", duration, positive=True)
@@ -119,7 +119,7 @@ def make_schedule(
             f"duration must be at least {least:.4g} (one snapshot in each of {blocks} blocks), "
             f"got {duration:g}"
         )
-    # A hair of tolerance: a duration that is a whole number of blocks stays one.
+    # The small tolerance keeps a duration that is a whole number of blocks but for rounding.
     return Schedule(step, warmup_steps, stride, blocks, math.ceil(snapshots / blocks - 1e-9))
 
 

@@ -69,26 +69,27 @@ def simulate(
         Time before measuring [T]; None: 12 relaxation times, or 0 with a ``start`` and for an
         ensemble.
     time_step
-        None: 0.05 of the fastest of spring and damping (0.1 for the default chain), off
-        restitution 1 also short enough for the noise between collisions; see ``schedule``.
+        None: 0.05 of the shorter of the times of spring and damping (0.1 for the default chain).
+        For e != 1 it is also short enough to resolve the noise between collisions; see ``scales``.
     method
-        ``"event-driven"``: every collision in its order. ``"contact-dynamics"``: all contacts of
-        a step at once, the paper's method; right only where a step sees few collisions.
+        ``"event-driven"``: every collision in its order in time. ``"contact-dynamics"``: all
+        contacts of a step at once, the paper's method, which is right only if there are few
+        collisions in a step.
     stepper
         ``"splitting"`` (second order in the time step) or ``"euler"`` (the paper's, first order).
     merging
-        Restitution below 1: rods that would separate more slowly than this many velocity kicks
-        of one step's noise move as one until the end of the step. 0.01 to 0.1 give the same.
+        For e < 1: rods that would separate more slowly than this many velocity kicks of one
+        step's noise move as one until the end of the step. 0.01 to 0.1 give the same widths.
     seed
-        Integer >= 0. The same seed gives the same result to the last bit, whatever ``threads``.
+        Integer >= 0. The same seed gives the same result to the last bit for all ``threads``.
     observe
         Any of ``"widths"`` (velocity_width, mean_velocity, mean_displacement, displacement_width
         and the autocorrelation_time that tells whether warm-up and duration were long enough),
         ``"density"``, ``"velocities"`` (velocity_density), ``"energy"`` (kinetic_energy in time),
         ``"collisions"`` (collision_rate), ``"avalanches"`` (avalanche_count),
         ``"triggered-collisions"`` (triggered_count) and ``"snapshots"``
-        (position and velocity as they are). An observer itself is taken as well, of the package,
-        ``Velocities(bins=801)`` say, or of one's own.
+        (position and velocity as they are). Observers can also be given as objects, of the
+        package, e.g. ``Velocities(bins=801)``, or your own.
     start
         A result with ``position`` and ``velocity`` over (replica, particle), such as
         ``equilibrium_states(chain, replicas)`` or ``given_start(chain, position)``; None: every
@@ -106,9 +107,9 @@ def simulate(
         Time between snapshots [T]; None: 10 steps, for an ensemble a hundredth of the duration.
         The time step is shortened to a whole fraction of it.
     checkpoint
-        File to keep the state of the run in, written every ``checkpoint_interval`` seconds and
-        at Ctrl-C or SIGTERM. The same call again goes on from there, to the same bits; a
-        checkpoint of another run, or one that another process is keeping, is refused.
+        File for the state of the run, written every ``checkpoint_interval`` seconds and at
+        Ctrl-C or SIGTERM. The same call again continues from there and gives the same bits. A
+        checkpoint of another run, or one that another process is using, is refused.
     progress
         Show a progress bar with the time left, if standard error is a terminal.
 
@@ -116,19 +117,19 @@ def simulate(
     -------
     xarray.Dataset
         In the common vocabulary. ``attrs["status"]`` is ``completed``, ``interrupted`` (Ctrl-C:
-        everything measured until then) or ``diverged`` (everything before the chain blew up);
-        ``attrs["end_time"]`` is the shortest time any replica reached, warm-up included, for an
-        ensemble the last time reported. A chain that diverged before anything was measured
-        (``warmup=0`` measures from the start) has no variables. Off restitution 1
-        ``attrs["time_step_error"]`` estimates the relative error of the smallest velocity width
-        that the time step causes.
+        everything measured until then) or ``diverged`` (everything before the divergence).
+        ``attrs["end_time"]`` is the shortest time that any replica reached, warm-up included, or
+        the last time reported for an ensemble. A chain that diverged before anything was measured
+        has no variables (``warmup=0`` measures from the start). For e != 1
+        ``attrs["time_step_error"]`` is the estimated relative error of the smallest velocity
+        width due to the time step.
 
     Raises
     ------
     ValueError
         For a wrong argument, before any work.
     OSError
-        If the checkpoint cannot be written, before any work. Later on that is a warning.
+        If the checkpoint cannot be written at the start. Later this is only a warning.
     KeyboardInterrupt
         On Ctrl-C before anything was measured.
 
@@ -157,7 +158,7 @@ def simulate(
 
 
 def make_run(chain: Chain, *, observe: Any, **arguments: Any) -> Run:
-    """Check all arguments of :func:`simulate` that its numbers follow from, without any work.
+    """Check all arguments of :func:`simulate` that determine its numbers, without any work.
 
     Raises
     ------
@@ -168,7 +169,7 @@ def make_run(chain: Chain, *, observe: Any, **arguments: Any) -> Run:
 
 
 def _replicas(run: Run) -> list[Replica]:
-    """Deal the replicas out to groups, each with observers of its own."""
+    """Distribute the replicas over groups, each with observers of its own."""
     streams = np.random.SeedSequence(run.seed).spawn(run.replicas)
     dynamics = run.dynamics()
     return [
@@ -186,7 +187,7 @@ def _replicas(run: Run) -> list[Replica]:
 
 def compile_kernels() -> None:
     """Compile every kernel, or load it from numba's cache, by running a chain of two rods."""
-    # Counting collisions compiles event_driven.drift, and all that the other operators need.
+    # Counting collisions compiles event_driven.drift and everything that the other operators need.
     dynamics = make_dynamics(Chain(size=2), 0.1, speed=1.0, counted=True)
     y, v = np.zeros((2, 2))
     y_buffer, v_buffer = np.zeros((2, 1, 2))

@@ -1,4 +1,4 @@
-"""Where a simulation starts: at the anchors, or from given positions and velocities."""
+"""The start of a simulation: at the anchors, or from given positions and velocities."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Array = NDArray[np.float64]
 def given_start(
     chain: Chain, position: ArrayLike, velocity: ArrayLike = 0.0, *, replicas: int = 1
 ) -> xr.Dataset:
-    """Make a ``start`` for :func:`simulate` from positions and velocities of one's own.
+    """Make a ``start`` for :func:`simulate` from given positions and velocities.
 
     Parameters
     ----------
@@ -28,7 +28,7 @@ def given_start(
     velocity
         Velocities v_i [R/T], of the same shapes, or one for all rods.
     replicas
-        How many replicas start so; as many as `simulate` is asked for.
+        Number of replicas with this start, the same as in the call of ``simulate``.
 
     Raises
     ------
@@ -78,7 +78,7 @@ def replica_starts(
         )
     if not (np.isfinite(y).all() and np.isfinite(v).all()):
         raise ValueError("start must be finite")
-    # Rounding of x -> y may leave touching rods out of order by an ulp of x.
+    # Rounding in x -> y may put touching rods out of order by one unit in the last place of x.
     tolerance = 1e-12 * max(float(np.abs(start.position).max()), chain.radius)
     if (np.diff(y, axis=1) < -tolerance).any():
         raise ValueError("start must hold rods in order that do not overlap")

@@ -1,21 +1,22 @@
-r"""Time stepping: kicks (spring, damping, noise) alternating with drifts that hold the collisions.
+r"""Time stepping: kicks (spring, damping, noise) alternate with drifts (flight and collisions).
 
-**splitting** (default). Per step of length dt
+**splitting** (default). A step of length dt consists of
 
 1. exact Ornstein-Uhlenbeck update over half the step, v <- c v + sqrt((T/m)(1 - c^2)) xi with
    c = exp(-gamma dt/2m),
 2. half a spring kick, v <- v - (dt/2m) F(d),
 3. drift with collisions,
 4. half a spring kick,
-5. as 1.
+5. the same as 1.
 
-Symmetric in time, hence of second order, in transients too. Number 5 of a step and number 1 of
-the next are drawn as one, over dt: one noise draw per step. Steps 2-4 are the symplectic Verlet
-scheme and 1 and 5 leave every Maxwellian unchanged, so a linear chain without gap has exactly
-the right velocity width at any dt, and <d^2> = (T/k)/(1 - (w0 dt/2)^2).
+The scheme is symmetric in time and therefore of second order, in transients too. Part 5 of a step
+and part 1 of the next are done as one over dt, with one draw of noise per step. Parts 2-4 are the
+symplectic Verlet scheme, and 1 and 5 leave a Maxwellian unchanged. A linear chain without a gap
+therefore has exactly the right velocity width at any dt, and <d^2> = (T/k)/(1 - (w0 dt/2)^2).
 
 **euler** (the paper's, eq. ``eq:discrete``). v <- v + (dt/m)(-F(d) - gamma v) + (A/m) sqrt(dt) xi,
-then the drift. First order: a free rod without spring has W^2 = (T/m)/(1 - gamma dt/2m).
+then the drift. It is of first order: a free rod without a spring has
+W^2 = (T/m)/(1 - gamma dt/2m).
 """
 
 from __future__ import annotations
@@ -49,7 +50,7 @@ _pull = inlined(spring.force)
 
 
 class Step(NamedTuple):
-    """What a kernel needs to know of the chain and the scheme: plain numbers."""
+    """The plain numbers of the chain and the scheme that a kernel needs."""
 
     time_step: float
     decay: float  # factor on v from the damping
@@ -64,12 +65,12 @@ class Step(NamedTuple):
 
 
 class Dynamics(NamedTuple):
-    """All that the kernels need to know of a run: the same for all replicas."""
+    """Everything that the kernels need of a run; it is the same for all replicas."""
 
     anchors: NDArray[np.float64]  # reduced, (L,)
     step: Step
     law: Law
-    fastest: float  # a rod that is faster has left every steady state: the chain has diverged
+    fastest: float  # with a faster rod the chain has diverged
 
 
 def make_dynamics(
@@ -83,7 +84,7 @@ def make_dynamics(
     counted: bool = False,
     diverged: float = 1e6,
 ) -> Dynamics:
-    """Return what the kernels need to know of a chain.
+    """Return the numbers and arrays that the kernels need of a chain.
 
     Parameters
     ----------
@@ -94,8 +95,8 @@ def make_dynamics(
     counted
         Whether every collision is to be recorded at its contact.
     diverged
-        In typical speeds: a chain with a faster rod has diverged. The steady states of e > 1 stay
-        within some tens of them.
+        Speed, in typical speeds, from which on the chain counts as diverged. In the steady
+        states for e > 1 rods reach some tens of typical speeds.
     """
     return Dynamics(
         chain.reduced_anchors,
@@ -117,7 +118,7 @@ def make_step(
         noise = chain.amplitude / m * math.sqrt(time_step)
         return Step(time_step, decay, noise, decay, noise, full_kick, exponent, False, 1.0, 1.0)
     inner, outer = (_ornstein_uhlenbeck(chain, duration) for duration in (time_step, time_step / 2))
-    # Contact Dynamics is left as the paper describes it.
+    # Contact Dynamics has no correction, as in the paper.
     sticking = chain.restitution < CRITICAL_RESTITUTION and method == "event-driven"
     strength = CLOSED_KICK if sticking else 1.0
     outer_strength = second_half(strength, outer[0])
@@ -125,10 +126,10 @@ def make_step(
 
 
 def longest_step(chain: Chain, stepper: Stepper) -> float:
-    """Time step from which on a swinging rod gains energy without end, or its damping does.
+    """Return the limit of stability: with longer steps the energy of a rod grows without bound.
 
-    2/w0 with the splitting; with euler 4/(g + sqrt(g^2 + 4 w0^2)), g = gamma/m. Infinite for a
-    quadratic spring without damping, which has no rate: there the steps show whether it diverges.
+    It is 2/w0 for the splitting and 4/(g + sqrt(g^2 + 4 w0^2)), g = gamma/m, for euler. It is
+    infinite for a quadratic spring without damping, which has no rate. Such a run may diverge.
     """
     if chain.spring == "quadratic" and math.isinf(chain.temperature):
         return math.inf
@@ -139,7 +140,7 @@ def longest_step(chain: Chain, stepper: Stepper) -> float:
 
 
 def _ornstein_uhlenbeck(chain: Chain, duration: float) -> tuple[float, float]:
-    """Decay and noise of the velocity under damping and noise alone, exactly."""
+    """Return the exact decay and noise of the velocity under damping and noise alone."""
     rate = 2 * chain.damping * duration / chain.mass
     # (1 - c^2)/rate -> 1 without damping: the noise alone, variance A^2 dt/m^2.
     share = -math.expm1(-rate) / rate if rate > 0 else 1.0
@@ -150,8 +151,8 @@ def _ornstein_uhlenbeck(chain: Chain, duration: float) -> tuple[float, float]:
 def kick(y, v, anchors, kicks, step, part):  # type: ignore[no-untyped-def]
     """Kick the rods by spring, damping and noise; ``kicks``: normal numbers, shape (L,).
 
-    ``part``: FIRST, a first half, or the whole of a step without halves; WHOLE, the second half of
-    a step and the first of the next; LAST, a second half.
+    ``part`` is FIRST for a first half kick (or for a whole one in a scheme without halves), WHOLE
+    for the second half of a step merged with the first of the next, LAST for a second half.
     """
     decay = step.decay if part == WHOLE else step.outer_decay
     noise = step.noise if part == WHOLE else step.outer_noise
@@ -183,8 +184,8 @@ def take_step(y, v, kicks, part, dynamics, scratch, tally):  # type: ignore[no-u
 def advance(y, v, noise, dynamics, scratch, tally, steps):  # type: ignore[no-untyped-def]
     """Take ``steps`` steps of the chain in place; return the collisions, or -1 if diverged.
 
-    ``y``, ``v``: float arrays of shape (L,) in the reduced coordinate; ``noise``: a stream of this
-    thread's own, see ``noise.py``; ``scratch``: see ``laws/law.py``; ``tally``: see
+    ``y`` and ``v`` are float arrays of shape (L,) in the reduced coordinate. ``noise`` is a stream
+    for this thread alone (``noise.py``). For ``scratch`` see ``laws/law.py``, for ``tally``
     ``laws/avalanche.py``.
     """
     if steps == 0:
@@ -214,7 +215,7 @@ def advance(y, v, noise, dynamics, scratch, tally, steps):  # type: ignore[no-un
 
 @kernel
 def bounded(y, v, fastest):  # type: ignore[no-untyped-def]
-    """Whether the state is finite and no rod faster than ``fastest``; false for NaN."""
+    """Return whether all values are finite and no rod is faster than ``fastest``."""
     for i in range(y.size):
         if not (abs(v[i]) <= fastest and abs(y[i]) < np.inf):
             return False
@@ -227,9 +228,9 @@ def record(  # type: ignore[no-untyped-def]
 ):
     """Fill the buffers, shape (snapshots, L), with the state after every ``stride`` steps.
 
-    Return how many snapshots are good: fewer than there is room for if the chain diverged, that
-    is, an operator gave up or a rod became too fast. Collisions at the contacts are
-    then those up to the last good one: the steps that blew up may have had a million.
+    Return the number of valid snapshots. It is smaller than the buffers if the chain diverged,
+    because a drift had too many collisions or a rod became too fast. The counted collisions are
+    then those up to the last valid snapshot, because diverging steps may have had a million.
     """
     contacts = tally.contacts.copy()
     for snapshot in range(y_buffer.shape[0]):

@@ -147,7 +147,7 @@ def test_a_sweep_on_a_full_disk_keeps_what_fits_and_goes_on_with_more_room(small
     full = run("sweep", grid, "--output", small)
     assert (full.returncode, full.stderr.count("\n")) == (2, 1), full.stderr
     assert f"error: {small}" in full.stderr
-    assert "No space left on device; what was finished is kept" in full.stderr
+    assert "No space left on device; finished cases are kept" in full.stderr
     (small / "filler").unlink()
     kept = {path: path.read_bytes() for path in small.iterdir()}
     assert 0 < len(kept) < 6

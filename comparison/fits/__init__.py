@@ -1,4 +1,4 @@
-"""Fits of the paper to what was measured, with uncertainties."""
+"""The fits of the paper, with uncertainties."""
 
 from crazybilliards.comparison.fits.displacement import ArctanhFit, fit_arctanh
 from crazybilliards.comparison.fits.growth import (

@@ -19,7 +19,7 @@ from crazybilliards.model.vocabulary import require
 class ArctanhFit:
     """<dx>(x) = B arctanh(C x), the paper's fit of the mean displacement.
 
-    Callable on |x| < 1/C, and so a ``displacement`` for ``force_balance``.
+    It is callable on |x| < 1/C and can be the ``displacement`` of ``force_balance``.
 
     Attributes
     ----------
@@ -50,7 +50,7 @@ class ArctanhFit:
 def fit_arctanh(source: xr.Dataset) -> ArctanhFit:
     """Fit B arctanh(C x) to the mean displacements at the mean positions, as the paper does.
 
-    Every rod weighs the same: the misfit is systematic, far above the error bars.
+    Every rod has the same weight, because the misfit is systematic and far above the error bars.
 
     Parameters
     ----------
@@ -60,8 +60,8 @@ def fit_arctanh(source: xr.Dataset) -> ArctanhFit:
     Raises
     ------
     ValueError
-        If the chain has fewer than 3 rods, or if nothing is displaced outward (a chain whose
-        rods do not touch): then no arctanh fits.
+        If the chain has fewer than 3 rods, or if no arctanh fits because the rods are not
+        displaced outward (they do not touch).
     """
     require(source, ("mean_displacement",))
     chain = chain_of(source)
@@ -82,7 +82,7 @@ def fit_arctanh(source: xr.Dataset) -> ArctanhFit:
     start = (slope * edge, -2.0)
     try:
         with warnings.catch_warnings():
-            # Without a covariance the two parameters are not both determined: not a fit.
+            # Without a covariance the data do not determine both parameters, and there is no fit.
             warnings.simplefilter("error", OptimizeWarning)
             (scale, q), covariance = curve_fit(model, x, displacement, p0=start, maxfev=10_000)
     except (RuntimeError, OptimizeWarning) as error:

@@ -1,4 +1,4 @@
-"""Energies that grow without end: exponentially, or to infinity in finite time."""
+"""Fits of energies that grow exponentially or diverge at a finite time."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class SingularityFit:
-    """E(t) = C (t_c - t)^-a. Callable for t < t_c.
+    """E(t) = C (t_c - t)^-a, callable for t < t_c.
 
     Attributes
     ----------
     scale, time, exponent
         C, the time of divergence t_c, and a.
     time_error, exponent_error
-        Standard errors, from the scatter about the fit in ln E. One run's energy wanders about its
-        mean growth: the scatter between independent runs is the better measure.
+        Standard errors, from the scatter about the fit in ln E. The energy of one run fluctuates
+        about its mean growth, so the scatter between independent runs is a better measure.
     misfit
         Root mean square of the residuals of ln E.
     """
@@ -45,8 +45,8 @@ def fit_singularity(time: ArrayLike, energy: ArrayLike) -> SingularityFit:
     Raises
     ------
     ValueError
-        If there are fewer than five points, or if no such law fits: an exponential growth, say,
-        would have t_c at infinity.
+        If there are fewer than five points, or if no such law fits. For example, t_c of an
+        exponential growth is at infinity.
 
     Examples
     --------
@@ -84,7 +84,7 @@ def fit_singularity(time: ArrayLike, energy: ArrayLike) -> SingularityFit:
 
 @dataclass(frozen=True)
 class GrowthFit:
-    """E(t) = C exp(rate t). Callable.
+    """E(t) = C exp(rate t), callable.
 
     Attributes
     ----------

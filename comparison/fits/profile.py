@@ -23,7 +23,7 @@ _LEAST_RODS = 5
 class PowerLawFit:
     """W_v(i) = a [(i - c)^nu + (L + 1 - c - i)^nu], the paper's sum of two power laws.
 
-    Equation ``eq:power_law`` of arXiv:1404.7460. Callable on particle numbers.
+    It is equation ``eq:power_law`` of arXiv:1404.7460, and callable on particle numbers.
 
     Attributes
     ----------
@@ -34,10 +34,10 @@ class PowerLawFit:
         the outermost rods: c < 1.
     scale_error, exponent_error, origin_error
         Their standard errors, from the scatter about the fit. Neighbouring rods move together, so
-        the scatter between independent runs is larger and the better measure.
+        the scatter between independent runs is larger. It is the better measure.
     correlation
-        Correlation of the errors of c and nu, 0.8 typically: a larger c goes with a flatter law.
-        0 where c was not fitted.
+        Correlation of the errors of c and nu, typically 0.8: a larger c goes with a flatter law.
+        It is 0 if c was not fitted.
     misfit
         Root mean square of the relative residuals.
     """
@@ -71,15 +71,16 @@ def fit_border_power_law(
         Fit c, as the paper does. False: c = 0, which flattens the exponent by some 0.03 and makes
         it depend on the size.
     weighted
-        Weigh the widths by their error bars; those of a theory, which has none, by relative
-        deviations. The narrow interior then counts more. False: ordinary least squares. The paper
-        does not say which. At L = 300, e = 0 the exponent is -0.460 without weights, -0.473 with.
+        Weight the widths by their error bars, or by relative deviations for a theory, which has
+        no errors. The narrow interior then counts more. False: ordinary least squares. The paper
+        does not say which. At L = 300, e = 0 the exponent is -0.460 without weights and -0.473
+        with weights.
 
     Raises
     ------
     ValueError
         If the chain has fewer than 5 rods or a width is not positive, or if no such law with
-        -5 < nu < 0 and -L < c < 1 fits: the widths of a chain with e >= 1 for instance.
+        -5 < nu < 0 and -L < c < 1 fits, as for a chain with e >= 1.
 
     Examples
     --------
@@ -146,7 +147,7 @@ def _best_fit(
                 max_nfev=2000,
             )
         except RuntimeError:
-            continue  # this start leads nowhere; another may
+            continue  # no fit from this start; another may succeed
         cost = float(np.sum(((model(i, *values) - width) / weight) ** 2))
         if best is None or cost < best[0]:
             best = cost, values, covariance
@@ -161,7 +162,7 @@ def _best_fit(
 
 
 def _inside(values: Array, bounds: tuple[list[float], list[float]]) -> bool:
-    """Whether nu and c are off their bounds, to a thousandth."""
+    """Return whether nu and c are away from their bounds by more than a thousandth."""
     triples = list(zip(values, *bounds, strict=True))[1:]
     return all(low + 1e-3 < value < high - 1e-3 for value, low, high in triples)
 

@@ -13,7 +13,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class ScalingFit:
-    """y = B x^a. Callable.
+    """y = B x^a, callable.
 
     Attributes
     ----------
@@ -23,7 +23,7 @@ class ScalingFit:
         Their standard errors.
     chi_square
         Sum of the squared residuals in standard errors, over the degrees of freedom; nan if there
-        are none. Far above 1: no power law.
+        are none. A value far above 1 means that the points follow no power law.
     """
 
     scale: float
@@ -40,8 +40,8 @@ class ScalingFit:
 def fit_scaling(x: ArrayLike, y: ArrayLike, error: ArrayLike) -> ScalingFit:
     """Fit y = B x^a to points with standard errors, all positive.
 
-    Errors of the parameters are those of the points, enlarged by the square root of
-    ``chi_square`` where the points scatter more than that.
+    Errors of the parameters follow from those of the points. They are enlarged by the square root
+    of ``chi_square`` if the points scatter more than their errors.
 
     Raises
     ------
@@ -84,7 +84,7 @@ def fit_scaling(x: ArrayLike, y: ArrayLike, error: ArrayLike) -> ScalingFit:
 
 @dataclass(frozen=True)
 class ExponentialFit:
-    """y = a exp(-rate (1 - e)) + d, the paper's fit of -nu against the restitution. Callable.
+    """y = a exp(-rate (1 - e)) + d, the paper's fit of -nu against the restitution.
 
     Attributes
     ----------

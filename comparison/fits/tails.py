@@ -1,4 +1,4 @@
-"""Tails by maximum likelihood: avalanche sizes, velocities; no line through log-log bins."""
+"""Maximum-likelihood fits of tails, of avalanche sizes and of velocities."""
 
 from __future__ import annotations
 
@@ -20,15 +20,16 @@ class AvalancheFit:
     Attributes
     ----------
     exponent, exponent_error
-        By maximum likelihood, with the standard error of independent avalanches. Those of one
-        run share their future: the scatter between runs is some three times larger.
+        Estimate by maximum likelihood, and its standard error for independent avalanches. The
+        avalanches of one run are not independent, and the scatter between runs is about three
+        times larger.
     smallest, largest
-        The sizes it was fitted to.
+        The range of sizes of the fit.
     count
-        Number of avalanches of those sizes.
+        Number of avalanches in this range.
     distance
-        Largest difference between the measured and the fitted distribution function (Kolmogorov
-        and Smirnov's); compare with 1/sqrt(count).
+        Kolmogorov-Smirnov distance, the largest difference between the measured and the fitted
+        distribution function. Compare it with 1/sqrt(count).
     """
 
     exponent: float
@@ -93,21 +94,21 @@ def fit_avalanches(
 
 
 def tail_length(velocity: ArrayLike, density: ArrayLike, beyond: float) -> float:
-    """Length w of an exponential tail, p(v) ~ exp(-|v|/w) for |v| > ``beyond``, of both sides.
+    """Length w of the exponential tails p(v) ~ exp(-|v|/w) for |v| > ``beyond``, of both sides.
 
-    The maximum-likelihood estimate: the mean excess over ``beyond``.
+    The maximum-likelihood estimate is the mean excess over ``beyond``.
 
     Parameters
     ----------
     velocity, density
-        Bin centres [R/T] and probability density [T/R], shape (bins,). Bins are not equally wide.
+        Bin centres [R/T] and probability density [T/R], shape (bins,). Bins may differ in width.
     beyond
-        Where the tail begins [R/T].
+        Speed at which the tail begins [R/T].
 
     Raises
     ------
     ValueError
-        If nothing was measured beyond.
+        If no velocity was measured beyond.
 
     Examples
     --------

@@ -1,6 +1,6 @@
-"""An animation as a page that loads nothing: it plays without a network, and nobody is told of it.
+"""An animation as a page that loads nothing from other hosts and plays without a network.
 
-Matplotlib's own page takes the signs on its buttons from another host.
+Matplotlib's own page loads the signs on its buttons from another host.
 """
 
 from __future__ import annotations
@@ -30,14 +30,14 @@ _STYLE = "\n".join(
 
 
 def standalone_page(animation: FuncAnimation, fps: int | None = None) -> str:
-    """Return an animation as HTML with its frames in it, to show in a notebook or to write.
+    """Return an animation as HTML with embedded frames, for a notebook or a file.
 
     Parameters
     ----------
     animation
-        The animation, of :func:`crazybilliards.comparison.animate` say.
+        The animation, e.g. of :func:`crazybilliards.comparison.animate`.
     fps
-        Frames per second; default: as the animation has it.
+        Frames per second; default: those of the animation.
     """
     page = animation.to_jshtml(fps, embed_frames=True)
     return re.sub(

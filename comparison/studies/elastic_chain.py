@@ -1,8 +1,8 @@
-"""The main comparison: the elastic chain, simulated, next to three theories of it.
+"""The main comparison: the simulated elastic chain and three theories of it.
 
-For each driving amplitude A: the simulation; the exact equilibrium; the force balance closed by
-labels (nothing put in); and the paper's route, the force balance fed with an arctanh fitted to
-the simulated displacements.
+For each driving amplitude A there are four results: the simulation; the exact equilibrium; the
+force balance closed by labels, without an input; and the force balance with an arctanh fitted to
+the simulated displacements, as in the paper.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ def compare_elastic(
     threads: int | None = None,
     progress: bool = True,
 ) -> xr.DataTree:
-    """Simulate the elastic chain at several amplitudes and put the theories beside it.
+    """Simulate the elastic chain at several amplitudes and compute its theories.
 
     Parameters
     ----------
@@ -49,14 +49,14 @@ def compare_elastic(
     duration
         Simulated time of each of two replicas [T]; 200 000 takes 3 s for 100 rods.
     seed, threads, progress
-        As in ``simulate``. Every amplitude has random numbers of its own.
+        As in ``simulate``. Every amplitude has its own random numbers.
 
     Returns
     -------
     xarray.DataTree
         ``tree["amplitude_3/simulation"]``, ``.../exact``, ``.../labels``, ``.../arctanh``: results
         in the common vocabulary, not smoothed. ``attrs["status"]`` is ``interrupted`` if Ctrl-C
-        ended it early; the tree then holds what was finished, and the run cut short.
+        ended it early. The tree then holds the finished results and the interrupted run.
 
     Raises
     ------
@@ -101,10 +101,10 @@ def elastic_theories(chain: Chain, run: xr.Dataset) -> dict[str, xr.Dataset]:
         fit = fit_arctanh(run)
         arctanh = force_balance(chain, displacement=fit)
     except ValueError as error:
-        # Rods that hardly touch, say. The simulation must not be lost for it.
-        warnings.warn(f"A = {chain.amplitude:g} goes without the arctanh: {error}", stacklevel=2)
+        # This happens for rods that hardly touch. The simulation must not be lost.
+        warnings.warn(f"A = {chain.amplitude:g} has no arctanh fit: {error}", stacklevel=2)
         return theories
-    # The fit at the simulated mean positions, to be drawn next to the displacements it fits.
+    # The fit at the simulated mean positions, to be drawn beside the displacements.
     fitted = fit(chain.anchors + run.mean_displacement)
     arctanh["mean_displacement"] = run.mean_displacement.copy(data=fitted)
     arctanh.attrs |= {

@@ -1,7 +1,7 @@
-"""The two pictures of the main comparison: densities and displacements, a panel an amplitude.
+"""The two pictures of the main comparison: densities and displacements, one panel per amplitude.
 
-Each panel shows the quantity above and, below, the difference of everything from the exact
-equilibrium, which a curve through symbols cannot show.
+Each panel shows the quantity and below it the differences from the exact equilibrium, which are too
+small to be seen above.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ def draw_displacement(tree: xr.DataTree) -> Figure:
 
 
 def _results(group: xr.DataTree) -> dict[str, xr.Dataset]:
-    """Name the results of one amplitude as they are drawn, in drawing order."""
+    """Return the results of one amplitude by their labels, in drawing order."""
     names = {SIMULATION: SIMULATION} | LEGEND
     return {name: group[key].to_dataset() for key, name in names.items() if key in group}
 
@@ -58,7 +58,7 @@ def _results(group: xr.DataTree) -> dict[str, xr.Dataset]:
 def _draw(axes: list[Axes], results: dict[str, xr.Dataset], quantity: str, unit: float) -> None:
     """Draw the quantity, and its differences from the exact one divided by ``unit``.
 
-    Where Ctrl-C came before the theories there are no differences.
+    If Ctrl-C came before the theories there are no differences.
     """
     overlay(results, quantity, along="mean_position", ax=axes[0])
     axes[0].set_xlabel("")

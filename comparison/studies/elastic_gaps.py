@@ -1,8 +1,8 @@
-"""Elastic chains with gaps: the simulated displacements beside the exact ones.
+"""Elastic chains with gaps: simulated and exact displacements.
 
-At e = 1 the stationary state is known exactly at any gap g. With linear springs it is that of R. J.
-Baxter's one-dimensional plasma (Math. Proc. Camb. Phil. Soc. 59, 779 (1963)), and with g = 0 the
-rods are order statistics of one Gaussian. The paper compares with theory without gaps only.
+At e = 1 the stationary state is known exactly for any gap g. With linear springs it is that of R.
+J. Baxter's one-dimensional plasma (Math. Proc. Camb. Phil. Soc. 59, 779 (1963)), and with g = 0 the
+rods are order statistics of one Gaussian. The paper compares with theory only without gaps.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Chains that differ in one parameter, simulated one after another, each beside its theories."""
+"""Chains that differ in one parameter: each is simulated and its theories are computed."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from crazybilliards.particles.schedule import make_schedule
 
 SIMULATION = "simulation"
 
-# Independent runs whatever the number of threads, enough for two cores.
+# The number of runs does not depend on the number of threads; two use two cores.
 _REPLICAS = 2
 
 
 def varied_chains(
     chain: Chain, name: str, values: Sequence[float], duration: float
 ) -> dict[str, Chain]:
-    """Return the chain at every value of a parameter, after all checks: none fails half-way."""
+    """Return the chain at every value of a parameter; all are checked before any work."""
     if not values:
         raise ValueError(f"{name}s must hold at least one number")
     checked = [check_real(name, value) for value in values]
@@ -47,14 +47,14 @@ def simulate_beside(
     threads: int | None,
     progress: bool,
 ) -> xr.DataTree:
-    """Simulate every chain with random numbers of its own, and put its theories beside it.
+    """Simulate every chain with its own random numbers, and compute its theories.
 
     Returns
     -------
     xarray.DataTree
         ``tree["NAME/simulation"]`` and ``tree["NAME/THEORY"]``. ``attrs["status"]`` is
-        ``interrupted`` if Ctrl-C or SIGTERM ended it early (the tree then holds what was finished,
-        and the run cut short), ``diverged`` if a simulation did.
+        ``interrupted`` if Ctrl-C or SIGTERM ended it early (the tree then holds the finished
+        results and the interrupted run), ``diverged`` if a simulation diverged.
     """
     seeds = np.random.SeedSequence(check_integer("seed", seed, least=0))
     results: dict[str, xr.Dataset] = {}

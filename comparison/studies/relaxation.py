@@ -1,8 +1,8 @@
-"""Relaxation: one start, followed by rods, two fluids and, where there is one, the exact solution.
+"""Relaxation from one start: simulated rods, two fluids and, without a gap, the exact solution.
 
 An elastic chain is released from a displaced or compressed state, or quenched from another driving
-amplitude. Compared are an ensemble of simulated chains, the isothermal fluid (the paper's two
-equations with a constant W^2), the fluid with a temperature equation, and without gap the exact
+amplitude. The results are an ensemble of simulated chains, the isothermal fluid (the paper's two
+equations with a constant W^2), the fluid with a temperature equation, and without a gap the exact
 motion.
 """
 
@@ -30,7 +30,7 @@ Array = NDArray[np.float64]
 Release = Literal["compressed", "displaced", "quenched"]
 
 PARTICLES = "particles"
-# What hydrodynamics takes as velocity_variance.
+# The argument velocity_variance of hydrodynamics.
 FLUIDS: dict[str, Literal["evolving"] | None] = {"isothermal": None, "evolving": "evolving"}
 LEGEND = {
     "isothermal": "isothermal fluid",
@@ -64,7 +64,7 @@ def compare_relaxation(
     duration, every
         Time, and time between outputs [T].
     replicas, seed, threads
-        Of the ensemble of simulated chains.
+        Those of the ensemble of simulated chains.
 
     Returns
     -------
@@ -85,7 +85,7 @@ def compare_relaxation(
     replicas = check_integer("replicas", replicas, least=2)
     start = _states(chain, release, by, replicas, seed)
     fluid = _fluid(chain, release, by)
-    # The fluids first: they take a second, and complain of a wrong duration before the long run.
+    # The fluids take a second and are computed first, to find a wrong duration before the long run.
     results = {}
     for name, variance in FLUIDS.items():
         results[name] = hydrodynamics(
@@ -107,7 +107,7 @@ def compare_relaxation(
         threads=threads,
         progress=progress,
     )
-    # 32 groups of densities in time would be nine tenths of all the data.
+    # The densities of 32 groups in time would be nine tenths of the data.
     results[PARTICLES] = ensemble.drop_vars("density_block")
     tree = xr.DataTree.from_dict(results)
     tree.attrs |= {
@@ -120,7 +120,7 @@ def compare_relaxation(
 
 
 def label_distances(tree: xr.DataTree) -> dict[str, float]:
-    """Largest rms distance, in time, of the rods' mean positions from the ensemble's, over s."""
+    """Largest rms distance in time of mean positions from those of the ensemble, in s."""
     rods = tree[PARTICLES].mean_displacement
     s = chain_of(tree[PARTICLES].to_dataset()).thermal_length
     return {
@@ -142,9 +142,9 @@ def cloud(result: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray]:
 
 
 def _states(chain: Chain, release: Release, by: float, replicas: int, seed: int) -> xr.Dataset:
-    """Return exact equilibrium states, changed as asked: one for each replica."""
+    """Return exact equilibrium states with the change of the release, one for each replica."""
     before = chain.replace(amplitude=by * chain.amplitude) if release == "quenched" else chain
-    # Other random numbers than those of the noise.
+    # The random numbers differ from those of the noise.
     states = equilibrium_states(before, replicas, seed=seed + 1)
     y = before.reduced(states.position.values)
     if release == "compressed":

@@ -54,7 +54,7 @@ def draw_spacetime(tree: xr.DataTree) -> Figure:
 
 
 def draw_profiles(tree: xr.DataTree) -> Figure:
-    """rho(x) at a few times: the ensemble's symbols on the fluids' lines."""
+    """rho(x) at a few times: symbols of the ensemble over lines of the fluids."""
     densities = _densities(tree)
     times = densities[PARTICLES].time.values
     chosen = np.round(np.array(_MOMENTS) * (times.size - 1)).astype(int)
@@ -88,7 +88,7 @@ def draw_cloud(tree: xr.DataTree) -> Figure:
                 curves[name] = xr.Dataset({"curve": values}, attrs=tree[key].attrs)
         overlay(curves, "curve", ax=ax)
         low, high = ax.get_ylim()
-        if high - low < 0.1:  # a centre at rest: do not blow up its noise
+        if high - low < 0.1:  # do not magnify the noise of a centre at rest
             ax.set_ylim(low - 0.05, high + 0.05)
     _legend_above(figure)
     return figure
@@ -97,8 +97,8 @@ def draw_cloud(tree: xr.DataTree) -> Figure:
 def animate(tree: xr.DataTree) -> FuncAnimation:
     """rho(x, t) of the ensemble and the fluids as an animation.
 
-    ``standalone_page(animate(tree))`` plays in a notebook or a browser, ``.save("relaxation.gif",
-    writer="pillow")`` makes a file.
+    ``standalone_page(animate(tree))`` plays in a notebook or a browser.
+    ``.save("relaxation.gif", writer="pillow")`` makes a file.
     """
     densities = _densities(tree)
     times = densities[PARTICLES].time.values
@@ -116,12 +116,12 @@ def animate(tree: xr.DataTree) -> FuncAnimation:
         return []
 
     animation = FuncAnimation(figure, show, frames=times.size, interval=80)
-    plt.close(figure)  # the animation keeps it; notebooks would show it twice
+    plt.close(figure)  # the animation keeps the figure; notebooks would show it twice
     return animation
 
 
 def _movers(ax: Axes, densities: dict[str, xr.Dataset]) -> list[Callable[[int], None]]:
-    """Functions that bring each curve of ``ax`` to a frame."""
+    """Return functions that set each curve of ``ax`` to a frame."""
 
     def mover(line: Line2D, result: xr.Dataset) -> Callable[[int], None]:
         x, values = result.x.values, result.density.values
@@ -141,7 +141,7 @@ def _movers(ax: Axes, densities: dict[str, xr.Dataset]) -> list[Callable[[int], 
 
 
 def _densities(tree: xr.DataTree) -> dict[str, xr.Dataset]:
-    """Return the smoothed densities that there are, by the names they are drawn with."""
+    """Return the available smoothed densities by their labels."""
     names = {PARTICLES: PARTICLES} | LEGEND
     return {
         name: smooth(tree[key].to_dataset())
@@ -151,7 +151,7 @@ def _densities(tree: xr.DataTree) -> dict[str, xr.Dataset]:
 
 
 def _extent(densities: dict[str, xr.Dataset]) -> tuple[float, float]:
-    """Return the ends of the interval outside of which every density is small at all times."""
+    """Return the interval outside of which every density is small at all times."""
     ends = []
     for result in densities.values():
         threshold = _LEAST_DRAWN * chain_of(result).close_packed_density

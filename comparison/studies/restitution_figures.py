@@ -18,7 +18,7 @@ _DECADES = 5  # of f in the image
 
 
 def draw_widths(tree: xr.DataTree) -> Figure:
-    """W_v(i) and <dx_i> for every restitution, in units of the free rod's; theory as lines."""
+    """W_v(i) and <dx_i> for every restitution, in units of the free rod; lines are theory."""
     figure, axes = plt.subplots(1, 2, figsize=(9.2, 4.0), layout="constrained")
     for number, group in enumerate(tree.children.values()):
         run = group[SIMULATION].to_dataset()
@@ -77,7 +77,7 @@ def draw_phase_space(theory: xr.Dataset) -> Figure:
             linewidth=1.2,
             label=r"$\pm\langle v^2\rangle^{1/2}$ at y" if sign > 0 else None,
         )
-    # What is above the floor, and as much again around it.
+    # The region above the floor, with a margin around it.
     reach = [np.abs(axis[(f.values > floor).any(axis=1 - k)]).max() for k, axis in ((0, y), (1, v))]
     ax.set(
         xlim=(-reach[0], reach[0]),

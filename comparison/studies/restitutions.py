@@ -1,4 +1,4 @@
-"""Chains of several restitutions: simulation next to the kinetic equation, nothing fitted."""
+"""Chains of several restitutions: simulation and kinetic equation, without a fit."""
 
 from __future__ import annotations
 
@@ -41,26 +41,26 @@ def compare_restitutions(
     threads: int | None = None,
     progress: bool = True,
 ) -> xr.DataTree:
-    """Simulate a chain at several restitutions and solve its kinetic equation beside it.
+    """Simulate a chain at several restitutions and solve its kinetic equation.
 
     Parameters
     ----------
     chain
         The chain; its restitution is replaced by each of ``restitutions``.
     restitutions
-        e near 1, different from one another; 0.9 to 1.05 is where the theory is good.
+        Different values of e near 1. The theory is good for 0.9 to 1.05.
     duration
         Simulated time of each of two replicas [T].
     seed, threads, progress
-        As in ``simulate``. Every restitution has random numbers of its own.
+        As in ``simulate``. Every restitution has its own random numbers.
 
     Returns
     -------
     xarray.DataTree
-        ``tree["restitution_0.95/simulation"]`` and ``.../kinetic_equation``. The theory is left
-        out, with a warning that gives the reason, where it has no steady state.
-        ``attrs["status"]`` is ``interrupted`` if Ctrl-C ended it early, ``diverged`` if a
-        simulation did; the tree holds what there is.
+        ``tree["restitution_0.95/simulation"]`` and ``.../kinetic_equation``. If the theory has
+        no steady state it is left out, with a warning that gives the reason.
+        ``attrs["status"]`` is ``interrupted`` if Ctrl-C ended it early, and ``diverged`` if a
+        simulation diverged. The tree then holds the results so far.
 
     Raises
     ------
@@ -81,16 +81,16 @@ def _kinetic_equation(chain: Chain, run: xr.Dataset) -> dict[str, xr.Dataset]:
     try:
         return {THEORY: phase_space(chain)}
     except ValueError as error:
-        # No steady state, say. The simulation must not be lost for it.
-        warnings.warn(f"e = {chain.restitution:g} goes without theory: {error}", stacklevel=2)
+        # For example, there is no steady state. The simulation must not be lost.
+        warnings.warn(f"e = {chain.restitution:g} has no theory: {error}", stacklevel=2)
         return {}
 
 
 def width_deviations(tree: xr.DataTree) -> dict[str, WidthDeviation]:
-    """Compare velocity widths, group by group, where there are both.
+    """Compare velocity widths in every group that has simulation and theory.
 
-    Both ends of a chain are the same in the mean: simulated widths are averaged over a rod and
-    its mirror image, which lowers their errors by up to the root of two.
+    Both ends of a chain have the same averages. Simulated widths are therefore averaged over a rod
+    and its mirror image, which lowers their errors by up to the root of two.
     """
     return {
         name: width_deviation(group[SIMULATION].to_dataset(), group[THEORY].to_dataset())

@@ -1,4 +1,4 @@
-"""Many chains: a grid of parameters, one file per case, nothing computed twice or lost."""
+"""Sweeps over many chains: a grid of parameters, one file per case, computed only once."""
 
 from crazybilliards.comparison.sweeps.case import Case, OutdatedError
 from crazybilliards.comparison.sweeps.engines import dask_cluster, process_pool

@@ -1,8 +1,8 @@
-"""One case: a job, a chain and the job's settings, with a file whose name follows from them.
+"""One case: a job, a chain and the settings of the job, with a file whose name follows from them.
 
-The name is a hash of the job and of the parameters that differ from their defaults. So the name
-stays the same when the package gets a new parameter. A case's random numbers follow from the same
-parameters, ``seed`` among them: the cases of a grid are independent of one another.
+The name is a hash of the job and of the parameters that differ from their defaults. It therefore
+stays the same when the package gets a new parameter. The random numbers of a case follow from the
+same parameters, ``seed`` among them, so the cases of a grid are independent of each other.
 
 The file holds all parameters, defaults included, and the fingerprint of the source code that
 computed it. A file of other parameters or of other source code does not count as the case's result.
@@ -32,12 +32,12 @@ from crazybilliards.model.storage import load_attributes, small_netcdf
 
 
 class OutdatedError(ValueError):
-    """A file was computed by other source code than today's."""
+    """A file was computed by other source code than the current code."""
 
 
 @dataclass(frozen=True, eq=False)
 class Case:
-    """One job for one chain, checked; equal cases have equal keys.
+    """One checked job for one chain; equal cases have equal keys.
 
     Parameters
     ----------
@@ -47,12 +47,12 @@ class Case:
     chain
         The chain.
     settings
-        Arguments of the job, plain values only; those not given take their defaults.
+        Arguments of the job, plain values only; the others have their defaults.
 
     Attributes
     ----------
     work
-        Particle steps to do, to put long cases first and to foresee how long all take.
+        Number of particle steps, to put long cases first and to estimate the total time.
 
     Raises
     ------
@@ -84,7 +84,7 @@ class Case:
 
     @property
     def parameters(self) -> dict[str, Any]:
-        """All that the result follows from, as JSON can hold it."""
+        """Everything that determines the result, in a form for JSON."""
         return {"job": self.job, **_plain_all(self.chain.parameters()), **self.settings}
 
     @property
@@ -135,7 +135,7 @@ class Case:
         Parameters
         ----------
         folder
-            Where its file lies.
+            The folder of its file.
         keep_old
             Accept a result that other source code of the package computed.
 
@@ -144,7 +144,7 @@ class Case:
         FileNotFoundError
             If there is no file.
         OutdatedError
-            A ValueError: if other source code of the package computed the file.
+            If other source code of the package computed the file; it is a ValueError.
         ValueError
             If the file is damaged or holds another case.
         """
@@ -167,10 +167,10 @@ class Case:
 
 
 def compute(case: Case, source: str) -> bytes:
-    """Carry out a case and return its result as a NetCDF file; runs in a worker, one thread.
+    """Compute a case in one thread of a worker, and return its result as a NetCDF file.
 
     ``source`` is the fingerprint of the sender's source code. A worker with other source code
-    refuses: its result would be taken for one of the sender's code.
+    refuses, because its result would count as one of the sender's code.
     """
     if case.source != source:
         raise ValueError(
@@ -178,7 +178,7 @@ def compute(case: Case, source: str) -> bytes:
         )
     begin = time.perf_counter()
     own = {"seed": case.own_seed} if "seed" in case.settings else {}
-    # Linear algebra in threads sums in another order, and workers beside it would only wait.
+    # Linear algebra in threads sums in another order, and it would make other workers wait.
     with _libraries(len(sys.modules)).limit(limits=1):
         result = JOBS[case.job].function(case.chain, **{**case.settings, **own})
     if result.attrs["status"] == "interrupted":
@@ -189,7 +189,7 @@ def compute(case: Case, source: str) -> bytes:
         "package_version": _version(),
         "seconds": time.perf_counter() - begin,
     }
-    # On a dask worker xarray would lock the file all over the cluster; these are bytes in memory.
+    # On a dask worker xarray would use a lock of the whole cluster; these bytes need no lock.
     alone = sys.modules["dask"].config.set(scheduler="sync") if "dask" in sys.modules else None
     with alone or nullcontext():
         return small_netcdf(result)
@@ -197,7 +197,7 @@ def compute(case: Case, source: str) -> bytes:
 
 @lru_cache(maxsize=1)
 def _libraries(modules: int) -> ThreadpoolController:
-    """Find the libraries of linear algebra anew if modules were imported, which may bring one."""
+    """Find the linear-algebra libraries again if modules were imported that may load one."""
     return ThreadpoolController()
 
 
@@ -222,7 +222,7 @@ def stored_parameters(attributes: Mapping[Any, Any]) -> dict[str, Any]:
 
 @cache
 def _defaults(job: str) -> dict[str, Any]:
-    """Return the parameters of a case of which nothing is given."""
+    """Return the default parameters of a case."""
     return {"job": job, **_plain_all(Chain().parameters()), **_default_settings(job)}
 
 
@@ -236,7 +236,7 @@ def _plain_all(values: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def plain(name: str, value: Any) -> Any:
-    """Return a value as JSON writes it, 5, 5.0 and numpy's 5 all the same way."""
+    """Return a value in a form for JSON, the same for 5, 5.0 and numpy's 5."""
     if isinstance(value, np.generic | np.ndarray):
         value = value.tolist()
     if isinstance(value, list | tuple | range):

@@ -1,4 +1,4 @@
-"""What carries out cases: processes of this machine, or a dask cluster."""
+"""Executors of cases: processes of this machine, or a dask cluster."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from tqdm import tqdm
 
 from crazybilliards.model.process import cores
 
-_PATIENCE = "20s"  # for a scheduler to answer
+_PATIENCE = "20s"  # to wait for the answer of a scheduler
 
 
 @contextmanager
 def process_pool(processes: int | None = None) -> Iterator[Executor]:
     """Run cases in processes of this machine, one for each core unless told otherwise.
 
-    Leaving by an exception, Ctrl-C say, kills them.
+    An exception in the block, such as Ctrl-C, kills them.
     """
     before = set(multiprocessing.active_children())
     pool = ProcessPoolExecutor(
@@ -41,9 +41,9 @@ def process_pool(processes: int | None = None) -> Iterator[Executor]:
 
 
 def _prepare_worker() -> None:
-    """Leave Ctrl-C to the parent, and do not outlive it however it dies."""
+    """Ignore Ctrl-C, which the parent handles, and end when the parent ends."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    # Its own lock is one for processes, of which a worker that is killed leaves something behind.
+    # The default lock of tqdm works across processes, and a killed worker would leave it behind.
     tqdm.set_lock(threading.RLock())
     threading.Thread(target=_follow_parent, daemon=True).start()
 
@@ -59,7 +59,7 @@ def _follow_parent() -> None:
 def dask_cluster(address: str | None = None) -> Iterator[Executor]:
     """Run cases on the dask cluster whose scheduler is at ``address``; None: one of this machine.
 
-    A case whose worker dies is given to another one.
+    If a worker dies, another one gets its case.
 
     Raises
     ------
@@ -87,7 +87,7 @@ def dask_cluster(address: str | None = None) -> Iterator[Executor]:
         raise ValueError(f"no dask scheduler answers at {address}: {error}") from error
     log = logging.getLogger("distributed.client")
     before = log.level
-    # The loss of the scheduler comes back with every case; the log would add two tracebacks.
+    # Every case reports the loss of the scheduler. The log would only add two tracebacks.
     log.setLevel(logging.CRITICAL)
     try:
         with client:

@@ -38,12 +38,12 @@ _CHAIN = [field.name for field in fields(Chain)]
 
 @dataclass(frozen=True)
 class Sweep:
-    """A grid of cases, each of which is made, and checked, when it is asked for.
+    """A grid of cases. Each case is made and checked when it is needed.
 
     Parameters
     ----------
     grid
-        ``{parameter: values}``, parameters of the chain or settings of the job, in any mixture.
+        ``{parameter: values}`` for parameters of the chain and settings of the job.
     job
         As in :class:`Case`.
     chain, settings
@@ -52,14 +52,16 @@ class Sweep:
     Raises
     ------
     ValueError
-        For values that come twice, for an empty grid, for more than a million cases.
+        For repeated values, for an empty grid, for more than a million cases.
     """
 
     grid: Mapping[str, Sequence[Any]]
     job: str
     chain: Mapping[str, Any]
     settings: Mapping[str, Any]
-    _chain: Chain = field(init=False, repr=False, compare=False)  # what the cases have in common
+    _chain: Chain = field(
+        init=False, repr=False, compare=False
+    )  # the common parameters of the cases
 
     def __post_init__(self) -> None:
         for name, values in self.grid.items():
@@ -80,7 +82,7 @@ class Sweep:
         return map(self.case, range(len(self)))
 
     def case(self, number: int) -> Case:
-        """Return one case, counted from 0, the last parameter of the grid varying first.
+        """Return one case, counted from 0; the last parameter of the grid varies fastest.
 
         Raises
         ------
@@ -129,24 +131,24 @@ def read_sweep(path: Path) -> Sweep:
 def load_sweep(folder: Path) -> xr.Dataset:
     """Read all cases of a folder into one Dataset over the parameters in which they differ.
 
-    A parameter that a file lacks, because it did not exist when the file was written, is taken at
-    its default. A warning says so if the cases were computed by different source code.
+    A parameter that did not exist when a file was written has its default. A warning says if
+    different source code computed the cases.
 
     Returns
     -------
     xarray.Dataset
-        Every variable has a dimension for each parameter that takes more than one value, in front
-        of its own. Where no case was computed, or one has fewer particles, numbers are NaN and
-        ``status`` is empty. Coordinates that depend on the case, such as x or the mean position,
-        are over those dimensions too; the dimension of x is then ``x_index``. ``status``,
-        ``end_time`` and ``provenance`` are variables. Parameters that are the same for all stand
-        in the attribute ``parameters``, as JSON.
+        Every variable has a dimension for each parameter with more than one value, in front of
+        its own dimensions. Missing cases have NaN and an empty ``status``; shorter chains are
+        padded with NaN. Coordinates that depend on the case, such as x or the mean position,
+        have those dimensions too, and the dimension of x is then ``x_index``. ``status``,
+        ``end_time`` and ``provenance`` are variables. The attribute ``parameters`` holds the
+        common parameters as JSON.
 
     Raises
     ------
     ValueError
-        If a file is damaged, or there are none, or they are not cases of one job, or two files
-        hold the same case.
+        If a file is damaged, if there are no files, if they are not cases of one job, or if two
+        files hold the same case.
     """
     paths = sorted(Path(folder).glob("*.nc"))
     if not paths:
@@ -209,18 +211,18 @@ def _check_points(paths: Sequence[Path], points: Sequence[dict[str, Any]]) -> No
 
 
 def _scalar(value: Any) -> Any:
-    """Return what can stand along a dimension: a list as text."""
+    """Return a value that can be a coordinate; a list becomes text."""
     return json.dumps(value) if isinstance(value, list) else value
 
 
 def _with_status(result: xr.Dataset) -> xr.Dataset:
-    """Turn what differs from case to case into variables."""
+    """Turn the attributes that differ from case to case into variables."""
     names = ("status", "end_time", "provenance")  # a theory has no end_time
     return result.assign({name: ((), result.attrs[name]) for name in names if name in result.attrs})
 
 
 def _alike(results: list[xr.Dataset]) -> list[xr.Dataset]:
-    """Make dimensions other than the particle fit, by numbering places where results differ."""
+    """Make other dimensions than the particle fit; differing coordinates become numbers."""
     for dimension in sorted({str(name) for each in results for name in each.dims} - {"particle"}):
         values = [each[dimension] for each in results if dimension in each.dims]
         if len(values) < len(results) or not all(each.equals(values[0]) for each in values):

@@ -1,7 +1,7 @@
 """The jobs of a sweep, by name: the simulation, its limit, and every stationary theory.
 
-A job is one entry of ``JOBS``. A theory that is added to ``THEORIES``, in
-:mod:`crazybilliards.comparison.theories`, is a job at once.
+A job is one entry of ``JOBS``. Every theory in ``THEORIES`` of
+:mod:`crazybilliards.comparison.theories` is a job without further work.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ from crazybilliards.particles import simulate, simulate_limit
 from crazybilliards.particles.limit import make_runs
 from crazybilliards.particles.simulation import make_run
 
-# Arguments that no number depends on, and those that are no plain values.
+# Arguments that do not change the numbers, and arguments that are not plain values.
 _NO_SETTINGS = {"chain", "start", "threads", "checkpoint", "checkpoint_interval", "progress"}
 
-_THEORY_WORK = 3e9  # particle steps that take as long as a theory, roughly
+_THEORY_WORK = 3e9  # particle steps that take about as long as a theory
 
 
 @dataclass(frozen=True)
@@ -34,17 +34,17 @@ class Job:
     Attributes
     ----------
     function
-        ``function(chain, **settings)`` gives a result in the common vocabulary. A setting ``seed``
-        is replaced by a seed of the case's own.
+        ``function(chain, **settings)`` returns a result in the common vocabulary. Each case
+        replaces a setting ``seed`` by its own seed.
     work
-        ``work(chain, **settings)``: how long it takes, in particle steps. Raises the ValueError
-        that the function would raise for a wrong argument, without its work.
+        ``work(chain, **settings)`` returns the computing time in particle steps. It raises the
+        ValueError that the function would raise for a wrong argument, without its work.
     settings
         The names of the settings with their defaults.
     source
-        Fingerprint of the source code that the result depends on. It is taken when this module is
-        imported, together with that code: an edit during a long interactive session must not be
-        ascribed to the code that is in memory.
+        Fingerprint of the source code that the result depends on. It is computed when this module
+        is imported, together with that code. A later edit during a long interactive session
+        therefore does not change it.
     """
 
     function: Callable[..., xr.Dataset]
@@ -65,10 +65,10 @@ def _steps(chain: Chain, **settings: Any) -> float:
 
 
 def _limit_steps(chain: Chain, **settings: Any) -> float:
-    """Return the steps before anything is measured, and those of the base that it takes roughly."""
+    """Return the steps before the measurement plus an estimate of those of the base."""
     steps, runs = make_runs(chain, **settings)
     warm_up = float(sum(run.warmup_steps for run in runs[:-1] or runs)) * settings["replicas"]
-    # W_v in the centre fluctuates by a half in a time unit: for 10 to 1000 rods, to a factor of 2.
+    # W_v in the centre fluctuates by a half per time unit, to a factor of 2 for 10 to 1000 rods.
     measured = (0.5 / settings["accuracy"]) ** 2 / steps.time_steps[0]
     return chain.size * (warm_up + 2 * measured)
 

@@ -1,7 +1,7 @@
-"""Which cases of a sweep are missing in a folder, and in which order they are computed.
+"""The missing cases of a sweep in a folder, and the order of their computation.
 
-A sweep may have a million cases. None is kept here, only two numbers for each: it is made anew
-when its turn comes.
+A sweep may have a million cases. Only two numbers of each case are kept. The case itself is made
+again when it is computed.
 """
 
 from __future__ import annotations
@@ -24,12 +24,12 @@ _Item = TypeVar("_Item")
 
 @dataclass(frozen=True)
 class Cases:
-    """Different cases, all of them checked.
+    """Checked cases, all different.
 
     Attributes
     ----------
     source
-        Where they come from.
+        The sweep or collection that the cases come from.
     work
         The particle steps of each, shape (cases,).
     """
@@ -46,7 +46,7 @@ class Cases:
 
 @dataclass(frozen=True)
 class Missing:
-    """The cases of which a folder has no valid file, the longest first.
+    """The cases that have no valid file in a folder, the longest first.
 
     Attributes
     ----------
@@ -57,9 +57,9 @@ class Missing:
     folder
         The folder.
     damaged
-        What is wrong with the files that are there but not sound.
+        Descriptions of the damaged files.
     outdated
-        How many files are there that other source code computed.
+        Number of files that other source code computed.
     """
 
     cases: Cases
@@ -80,7 +80,7 @@ class Missing:
         return (self.cases[number] for number in self.numbers.tolist())
 
     def report(self) -> None:
-        """Say on standard error which files are there but are replaced, and why."""
+        """Print on standard error which existing files are replaced, and why."""
         for problem in self.damaged:
             print(f"crazybilliards: {problem}; computing it anew", file=sys.stderr)
         if self.outdated:
@@ -93,7 +93,7 @@ class Missing:
 
 
 def check_cases(cases: Iterable[Case], *, progress: bool = True) -> Cases:
-    """Check every case of a sweep, and leave out those that are there twice.
+    """Check every case of a sweep, and leave out repeated ones.
 
     Raises
     ------
@@ -107,10 +107,10 @@ def check_cases(cases: Iterable[Case], *, progress: bool = True) -> Cases:
 
 
 def _check_sweep(sweep: Sweep, progress: bool) -> NDArray[np.float64]:
-    """Return the particle steps of each case of a grid, all of them checked.
+    """Check every case of a grid and return its particle steps.
 
-    Whether a seed is right, and how long the case takes, has nothing to do with the other
-    parameters: all seeds are checked with one chain, all chains with one seed.
+    The check of a seed does not depend on the other parameters, and the computing time does not
+    depend on the seed. All seeds are therefore checked with one chain, all chains with one seed.
     """
     chains = dict(sweep.grid)
     if "seed" in chains:
@@ -126,10 +126,10 @@ def _check_sweep(sweep: Sweep, progress: bool) -> NDArray[np.float64]:
 def find_missing(
     cases: Cases, folder: Path, *, keep_old: bool = False, progress: bool = True
 ) -> Missing:
-    """Return the cases that ``folder`` has no valid file of.
+    """Return the cases that have no valid file in ``folder``.
 
-    A file is valid if it is sound, holds the case, and was computed by the source code of today;
-    with ``keep_old`` other source code may have computed it.
+    A file is valid if it is undamaged, holds the case, and was computed by the current source code
+    (or, with ``keep_old``, by other source code).
     """
     numbers = np.arange(len(cases))
     damaged: list[str] = []
@@ -154,5 +154,5 @@ def find_missing(
 
 
 def _bar(items: Iterable[_Item], title: str, progress: bool) -> Iterable[_Item]:
-    """Show, if it takes longer than a second, how far a loop is."""
+    """Show the progress of a loop that takes longer than a second."""
     return tqdm(items, desc=title, unit="", delay=1, disable=None if progress else True)

@@ -1,8 +1,8 @@
-"""Carrying out cases: each is sent to an executor, and its file is written when it comes back.
+"""Computation of cases: each is sent to an executor, and its file is written when it returns.
 
-Workers send their results back as NetCDF bytes and the caller writes them, atomically, when they
-arrive: a kill at any moment loses the cases in flight and nothing else, and the workers of a
-cluster need no common file system.
+Workers send their results back as NetCDF bytes. The caller writes each result atomically when it
+arrives. A kill at any moment therefore loses only the cases that are being computed, and the
+workers of a cluster need no common file system.
 """
 
 from __future__ import annotations
@@ -24,20 +24,20 @@ from crazybilliards.comparison.sweeps.missing import Missing, check_cases, find_
 from crazybilliards.model.locks import locked
 from crazybilliards.model.storage import make_folder, write_sealed
 
-# Cases that are submitted and not back yet: enough for the workers of a cluster, few to remember.
+# Cases that are submitted and have not returned: enough for a cluster, few in memory.
 _MOST_UNDER_WAY = 1000
 
 
 @dataclass
 class Outcome:
-    """What became of cases so far.
+    """The outcome of the cases so far.
 
     Attributes
     ----------
     written
-        How many were computed and written.
+        Number of cases that were computed and written.
     failed
-        The reasons of those that failed.
+        The reasons for the cases that failed.
     """
 
     written: int = 0
@@ -52,7 +52,7 @@ def run_cases(
     keep_old: bool = False,
     progress: bool = True,
 ) -> dict[Case, str]:
-    """Compute the cases that ``folder`` has no file of; return the reasons of those that failed.
+    """Compute the cases that have no file in ``folder``; return the reasons of failures.
 
     A file that is damaged, or that other source code of the package computed, is replaced when the
     new result is there. A line on standard error says so.
@@ -60,14 +60,14 @@ def run_cases(
     Parameters
     ----------
     cases
-        Cases; equal ones are computed once. Of a :class:`Sweep` few are in memory at a time.
+        Cases; equal ones are computed once. Few cases of a :class:`Sweep` are in memory at a time.
     folder
-        Where the files lie, one a case, named by its key; made if missing.
+        Folder of the files, one per case and named by its key; made if missing.
     executor
-        What runs them: :func:`process_pool` or :func:`dask_cluster`, or any other.
+        Executor of the cases: :func:`process_pool`, :func:`dask_cluster`, or any other.
     keep_old
-        Take results that other source code of the package computed as they are. Say so only if no
-        number depends on what was edited since.
+        Accept results that other source code of the package computed. Use it only if no number
+        depends on the edits since.
     progress
         Show progress bars, the last one with the time left, if standard error is a terminal.
 
@@ -76,8 +76,7 @@ def run_cases(
     ValueError
         For the first case of a :class:`Sweep` that is wrong, before any work.
     RuntimeError
-        If workers die under their cases, or the scheduler of a dask cluster; what was finished is
-        kept.
+        If a worker or the scheduler of a dask cluster dies. Finished cases are kept.
     OSError
         If the folder cannot be written to, or another process is filling it.
     """
@@ -95,12 +94,12 @@ def compute_missing(
 ) -> None:
     """Compute cases and write each when it arrives.
 
-    ``outcome`` tells what became of them, however this ends.
+    ``outcome`` records what happened to each case, also if this raises.
 
     Raises
     ------
     RuntimeError
-        If workers die under their cases, or the scheduler of a dask cluster.
+        If a worker or the scheduler of a dask cluster dies.
     OSError
         If a file cannot be written.
     """
@@ -132,25 +131,25 @@ def compute_missing(
             else "a worker process died (out of memory?)"
         )
         raise RuntimeError(
-            f"{what}; what was finished is kept, the same call computes the rest"
+            f"{what}; finished cases are kept, and the same call computes the rest"
         ) from under_way.lost
 
 
 class _UnderWay:
-    """Cases that were submitted and are not back yet; each is written when it is taken back."""
+    """Submitted cases that have not returned; each is written when it is taken back."""
 
     def __init__(self, executor: Executor, folder: Path, outcome: Outcome, bar: tqdm[Any]) -> None:
         self.executor, self.folder, self.outcome, self.bar = executor, folder, outcome, bar
         self.cases: dict[Future[bytes], Case] = {}
         self.back: SimpleQueue[Future[bytes]] = SimpleQueue()
-        self.lost: Exception | None = None  # why the executor is of no use any more
+        self.lost: Exception | None = None  # why the executor cannot be used any more
 
     def __len__(self) -> int:
         return len(self.cases)
 
     @property
     def arrived(self) -> bool:
-        """Whether one can be taken back without waiting."""
+        """Return whether a case can be taken back without waiting."""
         return not self.back.empty()
 
     def submit(self, case: Case) -> None:
@@ -160,14 +159,14 @@ class _UnderWay:
         future.add_done_callback(self.back.put)
 
     def take_one(self) -> None:
-        """Wait for the next case and write it, or keep in mind why there is no result."""
+        """Wait for the next case and write it, or record why it has no result."""
         future = self.back.get()
         case = self.cases.pop(future)
         try:
             content = future.result()
         except (BrokenProcessPool, CancelledError) as error:
-            self.lost = error  # others may have been finished before
-        except Exception as error:  # whatever is wrong with one must not cost the others
+            self.lost = error  # other cases may have finished before
+        except Exception as error:  # an error in one case must not stop the others
             self.outcome.failed[case] = f"{type(error).__name__}: {error}"
         else:
             _write(case.file(self.folder), content)
@@ -179,13 +178,13 @@ def _write(path: Path, content: bytes) -> None:
     try:
         write_sealed(path, content)
     except OSError as error:
-        what = f"{error.strerror}; what was finished is kept, the same call computes the rest"
+        what = f"{error.strerror}; finished cases are kept, and the same call computes the rest"
         raise OSError(error.errno, what, str(path)) from error
 
 
 @contextmanager
 def _ctrl_c_held_back() -> Iterator[None]:
-    """Start workers that Ctrl-C does not reach, from their first moment on; here it comes later."""
+    """Start workers that never receive Ctrl-C; in this process it acts after the block."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return

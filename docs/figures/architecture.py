@@ -1,7 +1,7 @@
-"""Draw the rooms, their folders and who imports whom, read from the imports of all modules.
+"""Draw the rooms, their folders and their imports of each other, from the imports of all modules.
 
-Run it, and it writes architecture.svg beside itself. The tests take the imports from here too, and
-check that the picture belongs to them.
+Run it to write architecture.svg beside it. The tests use these imports too, and check that the
+picture shows them.
 """
 
 import ast

@@ -1,1 +1,1 @@
-"""Exact solutions at e = 1: the Gibbs measure, and the cloud that breathes."""
+"""Exact solutions at e = 1: the Gibbs measure, and the breathing cloud."""

@@ -1,17 +1,18 @@
-r"""The breathing cloud: the exact solution in time of the linear chain without gap.
+r"""The breathing cloud: the exact solution in time of the linear chain without a gap.
 
-Without gap every rod has the same anchor in the reduced coordinate. A Gaussian cloud,
+Without a gap every rod has the same anchor in the reduced coordinate. A Gaussian cloud,
 rho_y = L Normal(y; Y(t), sigma(t)^2), stays Gaussian, with the flow V = Y' + (sigma'/sigma)(y - Y):
 
     Y'' = -(k/m) Y - (gamma/m) Y',
     sigma'' = W^2/sigma - (k/m) sigma - (gamma/m) sigma'.
 
-*Isothermal* fluid: W^2 is constant. *Evolving* temperature, W^2 uniform in space,
+In the *isothermal* fluid W^2 is constant. With an *evolving* temperature W^2 is uniform in space
+and
 
-    (W^2)' = -2 W^2 sigma'/sigma - (2 gamma/m) W^2 + A^2/m^2:
+    (W^2)' = -2 W^2 sigma'/sigma - (2 gamma/m) W^2 + A^2/m^2.
 
-then this is also the exact motion of the rods themselves at restitution 1, which, relabelled, are
-independent damped oscillators (their covariance obeys the same equations).
+This is also the exact motion of the rods themselves at restitution 1. Relabelled when they collide,
+they are independent damped oscillators, whose covariance obeys the same equations.
 """
 
 from __future__ import annotations
@@ -42,7 +43,7 @@ def breathing_cloud(
     start_velocity_variance: float | None = None,
     evolving: bool = True,
 ) -> xr.Dataset:
-    """Solve the equations of this module from a stationary cloud, stretched and shifted, at rest.
+    """Solve the equations of this module from a stretched and shifted stationary cloud at rest.
 
     Parameters
     ----------
@@ -53,11 +54,12 @@ def breathing_cloud(
     every
         Time between outputs [T]; None: a hundredth of the duration.
     stretch, shift
-        Of the stationary cloud at the start: sigma(0) = stretch s, Y(0) = shift [R].
+        How the stationary cloud is changed: sigma(0) = stretch s, Y(0) = shift [R].
     start_velocity_variance
         W^2 at the start [R^2/T^2]; None: the free value.
     evolving
-        With the temperature equation (exact for the rods), or isothermal at the free value.
+        True: with the temperature equation, exact for the rods. False: isothermal at the free
+        value.
 
     Returns
     -------
@@ -68,7 +70,8 @@ def breathing_cloud(
     Raises
     ------
     ValueError
-        For another chain or a wrong argument, before any work; if the cloud collapses.
+        For a chain that does not meet these conditions or a wrong argument, before any work; if
+        the cloud collapses.
     """
     require_chain(chain, "the breathing cloud", elastic=True, linear=True, gapless=True)
     times = output_times(duration, every, _OUTPUTS)

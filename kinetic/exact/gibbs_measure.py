@@ -2,23 +2,23 @@ r"""The exact stationary state at e = 1: the Gibbs measure of ordered points.
 
 Elastic collisions conserve the Gibbs measure, so in the reduced coordinate the stationary state is
 
-    p(y, v) ~ exp(-sum_i U(y_i - y0_i)/T) exp(-sum_i m v_i^2 / 2T)    on  y_1 <= ... <= y_L.
+    P(y, v) ~ exp(-sum_i U(y_i - y0_i)/T) exp(-sum_i m v_i^2 / 2T)    on  y_1 <= ... <= y_L.
 
-Every velocity is therefore Gaussian with exactly the free width W, at any gap and for any
-spring. The positions are a Markov chain along the labels. With w(d) = exp(-U(d)/T),
+Every velocity is therefore Gaussian with exactly the free width W, for any gap and any spring. The
+positions are a Markov chain along the labels. With w(d) = exp(-U(d)/T),
 
-    forward      F_i(y) = int_{-inf}^{y} w(z - y0_i) F_{i-1}(z) dz,      F_0 = 1,
-    backward     B_i(y) = F_{L-i}(-y)                                    (the chain is symmetric),
-    density      p_i(y) = w(y - y0_i) F_{i-1}(y) B_i(y) / Z.
+    forward      Z_i(y) = int_{-inf}^{y} w(z - y0_i) Z_{i-1}(z) dz,      Z_0 = 1,
+    backward     Z_{L-i}(-y)                                             (the chain is symmetric),
+    density      phi_i(y) = w(y - y0_i) Z_{i-1}(y) Z_{L-i}(-y) / Z.
 
-Without gap p_i is the density of the i-th order statistic of L draws from w; for linear springs
-with gap this is the one-dimensional one-component plasma (R. J. Baxter, Math. Proc. Camb. Phil.
+Without a gap phi_i is the density of the i-th order statistic of L draws from w. For linear springs
+with a gap this is the one-dimensional one-component plasma (R. J. Baxter, Math. Proc. Camb. Phil.
 Soc. 59, 779 (1963)).
 
-The integrals run on one uniform grid in y and are kept as logarithms, because the F_i span
-hundreds of decades. Within a cell log F' is taken as a parabola, which stays accurate where the
-integrand grows by factors from one node to the next. Z must come out the same for every i: its
-spread is the residual that :func:`equilibrium` reports.
+The integrals are on one uniform grid in y and are kept as logarithms, because the Z_i span hundreds
+of decades. Within a cell the logarithm of the integrand is a parabola, which stays accurate if the
+integrand changes by large factors from one node to the next. Z must be the same for every i.
+Its spread is the residual that :func:`equilibrium` reports.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ from crazybilliards.model.vocabulary import result
 
 Array = NDArray[np.float64]
 
-# Grid nodes in the width of the most confined rod, the middle one without gap.
+# Grid nodes in the width of the narrowest rod, which is the middle one without a gap.
 _NODES_PER_WIDTH = 10
 
 _MOST_STATES = 10**15  # more than any memory holds, and still exact as a float
@@ -48,14 +48,14 @@ _MOST_STATES = 10**15  # more than any memory holds, and still exact as a float
 def equilibrium(chain: Chain) -> xr.Dataset:
     """Exact stationary state of the elastic chain: any gap, both springs.
 
-    Costs O(L^1.5) time and memory: 5 ms for L = 20, 1 s and 40 MB for L = 1000.
+    It costs O(L^1.5) time and memory: 5 ms for L = 20, 1 s and 40 MB for L = 1000.
 
     Returns
     -------
     xarray.Dataset
         ``density`` and ``label`` over x; ``mean_displacement``, ``displacement_width`` and
         ``velocity_width`` over particle. ``attrs["residual"]`` is the spread of log Z over the
-        particles, 1e-6 or less when all is well: relative errors are of that order.
+        particles. It is normally 1e-6 or less, and relative errors are of this order.
 
     Raises
     ------
@@ -100,21 +100,21 @@ def equilibrium(chain: Chain) -> xr.Dataset:
 
 
 def equilibrium_states(chain: Chain, replicas: int, seed: int = 0) -> xr.Dataset:
-    """Draw independent states, ``replicas`` of them, of the elastic chain in its stationary state.
+    """Draw ``replicas`` independent states of the elastic chain in its stationary state.
 
-    Backward sampling on the recursion: the last rod from F_L, then each rod given its right
-    neighbour from F_i below it. Velocities are independent Gaussians of width W.
+    The recursion is sampled backwards: the last rod from Z_L, then each rod from Z_i, up to the
+    position of its right neighbour. Velocities are independent Gaussians of width W.
 
     Returns
     -------
     xarray.Dataset
         ``position`` and ``velocity`` over (replica, particle): the ``start`` of a simulation.
-        Takes 40 bytes for each rod of each state.
+        It takes 40 bytes for each rod of each state.
 
     Raises
     ------
     ValueError
-        As :func:`equilibrium`; and for a wrong ``replicas`` or ``seed``.
+        As :func:`equilibrium`, and for a wrong ``replicas`` or ``seed``.
     """
     replicas = check_integer("replicas", replicas, least=1, most=_MOST_STATES)
     generator = np.random.default_rng(check_integer("seed", seed, least=0))
@@ -127,7 +127,7 @@ def equilibrium_states(chain: Chain, replicas: int, seed: int = 0) -> xr.Dataset
         log_f = recursion.log_f[i]
         # 1 - U lies in (0, 1]: its logarithm is finite.
         target = np.interp(below, nodes, log_f) + np.log1p(-generator.random(replicas))
-        # Linear in log F between nodes, both ways, so that order is kept exactly.
+        # Linear in log Z_i between nodes, in both directions, so that the order is kept exactly.
         y[:, i] = below = np.minimum(np.interp(target, log_f, nodes), below)
     velocity = chain.free_velocity_width * generator.standard_normal((replicas, chain.size))
     dims = ("replica", "particle")
@@ -141,7 +141,7 @@ def equilibrium_states(chain: Chain, replicas: int, seed: int = 0) -> xr.Dataset
 
 @dataclass(frozen=True)
 class _Recursion:
-    """log F_i on each rod's own window of the common grid y = j h, |y - y0_i| <= reach."""
+    """log Z_i on each rod's own window of the common grid y = j h, |y - y0_i| <= reach."""
 
     chain: Chain
     spacing: float
@@ -160,21 +160,21 @@ class _Recursion:
         return d, -self.chain.potential(d) / self.chain.temperature
 
     def log_below(self, i: int) -> Array:
-        """Log F of the rod before i on the window of i: constant beyond its own window."""
+        """Log Z of the rod before i on the window of i; constant beyond its own window."""
         if i == 0:
             return np.zeros(2 * self.half + 1)
         shift = min(self.centres[i] - self.centres[i - 1], 2 * self.half)
         return np.pad(self.log_f[i - 1][shift:], (0, shift), mode="edge")
 
     def log_density(self, i: int) -> tuple[Array, Array]:
-        """Displacements on window i and the logarithm of p_i, not normalized."""
+        """Displacements on window i and the logarithm of phi_i, not normalised."""
         d, log_w = self.log_weight(i)
         mirrored = self.log_below(self.chain.size - 1 - i)[::-1]
         return d, log_w + self.log_below(i) + mirrored
 
 
 def check_equilibrium(chain: Chain) -> None:
-    """Raise the ValueError that :func:`equilibrium` would raise, without any work."""
+    """Raise the ValueError that :func:`equilibrium` would raise, without the computation."""
     require_chain(chain, "the exact equilibrium", elastic=True)
     require_resolved(chain, float(chain.reduced_anchors[-1]))
     require_memory(
@@ -185,7 +185,7 @@ def check_equilibrium(chain: Chain) -> None:
 
 def _half_window(chain: Chain) -> int:
     """Return the nodes to either side of a rod's anchor."""
-    # Width of the middle order statistic, 1/(2 p(0) sqrt(L)), or of one free rod if smaller.
+    # Width of the middle order statistic, 1/(2 phi(0) sqrt(L)), or of one free rod if smaller.
     narrowest = chain.thermal_length * min(1.0, 1.25 / np.sqrt(chain.size))
     return int(np.ceil(thermal_reach(chain) / narrowest * _NODES_PER_WIDTH))
 

@@ -1,7 +1,7 @@
 r"""Hydrodynamics: the density rho(x, t) and the flow velocity V(x, t) of the chain in time.
 
 The continuity and the velocity equation of the paper (arXiv:1404.7460, ``eq9`` in its appendix and
-``modeleq``, there also ``continuity_helbing``). The paper uses them at rest only. Here they have
+``modeleq``, there also ``continuity_helbing``). The paper uses them for V = 0 only. Here they have
 the mass m and any spring:
 
     rho_t + (rho V)_x = 0,
@@ -9,24 +9,25 @@ the mass m and any spring:
 
 with the pressure of hard rods and the springs' force at the mean displacement.
 
-**Displacement.** By labels, which the flow carries: N_t + V N_x = 0 and
-<dx> = x - (2R + g)(N - L/2); nothing is put in. Or a frozen profile <dx>(x), such as the one that
-the paper fits in the steady state.
+**Displacement.** By labels, which the flow carries along, N_t + V N_x = 0, and then
+<dx> = x - (2R + g)(N - L/2) without an input. Or a frozen profile <dx>(x), such as the one that the
+paper fits in the steady state.
 
-**Velocity variance.** The paper writes W_v(r, t), has no equation for it, and takes it constant in
-the steady state at restitution 1. *Isothermal*: W^2 is the free value at all times. That is right
-in the steady state and wrong in a transient at the reference damping, where heat is exchanged more
-slowly than the chain moves. *Evolving*: the velocity variance has an equation of its own,
+**Velocity variance.** The paper writes W_v(r, t), has no equation for it, and takes it as constant
+in the steady state at restitution 1. *Isothermal*: W^2 is the free value at all times. This is
+right in the steady state. It is wrong in a transient at the reference damping, where heat is
+exchanged more slowly than the chain moves. *Evolving*: the velocity variance has an equation of its
+own,
 
     (W^2)_t + V (W^2)_x = -2 W^2 V_x/(1 - 2 R rho) - (2 gamma/m) (W^2 - A^2/(2 m gamma)),
 
-adiabatic compression of a gas with one degree of freedom plus exchange with the noise, no heat
-flux: without gap exact for Gaussian clouds at restitution 1. *Prescribed*: a number, or a profile
-W^2(x), at all times.
+the adiabatic compression of a gas with one degree of freedom plus the exchange with the noise,
+without a heat flux. Without a gap it is exact for Gaussian clouds at restitution 1. *Prescribed*: a
+number, or a profile W^2(x), at all times.
 
-**Boundary conditions.** Nothing outside: the density falls to zero, no rods enter or leave.
+**Boundary conditions.** The density falls to zero outside, and no rods enter or leave.
 
-Two independent solvers: on labels (:mod:`.label_frame`), and on a grid of positions
+There are two independent solvers, on labels (:mod:`.label_frame`) and on a grid of positions
 (:mod:`.eulerian_frame`).
 """
 
@@ -83,31 +84,32 @@ def hydrodynamics(
     Parameters
     ----------
     chain
-        The chain, any gap, both springs; with restitution 1 unless ``velocity_variance`` is a
-        number or a profile.
+        The chain, with any gap and both springs. Its restitution must be 1 unless
+        ``velocity_variance`` is a number or a profile.
     start
-        A result with ``density`` over x and, if wanted, ``label``, ``flow_velocity``
-        and ``velocity_variance``. ``force_balance`` of another chain (a quench), or ``displaced``,
-        ``compressed`` and ``two_clumps`` of this one.
+        A result with ``density`` over x and optionally ``label``, ``flow_velocity`` and
+        ``velocity_variance``, such as ``force_balance`` of another chain (a quench), or
+        ``displaced``, ``compressed`` and ``two_clumps`` of this one.
     duration
         Time to solve for [T]; 12 relaxation times 2m/gamma come within 1e-5 of the steady state.
     displacement
-        None: by labels, which the flow carries. Or a frozen <dx>(x) [R], in any form that
-        ``force_balance`` takes; it needs the eulerian frame.
+        None: by labels, which the flow carries along. Or a frozen <dx>(x) [R], in any form that
+        ``force_balance`` takes. It needs the eulerian frame.
     velocity_variance
         None: isothermal at the free W^2 (wrong in transients). ``"evolving"``: with
         the temperature equation. Or a prescribed W^2 [R^2/T^2] in any form that ``force_balance``
         takes: a number is isothermal at this value, a profile W^2(x) needs the eulerian frame.
     frame
-        ``"label"``: exact mass, no grid of positions, milliseconds to a second. ``"eulerian"``:
-        the paper's equations on a grid of positions, an independent check.
+        ``"label"``: conserves the number of rods exactly, has no grid of positions, and takes
+        milliseconds to a second. ``"eulerian"``: the paper's equations on a grid of positions,
+        as an independent check.
     every
         Time between outputs [T]; None: a hundredth of the duration. Each output takes 100 bytes
         for each node of its grid x (21 or more in a rod length) and for each rod.
     cells
-        Number of cells; None: chosen from the chain's scales. In the eulerian frame they may be
-        half a thermal length wide at most, which makes errors of up to 3 % of it in positions; the
-        default is a tenth of it.
+        Number of cells; None: chosen from the chain's scales. In the eulerian frame a cell may be
+        at most half a thermal length wide, which gives errors of up to 3 % of this length in
+        positions. The default is a tenth of the thermal length.
     progress
         Show a progress bar, if standard error is a terminal.
 
@@ -118,7 +120,7 @@ def hydrodynamics(
         (time, x); ``mean_displacement`` and ``mean_velocity`` over (time, particle); over time
         ``rods`` (their number), ``centre``, ``cloud_width`` and ``unsteadiness``,
         whose last value is ``attrs["residual"]``. ``attrs["status"]`` is ``interrupted`` if Ctrl-C
-        ended it: the result then has the times before.
+        ended it. The result then has the times before.
 
     Raises
     ------
@@ -174,7 +176,7 @@ def hydrodynamics(
 
 
 class _Closure(NamedTuple):
-    """What is put in: the profiles are None where the equations find them themselves."""
+    """The inputs of the solvers; a profile is None if the equations determine it."""
 
     chain: Chain  # for a number W^2 the elastic chain with that temperature
     displacement: Profile | None
@@ -211,7 +213,7 @@ def _read_closure(
 def _result(
     chain: Chain, fields: FlowFields, times: Array, method: dict[str, str | int]
 ) -> xr.Dataset:
-    """Put the fields into the common vocabulary, with the sums that tell how good they are."""
+    """Put the fields into the common vocabulary, with sums that show their accuracy."""
     along, particles = ("time", "x"), ("time", "particle")
     reached = len(fields.density)
     interrupted, times = reached < times.size, times[:reached]

@@ -7,13 +7,14 @@ conserved quantities n, n V and, with a temperature, E = n (V^2 + theta)/2 obey
     (n V)_t + (n V^2 + p)_x     = -n f - Gamma n V,                  p = n theta/(1 - B n),
     E_t     + (V (E + p))_x     = -n V f - Gamma n (V^2 + theta - 1),
 
-f being the spring's force at the displacement u = x - (B + Lam) nu, nu = int n dx - 1/2, or at a
+where f is the spring's force at the displacement u = x - (B + Lam) nu, nu = int n dx - 1/2, or at a
 frozen profile u(x).
 
-**Discretisation.** Finite volumes (:mod:`.finite_volumes`): second order,
-well balanced, n positive and below close packing whatever happens. Walls far out, where there is
-nothing: no flux. Four-stage Runge-Kutta steps of fixed length; where the flow turns out faster than
-the step allows, all is done again with half of it.
+**Discretisation.** The finite volumes (:mod:`.finite_volumes`) are of second order and well
+balanced, and n always stays positive and below close packing. The walls are far out, where the
+density vanishes, and no flux passes them. The time steps are Runge-Kutta steps of four stages and
+of fixed length. If the flow is faster than the step allows, the solution is computed again with
+half the step.
 """
 
 from __future__ import annotations
@@ -89,7 +90,7 @@ def solve_on_positions(
 def make_constants(
     chain: Chain, faces: Array, variance: Profile | None, displacement: Profile | None
 ) -> Constants:
-    """Return what the rates depend on, at the cells between ``faces``."""
+    """Return the quantities that the rates depend on, at the cells between ``faces``."""
     s, W, L = chain.thermal_length, chain.free_velocity_width, chain.size
     x = (faces[1:] + faces[:-1]) / 2
     theta, frozen = np.ones(x.size), np.empty(0)
@@ -112,7 +113,7 @@ def make_constants(
 def _integrate(
     fields: dict[str, Array], times: Array, constants: Constants, *, progress: bool
 ) -> Array:
-    """Take steps as short as the fastest signal asks for, which is known for certain afterwards."""
+    """Take steps that resolve the fastest signal, whose speed is certain only afterwards."""
     rate = make_rate(constants)
     h, interval = constants.spacing, times[1] - times[0]
     fastest = _fastest(np.array(list(fields.values())), constants)
@@ -139,7 +140,7 @@ def _integrate(
 
 
 def _frozen(profile: Profile, x: Array) -> Array:
-    """Return <dx> at x; beyond the end of a profile that ends, as at the end and with slope 1."""
+    """Return <dx> at x; beyond the end of a profile it is continued with slope 1."""
     middle, half = (profile.right + profile.left) / 2, (profile.right - profile.left) / 2
     inside = x
     if np.isfinite(half):
@@ -151,7 +152,7 @@ def _frozen(profile: Profile, x: Array) -> Array:
 
 
 def make_faces(chain: Chain, start: Start, number: int | None, wider: float) -> Array:
-    """Return the scaled positions of the cells' faces: room for the farthest swing and more."""
+    """Return the scaled positions of the cells' faces, beyond the farthest swing."""
     s, W, L = chain.thermal_length, chain.free_velocity_width, chain.size
     density = start.label(start.x, 1)
     there = density > _POPULATED * density.max()
@@ -232,7 +233,7 @@ def _on_grid(
         _, v, log_theta = primitive(fields, theta, 2 * chain.radius * L / s).T
         count = CubicSpline(faces, np.concatenate([[0.0], np.cumsum(fields[0]) * h]))
         label[i] = L * count(here)
-        # A spline through a shock may swing beyond vacuum and close packing.
+        # A spline through a shock may overshoot vacuum and close packing.
         there = np.clip(count(here, 1) * L / s, 0.0, (1 - 1e-9) * chain.close_packed_density)
         density[i] = np.where(here == x / s, there, 0.0)
         velocity[i] = W * np.interp(here, middle, v)

@@ -2,10 +2,11 @@ r"""Finite volumes for the eulerian frame: fluxes, reconstruction, rates of chan
 
 The equations are those of :mod:`.eulerian_frame`. Fluxes are those of Harten,
 Lax and van Leer between states that are reconstructed linearly in ln p, V and ln theta with the
-minmod limiter; whatever the value of p = theta n/(1 - B n), n stays between vacuum and close
-packing. The scheme is well balanced: what is limited of ln p is its distance from rest, where
-(ln p)' = -f (1 - B n)/theta, and the springs' force is the difference of the pressures that it
-holds at rest, so that fluxes and forces cancel there. No flux passes the outermost faces.
+minmod limiter. For every value of p = theta n/(1 - B n) the density n is between vacuum and close
+packing. The scheme is well balanced. The limiter acts on the deviation of ln p from the state at
+rest, where (ln p)' = -f (1 - B n)/theta, and the springs' force is the difference of the pressures
+that it balances at rest. Fluxes and forces therefore cancel at rest. No flux passes the outermost
+faces.
 """
 
 from __future__ import annotations
@@ -32,7 +33,7 @@ _STEEPEST = 10.0  # change of ln p over a cell at rest
 
 
 class Constants(NamedTuple):
-    """What the rates depend on besides the fields; see ``eulerian_rate``."""
+    """The quantities besides the fields that the rates depend on; see ``eulerian_rate``."""
 
     x: Array
     spacing: float
@@ -67,7 +68,7 @@ def _hll(left, right, crowd, stiffness):  # type: ignore[no-untyped-def]
 def primitive(fields, theta, crowd):  # type: ignore[no-untyped-def]
     """Return ln p, V and ln theta, (M, 3); with an energy, theta follows from it.
 
-    In a vacuum, where the quotients would be of rounding errors, V = 0 and theta is the given one.
+    In a vacuum the quotients would be rounding errors. There V = 0 and theta is the given one.
     """
     cells = fields.shape[1]
     state = np.empty((cells, 3))
@@ -101,7 +102,7 @@ def eulerian_rate(fields, x, spacing, theta, frozen, crowd, lam, gamma, exponent
         u = frozen[i] if frozen.size > 0 else x[i] - (crowd + lam) * label
         label += 0.5 * n * spacing
         force = _pull(u, exponent)
-        # At rest ln p changes by this much over a cell; its force is what these pressures hold.
+        # The change of ln p over a cell at rest; these pressures balance the force on the cell.
         change = -force * max(1 - crowd * n, _LEAST_ROOM) * spacing / np.exp(state[i, 2])
         rest[i, 0] = min(max(change, -_STEEPEST), _STEEPEST)
         push = 2 * np.exp(state[i, 0]) * np.sinh(rest[i, 0] / 2) / spacing

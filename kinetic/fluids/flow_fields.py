@@ -1,4 +1,4 @@
-"""What both frames of the hydrodynamics return: the fields on positions, at the output times."""
+"""The fields on positions at the output times, which both frames of hydrodynamics return."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ Array = NDArray[np.float64]
 
 
 class FlowFields(NamedTuple):
-    """In the chain's units."""
+    """Fields in the chain's units."""
 
     x: Array  # (nodes,)
     density: Array  # (times, nodes)

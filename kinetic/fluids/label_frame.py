@@ -1,27 +1,29 @@
-r"""Hydrodynamics on labels (Lagrangian): the unknown is where the rods of a label are.
+r"""Hydrodynamics on labels (Lagrangian): the unknown is the position of the rods of each label.
 
 A label nu = N/L - 1/2 in (-1/2, 1/2) is carried by the flow, N_t + V N_x = 0, so the displacement
-<dx> = x - (2R + g)(N - L/2) that closes the equations is known exactly. With lengths in thermal
-lengths s, velocities in W, times in s/W, and eta(nu, t) = y/s, the continuity equation is solved by
-construction and the velocity equation reads
+<dx> = x - (2R + g)(N - L/2) that closes the equations is known exactly. Lengths are in thermal
+lengths s, velocities in W, times in s/W, and eta(nu, t) = y/s. The continuity equation holds by
+construction, and the velocity equation reads
 
     eta_t = V,      V_t = -dp/dnu - u |u|^(n-2) - Gamma V,        p = theta / eta_nu,
 
     u = eta - Lam nu,      Lam = g L/s,      Gamma = gamma s/(m W),
 
-theta = T/T_0 being 1 in the isothermal case. With the temperature equation of a gas with one degree
-of freedom and no heat flux, in contact with the noise,
+with theta = T/T_0, which is 1 in the isothermal case. The temperature equation is that of a gas
+with one degree of freedom and no heat flux, in contact with the noise:
 
-    theta_t + V theta_y = -2 theta V_y - 2 Gamma (theta - 1),
+    theta_t + V theta_y = -2 theta V_y - 2 Gamma (theta - 1).
 
-the quantity S = theta eta_nu^2 obeys the linear law S_t = 2 Gamma (eta_nu^2 - S): positive always.
+The quantity S = theta eta_nu^2 obeys the linear law S_t = 2 Gamma (eta_nu^2 - S), so it stays
+positive.
 
-**Discretisation.** M cells of labels, equally wide at the edges, hold eta and V; S and p live on
-the faces between them, p = kappa S/d^3 with d the distance of neighbouring cells. kappa and the
-cells' places are calibrated on the stationary state, so that this one, its rigid motions and,
-without gap, every breathing motion are exact for any M. The ends are free: p = 0. Shocks are held
-by an artificial viscosity of von Neumann and Richtmyer on the velocity jump that is left after a
-limited linear reconstruction; it vanishes for smooth flows and heats where there is a temperature.
+**Discretisation.** M cells of labels, equally wide at the edges, hold eta and V. S and p are
+defined on the faces between them, p = kappa S/d^3 with d the distance of neighbouring cells. kappa
+and the positions of the cells are calibrated on the stationary state. This state, its rigid motions
+and, without a gap, every breathing motion are therefore exact for any M. The ends are free, p = 0.
+Shocks are stabilised by an artificial viscosity of von Neumann and Richtmyer on the velocity jump
+that remains after a limited linear reconstruction. It vanishes for smooth flows. With a temperature
+its work becomes heat.
 """
 
 from __future__ import annotations
@@ -54,7 +56,7 @@ _SPACING = 0.05  # of the points that a solution is read out at, in thermal leng
 
 
 class Cells(NamedTuple):
-    """The labels' cells and what calibrates them, from the stationary state."""
+    """The cells of labels and their calibration by the stationary state."""
 
     labels: Array  # of the cells' middles, (M,)
     shares: Array  # of all rods, (M,)
@@ -95,8 +97,8 @@ def _faces(state: Stationary, number: int | None) -> Array:
 def label_rate(fields, labels, shares, kappa, stationary_distance, lam, gamma, exponent):  # type: ignore[no-untyped-def]
     """Rates of change of (eta, V) or, with a temperature, of (eta, V, S).
 
-    ``fields``: (2 or 3, M). S of the face right of a cell stands at the cell, in units in which
-    it is ``stationary_distance`` squared at rest; its last value is not used.
+    ``fields`` has the shape (2 or 3, M). S of the face right of a cell is stored at the cell, in
+    units in which it is ``stationary_distance`` squared at rest. Its last value is not used.
     """
     eta, v = fields[0], fields[1]
     thermal = fields.shape[0] == 3
@@ -106,7 +108,8 @@ def label_rate(fields, labels, shares, kappa, stationary_distance, lam, gamma, e
     for i in range(cells):
         pressure = 0.0
         if i < cells - 1:
-            # Trial stages of an integrator may cross cells: all stays finite and drives back.
+            # Cells may cross in trial stages of an integrator. The rates stay finite and drive them
+            # back.
             d = max(eta[i + 1] - eta[i], _CLOSEST * stationary_distance[i])
             theta = 1.0
             if thermal:
@@ -172,8 +175,8 @@ def _starting_fields(
 ) -> dict[str, Array]:
     """Put a start on the cells.
 
-    A cell is a weighted mean of two points in it, with the weights that are right for the
-    stationary state: its images under shift and stretch then start exact.
+    A cell is a weighted mean of two points in it, with the weights of the stationary state. A
+    shifted or stretched stationary state then starts exactly.
     """
     s, W, L = chain.thermal_length, chain.free_velocity_width, chain.size
 
@@ -213,7 +216,7 @@ def _on_positions(
     moved = solution[:, 0, :-1] + weights * distance
     flow = solution[:, 1, :-1] + weights * np.diff(solution[:, 1], axis=1)
     theta = solution[:, 2, :-1] / distance**2 if solution.shape[1] == 3 else np.ones_like(distance)
-    # Just inside: at the end itself rounding may put a node where there is nothing.
+    # Stay just inside: at the end itself rounding may put a node into the vacuum.
     nodes = _refined(rest, (state.edge.right + state.edge.lam / 2) * (1 - 1e-12))
     labels, log_density = state.profile(nodes)
     rod_nodes = state.at(chain.rank / L)[0]

@@ -1,8 +1,8 @@
-"""The one place where py-pde is called: fields on a uniform grid, a compiled right-hand side.
+"""Calls py-pde with fields on a uniform grid and a compiled right-hand side.
 
-py-pde brings the equation class, the grid, the fields, the time steppers, trackers and storage.
-Its solver is always named here, never left to a default, and so are the interrupts: trackers that
-look at the clock would make two equal runs differ.
+No other module calls py-pde. It provides the equation class, the grid, the fields, the time
+steppers, trackers and storage. The solver is always named here and not left to a default. The
+interrupts are named too, because trackers that read the clock would make two equal runs differ.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pde import CartesianGrid, FieldCollection, MemoryStorage, PDEBase, ProgressTracker, ScalarField
 
-# It would say on standard error that a short run spent more time on storing than on solving.
+# py-pde would warn that a short run spent more time on storing than on solving.
 logging.getLogger("pde.solvers.controller").setLevel(logging.ERROR)
 
 Array = NDArray[np.float64]
@@ -34,7 +34,7 @@ class Flow(PDEBase):
         self.rate = rate
 
     def make_evolution_rate(self, state: Any, backend: Any) -> Any:
-        """Return what py-pde's solvers call."""
+        """Return the function that py-pde's solvers call."""
         return self.rate
 
     def evolution_rate(self, state: Any, t: float = 0) -> Any:
@@ -54,10 +54,10 @@ def solve(
 ) -> Array:
     """Solve from ``times[0]`` on; return the fields at all ``times``, (times, fields, cells).
 
-    py-pde ends a run at Ctrl-C without raising: the fields are then those of the first times only.
+    py-pde ends a run at Ctrl-C without raising. The result then has the first times only.
 
-    ``fields`` are the initial values by name, in cells that py-pde knows by their number;
-    ``solver`` are its own arguments: ``solver``, ``backend``, ``dt`` and those of the solver.
+    ``fields`` are the initial values by name. The cells have no positions for py-pde, only
+    numbers. ``solver`` are the arguments of py-pde: ``solver``, ``backend``, ``dt`` and others.
     """
     cells = len(next(iter(fields.values())))
     grid = CartesianGrid([(0, cells)], cells)

@@ -1,1 +1,1 @@
-"""The kinetic equation for f(y, v): restitutions other than 1."""
+"""The kinetic equation for f(y, v) at restitutions other than 1."""

@@ -1,9 +1,9 @@
-r"""Continuation of the kinetic equation's steady state from restitution 1, on a mesh that follows.
+r"""Continuation of the steady state of the kinetic equation from e = 1, on an adapted mesh.
 
-At e = 1 the state is known. Each step changes the drag lambda L by a bounded factor; a step that
+At e = 1 the state is known. Each step changes the drag lambda L by a bounded factor. A step that
 does not converge, or leaves the physical branch, is halved. Above the critical size the energy
-grows without bound as e approaches its critical value: no step is small enough, and the reason is
-reported.
+grows without bound as e approaches its critical value. Then no step is small enough, and the error
+states this reason.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from crazybilliards.model import Chain
 
 Array = NDArray[np.float64]
 
-_ROUGHLY = 1e-4  # tolerance of the states on the way
+_ROUGHLY = 1e-4  # tolerance of the intermediate states
 _LARGEST_CHANGE = 2.2  # of the energy, in one step
 _NEGATIVE = 0.03
 _MOST_HALVINGS = 6
@@ -75,7 +75,7 @@ def continued(chain: Chain, state: State) -> State:
         drag = (1 - state.chain.restitution) / 2 * chain.size
         while drag != now:
             trial = drag + (now - drag) / 2**halvings
-            # The last step exactly to the goal, not to its neighbour by rounding.
+            # The last step goes exactly to the goal and not to a rounded neighbour.
             e = chain.restitution if trial == goal else 1 - 2 * trial / chain.size
             try:
                 found = solved(replace(state, chain=chain.replace(restitution=e)), _ROUGHLY)
@@ -94,7 +94,7 @@ def continued(chain: Chain, state: State) -> State:
 
 
 def _limit(before: State, after: State) -> float:
-    """Estimate, from above, the |drag| at which 1/energy, about linear in it, reaches zero."""
+    """Estimate from above the |drag| at which 1/energy, nearly linear in it, reaches zero."""
     drags = [(s.chain.restitution - 1) / 2 * s.chain.size for s in (before, after)]
     inverses = [1 / s.energy() for s in (before, after)]
     zero = drags[1] + inverses[1] * (drags[1] - drags[0]) / (inverses[0] - inverses[1])
@@ -103,7 +103,7 @@ def _limit(before: State, after: State) -> float:
 
 
 def _path(goal: float) -> Iterator[float]:
-    """Drags on the way: multiplied by 2.5, from 0.5."""
+    """Intermediate drags: multiples by 2.5, from 0.5."""
     drag = 0.5
     while drag < abs(goal):
         yield drag * np.sign(goal)
@@ -112,7 +112,7 @@ def _path(goal: float) -> Iterator[float]:
 
 
 def fitted(state: State) -> State:
-    """Move the state to a mesh that fits it, if the present one does not."""
+    """Move the state to a mesh that fits it, unless the present mesh does."""
     for _ in range(5):
         wanted = fitting_box(state.space, state.f)
         if wanted.fits(state.space.box):
@@ -122,7 +122,7 @@ def fitted(state: State) -> State:
 
 
 def refined(state: State, cells: int) -> State:
-    """Return the state on as many cells, accurately."""
+    """Return the state on this number of cells, converged to full accuracy."""
     return solved(_moved(state, VelocitySpace(state.space.box, cells)))
 
 
@@ -152,8 +152,8 @@ def _no_steady_state(chain: Chain, drag: float) -> ValueError:
     if chain.restitution > 1:
         return ValueError(
             f"no steady state: with {chain.size} rods and damping={chain.damping:g} the energy "
-            f"grows without bound before restitution {e:.4g}, asked for is {chain.restitution:g}; "
-            "critical_size (crazybilliards theory --critical) tells how many rods there may be"
+            f"grows without bound before restitution {e:.4g}, below the {chain.restitution:g} of "
+            "this chain; critical_size (crazybilliards theory --critical) gives the largest size"
         )
     return NotSolvedError(
         f"the kinetic equation could not be solved at restitution {1 - 2 * drag / chain.size:.4g}"

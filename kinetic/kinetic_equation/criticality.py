@@ -1,21 +1,22 @@
 r"""The largest chain with a steady state for restitution e > 1, by the kinetic equation.
 
 For linear springs the equation without noise is homogeneous: positions and velocities can be
-scaled by any factor. So the energy does not turn unstable at some amplitude, it diverges. With
-velocities in units of their own width, <v^2> = 1, the noise appears with the factor
+scaled by any factor. At the critical size the energy therefore diverges. In units in which
+<v^2> = 1 the noise has the factor
 
     tau = W_free^2 / <v^2>,
 
-1 at e = 1 and 0 where the energy is infinite. The steady state is followed from tau = 1 down, with
-the drag lambda L that belongs to each tau as an unknown. Nothing diverges on the way. The critical
-drag depends on the damping alone, on Gamma = gamma/sqrt(k m), and the gap drops out with the noise:
+which is 1 at e = 1 and 0 where the energy is infinite. The steady state is followed from tau = 1
+down, with the drag lambda L of each tau as an unknown. In these units nothing diverges. The
+critical drag depends only on the damping Gamma = gamma/sqrt(k m), because the gap drops out with
+the noise:
 
     L_c = 2 kappa_c(Gamma)/(e - 1).
 
-Weakly damped, each pair meets once in half a period and gains what damping takes out in it:
-kappa_c = (pi/2) Gamma. The equation gives that to 3e-6 at Gamma = 1e-3; below, where its matrices
-become ever harder to factorise, the closed form is taken. Strongly damped, Newton's method finds no
-critical state beyond Gamma = 3.5.
+For weak damping each pair meets once in half a period and gains the energy that damping takes out
+in this time, so kappa_c = (pi/2) Gamma. The numerical solution agrees with this to 3e-6 at
+Gamma = 1e-3. Below, where its matrices are hard to factorise, the closed form is used. For strong
+damping Newton's method finds no critical state beyond Gamma = 3.5.
 """
 
 from __future__ import annotations
@@ -69,16 +70,17 @@ class CriticalValue(NamedTuple):
 
 
 def critical_size(chain: Chain) -> CriticalValue:
-    """Return the number of rods at which the steady state of a chain with e > 1 is lost.
+    """Return the number of rods from which on a chain with e > 1 has no steady state.
 
-    Of the kinetic equation of first order in lambda, for linear springs; ``chain.size`` and
-    ``chain.gap`` do not matter. Takes about a second; the same damping again takes none.
+    It is that of the kinetic equation of first order in lambda, for linear springs. ``chain.size``
+    and ``chain.gap`` do not matter. It takes about a second; a second call with the same damping
+    takes no time.
 
     Raises
     ------
     ValueError
-        For e <= 1, where every size has a steady state; for quadratic springs, where none has; for
-        a damping gamma/sqrt(k m) above 3.5, for which the equation is not solved.
+        For e <= 1, where chains of every size have a steady state; for quadratic springs, where
+        no chain has one; for a damping gamma/sqrt(k m) above 3.5, for which there is no solver.
 
     Examples
     --------
@@ -123,7 +125,7 @@ def critical_damping(chain: Chain) -> CriticalValue:
 
 
 def _require_drive(chain: Chain) -> float:
-    """Return the damping gamma/sqrt(k m), or say why nothing is critical about the chain."""
+    """Return the damping gamma/sqrt(k m), or raise if the chain has no critical size."""
     if chain.restitution <= 1:
         raise ValueError(
             "every size has a steady state unless restitution is above 1, got "
@@ -143,7 +145,7 @@ def _require_drive(chain: Chain) -> float:
 
 @lru_cache(maxsize=256)
 def _critical_drag(damping: float) -> tuple[float, float]:
-    """Return kappa_c = |lambda| L, and its error: a fifth of the way that is extrapolated."""
+    """Return kappa_c = |lambda| L, and its error: a fifth of the extrapolated distance."""
     if damping < _WEAK:
         return math.pi / 2 * damping, _EXTRAPOLATED * _NOISE[-1] * math.pi / 2 * damping
     if damping > _STRONG:
@@ -185,7 +187,7 @@ def drag_at_noise(damping: float, noise: tuple[float, ...], cells: int = _CELLS)
 
 
 def _fitted(state: _State, damping: float, tau: float) -> _State:
-    """Move a state to a mesh that fits it, if the present one does not."""
+    """Move a state to a mesh that fits it, unless the present mesh does."""
     for _ in range(2):
         box = fitting_box(state.space, state.f)
         if box.fits(state.space.box):

@@ -1,22 +1,23 @@
 r"""From the density f(y, v) of points to the rods: order statistics, and the centre of mass.
 
-**Order statistics.** Without gap the points are exchangeable; drawn independently from f, the i-th
-of L in order has a label N/L distributed as Beta(i, L + 1 - i), and an average over rod i is that
-of a function of the label over this distribution. Exact at e = 1.
+**Order statistics.** Without a gap the points are exchangeable. If L points are drawn independently
+from f, the i-th in order has a label N/L distributed as Beta(i, L + 1 - i). An average over rod i
+is that of a function of the label over this distribution. This is exact at e = 1.
 
-**Centre of mass.** What independence leaves out first: the noise feeds every mode of motion alike,
-but collisions conserve momentum and leave the centre of mass alone. On linear springs it is a
-damped oscillator of mass L m whatever e, with <V^2> = W^2/L and <Y^2> = s^2/L, W and s those of the
-free rod. Replacing the share that independent points have by these, with w_i and q_i the widths of
-independent points,
+**Centre of mass.** For e != 1 the rods are not independent, and the leading correction is that of
+the centre of mass. The noise drives every mode equally, but collisions conserve momentum and do not
+act on the centre of mass. On linear springs it is a damped oscillator of mass L m for every e, with
+<V^2> = W^2/L and <Y^2> = s^2/L, where W and s are those of the free rod. They replace the share
+that independent points have. With the widths w_i and q_i of independent points
 
     W_v(i)^2 = (1 - 1/L) w_i^2 + W^2/L,
     W_x(i)^2 = q_i^2 + (s^2 + <y^2> - 2 c_i)/L,     c_i = L Cov(y_i, Y) = (1/n) int_y^inf y' n dy'.
 
-On quadratic springs the second correction is left out, for the centre of mass is then tied to the
-other modes. Nothing is fitted. It is exact at e = 1 and to first order in lambda L, and the energy
-of all rods then is m W^2/2 for the centre of mass plus L - 1 times the mean of the relative
-motions, in which each pair of rods collides with the drag lambda L of the kinetic equation.
+On quadratic springs the second correction is left out, because the centre of mass is then coupled
+to the other modes. Nothing is fitted. The result is exact at e = 1 and to first order in lambda L.
+The energy of all rods is then m W^2/2 for the centre of mass plus L - 1 times the mean of the
+relative motions, in which each pair of rods collides with the drag lambda L of the kinetic
+equation.
 """
 
 from __future__ import annotations
@@ -64,7 +65,7 @@ class LabelAverage:
         self.share = share = share / share.sum()
         below, beyond = _cumulated(share), _cumulated(share[::-1])[::-1]
         self.kept = (np.minimum(below, beyond) > _FARTHEST) & (share > _FARTHEST * share.max())
-        # The smaller of the two labels is the more accurate one.
+        # The smaller of the two labels is more accurate.
         self._score = np.where(below < beyond, ndtri(below), -ndtri(beyond))[self.kept]
 
     def nodes(self, values: Array, first: Array, second: Array) -> Array:
@@ -104,7 +105,7 @@ def points(size: int, profiles: Moments) -> Points:
 
 
 def rods(chain: Chain, profiles: Moments, length: float, velocity: float) -> Rods:
-    """Return the moments of the rods of a steady state, the centre of mass set right."""
+    """Return the moments of the rods of a steady state, with the centre of mass corrected."""
     L = chain.size
     profiles = mirrored(profiles)
     of = points(L, profiles)
@@ -140,7 +141,7 @@ def mirrored(half: Moments) -> Moments:
 
 
 def _cumulated(shares: Array) -> Array:
-    """Sum up to each place, half of its own share included."""
+    """Return sums up to each place, with half of its own share."""
     return np.asarray(np.cumsum(shares) - shares / 2)
 
 
@@ -152,6 +153,6 @@ def _hermite() -> tuple[Array, Array]:
 def _scores(first: Array, second: Array) -> Array:
     """Return normal scores of labels distributed as Beta(first, second), shape (..., nodes)."""
     probability = ndtr(_hermite()[0])
-    # Smaller labels are the more accurate ones: the upper half by reflection.
+    # Smaller labels are more accurate, so the upper half is computed by reflection.
     lower = ndtri(betaincinv(first[:, None], second[:, None], probability))
     return np.where((first <= second)[:, None], lower, -lower[::-1, ::-1])

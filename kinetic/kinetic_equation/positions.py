@@ -16,8 +16,8 @@ def density_and_label(
 ) -> tuple[Array, Array]:
     """Return the density of the rods [1/R] and their label N at positions ``x`` [R].
 
-    ``points``: their density [1/R] at ascending ``y`` [R], not negative; ``label``: the number of
-    points below each y, ascending. There are no rods beyond the first and the last y.
+    ``points`` is the density of the points [1/R] at ascending ``y`` [R], not negative. ``label`` is
+    the number of points below each y, ascending. There are no rods beyond the first and last y.
     """
     places = y + 2 * chain.radius * (label - chain.size / 2)
     inside = (places[0] <= x) & (x <= places[-1])

@@ -53,7 +53,7 @@ def profiles_over_x(state: State) -> dict[str, Array]:
 
 
 def _continued_flat(values: Array) -> Array:
-    """Continue beyond the last known value, which are NaN: a variance stays positive."""
+    """Replace NaN beyond the last known value by it, so that a variance stays positive."""
     known = np.flatnonzero(np.isfinite(values))
     filled = values.copy()
     filled[: known[0]], filled[known[-1] + 1 :] = values[known[0]], values[known[-1]]

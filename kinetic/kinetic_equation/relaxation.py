@@ -1,13 +1,13 @@
 r"""The kinetic equation in time: relaxation of the phase-space density f(y, v, t).
 
-The equation of :mod:`.weak_form` from any start, on the whole (y, v)
-plane. Crank-Nicolson in time, with force and collision integrals extrapolated to the
-middle of the step from the two before: second order, stable, and the number of rods is exact. Where
-these do not depend on f (restitution 1 and no gap: the Kramers equation), the matrix is factorised
-once.
+This module solves the equation of :mod:`.weak_form` from any start on the whole (y, v) plane. The
+time scheme is Crank-Nicolson. Force and collision integrals are extrapolated from the two steps
+before to the middle of the step. The scheme is of second order and stable, and it conserves the
+number of rods exactly. If force and integrals do not depend on f (restitution 1 and no gap, the
+Kramers equation), the matrix is factorised only once.
 
-The mesh holds what the start and the free rod need; for e > 1 it is enlarged when f reaches its
-border, and the solution ends as "diverged" when the energy has grown a thousandfold.
+The mesh contains the start and the motion of a free rod. For e > 1 it is enlarged when f reaches
+its border, and the solution ends as "diverged" when the energy has grown a thousandfold.
 """
 
 from __future__ import annotations
@@ -86,12 +86,12 @@ def relax_phase_space(
     Parameters
     ----------
     chain
-        The chain, any restitution near 1, both springs, any gap (in mean field).
+        The chain, with a restitution near 1, both springs, and any gap (in mean field).
     start
-        A result with ``phase_space_density`` (``phase_space`` of another chain, say),
-        or one with ``density`` over x and, if wanted, ``label``, ``flow_velocity`` and
-        ``velocity_variance``, as ``hydrodynamics`` takes it: ``displaced``, ``compressed``,
-        ``force_balance`` of another chain; velocities are then Maxwellian around the flow.
+        A result with ``phase_space_density``, e.g. ``phase_space`` of another chain. Or a start
+        of ``hydrodynamics``: a result with ``density`` over x and optionally ``label``,
+        ``flow_velocity`` and ``velocity_variance``, such as ``displaced``, ``compressed`` or
+        ``force_balance`` of another chain. Velocities are then Maxwellian around the flow.
     duration
         Time to solve for [T].
     every
@@ -100,8 +100,8 @@ def relax_phase_space(
         Longest step [T]; None: 0.04 of the spring's s/W. The error of the moments is a quarter of
         its square in these units, 4e-4.
     cells
-        Of the mesh, from the centre to the end in each direction. Their square takes 110 kB, and
-        600 bytes for each output.
+        Number of cells from the centre to the end of the mesh in each direction. Its square
+        times 110 kB, and 600 bytes for each output, are needed.
     progress
         Show a progress bar, if standard error is a terminal.
 
@@ -113,7 +113,7 @@ def relax_phase_space(
         and ``velocity_width`` (about zero) over (time, particle), of points drawn independently
         from f; over time ``rods``, ``centre``, ``cloud_width``, ``kinetic_energy`` and
         ``covariance``. ``attrs["status"]`` is ``diverged`` if the energy grew without bound, or
-        ``interrupted`` if Ctrl-C ended it: the result then has the times before.
+        ``interrupted`` if Ctrl-C ended it. The result then has the times before.
 
     Raises
     ------
@@ -173,7 +173,7 @@ class _Flow:
         return float(self.space.whole_energy @ self.f)
 
     def sound(self) -> bool:
-        """Whether this is a distribution; runaway leaves any mesh and time step behind."""
+        """Return whether this is still a distribution; a diverging energy exceeds every mesh."""
         profiles = moments(self.space, self.f)
         spread = (profiles.density * profiles.weights) @ profiles.y**2
         return bool(self.energy() > 0 and spread > 0 and self.f.min() > -_NEGATIVE * self.f.max())
@@ -194,13 +194,13 @@ class _Flow:
         return _Flow(self.numbers, flow.space, f, before)
 
     def _enlarged(self) -> _Flow:
-        """Move to a larger mesh if f has come to the border, which it can where rods drive it."""
+        """Move to a larger mesh if f has reached the border, which is possible for e > 1."""
         if self.numbers.drag >= 0:
             return self
         space = self.space
         table = space.table(space.interpolate(self.f)[0])
         shares = table * space.y_weights[:, None] * space.v_weights
-        # Sums over whole lines: the ripples of an uneven start largely cancel.
+        # In sums over whole lines the ripples of an uneven start largely cancel.
         lost_y, lost_v = (
             float(np.abs(shares.sum(axis=axis))[[0, 1, 2, -3, -2, -1]].max()) for axis in (1, 0)
         )

@@ -1,4 +1,4 @@
-"""What the kinetic equation in time gives out, in the common vocabulary."""
+"""The result of the kinetic equation in time, in the common vocabulary."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ Array = NDArray[np.float64]
 def snapshot(
     chain: Chain, units: Units, space: VelocitySpace, f: Array, energy: float
 ) -> dict[str, Any]:
-    """Return what a distribution gives at one time, by name, on its own mesh.
+    """Return the variables of a distribution at one time, by name, on its own mesh.
 
     ``energy``: the mean of v^2, 1 for free rods.
     """
@@ -38,7 +38,7 @@ def snapshot(
     spread = share @ profiles.y**2 - centre**2
     drift = profiles.weights @ profiles.flux
     y, v, values = space.sampled(f)
-    # Ripples where there are no points are left out, for the positions to ascend.
+    # Ripples in the vacuum are left out, so that the positions ascend.
     alive = np.maximum(profiles.density, 0.0)
     label = np.maximum.accumulate(space.cumulative(alive))
     number = chain.size / (alive @ profiles.weights)

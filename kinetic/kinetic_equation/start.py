@@ -1,4 +1,4 @@
-"""Starts of the kinetic equation in time: f(y, v) itself, or Maxwellians on a density over x."""
+"""Starts of the kinetic equation in time: f(y, v) itself, or a density with Maxwellians."""
 
 from __future__ import annotations
 

@@ -1,18 +1,17 @@
 r"""The kinetic equation for restitution near 1: the stationary phase-space density f(y, v).
 
-The paper's theory stops at e = 1. For 1 - e small, collisions are a drag towards the flow around
-(a drive for e > 1), and f(y, v) obeys the equation of
-:mod:`.weak_form`,
+The paper's theory holds for e = 1 only. For small 1 - e collisions act as a drag towards the local
+flow (as a drive for e > 1), and f(y, v) obeys the equation of :mod:`.weak_form`,
 
     v f_y - (F/m) f_v = d/dv [ (gamma/m) v f + (A^2/2m^2) f_v ]
                         + lambda d/dv [ f I1 ] + (lambda^2/2) d^2/dv^2 [ f I3 ],
 
-lambda = (1 - e)/2, with int f dy dv = L, and f -> 0 far out. In the reduced coordinate
-y = x - 2 R (N - L/2) the rods are points. Velocity widths and displacements follow from f
-without any input from a simulation; see :mod:`.order_statistics` for how.
+with lambda = (1 - e)/2, int f dy dv = L, and f -> 0 far out. In the reduced coordinate
+y = x - 2 R (N - L/2) the rods are points. Velocity widths and displacements follow from f without
+any input from a simulation (:mod:`.order_statistics`).
 
-Found by continuation in e from the Maxwellian at e = 1 (there with the force balance's density),
-on a mesh that follows the solution and is refined until the widths settle.
+The solution is found by continuation in e from e = 1, where f is Maxwellian with the density of the
+force balance. The mesh follows the solution and is refined until the widths no longer change.
 """
 
 from __future__ import annotations
@@ -65,16 +64,16 @@ def phase_space(
     Parameters
     ----------
     chain
-        The chain, any restitution near 1 (0.9 to 1.05 is where it is good), both springs, up to
-        100 000 rods. A gap enters in mean field: see the notes.
+        The chain, with a restitution near 1 (0.9 to 1.05 gives good results), both springs, and
+        up to 100 000 rods. A gap enters in mean field; see the notes.
     order
-        Of the collision operator in lambda; None: 2 for e <= 1, 1 for e > 1, which is what
-        agrees with simulations, for the reason that the equation's module gives.
+        Order of the collision operator in lambda. None: 2 for e <= 1 and 1 for e > 1, which
+        agree with simulations. The module of the equation gives the reason.
     tolerance
-        The mesh is refined until no velocity width changes by more, relatively.
+        The mesh is refined until no velocity width changes by more than this fraction.
     cells
-        Cells from the centre to the end of the mesh, in each direction, instead of that; up to
-        150, which takes 0.9 GB: 40 kB times their square.
+        A fixed mesh instead: the number of cells from its centre to its end in each direction,
+        up to 150. The memory is 40 kB times its square, 0.9 GB for 150.
 
     Returns
     -------
@@ -85,15 +84,13 @@ def phase_space(
         ``attrs``: ``residual``, the last Newton step relative to max f; ``mesh_error``, the
         largest relative change of a velocity width in the last refinement (NaN if ``cells`` was
         given); ``cells``.
-        The flow velocity should vanish, and does to 1e-9 W wherever there are rods.
+        The flow velocity should vanish, and is below 1e-9 W wherever there are rods.
 
-    Notes
-    -----
-    Against simulations (L = 100, gamma = 1, particles 3 to L - 2) velocity widths are within 0.8 %
-    for e = 0.95 to 1, 1.0 % at 0.9, 6.6 % at 0.8; displacement widths are up to 13 % too small at
-    0.95 and 20 % at 0.9, as all collective motion but the centre of mass's is left out. With a
-    gap of g L = 4, 14 and 42 thermal lengths the velocity widths are within 1.0, 1.6 and 2.4 %
-    (e = 0.95) and the mean displacements within 0.01, 0.05 and 0.17 s.
+    Notes ----- Compared with simulations (L = 100, gamma = 1, particles 3 to L - 2) velocity widths
+    are within 0.8 % for e = 0.95 to 1, 1.0 % at 0.9, and 6.6 % at 0.8. Displacement widths are up
+    to 13 % too small at 0.95 and 20 % at 0.9, because only the collective motion of the centre of
+    mass is included. With a gap of g L = 4, 14 and 42 thermal lengths the velocity widths are
+    within 1.0, 1.6 and 2.4 % (e = 0.95) and the mean displacements within 0.01, 0.05 and 0.17 s.
 
     Raises
     ------
@@ -118,7 +115,7 @@ def phase_space(
 def _solve(
     chain: Chain, order: Literal[1, 2], tolerance: float, cells: int | None
 ) -> tuple[State, Rods, float]:
-    """Return the state on a mesh fine enough, its rods, and the error due to the mesh."""
+    """Return the state on a mesh that is fine enough, its rods, and the error of the mesh."""
     state = continued(chain, elastic_state(chain, order, _CELLS))
     state = refined(state, cells or _CELLS)
     of_rods = _rods(state)
@@ -143,7 +140,7 @@ def _solve(
 
 
 def _out_of_range(chain: Chain, order: Literal[1, 2]) -> str:
-    """Say which numbers of a chain are none for which the equation has been solved."""
+    """Return which parameters of a chain lie outside the range where the equation was solved."""
     numbers = coefficients(chain, free_units(chain), order)
     values = {
         "damping, as a multiple of m W/s": (numbers.damping, *_SOLVED_DAMPINGS),
@@ -160,11 +157,11 @@ def _out_of_range(chain: Chain, order: Literal[1, 2]) -> str:
 def check_phase_space(
     chain: Chain, *, order: Literal[1, 2] | None, tolerance: float, cells: int | None
 ) -> Literal[1, 2]:
-    """Raise for what ``phase_space`` does not take; return the order."""
+    """Raise for arguments that ``phase_space`` does not accept; return the order."""
     check_real("tolerance", tolerance, positive=True)
     if cells is not None:
         check_integer("cells", cells, least=4, most=_LARGEST_MESH)
-    # Found on 22 cells, then refined at least once, for two meshes to be compared.
+    # The state is found on 22 cells and refined at least once, to compare two meshes.
     _require_mesh(max(_CELLS, cells or round(_FINER * _CELLS)))
     if chain.size > _MOST_RODS:
         raise ValueError(f"size must be at most {_MOST_RODS}, got {chain.size}")
@@ -187,7 +184,7 @@ def _assemble(state: State, of_rods: Rods, mesh_error: float) -> xr.Dataset:
     chain, (length, velocity) = state.chain, free_units(state.chain)
     y, v, f = state.space.sampled(state.f)
     fields = profiles_over_x(state)
-    # With a gap rods are held by anchors of their own, not drawn from one distribution.
+    # With a gap each rod has its own anchor, and rods are not drawn from one distribution.
     widths = (
         {"displacement_width": ("particle", np.sqrt(of_rods.position_variance))}
         if chain.lattice_gap == 0

@@ -35,7 +35,7 @@ def moments(space: VelocitySpace, f: Array) -> Moments:
     density, first, second, third = (table @ (space.v_weights * space.v**n) for n in range(4))
     safe = np.where(density > 0, density, np.inf)
     flow = first / safe
-    # Ripples far out, where there are no points, may have any sign.
+    # Ripples in the vacuum far out may have any sign.
     variance = np.maximum(second / safe - flow**2, 0.0)
     heat_flux = (third - 3 * flow * second + 2 * flow**2 * first) / 2
     label = space.cumulative(density)
@@ -43,7 +43,7 @@ def moments(space: VelocitySpace, f: Array) -> Moments:
 
 
 def fitting_box(space: VelocitySpace, f: Array) -> Box:
-    """Return the box that fits a symmetric f of mass 1; larger where f does not end in its box."""
+    """Return the box that fits a symmetric f of mass 1; larger if f exceeds its present box."""
     profiles = moments(space, f)
     table = space.table(space.interpolate(f)[0])
     right = space.v > 0

@@ -1,11 +1,12 @@
 r"""The (y, v) plane as finite elements: mesh, symmetry, and integrals over velocities.
 
-A tensor mesh of second-order quadrilaterals, uniform in the core of the distribution and with cells
-growing in proportion to the distance outside: nodes b sinh(t), with b the core's scale.
+The mesh is a tensor mesh of second-order quadrilaterals. It is uniform in the core of the
+distribution, and outside its cells grow in proportion to the distance: nodes b sinh(t), with the
+scale b of the core.
 
-**Symmetry.** A stationary state obeys f(-y, -v) = f(y, v). Its mesh covers y >= 0 only, and on the
-line y = 0 a node at v and the one at -v are one unknown. Trial and test functions are then
-even along that line, v f p is odd, and no boundary term is left there.
+**Symmetry.** A stationary state obeys f(-y, -v) = f(y, v). Its mesh covers y >= 0 only. On the line
+y = 0 the nodes at v and at -v are one unknown. Trial and test functions are then even along this
+line, v f p is odd, and the boundary term there vanishes.
 
 **Integrals over velocities.** The quadrature points form a tensor grid as well: an integral over u
 at every y is a matrix product along its second axis.
@@ -43,21 +44,21 @@ class Box(NamedTuple):
     core_velocity: float
 
     def fits(self, other: Box) -> bool:
-        """Whether another box is about the same."""
+        """Return whether another box is about the same."""
         factors = np.array(self) / np.array(other)
         return bool(factors.max() < _MISFIT and factors.min() > 1 / _MISFIT)
 
 
 def graded(cells: int, end: float, core: float) -> Array:
-    """Return nodes from 0 to ``end``: even below ``core``, then growing with the distance."""
+    """Return nodes from 0 to ``end``: uniform below ``core``, growing with the distance above."""
     return np.asarray(core * np.sinh(np.linspace(0, np.arcsinh(end / core), cells + 1)))
 
 
 def factorised(matrix: csc_matrix) -> SuperLU:
     """Factorise a matrix of finite elements, whose pattern is symmetric.
 
-    With the ordering for symmetric patterns, five times fewer entries fill in than with the
-    default one. A pivot may leave the diagonal where that is small: the matrices are not definite.
+    The ordering for symmetric patterns gives five times less fill-in than the default one. Pivots
+    off the diagonal are allowed where the diagonal is small, as the matrices are not definite.
     """
     return splu(
         matrix.tocsc(),
@@ -67,8 +68,8 @@ def factorised(matrix: csc_matrix) -> SuperLU:
     )
 
 
-# A decorator of the theories on this plane: their matrix products are so small that the threads of
-# the linear algebra cost more than they save, up to ten times the whole on a busy machine.
+# A decorator for theories on this plane. Their matrix products are so small that threads in the
+# linear algebra cost more than they save, up to ten times the computing time on a busy machine.
 one_thread = threadpool_limits.wrap(limits=1, user_api="blas")
 
 
@@ -146,14 +147,14 @@ class VelocitySpace:
         return table.reshape(self.y.size, self.v.size)
 
     def field(self, table: Array) -> Array:
-        """Return the field at the quadrature points, as forms take it, of a table (y, v)."""
+        """Return a table (y, v) as a field at the quadrature points, for use in forms."""
         return np.asarray(table.ravel()[self._places].reshape(self.basis.dx.shape))
 
     # -- unknowns ----------------------------------------------------------------------------
 
     @cached_property
     def unknowns(self) -> csr_matrix:
-        """Matrix from the unknowns to the nodal values: one for each, or for each pair."""
+        """Matrix from the unknowns to the nodal values; a symmetric pair shares one unknown."""
         nodes = self.basis.doflocs
         partner = np.arange(self.basis.N)
         if self.symmetric:
@@ -210,7 +211,7 @@ class VelocitySpace:
         )
 
     def take_over(self, other: VelocitySpace, f: Array) -> Array:
-        """Return the unknowns, here, of a function given on another mesh; zero beyond it."""
+        """Return the unknowns on this mesh of a function on another mesh; zero beyond it."""
         y, v = self.axes
         spline = RectBivariateSpline(*other.whole(f))
         inside = np.abs(y)[:, None] <= other.box.length
@@ -259,7 +260,8 @@ class VelocitySpace:
     def cumulative(self, along_y: Array) -> Array:
         """Integrate a function of y, given at its points, from the centre to each of them.
 
-        From the lower end if the plane is not symmetric. Exact for parabolas in each cell.
+        The integral starts at the lower end if the plane is not symmetric. It is exact for
+        parabolas in each cell.
         """
         points, weights = self.y.reshape(-1, 3), self._lines[0][1].reshape(-1, 3)
         values = along_y.reshape(-1, 3)

@@ -1,21 +1,22 @@
 r"""The kinetic equation of the chain for restitution near 1, in weak form, and Newton's method.
 
-In the picture where a collision is a pass-through, each of two points loses the fraction
-lambda = (1 - e)/2 of their relative velocity. With a collision so weak, points meeting
-independently (molecular chaos) make the density f(y, v, t) of L points obey
+If colliding points are relabelled, they pass through each other, and each of the two loses the
+fraction lambda = (1 - e)/2 of their relative velocity. For small lambda, and if points that meet
+are independent (molecular chaos), the density f(y, v, t) of L points obeys
 
     f_t + v f_y - (F/m) f_v = d/dv [ (gamma/m) v f + (A^2/2m^2) f_v ]            springs, noise
                             + lambda d/dv [ f int |v-u| (v-u) f(y,u) du ]          drag
                             + (lambda^2/2) d^2/dv^2 [ f int |v-u|^3 f(y,u) du ],   its diffusion
 
-the Kramers-Moyal expansion of the collision operator to second order in lambda: for e < 1 a drag
-towards the local flow, for e > 1 a drive; e = 1 is the Kramers equation. The second-order term is
-the shot noise of encounters at random. For e < 1 it is part of the equation, since collisions slow
-a point down within a fraction of the cloud. For e > 1 it is left out: there fast points matter
-most, and a fast point crosses the whole cloud and so meets each of the L - 1 others exactly once.
-F = F(y - g (N - L/2)) is the spring's force, in mean field: the anchor is that of the label N(y).
+This is the Kramers-Moyal expansion of the collision operator to second order in lambda. The first
+order is a drag towards the local flow for e < 1 and a drive for e > 1. At e = 1 the equation is the
+Kramers equation. The second-order term is the shot noise of random encounters. For e < 1 it is part
+of the equation, because collisions slow a point down within a fraction of the cloud. For e > 1 it
+is left out, because fast points matter most. A fast point crosses the whole cloud and so meets each
+of the L - 1 others exactly once. F = F(y - g (N - L/2)) is the spring's force in mean field, where
+the anchor of a point is that of its label N(y).
 
-Here in units of a length l and a velocity c, and with f normalised to 1:
+In units of a length l and a velocity c, and with f normalised to 1, the equation is:
 
     weak form, for all test functions p (no flux through the far border):
 
@@ -25,8 +26,8 @@ Here in units of a length l and a velocity c, and with f normalised to 1:
     phi = F l/m c^2,   Gamma = gamma l/m c,   D = A^2 l/2 m^2 c^3,
     kappa = lambda L,  kappa_2 = lambda^2 L/2.
 
-Other theories may put a factor before both collision terms, a function of the label: they do not
-take the collisions for those of points that meet independently.
+Theories in which colliding points are not independent may put a factor before both collision terms,
+which is a function of the label.
 """
 
 from __future__ import annotations
@@ -57,7 +58,7 @@ _GMRES = 40  # Krylov vectors; 5 to 15 are needed
 
 
 class Units(NamedTuple):
-    """Length [R] and velocity [R/T] that an equation is written in."""
+    """Units of length [R] and velocity [R/T] of an equation."""
 
     length: float
     velocity: float
@@ -76,7 +77,7 @@ class Coefficients(NamedTuple):
 
 
 def coefficients(chain: Chain, units: Units, order: int) -> Coefficients:
-    """Return the equation's numbers for a chain; ``order`` 1 leaves the drag's diffusion out."""
+    """Return the equation's numbers for a chain; ``order`` 1 leaves out the shot noise."""
     length, velocity = units
     m, n = chain.mass, chain.potential_exponent
     share = (1 - chain.restitution) / 2
@@ -93,7 +94,7 @@ def coefficients(chain: Chain, units: Units, order: int) -> Coefficients:
 
 @BilinearForm
 def transport(f, p, w):  # type: ignore[no-untyped-def]
-    """All of the weak form, with the force and the integrals I1, I3 given."""
+    """Evaluate the weak form with given force and integrals I1, I3."""
     v = w.x[1]
     through = (w.force + w.damping * v + w.drag * w.I1) * f + w.noise * grad(f)[1]
     spread = w.diffusion * (w.I3 * grad(f)[1] + w.I3v * f)
@@ -102,7 +103,7 @@ def transport(f, p, w):  # type: ignore[no-untyped-def]
 
 @LinearForm
 def along_velocity(p, w):  # type: ignore[no-untyped-def]
-    """Minus a flux along v, tested."""
+    """Minus a flux along v, against a test function."""
     return -w.flux * grad(p)[1]
 
 
@@ -196,7 +197,7 @@ class Equation:
 
 
 class NotSolvedError(ValueError):
-    """Newton's method found no solution, which does not say that there is none."""
+    """Newton's method found no solution, although there may be one."""
 
 
 class Solution(NamedTuple):
@@ -216,9 +217,9 @@ def stationary_state(
 ) -> Solution:
     """Solve the stationary equation with int f = 1 by Newton's method.
 
-    The Jacobian's sparse part (integrals frozen) is factorised; it preconditions GMRES for the
-    whole, which the integrals make dense. ``tolerance``: of the last step, relative to max f.
-    ``factor``: of the collision terms, see ``Equation``.
+    The sparse part of the Jacobian (with frozen integrals) is factorised. It preconditions GMRES
+    for the whole Jacobian, which the integrals make dense. ``tolerance`` is that of the last step,
+    relative to max f. ``factor`` is that of the collision terms, see ``Equation``.
     """
     f, equation = guess, Equation(space, numbers, factor)
     for _ in range(_MOST_STEPS):
@@ -245,7 +246,7 @@ def newton_step(
 ) -> Array:
     """Solve [matrix + variation, columns; rows, 0] step = right.
 
-    Further unknowns than f have ``columns``; as many conditions on f have ``rows``.
+    Unknowns besides f have ``columns``, and the same number of conditions on f have ``rows``.
     """
     borders = csc_matrix(columns), csc_matrix(np.array(rows))
     corner = csc_matrix((len(rows), len(rows)))

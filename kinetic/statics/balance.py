@@ -13,20 +13,19 @@ density of the reduced coordinate, rho_y = rho/(1 - 2 R rho), it reads
 
 which stays accurate where 1 - 2 R rho is too small to be stored.
 
-**Closures.** *Prescribed*, the paper's: <dx>(x) is measured and fitted (figure ``fig:atan``), see
-:mod:`crazybilliards.kinetic.statics.wright_closure`. *By labels*, with no input: the N-th rod from
-the left belongs to the N-th anchor, so <dx> = x - (2R + g)(N - L/2) with N' = rho, see
-:mod:`crazybilliards.kinetic.statics.label_closure`.
+**Closures.** *Prescribed* displacement, as in the paper: <dx>(x) is measured and fitted (figure
+``fig:atan``); see :mod:`crazybilliards.kinetic.statics.wright_closure`. *By labels*, without an
+input: the N-th rod from the left belongs to the N-th anchor, so <dx> = x - (2R + g)(N - L/2) with
+N' = rho; see :mod:`crazybilliards.kinetic.statics.label_closure`.
 
-**Temperature.** With a prescribed W^2(x), measured off restitution 1 for example, the balance is
+**Temperature.** With a prescribed W^2(x), for example one measured for e != 1, the balance is
 
     (1/rho) d/dx [rho W^2/(1 - 2 R rho)] = -F(<dx>)/m,                                  (***)
 
 the paper's ``modeleq`` at V = 0. It is closed by labels in
 :mod:`crazybilliards.kinetic.statics.variable_temperature`.
 
-**Boundary conditions.** rho -> 0 on both sides with L rods in between: N(-inf) = 0,
-N(+inf) = L.
+**Boundary conditions.** rho -> 0 on both sides, with L rods in between: N(-inf) = 0, N(+inf) = L.
 """
 
 from __future__ import annotations
@@ -57,28 +56,28 @@ def force_balance(
     Parameters
     ----------
     chain
-        The chain. Works for A from 0.1 to 100, g from 0 to 3, L from 2 to 1e5 and beyond.
+        The chain. A from 0.1 to 100, g from 0 to 3 and L from 2 to beyond 1e5 work.
     displacement
-        None: by labels, nothing is put in. Otherwise <dx>(x) [R]: a table (x, <dx>), a result
+        None: by labels, without an input. Otherwise <dx>(x) [R]: a table (x, <dx>), a result
         with ``mean_displacement``, or a callable of x (the paper: a fitted arctanh).
     velocity_variance
-        W^2 [R^2/T^2]; None: the free value, which is right for restitution 1 only. A number, or a
-        profile W^2(x) in any of the forms of the displacement: a simulation's ``velocity_width``
-        is squared. A profile closed by labels needs linear springs.
+        W^2 [R^2/T^2]. None: the free value, which is right for restitution 1 only. Otherwise a
+        number, or a profile W^2(x) in any form of the displacement (the ``velocity_width`` of a
+        simulation is squared). A profile closed by labels needs linear springs.
 
     Returns
     -------
     xarray.Dataset
         ``density``, ``label`` and ``displacement`` over x, by labels also ``mean_displacement``
-        and ``velocity_width`` over particle. ``attrs["residual"]``: by labels, the drift of the
-        conserved quantity of the equations (an error of ln rho); prescribed, the relative error
-        of the number of rods.
+        and ``velocity_width`` over particle. ``attrs["residual"]`` is, by labels, the drift of
+        the conserved quantity of the equations (an error of ln rho), and with a prescribed
+        displacement the relative error of the number of rods.
 
     Raises
     ------
     ValueError
         If there is no steady state; if the restitution is not 1 and no variance is given; if the
-        displacement is not understood or does not hold the rods together.
+        displacement has a wrong form or does not hold the rods together.
 
     Examples
     --------

@@ -1,8 +1,8 @@
-r"""The force balance closed by labels: a boundary-value problem without any input.
+r"""The force balance closed by labels, a boundary-value problem without any input.
 
 With the label N(x) = int rho, the mean displacement at x is <dx> = x - (2R + g)(N - L/2). In the
-reduced coordinate y = x - 2R (N - L/2) the rods' length drops out. Take the thermal length
-s = (T/k)^(1/n) as unit (n: exponent of the spring's potential) and
+reduced coordinate y = x - 2R (N - L/2) the length of the rods drops out. The unit of length is the
+thermal length s = (T/k)^(1/n) (n: exponent of the spring's potential) and
 
     zeta  distance of y from the outer edge of the lattice of anchors, y = s zeta + g L/2,
     t     share of the rods further out, N = L (1 - t),
@@ -13,12 +13,12 @@ Then, on the right half of the (symmetric) chain,
 
     P' = -u |u|^(n-2),      t' = -exp(P),      t = 1/2 at the centre,      t = 0 far outside.
 
-Lam exp(P) - P - |u|^n/n is conserved; its drift is the residual. Without gap (Lam = 0) the
+Lam exp(P) - P - |u|^n/n is conserved, and its drift is the residual. Without a gap (Lam = 0) the
 solution is rho_y = L times the density of a free rod.
 
-Deep inside a chain with gap, u = 0 and rho_y = 1/g: a plateau. Perturbations of it decay as
-exp(-distance) for linear and as 6/distance^2 for quadratic springs; the solver starts where they
-have vanished.
+Deep inside a chain with a gap there is a plateau with u = 0 and rho_y = 1/g. Perturbations of it
+decay as exp(-distance) for linear and as 6/distance^2 for quadratic springs. The solver starts
+where they have vanished.
 """
 
 from __future__ import annotations
@@ -69,7 +69,7 @@ def solve_label_closure(chain: Chain) -> xr.Dataset:
 
 @dataclass(frozen=True)
 class Edge:
-    """The solution on zeta: plateau up to ``left``, computed up to ``right``, vacuum beyond."""
+    """The solution on zeta: a plateau up to ``left``, computed up to ``right``, then vacuum."""
 
     lam: float
     left: float
@@ -93,7 +93,7 @@ class Edge:
         far = self.right + 1e3 * max(self.right, 1.0)
         table = np.concatenate([[-self.lam / 2], np.linspace(self.left, self.right, 40_001), [far]])
         zeta = np.interp(target, function(table)[0], table)
-        for _ in range(3):  # the table is right to 1e-3 or better, so this reaches rounding
+        for _ in range(3):  # the table is right to 1e-3: three iterations reach rounding
             value, slope = function(zeta)
             zeta = zeta - (value - target) / slope
         return zeta
@@ -113,7 +113,7 @@ def solve_edge(n: int, lam: float) -> Edge:
     def boundary(at_left: Array, at_right: Array) -> Array:
         return np.array([at_left[1] / scale - share_left, at_right[1]])
 
-    # Fine near the edge, geometrically coarser into the plateau.
+    # The mesh is fine near the edge and geometrically coarser into the plateau.
     inner = -np.geomspace(5, -left, 200)[:0:-1] if left < -5 else np.empty(0)
     mesh = np.concatenate([inner, np.linspace(max(left, -5.0), right, 300)])
     guess_density, guess_share = _free_lattice(n, lam, mesh)
@@ -127,7 +127,7 @@ def solve_edge(n: int, lam: float) -> Edge:
 
 
 def _free_lattice(n: int, lam: float, zeta: Array) -> tuple[Array, Array]:
-    """Density exp(P) and share t if the rods did not collide: the lattice, thermally smeared."""
+    """Density exp(P) and share t of rods without collisions: a thermally smeared lattice."""
     free = gennorm(n, scale=n ** (1 / n))
     if lam < 1e-3:
         return free.pdf(zeta), free.sf(zeta)
@@ -184,7 +184,7 @@ class Stationary:
 
 
 def fluid_reach(chain: Chain) -> float:
-    """Distance from the outer anchor beyond which there is no fluid at rest [R].
+    """Distance from the outer anchor beyond which the fluid at rest has no density [R].
 
     The fluid's lattice of anchors ends half a cell, R + g/2, beyond the outermost anchor.
     """

@@ -6,7 +6,7 @@ free chain and B = 2 R L/s, equation (***) of :mod:`crazybilliards.kinetic.stati
     P' = -(F(<dx>) s/T) / (w + B exp(P)),      n = (N/L)' = exp(P) / (w + B exp(P)),
 
 without a derivative of w. It is integrated outward from x = 0 to both sides with
-``scipy.integrate.solve_ivp``; the one free number, P(0), is the root of "L rods in all". (With
+``scipy.integrate.solve_ivp``. A root finder determines P(0) so that there are L rods in all. (With
 w = 1 there is a closed form, :mod:`crazybilliards.kinetic.statics.wright_closure`.)
 """
 
@@ -63,7 +63,7 @@ def _integrate(
 ) -> Any:
     """Integrate (P, share of the rods passed) from 0 outward over |x|/s; side -1 or +1.
 
-    Ends in the far tail, at the end of the profile, or with more rods than there are.
+    It ends in the far tail, at the end of the profile, or when it has counted too many rods.
     """
     s = chain.thermal_length
     crowd = 2 * chain.radius * chain.size / s
@@ -92,9 +92,9 @@ def _integrate(
 
     in_the_tail.terminal = too_many.terminal = True  # type: ignore[attr-defined]
     edge = profile.right if side > 0 else -profile.left
-    # Whatever holds the rods together holds them within ten times their undriven extent.
+    # A profile that holds the rods together keeps them within ten times their extent at rest.
     farthest = 10 * float(position_grid(chain)[-1])
-    # Just inside: an arctanh is infinite at the end itself, though its integral is finite.
+    # Stop just inside: an arctanh is infinite at its end, although its integral is finite.
     return solve_ivp(
         equations,
         (0.0, min(edge * (1 - 1e-12), farthest) / s),

@@ -37,12 +37,12 @@ class Profile(NamedTuple):
 
 
 def read_displacement(chain: Chain, displacement: Prescribed | None) -> Profile | None:
-    """Turn any accepted form of <dx>(x) into a :class:`Profile`, or say what is wrong.
+    """Turn any accepted form of <dx>(x) into a :class:`Profile`, or raise a ValueError.
 
     None (displacements by labels) stays None.
 
-    A table is continued with slope 1 to either side, the truth outside the chain, where a rod that
-    goes further out leaves its anchor behind by as much.
+    A table is continued with slope 1 to either side. This is right outside the chain, where the
+    displacement of the outermost rod grows as its position.
     """
     if displacement is None:
         return None
@@ -58,8 +58,8 @@ def read_velocity_variance(
 ) -> tuple[Chain, Profile | None]:
     """Return the chain to solve for and W^2(x), None if it is the chain's free value everywhere.
 
-    W^2 enters the equations as T = m W^2 only. A number W^2 therefore gives the elastic chain with
-    that temperature. A table goes on as it ends.
+    W^2 enters the equations only as T = m W^2. A number W^2 therefore gives the elastic chain with
+    this temperature. A table is continued with its last value.
     """
     if variance is None:
         return chain, None
@@ -89,7 +89,7 @@ def read_velocity_variance(
 def _numbers(
     name: str, function: Callable[[ArrayLike], ArrayLike]
 ) -> Callable[[ArrayLike], NDArray[np.float64]]:
-    """Return a user's function, checked at each call: numbers, as many as positions."""
+    """Return a user's function with a check at each call that it returns one number per x."""
 
     def checked(x: ArrayLike) -> NDArray[np.float64]:
         values = function(x)
@@ -106,7 +106,7 @@ def _numbers(
 def _table(
     name: str, variable: str, chain: Chain, source: xr.Dataset | Sequence[ArrayLike] | Any
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return x and values of a table, or of a result's particles at their mean positions."""
+    """Return x and values of a table, or of the particles of a result at their mean positions."""
     if isinstance(source, xr.Dataset):
         require(source, (variable, "mean_displacement"))
         if source.sizes.get("particle") != chain.size:
@@ -135,7 +135,7 @@ def _table(
 def _interpolated(
     x: NDArray[np.float64], values: NDArray[np.float64], slope: float
 ) -> Callable[[ArrayLike], NDArray[np.float64]]:
-    """Shape-preserving cubic through the table, continued with ``slope`` to either side."""
+    """Return a shape-preserving cubic through the table, continued with ``slope``."""
     inner = PchipInterpolator(x, values)
 
     def function(position: ArrayLike) -> NDArray[np.float64]:

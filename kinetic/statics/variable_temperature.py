@@ -1,21 +1,21 @@
 r"""The force balance with a prescribed W^2(x), closed by labels: Newton's method with scikit-fem.
 
-In the log pressure P = ln(w rho_y) (no derivative of W^2 appears, P is continuous where W^2 jumps,
-and rho stays below close packing by itself), with lengths in thermal lengths s of the free chain,
-w = W^2(x)/W^2, B = 2 R L/s and Lam = g L/s, equation (***) of
+The unknown is the log pressure P = ln(w rho_y). It is continuous where W^2 jumps, no derivative of
+W^2 is needed, and rho always stays below close packing. Lengths are in thermal lengths s of the
+free chain, w = W^2(x)/W^2, B = 2 R L/s and Lam = g L/s. Equation (***) of
 :mod:`crazybilliards.kinetic.statics.balance` is
 
     (w + B exp(P)) P' = -u,      u = x - (B + Lam) nu,      nu' = n = exp(P)/(w + B exp(P)),
 
-n = rho s/L; differentiated once more, the label drops out:
+with n = rho s/L. One more derivative removes the label:
 
     ((w + B exp(P)) P')' = -1 + (B + Lam) n,
     flux (w + B exp(P)) P' = -x +- (B + Lam)/2 at the far ends: all rods lie in between.
 
 Weak form, for all test functions v: int (w + B e^P) P' v' + int ((B + Lam) n - 1) v = [flux v].
 
-Newton's steps are capped where there is pressure, at a factor e^2; the far tails may jump. The mesh
-is fine where the stationary state of the free chain has its edges and is adapted to the solution.
+A Newton step may change the pressure by a factor e^2 at most, except in the far tails. The mesh is
+fine at the edges of the stationary state of the free chain and is then adapted to the solution.
 """
 
 from __future__ import annotations
@@ -95,7 +95,7 @@ def solve_variable_temperature(chain: Chain, variance: Profile) -> xr.Dataset:
 
 
 def _end(warmth: Warmth, crowd: float, lam: float) -> float:
-    """Return where the mesh ends, less B/2: as far out as the hottest place in it asks for."""
+    """Return the end of the mesh minus B/2; the hottest place in the mesh determines it."""
     end = lam / 2
     for _ in range(_WIDENINGS):
         places = np.linspace(-1, 1, 10_001) * (end + crowd / 2)
@@ -127,7 +127,7 @@ def _newton(basis: Basis, P: Array, warmth: Warmth, crowd: float, lam: float) ->
 
 
 def _require_vacuum(basis: Basis, P: Array, s: float) -> None:
-    """Raise unless the pressure has fallen to nothing at the ends of the mesh."""
+    """Raise unless the pressure is negligible at the ends of the mesh."""
     places = basis.doflocs[0]
     for end in (np.argmin(places), np.argmax(places)):
         if P[end] > P.max() - _VACUUM:
@@ -145,9 +145,9 @@ def _labels(basis: Basis, P: Array, warmth: Warmth, crowd: float) -> Array:
 
 
 def _adapted(basis: Basis, P: Array, label: Array, crowd: float, warmth: Warmth) -> Array:
-    """Return as many vertices, spread evenly over free room, pressure and changes of warmth.
+    """Return the same number of vertices, spread over free room, pressure and temperature.
 
-    Away from where pressure or warmth change, on a plateau, free room counts less and less.
+    On a plateau, far from changes of pressure or temperature, the free room has less weight.
     """
     x = basis.mesh.p[0]
     w, alive = warmth(x), np.maximum(P[basis.nodal_dofs[0]], P.max() - _DEAD)
@@ -182,7 +182,8 @@ def _assemble(chain: Chain, basis: Basis, P: Array, label: Array, warmth: Warmth
     here = np.clip(x / s, vertices[0], vertices[-1])
     labels = L * np.clip(count(here), 0.0, 1.0)
     displacement = x - (2 * chain.radius + chain.lattice_gap) * (labels - L / 2)
-    # Displacements by label, not positions: positions of many rods drown them in rounding.
+    # Displacements are computed by label: as differences of positions of many rods they would be
+    # lost in rounding.
     known, first = np.unique(label / label[-1] - 0.5, return_index=True)
     at_vertices = vertices[first] - (crowd + chain.lattice_gap * L / s) * known
     mean = s * PchipInterpolator(known, at_vertices)(chain.rank / L)

@@ -1,15 +1,15 @@
-r"""The force balance with a prescribed displacement and a constant W^2: a closed form.
+r"""The closed form of the force balance with a prescribed displacement and a constant W^2.
 
 Equation (**) of :mod:`crazybilliards.kinetic.statics.balance`, times 1 + 2 R rho_y, integrates to
 
-    ln rho_y + 2 R rho_y = C - Psi(x)/T,      Psi = int F(<dx>) dx,
+    ln rho_y + 2 R rho_y = C - Psi(x)/T,      Psi = int F(<dx>) dx.
 
-which is solved by the Wright omega function, omega + ln omega = z:
+The Wright omega function, the solution of omega + ln omega = z, inverts this:
 
     2 R rho_y = omega(C - Psi/T + ln 2R),     rho = rho_y/(1 + 2 R rho_y).
 
-Only C is left to find, the root of "L rods in all". Integrals are by Gauss-Legendre quadrature in
-every cell of the position grid.
+A root finder determines C so that there are L rods in all. Integrals are by Gauss-Legendre
+quadrature in every cell of the position grid.
 """
 
 from __future__ import annotations
@@ -110,7 +110,7 @@ def _pull(chain: Chain, profile: Profile, x: Array) -> Array:
 
 
 def _partial_integrals(points: Array) -> Array:
-    """Matrix that integrates from -1 to each of the points what is known at the points."""
+    """Matrix that integrates a function known at the points from -1 to each of them."""
     powers = legendre.legvander(points, points.size - 1)
     integrals = np.array(
         [legendre.legval(points, legendre.legint(unit, lbnd=-1)) for unit in np.eye(points.size)]

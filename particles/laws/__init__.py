@@ -1,1 +1,1 @@
-"""Collision laws: what a drift of the rods with collisions does, one law a file."""
+"""Collision laws: how a drift with collisions is computed. Each law has its own file."""

@@ -1,21 +1,23 @@
 """Avalanches: waves of momentum that run along the chain from collision to collision.
 
-A wave has an origin, the rod i that hit its right neighbour, and a front, i + 1 at first. The next
-collision of the front decides. If it is with the front's own right neighbour and the momentum
-points right, the front moves on by one; otherwise the wave ends and is counted at its origin.
-There are two counts:
+A wave has an origin, the rod i that hit its right neighbour, and a front, which is i + 1 at first.
+The next collision of the front rod decides. If it is with the right neighbour of the front and the
+momentum points right, the front moves on by one. Otherwise the wave ends and is counted at its
+origin. There are two counts:
 
 **triggered**, the paper's (section ``seq:e_0``)
-    Every hit of i on i + 1 starts a wave, whatever its momentum. A collision's momentum is that of
-    the two rods that meet. N_c = front - origin - 1 is the number of collisions after the first.
+    Every hit of i on i + 1 starts a wave, also if the momentum points left. The momentum of a
+    collision is that of the two rods that meet. N_c = front - origin - 1 is the number of
+    collisions after the first.
 **pushes**, our extension
-    The first hit needs a momentum that points right, too, and counts: N_c = front - origin. Rods
-    that stick together pass a push on from one to the next, in no time: when clusters meet, the
-    collisions run on through the one that is pushed, to its far end, and the momentum is that of
-    both clusters.
+    The first hit needs a momentum that points right, too, and it is counted: N_c = front - origin.
+    Rods that stick together pass a push on without delay. When two clusters meet, the collisions
+    therefore run through the cluster that is pushed, to its far end. The momentum is that of both
+    clusters.
 
-Waves with the same front share their future. A front's waves are a linked list that moves as a
-whole, so a collision costs O(1), and its waves' end what their starts have paid for:
+Waves with the same front share their future. They are kept in a linked list that moves as a whole.
+Each collision starts at most one wave, and each wave ends once, so a collision costs O(1) on
+average:
 
     collision of c and c+1    rightward: waves on c+1 end, those on c move to c+1, one starts at c
                               otherwise: waves on c and on c+1 end
@@ -35,7 +37,7 @@ Integers = NDArray[np.int64]
 
 
 class Waves(NamedTuple):
-    """Waves under way, and what became of the others. Arrays of length 0: not counted."""
+    """Running waves and the sizes of ended ones. Arrays of length 0: waves are not counted."""
 
     heads: Integers  # first wave of each front, -1 without any, (L,)
     following: Integers  # next wave with the same front, or next unused place, -1 at the end
@@ -45,7 +47,7 @@ class Waves(NamedTuple):
 
 
 class Tally(NamedTuple):
-    """What is kept of single collisions. Arrays of length 0: not kept."""
+    """The record of single collisions. Arrays of length 0: there is no record."""
 
     contacts: Integers  # collisions at each contact, (L - 1,)
     pushes: Waves
@@ -53,7 +55,7 @@ class Tally(NamedTuple):
 
 
 def make_waves(size: int) -> Waves:
-    """Return no waves yet, for ``size`` rods: 16 L^2 bytes; 0: not to be counted."""
+    """Return empty waves for ``size`` rods (16 L^2 bytes); size 0: waves are not counted."""
     # A front p has at most one wave of each origin below it.
     places = size * (size - 1) // 2
     following = np.arange(1, places + 1, dtype=np.int64)
@@ -88,7 +90,7 @@ def _end(front, waves):  # type: ignore[no-untyped-def]
 
 @kernel
 def _start(origin, waves):  # type: ignore[no-untyped-def]
-    """Put a new wave on the front right of its origin, with all that are on the origin."""
+    """Start a wave; move it and all waves on its origin to the front right of the origin."""
     wave = waves.unused[0]
     waves.unused[0] = waves.following[wave]
     waves.origins[wave] = origin
@@ -99,7 +101,7 @@ def _start(origin, waves):  # type: ignore[no-untyped-def]
 
 @inlined
 def _push(contact, first, last, momentum, waves):  # type: ignore[no-untyped-def]
-    """Take a collision of two clusters down, running on through the one that is pushed."""
+    """Record a collision of two clusters, which runs through the cluster that is pushed."""
     if momentum > 0:
         for pushed in range(contact, last):
             _end(pushed + 1, waves)
@@ -112,7 +114,7 @@ def _push(contact, first, last, momentum, waves):  # type: ignore[no-untyped-def
 
 @inlined
 def _trigger(contact, momentum, waves):  # type: ignore[no-untyped-def]
-    """Take a collision of two rods down, as the paper counts."""
+    """Record a collision of two rods by the paper's rules."""
     _end(contact + 1, waves)
     if momentum <= 0:
         _end(contact, waves)
@@ -121,10 +123,10 @@ def _trigger(contact, momentum, waves):  # type: ignore[no-untyped-def]
 
 @kernel
 def record_collision(contact, first, last, v_left, v_right, tally):  # type: ignore[no-untyped-def]
-    """Take down a collision of rods ``contact`` and ``contact + 1`` (counted from 0).
+    """Record a collision of the rods ``contact`` and ``contact + 1`` (counted from 0).
 
-    ``first`` and ``last`` are the outermost rods of the two clusters that meet, ``v_left`` and
-    ``v_right`` the velocities of these.
+    ``first`` and ``last`` are the outermost rods of the two clusters that meet. ``v_left`` and
+    ``v_right`` are the velocities of the clusters.
     """
     if tally.contacts.size > 0:
         tally.contacts[contact] += 1

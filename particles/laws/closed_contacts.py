@@ -1,27 +1,28 @@
-r"""Contacts that a drift has left closed: which they are, and the noise that opens them again.
+r"""Contacts that are closed after a drift, and a correction of the noise that opens them.
 
-At e = 0 two rods that have met stay in contact until a kick of the noise separates them. The
-continuous chain leaves a closed contact at once: its relative motion is that of a randomly
+At e = 0 two rods that have met stay in contact until a kick of the noise separates them. In the
+limit dt -> 0 they separate at once: their relative motion is that of a randomly
 accelerated particle at a wall where it sticks (McKean, J. Math. Kyoto Univ. 2, 227, 1963; Bertoin,
-Ann. Probab. 35, 2021, 2007). With a kick a step it lingers. In units of steps the times between
-successive closings have the tail P(>n) ~ C n^(-1/4), and
+Ann. Probab. 35, 2021, 2007). With one kick per step they stay in contact longer. The number n of
+steps between successive closings has the tail P(>n) ~ C n^(-1/4), and
 
     D = lim [ sum_(k <= n) P(>k) - (4/3) C n^(3/4) ]
 
-is how much longer each takes than in the continuous chain. There are ~ dt^(-1/4) of them per
-time, so this delay costs the velocity widths ~ dt^(3/4). It vanishes if the relative kick of a
-closed contact is ``CLOSED_KICK`` times as strong. The number follows from a single contact and
-holds for every chain at e = 0; ``benchmarks/closed_contact.py`` computes it.
+is the number of steps by which these times are longer than in the limit. There are ~ dt^(-1/4)
+closings per time, so the delay causes an error ~ dt^(3/4) of the velocity widths. D vanishes if the
+relative kick of a closed contact is ``CLOSED_KICK`` times as strong. The number follows from a
+single contact and holds for every chain at e = 0. ``benchmarks/closed_contact.py`` computes it.
 
 The same factor is taken up to the critical restitution exp(-pi/sqrt 3) = 0.163 (Cornell, Swift and
 Bray, Phys. Rev. Lett. 81, 1142, 1998), below which a contact still collapses onto the wall. There
-D(e) vanishes only for much stronger kicks, but this limit of small steps is far away: in chains at
-e = 0.1 and practical steps the factor of e = 0 takes most of the error out, and a stronger one adds
-more than it takes. Above, contacts do not collapse, and no factor helps.
+D(e) vanishes only for much stronger kicks, but practical steps are far from the limit in which this
+matters: in chains at e = 0.1 the factor of e = 0 removes most of the error, and a stronger factor
+adds more error than it removes. Above the critical restitution contacts do not collapse, and no
+factor helps.
 
-The deviations of the kicks from the mean of their cluster are made stronger, which leaves the
-momentum alone. A kick split into two halves by a snapshot has the same law as a whole one if its
-second half is made stronger by ``second_half``.
+The deviations of the kicks from the mean of their cluster are made stronger, which does not change
+the momentum. If a snapshot splits a kick into two halves, the two together have the law of a whole
+kick when the second half is made stronger by ``second_half``.
 """
 
 from __future__ import annotations
@@ -39,7 +40,7 @@ CRITICAL_RESTITUTION = math.exp(-math.pi / math.sqrt(3))  # 0.163
 
 
 class Clusters(NamedTuple):
-    """Runs of two and more rods in contact: rods ``firsts`` to ``lasts`` - 1."""
+    """Groups of two or more rods in contact: rods ``firsts`` to ``lasts`` - 1."""
 
     firsts: NDArray[np.int64]
     lasts: NDArray[np.int64]
@@ -47,7 +48,7 @@ class Clusters(NamedTuple):
 
 
 def make_clusters(size: int) -> Clusters:
-    """Return room for the clusters of ``size`` rods."""
+    """Return arrays for the clusters of ``size`` rods."""
     firsts, lasts = np.zeros((2, size), dtype=np.int64)
     return Clusters(firsts, lasts, np.zeros(1, dtype=np.int64))
 
@@ -55,16 +56,16 @@ def make_clusters(size: int) -> Clusters:
 def second_half(strength: float, decay: float) -> float:
     """Strength of a half kick so that both halves make a whole one of ``strength``.
 
-    The velocity decays by ``decay`` with every half. Its noise has the variances c^2 h^2 + h^2 of
-    two halves; strength^2 times that is shared out as c^2 h^2, the first half as it is, and the
-    rest.
+    The velocity decays by c = ``decay`` in every half, so a whole kick has the variance
+    c^2 h^2 + h^2. The two halves must add up to strength^2 times this. The first half keeps its
+    share, c^2 h^2, and the second half has the rest.
     """
     return math.sqrt(strength**2 + decay**2 * (strength**2 - 1))
 
 
 @kernel
 def find_clusters(y, clusters):  # type: ignore[no-untyped-def]
-    """Take down the rods in contact: those at the same reduced coordinate, to the bit."""
+    """Record the rods in contact: those with exactly the same reduced coordinate."""
     number, first = 0, 0
     for i in range(1, y.size + 1):
         if i == y.size or y[i] != y[first]:

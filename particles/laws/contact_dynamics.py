@@ -4,16 +4,17 @@ Per step the velocities u after contact satisfy, for every contact between i and
 
     u_{i+1} - u_i >= b_i,     impulse_i >= 0,     one of the two an equality,
 
-with b_i = -gap_i/dt for a contact that must only not overlap, and b_i = e (v_i - v_{i+1}) for
-one that would close within the step and is to bounce (e > 0). This linear complementarity problem
-is the optimality condition of "u as close to v as the constraints allow". With B_i the sum of the
-b_j left of i, the constraints say that u_i - B_i ascends: an isotonic regression of v_i - B_i. The
-usual programs iterate to this solution; the paper quotes a cost of O(L^2) for its own.
+with b_i = e (v_i - v_{i+1}) for a contact that would close within the step and bounces (e > 0), and
+b_i = -gap_i/dt for every other contact, which then does not overlap. This linear complementarity
+problem is the optimality condition of "u as close to v as the constraints allow". With B_i the sum
+of the b_j left of i, the constraints say that u_i - B_i ascends. The solution is the isotonic
+regression of v_i - B_i. Other programs usually iterate to it. The paper quotes a cost of O(L^2) for
+its program.
 
-The law is the position form: rods never overlap beyond rounding. Simultaneous contacts share an
-impulse, so Newton's cradle of three rods in contact gives (-1/3, 2/3, 2/3) at e = 1 instead of
-sending the last rod off: a property of every such law, and the reason why event-driven collisions
-are the default.
+The law is the position form, in which rods never overlap beyond rounding. Simultaneous contacts
+share an impulse, so Newton's cradle of three rods in contact gives (-1/3, 2/3, 2/3) at e = 1 and
+not (0, 0, 1). Every law that solves contacts simultaneously has this property. It is the reason why
+event-driven collisions are the default.
 """
 
 import numpy as np
@@ -55,7 +56,7 @@ def drift(y, v, dt, restitution, integers, floats):  # type: ignore[no-untyped-d
         if i < y.size - 1:
             total += bound(y[i + 1] - y[i], v[i] - v[i + 1], restitution, dt)
         v[i] = shifted[i] + here
-        # Bounds of touching rods agree but for rounding errors: keep the order exact.
+        # Bounds of touching rods agree up to rounding errors: keep the order exact.
         before = max(y[i] + dt * v[i], before)
         y[i] = before
     return np.int64(merged)

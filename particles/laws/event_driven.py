@@ -1,35 +1,36 @@
 r"""Drift with collisions one at a time, in order: any restitution e >= 0.
 
 Within a step points fly freely, y(t) = y + v t, so neighbours meet at t = (y' - y)/(v - v'). The
-contact that closes first is found, the velocities of its two rods change by
+drift finds the contact that closes first. The velocities of its two rods change by
 
     v - v' -> -e (v - v')      at constant momentum (eq. ``eq:rest`` of the paper),
 
-and at most three contacts get a new time: O(log L) a collision. Contacts due at the same time are
-taken by closing speed, which makes the operator symmetric under reflection, and from left to right
-if that is the same, too.
+and at most three contacts get a new time. A collision costs O(log L). If contacts close at the same
+time, the one with the larger closing speed is taken first, which makes the operator symmetric under
+reflection. If the speeds are equal too, the left one is taken first.
 
 **A knockout tournament** finds the contact that closes first. The contacts are the leaves of a
 binary tree, and every node above them holds the earlier one of its two children, so that the root
 holds the next collision. Node k has the children 2k and 2k + 1, the root is node 1, and contact c
 is leaf L - 1 + c. A collision changes three leaves, which climb to the root together: the first
-one until it meets the path of the second one, and so on. A heap needs as many comparisons, but a
-processor cannot guess their outcomes, on which the heap's next step depends. In the tournament
-they only select numbers.
+one until it meets the path of the second one, and so on. A heap needs as many comparisons, but its
+next step depends on their outcomes, which a processor cannot predict. In the tournament the
+comparisons only select numbers.
 
-**Inelastic collapse.** For e < 1 neighbours may collide infinitely often in a finite time. Where
-the speed of separation e |v - v'| would be below ``merge_speed``, the two become a *cluster* that
+**Inelastic collapse.** For e < 1 neighbours may collide infinitely often in a finite time. If the
+speed of separation e |v - v'| would be below ``merge_speed``, the two become a *cluster* that
 moves as one until the end of the drift, with the mean velocity of its members and as many masses.
 Every collision that does not merge then costs at least (1 - e^2)/(4 e^2) m merge_speed^2 of
-energy: the number of events is finite for certain. ``merge_speed`` is a small fraction of the
+energy, so the number of events is finite. ``merge_speed`` is a small fraction of the
 velocity kick that the noise gives in one step; results do not depend on it.
 
 **Resting contacts.** For e > 1 rods that touch at the beginning of a step collide as at e = 1.
 
-**Velocities referred to the step's beginning.** y holds where a point would have been at t = 0, so
-that nothing has to be moved before the end: a collision at t changes it by (v_before - v_after) t.
+**Positions at the beginning of the step.** y holds the position that a point with its present
+velocity would have had at t = 0. A collision at t changes y by (v_before - v_after) t, and no point
+has to be moved before the end of the step.
 
-A cluster's state stands at its outermost members, the only ones with contacts to others.
+The state of a cluster is stored at its outermost members, the only ones with contacts to others.
 """
 
 import numpy as np
@@ -37,16 +38,16 @@ import numpy as np
 from crazybilliards.model.kernels import inlined, kernel
 from crazybilliards.particles.laws.avalanche import record_collision
 
-# Unsigned indices: compiled code then need not ask whether one counts from the array's end.
+# With unsigned indices compiled code need not check for indices from the end of an array.
 INDEX = np.uint64
 _0, _1 = INDEX(0), INDEX(1)
 
 
 @inlined
 def _meeting(closing, gap, now, dt):  # type: ignore[no-untyped-def]
-    """When two points meet next, not before ``now``; infinity if not within the step.
+    """Time at which two points meet, at least ``now``; infinity if not within the step.
 
-    The division is made in any case, and a random branch avoided that would cost more.
+    The division is always done, because a branch with a random outcome would cost more.
     """
     time = gap / closing
     # Rounding can put a meeting just before the event that caused it.
@@ -57,19 +58,19 @@ def _meeting(closing, gap, now, dt):  # type: ignore[no-untyped-def]
 
 @kernel
 def _climb(node, until, due, winner, v):  # type: ignore[no-untyped-def]
-    """Decide again all that follows from ``node``, until it meets the path of node ``until``.
+    """Decide the nodes above ``node`` again, until its path meets the path of node ``until``.
 
-    ``until`` 0: up to the root. The node met is the opponent that ``until`` finds on its own way.
+    0 stands for the root. The path of ``until`` finds the last node decided here as an opponent.
     """
-    # Compiled code counts the references to arrays that a helper is handed, unless the helper is
-    # as simple as this one: a loop that calls nothing. The counting would cost most of the time.
+    # Compiled code counts references to the arrays that a helper receives, which would take most of
+    # the time. It does not do so for a helper as simple as this one, a loop that calls nothing.
     time = due[node]
     while node > _1 and node ^ until > _1:
         opponent = node ^ _1
         other_time = due[opponent]
         first = node ^ INDEX(other_time < time)
-        # Equal times (or nearly, by underflow). Two infinities are not: their difference is NaN.
-        # As a single comparison that is hardly ever true, this costs nothing.
+        # True for equal times (or nearly equal ones, by underflow). Two infinities are not equal
+        # here, because their difference is NaN. A comparison that is rarely true costs nothing.
         difference = other_time - time
         if difference * difference <= 0.0:
             a, b = INDEX(winner[node]), INDEX(winner[opponent])
@@ -83,7 +84,7 @@ def _climb(node, until, due, winner, v):  # type: ignore[no-untyped-def]
 
 @kernel
 def _finish(y, v, dt, last, clusters):  # type: ignore[no-untyped-def]
-    """Move the rods to the end of the step, and take down those that are in contact."""
+    """Move the rods to the end of the step, and record those that are in contact."""
     a = number = 0
     while a < y.size:
         b = last[a]
@@ -105,20 +106,21 @@ def _finish(y, v, dt, last, clusters):  # type: ignore[no-untyped-def]
 def drift(y, v, dt, restitution, merge_speed, most, integers, floats, clusters, tally):  # type: ignore[no-untyped-def]
     """Advance ``y`` and ``v`` in place by ``dt``; return the collisions, or -1 if too many.
 
-    ``integers`` (4, L) and ``floats`` (2, L) are scratch space. ``clusters`` takes down the rods
-    that ended up in contact, ``tally`` (an ``avalanche.Tally``) every collision. After ``most``
-    collisions the drift gives up: the state is then worthless, the chain has diverged.
+    ``integers`` (4, L) and ``floats`` (2, L) are scratch space. ``clusters`` records the rods that
+    are in contact at the end, and ``tally`` (an ``avalanche.Tally``) every collision. The drift
+    stops after ``most`` collisions. The chain then counts as diverged, and its state must not be
+    used.
     """
     contacts = INDEX(y.size - 1)
     first, last = integers[0], integers[1]
-    # The tournament: who has won at each node, and when that contact is due.
+    # The tournament: the winner at each node, and the time at which its contact closes.
     winner, due = integers[2:].ravel(), floats[:2].ravel()
     tallied = tally.contacts.size + tally.pushes.heads.size + tally.triggered.heads.size > 0
     for i in range(y.size):
         first[i] = i
         last[i] = i
-    # A single rod has no contact that would stand at the root. And where leaves have two depths,
-    # the first ones climb past nodes that are decided only later.
+    # A single rod has no contact for the root. If the leaves have two depths, the first ones climb
+    # past nodes that are decided only later.
     due[:] = np.inf
     for contact in range(contacts):
         closing, gap = v[contact] - v[contact + _1], y[contact + _1] - y[contact]
@@ -139,10 +141,11 @@ def drift(y, v, dt, restitution, merge_speed, most, integers, floats, clusters, 
         v_left, v_right = v[contact], v[neighbour]
         if tallied:
             record_collision(np.int64(contact), np.int64(a), np.int64(b), v_left, v_right, tally)
-        # The cluster's or the pair's common velocity, by its smaller change.
+        # The common velocity of the cluster or pair, computed as a change of v_left.
         common = v_left + (v_right - v_left) * right / (left + right)
-        # Flippers act when rods meet. Rods at rest against one another would otherwise pass one
-        # kick back and forth at no time and ever more energy: the start at the anchors, say.
+        # Flippers act when rods meet. Otherwise rods at rest in contact, such as those at the
+        # start, would exchange one kick again and again at the same time and gain energy without
+        # bound.
         rebound = (min(restitution, 1.0) if now == 0.0 else restitution) * (v_left - v_right)
         if rebound <= merge_speed:
             y_common = y[contact] + (v_left - common) * now
@@ -150,7 +153,7 @@ def drift(y, v, dt, restitution, merge_speed, most, integers, floats, clusters, 
             last[a] = b
             v[a] = v[b] = common
             y[a] = y[b] = y_common
-            # v of the inner members is stale from here on; their contact never closes again.
+            # From here on v of the inner members is outdated; their contact never closes again.
             v[contact] = v[neighbour] = common
             y[contact] = y[neighbour] = y_common
         else:
@@ -162,7 +165,7 @@ def drift(y, v, dt, restitution, merge_speed, most, integers, floats, clusters, 
             y[a] = y[contact] = y_left
             v[b] = v[neighbour] = new_right
             y[b] = y[neighbour] = y_right
-        # The two now separate or are one.
+        # The two now separate or form one cluster.
         low = high = leaf = contacts + contact
         due[leaf] = np.inf
         if a > _0:

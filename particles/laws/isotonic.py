@@ -1,20 +1,20 @@
 """Drift with perfectly inelastic collisions (e = 0): isotonic regression.
 
-Sticky points that fly freely over dt end at the projection of their free positions y + dt v onto
-the ordered ones, y_1 <= ... <= y_L: the pool-adjacent-violators algorithm, exact in O(L). Points
-of one block have met; by conservation of momentum a block moves with the mean velocity of its
-members, and lies at the mean of their free positions.
+Points that stick end at the projection of their free positions y + dt v onto the ordered positions,
+y_1 <= ... <= y_L. The pool-adjacent-violators algorithm computes it exactly in O(L). The points of
+one block have met. By conservation of momentum a block moves with the mean velocity of its members,
+so it lies at the mean of their free positions.
 
-Most rods meet nobody within a step, but which ones do is random, and a branch that a processor
-mispredicts costs it more than the arithmetic of a rod. The violations (rods that have overtaken
-their left neighbour) are therefore listed first, without a branch, and only blocks are worked on.
+Most rods meet no other rod within a step. Which rods do is random, and a mispredicted branch costs
+a processor more than the arithmetic of a rod. The violations (rods that have overtaken their left
+neighbour) are therefore listed first, without a branch. Only their blocks are then processed.
 """
 
 import numpy as np
 
 from crazybilliards.model.kernels import kernel
 
-# Unsigned indices: compiled code then need not ask whether one counts from the array's end.
+# With unsigned indices compiled code need not check for indices from the end of an array.
 INDEX = np.uint64
 _0, _1, _2 = INDEX(0), INDEX(1), INDEX(2)
 
@@ -23,8 +23,8 @@ _0, _1, _2 = INDEX(0), INDEX(1), INDEX(2)
 def pool(values, carried, violations, count, firsts, lasts, sums, carried_sums):  # type: ignore[no-untyped-def]
     """Isotonic regression of ``values`` with equal weights, in place.
 
-    Return the number of blocks of more than one rod, and that of the pairs merged in them. The
-    blocks stand in ``firsts`` and ``lasts``, in order; a block ends before its last.
+    Return the number of blocks of more than one rod, and the number of pairs merged in them.
+    ``firsts`` and ``lasts`` receive the blocks in order; a block ends before its last.
 
     ``carried`` (it may be ``values``) are averaged over the same blocks. ``violations``: the first
     ``count`` entries are the indices i with values[i] < values[i - 1], in order. The last four,
@@ -80,13 +80,13 @@ def pool(values, carried, violations, count, firsts, lasts, sums, carried_sums):
         sums[blocks], carried_sums[blocks] = total, carried_total
         blocks += _1
         end = last
-    # Only now: a block that goes on growing, written each time, would cost its size each time.
+    # Blocks are written only at the end: writing a growing block each time would cost its size.
     merged = _0
     for block in range(blocks):
         first, last = INDEX(firsts[block]), INDEX(lasts[block])
         share = 1.0 / float(last - first)
         mean, carried_mean = sums[block] * share, carried_sums[block] * share
-        # Means of neighbouring blocks that touch may come out of order by rounding.
+        # Rounding may put the means of neighbouring blocks that touch out of order.
         if first > _0:
             mean = max(mean, values[first - _1])
         values[first] = values[first + _1] = mean
@@ -103,7 +103,7 @@ def drift(y, v, dt, violations, floats, clusters):  # type: ignore[no-untyped-de
     """Advance ``y`` and ``v`` in place by ``dt``; return the contacts that ended up closed.
 
     ``violations``, L integers, and ``floats``, at least two rows of L, are scratch space.
-    ``clusters`` takes down the rods that ended up in contact.
+    ``clusters`` records the rods that are in contact at the end.
     """
     count = _0
     before = -np.inf

@@ -1,10 +1,10 @@
 """The collision operators under one signature, and the choice between them.
 
-An operator advances y and v over one step of free flight with collisions and returns how many
-there were, or -1 if it gave up. ``method="event-driven"`` takes collisions one at a time: by
-sorting at e = 1, by isotonic regression at e = 0 (both give the event-driven result in O(L)), in
-their order (``EVENTS``) otherwise, or if every collision is to be counted at its contact.
-``method="contact-dynamics"`` solves all contacts of a step at once.
+An operator advances y and v over one step of free flight with collisions. It returns the number of
+collisions, or -1 if there were too many. ``method="event-driven"`` gives the result of one
+collision after the other: by sorting at e = 1, by isotonic regression at e = 0 (both in O(L)), and
+by taking the collisions in their order (``EVENTS``) otherwise, or if every collision has to be
+counted at its contact. ``method="contact-dynamics"`` solves all contacts of a step at once.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ SORT, ISOTONIC, EVENTS, CONTACTS = range(4)
 
 
 class Law(NamedTuple):
-    """The collision law as the kernels see it: plain numbers."""
+    """The collision law as plain numbers for the kernels."""
 
     operator: int
     restitution: float
@@ -40,7 +40,7 @@ class Scratch(NamedTuple):
 
     integers: NDArray[np.int64]
     floats: NDArray[np.float64]
-    clusters: Clusters  # rods that the last drift left in contact, if that matters
+    clusters: Clusters  # rods in contact after the last drift, if the law needs them
     kicks: NDArray[np.float64]  # of the noise, for one step or several, (steps, L)
 
 
@@ -65,8 +65,9 @@ def make_law(
 ) -> Law:
     """Choose the operator for the chain.
 
-    ``merging`` is in velocity kicks of one step's noise; with little or no noise 1e-9 of the
-    typical ``speed`` keeps inelastic collapse finite. ``counted``: every collision is to be seen.
+    ``merging`` is in velocity kicks of one step's noise. With little or no noise 1e-9 of the
+    typical ``speed`` is used, so that inelastic collapse stays finite. ``counted``: every collision
+    has to be recorded.
     """
     if method == "contact-dynamics":
         operator = CONTACTS

@@ -1,13 +1,13 @@
 """Drift with elastic collisions (e = 1): move freely, then sort.
 
-Equal masses swap their velocities when they collide elastically, which is the same as passing
-through one another and swapping names. In the reduced coordinate a drift over dt is therefore:
-let every point fly freely, y + dt v, then sort the pairs (y, v) by y. Exact, whatever the number
-of collisions; each inversion that the sort removes is one collision.
+Equal masses swap their velocities when they collide elastically, as if they passed through each
+other and swapped names. In the reduced coordinate a drift over dt therefore lets every point fly
+freely, y + dt v, and then sorts the pairs (y, v) by y. The result is exact for any number of
+collisions. Each inversion that the sort removes is one collision.
 
-The sort makes use of the order there is: insertion within short runs, then runs are merged, of
-which only the parts that overlap are touched. It costs O(L + collisions) where rods collide
-rarely and never more than O(L log L), a million rods that meet thousands of others in a step.
+The sort uses the existing order. It sorts short runs by insertion and then merges the runs,
+touching only the parts that overlap. It costs O(L + collisions) if rods collide rarely, and never
+more than O(L log L), even if each of a million rods meets thousands of others in a step.
 """
 
 from crazybilliards.model.kernels import inlined, kernel

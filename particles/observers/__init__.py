@@ -1,6 +1,6 @@
-"""Observers: what is measured. A new measurement is a class in a file here and a name below.
+"""Observers: the measurements. A new measurement is a class in a file here and a name below.
 
-No kernel changes for it: the kernels fill buffers of snapshots, observers consume them.
+It needs no change of a kernel: kernels fill buffers of snapshots, and observers read them.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ __all__ = [
 
 
 def find_observers(observe: str | Observer | Collection[str | Observer]) -> tuple[Observer, ...]:
-    """Return the observers that are meant, each name once.
+    """Return the observers for the argument ``observe``, each name once.
 
     Raises
     ------

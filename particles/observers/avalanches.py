@@ -19,7 +19,7 @@ from crazybilliards.particles.run import Run
 
 
 class _CountedWaves(Observer):
-    """What both counts share: the kernel counts, this keeps and reports what it has counted."""
+    """Base of both counts: the kernel counts, and this class keeps and reports its counts."""
 
     single_collisions = True
     ensemble = False
@@ -39,7 +39,7 @@ class _CountedWaves(Observer):
         return 16.0 * run.chain.size**2
 
     def observe(self, snapshots: Snapshots) -> None:
-        """Nothing: the kernel has counted already."""
+        """Do nothing, because the kernel has counted already."""
 
     def join(self, others: Sequence[Self]) -> None:
         """Add the counts of other replicas."""
@@ -57,12 +57,12 @@ class _CountedWaves(Observer):
 class Avalanches(_CountedWaves):
     """avalanche_count: rightward waves started by each particle that triggered N_c collisions.
 
-    The first hit counts and must have a momentum that points right, and rods that stick together
-    pass a push on: our extension of the paper's count, which :class:`TriggeredCollisions` is.
+    The first hit counts and must have a momentum that points right. Rods that stick together pass a
+    push on. This count is our extension; the paper's is :class:`TriggeredCollisions`.
 
-    Counted by the collision kernel itself (see ``particles/laws/avalanche.py``) while measuring. By
-    symmetry leftward waves are those of the mirrored particles. In a dissipative chain the counts
-    depend on the time step: rods in contact are kicked anew in every step. 16 L^2 bytes.
+    The collision kernel itself counts (``particles/laws/avalanche.py``). By symmetry leftward waves
+    are those of the mirrored particles. In a dissipative chain the counts depend on the time step,
+    because rods in contact are kicked anew in every step. The counts take 16 L^2 bytes.
     """
 
     name = "avalanches"
@@ -79,9 +79,9 @@ class TriggeredCollisions(_CountedWaves):
     """triggered_count: hits of each particle on its right neighbour that triggered N_c collisions.
 
     The paper's count, word for word (section ``seq:e_0``). Every hit of i on i + 1 starts a wave,
-    and N_c = 0, 1, 2, ... is the number of collisions after it: with the front's right neighbour,
-    the momentum of the two rods pointing right. Rods that stick together pass nothing on. See
-    :class:`Avalanches`.
+    and N_c = 0, 1, 2, ... is the number of collisions after it. Each of them is with the right
+    neighbour of the front, and the momentum of the two rods points right. Rods that stick together
+    pass nothing on. See :class:`Avalanches`.
     """
 
     name = "triggered-collisions"

@@ -1,7 +1,7 @@
-"""What an observer is: it takes buffers of snapshots, keeps sums, and reports variables.
+"""The interface of observers: they receive snapshots, keep sums, and report variables.
 
-Every replica (in an ensemble every group of replicas) has observers of its own. They are joined
-in order, so that results do not depend on how many threads ran them.
+Every replica (in an ensemble every group of replicas) has its own observers. They are joined in
+order, so that results do not depend on the number of threads.
 """
 
 from __future__ import annotations
@@ -28,31 +28,31 @@ _NO_STATE = (list, dict, set, bytearray)
 
 
 class Snapshots(NamedTuple):
-    """What observers are handed: some successive snapshots, all of one block."""
+    """Some successive snapshots, all of one block, that observers receive."""
 
     block: int
     first: int  # number of the first one within the replica, from 0
-    copy: int  # which of the replicas that share this observer
+    copy: int  # number of the replica among those that share this observer
     y: Array  # (snapshots, L), reduced coordinates
     v: Array  # (snapshots, L)
     collisions: Integers  # since the last snapshots, by contact; empty if not counted
 
 
 class Observer(ABC):
-    """A measurement: first its parameters, then, once prepared for a run, what it has summed up.
+    """A measurement. It holds its parameters and, once prepared for a run, its sums.
 
     ``observe`` of ``simulate`` takes observers by their names or as objects:
     ``observe=["widths", Velocities(bins=801)]``. The constructor takes the parameters, if there
-    are any. :meth:`prepare` makes the arrays to sum up in.
+    are any. :meth:`prepare` makes the arrays for the sums.
 
     Attributes
     ----------
     name
         Its name in ``observe``.
     gives
-        The variables that it reports. Their meanings and units stand in the vocabulary.
+        The variables that it reports. Their meanings and units are in the vocabulary.
     along
-        The coordinates that it brings along, ``("velocity",)`` say.
+        The coordinates that it adds to the result, e.g. ``("velocity",)``.
     single_collisions
         Whether it needs every single collision, not only snapshots.
     ensemble
@@ -79,7 +79,7 @@ class Observer(ABC):
 
     @abstractmethod
     def prepare(self, run: Run, copies: int) -> None:
-        """Make what is summed up in, for a run and the number of replicas that share it."""
+        """Make the arrays for the sums, for a run and the number of replicas that share it."""
 
     def prepared(self, run: Run, copies: int) -> Self:
         """Return an observer with the same parameters, prepared.
@@ -87,7 +87,7 @@ class Observer(ABC):
         Raises
         ------
         TypeError
-            If it keeps something that a checkpoint cannot hold: it would be wrong when resumed.
+            If it has an attribute that a checkpoint cannot hold. It would be wrong when resumed.
         """
         fresh = copy(self)
         fresh.prepare(run, copies)
@@ -97,14 +97,14 @@ class Observer(ABC):
         return fresh
 
     def state(self) -> dict[str, ArrayLike]:
-        """Return all that a checkpoint keeps of it: every attribute that is an array or a number.
+        """Return the attributes that a checkpoint keeps: all that are arrays or numbers.
 
-        Those that never change are few and small. None can be forgotten.
+        This includes a few small ones that never change, so that none can be forgotten.
         """
         return {name: value for name, value in vars(self).items() if isinstance(value, _STATE)}
 
     def tally(self, tally: Tally) -> Tally:
-        """Return what single collisions are written into, with arrays of its own if it has any."""
+        """Return the record of single collisions, with the arrays of this observer if any."""
         return tally
 
     @abstractmethod
@@ -113,26 +113,26 @@ class Observer(ABC):
 
     @abstractmethod
     def join(self, others: Sequence[Self]) -> None:
-        """Append what other replicas or groups measured to one's own."""
+        """Append the measurements of other replicas or groups."""
 
     @abstractmethod
     def report(self, counts: Integers) -> Variables:
         """Return the variables measured.
 
-        ``counts``: the snapshots in every block, shape (blocks of all replicas,), in an ensemble
-        at every time, shape (groups, times).
+        ``counts`` is the number of snapshots in every block, shape (blocks of all replicas,), or
+        in an ensemble at every time, shape (groups, times).
         """
 
     def coordinates(self) -> dict[str, Array]:
-        """Return the values along dimensions of the variables' own: x, velocity."""
+        """Return the coordinates that only these variables have, such as x or velocity."""
         return {}
 
 
 class Averaged(Observer):
     """An observer that keeps ``sums``, shape (blocks, ...), and reports averages of them.
 
-    Joined, the blocks of all replicas stand one after another. In an ensemble, where a block is
-    a time, the groups are put side by side: (groups, times, ...), and averages are over groups.
+    Joining puts the blocks of all replicas one after the other. In an ensemble a block is a time.
+    The joined shape is then (groups, times, ...), and averages are over groups.
     """
 
     schedule: Schedule
@@ -153,11 +153,11 @@ class Averaged(Observer):
         counts: Integers,
         dimension: str,
     ) -> Variables:
-        """Return every quantity, a function of the average of the sums, and its error."""
+        """Return every quantity, which is a function of the averaged sums, and its error."""
         dimensions: tuple[str, ...] = (dimension,)
         sums = self.sums
         if self.schedule.ensemble:
-            # Times that not all came to, at the end, are not asked for.
+            # Times at the end that not every group reached are left out.
             dimensions, sums = ("time", dimension), sums[:, : counts.shape[1]]
         variables: Variables = {}
         for name, quantity in quantities.items():
@@ -168,7 +168,7 @@ class Averaged(Observer):
 
 
 def restore(owner: Any, name: str, value: NDArray[Any]) -> None:
-    """Set an attribute to a restored value, keeping its kind: an array or a plain number."""
+    """Set an attribute to a restored value; an array stays an array, a number a number."""
     current = getattr(owner, name)
     if isinstance(current, np.ndarray):
         if current.shape != value.shape or current.dtype != value.dtype:

@@ -11,8 +11,8 @@ from crazybilliards.particles.run import Run
 class Collisions(Averaged):
     """collision_rate: collisions of each particle with its right neighbour, per time.
 
-    The last particle has none. Rods that have merged into a cluster do not collide again until
-    the next step: below e = 1 the rate depends on the time step, as it is infinite without one.
+    The last particle has no such rate. Rods that have merged into a cluster do not collide again
+    until the next step. For e < 1 the rate depends on the time step and is infinite for dt -> 0.
     """
 
     name = "collisions"

@@ -25,7 +25,7 @@ def _grid(run: Run) -> Array:
         raise ValueError("observe: 'density' needs damping and stiffness above 0, to size its grid")
     # Flippers (e > 1) drive a chain apart by several times the free reach.
     thermal = thermal_reach(chain) * (5 if chain.restitution > 1 else 1)
-    # A start that is thermal itself, or tamer, needs no more room than that.
+    # A start with thermal or smaller displacements needs no more room than that.
     return position_grid(chain, thermal + max(0.0, run.swing - 0.75 * thermal))
 
 
@@ -33,7 +33,7 @@ class Density(Averaged):
     """Density of the rods' centres on the position grid, in hat weights, block by block.
 
     The block means are part of the result, because the error of a smoothed density does not
-    follow from the errors of the bins. 8 bytes per node and block.
+    follow from the errors of the bins. They take 8 bytes per node and block.
     """
 
     name = "density"
@@ -59,12 +59,12 @@ class Density(Averaged):
         self.outside += deposit(points, self.first, self.spacing, self.sums[snapshots.block])
 
     def join(self, others: Sequence[Self]) -> None:
-        """Append what others measured."""
+        """Append the measurements of others."""
         super().join(others)
         self.outside += sum(other.outside for other in others)
 
     def report(self, counts: Integers) -> Variables:
-        """Return density, density_error, density_block over x, and what lay outside x."""
+        """Return density, density_error, density_block over x, and the rods outside x."""
         if self.outside:
             share = self.outside / counts.sum()
             warnings.warn(
@@ -74,7 +74,7 @@ class Density(Averaged):
         spacing = self.spacing
         variables = self.averages({"density": lambda average: average / spacing}, counts, "x")
         if self.schedule.ensemble:
-            # A group that has not come to a time yet, in an interrupted run, has no density: NaN.
+            # In an interrupted run a group has no density at times that it did not reach: NaN.
             known = np.where(counts > 0, counts, np.nan)[..., np.newaxis]
             means = self.sums[:, : counts.shape[-1]] / (known * spacing)
             variables["density_block"] = (("block", "time", "x"), means)

@@ -23,8 +23,8 @@ _MOST_TIMES = 1000
 class Energy(Observer):
     """kinetic_energy: sum over the rods of m v^2/2 against time, averaged over the replicas.
 
-    Successive snapshots are averaged so that at most 1000 times are kept (in an ensemble all
-    are). With two or more replicas kinetic_energy_error is the standard error of their mean.
+    Successive snapshots are averaged so that at most 1000 times are kept. An ensemble keeps all
+    times. With two or more replicas kinetic_energy_error is the standard error of their mean.
     Times that not every replica reached are left out.
     """
 
@@ -75,6 +75,6 @@ class Energy(Observer):
         if self.schedule.ensemble:
             return {}
         first = np.arange(self.counts.shape[1]) * self.together
-        # Not from schedule.times, which a long run has too many of.
+        # schedule.times would take too much memory in a long run.
         times = self.schedule.time(first + (np.mean(self.counts, axis=0) - 1) / 2)
         return {"time": times[(self.counts > 0).all(axis=0)]}

@@ -1,9 +1,9 @@
-"""Averages with honest error bars: the jackknife over blocks.
+"""Averages with standard errors from the jackknife over blocks.
 
-Successive snapshots are correlated; means over blocks much longer than the correlation time are
-not. Neither are replicas, or groups of them. The jackknife leaves out one block at a time, which
-gives the standard error of any function of the averages (a width, say), not only of the averages
-themselves. Blocks may differ in length: the weights are those of the delete-m_j jackknife (Busing,
+Successive snapshots are correlated. Means over blocks much longer than the correlation time are
+not, and neither are replicas or groups of them. The jackknife leaves out one block at a time. It
+gives the standard error of any function of the averages (e.g. a width), not only of the averages
+themselves. Blocks may differ in length. The weights are those of the delete-m_j jackknife (Busing,
 Meijer and van der Leeden, Statistics and Computing 9, 3-8, 1999).
 """
 
@@ -21,11 +21,11 @@ Array = NDArray[np.float64]
 def jackknife(
     function: Callable[[Array], Array], sums: Array, counts: NDArray[np.int64]
 ) -> tuple[Array, Array]:
-    """Value and standard error of ``function(averages)``, from sums over blocks.
+    """Return value and standard error of ``function(averages)``, from sums over blocks.
 
     ``counts``, shape (blocks, ...), says how many snapshots went into each block, ``sums`` has
     that shape and further dimensions behind, on which ``function`` works. Blocks without snapshots
-    are no blocks; with fewer than two nothing is known about the error, and it is infinite.
+    are left out. With fewer than two blocks the error is unknown, and infinity is returned.
     """
     total, number = sums.sum(axis=0), counts.sum(axis=0)
     value = function(total / _behind(number, total.ndim))
@@ -44,7 +44,7 @@ def jackknife(
 
 
 def jackknife_error(value: Array, left_out: Array, counts: NDArray[np.int64]) -> Array:
-    """Return the standard error of a value from those with one block left out each, (blocks, ...).
+    """Return the standard error from the values with one block left out each, (blocks, ...).
 
     ``counts`` as in :func:`jackknife`.
     """

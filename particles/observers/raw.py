@@ -1,4 +1,4 @@
-"""Raw snapshots, for whoever wants to measure something else."""
+"""Raw snapshots, for measurements that no other observer makes."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ from crazybilliards.particles.run import Run
 class Raw(Observer):
     """position and velocity of every chosen particle at every snapshot of every replica.
 
-    16 bytes per particle, snapshot and replica: ask for few snapshots with ``every``. Snapshots
-    that a run which was cut short did not come to are NaN. One time of it is a start for another
-    run: ``run.isel(time=-1)``.
+    It takes 16 bytes per particle, snapshot and replica, so ask for few snapshots with ``every``.
+    Snapshots that an interrupted run did not reach are NaN. A single time can be the start of
+    another run: ``run.isel(time=-1)``.
     """
 
     name = "snapshots"

@@ -26,13 +26,14 @@ class Velocities(Observer):
     """velocity_density: probability density of each chosen particle's velocity.
 
     The bins are equally wide in arsinh(v / 0.05 W). With 401 of them they are 0.0025 W wide near 0
-    and 5 % of v wide far out, up to 1000 W. They fit the narrow centre of a dissipative chain and
-    the tails of an anti-dissipative one alike, without a pilot run. 8 bytes a bin and particle.
+    and 5 % of v wide far out, up to 1000 W. They resolve the narrow centre of a dissipative chain
+    as well as the tails of an anti-dissipative one, without a pilot run. They take 8 bytes per bin
+    and particle.
 
     Parameters
     ----------
     bins
-        Number of bins, an odd number for one in the middle.
+        Number of bins. An odd number puts a bin in the middle.
     """
 
     name = "velocities"

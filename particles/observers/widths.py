@@ -31,11 +31,12 @@ _QUANTITIES = {
 class Widths(Averaged):
     """mean_displacement, displacement_width, mean_velocity and velocity_width W_v = sqrt(<v^2>).
 
-    The error of a mean displacement averaged in time also tells its autocorrelation time: over a
-    duration t the mean of a fluctuating quantity of width W and integrated autocorrelation time
-    tau has the variance 2 tau W^2/t. One free rod on a linear spring has tau = gamma/k.
+    The autocorrelation time follows from the error of a mean displacement averaged in time. Over a
+    duration t the mean of a fluctuating quantity of standard deviation w and integrated
+    autocorrelation time tau has the variance 2 tau w^2/t. One free rod on a linear spring has
+    tau = gamma/k.
 
-    Keeps the sums of d, d^2, v and v^2: 32 L bytes per block.
+    The sums of d, d^2, v and v^2 take 32 L bytes per block.
     """
 
     name = "widths"
@@ -68,7 +69,7 @@ class Widths(Averaged):
         variance = np.square(variables["displacement_width"][1])
         spread = np.square(variables["mean_displacement_error"][1])
         duration = counts.sum() * self.schedule.stride * self.schedule.time_step
-        # A rod that never moves has no time of its own: 0.
+        # A rod that never moves has no autocorrelation time: 0.
         time = np.divide(spread * duration, 2 * variance, where=variance > 0, out=0 * variance)
         variables["autocorrelation_time"] = (("particle",), time)
         return variables

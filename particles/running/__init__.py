@@ -1,1 +1,1 @@
-"""Carrying out a run: replicas, threads, checkpoints, one result."""
+"""The execution of a run: replicas, threads, checkpoints, one result."""

@@ -1,11 +1,11 @@
-"""Checkpoints: the whole state of a run in one file, so that it can go on where it stopped.
+"""Checkpoints: the whole state of a run in one file, from which the run can continue.
 
-A checkpoint holds, for every replica, positions, velocities, the state of the noise and what its
-observers have summed up. It also holds the identity of the run: parameters, schedule, seed, and a
-fingerprint of the source code, without which an edited kernel would continue the old run. It is
-written atomically, sealed with a checksum, and kept by one process at a time. Replicas are caught
-between two chunks, whose boundaries do not depend on when that is: a resumed run gives the same
-bits as an undisturbed one.
+A checkpoint holds the positions, the velocities, the state of the noise and the sums of the
+observers of every replica. It also holds the identity of the run: parameters, schedule, seed, and a
+fingerprint of the source code. Without the fingerprint an edited kernel would continue the old run.
+The file is written atomically, carries a checksum, and is used by one process at a time. Replicas
+are saved between two chunks. The boundaries of chunks do not depend on the time of saving, so a
+resumed run gives the same bits as an undisturbed one.
 """
 
 from __future__ import annotations
@@ -29,12 +29,12 @@ from crazybilliards.model.storage import make_folder, read_sealed, write_sealed
 from crazybilliards.particles.run import Run
 from crazybilliards.particles.running.replica import Replica
 
-# Taken together with the code: an edit while this process lives is not what it runs.
+# Computed when the code is loaded: this process does not run later edits.
 _SOURCE = room_fingerprint("model", "particles")
 
 
 class Checkpoint:
-    """The checkpoint file of one run; ``identity`` is what has to agree to go on."""
+    """The checkpoint file of one run, which continues only if ``identity`` agrees."""
 
     def __init__(self, path: Path, identity: Mapping[str, Any], interval: float) -> None:
         self.path = path
@@ -44,12 +44,12 @@ class Checkpoint:
 
     @contextmanager
     def resumed(self, replicas: Sequence[Replica]) -> Iterator[None]:
-        """Bring the replicas to the state in the file, if there is one, and keep others off it.
+        """Set the replicas to the state in the file, if there is one, and lock the file.
 
         Raises
         ------
         OSError
-            If the file cannot be read or written, or another run is keeping it.
+            If the file cannot be read or written, or another run is using it.
         ValueError
             If it is damaged, or not a checkpoint of this run.
         """
@@ -57,7 +57,7 @@ class Checkpoint:
         with locked(self.path):
             if self.path.exists():
                 self._restore(replicas)
-            self._write(replicas)  # shows before any work that the file can be written
+            self._write(replicas)  # this shows before any work that the file can be written
             yield
 
     def save_if_due(self, replicas: Sequence[Replica]) -> None:
@@ -66,13 +66,13 @@ class Checkpoint:
             self.save(replicas)
 
     def save(self, replicas: Sequence[Replica]) -> None:
-        """Write the state of all replicas, or warn: a full disk must not cost the run."""
+        """Write the state of all replicas; only warn if the disk is full, to keep the run."""
         try:
             self._write(replicas)
         except OSError as error:
             warnings.warn(
-                f"{self.path}: no checkpoint written: {error.strerror}; the run goes on, and what "
-                "was written before stays valid",
+                f"{self.path}: no checkpoint written: {error.strerror}; the run continues, and the "
+                "last checkpoint stays valid",
                 RuntimeWarning,
                 stacklevel=2,
             )
@@ -86,7 +86,7 @@ class Checkpoint:
                 for name, value in replica.state().items():
                     arrays[f"{number}/{name}"] = np.array(value)
         buffer = io.BytesIO()
-        with interrupts_held_back():  # in the middle of an archive it would end as another error
+        with interrupts_held_back():  # zipfile would turn a signal into another error
             np.savez(buffer, **arrays)  # type: ignore[arg-type]
         write_sealed(self.path, buffer.getvalue())
         self.saved = time.monotonic()
@@ -96,7 +96,7 @@ class Checkpoint:
         try:
             arrays = dict(np.load(io.BytesIO(content), allow_pickle=False))
             found = dict(json.loads(bytes(arrays["header"]))["identity"])
-        # Whatever numpy makes of a sealed file of another kind, a result for example.
+        # numpy may raise anything for a file of another kind with a valid checksum, e.g. a result.
         except Exception as error:
             raise ValueError(f"{self.path}: not a checkpoint") from error
         self._require_same_run(found)
@@ -123,7 +123,7 @@ class Checkpoint:
 
 
 def identity(run: Run) -> dict[str, Any]:
-    """Return everything that a run's bits depend on, by name."""
+    """Return by name everything that determines the bits of a run."""
     depends = run.provenance()
     return {
         **run.chain.parameters(),

@@ -1,4 +1,4 @@
-"""One result from many replicas: their measurements joined, with status, times and provenance."""
+"""Joins the measurements of many replicas to one result with status, times and provenance."""
 
 from __future__ import annotations
 
@@ -21,7 +21,8 @@ def collect(run: Run, replicas: list[Replica], interrupted: bool) -> xr.Dataset:
     reached = min(replica.reached for replica in replicas)
     counts = np.array([replica.counts for replica in replicas])
     if schedule.ensemble:
-        # Only times that no replica blew up before: the survivors alone would be a wrong average.
+        # Only times before the first divergence: the average over the other replicas would be
+        # biased.
         counts = counts[:, :reached]
         counts = counts[:, counts.sum(axis=0) > 0]
         times = schedule.times[: counts.shape[1]]

@@ -19,7 +19,7 @@ from crazybilliards.particles.stepping import Dynamics, advance, bounded, record
 
 Array = NDArray[np.float64]
 
-# Between two looks at Ctrl-C a replica takes about this many particle steps (some 20 ms).
+# Number of particle steps between two checks for Ctrl-C (about 20 ms).
 _CHUNK = 2**20
 
 NEVER = 2**62
@@ -31,8 +31,8 @@ _CHANGING = ("copy", "y", "v", "counts", "steps", "snapshots", "over", "reached"
 class Replica:
     """State and measurements of one copy of the chain, or of several, one after another.
 
-    In an ensemble the replicas come in groups that share their observers, so that a thousand of
-    them take no more memory than a few.
+    In an ensemble the replicas form groups that share their observers, so that a thousand replicas
+    take no more memory than a few.
     """
 
     schedule: Schedule
@@ -52,18 +52,18 @@ class Replica:
         self._start()
 
     def _start(self) -> None:
-        """Put the chain at the start of the present copy."""
+        """Set the chain to the start of the present copy."""
         self.y, self.v = (np.array(each) for each in self.starts[self.copy])
         self.noise = make_noise(self.streams[self.copy])
         self.steps, self.snapshots, self.over = 0, 0, False
 
     @property
     def diverged(self) -> bool:
-        """Whether any copy diverged so far."""
+        """Return whether any copy diverged so far."""
         return self.reached < NEVER
 
     def state(self) -> dict[str, ArrayLike]:
-        """Return all that changes while running."""
+        """Return everything that changes during the run."""
         state: dict[str, ArrayLike] = {name: getattr(self, name) for name in _CHANGING}
         state |= {f"noise {name}": getattr(self.noise, name) for name in STATE}
         for number, observer in enumerate(self.observers):
@@ -72,7 +72,7 @@ class Replica:
         return state
 
     def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Take over what :meth:`state` returned."""
+        """Restore the state that :meth:`state` returned."""
         for name in _CHANGING:
             restore(self, name, state[name])
         for name in STATE:
@@ -83,16 +83,16 @@ class Replica:
 
     @property
     def total(self) -> float:
-        """Time that it has to simulate, warm-up included."""
+        """Time that the replica has to simulate, warm-up included."""
         return len(self.starts) * self.schedule.steps * self.schedule.time_step
 
     @property
     def done(self) -> float:
-        """Time that it has simulated."""
+        """Time that the replica has simulated."""
         return (self.copy * self.schedule.steps + self.steps) * self.schedule.time_step
 
     def work(self, stop: Event) -> Iterator[float]:
-        """Run, holding the lock during each chunk; yield what was ``done`` in every chunk."""
+        """Run and hold the lock during each chunk; yield the work ``done`` in every chunk."""
         chunks = self.run(stop)
         while True:
             with self.lock:
@@ -135,7 +135,7 @@ class Replica:
             tally.contacts[:] = 0
             if due == 0:  # the start of an ensemble
                 y_buffer[0], v_buffer[0], good, steps = self.y, self.v, 1, 0
-            elif due > chunk:  # no snapshot yet, but Ctrl-C and checkpoints must not wait for it
+            elif due > chunk:  # no snapshot is due, but Ctrl-C must not wait
                 n, good, steps = 0, 0, chunk
                 if not self._advance(scratch, tally, steps):
                     self._diverge(block)
@@ -144,7 +144,7 @@ class Replica:
                 good = self._record(scratch, tally, due, n, y_buffer, v_buffer)
                 steps = good * due
             self._observe(block, y_buffer[..., :good, :], v_buffer[..., :good, :], tally)
-            # All before the yield, where a checkpoint may be taken.
+            # All updates come before the yield, where a checkpoint may be saved.
             self.counts[block] += good
             self.snapshots += good
             self.steps += steps
@@ -152,10 +152,10 @@ class Replica:
                 self._diverge(block)
             yield steps
 
-    # What a pair of coupled chains does in its own way, see ``sampler.py``.
+    # A pair of coupled chains overrides the following methods, see ``sampler.py``.
 
     def _chunk(self) -> int:
-        """Return the steps between two looks at Ctrl-C."""
+        """Return the steps between two checks for Ctrl-C."""
         return max(_CHUNK // self.y.shape[-1], 1)
 
     def _scratch(self) -> Any:
@@ -163,22 +163,22 @@ class Replica:
         return make_scratch(self.y.size)
 
     def _advance(self, scratch: Any, tally: Tally, steps: int) -> bool:
-        """Take steps without snapshots; return whether the chain did not diverge in them."""
+        """Take steps without snapshots; return False if the chain diverged."""
         met = advance(self.y, self.v, self.noise, self.dynamics, scratch, tally, steps)
         return bool(met >= 0 and bounded(self.y, self.v, self.dynamics.fastest))
 
     def _record(self, scratch: Any, tally: Tally, due: int, n: int, y: Array, v: Array) -> int:
-        """Fill ``n`` rows of the buffers, ``due`` steps apart; return how many are good."""
+        """Fill ``n`` rows of the buffers, ``due`` steps apart; return the number of valid rows."""
         state = self.y, self.v, self.noise, self.dynamics, scratch, tally
         return int(record(*state, due, y[:n], v[:n]))
 
     def _block(self) -> tuple[int, int]:
-        """Return the block under way, and how many snapshots it has room for."""
+        """Return the current block, and the number of snapshots that it still needs."""
         block, taken = divmod(self.snapshots, self.schedule.snapshots_per_block)
         return block, self.schedule.snapshots_per_block - taken
 
     def _observe(self, block: int, y: Array, v: Array, tally: Tally) -> None:
-        """Hand snapshots of a block to the observers."""
+        """Give snapshots of a block to the observers."""
         snapshots = Snapshots(block, self.snapshots, self.copy, y, v, tally.contacts)
         for observer in self.observers:
             observer.observe(snapshots)
@@ -187,7 +187,7 @@ class Replica:
         self.over, self.reached = True, min(self.reached, block)
 
     def _tally(self) -> Tally:
-        """Return what the kernels write collisions into: counts, and what observers add to it."""
+        """Return the record of collisions: counts, and the arrays that observers add."""
         tally = make_tally(self.y.size, contacts=self.dynamics.law.operator == EVENTS)
         for observer in self.observers:
             tally = observer.tally(tally)

@@ -1,9 +1,9 @@
-"""A trajectory that is measured in rounds: of one chain, or of two at coupled time steps.
+"""A trajectory that is measured in rounds, of one chain or of two at coupled time steps.
 
-It is a replica whose observers come in groups, each with sums of its own. In every round the
-trajectory goes on from where it is and hands the groups equally many snapshots, one group after
-another. So nothing is warmed up twice, nothing measured is thrown away, and leaving out one group
-at a time gives the standard error of anything that observers report.
+It is a replica whose observers form groups, each with its own sums. In every round the trajectory
+continues and gives each group the same number of snapshots, one group after the other. There is
+therefore only one warm-up, and no measurement is thrown away. Leaving out one group at a time gives
+the standard error of everything that the observers report.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ _CHANGING = ("correlation", "counts", "steps", "snapshots", "over", "reached")
 class Sampler(Replica):
     """One trajectory at the step of ``finer``, or coupled to one at the longer step of ``coarser``.
 
-    It does nothing until it is asked for snapshots by :meth:`extend`.
+    It takes no steps until :meth:`extend` requests snapshots.
     """
 
     def __init__(
@@ -54,11 +54,11 @@ class Sampler(Replica):
             self.y, self.v = (np.array([each, each]) for each in (self.y, self.v))
 
     def _set_steps(self) -> None:
-        """Work out what follows from the chains and the snapshots asked for."""
+        """Compute the quantities that follow from the chains and the requested snapshots."""
         schedule = (self.coarser or self.finer).schedule
         groups = self.counts.size
         self.schedule = replace(schedule, blocks=groups, snapshots_per_block=self.target)
-        # Rods moved with every step that is counted.
+        # Number of rods that move in every counted step.
         self.weight = self.finer.chain.size
         if self.coarser is not None:
             self.both = self.dynamics, self.coarser.dynamics()
@@ -66,7 +66,7 @@ class Sampler(Replica):
             self.weight *= 1 + self.ratio
 
     def extend(self, target: int) -> None:
-        """Ask for so many snapshots in every group, those that are there included."""
+        """Request this number of snapshots in every group, including the existing ones."""
         if not self.measured:
             runs = [run for run in (self.finer, self.coarser) if run is not None]
             self.measured = [
@@ -77,9 +77,9 @@ class Sampler(Replica):
         self._set_steps()
 
     def uncouple(self, correlation: float) -> None:
-        """Go on with the finer chain alone, after they turned out to be correlated by so much.
+        """Continue with the finer chain alone; ``correlation`` is recorded.
 
-        What the coarser one measured is not used any more.
+        The measurements of the coarser chain are not used any more.
         """
         self.correlation = correlation
         self.steps *= self.ratio
@@ -90,16 +90,16 @@ class Sampler(Replica):
 
     @property
     def total(self) -> float:
-        """Steps of rods to take in all, up to the end of the round."""
+        """Total number of rod steps up to the end of the round."""
         return float(self.schedule.steps * self.weight if self.target else 0)
 
     @property
     def done(self) -> float:
-        """Steps of rods taken."""
+        """Number of rod steps taken."""
         return float(self.steps * self.weight)
 
     def state(self) -> dict[str, ArrayLike]:
-        """Return all that changes while running."""
+        """Return everything that changes during the run."""
         state: dict[str, ArrayLike] = {
             "before": self.before,
             "target": self.target,
@@ -112,7 +112,7 @@ class Sampler(Replica):
         return state
 
     def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Take over what :meth:`state` returned."""
+        """Restore the state that :meth:`state` returned."""
         if self.coarser is not None and not state["coupled"]:
             self.uncouple(0.0)
         if state["target"]:
@@ -127,14 +127,14 @@ class Sampler(Replica):
                 restore(observer, name, state[f"{place} {name}"])
 
     def _places(self) -> Iterator[tuple[str, Observer]]:
-        """Return every observer with a name of its place."""
+        """Return every observer with a name that gives its group and chain."""
         for group, chains in enumerate(self.measured):
             for chain, observers in enumerate(chains):
                 for number, observer in enumerate(observers):
                     yield f"observer {group} {chain} {number}", observer
 
     def run(self, stop: Event) -> Iterator[int]:
-        """Go on to the end of the round; yield the number of steps after every chunk."""
+        """Continue to the end of the round; yield the number of steps after every chunk."""
         if self.target:
             yield from super().run(stop)
 
@@ -179,7 +179,7 @@ class Sampler(Replica):
 
 
 def groups_of(samplers: Sequence[Sampler]) -> tuple[list[list[list[Observer]]], NDArray[np.int64]]:
-    """Return the groups that have measured anything, and the snapshots in each."""
+    """Return the groups that have measurements, and the number of snapshots in each."""
     groups = [group for sampler in samplers for group in sampler.measured]
     counts = np.concatenate([sampler.counts for sampler in samplers if sampler.measured])
     return [group for group, n in zip(groups, counts, strict=True) if n], counts[counts > 0]

@@ -1,4 +1,4 @@
-"""Running replicas in threads: progress, Ctrl-C and SIGTERM, checkpoints on the way."""
+"""Replicas in threads: progress bar, Ctrl-C and SIGTERM, checkpoints during the run."""
 
 from __future__ import annotations
 
@@ -49,14 +49,14 @@ def run_all(
             stop.set()
             _finish(futures, replicas, keeper)
         finally:
-            stop.set()  # or leaving would wait for the end of the run
+            stop.set()  # otherwise leaving the block would wait for the end of the run
     return interrupted
 
 
 def _finish(
     futures: list[Future[None]], replicas: Sequence[Replica], keeper: Checkpoint | None
 ) -> None:
-    """Wait for all, or for the first that fails, and keep the checkpoint; see signals soon."""
+    """Wait for all, or for the first failure; save checkpoints and react to signals soon."""
     timeout = 0.5 if keeper is None else min(0.5, keeper.interval)
     while True:
         done, pending = wait(futures, timeout=timeout, return_when=FIRST_EXCEPTION)

@@ -78,7 +78,7 @@ def test_the_tree_holds_everything_with_its_chain(tree):
 
 
 def test_rods_that_hardly_touch_go_without_the_arctanh_but_lose_nothing():
-    with pytest.warns(UserWarning, match="goes without the arctanh: no arctanh fits"):
+    with pytest.warns(UserWarning, match="has no arctanh fit: no arctanh fits"):
         tree = compare_elastic(Chain(size=20, gap=5), (1.0,), duration=5000, progress=False)
     assert list(tree["amplitude_1"].children) == ["simulation", "exact", "labels"]
     assert set(deviations(tree)["amplitude_1"]) == {"exact", "labels"}

@@ -153,7 +153,7 @@ def test_the_death_of_the_scheduler_is_one_line(number, scheduler, tmp_path, mon
     monkeypatch.setattr(logging.getLogger("distributed"), "propagate", True)
     monkeypatch.setattr(logging.getLogger("distributed.client"), "propagate", True)
     with (
-        pytest.raises(RuntimeError, match="the dask scheduler is gone; what was finished is kept"),
+        pytest.raises(RuntimeError, match="the dask scheduler is gone; finished cases are kept"),
         dask_cluster(address) as executor,
     ):
         run_cases(cases, tmp_path / "results", Killing(), progress=False)

@@ -117,4 +117,4 @@ def test_a_warning_is_one_plain_line(run):
     assert done.returncode == 0
     lines = [line for line in done.stderr.splitlines() if "compiling" not in line]
     (line,) = lines
-    assert line.startswith("crazybilliards: warning: A = 1 goes without the arctanh: ")
+    assert line.startswith("crazybilliards: warning: A = 1 has no arctanh fit: ")

@@ -1,0 +1,100 @@
+"""What a program can check of the prose: phrases to avoid, long sentences, links, citations.
+
+Prose linters were tried. Of the findings of proselint on these pages nearly all were quotes in
+code and the word "resume". vale downloads its program when it is first used. Neither knows the
+phrases that readers of this project stumbled over, so those are listed here.
+"""
+
+import ast
+import re
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+ROOMS = ("api", "model", "particles", "kinetic", "comparison")
+WRITTEN_BY_A_PROGRAM = ROOT / "docs" / "paper" / "claims.md"
+PAGES = [
+    ROOT / "README.md",
+    ROOT / "CONTRIBUTING.md",
+    ROOT / "paper.md",
+    *(page for page in sorted((ROOT / "docs").rglob("*.md")) if page != WRITTEN_BY_A_PROGRAM),
+]
+MODULES = [
+    path
+    for room in ROOMS
+    for path in sorted((ROOT / room).rglob("*.py"))
+    if "explore" not in path.parts
+]
+AVOID = {
+    r"\boff (restitution|\$?e\b)": "for e != 1",
+    r"\bwhoever\b": "name the person or thing",
+    r"\bwhat is left\b": "the remaining error, the rest",
+    r", say\b|\bsay\)": "for example",
+    r"\b(take|takes|taken|took) (\w+ )?down\b": "record",
+    r"\b(gives|gave|given) up\b": "stops",
+    r"\bdearer\b": "more expensive",
+    r"\bfor certain\b": "leave it out",
+    r"\b(that|which) (is|are) none\b": "say what it is not",
+    r"\bone's own\b": "your own",
+    r"\bof today\b": "current",
+    r"\bwhat about grants\b": "tolerance",
+}
+MOST_WORDS = 45
+
+
+def plain(text):
+    """Return a page without code, formulas, tables, and the targets of links."""
+    text = re.sub(r"\A---\n.*?\n---\n", "", text, flags=re.DOTALL)
+    text = re.sub(r"```.*?```|\$\$.*?\$\$", "\n\n", text, flags=re.DOTALL)
+    text = re.sub(r"^ *\|.*$", "", text, flags=re.MULTILINE)
+    text = re.sub(r"`[^`]*`|\$[^$]*\$", "X", text)
+    return re.sub(r"\]\([^)]*\)", "]", text)
+
+
+def sentences(text):
+    for paragraph in re.split(r"\n\s*\n|\n\s*(?:[*-]|\d+\.|:) |\n#+ ", text):
+        yield from re.split(r"(?<=[.!?:;])[*)]*\s+", " ".join(paragraph.split()))
+
+
+def found(text):
+    return {
+        f"{match[0]!r}: {better}"
+        for phrase, better in AVOID.items()
+        for match in re.finditer(phrase, " ".join(text.split()), re.IGNORECASE)
+    }
+
+
+def named(path):
+    return path.relative_to(ROOT).as_posix()
+
+
+@pytest.mark.parametrize("page", PAGES, ids=named)
+def test_a_page_is_plain(page):
+    text = plain(page.read_text(encoding="utf-8"))
+    assert not found(text)
+    long = [each for each in sentences(text) if len(re.findall("[A-Za-z]{2,}", each)) > MOST_WORDS]
+    assert not long
+
+
+@pytest.mark.parametrize("module", MODULES, ids=named)
+def test_docstrings_are_plain(module):
+    tree = ast.parse(module.read_text(encoding="utf-8"))
+    kinds = (ast.Module, ast.ClassDef, ast.FunctionDef)
+    docstrings = [ast.get_docstring(node) for node in ast.walk(tree) if isinstance(node, kinds)]
+    assert not found("\n".join(filter(None, docstrings)))
+
+
+@pytest.mark.parametrize("page", ["README.md", "CONTRIBUTING.md"])
+def test_links_of_the_front_pages_lead_somewhere(page):
+    """Sphinx checks the links of docs/ only."""
+    targets = re.findall(r"\]\((?!http)([^)#]+)", (ROOT / page).read_text(encoding="utf-8"))
+    assert targets
+    assert not [target for target in targets if not (ROOT / target).exists()]
+
+
+def test_the_draft_of_the_paper_cites_what_its_bibliography_holds():
+    cited = set(re.findall(r"@(\w+)", (ROOT / "paper.md").read_text(encoding="utf-8")))
+    entries = re.findall(r"^@\w+\{(\w+),", (ROOT / "paper.bib").read_text(), re.MULTILINE)
+    assert cited == set(entries)
+    assert len(entries) == len(set(entries))
