@@ -87,8 +87,8 @@ class Claim:
     exactly
         What is true beyond what an eye can see, whatever the verdict (or "").
     in_limit
-        Whether the number is the limit of a vanishing time step, its error holding what is left of
-        the step. Otherwise it belongs to the time step of its runs.
+        Whether the number is the limit of a vanishing time step, its error including the
+        remaining error of the step. Otherwise it belongs to the time step of its runs.
     """
 
     statement: str

@@ -1,6 +1,6 @@
 """Dissipative chains in the limit of a vanishing time step, beside the runs at a time step.
 
-The error bar of a limit holds its statistics and what is left of its time step. Independent limits
+The error bar of a limit holds its statistics and the remaining error of the step. Independent limits
 of one chain have the second part in common: the mean of many does not make it smaller.
 """
 
@@ -63,7 +63,7 @@ def _relative_error(run: xr.Dataset) -> float:
 
 
 def common_bias(runs: list[xr.Dataset]) -> float:
-    """Return what is left of the time step in W_v of the centre, relative, mean of the limits."""
+    """Return the remaining relative error of the step in W_v of the centre, mean of the limits."""
     return float(np.mean([run.attrs["time_step_error"] for run in runs]))
 
 
@@ -73,7 +73,7 @@ def limit_estimate(
     """Return a number drawn from W_v(i) for dt -> 0 at e = 0, an exponent say.
 
     Its statistics are the scatter between the limits. Its bias is by how much it moves if W_v is
-    off by what is left of the time step: in the centre by that share, elsewhere by less, as r^3,
+    off by the remaining error of the step: in the centre by that share, elsewhere by less, as r^3,
     r being the velocity kick of a step over W_v.
     """
     runs = members(results, limit_name(size))
