@@ -25,6 +25,8 @@ class Theory:
         The name of the function in ``crazybilliards.kinetic``, ``"equilibrium"`` say.
     title
         What it is called in tables and legends.
+    judged_by
+        What the attribute ``model_error`` of its results is an error of.
     module
         The module below ``crazybilliards.kinetic`` that holds the function, and beside it
         ``check_NAME``.
@@ -33,6 +35,7 @@ class Theory:
     name: str
     title: str
     module: str
+    judged_by: str = "W_v of the particles 3 to L-2"
 
     @property
     def solve(self) -> Callable[..., xr.Dataset]:
@@ -52,7 +55,12 @@ THEORIES = {
     theory.name: theory
     for theory in (
         Theory("equilibrium", "exact equilibrium", "exact.gibbs_measure"),
-        Theory("force_balance", "force balance", "statics.balance"),
+        Theory(
+            "force_balance",
+            "force balance",
+            "statics.balance",
+            "the smoothed density, of close packing",
+        ),
         Theory("phase_space", "kinetic equation", "kinetic_equation.stationary"),
         Theory(
             "correlated_phase_space",

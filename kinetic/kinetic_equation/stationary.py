@@ -23,6 +23,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from crazybilliards.kinetic.kinetic_equation.accuracy import expected_accuracy
 from crazybilliards.kinetic.kinetic_equation.continuation import (
     State,
     continued,
@@ -84,7 +85,9 @@ def phase_space(
         ``mean_displacement`` and, without gap, ``displacement_width`` over particle.
         ``attrs``: ``residual``, the last Newton step relative to max f; ``mesh_error``, the
         largest relative change of a velocity width in the last refinement (NaN if ``cells`` was
-        given); ``cells``.
+        given); ``cells``; ``model_error`` and ``border_error``, the relative error of W_v that
+        the theory had in simulations of chains like this one, over particles 3 to L - 2 and of
+        the first and the last (NaN where none was measured).
         The flow velocity should vanish, and does to 1e-9 W wherever there are rods.
 
     Notes
@@ -207,5 +210,11 @@ def _assemble(state: State, of_rods: Rods, mesh_error: float) -> xr.Dataset:
         method={"theory": "kinetic equation", "order": state.order, "cells": state.space.cells},
         residual=state.residual,
     )
-    dataset.attrs |= {"mesh_error": mesh_error, "cells": state.space.cells}
+    expected = expected_accuracy(chain)
+    dataset.attrs |= {
+        "mesh_error": mesh_error,
+        "cells": state.space.cells,
+        "model_error": expected.inner,
+        "border_error": expected.border,
+    }
     return dataset
