@@ -14,6 +14,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from crazybilliards.comparison.waiting import waiting_for
 from crazybilliards.kinetic import (
     compressed,
     displaced,
@@ -88,9 +89,10 @@ def compare_relaxation(
     # The fluids first: they take a second, and complain of a wrong duration before the long run.
     results = {}
     for name, variance in FLUIDS.items():
-        results[name] = hydrodynamics(
-            chain, fluid, duration, every=every, velocity_variance=variance, progress=False
-        )
+        with waiting_for(f"solving: {LEGEND[name]}", progress):
+            results[name] = hydrodynamics(
+                chain, fluid, duration, every=every, velocity_variance=variance, progress=False
+            )
         if results[name].attrs["status"] == "interrupted":
             raise KeyboardInterrupt("interrupted before the simulation")
     if chain.gap == 0 and chain.spring == "linear":
@@ -105,7 +107,7 @@ def compare_relaxation(
         observe=("widths", "density"),
         seed=seed,
         threads=threads,
-        progress=progress,
+        progress=progress and f"{replicas} chains",
     )
     # 32 groups of densities in time would be nine tenths of all the data.
     results[PARTICLES] = ensemble.drop_vars("density_block")
