@@ -77,7 +77,7 @@ def test_the_figures_of_the_main_comparison(amplitudes):
         assert sorted(labels) == [
             "exact",
             "force balance, arctanh fit",
-            "force balance, by labels",
+            "force balance, without fit",
             "simulation",
         ]
         assert all(ax.get_ylabel() for ax in axes)
