@@ -16,6 +16,7 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure, FigureBase
+from matplotlib.font_manager import FontProperties
 
 Columns = Literal[1, 2]
 
@@ -77,12 +78,12 @@ def panels(
 def letter(axes: Sequence[Axes]) -> None:
     """Call panels (a), (b), ..."""
     for name, ax in zip(string.ascii_lowercase, axes, strict=False):
-        ax.set_title(f"({name})")
+        ax.set_title(f"({name})", loc="left")
 
 
 def entitle(ax: Axes, text: str) -> None:
     """Write what a panel shows behind its letter."""
-    ax.set_title(f"{ax.get_title(loc='left')}  {text}".strip())
+    ax.set_title(f"{ax.get_title(loc='left')}  {text}".strip(), loc="left")
 
 
 def legend_above(
@@ -96,7 +97,7 @@ def legend_above(
     handles, labels = [*handles, *(h for h, _ in extra)], [*labels, *(text for _, text in extra)]
     if not handles:
         return
-    size = plt.rcParams["legend.fontsize"] / 72
+    size = FontProperties(size=plt.rcParams["legend.fontsize"]).get_size_in_points() / 72
     longest = max(len(text.replace("$", "").replace("\\", "")) for text in labels)
     width = (figure.figure or figure).get_figwidth()  # type: ignore[union-attr]
     fit = max(1, int(width / (size * (0.55 * longest + 4))))

@@ -124,13 +124,14 @@ def _write_comparison(tree: xr.DataTree, folder: Path, suffix: str) -> None:
     import matplotlib
 
     matplotlib.use("Agg")
+    from crazybilliards.comparison.panels import house_style
     from crazybilliards.comparison.studies.elastic_figures import draw_density, draw_displacement
     from crazybilliards.comparison.waiting import waiting_for
     from crazybilliards.model import save
 
     # The data first: a failing picture must not cost the computation.
     wrote(save(tree, folder / f"comparison{suffix}.nc"))
-    with waiting_for("drawing"):
+    with waiting_for("drawing"), house_style():
         figures = {"density": draw_density(tree), "displacement": draw_displacement(tree)}
         write_figures(folder, suffix, **figures)
 
@@ -183,13 +184,14 @@ def _write_restitutions(tree: xr.DataTree, folder: Path, suffix: str) -> None:
     import matplotlib
 
     matplotlib.use("Agg")
+    from crazybilliards.comparison.panels import house_style
     from crazybilliards.comparison.studies.restitution_figures import draw_phase_space, draw_widths
     from crazybilliards.comparison.studies.restitutions import THEORY
     from crazybilliards.comparison.waiting import waiting_for
     from crazybilliards.model import save
 
     wrote(save(tree, folder / f"comparison{suffix}.nc"))
-    with waiting_for("drawing"):
+    with waiting_for("drawing"), house_style():
         figures = {"widths": draw_widths(tree)}
         figures |= {
             f"phase_space_{name}": draw_phase_space(group[THEORY].to_dataset())

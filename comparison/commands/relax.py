@@ -25,6 +25,12 @@ if TYPE_CHECKING:
     from crazybilliards.model import Chain
 
 
+_WHAT_TO_SEE = (
+    "Density of the rods in time. Watch when and where the lines leave the symbols: a fluid whose "
+    "temperature is held constant swings, rods that collide heat up and do not."
+)
+
+
 @with_chain_options(without=("restitution",), amplitude=30.0)
 def command(
     chain: Chain,
@@ -32,7 +38,8 @@ def command(
         Path | None,
         typer.Option(
             help="Folder for relaxation.nc, spacetime.png, profiles.png, cloud.png, "
-            "relaxation.html and relaxation.gif, made if missing; without it nothing is written.",
+            "relaxation.html and relaxation.gif, made if missing; without it nothing is written. "
+            "The first holds smoothed densities, all that the pictures show.",
             parser=place,
             metavar="FOLDER",
         ),
@@ -99,14 +106,17 @@ def _write_relaxation(tree: xr.DataTree, folder: Path, suffix: str) -> None:
     import matplotlib
 
     matplotlib.use("Agg")
+    from crazybilliards.comparison.panels import house_style
     from crazybilliards.comparison.studies import relaxation_figures as figures
     from crazybilliards.comparison.studies.animation_page import standalone_page
+    from crazybilliards.comparison.studies.relaxation import condensed
     from crazybilliards.comparison.waiting import waiting_for
     from crazybilliards.model import save
     from crazybilliards.model.storage import write_atomically
 
+    tree = condensed(tree)
     wrote(save(tree, folder / f"relaxation{suffix}.nc"))
-    with waiting_for("drawing"):
+    with waiting_for("drawing"), house_style():
         write_figures(
             folder,
             suffix,
@@ -117,9 +127,10 @@ def _write_relaxation(tree: xr.DataTree, folder: Path, suffix: str) -> None:
     animation = figures.animate(tree)
     # matplotlib wants a name, not a stream.
     with waiting_for("drawing the animation"), tempfile.TemporaryDirectory() as scratch:
+        page = standalone_page(animation, title=figures.title(tree), text=_WHAT_TO_SEE)
         gif = Path(scratch, "relaxation.gif")
-        animation.save(gif, writer="pillow", dpi=80)
-        contents = {"html": standalone_page(animation).encode(), "gif": gif.read_bytes()}
+        animation.save(gif, writer="pillow", dpi=100)
+        contents = {"html": page.encode(), "gif": gif.read_bytes()}
     for kind, content in contents.items():
         path = folder / f"relaxation{suffix}.{kind}"
         write_atomically(path, content)

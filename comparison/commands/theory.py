@@ -127,16 +127,17 @@ def _write(theory: Theory, result: xr.Dataset, folder: Path) -> None:
     import matplotlib
 
     matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
-
     from crazybilliards.comparison.drawing import overlay
+    from crazybilliards.comparison.panels import house_style, panels
     from crazybilliards.comparison.studies.restitution_figures import draw_phase_space, draw_profile
+    from crazybilliards.comparison.waiting import waiting_for
     from crazybilliards.model import save
 
     wrote(save(result, folder / "theory.nc"))
-    density, ax = plt.subplots(layout="constrained")
-    overlay({theory.title: result}, ax=ax).legend()
-    figures = {"density": density, "profile": draw_profile(result)}
-    if "phase_space_density" in result:
-        figures["phase_space"] = draw_phase_space(result)
-    write_figures(folder, "", **figures)
+    with waiting_for("drawing"), house_style():
+        density, [ax] = panels(1, 1, wanted=1)
+        overlay({theory.title: result}, ax=ax).legend(loc="lower center")
+        figures = {"density": density, "profile": draw_profile(result, theory.title)}
+        if "phase_space_density" in result:
+            figures["phase_space"] = draw_phase_space(result)
+        write_figures(folder, "", **figures)
