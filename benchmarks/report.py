@@ -54,9 +54,11 @@ def draw(costs: dict[str, dict[int, float]], figure: Path) -> None:
                 look |= {"markerfacecolor": "none"}
             ax.plot(list(by_size), list(by_size.values()), label=work, **look)
         for name, cost in PEERS.items():
-            ax.plot(1000, cost, "*", color="black", markersize=6)
+            ax.plot(1000, cost, "*", color="black", markersize=7, markerfacecolor="none")
             ax.annotate(name, (1000, cost), xytext=(6, -3), textcoords="offset points")
-        ax.plot([], [], "*", color="black", label="others, measured elsewhere")
+        ax.plot(
+            [], [], "*", color="black", markerfacecolor="none", label="others, measured elsewhere"
+        )
         ax.set(xscale="log", yscale="log", xlabel="rods $L$", ylabel="cost per rod and step [ns]")
         ax.set_ylim(2, 2e5)
         legend_above(drawn, ax)

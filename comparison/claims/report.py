@@ -55,9 +55,14 @@ class Reproduced:
     seconds: float
 
     @property
+    def picture(self) -> bytes:
+        """The picture as PNG."""
+        return self.pictures["png"]
+
+    @property
     def embedded(self) -> str:
         """The picture as text, for one self-contained page."""
-        return base64.b64encode(self.pictures["png"]).decode()
+        return base64.b64encode(self.picture).decode()
 
     @property
     def parts(self) -> dict[str, list[Claim]]:
