@@ -15,7 +15,7 @@ import matplotlib
 matplotlib.use("Agg")
 import numpy as np
 
-from crazybilliards.comparison.panels import house_style, panels
+from crazybilliards.comparison.layout import house_style, panels
 from crazybilliards.kinetic import critical_size
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate

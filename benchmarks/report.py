@@ -15,7 +15,7 @@ matplotlib.use("agg")
 from particle_steps import NOISE, SIZES
 
 from crazybilliards.comparison.drawing import COLOURS, SYMBOLS
-from crazybilliards.comparison.panels import house_style, legend_above, panels
+from crazybilliards.comparison.layout import house_style, legend_above, panels
 
 # Measured elsewhere, on the same kind of machine, for L = 1000, dt = 1e-3, e = 0 [ns].
 PEERS = {"Siconos (Lemke)": 80_000, "pymunk": 780, "MuJoCo": 470}

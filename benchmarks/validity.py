@@ -15,7 +15,7 @@ matplotlib.use("Agg")
 from matplotlib.axes import Axes
 
 from crazybilliards.comparison.drawing import COLOURS, SYMBOLS
-from crazybilliards.comparison.panels import entitle, house_style, legend_above, panels
+from crazybilliards.comparison.layout import entitle, house_style, legend_above, panels
 from crazybilliards.comparison.studies.restitutions import WidthDeviation, width_deviation
 from crazybilliards.kinetic import phase_space
 from crazybilliards.model import Chain, load, save

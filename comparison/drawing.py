@@ -97,6 +97,7 @@ def overlay(
         values, own = dataset[quantity], dict((style or {}).get(label, {}))
         axes = [name for name in ("x", "time") if name in values.dims]
         abscissa = dataset[axes[0] if axes else along]
+        look: dict[str, Any]
         if dataset.attrs.get("source") == "simulation":
             # The first and the last are always among them: at the border theories differ most.
             count = min(abscissa.size, _MOST_SYMBOLS)
@@ -108,7 +109,9 @@ def overlay(
                 abscissa[shown], values[shown], None if error is None else error[shown], **look
             )
         else:
-            ax.plot(abscissa, values, **{"label": label, "zorder": 2} | next(lines) | own)
+            look = {"label": label, "zorder": 2}
+            look |= next(lines) | own
+            ax.plot(abscissa, values, **look)
         ax.set_xlabel(_axis_label(abscissa))
         ax.set_ylabel(_axis_label(values))
     return ax

@@ -21,7 +21,7 @@ import matplotlib.pyplot as plt
 
 from crazybilliards.comparison.claims.study import Cases, Quality, Results, Study
 from crazybilliards.comparison.claims.verdicts import Claim, Verdict
-from crazybilliards.comparison.panels import Columns, house_style
+from crazybilliards.comparison.layout import Columns, house_style
 from crazybilliards.comparison.sweeps import Case
 
 _NO_DATE = {"pdf": {"CreationDate": None}, "svg": {"Date": None}}
@@ -91,7 +91,7 @@ def reproduce(
     """Draw studies and check their claims, one after another, from the cases in ``folder``.
 
     ``keep_old`` as in :func:`crazybilliards.comparison.sweeps.run_cases`. ``columns``: the width
-    of the pictures, as :func:`crazybilliards.comparison.panels.house_style` takes it. ``formats``:
+    of the pictures, as :func:`crazybilliards.comparison.layout.house_style` takes it. ``formats``:
     file formats of matplotlib, besides PNG.
     """
     load = cache(lambda case: case.load(folder, keep_old=keep_old))  # many studies share cases

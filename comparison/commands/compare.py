@@ -124,7 +124,7 @@ def _write_comparison(tree: xr.DataTree, folder: Path, suffix: str) -> None:
     import matplotlib
 
     matplotlib.use("Agg")
-    from crazybilliards.comparison.panels import house_style
+    from crazybilliards.comparison.layout import house_style
     from crazybilliards.comparison.studies.elastic_figures import draw_density, draw_displacement
     from crazybilliards.comparison.waiting import waiting_for
     from crazybilliards.model import save
@@ -184,7 +184,7 @@ def _write_restitutions(tree: xr.DataTree, folder: Path, suffix: str) -> None:
     import matplotlib
 
     matplotlib.use("Agg")
-    from crazybilliards.comparison.panels import house_style
+    from crazybilliards.comparison.layout import house_style
     from crazybilliards.comparison.studies.restitution_figures import draw_phase_space, draw_widths
     from crazybilliards.comparison.studies.restitutions import THEORY
     from crazybilliards.comparison.waiting import waiting_for

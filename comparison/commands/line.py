@@ -63,7 +63,8 @@ def crazybilliards(
 for module in (compare, simulate, theory, relax, reproduce, sweep, explore):
     app.command(
         module.__name__.rpartition(".")[2],
-        short_help=inspect.getdoc(module.command).partition("\n")[0],  # which is not cut then
+        # Given like this it is not cut to one line.
+        short_help=(inspect.getdoc(module.command) or "").partition("\n")[0],
     )(module.command if module is explore else with_json(module.command))
 
 

@@ -106,7 +106,7 @@ def _write_relaxation(tree: xr.DataTree, folder: Path, suffix: str) -> None:
     import matplotlib
 
     matplotlib.use("Agg")
-    from crazybilliards.comparison.panels import house_style
+    from crazybilliards.comparison.layout import house_style
     from crazybilliards.comparison.studies import relaxation_figures as figures
     from crazybilliards.comparison.studies.animation_page import standalone_page
     from crazybilliards.comparison.studies.relaxation import condensed

@@ -128,7 +128,7 @@ def _write(theory: Theory, result: xr.Dataset, folder: Path) -> None:
 
     matplotlib.use("Agg")
     from crazybilliards.comparison.drawing import overlay
-    from crazybilliards.comparison.panels import house_style, panels
+    from crazybilliards.comparison.layout import house_style, panels
     from crazybilliards.comparison.studies.restitution_figures import draw_phase_space, draw_profile
     from crazybilliards.comparison.waiting import waiting_for
     from crazybilliards.model import save

@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 
 from crazybilliards.comparison.coverage import smooth
 from crazybilliards.comparison.drawing import overlay
-from crazybilliards.comparison.panels import entitle, legend_above, letter, picture_width
+from crazybilliards.comparison.layout import entitle, legend_above, letter, picture_width
 from crazybilliards.comparison.studies.elastic_chain import LEGEND
 from crazybilliards.comparison.studies.parameter_series import SIMULATION
 from crazybilliards.model import Chain, chain_of

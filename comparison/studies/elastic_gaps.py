@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from crazybilliards.comparison.claims.study import Cases, Quality, Results, Study
 from crazybilliards.comparison.claims.verdicts import Claim, same_claim
 from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_rods
-from crazybilliards.comparison.panels import legend_above, panels
+from crazybilliards.comparison.layout import legend_above, panels
 from crazybilliards.comparison.sweeps import Case
 from crazybilliards.model import Chain, chain_of
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -17,7 +18,7 @@ from numpy.typing import NDArray
 
 from crazybilliards.comparison.coverage import smooth
 from crazybilliards.comparison.drawing import overlay
-from crazybilliards.comparison.panels import entitle, legend_above, panels
+from crazybilliards.comparison.layout import at_the_left, entitle, legend_above, panels
 from crazybilliards.comparison.studies.parameter_series import SIMULATION
 from crazybilliards.comparison.studies.relaxation import LEGEND, PARTICLES, cloud
 from crazybilliards.model import Chain, chain_of
@@ -25,7 +26,7 @@ from crazybilliards.model import Chain, chain_of
 Array = NDArray[np.float64]
 
 _DENSITY = r"density $\rho$ [1/R]"
-_ON_A_SCREEN = {
+_ON_A_SCREEN: Any = {
     "font.size": 13,
     "axes.titlesize": 13,
     "legend.fontsize": 12,
@@ -51,7 +52,7 @@ def draw_spacetime(tree: xr.DataTree) -> Figure:
         )
         entitle(ax, name)
         ax.set(xlabel="position $x$ [R]", xlim=_extent(densities))
-        if ax.get_subplotspec().is_first_col():
+        if at_the_left(ax):
             ax.set_ylabel("time $t$ [T]")
     figure.colorbar(image, ax=axes, label=_DENSITY)
     return figure

@@ -8,7 +8,7 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
 from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_rods
-from crazybilliards.comparison.panels import legend_above, panels
+from crazybilliards.comparison.layout import legend_above, panels
 from crazybilliards.comparison.studies.parameter_series import SIMULATION
 from crazybilliards.comparison.studies.restitutions import THEORY
 from crazybilliards.model import chain_of

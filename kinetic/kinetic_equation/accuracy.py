@@ -8,7 +8,7 @@ theory, not of its numerical solution.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
@@ -65,6 +65,9 @@ _DRIVEN = {
 _LEAST_DRIVEN_DAMPING = 1.95
 
 
+_Number = TypeVar("_Number", int, float)
+
+
 class Accuracy(NamedTuple):
     """Relative errors of W_v to expect; NaN where none was measured."""
 
@@ -97,6 +100,6 @@ def expected_accuracy(chain: Chain) -> Accuracy:
     return Accuracy(inner, border)
 
 
-def _neighbours(value: float, measured: list[float]) -> tuple[float, float]:
+def _neighbours(value: _Number, measured: list[_Number]) -> tuple[_Number, _Number]:
     """Return the measured values on both sides of this one, which may be the same."""
     return max(m for m in measured if m <= value), min(m for m in measured if m >= value)

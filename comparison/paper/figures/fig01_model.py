@@ -9,7 +9,7 @@ from matplotlib.patches import Circle
 
 from crazybilliards.comparison.claims.study import PaperFigure, Results
 from crazybilliards.comparison.drawing import COLOURS
-from crazybilliards.comparison.panels import panels
+from crazybilliards.comparison.layout import panels
 from crazybilliards.model import Chain
 
 _DISPLACEMENTS = (-1.3, -0.4, 0.5, 0.3)

@@ -14,7 +14,7 @@ from crazybilliards.comparison.claims.repetition import (
 )
 from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
 from crazybilliards.comparison.claims.verdicts import Claim, Estimate, eye_claim, positive_claim
-from crazybilliards.comparison.panels import legend_above, panels
+from crazybilliards.comparison.layout import legend_above, panels
 from crazybilliards.comparison.paper.chains import LARGE, dissipative, dissipative_name
 from crazybilliards.comparison.paper.distributions import (
     draw_distributions,

@@ -12,7 +12,7 @@ from crazybilliards.comparison.claims.repetition import estimate, pooled
 from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
 from crazybilliards.comparison.claims.verdicts import Claim, positive_claim
 from crazybilliards.comparison.drawing import along_the_chain, draw_rods
-from crazybilliards.comparison.panels import panels
+from crazybilliards.comparison.layout import panels
 from crazybilliards.comparison.paper.chains import LARGE, dissipative, dissipative_name
 from crazybilliards.model import chain_of
 

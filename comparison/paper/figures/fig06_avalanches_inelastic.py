@@ -18,7 +18,7 @@ from crazybilliards.comparison.claims.verdicts import (
     small_claim,
 )
 from crazybilliards.comparison.fits import fit_avalanches
-from crazybilliards.comparison.panels import entitle, panels
+from crazybilliards.comparison.layout import at_the_left, entitle, panels
 from crazybilliards.comparison.paper.chains import LARGE
 from crazybilliards.comparison.paper.distributions import draw_sizes
 from crazybilliards.model import Chain
@@ -165,7 +165,7 @@ def draw(results: Results) -> Figure:
         ax.set(ylim=(1e-8, 1), xlim=(0.8, LARGE))
         ax.legend(loc="lower left")
     for ax in axes:
-        if ax.get_subplotspec().is_first_col():
+        if at_the_left(ax):
             ax.set_ylabel("probability $p(N_c)$")
     return figure
 

@@ -23,7 +23,7 @@ from crazybilliards.comparison.claims.verdicts import (
     small_claim,
 )
 from crazybilliards.comparison.drawing import along_the_chain, draw_rods
-from crazybilliards.comparison.panels import entitle, panels
+from crazybilliards.comparison.layout import entitle, panels
 from crazybilliards.comparison.paper.chains import LARGE, elastic, elastic_name
 from crazybilliards.comparison.paper.distributions import (
     draw_distributions,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import itertools
+from typing import Any
 
 import xarray as xr
 from matplotlib.figure import Figure
@@ -12,7 +13,7 @@ from crazybilliards.comparison.claims.repetition import estimate, pooled
 from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
 from crazybilliards.comparison.claims.verdicts import About, Claim, Estimate, positive_claim
 from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_rods, mark_clipped
-from crazybilliards.comparison.panels import legend_above, panels
+from crazybilliards.comparison.layout import legend_above, panels
 from crazybilliards.comparison.paper.chains import LARGE, dissipative, dissipative_name
 from crazybilliards.comparison.paper.figures import fig07_widths_restitution
 from crazybilliards.comparison.paper.figures.fig05_displacements_inelastic import swelling
@@ -94,7 +95,7 @@ def draw(results: Results) -> Figure:
         run = pooled(results, dissipative_name(LARGE, e))
         s, colour = chain_of(run).thermal_length, COLOURS[number]
         half = run.isel(particle=slice(0, LARGE // 2))
-        look = {"number": number, "unit": s, "label": f"$e = {e:g}$"}
+        look: Any = {"number": number, "unit": s, "label": f"$e = {e:g}$"}
         draw_rods(whole, run, "mean_displacement", **look)
         draw_rods(border, half, "mean_displacement", along="particle", **look)
         if e in predicted:

@@ -16,7 +16,7 @@ from crazybilliards.comparison.claims.repetition import (
 from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
 from crazybilliards.comparison.claims.verdicts import Claim, Estimate, positive_claim
 from crazybilliards.comparison.fits import tail_length
-from crazybilliards.comparison.panels import legend_above, panels
+from crazybilliards.comparison.layout import legend_above, panels
 from crazybilliards.comparison.paper.chains import flippers, flippers_name
 from crazybilliards.comparison.paper.distributions import draw_distributions, moment
 from crazybilliards.model import chain_of

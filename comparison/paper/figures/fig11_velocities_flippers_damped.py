@@ -12,7 +12,7 @@ from crazybilliards.comparison.claims.repetition import (
 )
 from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
 from crazybilliards.comparison.claims.verdicts import Claim, positive_claim
-from crazybilliards.comparison.panels import legend_above, panels
+from crazybilliards.comparison.layout import legend_above, panels
 from crazybilliards.comparison.paper.chains import flippers, flippers_name
 from crazybilliards.comparison.paper.distributions import draw_distributions
 from crazybilliards.comparison.paper.figures.fig10_velocities_flippers import PARTICLES, SIZE

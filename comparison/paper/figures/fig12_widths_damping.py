@@ -17,7 +17,7 @@ from crazybilliards.comparison.claims.verdicts import EYE, Claim, Estimate, posi
 from crazybilliards.comparison.distances import distances_in_plot
 from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_rods
 from crazybilliards.comparison.fits import fit_border_power_law
-from crazybilliards.comparison.panels import legend_above, panels
+from crazybilliards.comparison.layout import legend_above, panels
 from crazybilliards.comparison.paper.chains import (
     flippers,
     flippers_name,

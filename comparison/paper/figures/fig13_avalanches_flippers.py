@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from crazybilliards.comparison.claims.repetition import estimate, pooled
 from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
 from crazybilliards.comparison.claims.verdicts import Claim, positive_claim
-from crazybilliards.comparison.panels import entitle, panels
+from crazybilliards.comparison.layout import at_the_left, entitle, panels
 from crazybilliards.comparison.paper.chains import flippers, flippers_name
 from crazybilliards.comparison.paper.distributions import draw_sizes
 
@@ -84,7 +84,7 @@ def draw(results: Results) -> Figure:
             draw_sizes(ax, sizes, counts / counts.sum(), counts, number=number, label=label)
         ax.axvspan(_SPANNING, _SIZE, color="0.9", zorder=0, label="spans the system")
         entitle(ax, name)
-        if ax.get_subplotspec().is_first_col():
+        if at_the_left(ax):
             ax.set_ylabel("probability $p(N_c)$")
         ax.legend(loc="lower left")
     return figure

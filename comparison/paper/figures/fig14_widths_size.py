@@ -16,7 +16,7 @@ from crazybilliards.comparison.claims.repetition import (
 from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
 from crazybilliards.comparison.claims.verdicts import Claim, Estimate, positive_claim
 from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_rods
-from crazybilliards.comparison.panels import legend_above, panels
+from crazybilliards.comparison.layout import legend_above, panels
 from crazybilliards.comparison.paper.chains import (
     flippers,
     flippers_name,

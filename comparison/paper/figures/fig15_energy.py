@@ -15,7 +15,7 @@ from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, 
 from crazybilliards.comparison.claims.verdicts import Claim, Estimate, positive_claim, small_claim
 from crazybilliards.comparison.drawing import COLOURS
 from crazybilliards.comparison.fits import fit_growth, fit_singularity
-from crazybilliards.comparison.panels import panels
+from crazybilliards.comparison.layout import panels
 from crazybilliards.model import Chain
 
 _CHAINS = {

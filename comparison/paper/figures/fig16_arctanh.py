@@ -10,7 +10,7 @@ from crazybilliards.comparison.claims.verdicts import Claim, Estimate, eye_claim
 from crazybilliards.comparison.distances import distances_in_plot
 from crazybilliards.comparison.drawing import COLOURS
 from crazybilliards.comparison.fits import fit_arctanh
-from crazybilliards.comparison.panels import panels
+from crazybilliards.comparison.layout import panels
 from crazybilliards.comparison.paper.figures.fig17_density import simulation
 from crazybilliards.kinetic import equilibrium
 from crazybilliards.model import chain_of

@@ -10,7 +10,7 @@ from crazybilliards.comparison.claims.repetition import pooled
 from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
 from crazybilliards.comparison.claims.verdicts import Claim, same_claim
 from crazybilliards.comparison.drawing import along_the_chain, draw_rods
-from crazybilliards.comparison.panels import entitle, panels
+from crazybilliards.comparison.layout import entitle, panels
 from crazybilliards.comparison.paper.chains import LARGE, dissipative, dissipative_name
 
 _RESTITUTIONS = (0.0, 0.95)

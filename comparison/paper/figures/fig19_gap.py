@@ -12,7 +12,7 @@ from crazybilliards.comparison.claims.repetition import central_width, estimate,
 from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
 from crazybilliards.comparison.claims.verdicts import Claim, positive_claim, small_claim
 from crazybilliards.comparison.drawing import along_the_chain, draw_rods
-from crazybilliards.comparison.panels import entitle, legend_above, panels
+from crazybilliards.comparison.layout import at_the_left, entitle, legend_above, panels
 from crazybilliards.comparison.paper.chains import LARGE, dissipative, dissipative_name
 from crazybilliards.model import Chain, chain_of
 
@@ -131,7 +131,7 @@ def draw(results: Results) -> Figure:
         along_the_chain(ax)
         entitle(ax, f"$e = {restitution:g}$")
         ax.set_yscale("log")
-        if ax.get_subplotspec().is_first_col():
+        if at_the_left(ax):
             ax.set_ylabel("velocity variance $W_v^2/W^2$")
     legend_above(figure, axes[0])
     return figure

@@ -3,7 +3,7 @@
 import matplotlib.pyplot as plt
 import pytest
 
-from crazybilliards.comparison.panels import house_style, legend_above, panels
+from crazybilliards.comparison.layout import house_style, legend_above, panels
 
 
 @pytest.fixture(autouse=True)

@@ -15,7 +15,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure, FigureBase
+from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties
 
 Columns = Literal[1, 2]
@@ -86,8 +86,14 @@ def entitle(ax: Axes, text: str) -> None:
     ax.set_title(f"{ax.get_title(loc='left')}  {text}".strip(), loc="left")
 
 
+def at_the_left(ax: Axes) -> bool:
+    """Whether a panel stands at the left, where an axis that several share has its label."""
+    place = ax.get_subplotspec()
+    return place is None or place.is_first_col()
+
+
 def legend_above(
-    figure: FigureBase,
+    figure: Figure,
     ax: Axes,
     title: str | None = None,
     extra: Sequence[tuple[Artist, str]] = (),
@@ -99,8 +105,7 @@ def legend_above(
         return
     size = FontProperties(size=plt.rcParams["legend.fontsize"]).get_size_in_points() / 72
     longest = max(len(text.replace("$", "").replace("\\", "")) for text in labels)
-    width = (figure.figure or figure).get_figwidth()  # type: ignore[union-attr]
-    fit = max(1, int(width / (size * (0.55 * longest + 4))))
+    fit = max(1, int(figure.get_figwidth() / (size * (0.55 * longest + 4))))
     rows = int(np.ceil(len(labels) / fit))
     figure.legend(
         handles,
