@@ -23,11 +23,15 @@ _SQUARED = ("velocity_width", "displacement_width")
 _COUNTED = ("avalanche_count", "triggered_count")
 
 
-def repeated(name: str, chain: Chain, number: int, **settings: Any) -> Cases:
-    """Return cases ``NAME/0``, ``NAME/1``, ... that differ in their random numbers only."""
+def repeated(
+    name: str, chain: Chain, number: int, job: str = "simulate", /, **settings: Any
+) -> Cases:
+    """Return cases ``NAME/0``, ``NAME/1``, ... that differ in their random numbers only.
+
+    ``job`` is ``"simulate"``, or ``"simulate_limit"`` for the limit of a vanishing time step.
+    """
     return {
-        f"{name}/{seed}": Case("simulate", chain, {**settings, "seed": seed})
-        for seed in range(number)
+        f"{name}/{seed}": Case(job, chain, {**settings, "seed": seed}) for seed in range(number)
     }
 
 

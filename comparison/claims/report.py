@@ -28,6 +28,7 @@ _NO_DATE = {"pdf": {"CreationDate": None}, "svg": {"Date": None}}
 _VERSIONS = ("crazybilliards", "numpy", "numba", "scipy", "scikit-fem", "py-pde", "xarray")
 OF_PAPER = "Statements of the paper"
 OWN = "Our own findings"
+_LIMIT = "the limit dt -> 0; the error holds what is left of the step"
 
 
 @dataclass(frozen=True)
@@ -176,6 +177,7 @@ def details(claim: Claim) -> dict[str, str]:
         "in the paper": claim.source,
         "its number": claim.paper,
         "found here": claim.measured,
+        "time step": _LIMIT if claim.in_limit else "",
         "theory": claim.theory,
         "our choice, not given in the paper": claim.ours,
         "why": claim.reason,
@@ -201,7 +203,7 @@ def html(reproduced: list[Reproduced], quality: Quality) -> str:
 
 
 def summary(reproduced: list[Reproduced]) -> list[str]:
-    """Count the verdicts: a line for the statements of the paper, one for our own findings."""
+    """Count the verdicts, of statements of the paper and of our own findings, and the limits."""
     lines = []
     for title in (OF_PAPER, OWN):
         claims = [claim for each in reproduced for claim in each.parts.get(title, ())]
@@ -211,6 +213,12 @@ def summary(reproduced: list[Reproduced]) -> list[str]:
                 f"{counts[verdict]} {verdict}" for verdict in get_args(Verdict) if counts[verdict]
             )
             lines.append(f"{title}: {verdicts}")
+    limits = sum(claim.in_limit for each in reproduced for claim in each.claims)
+    if limits:
+        lines.append(
+            f"Limits of a vanishing time step: the numbers of {limits} claims, marked so; every "
+            "other number of a simulation is that at the time step of its runs"
+        )
     return lines
 
 

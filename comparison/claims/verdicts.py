@@ -86,6 +86,9 @@ class Claim:
         Why it does not hold, if it does not.
     exactly
         What is true beyond what an eye can see, whatever the verdict (or "").
+    in_limit
+        Whether the number is the limit of a vanishing time step, its error holding what is left of
+        the step. Otherwise it belongs to the time step of its runs.
     """
 
     statement: str
@@ -97,6 +100,7 @@ class Claim:
     theory: str = ""
     reason: str = ""
     exactly: str = ""
+    in_limit: bool = False
 
     @property
     def of_paper(self) -> bool:
@@ -112,6 +116,7 @@ class About(TypedDict, total=False):
     theory: str
     reason: str
     exactly: str
+    in_limit: bool
 
 
 def number_claim(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -11,7 +10,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from crazybilliards.comparison.claims.repetition import estimate, pooled
+from crazybilliards.comparison.claims.repetition import estimate, members, pooled
 from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
 from crazybilliards.comparison.claims.verdicts import (
     Claim,
@@ -21,11 +20,18 @@ from crazybilliards.comparison.claims.verdicts import (
     positive_claim,
     same_claim,
 )
-from crazybilliards.comparison.distances import distances_in_plot
 from crazybilliards.comparison.drawing import COLOURS, SYMBOLS, draw_rods
 from crazybilliards.comparison.fits import fit_border_power_law
 from crazybilliards.comparison.paper.chains import LARGE
+from crazybilliards.comparison.paper.power_laws import fits_in_plot
 from crazybilliards.comparison.paper.time_steps import STEPS, at_steps, step_name
+from crazybilliards.comparison.paper.vanishing_step import (
+    LABEL,
+    common_bias,
+    limit_estimate,
+    limit_name,
+    limits,
+)
 from crazybilliards.model import chain_of
 
 _SIZES = (30, 100, 300, LARGE)
@@ -35,8 +41,11 @@ _SOURCE = "section seq:e_0, eq:power_law, fig.2"
 
 
 def cases(quality: Quality) -> Cases:
-    """E = 0, four sizes, four time steps."""
-    return at_steps(quality, _SIZES)
+    """E = 0, four sizes, four time steps and the limit."""
+    cases = at_steps(quality, _SIZES)
+    for size in _SIZES:
+        cases |= limits(size, 0.0, quality)
+    return cases
 
 
 def exponent(results: Results, size: int, step: float | None = None) -> Estimate:
@@ -64,9 +73,6 @@ def claims(results: Results) -> list[Claim]:
     """Check: two power laws fit, nu is -0.46, the same for all L; and what changes nu."""
     runs = {size: pooled(results, step_name(size, None)) for size in _SIZES}
     found = {size: exponent(results, size) for size in _SIZES}
-    weights = [1 / each.error**2 for each in found.values()]
-    mean = float(np.average([each.value for each in found.values()], weights=weights))
-    deviation = max(abs(each.value - mean) / each.error for each in found.values())
     free = chain_of(runs[_SIZES[0]]).free_velocity_width
     widest = max(runs.values(), key=lambda run: float(run.velocity_width.max()))
     at = int(widest.velocity_width.values.argmax())
@@ -93,13 +99,25 @@ def claims(results: Results) -> list[Claim]:
         ),
         same_claim(
             "the same exponent for all L",
-            ", ".join(f"{size}: {each}" for size, each in found.items()),
-            deviation,
+            _listed(found),
+            _deviation(found),
             source=_SOURCE,
             ours="the sizes below 1000 and the time step",
         ),
         *_own_claims(results),
+        *_limit_claims(results, found),
     ]
+
+
+def _listed(found: dict[int, Estimate]) -> str:
+    return ", ".join(f"{size}: {each}" for size, each in found.items())
+
+
+def _deviation(found: dict[int, Estimate]) -> float:
+    """Return the largest deviation from the common mean, in standard errors."""
+    weights = [1 / each.error**2 for each in found.values()]
+    mean = float(np.average([each.value for each in found.values()], weights=weights))
+    return max(abs(each.value - mean) / each.error for each in found.values())
 
 
 def _fit_claim(runs: dict[int, xr.Dataset]) -> Claim:
@@ -116,43 +134,12 @@ def _fit_claim(runs: dict[int, xr.Dataset]) -> Claim:
     )
 
 
-def fits_in_plot(runs: Iterable[xr.Dataset]) -> tuple[Estimate, float]:
-    """Compare the fits with the widths in a plot of all runs, both axes logarithmic.
-
-    Returns the largest deviation as a share of the plotted range, which ends at the free rod's
-    width, and the largest one in standard errors.
-    """
-    runs = list(runs)
-    free = np.log(chain_of(runs[0]).free_velocity_width)
-    lowest = np.log(min(float(run.velocity_width.min()) for run in runs))
-    longest = np.log(max(run.sizes["particle"] for run in runs))
-    worst, significance = Estimate(0.0, 0.0), 0.0
-    for run in runs:
-        fit = fit_border_power_law(run)
-        i, width, error = run.particle.values, run.velocity_width.values, run[_ERROR].values
-        fine = np.geomspace(1, i[-1], 2000)
-        off = distances_in_plot(
-            np.log(i),
-            np.log(width),
-            np.log(fine),
-            np.log(fit(fine)),
-            x_range=(0.0, longest),
-            y_range=(lowest, free),
-        )
-        at = int(off.argmax())
-        if off[at] > worst.value:
-            worst = Estimate(float(off[at]), float(error[at] / width[at] / (free - lowest)))
-        significance = max(significance, float(np.abs((fit(i) - width) / error).max()))
-    return worst, significance
-
-
 def _own_claims(results: Results) -> list[Claim]:
     """Check what the exponent depends on."""
     largest = STEPS[0]
     coarse, fine = (exponent(results, LARGE, step) for step in (largest, STEPS[-1]))
     middle = 300
     origins = {size: estimate(results, step_name(size, None), _origin) for size in _SIZES}
-    listed = ", ".join(f"{size}: {each}" for size, each in origins.items())
     return [
         positive_claim(
             f"without c the exponent is flatter, L = {middle}",
@@ -166,7 +153,7 @@ def _own_claims(results: Results) -> list[Claim]:
         ),
         positive_claim(
             "the longer the chain, the further out the power laws begin",
-            f"c by L: {listed}; c at 100 less c at {LARGE}:",
+            f"c by L: {_listed(origins)}; c at 100 less c at {LARGE}:",
             origins[100].minus(origins[LARGE]),
         ),
         positive_claim(
@@ -177,16 +164,53 @@ def _own_claims(results: Results) -> list[Claim]:
     ]
 
 
+def _limit_claims(results: Results, found: dict[int, Estimate]) -> list[Claim]:
+    """Check the same exponents in the limit dt -> 0, and what the default step does to them."""
+    limit = {size: limit_estimate(results, size, _exponent) for size in _SIZES}
+    shifts = {size: found[size].minus(limit[size]) for size in _SIZES}
+    return [
+        *(
+            number_claim(
+                f"nu = -0.46 in the limit dt -> 0, L = {size}",
+                _PAPER,
+                _PRECISION,
+                each,
+                in_limit=True,
+                reason="the sum of two power laws is no exact law, and its exponent depends on L",
+            )
+            for size, each in limit.items()
+        ),
+        same_claim(
+            "the same exponent for all L in the limit dt -> 0",
+            _listed(limit),
+            _deviation(limit),
+            in_limit=True,
+            reason="the sum of two power laws is no exact law, and its exponent depends on L",
+        ),
+        same_claim(
+            "the default time step leaves the exponents as they are in the limit dt -> 0",
+            f"nu at the default step less that of the limit, by L: {_listed(shifts)}",
+            max(abs(each.value) / each.error for each in shifts.values()),
+        ),
+    ]
+
+
 def draw(results: Results) -> Figure:
-    """Draw W_v(i) with its fits, and nu against the time step."""
-    figure, (left, right) = plt.subplots(
-        1, 2, figsize=(9.2, 3.9), layout="constrained", width_ratios=(1.5, 1)
+    """Draw W_v(i) with its fits and over that of the limit, and nu against the time step."""
+    figure, axes = plt.subplot_mosaic(
+        [["widths", "exponents"], ["ratio", "exponents"]],
+        figsize=(9.2, 5.2),
+        layout="constrained",
+        width_ratios=(1.5, 1),
+        height_ratios=(2.2, 1),
     )
+    widths, ratio = axes["widths"], axes["ratio"]
+    ratio.sharex(widths)
     for number, size in enumerate(_SIZES):
         run = pooled(results, step_name(size, None))
         unit = chain_of(run).free_velocity_width
         draw_rods(
-            left,
+            widths,
             run,
             "velocity_width",
             number=number,
@@ -195,14 +219,31 @@ def draw(results: Results) -> Figure:
             label=f"L = {size}",
         )
         half = np.geomspace(1, size, 200)
-        left.plot(half, fit_border_power_law(run)(half) / unit, color=COLOURS[number], linewidth=1)
-    left.set(xscale="log", yscale="log", xlabel="particle i", ylabel="velocity width $W_v/W$")
-    left.legend(frameon=False, title="symbols: simulation\nlines: fits of two power laws")
-    _draw_steps(right, results)
+        fit = fit_border_power_law(run)(half) / unit
+        widths.plot(half, fit, color=COLOURS[number], linewidth=1)
+        over = _over_limit(results, size)
+        draw_rods(ratio, over, "velocity_width", number=number, along="particle", label="")
+    widths.set(xscale="log", yscale="log", ylabel="velocity width $W_v/W$")
+    widths.legend(frameon=False, title="symbols: simulation\nlines: fits of two power laws")
+    widths.tick_params(labelbottom=False)
+    ratio.axhline(1, color="0.4", linewidth=1)
+    ratio.set(xlabel="particle i", ylabel=f"$W_v$ over that of\n{LABEL}")
+    _draw_steps(axes["exponents"], results)
     return figure
 
 
+def _over_limit(results: Results, size: int) -> xr.Dataset:
+    """Return W_v(i) at the default step over that of the limits, whose bias is common to all."""
+    run, limit = (pooled(results, name) for name in (step_name(size, None), limit_name(size)))
+    ratio = run.velocity_width / limit.velocity_width
+    squares = sum((each[_ERROR] / each.velocity_width) ** 2 for each in (run, limit))
+    bias = common_bias(members(results, limit_name(size)))
+    return run.assign({"velocity_width": ratio, _ERROR: ratio * np.sqrt(squares + bias**2)})
+
+
 def _draw_steps(ax: Axes, results: Results) -> None:
+    """Draw nu against the time step, the limit as full symbols at the left margin."""
+    first = 0.3 * min(chain_step(results, size) for size in _SIZES)
     for number, size in enumerate(_SIZES):
         steps = [chain_step(results, size), *reversed(STEPS)]
         each = [exponent(results, size, step) for step in (None, *reversed(STEPS))]
@@ -217,9 +258,23 @@ def _draw_steps(ax: Axes, results: Results) -> None:
             markersize=4,
             linewidth=0.8,
         )
+        at = first * 1.25 ** (number - 1.5)  # beside one another
+        limit = limit_estimate(results, size, _exponent)
+        ax.errorbar(
+            at,
+            limit.value,
+            limit.error,
+            fmt=SYMBOLS[number],
+            color=COLOURS[number],
+            markersize=5,
+            linewidth=0.8,
+        )
     ax.axhline(_PAPER, color="0.4", linestyle="--", linewidth=1)
     ax.text(STEPS[0], _PAPER, " paper", va="bottom", ha="right", color="0.3", fontsize=8)
     ax.set(xscale="log", xlabel="time step dt [T]", ylabel=r"exponent $\nu$")
+    ax.set_xticks([first, 1e-3, 1e-2], [r"$\to 0$", "$10^{-3}$", "$10^{-2}$"])
+    ax.set_xticks([tenth * k for tenth in (1e-3, 1e-2) for k in range(2, 10)], minor=True)
+    ax.set_xlim(0.5 * first, 4e-2)
 
 
 def chain_step(results: Results, size: int) -> float:
@@ -233,8 +288,9 @@ FIGURE = PaperFigure(
     name="widths-inelastic",
     title="Velocity widths at e = 0: power laws from both borders",
     caption="Left: W_v against the rod's number, e = 0, at the default time step, with the fits "
-    "a [(i - c)^nu + (L + 1 - c - i)^nu] to all rods. Right: the exponent against the time step; "
-    "the leftmost point of each size is the default step.",
+    "a [(i - c)^nu + (L + 1 - c - i)^nu] to all rods; below, over its limit dt -> 0. Right: the "
+    "exponent against the time step; the leftmost open symbol of each size is the default step, "
+    "the full one the limit.",
     cases=cases,
     draw=draw,
     claims=claims,

@@ -10,10 +10,18 @@ from matplotlib.figure import Figure
 
 from crazybilliards.comparison.claims.repetition import central_width, estimate, repeated
 from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
-from crazybilliards.comparison.claims.verdicts import Claim, Estimate, number_claim, positive_claim
+from crazybilliards.comparison.claims.verdicts import (
+    Claim,
+    Estimate,
+    number_claim,
+    positive_claim,
+    small_claim,
+)
 from crazybilliards.comparison.drawing import COLOURS, SYMBOLS
 from crazybilliards.comparison.fits import ScalingFit, fit_scaling
+from crazybilliards.comparison.paper.chains import SIZES
 from crazybilliards.comparison.paper.time_steps import STEPS, at_steps, step_name
+from crazybilliards.comparison.paper.vanishing_step import LABEL, central_limit, limits
 from crazybilliards.model import Chain
 
 _PAPER, _PRECISION = -0.38, 0.015
@@ -29,8 +37,10 @@ _LONG = {
 
 
 def cases(quality: Quality) -> Cases:
-    """E = 0, L = 10 to 1000 at four time steps; longer chains at steps of their own."""
+    """E = 0, L = 10 to 1000 at four time steps and in the limit; longer chains at own steps."""
     cases = at_steps(quality)
+    for size in SIZES:
+        cases |= limits(size, 0.0, quality)
     for size, (number, duration, warmup) in _LONG[quality].items():
         cases |= repeated(
             _long_name(size),
@@ -102,7 +112,49 @@ def claims(results: Results) -> list[Claim]:
             f"{short} up to L = 100 and {rest} from there to 1000, difference",
             short.minus(rest),
         ),
+        *_limit_claims(results, default),
     ]
+
+
+def _limits(results: Results) -> dict[int, Estimate]:
+    return {size: central_limit(results, size) for size in SIZES}
+
+
+def _limit_claims(results: Results, default: dict[int, Estimate]) -> list[Claim]:
+    """Check the exponent and its change in the limit dt -> 0, and what the default step misses."""
+    limit = _limits(results)
+    short, rest = (_exponent(fit) for fit in (_fit(limit, most=100), _fit(limit, least=100)))
+    shifts = {size: _relative(default[size], each) for size, each in limit.items()}
+    listed = ", ".join(f"{size}: {each}" for size, each in shifts.items())
+    return [
+        number_claim(
+            "W_v^min ~ L^-0.38, L = 10 to 1000 in the limit dt -> 0",
+            _PAPER,
+            _PRECISION,
+            _exponent(_fit(limit)),
+            in_limit=True,
+            reason="-0.38 is the mean slope of a curve that bends",
+        ),
+        positive_claim(
+            "no power law in the limit dt -> 0 either: the longer the chain, the steeper",
+            f"{short} up to L = 100 and {rest} from there to 1000, difference",
+            short.minus(rest),
+            in_limit=True,
+        ),
+        small_claim(
+            "the default time step gives W_v^min to 1 %, L = 10 to 1000",
+            f"W_v^min over that of the limit dt -> 0, less 1, by L: {listed}; the worst:",
+            max(shifts.values(), key=lambda each: abs(each.value) + 3 * each.error),
+            0.01,
+            reason="the runs of 1000 rods at the default step are short",
+        ),
+    ]
+
+
+def _relative(width: Estimate, limit: Estimate) -> Estimate:
+    ratio = width.value / limit.value
+    error = ratio * float(np.hypot(width.error / width.value, limit.error / limit.value))
+    return Estimate(ratio - 1, error)
 
 
 def _exponent(fit: ScalingFit) -> Estimate:
@@ -119,6 +171,7 @@ def draw(results: Results) -> Figure:
     series = {"default step": _widths(results, _at_step(None))}
     series |= {f"dt = {step:g}": _widths(results, _at_step(step)) for step in STEPS}
     series["kick 2/3 of $W_v$"] = _widths(results, _long_name)
+    series[LABEL] = _limits(results)
     for number, (label, widths) in enumerate(series.items()):
         sizes = np.array(list(widths))
         values, errors = np.array(list(widths.values())).T
@@ -128,6 +181,8 @@ def draw(results: Results) -> Figure:
             "markerfacecolor": "none",
             "markersize": 5,
         }
+        if label == LABEL:  # full, above the others
+            style = {"fmt": ".", "color": "black", "markersize": 5, "zorder": 4}
         top.errorbar(sizes, values / unit, errors / unit, label=label, **style)
         bottom.errorbar(sizes, values / reference(sizes), errors / reference(sizes), **style)
     ends = np.array([8, 2e5])
@@ -147,8 +202,9 @@ FIGURE = PaperFigure(
     name="central-width",
     title="The central width against the size at e = 0",
     caption="Root mean square velocity of the middle tenth of the rods, e = 0. The line is a fit "
-    "to the default time step, L = 10 to 1000; below, the ratio to it. Longer chains than the "
-    "paper's are at time steps whose velocity kick is two thirds of the width at every size.",
+    "to the default time step, L = 10 to 1000; below, the ratio to it. Full circles: the limit of "
+    "a vanishing step. Longer chains than the paper's are at time steps whose velocity kick is two "
+    "thirds of the width at every size.",
     cases=cases,
     draw=draw,
     claims=claims,

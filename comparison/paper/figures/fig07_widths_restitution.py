@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import matplotlib.pyplot as plt
 import numpy as np
 import xarray as xr
@@ -35,23 +37,28 @@ from crazybilliards.comparison.paper.chains import (
     kinetic_equation,
     kinetic_name,
 )
-from crazybilliards.comparison.paper.figures.fig03_widths_inelastic import fits_in_plot
+from crazybilliards.comparison.paper.power_laws import fits_in_plot
+from crazybilliards.comparison.paper.vanishing_step import LABEL, central_limit, limit_name, limits
 from crazybilliards.comparison.studies.restitutions import width_deviation
 from crazybilliards.model import chain_of
 
 SOLVED_FOR = {"quick": (0.95,), "full": (0.85, 0.92, 0.95)}
+IN_LIMIT = {"quick": (0.0, 0.95), "full": RESTITUTIONS}
 _ELASTIC_SIZE = 100
 _SOURCE = "section seq:e_larger, fig.4"
+_OPEN: dict[str, Any] = {"fmt": SYMBOLS[0], "color": "black", "markerfacecolor": "none"}
 _OURS = "the restitutions (those of fig.5, and 0.5) and the time step"
 
 
 def cases(quality: Quality) -> Cases:
-    """L = 1000 at six restitutions, L = 100 at e = 1; the kinetic equation where it holds."""
+    """L = 1000 at six restitutions, L = 100 at e = 1; limits; the kinetic equation."""
     cases: Cases = {}
     for restitution in RESTITUTIONS:
         cases |= dissipative(LARGE, restitution, quality)
     for restitution in SOLVED_FOR[quality]:
         cases |= kinetic_equation(LARGE, restitution, 1.0, quality)
+    for restitution in IN_LIMIT[quality]:
+        cases |= limits(LARGE, restitution, quality)
     return cases | elastic(_ELASTIC_SIZE, quality)
 
 
@@ -59,6 +66,15 @@ def theories(results: Results) -> dict[float, xr.Dataset]:
     """Return the kinetic equation's results by restitution."""
     names = {e: kinetic_name(LARGE, e, 1.0) for e in RESTITUTIONS}
     return {e: results[name] for e, name in names.items() if name in results}
+
+
+def _central_widths(results: Results) -> dict[float, Estimate]:
+    return {e: estimate(results, dissipative_name(LARGE, e), central_width) for e in RESTITUTIONS}
+
+
+def _central_limits(results: Results) -> dict[float, Estimate]:
+    there = [e for e in RESTITUTIONS if f"{limit_name(LARGE, e)}/0" in results]
+    return {e: central_limit(results, LARGE, e) for e in there}
 
 
 def _exponents(results: Results) -> dict[float, Estimate]:
@@ -102,6 +118,7 @@ def claims(results: Results) -> list[Claim]:
         ),
         *_exponential_claims(results),
         *_theory_claims(results),
+        *_limit_claims(results),
     ]
 
 
@@ -152,11 +169,37 @@ def _theory_claims(results: Results) -> list[Claim]:
     return claims
 
 
+def _limit_claims(results: Results) -> list[Claim]:
+    """Check the central widths in the limit dt -> 0: their order, and those at the default step."""
+    limit, default = _central_limits(results), _central_widths(results)
+    low, high = min(limit), max(limit)
+    by_e = ", ".join(f"{e:g}: {each}" for e, each in limit.items())
+    shifts = {e: default[e].minus(each) for e, each in limit.items()}
+    listed = ", ".join(f"{e:g}: {each}" for e, each in shifts.items())
+    return [
+        positive_claim(
+            "in the limit dt -> 0, too, the larger e the faster the centre",
+            f"W_v in the centre by e: {by_e}; at {high:g} less at {low:g}:",
+            limit[high].minus(limit[low]),
+            in_limit=True,
+        ),
+        same_claim(
+            "the default time step gives W_v in the centre as in the limit dt -> 0",
+            f"W_v at the default step less that of the limit, by e: {listed}",
+            max(abs(each.value) / each.error for each in shifts.values()),
+        ),
+    ]
+
+
 def draw(results: Results) -> Figure:
-    """Draw W_v(i) with the kinetic equation, and -nu against e with its fit."""
-    figure, (left, right) = plt.subplots(
-        1, 2, figsize=(9.6, 4.0), layout="constrained", width_ratios=(1.5, 1)
+    """Draw W_v(i) with the kinetic equation, -nu against e with its fit, and the limits."""
+    figure, axes = plt.subplot_mosaic(
+        [["widths", "exponents"], ["widths", "centre"]],
+        figsize=(9.6, 5.4),
+        layout="constrained",
+        width_ratios=(1.5, 1),
     )
+    left = axes["widths"]
     predicted = theories(results)
     names = {e: dissipative_name(LARGE, e) for e in RESTITUTIONS}
     names[1.0] = elastic_name(_ELASTIC_SIZE)
@@ -179,8 +222,25 @@ def draw(results: Results) -> Figure:
         frameon=False,
         title="symbols: simulation, lines: kinetic equation",
     )
-    _draw_exponents(right, results)
+    axes["exponents"].sharex(axes["centre"])
+    _draw_exponents(axes["exponents"], results)
+    _draw_centre(axes["centre"], results)
     return figure
+
+
+def _draw_centre(ax: Axes, results: Results) -> None:
+    unit = chain_of(results[f"{dissipative_name(LARGE, 0.0)}/0"]).free_velocity_width
+    full: dict[str, Any] = {"fmt": SYMBOLS[2], "color": COLOURS[0], "markersize": 4}
+    for found, label, style in (
+        (_central_widths(results), "default step", _OPEN),
+        (_central_limits(results), LABEL, full),
+    ):
+        values, errors = np.array(list(found.values())).T / unit
+        ax.errorbar(list(found), values, errors, label=label, **style)
+    predicted = {e: central_width(theory) / unit for e, theory in theories(results).items()}
+    ax.plot(list(predicted), list(predicted.values()), "x", color=COLOURS[4])
+    ax.set(xlabel="restitution e", ylabel="central width $W_v^{\\min}/W$")
+    ax.legend(frameon=False, fontsize=8)
 
 
 def _draw_exponents(ax: Axes, results: Results) -> None:
@@ -191,10 +251,8 @@ def _draw_exponents(ax: Axes, results: Results) -> None:
         list(found),
         values,
         errors,
-        fmt=SYMBOLS[0],
-        color="black",
-        markerfacecolor="none",
         label="simulation",
+        **_OPEN,
     )
     for e, theory in theories(results).items():
         ax.plot(
@@ -206,7 +264,8 @@ def _draw_exponents(ax: Axes, results: Results) -> None:
         )
     fine = np.linspace(0, 1, 101)
     ax.plot(fine, fit(fine), "0.4", linewidth=1, label=rf"fit, $\lambda = {fit.rate:.1f}$")
-    ax.set(xlabel="restitution e", ylabel=r"exponent $-\nu$")
+    ax.set(ylabel=r"exponent $-\nu$")
+    ax.tick_params(labelbottom=False)
     ax.legend(frameon=False, fontsize=8)
 
 
@@ -216,7 +275,8 @@ FIGURE = PaperFigure(
     title="Velocity widths for several restitutions",
     caption="Left: W_v against the normalized particle number, L = 1000 (e = 1: L = 100). Lines: "
     "the kinetic equation, into which nothing of the simulation goes. Right: the exponent of the "
-    "two power laws against the restitution, and a exp(-lambda (1 - e)) + d fitted to it.",
+    "two power laws against the restitution, and a exp(-lambda (1 - e)) + d fitted to it; below, "
+    "W_v in the centre at the default time step and in the limit of a vanishing one.",
     cases=cases,
     draw=draw,
     claims=claims,
