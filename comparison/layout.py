@@ -75,6 +75,25 @@ def panels(
     return figure, made
 
 
+def mosaic(
+    pattern: Sequence[Sequence[str]], *, height: float, **how: Any
+) -> tuple[Figure, dict[str, Axes]]:
+    """Make a figure of two columns with lettered panels of several sizes, by their names.
+
+    In one column they go below one another. ``pattern`` and ``how`` as ``plt.subplot_mosaic``
+    takes them; ``height`` [inch] is that of the wide figure.
+    """
+    names = list(dict.fromkeys(name for row in pattern for name in row))
+    width = picture_width(2)
+    if width < _WIDTHS[2]:
+        pattern, height, how = [[name] for name in names], 2.0 * len(names), {}
+    figure, axes = plt.subplot_mosaic(
+        [list(row) for row in pattern], figsize=(width, height), **how
+    )
+    letter([axes[name] for name in names])
+    return figure, axes
+
+
 def letter(axes: Sequence[Axes]) -> None:
     """Call panels (a), (b), ..."""
     for name, ax in zip(string.ascii_lowercase, axes, strict=False):
