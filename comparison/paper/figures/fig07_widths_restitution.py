@@ -279,8 +279,8 @@ FIGURE = PaperFigure(
     caption="(a) W_v against the normalized particle number, L = 1000 (e = 1: L = 100). Lines: "
     "the kinetic equation in the colour of its e, where it was solved, at the largest e below 1; "
     "nothing of the simulation goes into it. (b) The exponent of the two power laws against the "
-    "restitution, and a exp(-lambda (1 - e)) + d fitted to it. (c) W_v in the centre at the default time step and "
-    "in the limit of a vanishing one.",
+    "restitution, and a exp(-lambda (1 - e)) + d fitted to it. (c) W_v in the centre at the "
+    "default time step and in the limit of a vanishing one.",
     cases=cases,
     draw=draw,
     claims=claims,
