@@ -38,7 +38,7 @@ from dataclasses import dataclass
 from typing import Literal, NamedTuple, TypedDict, Unpack
 
 Verdict = Literal[
-    "reproduced", "not reproduced", "cannot be decided", "undecided", "confirmed", "refuted"
+    "reproduced", "not reproduced", "cannot be decided", "confirmed", "refuted", "undecided"
 ]
 
 EYE = 0.02  # of the plotted range: what no eye sees
