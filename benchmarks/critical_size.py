@@ -13,9 +13,9 @@ from pathlib import Path
 import matplotlib
 
 matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 import numpy as np
 
+from crazybilliards.comparison.layout import house_style, panels
 from crazybilliards.kinetic import critical_size
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
@@ -59,7 +59,7 @@ def simulated(chain: Chain) -> tuple[float, float]:
 
 
 def main(figure: Path) -> None:
-    drawing, ax = plt.subplots(figsize=(5.6, 4.2), layout="constrained")
+    drawing, [ax] = panels(1, 1, height=2.9, wanted=1)
     print("| e | gamma | kinetic equation | closed form | simulation |\n|---|---|---|---|---|")
     for restitution, colour, line in RESTITUTIONS:
         chains = [Chain(restitution=restitution, damping=damping) for damping in DAMPINGS]
@@ -69,7 +69,7 @@ def main(figure: Path) -> None:
             [each.value for each in found],
             color=colour,
             linestyle=line,
-            label=f"kinetic equation, e = {restitution:g}",
+            label=f"kinetic equation, $e = {restitution:g}$",
         )
         for number, (e, damping) in enumerate(SIMULATED):
             if e != restitution:
@@ -89,14 +89,15 @@ def main(figure: Path) -> None:
                 fmt="o",
                 markerfacecolor="none",
                 color=colour,
-                label=f"simulation, e = {e:g}" if number in (0, 3) else None,
+                label=f"simulation, $e = {e:g}$" if number in (0, 3) else None,
             )
     ax.text(0.97, 0.05, "steady states below the lines", ha="right", transform=ax.transAxes)
-    ax.set(xlabel=r"damping $\gamma$ [$\sqrt{kM}$]", ylabel="number of rods L", xlim=(0, 5.1))
+    ax.set(xlabel=r"damping $\gamma$ [$\sqrt{kM}$]", ylabel="number of rods $L$", xlim=(0, 5.1))
     ax.set_ylim(bottom=0, top=400)
-    ax.legend(frameon=False)
-    drawing.savefig(figure, dpi=150)
+    ax.legend()
+    drawing.savefig(figure)
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]))
+    with house_style():
+        main(Path(sys.argv[1]))

@@ -7,12 +7,15 @@ import json
 import sys
 from collections import defaultdict
 from pathlib import Path
+from typing import Any
 
 import matplotlib
 
 matplotlib.use("agg")
-from matplotlib import pyplot as plt
 from particle_steps import NOISE, SIZES
+
+from crazybilliards.comparison.drawing import COLOURS, SYMBOLS
+from crazybilliards.comparison.layout import house_style, legend_above, panels
 
 # Measured elsewhere, on the same kind of machine, for L = 1000, dt = 1e-3, e = 0 [ns].
 PEERS = {"Siconos (Lemke)": 80_000, "pymunk": 780, "MuJoCo": 470}
@@ -42,24 +45,24 @@ def main(source: Path, figure: Path) -> None:
 
 
 def draw(costs: dict[str, dict[int, float]], figure: Path) -> None:
-    fig, ax = plt.subplots(figsize=(5.5, 4.8), layout="constrained")
-    colours = plt.get_cmap("cividis")
-    for number, (work, by_size) in enumerate(costs.items()):
-        style = (
-            {"color": "0.6", "linestyle": "--"}
-            if work == NOISE
-            else {"marker": "osv^pD"[number - 1]}
+    with house_style():
+        drawn, [ax] = panels(1, 1, height=4.2, wanted=1)
+        for number, (work, by_size) in enumerate(costs.items()):
+            look: dict[str, Any] = {"color": "0.5", "linestyle": "--"}
+            if work != NOISE:
+                look = {"color": COLOURS[number - 1], "marker": SYMBOLS[number - 1]}
+                look |= {"markerfacecolor": "none"}
+            ax.plot(list(by_size), list(by_size.values()), label=work, **look)
+        for name, cost in PEERS.items():
+            ax.plot(1000, cost, "*", color="black", markersize=7, markerfacecolor="none")
+            ax.annotate(name, (1000, cost), xytext=(6, -3), textcoords="offset points")
+        ax.plot(
+            [], [], "*", color="black", markerfacecolor="none", label="others, measured elsewhere"
         )
-        style.setdefault("color", colours((number - 1) / max(len(costs) - 2, 1) * 0.9))
-        ax.plot(list(by_size), list(by_size.values()), label=work, **style)
-    for name, cost in PEERS.items():
-        ax.plot(1000, cost, "*", color="tab:red", markersize=8)
-        ax.annotate(name, (1000, cost), xytext=(7, -3), textcoords="offset points", fontsize=8)
-    ax.set(xscale="log", yscale="log", xlabel="rods L", ylabel="cost per rod and step [ns]")
-    ax.plot([], [], "*", color="tab:red", label="other programs, measured elsewhere")
-    ax.set_ylim(2, 2e5)
-    fig.legend(fontsize=8, ncols=2, loc="outside lower center")
-    fig.savefig(figure, dpi=150)
+        ax.set(xscale="log", yscale="log", xlabel="rods $L$", ylabel="cost per rod and step [ns]")
+        ax.set_ylim(2, 2e5)
+        legend_above(drawn, ax)
+        drawn.savefig(figure)
 
 
 if __name__ == "__main__":

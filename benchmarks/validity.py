@@ -12,8 +12,10 @@ from pathlib import Path
 import matplotlib
 
 matplotlib.use("Agg")
-import matplotlib.pyplot as plt
+from matplotlib.axes import Axes
 
+from crazybilliards.comparison.drawing import COLOURS, SYMBOLS
+from crazybilliards.comparison.layout import entitle, house_style, legend_above, panels
 from crazybilliards.comparison.studies.restitutions import WidthDeviation, width_deviation
 from crazybilliards.kinetic import phase_space
 from crazybilliards.model import Chain, load, save
@@ -23,7 +25,7 @@ RESTITUTIONS = (0.0, 0.5, 0.75, 0.9, 0.95, 0.98, 1.0)
 DURATIONS = {30: 40_000.0, 100: 20_000.0, 300: 2_000.0, 1000: 300.0}
 LONGER = 4.0  # times these for L >= 300 and e >= 0.9, where a step is longer
 DRIVEN = ((30, 20_000.0), (60, 20_000.0), (100, 50_000.0))  # e = 1.05, gamma = 4
-LOOKS = {30: ("#0072B2", "o"), 100: ("#E69F00", "s"), 300: ("#009E73", "D"), 1000: ("#CC79A7", "^")}
+_LINEAR = 2.0  # per cent; the axis is linear up to there, and logarithmic beyond
 
 
 def compared(chain: Chain, duration: float, folder: Path) -> WidthDeviation:
@@ -75,42 +77,54 @@ def draw(
     driven: list[tuple[int, WidthDeviation]],
     figure: Path,
 ) -> None:
-    drawing, axes = plt.subplots(1, 2, figsize=(9.2, 4.2), sharex=True, layout="constrained")
+    with house_style():
+        drawing, axes = panels(1, 2, height=2.9)
+        for ax, place in zip(axes, ("centre", "border"), strict=True):
+            _draw_place(ax, place, results, driven)
+            entitle(ax, place)
+        legend_above(drawing, axes[0])
+        drawing.savefig(figure)
+
+
+def _draw_place(
+    ax: Axes,
+    place: str,
+    results: dict[int, list[tuple[float, WidthDeviation]]],
+    driven: list[tuple[int, WidthDeviation]],
+) -> None:
+    error = "border_error" if place == "border" else "error"
     shown = [*RESTITUTIONS, 1.05]  # evenly spaced: most of what happens lies close to 1
-    for ax, place, error in zip(axes, ("centre", "border"), ("error", "border_error"), strict=True):
-        for number, (size, found) in enumerate(results.items()):
-            colour, symbol = LOOKS[size]
-            ax.errorbar(
-                [shown.index(e) + 0.04 * (number - 1.5) for e, _ in found],
-                [100 * getattr(each, place) for _, each in found],
-                [100 * getattr(each, error) for _, each in found],
-                label=f"L = {size}",
-                color=colour,
-                marker=symbol,
-                markerfacecolor="none",
-                linewidth=1.2,
-            )
-        for number, (size, each) in enumerate(driven):
-            ax.errorbar(
-                len(shown) - 1 + 0.15 * (number - 1),
-                100 * getattr(each, place),
-                100 * getattr(each, error),
-                color="black",
-                marker="<^>"[number],
-                markerfacecolor="none",
-                linestyle="none",
-                label=rf"L = {size}, $\gamma = 4$",
-            )
-        ax.axhline(0, color="0.6", linewidth=0.8, zorder=0)
-        ax.set_yscale("symlog", linthresh=2)
-        ax.set_yticks([-50, -20, -10, -5, -2, -1, 0, 1, 2, 5])
-        ax.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
-        ax.set_xticks(range(len(shown)), [f"{e:g}" for e in shown])
-        ax.set(xlabel="restitution e", ylabel=f"error of $W_v$, {place} [%]")
-    drawing.legend(
-        *axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=4, frameon=False
-    )
-    drawing.savefig(figure, dpi=150)
+    for number, (size, found) in enumerate(results.items()):
+        ax.errorbar(
+            [shown.index(e) + 0.04 * (number - 1.5) for e, _ in found],
+            [100 * getattr(each, place) for _, each in found],
+            [100 * getattr(each, error) for _, each in found],
+            label=f"$L = {size}$",
+            color=COLOURS[number],
+            marker=SYMBOLS[number],
+            markerfacecolor="none",
+        )
+    for number, (size, each) in enumerate(driven):
+        ax.errorbar(
+            len(shown) - 1 + 0.15 * (number - 1),
+            100 * getattr(each, place),
+            100 * getattr(each, error),
+            color="black",
+            marker="<^>"[number],
+            markerfacecolor="none",
+            linestyle="none",
+            label=rf"$L = {size}$, $\gamma = 4$",
+        )
+    ax.axhspan(-_LINEAR, _LINEAR, color="0.93", zorder=0, label="linear scale")
+    ax.axhline(0, color="0.6", linewidth=0.6, zorder=0)
+    ax.set_yscale("symlog", linthresh=_LINEAR)
+    ax.set_yticks([-50, -20, -10, -5, -2, -1, 0, 1, 2, 5])
+    ax.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
+    ax.set_xticks(range(len(shown)), [f"{e:g}" for e in shown])
+    # The last restitution is of other chains: a gap in the axis.
+    broken = (len(shown) - 1.5, 0)
+    ax.annotate("//", broken, xycoords=("data", "axes fraction"), ha="center", va="center")
+    ax.set(xlabel="restitution $e$ (not to scale)", ylabel="$W_v$: theory less simulation [%]")
 
 
 if __name__ == "__main__":

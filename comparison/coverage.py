@@ -44,9 +44,11 @@ def coverage_density(source: xr.Dataset) -> xr.Dataset:
     Raises
     ------
     ValueError
-        If the result holds none of these.
+        If the result holds none of these, or is smoothed already.
     """
     chain = chain_of(source)
+    if "smoothed" in source.attrs:
+        raise ValueError("the density is smoothed already")
     if "position" in source:
         return _box(_hat_density_of_states(chain, source))
     require(source, ("density",))
@@ -54,8 +56,13 @@ def coverage_density(source: xr.Dataset) -> xr.Dataset:
 
 
 def smooth(source: xr.Dataset) -> xr.Dataset:
-    """Both steps of the paper: :func:`coverage_density`, then the running average over 2R."""
-    return _box(coverage_density(source))
+    """Both steps of the paper: :func:`coverage_density`, then the running average over 2R.
+
+    A result that is smoothed already, which its attribute ``smoothed`` says, is returned as it is.
+    """
+    if "smoothed" in source.attrs:
+        return source
+    return _box(coverage_density(source)).assign_attrs(smoothed="coverage, running average")
 
 
 def _box(source: xr.Dataset) -> xr.Dataset:

@@ -10,20 +10,42 @@ import matplotlib.pyplot as plt
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.container import ErrorbarContainer
 
 from crazybilliards.model.vocabulary import require
 
 # Okabe and Ito's colours, distinct for any colour vision; symbols and line styles differ too.
 COLOURS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#D55E00", "#56B4E9", "#000000")
 SYMBOLS = "osD^v<>"
-_SYMBOL_COLOUR = "#000000"
+_SIMULATIONS: tuple[dict[str, Any], ...] = (
+    {"color": "#000000", "marker": "o"},
+    {"color": "#D55E00", "marker": "s"},
+    {"color": "#56B4E9", "marker": "D"},
+    {"color": "#0072B2", "marker": "^"},
+)
 _LINES: tuple[dict[str, Any], ...] = (
-    {"color": "#E69F00", "linestyle": "-", "linewidth": 2.2},
-    {"color": "#0072B2", "linestyle": "--", "linewidth": 1.6},
-    {"color": "#CC79A7", "linestyle": ":", "linewidth": 2.0},
-    {"color": "#009E73", "linestyle": "-.", "linewidth": 1.6},
+    {"color": "#E69F00", "linestyle": "-", "linewidth": 2.0},
+    {"color": "#0072B2", "linestyle": "--", "linewidth": 1.4},
+    {"color": "#CC79A7", "linestyle": ":", "linewidth": 1.8},
+    {"color": "#009E73", "linestyle": "-.", "linewidth": 1.4},
 )
 _MOST_SYMBOLS = 60
+# How axes are labelled; other variables by their long names.
+_LABELS = {
+    "density": r"density $\rho$",
+    "label": "rods to the left $N$",
+    "displacement": r"displacement $\langle\Delta x\rangle$",
+    "mean_displacement": r"displacement $\langle\Delta x\rangle$",
+    "displacement_width": "displacement width $W_x$",
+    "velocity_width": "velocity width $W_v$",
+    "velocity_variance": "velocity variance $W^2$",
+    "flow_velocity": "flow velocity $V$",
+    "kinetic_energy": "kinetic energy $E$",
+    "x": "position $x$",
+    "time": "time $t$",
+    "mean_position": r"mean position $\langle x_i\rangle$",
+    "normalized_particle": "normalized particle $i_n$",
+}
 
 
 def overlay(
@@ -32,26 +54,31 @@ def overlay(
     *,
     along: Literal["normalized_particle", "mean_position"] = "normalized_particle",
     ax: Axes | None = None,
+    style: Mapping[str, Mapping[str, Any]] | None = None,
 ) -> Axes:
     """Draw one quantity of several results in one picture.
 
     Parameters
     ----------
     results
-        ``{label: result}``. Simulations are drawn as circles with their standard errors,
-        theories as lines, in the order given.
+        ``{label: result}``. Simulations are drawn as symbols with their standard errors, theories
+        as lines, in the order given; every one has its own colour.
     quantity
         A variable over x, time or particle. Smooth all densities in the same way first.
     along
         Abscissa of a quantity over particle: i_n in -1..1, or the mean position of the rods.
     ax
         Axes to draw into; None: those of a new figure.
+    style
+        ``{label: keywords}`` for matplotlib, of ``errorbar`` for a simulation and of ``plot`` for
+        a theory, instead of those chosen here: ``{"run 2": {"color": "red", "alpha": 0.5}}``.
 
     Raises
     ------
     ValueError
         If a result lacks the quantity, or has it over other dimensions than one of x, time and
-        particle. For example, one time of a density over time and x must be chosen first.
+        particle. For example, one time of a density over time and x must be chosen first. If
+        ``style`` names no result.
 
     Returns
     -------
@@ -61,32 +88,30 @@ def overlay(
     for label, dataset in results.items():
         require(dataset, (quantity,))
         _require_curve(label, dataset[quantity])
+    if unknown := set(style or {}) - set(results):
+        raise ValueError(f"style: no result is called {min(unknown)!r}")
     if ax is None:
         _, ax = plt.subplots(layout="constrained")
-    lines = cycle(_LINES)
+    lines, symbols = cycle(_LINES), cycle(_SIMULATIONS)
     for label, dataset in results.items():
-        values = dataset[quantity]
-        own = [name for name in ("x", "time") if name in values.dims]
-        abscissa = dataset[own[0] if own else along]
+        values, own = dataset[quantity], dict((style or {}).get(label, {}))
+        axes = [name for name in ("x", "time") if name in values.dims]
+        abscissa = dataset[axes[0] if axes else along]
+        look: dict[str, Any]
         if dataset.attrs.get("source") == "simulation":
             # The first and last rods are always drawn, because theories differ most at the border.
             count = min(abscissa.size, _MOST_SYMBOLS)
             shown = np.linspace(0, abscissa.size - 1, count).round().astype(int)
             error = dataset.get(f"{quantity}_error")
+            look = {"linestyle": "none", "markersize": 3.5, "markerfacecolor": "none"}
+            look |= {"linewidth": 0.8, "label": label, "zorder": 3} | next(symbols) | own
             ax.errorbar(
-                abscissa[shown],
-                values[shown],
-                None if error is None else error[shown],
-                fmt="o",
-                markersize=4.5,
-                markerfacecolor="none",
-                color=_SYMBOL_COLOUR,
-                linewidth=0.8,
-                label=label,
-                zorder=3,
+                abscissa[shown], values[shown], None if error is None else error[shown], **look
             )
         else:
-            ax.plot(abscissa, values, label=label, zorder=2, **next(lines))
+            look = {"label": label, "zorder": 2}
+            look |= next(lines) | own
+            ax.plot(abscissa, values, **look)
         ax.set_xlabel(_axis_label(abscissa))
         ax.set_ylabel(_axis_label(values))
     return ax
@@ -132,12 +157,30 @@ def draw_rods(
         run[quantity][shown] / unit,
         run[f"{quantity}_error"][shown] / unit,
         fmt=SYMBOLS[number % len(SYMBOLS)],
-        markersize=4,
         markerfacecolor="none",
-        linewidth=0.8,
+        linewidth=0.7,
         color=colour,
         label=label,
     )
+
+
+def mark_clipped(ax: Axes) -> None:
+    """Put a triangle on the frame above or below every symbol that lies beyond it."""
+    low, high = ax.get_ylim()
+    for container in ax.containers:
+        if not isinstance(container, ErrorbarContainer):
+            continue
+        symbols = container.lines[0]
+        x, y = (np.asarray(values, dtype=float) for values in symbols.get_data())
+        for beyond, edge, marker in ((y > high, high, "^"), (y < low, low, "v")):
+            ax.plot(
+                x[beyond],
+                np.full(beyond.sum(), edge),
+                marker,
+                color=symbols.get_color(),
+                clip_on=False,
+                zorder=4,
+            )
 
 
 def along_the_chain(ax: Axes) -> None:
@@ -147,4 +190,5 @@ def along_the_chain(ax: Axes) -> None:
 
 def _axis_label(variable: xr.DataArray) -> str:
     unit = variable.attrs["units"]
-    return variable.attrs["long_name"] + (f" [{unit}]" if unit != "1" else "")
+    name = _LABELS.get(str(variable.name), variable.attrs["long_name"])
+    return name + (f" [{unit}]" if unit != "1" else "")

@@ -25,6 +25,8 @@ class Theory:
         The name of the function in ``crazybilliards.kinetic``, e.g. ``"equilibrium"``.
     title
         Its name in tables and legends.
+    judged_by
+        The quantity whose error the attribute ``model_error`` of its results is.
     module
         The module below ``crazybilliards.kinetic`` that has the function and ``check_NAME``.
     """
@@ -32,6 +34,7 @@ class Theory:
     name: str
     title: str
     module: str
+    judged_by: str = "W_v of the particles 3 to L-2"
 
     @property
     def solve(self) -> Callable[..., xr.Dataset]:
@@ -51,7 +54,12 @@ THEORIES = {
     theory.name: theory
     for theory in (
         Theory("equilibrium", "exact equilibrium", "exact.gibbs_measure"),
-        Theory("force_balance", "force balance", "statics.balance"),
+        Theory(
+            "force_balance",
+            "force balance",
+            "statics.balance",
+            "the smoothed density, of close packing",
+        ),
         Theory("phase_space", "kinetic equation", "kinetic_equation.stationary"),
         Theory(
             "correlated_phase_space",

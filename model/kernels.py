@@ -25,7 +25,7 @@ import numpy as np
 from numba import njit
 
 from crazybilliards.model.fingerprint import fingerprint_of
-from crazybilliards.model.process import interrupts_held_back
+from crazybilliards.model.process import announce_compilation, interrupts_held_back
 
 _ANEW = "the kernels are compiled anew in every process, which takes some seconds"
 _warned: set[str] = set()
@@ -74,13 +74,16 @@ def _let_it_fail(kept: Any) -> None:
 
     def load_or_none(*arguments: Any) -> Any:
         try:
-            return load(*arguments)
+            found = load(*arguments)
         # Unpickling a damaged file can raise anything. The newly compiled kernel replaces it.
         except Exception as error:
             _warn("numba's cache cannot be read, compiling anew", f"{kept.cache_path}: {error}")
             with suppress(OSError):
                 kept.flush()
-            return None
+            found = None
+        if found is None:
+            announce_compilation()
+        return found
 
     def save_if_possible(*arguments: Any) -> None:
         try:

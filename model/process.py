@@ -8,7 +8,9 @@ import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
-from threading import Timer
+from contextvars import ContextVar
+
+_to_announce: ContextVar[bool] = ContextVar("to_announce", default=False)
 
 
 def cores() -> int:
@@ -20,15 +22,20 @@ def cores() -> int:
 
 @contextmanager
 def announced(progress: bool) -> Iterator[None]:
-    """Print that kernels are being compiled, if this takes long enough to be noticed."""
-    message = "crazybilliards: compiling the kernels, once (they are cached) ..."
-    timer = Timer(0.7, lambda: print(message, file=sys.stderr, flush=True))
-    if progress:
-        timer.start()
+    """Print that kernels are being compiled, if a kernel is not in numba's cache."""
+    before = _to_announce.set(progress)
     try:
         yield
     finally:
-        timer.cancel()
+        _to_announce.reset(before)
+
+
+def announce_compilation() -> None:
+    """Say it, if this is ``announced`` and was not said yet."""
+    if _to_announce.get():
+        _to_announce.set(False)
+        message = "crazybilliards: compiling the kernels, once (they are cached) ..."
+        print(message, file=sys.stderr, flush=True)
 
 
 @contextmanager

@@ -54,7 +54,7 @@ def simulate(
     threads: int | None = None,
     checkpoint: str | os.PathLike[str] | None = None,
     checkpoint_interval: float = 30.0,
-    progress: bool = True,
+    progress: bool | str = True,
 ) -> xr.Dataset:
     """Simulate the chain and return what was measured, with standard errors.
 
@@ -111,7 +111,8 @@ def simulate(
         Ctrl-C or SIGTERM. The same call again continues from there and gives the same bits. A
         checkpoint of another run, or one that another process is using, is refused.
     progress
-        Show a progress bar with the time left, if standard error is a terminal.
+        Show a progress bar with the time left, if standard error is a terminal. A text stands in
+        front of it, to tell runs apart.
 
     Returns
     -------
@@ -147,7 +148,7 @@ def simulate(
     threads = check_integer("threads", cores() if threads is None else threads, least=1)
     run = make_run(**asked)
     copies = _replicas(run)
-    with announced(progress):
+    with announced(bool(progress)):
         compile_kernels()
     keeper = None
     if checkpoint is not None:

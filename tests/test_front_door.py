@@ -107,7 +107,7 @@ def test_the_wheel_holds_every_module_and_stub(installed):
     wanted = {
         (Path("crazybilliards" + name.replace(".", "/")) / path.relative_to(ROOT / folder))
         for folder, name in FOLDERS.items()
-        for pattern in ("*.py", "*.pyi", "py.typed", "*.jinja")
+        for pattern in ("*.py", "*.pyi", "py.typed", "*.jinja", "*.mplstyle")
         for path in (ROOT / folder).rglob(pattern)
     }
     assert shipped == {path.as_posix() for path in wanted}

@@ -35,7 +35,7 @@ FLOORS = {
         {"correlations"},
     ),
     "comparison": (
-        {"coverage", "distances", "drawing", "fits", "theories"},
+        {"coverage", "distances", "drawing", "fits", "layout", "theories", "waiting"},
         {"sweeps"},
         {"claims"},
         {"studies"},

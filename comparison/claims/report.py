@@ -7,22 +7,24 @@ import io
 import platform
 import re
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass
 from functools import cache
 from html import escape
 from importlib.metadata import version
 from importlib.resources import files
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import jinja2
 import matplotlib.pyplot as plt
 
 from crazybilliards.comparison.claims.study import Cases, Quality, Results, Study
-from crazybilliards.comparison.claims.verdicts import Claim
+from crazybilliards.comparison.claims.verdicts import Claim, Verdict
+from crazybilliards.comparison.layout import Columns, house_style
 from crazybilliards.comparison.sweeps import Case
 
+_NO_DATE = {"pdf": {"CreationDate": None}, "svg": {"Date": None}}
 _VERSIONS = ("crazybilliards", "numpy", "numba", "scipy", "scikit-fem", "py-pde", "xarray")
 OF_PAPER = "Statements of the paper"
 OWN = "Our own findings"
@@ -37,8 +39,8 @@ class Reproduced:
     ----------
     study
         The study, which may be a figure of the paper.
-    picture
-        PNG bytes.
+    pictures
+        The picture as a file, by format: PNG always, others as asked for.
     claims
         The checked claims.
     parameters
@@ -48,10 +50,15 @@ class Reproduced:
     """
 
     study: Study
-    picture: bytes
+    pictures: dict[str, bytes]
     claims: list[Claim]
     parameters: list[str]
     seconds: float
+
+    @property
+    def picture(self) -> bytes:
+        """The picture as PNG."""
+        return self.pictures["png"]
 
     @property
     def embedded(self) -> str:
@@ -74,28 +81,48 @@ def all_cases(studies: Iterable[Study], quality: Quality) -> list[Case]:
 
 
 def reproduce(
-    studies: Iterable[Study], quality: Quality, folder: Path, *, keep_old: bool = False
+    studies: Iterable[Study],
+    quality: Quality,
+    folder: Path,
+    *,
+    keep_old: bool = False,
+    columns: Columns | None = None,
+    formats: Collection[str] = (),
 ) -> Iterator[Reproduced]:
     """Draw studies and check their claims, one after another, from the cases in ``folder``.
 
-    ``keep_old`` as in :func:`crazybilliards.comparison.sweeps.run_cases`.
+    ``keep_old`` as in :func:`crazybilliards.comparison.sweeps.run_cases`. ``columns``: the width
+    of the pictures, as :func:`crazybilliards.comparison.layout.house_style` takes it. ``formats``:
+    file formats of matplotlib, besides PNG.
     """
     load = cache(lambda case: case.load(folder, keep_old=keep_old))  # many studies share cases
     for study in studies:
         cases = study.cases(quality)
-        yield _reproduce(study, cases, {name: load(case) for name, case in cases.items()})
+        results = {name: load(case) for name, case in cases.items()}
+        with house_style(columns):
+            pictures = _drawn(study, results, ("png", *formats))
+        yield _reproduced(study, cases, results, pictures)
 
 
-def _reproduce(study: Study, cases: Cases, results: Results) -> Reproduced:
-    claims = study.claims(results)
+def _drawn(study: Study, results: Results, formats: Iterable[str]) -> dict[str, bytes]:
     drawn = study.draw(results)
-    picture = io.BytesIO()
-    drawn.savefig(picture, format="png", dpi=130)
+    pictures = {}
+    for kind in formats:
+        picture = io.BytesIO()
+        # The same picture is to give the same file, whenever it is drawn.
+        drawn.savefig(picture, format=kind, metadata=_NO_DATE.get(kind))
+        pictures[kind] = picture.getvalue()
     plt.close(drawn)
+    return pictures
+
+
+def _reproduced(
+    study: Study, cases: Cases, results: Results, pictures: dict[str, bytes]
+) -> Reproduced:
     return Reproduced(
         study=study,
-        picture=picture.getvalue(),
-        claims=claims,
+        pictures=pictures,
+        claims=study.claims(results),
         parameters=describe(cases.values()),
         seconds=sum(run.attrs["seconds"] for run in results.values()),
     )
@@ -106,16 +133,9 @@ def describe(cases: Iterable[Case]) -> list[str]:
 
     Runs that differ in their random numbers or in what is observed only are of one kind.
     """
-    lines = []
-    for case in cases:
-        changed = [
-            f"{name} {value}"
-            for name, value in case.changed.items()
-            if name not in ("seed", "observe")
-        ]
-        lines.append(f"{case.job}: {', '.join(changed) or 'defaults'}")
     return [
-        f"{line} ({number} runs)" if number > 1 else line for line, number in Counter(lines).items()
+        f"{line} ({number} runs)" if number > 1 else line
+        for line, number in Counter(case.title for case in cases).items()
     ]
 
 
@@ -190,7 +210,7 @@ def summary(reproduced: list[Reproduced]) -> list[str]:
         if claims:
             counts = Counter(claim.verdict for claim in claims)
             verdicts = ", ".join(
-                f"{number} {verdict}" for verdict, number in sorted(counts.items())
+                f"{counts[verdict]} {verdict}" for verdict in get_args(Verdict) if counts[verdict]
             )
             lines.append(f"{title}: {verdicts}")
     limits = sum(claim.in_limit for each in reproduced for claim in each.claims)

@@ -65,7 +65,12 @@ class Study:
     @property
     def file_name(self) -> str:
         """The name of its picture."""
-        return f"study_{self.name}.png"
+        return f"{self.stem}.png"
+
+    @property
+    def stem(self) -> str:
+        """The name of its picture without the ending."""
+        return f"study_{self.name}"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -91,6 +96,6 @@ class PaperFigure(Study):
         return f"{self.number}. {self.title}"
 
     @property
-    def file_name(self) -> str:
+    def stem(self) -> str:
         """Number and name as the name of its picture."""
-        return f"fig{self.number:02d}_{self.name}.png"
+        return f"fig{self.number:02d}_{self.name}"

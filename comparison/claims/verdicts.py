@@ -13,8 +13,9 @@ paper comes out as
 A finding of our own is ``confirmed``, ``refuted`` or ``undecided``.
 
 **Rules.** A number p, quoted to a precision d (half a unit of its last digit, or what "about"
-grants), comes out if the measured value lies within d plus three standard errors of p, and is
-undecided if three standard errors exceed a third of p. That something is positive, or larger than
+grants), comes out if the measured value lies within d plus three standard errors of p. If it does
+only because the errors are large, three of them more than 2 d, that is undecided: a longer
+simulation could still refute it. That something is positive, or larger than
 something else, is decided at three standard errors. That something vanishes is decided by a stated
 limit, at as many. That two things are the same comes out if no difference exceeds what chance
 explains: five standard errors for the largest of many.
@@ -37,11 +38,12 @@ from dataclasses import dataclass
 from typing import Literal, NamedTuple, TypedDict, Unpack
 
 Verdict = Literal[
-    "reproduced", "not reproduced", "cannot be decided", "undecided", "confirmed", "refuted"
+    "reproduced", "not reproduced", "cannot be decided", "confirmed", "refuted", "undecided"
 ]
 
 EYE = 0.02  # of the plotted range: what no eye sees
 _SIGNIFICANT = 3.0
+_LARGEST_CHANCE = 2.0  # times the precision of a number
 _LARGEST_OF_MANY = 5.0
 
 
@@ -123,10 +125,10 @@ def number_claim(
     statement: str, paper: float, precision: float, measured: Estimate, **about: Unpack[About]
 ) -> Claim:
     """Compare a measured number with the one quoted."""
-    value, error = measured
-    holds: bool | None = None
-    if _SIGNIFICANT * error < abs(paper) / 3:
-        holds = bool(abs(value - paper) <= precision + _SIGNIFICANT * error)
+    chance = _SIGNIFICANT * measured.error
+    holds: bool | None = abs(measured.value - paper) <= precision + chance
+    if math.isnan(chance) or (holds and chance > _LARGEST_CHANCE * precision):
+        holds = None
     return _claim(statement, str(measured), holds, paper=f"{paper:g}", **about)
 
 

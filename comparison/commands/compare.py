@@ -5,17 +5,19 @@ Only the standard library and typer are imported up here, so that ``--help`` ans
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from crazybilliards.comparison.commands.answers import note, print_table, say, wrote
 from crazybilliards.comparison.commands.chain_options import with_chain_options
 from crazybilliards.comparison.commands.output import (
+    complain_of_divergence,
     exit_unless_completed,
     numbers,
     place,
-    print_table,
     write_figures,
     writing_to,
 )
@@ -89,13 +91,14 @@ def command(
             tree = _inelastic(chain, restitution, **settings)
             write, show = _write_restitutions, _print_widths
         status = tree.attrs["status"]
+        note(status=status)
         try:
             if output is not None:
                 write(tree, output, "" if status == "completed" else f"-{status}")
         finally:
             show(tree)  # where nothing can be written any more, this is all there is
     if output is None:
-        print("Nothing was written; --output FOLDER keeps the figures and the data.")
+        say("Nothing was written; --output FOLDER keeps the figures and the data.")
     exit_unless_completed(status)
 
 
@@ -121,12 +124,16 @@ def _write_comparison(tree: xr.DataTree, folder: Path, suffix: str) -> None:
     import matplotlib
 
     matplotlib.use("Agg")
+    from crazybilliards.comparison.layout import house_style
     from crazybilliards.comparison.studies.elastic_figures import draw_density, draw_displacement
+    from crazybilliards.comparison.waiting import waiting_for
     from crazybilliards.model import save
 
     # The data first: a failing picture must not cost the computation.
-    print(f"wrote {save(tree, folder / f'comparison{suffix}.nc')}")
-    write_figures(folder, suffix, density=draw_density(tree), displacement=draw_displacement(tree))
+    wrote(save(tree, folder / f"comparison{suffix}.nc"))
+    with waiting_for("drawing"), house_style():
+        figures = {"density": draw_density(tree), "displacement": draw_displacement(tree)}
+        write_figures(folder, suffix, **figures)
 
 
 def _print_deviations(tree: xr.DataTree) -> None:
@@ -140,18 +147,22 @@ def _print_deviations(tree: xr.DataTree) -> None:
 
     table = Table(
         title="Density: simulation minus theory, in % of close packing 1/(2R)",
-        caption="Smoothed as in the paper. sigma: one standard error of the simulation. The last "
-        "column is the velocity widths' largest distance from their exact value.",
+        caption="Smoothed as in the paper. max, rms: largest and root mean square. [sigma]: "
+        "largest in standard errors of the simulation; 3 to 4 is normal for the largest of many "
+        "bins or rods. W_v: the velocity widths' largest distance from their exact value. A in "
+        "M R/T^(3/2).",
     )
     table.add_column("A", justify="right")
     for name in LEGEND.values():
-        table.add_column(f"{name}\nmax / rms", justify="right")
-    table.add_column("exact\nmax [sigma]", justify="right")
-    table.add_column("W_v\nmax [sigma]", justify="right")
+        table.add_column("\n".join((*name.split(", "), "max / rms [%]")), justify="right")
+    table.add_column("exact\n[sigma]", justify="right")
+    table.add_column("W_v\n[sigma]", justify="right")
+    noted = []
     for name, by_theory in deviations(tree).items():
-        exact = by_theory.get("exact")
+        exact, amplitude = by_theory.get("exact"), name.removeprefix("amplitude_")
+        widths = largest_width_error(tree.children[name])
         table.add_row(
-            name.removeprefix("amplitude_"),
+            amplitude,
             *(
                 f"{100 * by_theory[key].maximum:.2f} / {100 * by_theory[key].rms:.2f}"
                 if key in by_theory
@@ -159,8 +170,13 @@ def _print_deviations(tree: xr.DataTree) -> None:
                 for key in LEGEND
             ),
             "-" if exact is None else f"{exact.maximum_in_errors or 0:.1f}",
-            f"{largest_width_error(tree.children[name]):.1f}",
+            f"{widths:.1f}",
         )
+        noted.append(
+            {"amplitude": float(amplitude), "velocity_width_in_errors": widths}
+            | {key: asdict(each) for key, each in by_theory.items()}
+        )
+    note(density_deviations=noted)
     print_table(table)
 
 
@@ -168,16 +184,21 @@ def _write_restitutions(tree: xr.DataTree, folder: Path, suffix: str) -> None:
     import matplotlib
 
     matplotlib.use("Agg")
+    from crazybilliards.comparison.layout import house_style
     from crazybilliards.comparison.studies.restitution_figures import draw_phase_space, draw_widths
     from crazybilliards.comparison.studies.restitutions import THEORY
+    from crazybilliards.comparison.waiting import waiting_for
     from crazybilliards.model import save
 
-    print(f"wrote {save(tree, folder / f'comparison{suffix}.nc')}")
-    write_figures(folder, suffix, widths=draw_widths(tree))
-    for name, group in tree.children.items():
-        if THEORY in group:
-            picture = draw_phase_space(group[THEORY].to_dataset())
-            write_figures(folder, suffix, **{f"phase_space_{name}": picture})
+    wrote(save(tree, folder / f"comparison{suffix}.nc"))
+    with waiting_for("drawing"), house_style():
+        figures = {"widths": draw_widths(tree)}
+        figures |= {
+            f"phase_space_{name}": draw_phase_space(group[THEORY].to_dataset())
+            for name, group in tree.children.items()
+            if THEORY in group
+        }
+        write_figures(folder, suffix, **figures)
 
 
 def _print_widths(tree: xr.DataTree) -> None:
@@ -186,20 +207,27 @@ def _print_widths(tree: xr.DataTree) -> None:
     from crazybilliards.comparison.studies.restitutions import width_deviations
 
     table = Table(
-        title="Velocity widths: kinetic equation minus simulation, in %",
-        caption="Largest: of the particles 3 to L-2. Border: the first and the last. Errors: the "
-        "simulation's standard errors, of one rod and of the border.",
+        title="Velocity widths W_v: kinetic equation minus simulation, in %",
+        caption="Largest: of the particles 3 to L-2. Border: the first and the last. Errors: one "
+        "standard error of the simulation.",
     )
-    for name in ("e", "largest", "centre", "border", "error", "border's"):
-        table.add_column(name, justify="right")
-    deviations = width_deviations(tree)
+    headings = ("largest", "centre", "border", "error of\na rod", "error of\nthe border")
+    table.add_column("e", justify="right")
+    for heading in headings:
+        table.add_column(heading, justify="right")
+    deviations, noted = width_deviations(tree), []
     for name, group in tree.children.items():
         values = (
             [f"{100 * value:.2f}" for value in deviations[name]]
             if name in deviations
             else ["-"] * 5
         )
-        status = group["simulation"].attrs["status"]
-        note = "" if status == "completed" else f" ({status})"
-        table.add_row(name.removeprefix("restitution_") + note, *values)
+        run, restitution = group["simulation"], name.removeprefix("restitution_")
+        status = run.attrs["status"]
+        table.add_row(restitution + ("" if status == "completed" else f" ({status})"), *values)
+        here = deviations[name]._asdict() if name in deviations else {}
+        noted.append({"restitution": float(restitution), "status": status} | here)
+        if status == "diverged":
+            complain_of_divergence(run.to_dataset())
+    note(velocity_width_deviations=noted)
     print_table(table)

@@ -6,6 +6,7 @@ job imports what it needs when it runs.
 
 from __future__ import annotations
 
+import inspect
 import sys
 from typing import Annotated
 
@@ -20,6 +21,7 @@ from crazybilliards.comparison.commands import (
     sweep,
     theory,
 )
+from crazybilliards.comparison.commands.answers import with_json
 from crazybilliards.comparison.commands.output import INTERRUPTED
 from crazybilliards.comparison.commands.streams import READER_GONE, plain_streams
 
@@ -49,7 +51,8 @@ def crazybilliards(
 ) -> None:
     """Noisy rods on springs colliding in one dimension: simulation and theory side by side.
 
-    Lengths are in units of the rod radius R, masses in M, times in sqrt(M/k).
+    Lengths are in units of the rod radius R, masses in M, times in T = sqrt(M/k). Results are
+    written as NetCDF files; with --json a command prints its tables for machines.
 
     Example: crazybilliards compare --output results
     """
@@ -58,7 +61,11 @@ def crazybilliards(
 
 
 for module in (compare, simulate, theory, relax, reproduce, sweep, explore):
-    app.command(module.__name__.rpartition(".")[2])(module.command)
+    app.command(
+        module.__name__.rpartition(".")[2],
+        # Given like this it is not cut to one line.
+        short_help=(inspect.getdoc(module.command) or "").partition("\n")[0],
+    )(module.command if module is explore else with_json(module.command))
 
 
 def main() -> None:

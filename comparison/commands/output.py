@@ -1,4 +1,4 @@
-"""What the commands share: reading lists, folders, figures, tables, and the exit status.
+"""What the commands share: reading lists, folders, figures, and the exit status.
 
 Standard library and typer only up here, so that ``--help`` answers at once.
 """
@@ -6,6 +6,7 @@ Standard library and typer only up here, so that ``--help`` answers at once.
 from __future__ import annotations
 
 import os
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -13,13 +14,13 @@ from typing import TYPE_CHECKING, TypeVar
 
 import typer
 
+from crazybilliards.comparison.commands.answers import wrote
+
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
-    from rich.table import Table
 
 INTERRUPTED = 130
-_ANY_WIDTH = 10_000
 
 Number = TypeVar("Number", int, float)
 
@@ -98,54 +99,23 @@ def write_figures(folder: Path, suffix: str, **figures: Figure) -> None:
 
     for name, figure in figures.items():
         picture = BytesIO()
-        figure.savefig(picture, format="png", dpi=150)
+        figure.savefig(picture, format="png")
         path = folder / f"{name}{suffix}.png"
         write_atomically(path, picture.getvalue())
-        print(f"wrote {path}")
+        wrote(path)
 
 
-_COLUMNS = {
-    "velocity_width": "W_v",
-    "mean_displacement": "<dx>",
-    "displacement_width": "W_x",
-}
+def complain_of_divergence(run: xr.Dataset) -> None:
+    """Say on standard error that a simulation has no steady state."""
+    from crazybilliards.model import chain_of
 
-
-def print_rods(result: xr.Dataset, title: str, caption: str) -> None:
-    """Print widths and displacements of some rods, with their standard errors if there are any."""
-    from rich.table import Table
-
-    columns = {name: text for name, text in _COLUMNS.items() if name in result}
-    table = Table("particle", *columns.values(), title=title, caption=caption)
-    for column in table.columns:
-        column.justify = "right"
-    L = result.sizes["particle"]
-    for i in sorted({1, 2, max(L // 10, 1), max(L // 4, 1), max(L // 2, 1)} & set(range(1, L + 1))):
-        rod = result.isel(particle=i - 1)
-        table.add_row(str(rod.particle.item()), *(_measured(rod, name) for name in columns))
-    print_table(table)
-
-
-def print_table(table: Table) -> None:
-    """Print a table without cutting a number: headings wrap, and lines get as long as they must."""
-    from rich.cells import cell_len
-    from rich.console import Console
-
-    console = Console(markup=False)  # [sigma] is a unit, not a style
-    wide = console.options.update(max_width=_ANY_WIDTH)
-    if console.measure(table, options=wide).maximum > console.width:
-        for column in table.columns:
-            if column.justify == "right":
-                words = [*map(str, column.cells), *str(column.header).split()]
-                column.width = max(map(cell_len, words))
-        console.width = max(console.width, console.measure(table, options=wide).minimum)
-    console.print(table)
-
-
-def _measured(rod: xr.Dataset, name: str) -> str:
-    value = f"{float(rod[name]):.4g}"
-    error = rod.get(f"{name}_error")
-    return value if error is None else f"{value} +- {float(error):.1g}"
+    chain, end = chain_of(run), run.attrs["end_time"]
+    when = f"at t = {end:g} T" if end else "before anything was measured"
+    print(
+        f"crazybilliards: L = {chain.size}, e = {chain.restitution:g}: the simulation diverged "
+        f"{when}. Collisions bring in more energy than the damping takes out.",
+        file=sys.stderr,
+    )
 
 
 def exit_unless_completed(status: str) -> None:

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from crazybilliards.comparison.commands.answers import note, print_table, say, wrote
 from crazybilliards.comparison.commands.chain_options import with_chain_options
 from crazybilliards.comparison.commands.output import (
     exit_unless_completed,
     place,
-    print_table,
     write_figures,
     writing_to,
 )
@@ -25,6 +25,12 @@ if TYPE_CHECKING:
     from crazybilliards.model import Chain
 
 
+_WHAT_TO_SEE = (
+    "Density of the rods in time. Watch when and where the lines leave the symbols: a fluid whose "
+    "temperature is held constant swings, rods that collide heat up and do not."
+)
+
+
 @with_chain_options(without=("restitution",), amplitude=30.0)
 def command(
     chain: Chain,
@@ -32,7 +38,8 @@ def command(
         Path | None,
         typer.Option(
             help="Folder for relaxation.nc, spacetime.png, profiles.png, cloud.png, "
-            "relaxation.html and relaxation.gif, made if missing; without it nothing is written.",
+            "relaxation.html and relaxation.gif, made if missing; without it nothing is written. "
+            "The first holds smoothed densities, all that the pictures show.",
             parser=place,
             metavar="FOLDER",
         ),
@@ -82,13 +89,14 @@ def command(
             threads=threads,
         )
         status = tree.attrs["status"]
+        note(status=status)
         try:
             if output is not None:
                 _write_relaxation(tree, output, "" if status == "completed" else f"-{status}")
         finally:
             _print_distances(tree)  # where nothing can be written any more, this is all there is
     if output is None:
-        print("Nothing was written; --output FOLDER keeps the figures and the data.")
+        say("Nothing was written; --output FOLDER keeps the figures and the data.")
     exit_unless_completed(status)
 
 
@@ -98,28 +106,35 @@ def _write_relaxation(tree: xr.DataTree, folder: Path, suffix: str) -> None:
     import matplotlib
 
     matplotlib.use("Agg")
+    from crazybilliards.comparison.layout import house_style
     from crazybilliards.comparison.studies import relaxation_figures as figures
     from crazybilliards.comparison.studies.animation_page import standalone_page
+    from crazybilliards.comparison.studies.relaxation import condensed
+    from crazybilliards.comparison.waiting import waiting_for
     from crazybilliards.model import save
     from crazybilliards.model.storage import write_atomically
 
-    print(f"wrote {save(tree, folder / f'relaxation{suffix}.nc')}")
-    write_figures(
-        folder,
-        suffix,
-        spacetime=figures.draw_spacetime(tree),
-        profiles=figures.draw_profiles(tree),
-        cloud=figures.draw_cloud(tree),
-    )
+    tree = condensed(tree)
+    wrote(save(tree, folder / f"relaxation{suffix}.nc"))
+    with waiting_for("drawing"), house_style():
+        write_figures(
+            folder,
+            suffix,
+            spacetime=figures.draw_spacetime(tree),
+            profiles=figures.draw_profiles(tree),
+            cloud=figures.draw_cloud(tree),
+        )
     animation = figures.animate(tree)
-    with tempfile.TemporaryDirectory() as scratch:  # matplotlib wants a name, not a stream
+    # matplotlib wants a name, not a stream.
+    with waiting_for("drawing the animation"), tempfile.TemporaryDirectory() as scratch:
+        page = standalone_page(animation, title=figures.title(tree), text=_WHAT_TO_SEE)
         gif = Path(scratch, "relaxation.gif")
-        animation.save(gif, writer="pillow", dpi=80)
-        contents = {"html": standalone_page(animation).encode(), "gif": gif.read_bytes()}
+        animation.save(gif, writer="pillow", dpi=100)
+        contents = {"html": page.encode(), "gif": gif.read_bytes()}
     for kind, content in contents.items():
         path = folder / f"relaxation{suffix}.{kind}"
         write_atomically(path, content)
-        print(f"wrote {path}")
+        wrote(path)
 
 
 def _print_distances(tree: xr.DataTree) -> None:
@@ -133,6 +148,8 @@ def _print_distances(tree: xr.DataTree) -> None:
     )
     table.add_column("theory")
     table.add_column("rms distance / s", justify="right")
-    for key, distance in label_distances(tree).items():
+    distances = label_distances(tree)
+    note(distances=distances)
+    for key, distance in distances.items():
         table.add_row(LEGEND[key], f"{distance:.3f}")
     print_table(table)

@@ -5,13 +5,16 @@ Only the standard library and typer are imported up here, so that ``--help`` ans
 
 from __future__ import annotations
 
+import shutil
+import textwrap
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from crazybilliards.comparison.commands.output import place, print_table, writing_to
+from crazybilliards.comparison.commands.answers import note, say, wrote
+from crazybilliards.comparison.commands.output import place, writing_to
 from crazybilliards.comparison.commands.sweep import (
     Dask,
     KeepOld,
@@ -26,6 +29,7 @@ if TYPE_CHECKING:
     from crazybilliards.comparison.claims.study import Study
 
 
+_PRINTED = ("its number", "found here", "theory", "why")  # of what there is to say about a claim
 # By what is asked for: names of the page with everything and of the table of claims.
 _REPORTS = {"all": ("report.html", "claims.md"), "studies": ("studies.html", "studies.md")}
 
@@ -35,6 +39,13 @@ class Quality(StrEnum):
 
     QUICK = "quick"
     FULL = "full"
+
+
+class Vector(StrEnum):
+    """Formats of vector graphics."""
+
+    PDF = "pdf"
+    SVG = "svg"
 
 
 def command(
@@ -60,6 +71,18 @@ def command(
             metavar="FOLDER",
         ),
     ] = Path("reproduced"),
+    columns: Annotated[
+        int | None,
+        typer.Option(
+            min=1,
+            max=2,
+            help="Width of the pictures in columns of a journal, 1 (3.4 inches) or 2 (7 inches); "
+            "default: as their panels need.",
+        ),
+    ] = None,
+    vector: Annotated[
+        Vector | None, typer.Option(help="Write every picture as a vector graphic, too.")
+    ] = None,
     processes: Processes = None,
     dask: Dask = False,
     scheduler: Scheduler = None,
@@ -89,34 +112,43 @@ def command(
     computing = engine(processes, dask, scheduler)
     with writing_to(output):
         compute_cases(all_cases(wanted, quality.value), output / "cases", computing, keep_old)
-        reproduced = _draw(wanted, quality, output, keep_old)
-        _print_claims(reproduced)
+        drawing = {"columns": columns, "formats": [] if vector is None else [vector.value]}
+        reproduced = _draw(wanted, quality, output, keep_old=keep_old, **drawing)
         if which in _REPORTS:
             _write_report(reproduced, quality, output, *_REPORTS[which])
+        _print_claims(reproduced)
 
 
 def _print_list() -> None:
     from crazybilliards.comparison.claims.study import PaperFigure
     from crazybilliards.comparison.paper.reproducible import groups
 
+    listed = []
     for group in groups().values():
         for study in group:
             number = study.number if isinstance(study, PaperFigure) else ""
-            print(f"{number:3}  {study.name:28s} {study.title}")
+            listed.append({"number": number, "name": study.name, "title": study.title})
+            say(f"{number:3}  {study.name:28s} {study.title}")
+    note(studies=listed)
 
 
-def _draw(studies: list[Study], quality: Quality, output: Path, keep_old: bool) -> list[Reproduced]:
+def _draw(studies: list[Study], quality: Quality, output: Path, **how: Any) -> list[Reproduced]:
     import matplotlib
 
     matplotlib.use("Agg")
     from crazybilliards.comparison.claims.report import reproduce as draw
+    from crazybilliards.comparison.waiting import waiting_for
     from crazybilliards.model.storage import write_atomically
 
     reproduced = []
-    for each in draw(studies, quality.value, output / "cases", keep_old=keep_old):
-        path = output / each.study.file_name
-        write_atomically(path, each.picture)
-        print(f"wrote {path}")
+    drawing = draw(studies, quality.value, output / "cases", **how)
+    for number, study in enumerate(studies, start=1):
+        with waiting_for(f"drawing {study.label}, {number} of {len(studies)}"):
+            each = next(drawing)
+        for kind, picture in each.pictures.items():
+            path = output / f"{each.study.stem}.{kind}"
+            write_atomically(path, picture)
+            wrote(path)
         reproduced.append(each)
     return reproduced
 
@@ -132,29 +164,32 @@ def _write_report(
         (page, html(reproduced, quality.value)),
     ):
         write_atomically(output / name, text.encode())
-        print(f"wrote {output / name}")
+        wrote(output / name)
 
 
 def _print_claims(reproduced: list[Reproduced]) -> None:
     """Print the claims of the figures, if there are any, and how many came out how."""
-    from rich.table import Table
+    from crazybilliards.comparison.claims.report import details, summary
 
-    from crazybilliards.comparison.claims.report import summary
-
-    if not any(each.claims for each in reproduced):
-        return
-    table = Table(title="Claims")
-    for name in ("figure", "claim", "found here", "theory", "verdict"):
-        table.add_column(name)
+    noted = []
     for each in reproduced:
+        if each.claims:
+            say(f"\n{each.study.heading}")
         for claim in each.claims:
-            table.add_row(
-                each.study.label,
-                claim.statement,
-                claim.measured,
-                claim.theory,
-                claim.verdict,
-            )
-    print_table(table)
+            said = details(claim)
+            noted.append({"figure": each.study.name, "claim": claim.statement} | said)
+            say(_indented(1, f"{claim.statement}: {claim.verdict}"))
+            for name in (name for name in said if name in _PRINTED):
+                say(_indented(2, f"{name}: {said[name]}"))
+    note(claims=noted, summary=summary(reproduced))
+    if noted:
+        say("")
     for line in summary(reproduced):
-        print(line)
+        say(line)
+
+
+def _indented(levels: int, text: str) -> str:
+    """Wrap a text to the terminal."""
+    width = max(shutil.get_terminal_size().columns, 40)
+    indent = "  " * levels
+    return textwrap.fill(text, width, initial_indent=indent, subsequent_indent=indent + "  ")

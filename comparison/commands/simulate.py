@@ -10,12 +10,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from crazybilliards.comparison.commands.answers import answer_rods, note, say, wrote
 from crazybilliards.comparison.commands.chain_options import with_chain_options
 from crazybilliards.comparison.commands.output import (
+    complain_of_divergence,
     exit_unless_completed,
     numbers,
     place,
-    print_rods,
     writing_to,
 )
 
@@ -133,11 +134,11 @@ def command(
         try:
             if output is not None:
                 suffix = "" if status == "completed" else f"-{status}"
-                print(f"wrote {save(result, output.with_stem(output.stem + suffix))}")
+                wrote(save(result, output.with_stem(output.stem + suffix)))
         finally:
             _print(result)  # where nothing can be written any more, this is all there is
     if output is None:
-        print("Nothing was written; --output FILE.nc keeps the result.")
+        say("Nothing was written; --output FILE.nc keeps the result.")
     exit_unless_completed(status)
 
 
@@ -157,21 +158,25 @@ def _print(result: xr.Dataset) -> None:
 
     how = json.loads(result.attrs["provenance"])
     runs = how.get("levels", [how.get("schedule")])
-    steps = ", ".join(f"{each['time_step']:.3g}" for each in runs if each)
-    print(
-        f"{result.attrs['status']} at t = {result.attrs['end_time']:g}, "
-        f"time step{'s' * (len(runs) > 1)} {steps}"
-    )
+    steps = [each["time_step"] for each in runs if each]
+    status, end = result.attrs["status"], result.attrs["end_time"]
+    note(status=status, end_time=end, time_steps=steps)
+    listed = ", ".join(f"{step:.3g}" for step in steps)
+    say(f"{status} at t = {end:g} T, time step{'s' * (len(steps) > 1)} {listed} T")
+    if status == "diverged":
+        complain_of_divergence(result)
     if "central_velocity_width" in result:
         width, error = result.central_velocity_width, result.central_velocity_width_error
-        print(f"W_v in the centre as dt -> 0: {width.item():.5g} +- {error.item():.2g}")
-    if "time_step_error" in result.attrs:
-        print(
+        note(central_velocity_width=width.item(), central_velocity_width_error=error.item())
+        say(f"W_v in the centre as dt -> 0: {width.item():.5g} +- {error.item():.2g} R/T")
+    if "time_step_error" in result.attrs and status != "diverged":
+        note(time_step_error=result.attrs["time_step_error"])
+        say(
             f"error of the smallest W_v due to the time step: {result.attrs['time_step_error']:.1%}"
         )
     if "velocity_width" in result:
         last = "time" in result.velocity_width.dims
-        print_rods(
+        answer_rods(
             result.isel(time=-1) if last else result,
             "Some rods at the last time" if last else "Some rods",
             "+-: one standard error.",

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from crazybilliards.comparison.commands.answers import note, say
 from crazybilliards.comparison.commands.output import INTERRUPTED, check_folder, place
 
 if TYPE_CHECKING:
@@ -69,7 +70,7 @@ def command(
     What the folder holds already is not computed again: after Ctrl-C, a crash, or with a larger
     grid, the same command computes what is missing. Results are computed anew if the source code
     that they depend on was changed since (unless --keep-old is given). In Python,
-    crazybilliards.comparison.load_sweep(FOLDER) reads all of them as one Dataset.
+    crazybilliards.load_sweep(FOLDER) reads all of them as one Dataset.
 
     Example: crazybilliards sweep grid.toml --output results/grid
     """
@@ -77,6 +78,7 @@ def command(
     from crazybilliards.comparison.sweeps import read_sweep
 
     compute_cases(read_sweep(file), output, engine(processes, dask, scheduler), keep_old)
+    say(f"All of them as one Dataset: crazybilliards.load_sweep({str(output)!r})")
 
 
 def engine(
@@ -113,7 +115,8 @@ def compute_cases(
     make_folder(folder)
     with locked(folder):
         missing = find_missing(checked, folder, keep_old=keep_old)
-        print(f"{len(checked)} cases, {len(checked) - len(missing)} of them in {folder} already")
+        say(f"{len(checked)} cases, {len(checked) - len(missing)} of them in {folder} already")
+        note(cases=len(checked), folder=str(folder), computed=0, failed=[])
         if not len(missing):
             return
         outcome, reason, status = Outcome(), "", 0
@@ -130,7 +133,9 @@ def compute_cases(
             f"{len(outcome.failed)} cases failed, the first, {case.canonical}, with {first}"
         )
         status = status or 1
-    print(f"computed {outcome.written} cases into {folder}")
+    say(f"computed {outcome.written} cases into {folder}")
+    failed = [{**case.parameters, "reason": why} for case, why in outcome.failed.items()]
+    note(computed=outcome.written, failed=failed)
     if reason:
         print(f"crazybilliards: {reason}", file=sys.stderr)
     if status:

@@ -6,15 +6,16 @@ Only the standard library and typer are imported up here, so that ``--help`` ans
 from __future__ import annotations
 
 import inspect
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from crazybilliards.comparison.commands.answers import answer_rods, note, say, wrote
 from crazybilliards.comparison.commands.chain_options import with_chain_options
 from crazybilliards.comparison.commands.output import (
     place,
-    print_rods,
     write_figures,
     writing_to,
 )
@@ -67,8 +68,7 @@ def command(
 
     Example: crazybilliards theory equilibrium --amplitude 10 --gap 0.2
     """
-    from rich.console import Console
-
+    from crazybilliards.comparison.waiting import waiting_for
     from crazybilliards.kinetic import critical_size
     from crazybilliards.model.checks import check_choice
 
@@ -78,13 +78,13 @@ def command(
     for key in settings:
         if key not in inspect.signature(theory.solve).parameters:
             raise ValueError(f"{key}: {name} has no such setting")
-    waiting = Console(stderr=True)  # shows nothing unless it is a terminal
     with writing_to(output):
         if critical:
-            with waiting.status("working out the critical size"):
+            with waiting_for("working out the critical size"):
                 value, error = critical_size(chain)
-            print(f"critical size: {value:.1f} +- {error:.1f} rods")
-        with waiting.status(f"solving: {theory.title}"):
+            note(critical_size=value, critical_size_error=error)
+            say(f"critical size: {value:.1f} +- {error:.1f} rods")
+        with waiting_for(f"solving: {theory.title}"):
             result = theory.solve(chain, **settings)
         try:
             if output is not None:
@@ -92,7 +92,7 @@ def command(
         finally:
             _print(theory, result)  # where nothing can be written any more, this is all there is
     if output is None:
-        print("Nothing was written; --output FOLDER keeps the figures and the data.")
+        say("Nothing was written; --output FOLDER keeps the figures and the data.")
 
 
 def _print(theory: Theory, result: xr.Dataset) -> None:
@@ -100,15 +100,26 @@ def _print(theory: Theory, result: xr.Dataset) -> None:
 
     chain = chain_of(result)
     accuracy = {"residual": "Residual", "mesh_error": "Error due to the mesh"}
-    print_rods(
-        result,
-        f"{theory.title.capitalize()}, L = {chain.size}, e = {chain.restitution:g}",
-        f"A free rod has W_v = {chain.free_velocity_width:.4g}."
-        + "".join(
-            f" {text}: {result.attrs[key]:.1e}."
-            for key, text in accuracy.items()
-            if key in result.attrs
-        ),
+    numbers = {name: result.attrs[name] for name in accuracy if name in result.attrs}
+    caption = f"A free rod has W_v = {chain.free_velocity_width:.4g} R/T."
+    caption += "".join(f" {accuracy[name]}: {value:.1e}." for name, value in numbers.items())
+    if "model_error" in result.attrs:
+        numbers["model_error"] = result.attrs["model_error"]
+        caption += "\n" + _caveat(theory, numbers["model_error"])
+    note(theory=theory.name, free_velocity_width=chain.free_velocity_width, **numbers)
+    title = f"{theory.title.capitalize()}, L = {chain.size}, e = {chain.restitution:g}"
+    answer_rods(result, title, caption)
+
+
+def _caveat(theory: Theory, model_error: float) -> str:
+    """Say how wrong the theory is, however well its equations are solved."""
+    if model_error == 0:
+        return "The theory is exact for this chain."
+    if math.isnan(model_error):
+        return "How wrong the theory is was not measured on chains like this one: simulate tells."
+    return (
+        f"How wrong the theory is, in {theory.judged_by}: up to {model_error:.1%} (measured on "
+        "chains like this one)."
     )
 
 
@@ -116,16 +127,17 @@ def _write(theory: Theory, result: xr.Dataset, folder: Path) -> None:
     import matplotlib
 
     matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
-
     from crazybilliards.comparison.drawing import overlay
+    from crazybilliards.comparison.layout import house_style, panels
     from crazybilliards.comparison.studies.restitution_figures import draw_phase_space, draw_profile
+    from crazybilliards.comparison.waiting import waiting_for
     from crazybilliards.model import save
 
-    print(f"wrote {save(result, folder / 'theory.nc')}")
-    density, ax = plt.subplots(layout="constrained")
-    overlay({theory.title: result}, ax=ax).legend()
-    figures = {"density": density, "profile": draw_profile(result)}
-    if "phase_space_density" in result:
-        figures["phase_space"] = draw_phase_space(result)
-    write_figures(folder, "", **figures)
+    wrote(save(result, folder / "theory.nc"))
+    with waiting_for("drawing"), house_style():
+        density, [ax] = panels(1, 1, wanted=1)
+        overlay({theory.title: result}, ax=ax).legend(loc="lower center")
+        figures = {"density": density, "profile": draw_profile(result, theory.title)}
+        if "phase_space_density" in result:
+            figures["phase_space"] = draw_phase_space(result)
+        write_figures(folder, "", **figures)

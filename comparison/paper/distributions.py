@@ -62,17 +62,21 @@ def off_in_plot(
 
 
 def draw_distributions(
-    ax: Axes, run: xr.Dataset, particles: Sequence[int], unit: float, free: bool = True
+    ax: Axes, runs: Sequence[xr.Dataset], particles: Sequence[int], unit: float
 ) -> None:
     """Draw p(v) of some particles on a logarithmic scale, v in units of ``unit``, and Gaussians.
 
-    The lines are Gaussians of the same width; with ``free`` the free rod's is drawn too.
+    Error bars are standard errors from the scatter between the independent ``runs``. The lines are
+    Gaussians of the same width, and the free rod's.
     """
+    run = runs[0]
     v = run.velocity.values / unit
     reach = 0.0
     for number, particle in enumerate(particles):
-        p = run.velocity_density.sel(particle=particle).values * unit
-        width = float(run.velocity_width.sel(particle=particle)) / unit
+        each = np.array([run.velocity_density.sel(particle=particle) for run in runs]) * unit
+        p, error = each.mean(axis=0), each.std(axis=0, ddof=1) / len(runs) ** 0.5
+        variance = np.mean([run.velocity_width.sel(particle=particle) ** 2 for run in runs])
+        width = float(np.sqrt(variance)) / unit
         drawable = p > _LEAST * p.max()
         reach = max(reach, float(np.abs(v[drawable]).max()))
         colour = COLOURS[number]
@@ -80,24 +84,25 @@ def draw_distributions(
         inside = v[drawable]
         spaced = np.linspace(inside[0], inside[-1], _SYMBOLS_DRAWN)
         shown = np.unique(np.abs(v[:, None] - spaced).argmin(axis=0))
-        ax.semilogy(
+        ax.errorbar(
             v[shown],
             p[shown],
-            SYMBOLS[number],
+            error[shown],
+            fmt=SYMBOLS[number],
             color=colour,
-            markersize=3.5,
             markerfacecolor="none",
-            label=f"i = {particle}",
+            linewidth=0.6,
+            label=f"$i = {particle}$",
         )
         fine = np.linspace(-5 * width, 5 * width, 201)
-        ax.semilogy(fine, gaussian(fine, width), color=colour, linewidth=1.0)
-    if free:
-        fine = np.linspace(-5, 5, 201)
-        ax.semilogy(fine, gaussian(fine, 1.0), "k:", linewidth=1.2, label="free rod")
+        ax.plot(fine, gaussian(fine, width), color=colour, linewidth=0.9)
+    ax.plot([], [], color="0.4", linewidth=0.9, label="Gaussian")
+    fine = np.linspace(-5, 5, 201)
+    ax.plot(fine, gaussian(fine, 1.0), "k:", label="free rod")
+    ax.set_yscale("log")
     top = ax.get_ylim()[1]
     ax.set(ylim=(3e-6, top), xlim=(-1.05 * reach, 1.05 * reach))
     ax.set(xlabel="velocity $v/W$", ylabel="probability density $W p(v)$")
-    ax.legend(frameon=False, fontsize=8)
 
 
 def draw_sizes(
@@ -112,8 +117,7 @@ def draw_sizes(
         fmt=SYMBOLS[number],
         color=COLOURS[number],
         markerfacecolor="none",
-        markersize=4,
-        linewidth=0.8,
+        linewidth=0.7,
         label=label,
     )
     ax.set(xscale="log", yscale="log", xlabel="avalanche size $N_c$")

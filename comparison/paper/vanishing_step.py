@@ -1,7 +1,7 @@
 """Dissipative chains in the limit of a vanishing time step, beside the runs at a time step.
 
-The error bar of a limit holds its statistics and the remaining error of the step. Independent limits
-of one chain have the second part in common: the mean of many does not make it smaller.
+The error bar of a limit holds its statistics and the remaining error of the step. Independent
+limits of one chain have the second part in common: the mean of many does not make it smaller.
 """
 
 from __future__ import annotations

@@ -26,7 +26,7 @@ from crazybilliards.model import Chain, chain_of
 
 LEGEND = {
     "exact": "exact",
-    "labels": "force balance, by labels",
+    "labels": "force balance, without fit",
     "arctanh": "force balance, arctanh fit",
 }
 

@@ -15,37 +15,73 @@ from matplotlib.figure import Figure
 
 from crazybilliards.comparison.coverage import smooth
 from crazybilliards.comparison.drawing import overlay
+from crazybilliards.comparison.layout import entitle, legend_above, letter, picture_width
 from crazybilliards.comparison.studies.elastic_chain import LEGEND
 from crazybilliards.comparison.studies.parameter_series import SIMULATION
 from crazybilliards.model import Chain, chain_of
 
 
 def draw_density(tree: xr.DataTree) -> Figure:
-    """rho(x) of simulation and theories for each amplitude, all smoothed as the paper does."""
-    figure, panels = _panels(len(tree.children))
-    for axes, group in zip(panels, tree.children.values(), strict=True):
+    """rho(x) of simulation and theories for each amplitude, all smoothed as the paper does.
+
+    The insets show the right edge, where the theories differ most, with every bin.
+    """
+    figure, axes_of_all = _panels(len(tree.children))
+    for axes, group in zip(axes_of_all, tree.children.values(), strict=True):
         results = {name: smooth(result) for name, result in _results(group).items()}
         chain = chain_of(results[SIMULATION])
         _draw(axes, results, "density", unit=chain.close_packed_density)
-        axes[0].set(title=_title(chain), ylabel=r"density $\rho$ [1/R]")
-        axes[1].set(xlabel="position x [R]", ylabel=r"diff. $\times\, 2R$")
+        entitle(axes[0], _title(chain))
+        axes[0].set(ylabel=r"density $\rho$ [1/R]")
+        axes[1].set(xlabel="position $x$ [R]", ylabel=r"diff. $\times\, 2R$")
         reference = results.get(LEGEND["exact"], results[SIMULATION])
         inside = reference.density.values > 1e-4 * chain.close_packed_density
-        axes[1].set_xlim(*reference.x.values[inside][[0, -1]])
-    _one_legend(figure, panels)
+        ends = reference.x.values[inside][[0, -1]]
+        axes[1].set_xlim(*ends)
+        _draw_edge(axes[0], results, float(ends[1]))
+    legend_above(figure, axes_of_all[0][0])
     return figure
+
+
+def _draw_edge(ax: Axes, results: dict[str, xr.Dataset], end: float) -> None:
+    """Draw the outermost three thermal lengths, at least ten radii, into an inset."""
+    chain = chain_of(results[SIMULATION])
+    begin = end - max(3 * chain.thermal_length, 10 * chain.radius)
+    inset = ax.inset_axes((0.29, 0.13, 0.42, 0.56))
+    run = results[SIMULATION].sel(x=slice(begin, end))
+    inset.errorbar(
+        run.x,
+        run.density,
+        run.get("density_error"),
+        linestyle="none",
+        marker=".",
+        markersize=1.5,
+        color="black",
+        linewidth=0.5,
+    )
+    theories = {
+        name: result.sel(x=slice(begin, end))
+        for name, result in results.items()
+        if name != SIMULATION
+    }
+    overlay(theories, ax=inset)
+    inset.set(xlabel="", ylabel="", xlim=(begin, end))
+    inset.tick_params(labelsize=6)
+    inset.locator_params(nbins=3)
+    ax.indicate_inset_zoom(inset, edgecolor="0.5")
 
 
 def draw_displacement(tree: xr.DataTree) -> Figure:
     """<dx> at the rods' mean positions, with the paper's arctanh fit, for each amplitude."""
-    figure, panels = _panels(len(tree.children))
-    for axes, group in zip(panels, tree.children.values(), strict=True):
+    figure, axes_of_all = _panels(len(tree.children))
+    for axes, group in zip(axes_of_all, tree.children.values(), strict=True):
         results = _results(group)
         chain = chain_of(results[SIMULATION])
         _draw(axes, results, "mean_displacement", unit=chain.thermal_length)
-        axes[0].set(title=_title(chain), ylabel=r"displacement $\langle\Delta x\rangle$ [R]")
-        axes[1].set(xlabel="mean position x [R]", ylabel="diff. / s")
-    _one_legend(figure, panels)
+        entitle(axes[0], _title(chain))
+        axes[0].set(ylabel=r"displacement $\langle\Delta x\rangle$ [R]")
+        axes[1].set(xlabel=r"mean position $\langle x_i\rangle$ [R]", ylabel="diff. / $s$")
+    legend_above(figure, axes_of_all[0][0])
     return figure
 
 
@@ -75,18 +111,16 @@ def _draw(axes: list[Axes], results: dict[str, xr.Dataset], quantity: str, unit:
 
 
 def _panels(number: int) -> tuple[Figure, list[list[Axes]]]:
-    columns = min(number, 2)
+    """Make a lettered panel for each amplitude, with one for differences below it."""
+    width = picture_width(2 if number > 1 else 1)
+    columns = min(number, 2 if width > picture_width(1) else 1)
     rows = math.ceil(number / columns)
-    figure = plt.figure(figsize=(4.6 * columns, 3.4 * rows + 0.5), layout="constrained")
+    figure = plt.figure(figsize=(width, 2.7 * rows + 0.3), layout="constrained")
     parts = figure.subfigures(rows, columns, squeeze=False).ravel()[:number]
-    return figure, [
-        list(part.subplots(2, 1, sharex=True, height_ratios=(3, 1.3))) for part in parts
-    ]
-
-
-def _one_legend(figure: Figure, panels: list[list[Axes]]) -> None:
-    handles, labels = panels[0][0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside upper center", ncols=2, frameon=False)
+    made = [list(part.subplots(2, 1, sharex=True, height_ratios=(3, 1.3))) for part in parts]
+    if number > 1:
+        letter([above for above, _ in made])
+    return figure, made
 
 
 def _title(chain: Chain) -> str:

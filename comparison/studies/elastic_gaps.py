@@ -7,13 +7,13 @@ rods are order statistics of one Gaussian. The paper compares with theory only w
 
 from __future__ import annotations
 
-import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.figure import Figure
 
 from crazybilliards.comparison.claims.study import Cases, Quality, Results, Study
 from crazybilliards.comparison.claims.verdicts import Claim, same_claim
 from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_rods
+from crazybilliards.comparison.layout import legend_above, panels
 from crazybilliards.comparison.sweeps import Case
 from crazybilliards.model import Chain, chain_of
 
@@ -57,20 +57,19 @@ def claims(results: Results) -> list[Claim]:
 
 def draw(results: Results) -> Figure:
     """Draw <dx> and W_x of the rods as symbols and the exact ones as lines."""
-    figure, axes = plt.subplots(2, 1, figsize=(4.2, 5.2), layout="constrained", sharex=True)
+    figure, axes = panels(2, 1, height=1.9, wanted=1, sharex=True)
     for number, gap in enumerate(_GAPS):
         rods, exact = results[f"rods g={gap:g}"], results[f"exact g={gap:g}"]
         s = chain_of(rods).thermal_length
         for ax, name in zip(axes, _QUANTITIES, strict=True):
-            draw_rods(ax, rods, name, number=number, unit=s, label=f"g = {gap:g}")
+            draw_rods(ax, rods, name, number=number, unit=s, label=f"$g = {gap:g}$")
             ax.plot(exact.normalized_particle, exact[name] / s, color=COLOURS[number], zorder=3)
     for ax, label in zip(axes, _QUANTITIES.values(), strict=True):
         ax.set_ylabel(label)
     along_the_chain(axes[1])
     axes[1].set_ylim(bottom=0)
-    figure.legend(
-        *axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=3, frameon=False
-    )
+    axes[0].plot([], [], color="0.4", label="exact")
+    legend_above(figure, axes[0])
     return figure
 
 

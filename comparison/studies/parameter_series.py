@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 import xarray as xr
 
+from crazybilliards.comparison.waiting import waiting_for
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain
 from crazybilliards.model.checks import check_integer, check_real
@@ -61,21 +62,23 @@ def simulate_beside(
     status = "completed"
     try:
         with terminated_like_interrupted():
-            for (name, chain), own_seed in zip(
-                chains.items(), seeds.generate_state(len(chains)), strict=True
-            ):
+            own_seeds = seeds.generate_state(len(chains))
+            for number, (name, chain) in enumerate(chains.items()):
+                what = f"{name.replace('_', ' ')}, {number + 1} of {len(chains)}"
                 run = simulate(
                     chain,
                     duration=duration,
-                    seed=int(own_seed),
+                    seed=int(own_seeds[number]),
                     replicas=_REPLICAS,
                     threads=threads,
-                    progress=progress,
+                    progress=progress and what,
                 )
                 results[f"{name}/{SIMULATION}"] = run
                 if run.attrs["status"] != "completed":
                     status = run.attrs["status"]
-                results |= {f"{name}/{key}": theory for key, theory in theories(chain, run).items()}
+                with waiting_for(f"theories of {what}", progress):
+                    beside = theories(chain, run)
+                results |= {f"{name}/{key}": theory for key, theory in beside.items()}
                 if status == "interrupted":
                     break
     except KeyboardInterrupt:

@@ -14,6 +14,8 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from crazybilliards.comparison.coverage import smooth
+from crazybilliards.comparison.waiting import waiting_for
 from crazybilliards.kinetic import (
     compressed,
     displaced,
@@ -70,7 +72,8 @@ def compare_relaxation(
     -------
     xarray.DataTree
         ``tree["particles"]``, ``["isothermal"]``, ``["evolving"]`` and, for linear springs without
-        gap, ``["exact"]``: results over time in the common vocabulary.
+        gap, ``["exact"]``: results over time in the common vocabulary. The densities are as they
+        are, not smoothed, those of the simulation in groups of replicas as well.
 
     Raises
     ------
@@ -88,14 +91,15 @@ def compare_relaxation(
     # The fluids take a second and are computed first, to find a wrong duration before the long run.
     results = {}
     for name, variance in FLUIDS.items():
-        results[name] = hydrodynamics(
-            chain, fluid, duration, every=every, velocity_variance=variance, progress=False
-        )
+        with waiting_for(f"solving: {LEGEND[name]}", progress):
+            results[name] = hydrodynamics(
+                chain, fluid, duration, every=every, velocity_variance=variance, progress=False
+            )
         if results[name].attrs["status"] == "interrupted":
             raise KeyboardInterrupt("interrupted before the simulation")
     if chain.gap == 0 and chain.spring == "linear":
         results["exact"] = _exact(chain, release, by, duration, every)
-    ensemble = simulate(
+    results[PARTICLES] = simulate(
         chain,
         start=start,
         replicas=replicas,
@@ -105,10 +109,8 @@ def compare_relaxation(
         observe=("widths", "density"),
         seed=seed,
         threads=threads,
-        progress=progress,
+        progress=progress and f"{replicas} chains",
     )
-    # The densities of 32 groups in time would be nine tenths of the data.
-    results[PARTICLES] = ensemble.drop_vars("density_block")
     tree = xr.DataTree.from_dict(results)
     tree.attrs |= {
         "status": results[PARTICLES].attrs["status"],
@@ -117,6 +119,27 @@ def compare_relaxation(
         "by": by,
     }
     return tree
+
+
+def condensed(tree: xr.DataTree) -> xr.DataTree:
+    """Return what the pictures of a relaxation show, a tenth of the tree, to be stored.
+
+    The densities are smoothed (:func:`crazybilliards.comparison.smooth`) and in single precision;
+    other fields over x are left out.
+    """
+    results = {}
+    for name, group in tree.children.items():
+        result = group.to_dataset()
+        if "density" in result:
+            density = smooth(result).drop_vars("density_block", errors="ignore")
+            result = result.drop_dims("x").merge(density.astype(np.float32))
+            result.attrs["smoothed"] = density.attrs["smoothed"]
+            for each in density.data_vars:
+                result[each].encoding = {"zlib": True, "shuffle": True}
+        results[str(name)] = result
+    stored = xr.DataTree.from_dict(results)
+    stored.attrs = tree.attrs
+    return stored
 
 
 def label_distances(tree: xr.DataTree) -> dict[str, float]:
@@ -130,15 +153,26 @@ def label_distances(tree: xr.DataTree) -> dict[str, float]:
     }
 
 
-def cloud(result: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray]:
-    """Centre and width of the cloud in the reduced coordinate, of any of the results [R]."""
+def cloud(result: xr.Dataset) -> xr.Dataset:
+    """Centre and width of the cloud in the reduced coordinate, of any of the results [R].
+
+    Of a simulation with upper bounds of their standard errors, ``centre_error`` and
+    ``cloud_width_error``, which they would have if the errors of all rods had the same sign.
+    """
     if "cloud_width" in result:
-        return result.centre, result.cloud_width
-    chain = chain_of(result)
-    place = result.mean_displacement + chain.reduced_anchors
+        return result[["centre", "cloud_width"]]
+    place = result.mean_displacement + chain_of(result).reduced_anchors
     square = (place**2 + result.displacement_width**2).mean("particle")
     centre = place.mean("particle")
-    return centre, np.sqrt(square - centre**2)
+    width = np.sqrt(square - centre**2)
+    found = xr.Dataset({"centre": centre, "cloud_width": width}, attrs=result.attrs)
+    if "mean_displacement_error" in result:
+        shift = result.mean_displacement_error
+        spread = result.displacement_width_error * result.displacement_width
+        found["centre_error"] = shift.mean("particle")
+        away = np.abs(place - centre)
+        found["cloud_width_error"] = (away * shift + spread).mean("particle") / width
+    return found
 
 
 def _states(chain: Chain, release: Release, by: float, replicas: int, seed: int) -> xr.Dataset:

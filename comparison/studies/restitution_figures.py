@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import matplotlib.pyplot as plt
 import numpy as np
 import xarray as xr
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
 from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_rods
+from crazybilliards.comparison.layout import legend_above, panels
 from crazybilliards.comparison.studies.parameter_series import SIMULATION
 from crazybilliards.comparison.studies.restitutions import THEORY
 from crazybilliards.model import chain_of
@@ -19,7 +19,7 @@ _DECADES = 5  # of f in the image
 
 def draw_widths(tree: xr.DataTree) -> Figure:
     """W_v(i) and <dx_i> for every restitution, in units of the free rod; lines are theory."""
-    figure, axes = plt.subplots(1, 2, figsize=(9.2, 4.0), layout="constrained")
+    figure, axes = panels(1, 2, height=2.5)
     for number, group in enumerate(tree.children.values()):
         run = group[SIMULATION].to_dataset()
         chain = chain_of(run)
@@ -28,7 +28,7 @@ def draw_widths(tree: xr.DataTree) -> Figure:
         for ax, name, unit in zip(
             axes, ("velocity_width", "mean_displacement"), units, strict=True
         ):
-            draw_rods(ax, run, name, number=number, unit=unit, label=f"e = {chain.restitution:g}")
+            draw_rods(ax, run, name, number=number, unit=unit, label=f"$e = {chain.restitution:g}$")
             if THEORY in group:
                 theory = group[THEORY].to_dataset()
                 ax.plot(theory.normalized_particle, theory[name] / unit, color=colour, zorder=3)
@@ -37,13 +37,8 @@ def draw_widths(tree: xr.DataTree) -> Figure:
     axes[0].set_ylim(bottom=0)
     along_the_chain(axes[1])
     axes[1].set(ylabel=r"displacement $\langle\Delta x\rangle/s$")
-    figure.legend(
-        *axes[0].get_legend_handles_labels(),
-        loc="outside upper center",
-        ncols=6,
-        frameon=False,
-        title="symbols: simulation, lines: kinetic equation",
-    )
+    axes[0].plot([], [], color="0.4", label="kinetic equation")
+    legend_above(figure, axes[0])
     return figure
 
 
@@ -55,13 +50,12 @@ def draw_phase_space(theory: xr.Dataset) -> Figure:
     f = theory.phase_space_density * (s * W / chain.size)
     y, v = theory.y / s, theory.velocity / W
     floor = float(f.max()) * 10.0**-_DECADES
-    figure, ax = plt.subplots(figsize=(5.2, 4.2), layout="constrained")
+    figure, [ax] = panels(1, 1, height=2.7, wanted=1)
     image = ax.pcolormesh(
         y,
         v,
         np.maximum(f.values.T, floor),
         norm=LogNorm(floor, float(f.max())),
-        cmap="cividis",
         shading="gouraud",
         rasterized=True,
     )
@@ -74,8 +68,7 @@ def draw_phase_space(theory: xr.Dataset) -> Figure:
             y[alive],
             sign * width,
             color="white",
-            linewidth=1.2,
-            label=r"$\pm\langle v^2\rangle^{1/2}$ at y" if sign > 0 else None,
+            label=r"$\pm\langle v^2\rangle^{1/2}$ at $y$" if sign > 0 else None,
         )
     # The region above the floor, with a margin around it.
     reach = [np.abs(axis[(f.values > floor).any(axis=1 - k)]).max() for k, axis in ((0, y), (1, v))]
@@ -86,27 +79,25 @@ def draw_phase_space(theory: xr.Dataset) -> Figure:
         ylabel="velocity $v/W$",
         title=rf"$L = {chain.size}$, $e = {chain.restitution:g}$, $\gamma = {chain.damping:g}$",
     )
-    ax.legend(loc="upper right", frameon=False, labelcolor="white")
-    figure.colorbar(image, label=r"$f(y, v)\; s W/L$")
+    ax.legend(loc="upper right", labelcolor="white")
+    figure.colorbar(image, ax=ax, label=r"$f(y, v)\; s W/L$")
     return figure
 
 
-def draw_profile(theory: xr.Dataset) -> Figure:
-    """W_v(i) and <dx_i> of a theory alone."""
+def draw_profile(theory: xr.Dataset, name: str) -> Figure:
+    """W_v(i) and <dx_i> of a theory alone, called ``name`` in the legend."""
     chain = chain_of(theory)
-    figure, axes = plt.subplots(1, 2, figsize=(8.6, 3.4), layout="constrained")
-    for ax, name, label in (
+    figure, axes = panels(1, 2)
+    for ax, quantity, label in (
         (axes[0], "velocity_width", "velocity width $W_v$ [R/T]"),
         (axes[1], "mean_displacement", r"displacement $\langle\Delta x\rangle$ [R]"),
     ):
-        ax.plot(
-            theory.normalized_particle, theory[name], color=COLOURS[0], label="kinetic equation"
-        )
+        ax.plot(theory.normalized_particle, theory[quantity], color=COLOURS[0], label=name)
         along_the_chain(ax)
         ax.set(ylabel=label)
     axes[0].axhline(
         chain.free_velocity_width, color="0.4", linestyle=":", label="free rod (and e = 1)"
     )
-    axes[0].legend(frameon=False)
+    axes[0].legend()
     axes[0].set_ylim(bottom=0)
     return figure

@@ -93,6 +93,16 @@ class Case:
         defaults = _defaults(self.job)
         return {name: value for name, value in self.parameters.items() if value != defaults[name]}
 
+    @property
+    def title(self) -> str:
+        """The job and what is not the default, but for the random numbers and the observers."""
+        changed = [
+            f"{name} {value}"
+            for name, value in self.changed.items()
+            if name not in ("job", "seed", "observe")
+        ]
+        return f"{self.job}: {', '.join(changed) or 'defaults'}"
+
     @cached_property
     def canonical(self) -> str:
         """All parameters as text, the same for equal cases."""

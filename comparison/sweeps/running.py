@@ -106,12 +106,12 @@ def compute_missing(
     missing.report()
     with tqdm(
         total=missing.work,
-        desc=f"{len(missing)} cases",
+        desc=f"0 of {len(missing)} cases",
         unit=" steps",
         unit_scale=True,
         disable=None if progress else True,
     ) as bar:
-        under_way = _UnderWay(executor, missing.folder, outcome, bar)
+        under_way = _UnderWay(executor, missing, outcome, bar)
         for case in missing:
             try:
                 under_way.submit(case)
@@ -138,8 +138,11 @@ def compute_missing(
 class _UnderWay:
     """Submitted cases that have not returned; each is written when it is taken back."""
 
-    def __init__(self, executor: Executor, folder: Path, outcome: Outcome, bar: tqdm[Any]) -> None:
-        self.executor, self.folder, self.outcome, self.bar = executor, folder, outcome, bar
+    def __init__(
+        self, executor: Executor, missing: Missing, outcome: Outcome, bar: tqdm[Any]
+    ) -> None:
+        self.executor, self.outcome, self.bar = executor, outcome, bar
+        self.folder, self.number = missing.folder, len(missing)
         self.cases: dict[Future[bytes], Case] = {}
         self.back: SimpleQueue[Future[bytes]] = SimpleQueue()
         self.lost: Exception | None = None  # why the executor cannot be used any more
@@ -171,6 +174,9 @@ class _UnderWay:
         else:
             _write(case.file(self.folder), content)
             self.outcome.written += 1
+        done = self.outcome.written + len(self.outcome.failed)
+        self.bar.set_description(f"{done} of {self.number} cases", refresh=False)
+        self.bar.set_postfix_str(f"last {case.title}", refresh=False)
         self.bar.update(case.work)
 
 

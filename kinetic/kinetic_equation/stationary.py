@@ -22,6 +22,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from crazybilliards.kinetic.kinetic_equation.accuracy import expected_accuracy
 from crazybilliards.kinetic.kinetic_equation.continuation import (
     State,
     continued,
@@ -83,12 +84,16 @@ def phase_space(
         ``mean_displacement`` and, without gap, ``displacement_width`` over particle.
         ``attrs``: ``residual``, the last Newton step relative to max f; ``mesh_error``, the
         largest relative change of a velocity width in the last refinement (NaN if ``cells`` was
-        given); ``cells``.
+        given); ``cells``; ``model_error`` and ``border_error``, the relative error of W_v that
+        the theory had in simulations of chains like this one, over particles 3 to L - 2 and of
+        the first and the last (NaN where none was measured).
         The flow velocity should vanish, and is below 1e-9 W wherever there are rods.
 
-    Notes ----- Compared with simulations (L = 100, gamma = 1, particles 3 to L - 2) velocity widths
-    are within 0.8 % for e = 0.95 to 1, 1.0 % at 0.9, and 6.6 % at 0.8. Displacement widths are up
-    to 13 % too small at 0.95 and 20 % at 0.9, because only the collective motion of the centre of
+    Notes
+    -----
+    Compared with simulations (L = 100, gamma = 1, particles 3 to L - 2) velocity widths are
+    within 0.8 % for e = 0.95 to 1, 1.0 % at 0.9, and 6.6 % at 0.8. Displacement widths are up to
+    13 % too small at 0.95 and 20 % at 0.9, because only the collective motion of the centre of
     mass is included. With a gap of g L = 4, 14 and 42 thermal lengths the velocity widths are
     within 1.0, 1.6 and 2.4 % (e = 0.95) and the mean displacements within 0.01, 0.05 and 0.17 s.
 
@@ -204,5 +209,11 @@ def _assemble(state: State, of_rods: Rods, mesh_error: float) -> xr.Dataset:
         method={"theory": "kinetic equation", "order": state.order, "cells": state.space.cells},
         residual=state.residual,
     )
-    dataset.attrs |= {"mesh_error": mesh_error, "cells": state.space.cells}
+    expected = expected_accuracy(chain)
+    dataset.attrs |= {
+        "mesh_error": mesh_error,
+        "cells": state.space.cells,
+        "model_error": expected.inner,
+        "border_error": expected.border,
+    }
     return dataset

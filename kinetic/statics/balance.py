@@ -71,7 +71,9 @@ def force_balance(
         ``density``, ``label`` and ``displacement`` over x, by labels also ``mean_displacement``
         and ``velocity_width`` over particle. ``attrs["residual"]`` is, by labels, the drift of
         the conserved quantity of the equations (an error of ln rho), and with a prescribed
-        displacement the relative error of the number of rods.
+        displacement the relative error of the number of rods. ``attrs["model_error"]``, by
+        labels, is the largest error of the smoothed density, relative to close packing, that the
+        theory had in simulations of chains like this one (NaN where none was measured).
 
     Raises
     ------

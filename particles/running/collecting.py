@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import warnings
+
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
@@ -36,11 +38,14 @@ def collect(run: Run, replicas: list[Replica], interrupted: bool) -> xr.Dataset:
     coordinates: dict[str, Array] = {"time": times} if schedule.ensemble else {}
     # A chain that diverged before its first snapshot has a status and a time, but no averages.
     observed = zip(*(replica.observers for replica in replicas), strict=True)
+    diverged = reached < NEVER
     for first, *others in observed if counts.sum() else ():
         first.join(others)
-        variables |= first.report(counts)
+        with warnings.catch_warnings():
+            if diverged:  # that rods lie outside of every grid then is no news
+                warnings.simplefilter("ignore")
+            variables |= first.report(counts)
         coordinates |= first.coordinates()
-    diverged = reached < NEVER
     measured = result(
         chain,
         {name: only_chosen(run.chosen, chain.size, *each) for name, each in variables.items()},

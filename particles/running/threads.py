@@ -17,16 +17,19 @@ def run_all(
     replicas: Sequence[Replica],
     threads: int,
     keeper: Checkpoint | None,
-    progress: bool,
+    progress: bool | str,
     unit: str = " time units",
 ) -> bool:
-    """Run the replicas in threads; return whether Ctrl-C or SIGTERM stopped them."""
+    """Run the replicas in threads; return whether Ctrl-C or SIGTERM stopped them.
+
+    ``progress``: whether to show a bar; a text stands in front of it.
+    """
     stop = Event()
     with (
         tqdm(
             total=sum(replica.total for replica in replicas),
             initial=sum(replica.done for replica in replicas),
-            desc="simulating",
+            desc=progress if isinstance(progress, str) else "simulating",
             unit=unit,
             unit_scale=True,
             disable=None if progress else True,

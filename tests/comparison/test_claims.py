@@ -29,10 +29,12 @@ from crazybilliards.particles import simulate
 @pytest.mark.parametrize(
     ("value", "error", "holds"),
     [
-        (-0.46, 0.01, True),
+        (-0.46, 0.005, True),
         (-0.471, 0.002, True),  # within precision and three errors
         (-0.49, 0.002, False),
-        (-0.49, 0.01, True),
+        (-0.475, 0.005, True),
+        (-0.49, 0.01, None),  # within three errors, but these are large
+        (-0.52, 0.01, False),
         (-0.46, 0.2, None),
         (np.nan, 0.01, False),
         (-0.46, np.nan, None),
@@ -52,6 +54,24 @@ def test_numbers(value, error, holds):
     chosen = number_claim("nu", -0.46, 0.01, measured, source="fig.2", ours="the size")
     expected = {True: "reproduced", False: "cannot be decided", None: "undecided"}
     assert chosen.verdict == expected[holds]
+
+
+@pytest.mark.parametrize("truth", [0.0, 0.9, 2.0, 6.0, 30.0])
+def test_a_short_simulation_decides_like_a_long_one_or_not_at_all(truth):
+    """Of 300 short and long runs with a number off by ``truth`` precisions, errors 9 to 1.
+
+    Only numbers that are off by 1 to 5 precisions may come out in a short run and not in a long
+    one: it holds up to 3, and three of its errors are 2 at most.
+    """
+    rng = np.random.default_rng(5)
+    precision, contradicted = 0.01, 0
+    for error in rng.uniform(0.02, 2.0, 300) * precision:
+        short, long = (
+            number_claim("nu", 1.0, precision, Estimate(rng.normal(1 + truth * precision, e), e))
+            for e in (error, error / 9)
+        )
+        contradicted += {short.verdict, long.verdict} == {"confirmed", "refuted"}
+    assert contradicted == 0 or 1 < truth < 5
 
 
 @pytest.mark.parametrize(

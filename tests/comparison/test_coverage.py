@@ -94,3 +94,10 @@ def test_what_holds_no_density_is_refused():
         coverage_density(run)
     with pytest.raises(ValueError, match="names no chain"):
         smooth(xr.Dataset({"density": ("x", np.ones(3))}))
+
+
+def test_nothing_is_smoothed_twice():
+    once = smooth(equilibrium(Chain(size=5)))
+    assert smooth(once) is once
+    with pytest.raises(ValueError, match="smoothed already"):
+        coverage_density(once)

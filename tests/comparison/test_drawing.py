@@ -6,6 +6,7 @@ import pytest
 import xarray as xr
 
 from crazybilliards.comparison import compare_elastic, overlay, smooth
+from crazybilliards.comparison.drawing import mark_clipped
 from crazybilliards.comparison.studies.elastic_figures import draw_density, draw_displacement
 from crazybilliards.kinetic import equilibrium, equilibrium_states, force_balance
 from crazybilliards.model import Chain
@@ -27,18 +28,18 @@ def test_overlay_draws_symbols_with_errors_and_lines():
     assert symbols.get_linestyle() == "None"
     assert line.get_linestyle() == "-"
     np.testing.assert_array_equal(line.get_ydata(), smooth(exact).density)
-    assert ax.get_xlabel() == "position x [R]"
-    assert ax.get_ylabel() == "particle density rho [1/R]"
+    assert ax.get_xlabel() == "position $x$ [R]"
+    assert ax.get_ylabel() == r"density $\rho$ [1/R]"
     assert ax.get_legend_handles_labels()[1] == ["exact", "rods"]
 
 
 def test_overlay_of_a_quantity_over_particles():
     theory = force_balance(Chain(size=10))
     ax = overlay({"theory": theory}, "mean_displacement")
-    assert ax.get_xlabel() == "normalized particle i_n"
+    assert ax.get_xlabel() == "normalized particle $i_n$"
     assert ax.lines[0].get_xdata()[[0, -1]].tolist() == [-1, 1]
     ax = overlay({"theory": theory}, "mean_displacement", along="mean_position")
-    assert ax.get_xlabel() == "mean position <x_i> [R]"
+    assert ax.get_xlabel() == r"mean position $\langle x_i\rangle$ [R]"
     with pytest.raises(ValueError, match="no 'kinetic_energy'"):
         overlay({"theory": theory}, "kinetic_energy")
 
@@ -50,6 +51,35 @@ def test_overlay_draws_the_rods_at_both_ends_of_a_long_chain():
     assert len(symbols.get_xdata()) == 60
     assert symbols.get_xdata()[[0, -1]].tolist() == [-1, 1]
     assert symbols.get_ydata()[-1] == run.velocity_width[-1]
+
+
+def test_two_simulations_differ_and_keywords_are_passed_through():
+    chain = Chain(size=5)
+    runs = {f"seed {n}": simulate(chain, duration=200, seed=n, progress=False) for n in (1, 2)}
+    both = overlay(runs, "velocity_width").containers
+    looks = {(each.lines[0].get_marker(), each.lines[0].get_color()) for each in both}
+    assert len(looks) == 2
+    style = {"seed 2": {"color": "red", "alpha": 0.5, "marker": "*"}}
+    first, second = (
+        each.lines[0] for each in overlay(runs, "velocity_width", style=style).containers
+    )
+    assert (first.get_marker(), first.get_color()) in looks
+    assert (second.get_marker(), second.get_color(), second.get_alpha()) == ("*", "red", 0.5)
+    line = overlay({"a": equilibrium(chain)}, style={"a": {"linewidth": 5}}).lines[0]
+    assert line.get_linewidth() == 5
+    with pytest.raises(ValueError, match="style: no result is called 'seed 3'"):
+        overlay(runs, "velocity_width", style={"seed 3": {}})
+
+
+def test_symbols_beyond_the_frame_are_marked_on_it():
+    _, ax = plt.subplots()
+    ax.errorbar([1, 2, 3], [0.0, 5.0, -7.0], 0.1, fmt="o", color="green")
+    ax.set_ylim(-1, 1)
+    mark_clipped(ax)
+    above, below = ax.lines[-2:]
+    assert (above.get_marker(), *above.get_xydata()) == ("^", pytest.approx([2, 1]))
+    assert (below.get_marker(), *below.get_xydata()) == ("v", pytest.approx([3, -1]))
+    assert above.get_color() == "green"
 
 
 def test_overlay_takes_one_curve_a_result():
@@ -77,7 +107,7 @@ def test_the_figures_of_the_main_comparison(amplitudes):
         assert sorted(labels) == [
             "exact",
             "force balance, arctanh fit",
-            "force balance, by labels",
+            "force balance, without fit",
             "simulation",
         ]
         assert all(ax.get_ylabel() for ax in axes)

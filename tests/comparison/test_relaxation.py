@@ -5,13 +5,13 @@ import numpy as np
 import pytest
 
 from crazybilliards.comparison import animate, compare_relaxation
-from crazybilliards.comparison.studies.relaxation import cloud, label_distances
+from crazybilliards.comparison.studies.relaxation import cloud, condensed, label_distances
 from crazybilliards.comparison.studies.relaxation_figures import (
     draw_cloud,
     draw_profiles,
     draw_spacetime,
 )
-from crazybilliards.model import Chain
+from crazybilliards.model import Chain, load, save
 
 pytestmark = pytest.mark.compiled
 
@@ -29,7 +29,7 @@ def test_the_ensemble_follows_the_exact_solution(tree):
     off = (rods.mean_displacement - exact.mean_displacement) / rods.mean_displacement_error
     assert float(np.abs(off.isel(time=slice(1, None))).max()) < 5
     s = Chain(amplitude=20).thermal_length
-    np.testing.assert_allclose(cloud(rods)[1], exact.cloud_width, atol=0.04 * s)
+    np.testing.assert_allclose(cloud(rods).cloud_width, exact.cloud_width, atol=0.04 * s)
 
 
 def test_the_isothermal_fluid_is_wrong_and_the_one_with_temperature_right(tree):
@@ -51,11 +51,39 @@ def test_with_a_gap_the_fluid_with_temperature_stays_close(release, by):
 
 
 def test_the_pictures_show_every_description(tree):
-    titles = [ax.get_title() for ax in draw_spacetime(tree).axes]
-    assert titles == ["particles", "isothermal fluid", "fluid with temperature", ""]
+    titles = [ax.get_title(loc="left") for ax in draw_spacetime(tree).axes]
+    assert titles == ["(a)  simulation", "(b)  isothermal fluid", "(c)  fluid with temperature", ""]
     assert len(draw_profiles(tree).axes) == 4
     labels = draw_cloud(tree).axes[0].get_legend_handles_labels()[1]
-    assert set(labels) == {"particles", "isothermal fluid", "fluid with temperature", "exact"}
+    assert set(labels) == {"simulation", "isothermal fluid", "fluid with temperature", "exact"}
+    plt.close("all")
+
+
+def test_the_cloud_of_the_ensemble_is_the_exact_one_within_its_error_bars(tree):
+    """The errors are bounds, so three of them are more than three standard errors."""
+    found, exact = cloud(tree["particles"].to_dataset()), tree["exact"]
+    for name in ("centre", "cloud_width"):
+        off = (found[name] - exact[name]) / found[f"{name}_error"]
+        assert float(np.abs(off).max()) < 3
+        assert float(np.abs(off).max()) > 0.1
+
+
+def test_what_is_stored_is_a_tenth_and_drawn_like_the_whole(tree, tmp_path):
+    stored = load(save(condensed(tree), tmp_path / "stored.nc"))
+    whole = save(tree, tmp_path / "whole.nc")
+    assert (tmp_path / "stored.nc").stat().st_size < whole.stat().st_size / 10
+    assert label_distances(stored) == label_distances(tree)
+    for kept, drawn in zip(
+        draw_profiles(stored).axes[0].lines, draw_profiles(tree).axes[0].lines, strict=True
+    ):
+        ours, theirs = (np.asarray(line.get_ydata(), dtype=float) for line in (kept, drawn))
+        np.testing.assert_allclose(ours, theirs, rtol=1e-6, atol=1e-9)
+    plt.close("all")
+
+
+def test_the_profiles_have_error_bars(tree):
+    [bars] = draw_profiles(tree).axes[0].containers
+    assert bars.has_yerr
     plt.close("all")
 
 

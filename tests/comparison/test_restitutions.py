@@ -71,7 +71,7 @@ def test_pictures(tree):
     theory = tree[f"restitution_0.9/{THEORY}"].to_dataset()
     image = draw_phase_space(theory)
     assert "e = 0.9" in image.axes[0].get_title()
-    assert len(draw_profile(theory).axes) == 2
+    assert len(draw_profile(theory, "kinetic equation").axes) == 2
     with pytest.raises(ValueError, match="phase_space_density"):
         draw_phase_space(tree[f"restitution_0.9/{SIMULATION}"].to_dataset())
     matplotlib.pyplot.close("all")

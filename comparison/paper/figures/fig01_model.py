@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -10,6 +9,7 @@ from matplotlib.patches import Circle
 
 from crazybilliards.comparison.claims.study import PaperFigure, Results
 from crazybilliards.comparison.drawing import COLOURS
+from crazybilliards.comparison.layout import panels
 from crazybilliards.model import Chain
 
 _DISPLACEMENTS = (-1.3, -0.4, 0.5, 0.3)
@@ -19,11 +19,11 @@ _CEILING = 2.7  # height of the anchors
 def draw(results: Results) -> Figure:
     """Draw four rods on springs, displaced from their anchors."""
     chain = Chain(size=len(_DISPLACEMENTS), gap=1.6)
-    figure, ax = plt.subplots(figsize=(6.4, 2.7), layout="constrained")
+    figure, [ax] = panels(1, 1, height=1.35, wanted=1)
     for i, (anchor, shift) in enumerate(zip(chain.anchors, _DISPLACEMENTS, strict=True), start=1):
         _spring(ax, anchor, anchor + shift)
         ax.add_patch(Circle((anchor + shift, 0), chain.radius, facecolor="0.93", edgecolor="black"))
-        ax.plot([anchor - 0.35, anchor + 0.35], [_CEILING] * 2, color=COLOURS[4], linewidth=3)
+        ax.plot([anchor - 0.35, anchor + 0.35], [_CEILING] * 2, color=COLOURS[4], linewidth=2)
         ax.text(anchor, _CEILING + 0.2, rf"$x_{i}^0$", ha="center", color=COLOURS[4])
         ax.text(anchor + shift, 0, rf"$x_{i}$", ha="center", va="center")
     _measure(ax, chain.anchors[1], chain.anchors[2], -1.5, r"$2R + g$")
@@ -35,7 +35,7 @@ def draw(results: Results) -> Figure:
         xytext=(shaken + 2.0, 0),
         arrowprops={"arrowstyle": "<->", "color": COLOURS[0]},
     )
-    ax.text(shaken + 1.1, 0.2, r"$A\,\xi_4(t)$", color=COLOURS[0], fontsize=9)
+    ax.text(shaken + 1.1, 0.2, r"$A\,\xi_4(t)$", color=COLOURS[0])
     ax.axhline(-chain.radius, color="0.6", linewidth=0.8, zorder=0)
     ax.set(xlim=(chain.anchors[0] - 3, chain.anchors[-1] + 3), ylim=(-2.4, 3.6), aspect="equal")
     ax.set_axis_off()
@@ -59,7 +59,7 @@ def _measure(ax: Axes, start: float, end: float, height: float, text: str) -> No
         xytext=(end, height),
         arrowprops={"arrowstyle": "<->", "lw": 0.9, "shrinkA": 0, "shrinkB": 0},
     )
-    ax.text((start + end) / 2, height - 0.75, text, ha="center", fontsize=9)
+    ax.text((start + end) / 2, height - 0.75, text, ha="center")
 
 
 FIGURE = PaperFigure(

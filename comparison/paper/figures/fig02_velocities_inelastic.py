@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import matplotlib.pyplot as plt
 import xarray as xr
 from matplotlib.figure import Figure
 
@@ -10,10 +9,12 @@ from crazybilliards.comparison.claims.repetition import (
     border_width,
     central_width,
     estimate,
+    members,
     pooled,
 )
 from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
 from crazybilliards.comparison.claims.verdicts import Claim, Estimate, eye_claim, positive_claim
+from crazybilliards.comparison.layout import legend_above, panels
 from crazybilliards.comparison.paper.chains import LARGE, dissipative, dissipative_name
 from crazybilliards.comparison.paper.distributions import (
     draw_distributions,
@@ -85,9 +86,10 @@ def _off(run: xr.Dataset) -> float:
 
 def draw(results: Results) -> Figure:
     """Draw p(v) of four rods beside Gaussians of the same width."""
-    run = pooled(results, _NAME)
-    figure, ax = plt.subplots(figsize=(5.2, 3.8), layout="constrained")
-    draw_distributions(ax, run, _PARTICLES, chain_of(run).free_velocity_width)
+    runs = members(results, _NAME)
+    figure, [ax] = panels(1, 1, height=2.9, wanted=1)
+    draw_distributions(ax, runs, _PARTICLES, chain_of(runs[0]).free_velocity_width)
+    legend_above(figure, ax)
     return figure
 
 
@@ -96,7 +98,8 @@ FIGURE = PaperFigure(
     name="velocities-inelastic",
     title="Velocity distributions at e = 0",
     caption="L = 1000, e = 0. Symbols: simulation, rods i from the border to the centre. Lines: "
-    "Gaussians of the same width. Dotted: a free rod. Velocities in units of the free width W.",
+    "Gaussians of the same width. Dotted: a free rod. Error bars: standard errors from independent "
+    "runs. Velocities in units of the free width W.",
     cases=cases,
     draw=draw,
     claims=claims,

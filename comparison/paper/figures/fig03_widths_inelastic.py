@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 
-import matplotlib.pyplot as plt
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
@@ -22,6 +21,7 @@ from crazybilliards.comparison.claims.verdicts import (
 )
 from crazybilliards.comparison.drawing import COLOURS, SYMBOLS, draw_rods
 from crazybilliards.comparison.fits import fit_border_power_law
+from crazybilliards.comparison.layout import mosaic
 from crazybilliards.comparison.paper.chains import LARGE
 from crazybilliards.comparison.paper.power_laws import fits_in_plot
 from crazybilliards.comparison.paper.time_steps import STEPS, at_steps, step_name
@@ -197,12 +197,11 @@ def _limit_claims(results: Results, found: dict[int, Estimate]) -> list[Claim]:
 
 def draw(results: Results) -> Figure:
     """Draw W_v(i) with its fits and over that of the limit, and nu against the time step."""
-    figure, axes = plt.subplot_mosaic(
+    figure, axes = mosaic(
         [["widths", "exponents"], ["ratio", "exponents"]],
-        figsize=(9.2, 5.2),
-        layout="constrained",
-        width_ratios=(1.5, 1),
-        height_ratios=(2.2, 1),
+        height=4.0,
+        width_ratios=(1.4, 1),
+        height_ratios=(1.9, 1),
     )
     widths, ratio = axes["widths"], axes["ratio"]
     ratio.sharex(widths)
@@ -216,18 +215,19 @@ def draw(results: Results) -> Figure:
             number=number,
             unit=unit,
             along="particle",
-            label=f"L = {size}",
+            label=f"$L = {size}$",
         )
         half = np.geomspace(1, size, 200)
         fit = fit_border_power_law(run)(half) / unit
-        widths.plot(half, fit, color=COLOURS[number], linewidth=1)
+        widths.plot(half, fit, color=COLOURS[number])
         over = _over_limit(results, size)
         draw_rods(ratio, over, "velocity_width", number=number, along="particle", label="")
     widths.set(xscale="log", yscale="log", ylabel="velocity width $W_v/W$")
-    widths.legend(frameon=False, title="symbols: simulation\nlines: fits of two power laws")
+    widths.plot([], [], color="0.4", label="fit of two power laws")
+    widths.legend()
     widths.tick_params(labelbottom=False)
-    ratio.axhline(1, color="0.4", linewidth=1)
-    ratio.set(xlabel="particle i", ylabel=f"$W_v$ over that of\n{LABEL}")
+    ratio.axhline(1, color="0.4", linewidth=0.8)
+    ratio.set(xlabel="particle $i$", ylabel=f"$W_v$ over that of\n{LABEL}")
     _draw_steps(axes["exponents"], results)
     return figure
 
@@ -255,7 +255,6 @@ def _draw_steps(ax: Axes, results: Results) -> None:
             fmt=f"-{SYMBOLS[number]}",
             color=COLOURS[number],
             markerfacecolor="none",
-            markersize=4,
             linewidth=0.8,
         )
         at = first * 1.25 ** (number - 1.5)  # beside one another
@@ -266,12 +265,13 @@ def _draw_steps(ax: Axes, results: Results) -> None:
             limit.error,
             fmt=SYMBOLS[number],
             color=COLOURS[number],
-            markersize=5,
             linewidth=0.8,
         )
-    ax.axhline(_PAPER, color="0.4", linestyle="--", linewidth=1)
-    ax.text(STEPS[0], _PAPER, " paper", va="bottom", ha="right", color="0.3", fontsize=8)
-    ax.set(xscale="log", xlabel="time step dt [T]", ylabel=r"exponent $\nu$")
+    ax.axhline(_PAPER, color="0.4", linestyle="--", label="paper")
+    ax.plot([], [], "o", color="0.4", markerfacecolor="none", label="at a time step")
+    ax.plot([], [], "o", color="0.4", label=LABEL)
+    ax.legend(loc="upper left")
+    ax.set(xscale="log", xlabel="time step $dt$ [T]", ylabel=r"exponent $\nu$")
     ax.set_xticks([first, 1e-3, 1e-2], [r"$\to 0$", "$10^{-3}$", "$10^{-2}$"])
     ax.set_xticks([tenth * k for tenth in (1e-3, 1e-2) for k in range(2, 10)], minor=True)
     ax.set_xlim(0.5 * first, 4e-2)
@@ -287,10 +287,10 @@ FIGURE = PaperFigure(
     number=3,
     name="widths-inelastic",
     title="Velocity widths at e = 0: power laws from both borders",
-    caption="Left: W_v against the rod's number, e = 0, at the default time step, with the fits "
-    "a [(i - c)^nu + (L + 1 - c - i)^nu] to all rods; below, over its limit dt -> 0. Right: the "
-    "exponent against the time step; the leftmost open symbol of each size is the default step, "
-    "the full one the limit.",
+    caption="(a) W_v against the rod's number, e = 0, at the default time step, with the fits "
+    "a [(i - c)^nu + (L + 1 - c - i)^nu] to all rods. (b) The exponent against the time step; the "
+    "leftmost open symbol of each size is the default step, the full one the limit. (c) W_v over "
+    "its limit dt -> 0.",
     cases=cases,
     draw=draw,
     claims=claims,

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.figure import Figure
 
@@ -17,8 +16,9 @@ from crazybilliards.comparison.claims.verdicts import (
     positive_claim,
     small_claim,
 )
-from crazybilliards.comparison.drawing import COLOURS, SYMBOLS
+from crazybilliards.comparison.drawing import COLOURS, SYMBOLS, mark_clipped
 from crazybilliards.comparison.fits import ScalingFit, fit_scaling
+from crazybilliards.comparison.layout import legend_above, panels
 from crazybilliards.comparison.paper.chains import SIZES
 from crazybilliards.comparison.paper.time_steps import STEPS, at_steps, step_name
 from crazybilliards.comparison.paper.vanishing_step import LABEL, central_limit, limits
@@ -163,13 +163,11 @@ def _exponent(fit: ScalingFit) -> Estimate:
 
 def draw(results: Results) -> Figure:
     """Draw W_v in the centre against L for every time step."""
-    figure, (top, bottom) = plt.subplots(
-        2, 1, figsize=(5.4, 5.4), layout="constrained", height_ratios=(2, 1), sharex=True
-    )
+    figure, (top, bottom) = panels(2, 1, height=2.0, wanted=1, height_ratios=(2, 1), sharex=True)
     unit = Chain().free_velocity_width
     reference = _fit(_widths(results, _at_step(None)))
     series = {"default step": _widths(results, _at_step(None))}
-    series |= {f"dt = {step:g}": _widths(results, _at_step(step)) for step in STEPS}
+    series |= {f"$dt = {step:g}$": _widths(results, _at_step(step)) for step in STEPS}
     series["kick 2/3 of $W_v$"] = _widths(results, _long_name)
     series[LABEL] = _limits(results)
     for number, (label, widths) in enumerate(series.items()):
@@ -179,21 +177,24 @@ def draw(results: Results) -> Figure:
             "fmt": SYMBOLS[number % len(SYMBOLS)],
             "color": COLOURS[number % len(COLOURS)],
             "markerfacecolor": "none",
-            "markersize": 5,
         }
         if label == LABEL:  # full, above the others
-            style = {"fmt": ".", "color": "black", "markersize": 5, "zorder": 4}
+            style = {"fmt": ".", "color": "black", "zorder": 4}
         top.errorbar(sizes, values / unit, errors / unit, label=label, **style)
         bottom.errorbar(sizes, values / reference(sizes), errors / reference(sizes), **style)
     ends = np.array([8, 2e5])
-    line = {"color": "0.4", "linewidth": 1}
-    top.plot(ends, reference(ends) / unit, label=f"$L^{{{reference.exponent:.3f}}}$", **line)
     paper = ends**_PAPER * reference(100.0) / 100.0**_PAPER
-    top.plot(ends, paper / unit, "--", label=f"paper: $L^{{{_PAPER}}}$", **line)
-    bottom.axhline(1, **line)
+    # On top they are one line to the eye; below, each is told from the other.
+    for line, label, look in (
+        (reference(ends), f"$L^{{{reference.exponent:.3f}}}$", {"color": "0.4"}),
+        (paper, f"paper: $L^{{{_PAPER}}}$", {"color": "black", "linestyle": "--"}),
+    ):
+        top.plot(ends, line / unit, label=label, **look)
+        bottom.plot(ends, line / reference(ends), **look)
     top.set(xscale="log", yscale="log", ylabel="central width $W_v^{\\min}/W$")
-    bottom.set(xlabel="number of rods L", ylabel="ratio to the line", ylim=(0.75, 1.15))
-    top.legend(frameon=False, fontsize=8)
+    bottom.set(xlabel="number of rods $L$", ylabel="ratio to the fit", ylim=(0.75, 1.15))
+    mark_clipped(bottom)
+    legend_above(figure, top)
     return figure
 
 
@@ -201,10 +202,10 @@ FIGURE = PaperFigure(
     number=4,
     name="central-width",
     title="The central width against the size at e = 0",
-    caption="Root mean square velocity of the middle tenth of the rods, e = 0. The line is a fit "
-    "to the default time step, L = 10 to 1000; below, the ratio to it. Full circles: the limit of "
-    "a vanishing step. Longer chains than the paper's are at time steps whose velocity kick is two "
-    "thirds of the width at every size.",
+    caption="Root mean square velocity of the middle tenth of the rods, e = 0. Grey line: a fit "
+    "to the default time step, L = 10 to 1000. Dashed: the paper's exponent. (b) The ratio to the "
+    "fit. Full circles: the limit of a vanishing step. Longer chains than the paper's are at time "
+    "steps whose velocity kick is two thirds of the width at every size.",
     cases=cases,
     draw=draw,
     claims=claims,

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import itertools
 
-import matplotlib.pyplot as plt
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
@@ -13,6 +12,7 @@ from crazybilliards.comparison.claims.repetition import estimate, pooled
 from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
 from crazybilliards.comparison.claims.verdicts import Claim, positive_claim
 from crazybilliards.comparison.drawing import along_the_chain, draw_rods
+from crazybilliards.comparison.layout import panels
 from crazybilliards.comparison.paper.chains import LARGE, dissipative, dissipative_name
 from crazybilliards.model import chain_of
 
@@ -69,17 +69,17 @@ def claims(results: Results) -> list[Claim]:
 
 def draw(results: Results) -> Figure:
     """Draw <dx> and W_x against i_n."""
-    figure, axes = plt.subplots(1, 2, figsize=(8.8, 3.6), layout="constrained")
+    figure, axes = panels(1, 2)
     for number, size in enumerate(_SIZES):
         run = pooled(results, dissipative_name(size, 0.0))
         s = chain_of(run).thermal_length
         for ax, name in zip(axes, ("mean_displacement", "displacement_width"), strict=True):
-            draw_rods(ax, run, name, number=number, unit=s, label=f"L = {size}")
+            draw_rods(ax, run, name, number=number, unit=s, label=f"$L = {size}$")
     axes[0].set(ylabel=r"mean displacement $\langle\Delta x\rangle/s$")
     axes[1].set(ylabel="displacement width $W_x/s$", ylim=(0, None))
     for ax in axes:
         along_the_chain(ax)
-    axes[0].legend(frameon=False)
+    axes[0].legend()
     return figure
 
 
@@ -87,7 +87,7 @@ FIGURE = PaperFigure(
     number=5,
     name="displacements-inelastic",
     title="Mean displacements at e = 0",
-    caption="Mean displacement (left) and its width (right, the paper's inset) against the "
+    caption="(a) Mean displacement and (b) its width (the paper's inset) against the "
     "normalized particle number, e = 0, in units of the thermal length s.",
     cases=cases,
     draw=draw,

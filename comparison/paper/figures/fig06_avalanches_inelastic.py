@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 
-import matplotlib.pyplot as plt
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
@@ -21,6 +20,7 @@ from crazybilliards.comparison.claims.verdicts import (
     small_claim,
 )
 from crazybilliards.comparison.fits import fit_avalanches
+from crazybilliards.comparison.layout import at_the_left, entitle, panels
 from crazybilliards.comparison.paper.chains import LARGE
 from crazybilliards.comparison.paper.distributions import draw_sizes
 from crazybilliards.model import Chain
@@ -170,24 +170,26 @@ def _power_law_claim(count: str, step: float, found: Estimate) -> Claim:
 
 def draw(results: Results) -> Figure:
     """Draw p(N_c) of the centre in both counts for every step, and by origin for one."""
-    figure, axes = plt.subplots(1, 3, figsize=(11.0, 3.7), layout="constrained", sharey=True)
+    figure, axes = panels(1, 3, height=2.6, sharey=True)
     for ax, (count, (name, *_)) in zip(axes, _COUNTS.items(), strict=False):
         for number, step in enumerate(_STEPS):
             run = pooled(results, f"dt={step:g}")
-            _draw(ax, run, "centre", count, number=number, label=f"dt = {step:g}")
-        ax.set(title=f"{name}, origins 451 to 550")
+            _draw(ax, run, "centre", count, number=number, label=f"$dt = {step:g}$")
+        entitle(ax, f"{name},\norigins 451 to 550")
     run = pooled(results, f"dt={_STEPS[1]:g}")
     for number, origin in enumerate(_ORIGINS):
         at = _ORIGINS[origin]
         label = f"origins {at.start} to {at.stop}"
         _draw(axes[2], run, origin, "avalanche_count", number=number, label=label)
-    axes[2].set(title=f"pushes, dt = {_STEPS[1]:g}")
+    entitle(axes[2], f"pushes,\n$dt = {_STEPS[1]:g}$")
     line = np.array([3.0, 400.0])
     for ax in axes:
-        ax.plot(line, 0.06 * (line / 3) ** _PAPER, "k--", linewidth=1, label="$N_c^{-2.2}$")
+        ax.plot(line, 0.06 * (line / 3) ** _PAPER, "k--", label="$N_c^{-2.2}$")
         ax.set(ylim=(1e-8, 1), xlim=(0.8, LARGE))
-        ax.legend(frameon=False, fontsize=8)
-    axes[0].set_ylabel("probability $p(N_c)$")
+        ax.legend(loc="lower left")
+    for ax in axes:
+        if at_the_left(ax):
+            ax.set_ylabel("probability $p(N_c)$")
     return figure
 
 
@@ -205,8 +207,8 @@ FIGURE = PaperFigure(
     number=6,
     name="avalanches-inelastic",
     title="Avalanche sizes at e = 0",
-    caption="Probability of a rightward wave of N_c >= 1 collisions, L = 1000, e = 0. Left: the "
-    "paper's count, every hit and the collisions after it. Middle and right: pushes, which rods "
+    caption="Probability of a rightward wave of N_c >= 1 collisions, L = 1000, e = 0. (a) The "
+    "paper's count, every hit and the collisions after it. (b) and (c) Pushes, which rods "
     "that stick together pass on from one to the next. Error bars: counting statistics. The "
     "exponents are maximum-likelihood estimates. Rods in contact collide again after every kick, "
     "so that the number of waves grows as the step is shortened: no count has a limit dt -> 0.",

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
-import matplotlib.pyplot as plt
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.patheffects import withStroke
 
 from crazybilliards.comparison.claims.repetition import (
     border_width,
@@ -27,6 +27,7 @@ from crazybilliards.comparison.claims.verdicts import (
 )
 from crazybilliards.comparison.drawing import COLOURS, SYMBOLS, along_the_chain, draw_rods
 from crazybilliards.comparison.fits import ExponentialFit, fit_border_power_law, fit_exponential
+from crazybilliards.comparison.layout import legend_above, mosaic
 from crazybilliards.comparison.paper.chains import (
     LARGE,
     RESTITUTIONS,
@@ -46,6 +47,7 @@ SOLVED_FOR = {"quick": (0.95,), "full": (0.85, 0.92, 0.95)}
 IN_LIMIT = {"quick": (0.0, 0.95), "full": RESTITUTIONS}
 _ELASTIC_SIZE = 100
 _SOURCE = "section seq:e_larger, fig.4"
+_THEORY = "kinetic equation"
 _OPEN: dict[str, Any] = {"fmt": SYMBOLS[0], "color": "black", "markerfacecolor": "none"}
 _OURS = "the restitutions (those of fig.5, and 0.5) and the time step"
 
@@ -193,11 +195,8 @@ def _limit_claims(results: Results) -> list[Claim]:
 
 def draw(results: Results) -> Figure:
     """Draw W_v(i) with the kinetic equation, -nu against e with its fit, and the limits."""
-    figure, axes = plt.subplot_mosaic(
-        [["widths", "exponents"], ["widths", "centre"]],
-        figsize=(9.6, 5.4),
-        layout="constrained",
-        width_ratios=(1.5, 1),
+    figure, axes = mosaic(
+        [["widths", "exponents"], ["widths", "centre"]], height=3.9, width_ratios=(1.4, 1)
     )
     left = axes["widths"]
     predicted = theories(results)
@@ -206,22 +205,23 @@ def draw(results: Results) -> Figure:
     for number, (e, name) in enumerate(names.items()):
         run = pooled(results, name)
         unit = chain_of(run).free_velocity_width
-        label = f"e = {e:g}" + (f", L = {_ELASTIC_SIZE}" if e == 1 else "")
+        label = f"$e = {e:g}$" + (f", $L = {_ELASTIC_SIZE}$" if e == 1 else "")
         draw_rods(left, run, "velocity_width", number=number, unit=unit, label=label)
         if e in predicted:
             theory = predicted[e]
+            # Above the symbols: one of them passes over those of another restitution.
             left.plot(
-                theory.normalized_particle, theory.velocity_width / unit, color=COLOURS[number]
+                theory.normalized_particle,
+                theory.velocity_width / unit,
+                color=COLOURS[number],
+                path_effects=[withStroke(linewidth=1.9, foreground="white")],
+                zorder=4,
             )
     along_the_chain(left)
     left.set(ylabel="velocity width $W_v/W$", yscale="log")
-    figure.legend(
-        *left.get_legend_handles_labels(),
-        loc="outside upper center",
-        ncols=4,
-        frameon=False,
-        title="symbols: simulation, lines: kinetic equation",
-    )
+    solved = rf"kinetic equation, $e \geq {min(predicted):g}$"
+    left.plot([], [], color="0.4", label=solved)
+    legend_above(figure, left)
     axes["exponents"].sharex(axes["centre"])
     _draw_exponents(axes["exponents"], results)
     _draw_centre(axes["centre"], results)
@@ -230,17 +230,20 @@ def draw(results: Results) -> Figure:
 
 def _draw_centre(ax: Axes, results: Results) -> None:
     unit = chain_of(results[f"{dissipative_name(LARGE, 0.0)}/0"]).free_velocity_width
-    full: dict[str, Any] = {"fmt": SYMBOLS[2], "color": COLOURS[0], "markersize": 4}
+    full: dict[str, Any] = {
+        "fmt": SYMBOLS[2],
+        "color": COLOURS[0],
+    }
     for found, label, style in (
-        (_central_widths(results), "default step", _OPEN),
+        (_central_widths(results), "default step", {**_OPEN, "markersize": 5}),
         (_central_limits(results), LABEL, full),
     ):
         values, errors = np.array(list(found.values())).T / unit
         ax.errorbar(list(found), values, errors, label=label, **style)
     predicted = {e: central_width(theory) / unit for e, theory in theories(results).items()}
-    ax.plot(list(predicted), list(predicted.values()), "x", color=COLOURS[4])
-    ax.set(xlabel="restitution e", ylabel="central width $W_v^{\\min}/W$")
-    ax.legend(frameon=False, fontsize=8)
+    ax.plot(list(predicted), list(predicted.values()), "x", color=COLOURS[4], label=_THEORY)
+    ax.set(xlabel="restitution $e$", ylabel="central width $W_v^{\\min}/W$")
+    ax.legend()
 
 
 def _draw_exponents(ax: Axes, results: Results) -> None:
@@ -260,23 +263,24 @@ def _draw_exponents(ax: Axes, results: Results) -> None:
             -fit_border_power_law(theory).exponent,
             "x",
             color=COLOURS[4],
-            label=None if e != max(theories(results)) else "kinetic equation",
+            label=None if e != max(theories(results)) else _THEORY,
         )
     fine = np.linspace(0, 1, 101)
-    ax.plot(fine, fit(fine), "0.4", linewidth=1, label=rf"fit, $\lambda = {fit.rate:.1f}$")
+    ax.plot(fine, fit(fine), "0.4", label=rf"fit, $\lambda = {fit.rate:.1f}$")
     ax.set(ylabel=r"exponent $-\nu$")
     ax.tick_params(labelbottom=False)
-    ax.legend(frameon=False, fontsize=8)
+    ax.legend()
 
 
 FIGURE = PaperFigure(
     number=7,
     name="widths-restitution",
     title="Velocity widths for several restitutions",
-    caption="Left: W_v against the normalized particle number, L = 1000 (e = 1: L = 100). Lines: "
-    "the kinetic equation, into which nothing of the simulation goes. Right: the exponent of the "
-    "two power laws against the restitution, and a exp(-lambda (1 - e)) + d fitted to it; below, "
-    "W_v in the centre at the default time step and in the limit of a vanishing one.",
+    caption="(a) W_v against the normalized particle number, L = 1000 (e = 1: L = 100). Lines: "
+    "the kinetic equation in the colour of its e, where it was solved, at the largest e below 1; "
+    "nothing of the simulation goes into it. (b) The exponent of the two power laws against the "
+    "restitution, and a exp(-lambda (1 - e)) + d fitted to it. (c) W_v in the centre at the "
+    "default time step and in the limit of a vanishing one.",
     cases=cases,
     draw=draw,
     claims=claims,

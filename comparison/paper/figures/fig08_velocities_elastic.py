@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
-import matplotlib.pyplot as plt
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from crazybilliards.comparison.claims.repetition import central_width, estimate, pooled, repeated
+from crazybilliards.comparison.claims.repetition import (
+    central_width,
+    estimate,
+    members,
+    pooled,
+    repeated,
+)
 from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
 from crazybilliards.comparison.claims.verdicts import (
     Claim,
@@ -18,6 +23,7 @@ from crazybilliards.comparison.claims.verdicts import (
     small_claim,
 )
 from crazybilliards.comparison.drawing import along_the_chain, draw_rods
+from crazybilliards.comparison.layout import entitle, panels
 from crazybilliards.comparison.paper.chains import LARGE, elastic, elastic_name
 from crazybilliards.comparison.paper.distributions import (
     draw_distributions,
@@ -110,34 +116,35 @@ def _off(run: xr.Dataset) -> float:
 
 def draw(results: Results) -> Figure:
     """Draw p(v) of two rods, and W_v of long chains by three methods."""
-    figure, (left, right) = plt.subplots(1, 2, figsize=(9.0, 3.7), layout="constrained")
-    run = pooled(results, elastic_name(_SIZE))
-    draw_distributions(left, run, _PARTICLES, chain_of(run).free_velocity_width)
-    left.set_title(f"L = {_SIZE}")
+    figure, (left, right) = panels(1, 2, height=2.7)
+    runs = members(results, elastic_name(_SIZE))
+    draw_distributions(left, runs, _PARTICLES, chain_of(runs[0]).free_velocity_width)
+    entitle(left, f"$L = {_SIZE}$")
+    left.legend(loc="lower center")
     _draw_long_chains(right, results)
     return figure
 
 
 def _draw_long_chains(ax: Axes, results: Results) -> None:
-    names = {_EXACT: "event-driven", **{_contact(s): f"Cont. Dyn., dt = {s:g}" for s in _STEPS}}
+    names = {_EXACT: "event-driven", **{_contact(s): f"Contact Dyn., $dt = {s:g}$" for s in _STEPS}}
     for number, (name, label) in enumerate(names.items()):
         run = pooled(results, name)
         unit = chain_of(run).free_velocity_width
         draw_rods(ax, run, "velocity_width", number=number, unit=unit, label=label)
     ax.axhline(1, color="black", linestyle=":", label="exact")
     along_the_chain(ax)
-    ax.set(ylabel="velocity width $W_v/W$", ylim=(0, 1.45))
-    ax.set_title(f"L = {LARGE}")
-    ax.legend(frameon=False, fontsize=8, ncols=2)
+    ax.set(ylabel="velocity width $W_v/W$", ylim=(0, 1.6))
+    entitle(ax, f"$L = {LARGE}$")
+    ax.legend(loc="upper center", ncols=2)
 
 
 FIGURE = PaperFigure(
     number=8,
     name="velocities-elastic",
     title="Velocity distributions at e = 1",
-    caption="Left: symbols, simulated rods 1 and 50 of 100; dotted, the exact distribution, that "
-    "of a free rod. Right: W_v of 1000 rods, exact at any step with event-driven collisions, wrong "
-    "with Contact Dynamics at steps that are affordable.",
+    caption="(a) Symbols: simulated rods 1 and 50 of 100, with standard errors. Dotted: the exact "
+    "distribution, that of a free rod. (b) W_v of 1000 rods, exact at any step with event-driven "
+    "collisions, wrong with Contact Dynamics at steps that are affordable.",
     cases=cases,
     draw=draw,
     claims=claims,

@@ -4,20 +4,23 @@ from __future__ import annotations
 
 import functools
 import itertools
+from typing import Any
 
-import matplotlib.pyplot as plt
 import xarray as xr
 from matplotlib.figure import Figure
 
 from crazybilliards.comparison.claims.repetition import estimate, pooled
 from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
 from crazybilliards.comparison.claims.verdicts import About, Claim, Estimate, positive_claim
-from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_rods
+from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_rods, mark_clipped
+from crazybilliards.comparison.layout import legend_above, panels
 from crazybilliards.comparison.paper.chains import LARGE, dissipative, dissipative_name
 from crazybilliards.comparison.paper.figures import fig07_widths_restitution
 from crazybilliards.comparison.paper.figures.fig05_displacements_inelastic import swelling
 from crazybilliards.model import chain_of
 
+_FRAME = 0.7
+_LABEL = r"displacement $\langle\Delta x\rangle/s$"
 _RESTITUTIONS = (0.0, 0.75, 0.85, 0.92, 0.95)
 
 
@@ -85,20 +88,26 @@ def _excess(run: xr.Dataset, name: str) -> float:
 
 
 def draw(results: Results) -> Figure:
-    """Draw <dx> against i_n with the kinetic equation."""
-    figure, ax = plt.subplots(figsize=(5.6, 4.2), layout="constrained")
+    """Draw <dx> against i_n, and of the rods at the left border against i; theory as lines."""
+    figure, (whole, border) = panels(1, 2, height=2.5)
     predicted = fig07_widths_restitution.theories(results)
     for number, e in enumerate(_RESTITUTIONS):
         run = pooled(results, dissipative_name(LARGE, e))
-        s = chain_of(run).thermal_length
-        draw_rods(ax, run, "mean_displacement", number=number, unit=s, label=f"e = {e:g}")
+        s, colour = chain_of(run).thermal_length, COLOURS[number]
+        half = run.isel(particle=slice(0, LARGE // 2))
+        look: Any = {"number": number, "unit": s, "label": f"$e = {e:g}$"}
+        draw_rods(whole, run, "mean_displacement", **look)
+        draw_rods(border, half, "mean_displacement", along="particle", **look)
         if e in predicted:
-            theory = predicted[e]
-            ax.plot(theory.normalized_particle, theory.mean_displacement / s, color=COLOURS[number])
-    along_the_chain(ax)
-    ax.set_ylim(-0.7, 0.7)
-    ax.set(ylabel=r"mean displacement $\langle\Delta x\rangle/s$")
-    ax.legend(frameon=False, title="symbols: simulation\nlines: kinetic equation")
+            shift = predicted[e].mean_displacement / s
+            whole.plot(predicted[e].normalized_particle, shift, color=colour)
+            border.plot(half.particle, shift[: LARGE // 2], color=colour)
+    along_the_chain(whole)
+    whole.set(ylabel=_LABEL, ylim=(-_FRAME, _FRAME))
+    mark_clipped(whole)
+    border.set(xscale="log", xlabel="particle $i$", ylabel=_LABEL)
+    whole.plot([], [], color="0.4", label="kinetic equation")
+    legend_above(figure, whole)
     return figure
 
 
@@ -106,8 +115,9 @@ FIGURE = PaperFigure(
     number=9,
     name="displacements-restitution",
     title="Mean displacements for several restitutions",
-    caption="Mean displacement against the normalized particle number, L = 1000, in units of the "
-    "thermal length s. Lines: the kinetic equation. The outermost rods lie beyond the frame.",
+    caption="Mean displacement, L = 1000, in units of the thermal length s, (a) of all rods "
+    "against the normalized particle number, (b) of the left half against the rod's number. "
+    "Lines: the kinetic equation. Triangles at the frame of (a): rods beyond it, which (b) shows.",
     cases=cases,
     draw=draw,
     claims=claims,

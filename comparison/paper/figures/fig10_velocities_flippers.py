@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import matplotlib.pyplot as plt
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
@@ -11,11 +10,13 @@ from crazybilliards.comparison.claims.repetition import (
     border_width,
     central_width,
     estimate,
+    members,
     pooled,
 )
 from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
 from crazybilliards.comparison.claims.verdicts import Claim, Estimate, positive_claim
 from crazybilliards.comparison.fits import tail_length
+from crazybilliards.comparison.layout import legend_above, panels
 from crazybilliards.comparison.paper.chains import flippers, flippers_name
 from crazybilliards.comparison.paper.distributions import draw_distributions, moment
 from crazybilliards.model import chain_of
@@ -85,8 +86,8 @@ def draw(results: Results) -> Figure:
     """Draw p(v) of three rods, with an exponential tail at the border."""
     run = pooled(results, flippers_name(SIZE, _DAMPING))
     unit = chain_of(run).free_velocity_width
-    figure, ax = plt.subplots(figsize=(5.2, 3.8), layout="constrained")
-    draw_distributions(ax, run, PARTICLES, unit)
+    figure, [ax] = panels(1, 1, height=2.9, wanted=1)
+    draw_distributions(ax, members(results, flippers_name(SIZE, _DAMPING)), PARTICLES, unit)
     # The leftmost rod is thrown to the left.
     v, p = (each.values[run.velocity.values < 0] for each in (run.velocity, _density(run)))
     begin = _TAIL * border_width(run)
@@ -94,8 +95,8 @@ def draw(results: Results) -> Figure:
     share = float((p * np.gradient(v))[v < -begin].sum())
     out = np.linspace(begin, begin + 7 * length, 50)
     tail = share / length * np.exp(-(out - begin) / length)
-    ax.plot(-out / unit, tail * unit, "--", color="0.4", linewidth=1.2, label="exponential tail")
-    ax.legend(frameon=False, fontsize=8)
+    ax.plot(-out / unit, tail * unit, "--", color="0.3", label="exponential tail")
+    legend_above(figure, ax)
     return figure
 
 
@@ -105,7 +106,7 @@ FIGURE = PaperFigure(
     title="Velocity distributions at e = 1.05, gamma = 4",
     caption="L = 100, e = 1.05, gamma = 4. Symbols: simulation. Lines: Gaussians of the same "
     "width. Dashed: an exponential of the border's mean excess over three widths. Dotted: a free "
-    "rod.",
+    "rod. Error bars: standard errors from independent runs.",
     cases=cases,
     draw=draw,
     claims=claims,

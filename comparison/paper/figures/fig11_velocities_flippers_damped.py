@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-import matplotlib.pyplot as plt
 from matplotlib.figure import Figure
 
 from crazybilliards.comparison.claims.repetition import (
     border_width,
     central_width,
     estimate,
-    pooled,
+    members,
 )
 from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
 from crazybilliards.comparison.claims.verdicts import Claim, positive_claim
+from crazybilliards.comparison.layout import legend_above, panels
 from crazybilliards.comparison.paper.chains import flippers, flippers_name
 from crazybilliards.comparison.paper.distributions import draw_distributions
 from crazybilliards.comparison.paper.figures.fig10_velocities_flippers import PARTICLES, SIZE
@@ -42,9 +42,10 @@ def claims(results: Results) -> list[Claim]:
 
 def draw(results: Results) -> Figure:
     """Draw p(v) of three rods."""
-    run = pooled(results, flippers_name(SIZE, _DAMPING))
-    figure, ax = plt.subplots(figsize=(5.2, 3.8), layout="constrained")
-    draw_distributions(ax, run, PARTICLES, chain_of(run).free_velocity_width)
+    runs = members(results, flippers_name(SIZE, _DAMPING))
+    figure, [ax] = panels(1, 1, height=2.9, wanted=1)
+    draw_distributions(ax, runs, PARTICLES, chain_of(runs[0]).free_velocity_width)
+    legend_above(figure, ax)
     return figure
 
 
@@ -53,7 +54,7 @@ FIGURE = PaperFigure(
     name="velocities-flippers-damped",
     title="Velocity distributions at e = 1.05, gamma = 10",
     caption="L = 100, e = 1.05, gamma = 10. Symbols: simulation. Lines: Gaussians of the same "
-    "width. Dotted: a free rod.",
+    "width. Dotted: a free rod. Error bars: standard errors from independent runs.",
     cases=cases,
     draw=draw,
     claims=claims,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import matplotlib.pyplot as plt
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
@@ -18,6 +17,7 @@ from crazybilliards.comparison.claims.verdicts import EYE, Claim, Estimate, posi
 from crazybilliards.comparison.distances import distances_in_plot
 from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_rods
 from crazybilliards.comparison.fits import fit_border_power_law
+from crazybilliards.comparison.layout import legend_above, panels
 from crazybilliards.comparison.paper.chains import (
     flippers,
     flippers_name,
@@ -132,7 +132,7 @@ def _crossing(values: np.ndarray) -> float:
 
 def draw(results: Results) -> Figure:
     """Draw gamma W_v(i) for every damping with the kinetic equation."""
-    figure, ax = plt.subplots(figsize=(5.6, 4.2), layout="constrained")
+    figure, [ax] = panels(1, 1, height=3.1, wanted=1)
     for number, damping in enumerate(_DAMPINGS):
         run = pooled(results, flippers_name(_SIZE, damping))
         # gamma W_v over that of a free rod at gamma = 1, A/sqrt(2 m).
@@ -143,7 +143,7 @@ def draw(results: Results) -> Figure:
             "velocity_width",
             number=number,
             unit=free / damping,
-            label=rf"$\gamma$ = {damping:g}",
+            label=rf"$\gamma = {damping:g}$",
         )
         theory = results[kinetic_name(_SIZE, _RESTITUTION, damping)]
         ax.plot(
@@ -155,7 +155,8 @@ def draw(results: Results) -> Figure:
     ax.set(
         ylabel=r"$\gamma W_v/(A/\sqrt{2m})$  [M$^{1/2}$T$^{-1/2}$]",
     )
-    ax.legend(frameon=False, title="symbols: simulation\nlines: kinetic equation", fontsize=8)
+    ax.plot([], [], color="0.4", label="kinetic equation")
+    legend_above(figure, ax)
     return figure
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import functools
 
-import matplotlib.pyplot as plt
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
@@ -13,6 +12,7 @@ from numpy.typing import NDArray
 from crazybilliards.comparison.claims.repetition import estimate, pooled
 from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
 from crazybilliards.comparison.claims.verdicts import Claim, positive_claim
+from crazybilliards.comparison.layout import at_the_left, entitle, panels
 from crazybilliards.comparison.paper.chains import flippers, flippers_name
 from crazybilliards.comparison.paper.distributions import draw_sizes
 
@@ -75,18 +75,18 @@ def claims(results: Results) -> list[Claim]:
 
 def draw(results: Results) -> Figure:
     """Draw p(N_c) for both dampings in both counts."""
-    figure, axes = plt.subplots(1, 2, figsize=(8.6, 3.9), layout="constrained", sharey=True)
+    figure, axes = panels(1, 2, height=2.7, sharey=True)
     for ax, (count, (name, _)) in zip(axes, _COUNTS.items(), strict=True):
         for number, damping in enumerate(_DAMPINGS):
             run = pooled(results, flippers_name(_SIZE, damping))
             sizes, counts = _counts(run, count)
-            label = rf"$\gamma$ = {damping:g}"
+            label = rf"$\gamma = {damping:g}$"
             draw_sizes(ax, sizes, counts / counts.sum(), counts, number=number, label=label)
-        ax.axvspan(_SPANNING, _SIZE, color="0.9", zorder=0)
-        ax.text(_SPANNING, ax.get_ylim()[1], "spanning ", va="top", ha="right", fontsize=8)
-        ax.set_title(name)
-    axes[0].set_ylabel("probability $p(N_c)$")
-    axes[0].legend(frameon=False, loc="lower left")
+        ax.axvspan(_SPANNING, _SIZE, color="0.9", zorder=0, label="spans the system")
+        entitle(ax, name)
+        if at_the_left(ax):
+            ax.set_ylabel("probability $p(N_c)$")
+        ax.legend(loc="lower left")
     return figure
 
 
@@ -95,8 +95,9 @@ FIGURE = PaperFigure(
     name="avalanches-flippers",
     title="Avalanche sizes at e = 1.05",
     caption="Probability of a rightward wave of N_c >= 1 collisions that began at one of the first "
-    "ten rods, L = 100, e = 1.05. Left: the paper's count, without the first hit. Right: pushes, "
-    "with it. Error bars: counting statistics.",
+    "ten rods, L = 100, e = 1.05. (a) The paper's count, without the first hit. (b) Pushes, with "
+    "it. Grey: waves of 80 to 100 collisions, which span the system. Error bars: counting "
+    "statistics.",
     cases=cases,
     draw=draw,
     claims=claims,

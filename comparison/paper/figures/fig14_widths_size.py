@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 
-import matplotlib.pyplot as plt
 from matplotlib.figure import Figure
 
 from crazybilliards.comparison.claims.repetition import (
@@ -17,6 +16,7 @@ from crazybilliards.comparison.claims.repetition import (
 from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
 from crazybilliards.comparison.claims.verdicts import Claim, Estimate, positive_claim
 from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_rods
+from crazybilliards.comparison.layout import legend_above, panels
 from crazybilliards.comparison.paper.chains import (
     flippers,
     flippers_name,
@@ -95,18 +95,17 @@ def _critical_size() -> float:
 
 def draw(results: Results) -> Figure:
     """Draw W_v(i) for every size with the kinetic equation."""
-    figure, ax = plt.subplots(figsize=(5.6, 4.2), layout="constrained")
+    figure, [ax] = panels(1, 1, height=3.1, wanted=1)
     for number, size in enumerate(_SIZES):
         run = pooled(results, flippers_name(size, _DAMPING))
         unit = chain_of(run).free_velocity_width
-        draw_rods(ax, run, "velocity_width", number=number, unit=unit, label=f"L = {size}")
+        draw_rods(ax, run, "velocity_width", number=number, unit=unit, label=f"$L = {size}$")
         theory = results[kinetic_name(size, _RESTITUTION, _DAMPING)]
         ax.plot(theory.normalized_particle, theory.velocity_width / unit, color=COLOURS[number])
     along_the_chain(ax)
     ax.set(ylabel="velocity width $W_v/W$")
-    ax.legend(
-        frameon=False, ncols=2, fontsize=8, title="symbols: simulation\nlines: kinetic equation"
-    )
+    ax.plot([], [], color="0.4", label="kinetic equation")
+    legend_above(figure, ax)
     return figure
 
 

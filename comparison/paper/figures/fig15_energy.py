@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 
-import matplotlib.pyplot as plt
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
@@ -16,6 +15,7 @@ from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, 
 from crazybilliards.comparison.claims.verdicts import Claim, Estimate, positive_claim, small_claim
 from crazybilliards.comparison.drawing import COLOURS
 from crazybilliards.comparison.fits import fit_growth, fit_singularity
+from crazybilliards.comparison.layout import panels
 from crazybilliards.model import Chain
 
 _CHAINS = {
@@ -30,6 +30,7 @@ _SETTINGS = {
     "quadratic": {"duration": 100.0, "time_step": 0.002},
 }
 _GROWING = 1e3  # energy beyond which noise no longer matters [M R^2/T^2]
+_ENERGY = r"kinetic energy $E$ [M R$^2$/T$^2$]"
 _SINGULAR = 1e5  # and beyond which damping matters little
 
 
@@ -101,7 +102,7 @@ def _late_rate(run: xr.Dataset) -> float:
 
 def draw(results: Results) -> Figure:
     """Draw E(t) of all runs, and the quadratic ones against t_c - t."""
-    figure, (left, right) = plt.subplots(1, 2, figsize=(9.0, 3.8), layout="constrained")
+    figure, (left, right) = panels(1, 2, height=2.6)
     for number, spring in enumerate(_CHAINS):
         for k, run in enumerate(members(results, spring)):
             left.semilogy(
@@ -121,11 +122,10 @@ def draw(results: Results) -> Figure:
         t,
         anchor * np.exp(rate * (t - 90)),
         "k--",
-        linewidth=1.2,
-        label=f"theory: exp({rate:.3f} t/T)",
+        label=rf"theory: $\exp({rate:.3f}\,t/$T$)$",
     )
-    left.set(xlabel="time t [T]", ylabel=r"kinetic energy E [M R$^2$/T$^2$]", ylim=(1, 1e8))
-    left.legend(frameon=False, fontsize=8)
+    left.set(xlabel="time $t$ [T]", ylabel=_ENERGY, ylim=(1, 1e8))
+    left.legend()
     _draw_singularity(right, members(results, "quadratic"))
     return figure
 
@@ -145,18 +145,18 @@ def _draw_singularity(ax: Axes, quadratic: list[xr.Dataset]) -> None:
             label="quadratic springs" if k == 0 else None,
         )
     span = np.array([0.6, 6.0])
-    ax.loglog(span, 3e7 * span**-6.0, "k--", linewidth=1.2, label="slope -6")
-    ax.set(xlabel="time left $t_c - t$ [T]", ylim=(1, 1e12))
-    ax.legend(frameon=False, fontsize=8)
+    ax.loglog(span, 3e7 * span**-6.0, "k--", label="slope $-6$")
+    ax.set(xlabel="time left $t_c - t$ [T]", ylabel=_ENERGY, ylim=(1, 1e12))
+    ax.legend()
 
 
 FIGURE = PaperFigure(
     number=15,
     name="energy",
     title="Kinetic energy of flippers in time",
-    caption="L = 100, e = 1.01, gamma = 0.4, from rest. Left: every line is a run. Dashed: the "
-    "growth rate of a balance between damping and one collision of every pair in half a period. "
-    "Right: the runs with quadratic springs against the time left until their own t_c, fitted.",
+    caption="L = 100, e = 1.01, gamma = 0.4, from rest. (a) Every line is a run, cut off at 1e8. "
+    "Dashed: the growth rate of a balance between damping and one collision of every pair in half "
+    "a period. (b) The runs with quadratic springs against the time left until their t_c, fitted.",
     cases=cases,
     draw=draw,
     claims=claims,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.figure import Figure
 
@@ -11,6 +10,7 @@ from crazybilliards.comparison.claims.verdicts import Claim, Estimate, eye_claim
 from crazybilliards.comparison.distances import distances_in_plot
 from crazybilliards.comparison.drawing import COLOURS
 from crazybilliards.comparison.fits import fit_arctanh
+from crazybilliards.comparison.layout import panels
 from crazybilliards.comparison.paper.figures.fig17_density import simulation
 from crazybilliards.kinetic import equilibrium
 from crazybilliards.model import chain_of
@@ -68,9 +68,7 @@ def draw(results: Results) -> Figure:
     fit = fit_arctanh(run)
     exact = equilibrium(chain)
     x = run.mean_position.values
-    figure, (top, bottom) = plt.subplots(
-        2, 1, figsize=(5.4, 4.8), layout="constrained", sharex=True, height_ratios=(2, 1)
-    )
+    figure, (top, bottom) = panels(2, 1, height=1.7, wanted=1, sharex=True, height_ratios=(2, 1))
     measured = run.mean_displacement.values
     top.errorbar(
         x,
@@ -78,9 +76,8 @@ def draw(results: Results) -> Figure:
         run.mean_displacement_error / s,
         fmt="o",
         color="black",
-        markersize=3.5,
         markerfacecolor="none",
-        linewidth=0.8,
+        linewidth=0.7,
         label="simulation",
     )
     curves = {
@@ -91,11 +88,16 @@ def draw(results: Results) -> Figure:
         top.plot(x, curve / s, style, color=colour, label=label)
         bottom.plot(x, (curve - measured) / s, style, color=colour)
     bottom.fill_between(
-        x, -run.mean_displacement_error / s, run.mean_displacement_error / s, color="0.85"
+        x,
+        -run.mean_displacement_error / s,
+        run.mean_displacement_error / s,
+        color="0.8",
+        label="one standard error",
     )
+    bottom.legend(loc="lower center")
     top.set(ylabel=r"displacement $\langle\Delta x\rangle/s$")
-    bottom.set(xlabel="mean position x [R]", ylabel="curve less simulation")
-    top.legend(frameon=False)
+    bottom.set(xlabel=r"mean position $\langle x_i\rangle$ [R]", ylabel="curve less\nsimulation")
+    top.legend()
     return figure
 
 
@@ -103,7 +105,7 @@ FIGURE = PaperFigure(
     number=16,
     name="arctanh",
     title="The mean displacement at e = 1 and its arctanh fit",
-    caption="L = 100, e = 1, A = 10. Below: curves less simulation; grey, one standard error. "
+    caption="L = 100, e = 1, A = 10. (b) Curves less simulation; grey: one standard error. "
     "s is the thermal length.",
     cases=cases,
     draw=draw,

@@ -103,8 +103,8 @@ FIGURE = PaperFigure(
     name="density",
     title="Density at e = 1: simulation and theory",
     caption="L = 100, e = 1, four driving amplitudes. Circles: simulation, smoothed as in the "
-    f"paper. Lines: {', '.join(LEGEND.values())}. Below each: the difference from the exact "
-    "density in units of close packing.",
+    f"paper. Lines: {'; '.join(LEGEND.values())}. Insets: the right edge, every bin. Below "
+    "each: the difference from the exact density in units of close packing.",
     cases=cases,
     draw=draw,
     claims=claims,

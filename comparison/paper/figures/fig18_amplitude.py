@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import matplotlib.pyplot as plt
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
@@ -11,6 +10,7 @@ from crazybilliards.comparison.claims.repetition import pooled
 from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
 from crazybilliards.comparison.claims.verdicts import Claim, same_claim
 from crazybilliards.comparison.drawing import along_the_chain, draw_rods
+from crazybilliards.comparison.layout import entitle, panels
 from crazybilliards.comparison.paper.chains import LARGE, dissipative, dissipative_name
 
 _RESTITUTIONS = (0.0, 0.95)
@@ -78,18 +78,19 @@ def _largest(one: xr.Dataset, other: xr.Dataset, name: str) -> float:
 
 def draw(results: Results) -> Figure:
     """Draw both quantities for both restitutions."""
-    figure, axes = plt.subplots(2, 2, figsize=(8.6, 6.0), layout="constrained", sharex=True)
+    figure, axes = panels(2, 2, height=2.3)
     labels = (r"$W_v^2/A^2$ [1/(M T)]", r"$\langle\Delta x\rangle/A$ [T$^{3/2}$/M]")
-    for row, restitution in zip(axes, _RESTITUTIONS, strict=True):
+    for row, restitution in zip((axes[:2], axes[2:]), _RESTITUTIONS, strict=True):
         for number, amplitude in enumerate(_AMPLITUDES):
             scaled = _scaled(results, restitution, amplitude)
             for ax, name, label in zip(row, _DRAWN, labels, strict=True):
-                draw_rods(ax, scaled, name, number=number, label=f"A = {amplitude:g}")
-                ax.set(ylabel=label, title=f"e = {restitution:g}")
+                draw_rods(ax, scaled, name, number=number, label=f"$A = {amplitude:g}$")
+                ax.set_ylabel(label)
         row[0].set_yscale("log")
-    for ax in axes[-1]:
-        along_the_chain(ax)
-    axes[0, 0].legend(frameon=False)
+        for ax in row:
+            along_the_chain(ax)
+            entitle(ax, f"$e = {restitution:g}$")
+    axes[0].legend()
     return figure
 
 

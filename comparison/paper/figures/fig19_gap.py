@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import itertools
 
-import matplotlib.pyplot as plt
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
@@ -13,6 +12,7 @@ from crazybilliards.comparison.claims.repetition import central_width, estimate,
 from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
 from crazybilliards.comparison.claims.verdicts import Claim, positive_claim, small_claim
 from crazybilliards.comparison.drawing import along_the_chain, draw_rods
+from crazybilliards.comparison.layout import at_the_left, entitle, legend_above, panels
 from crazybilliards.comparison.paper.chains import LARGE, dissipative, dissipative_name
 from crazybilliards.model import Chain, chain_of
 
@@ -116,9 +116,7 @@ def claims(results: Results) -> list[Claim]:
 
 def draw(results: Results) -> Figure:
     """Draw W_v^2(i) for every gap, a panel a restitution."""
-    figure, axes = plt.subplots(
-        1, len(_RESTITUTIONS), figsize=(10.0, 3.6), layout="constrained", sharey=True
-    )
+    figure, axes = panels(1, len(_RESTITUTIONS), sharey=True)
     for ax, restitution in zip(axes, _RESTITUTIONS, strict=True):
         for number, gap in enumerate((0.0, *_GAPS)):
             run = pooled(results, _name(restitution, gap))
@@ -127,13 +125,15 @@ def draw(results: Results) -> Figure:
                 velocity_variance_error=2 * run.velocity_width * run.velocity_width_error,
             )
             unit = chain_of(run).free_velocity_width ** 2
-            draw_rods(ax, run, "velocity_variance", number=number, unit=unit, label=f"g = {gap:g}")
+            draw_rods(
+                ax, run, "velocity_variance", number=number, unit=unit, label=f"$g = {gap:g}$"
+            )
         along_the_chain(ax)
-        ax.set(title=f"e = {restitution:g}", yscale="log")
-    axes[0].set_ylabel("velocity variance $W_v^2/W^2$")
-    figure.legend(
-        *axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=4, frameon=False
-    )
+        entitle(ax, f"$e = {restitution:g}$")
+        ax.set_yscale("log")
+        if at_the_left(ax):
+            ax.set_ylabel("velocity variance $W_v^2/W^2$")
+    legend_above(figure, axes[0])
     return figure
 
 

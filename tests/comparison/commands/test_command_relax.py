@@ -30,6 +30,10 @@ def test_relax_writes_pictures_animations_and_the_data(run, tmp_path):
     assert "://" not in page
     for sign in re.findall(r'class="fa (fa-[a-z-]+)', page):
         assert f".{sign}::before" in page
+    # It is a page with a heading, plays, and is as wide as the window.
+    assert "<h1>10 rods, A = 30, g = 0, quenched by 3 and released" in page
+    assert re.search(r"= new Animation\([^)]*\);\s*if \(!matchMedia.*play_animation\(\)", page)
+    assert "input[type=range].anim-slider { width: 100%; }" in page
     tree = load(tmp_path / "relaxation.nc")
     assert set(tree.children) == {"particles", "isothermal", "evolving", "exact"}
     assert "rms distance" in done.stdout

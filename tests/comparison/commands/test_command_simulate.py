@@ -32,7 +32,7 @@ def test_simulate_writes_what_the_function_returns(run, tmp_path):
         progress=False,
     )
     xr.testing.assert_identical(load(file), expected)
-    assert f"completed at t = {expected.attrs['end_time']:g}, time step 0.01" in done.stdout
+    assert f"completed at t = {expected.attrs['end_time']:g} T, time step 0.01 T" in done.stdout
     assert "error of the smallest W_v due to the time step" in done.stdout
     first = expected.isel(particle=0)
     assert f"{first.velocity_width:.4g} +- {first.velocity_width_error:.1g}" in done.stdout
@@ -92,6 +92,8 @@ def test_a_chain_that_diverges_ends_with_status_1(run, tmp_path):
     done = run("simulate", *options, "--output", tmp_path / "run.nc")
     assert done.returncode == 1
     assert "diverged at t = " in done.stdout
+    assert "warning" not in done.stderr
+    assert "L = 50, e = 2: the simulation diverged" in done.stderr
     result = load(tmp_path / "run-diverged.nc")
     assert (result.attrs["status"], chain_of(result).size) == ("diverged", 50)
 

@@ -1,14 +1,19 @@
 """Where commands write to: a wrong place costs no work, and what is written arrives whole."""
 
+import json
 import os
 import subprocess
 import sys
 import warnings
+from dataclasses import asdict
 
 import pytest
 from rich.table import Table
 
-from crazybilliards.comparison.commands.output import print_table
+from crazybilliards.comparison.commands.answers import print_table
+from crazybilliards.comparison.studies.elastic_chain import deviations
+from crazybilliards.comparison.studies.relaxation import label_distances
+from crazybilliards.model import load
 from crazybilliards.model.locks import locked
 
 SMALL = {
@@ -108,6 +113,51 @@ def test_numbers_in_tables_are_never_cut(monkeypatch, capsys):
     assert all(number in printed for number in numbers)
     assert "…" not in printed
     assert "[of" in printed
+
+
+def test_a_long_title_and_caption_use_the_width_of_the_terminal(monkeypatch, capsys):
+    monkeypatch.setenv("COLUMNS", "80")
+    title = "Density: simulation minus theory, in % of close packing"
+    table = Table("a", title=title, caption="Smoothed as in the paper; [sigma] is a unit.")
+    table.add_row("1")
+    print_table(table)
+    lines = capsys.readouterr().out.splitlines()
+    assert (lines[0], lines[-1]) == (title, "Smoothed as in the paper; [sigma] is a unit.")
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("command", [*SMALL, "sweep"])
+def test_json_is_one_object_with_every_file_written(command, arguments, run, tmp_path):
+    """Numbers in full, as the functions return them; nothing else on standard output."""
+    folder = tmp_path / "results"
+    output = tmp_path / "run.nc" if command == "simulate" else folder
+    done = run(*arguments(command), "--json", "--output", output)
+    assert done.returncode == 0, done.stderr
+    facts = json.loads(done.stdout)
+    if command == "sweep":
+        assert facts == {"cases": 1, "folder": str(folder), "computed": 1, "failed": []}
+        return
+    there = [output] if command == "simulate" else folder.rglob("*.*")
+    assert sorted(facts["written"]) == sorted(map(str, there))
+    if command == "simulate":
+        [first, *_] = facts["rods"]
+        run_file = load(output)
+        assert first["velocity_width"] == float(run_file.velocity_width[0])
+        assert first["velocity_width_error"] == float(run_file.velocity_width_error[0])
+        assert (facts["status"], facts["end_time"]) == ("completed", run_file.attrs["end_time"])
+    if command == "theory":
+        assert facts["model_error"] == 0
+    if command == "compare":
+        tree = load(folder / "comparison.nc")
+        [found] = facts["density_deviations"]
+        assert found["exact"] == asdict(deviations(tree)["amplitude_10"]["exact"])
+    if command == "relax":
+        assert facts["distances"] == label_distances(load(folder / "relaxation.nc"))
+
+
+def test_json_of_a_mistake_is_nothing(run):
+    done = run("theory", "--json", "--size", 0)
+    assert (done.returncode, done.stdout) == (2, "")
 
 
 def test_a_warning_is_one_plain_line(run):

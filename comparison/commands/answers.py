@@ -1,0 +1,139 @@
+"""What a command answers on standard output: lines and tables for people, or one JSON object.
+
+Standard library and typer only up here, so that ``--help`` answers at once.
+"""
+
+from __future__ import annotations
+
+import inspect
+import json
+import math
+from collections.abc import Callable
+from contextvars import ContextVar
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from rich.table import Table
+
+_ANY_WIDTH = 10_000
+_COLUMNS = {
+    "velocity_width": "W_v",
+    "mean_displacement": "<dx>",
+    "displacement_width": "W_x",
+}
+# What --json prints in the end; None: text is printed.
+_facts: ContextVar[dict[str, Any] | None] = ContextVar("facts", default=None)
+_Option = Annotated[
+    bool,
+    typer.Option("--json", help="Print one JSON object instead of text, numbers in full."),
+]
+
+
+def with_json(command: Callable[..., None]) -> Callable[..., None]:
+    """Give a command the option ``--json``: it then prints the facts that it noted."""
+
+    def with_option(*, as_json: bool = False, **given: Any) -> None:
+        before = _facts.set({} if as_json else None)
+        try:
+            command(**given)
+        finally:
+            if facts := _facts.get():
+                print(json.dumps(_plain(facts), indent=1))
+            _facts.reset(before)
+
+    signature = inspect.signature(command, eval_str=True)
+    option = inspect.Parameter(
+        "as_json", inspect.Parameter.KEYWORD_ONLY, default=False, annotation=_Option
+    )
+    parameters = [*signature.parameters.values(), option]
+    with_option.__signature__ = signature.replace(parameters=parameters)  # type: ignore[attr-defined]
+    with_option.__annotations__ = {each.name: each.annotation for each in parameters}
+    with_option.__doc__ = command.__doc__
+    return with_option
+
+
+def note(**facts: Any) -> None:
+    """Keep what machines want to know: tables of plain values."""
+    noted = _facts.get()
+    if noted is not None:
+        noted |= facts
+
+
+def say(text: str) -> None:
+    """Print a line for people."""
+    if _facts.get() is None:
+        print(text)
+
+
+def wrote(path: Path) -> None:
+    """Say, or note, that a file was written."""
+    say(f"wrote {path}")
+    noted = _facts.get()
+    if noted is not None:
+        noted.setdefault("written", []).append(str(path))
+
+
+def _plain(value: Any) -> Any:
+    """Return what JSON can hold; it has no number that is not finite."""
+    if isinstance(value, dict):
+        return {str(key): _plain(each) for key, each in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(each) for each in value]
+    if value is None or isinstance(value, str | bool | int):
+        return value
+    number = float(value)
+    return number if math.isfinite(number) else None
+
+
+def answer_rods(result: xr.Dataset, title: str, caption: str) -> None:
+    """Print widths and displacements of some rods, with their standard errors if there are any."""
+    from rich.table import Table
+
+    columns = {name: text for name, text in _COLUMNS.items() if name in result}
+    headings = [f"{text} [{result[name].attrs['units']}]" for name, text in columns.items()]
+    table = Table("particle", *headings, title=title, caption=caption)
+    for column in table.columns:
+        column.justify = "right"
+    L, noted = result.sizes["particle"], []
+    for i in sorted({1, 2, max(L // 10, 1), max(L // 4, 1), max(L // 2, 1)} & set(range(1, L + 1))):
+        rod = result.isel(particle=i - 1)
+        table.add_row(str(rod.particle.item()), *(_measured(rod, name) for name in columns))
+        errors = [f"{name}_error" for name in columns if f"{name}_error" in rod]
+        noted.append({name: rod[name].item() for name in ("particle", *columns, *errors)})
+    note(rods=noted)
+    print_table(table)
+
+
+def _measured(rod: xr.Dataset, name: str) -> str:
+    value = f"{float(rod[name]):.4g}"
+    error = rod.get(f"{name}_error")
+    return value if error is None else f"{value} +- {float(error):.1g}"
+
+
+def print_table(table: Table) -> None:
+    """Print a table without cutting a number: headings wrap, and lines get as long as they must.
+
+    Its title and its caption may be wider than the table.
+    """
+    from rich.cells import cell_len
+    from rich.console import Console
+
+    if _facts.get() is not None:
+        return
+    console = Console(markup=False)  # [sigma] is a unit, not a style
+    title, caption, table.title, table.caption = table.title, table.caption, None, None
+    wide = console.options.update(max_width=_ANY_WIDTH)
+    width = console.width
+    if console.measure(table, options=wide).maximum > console.width:
+        for column in table.columns:
+            if column.justify == "right":
+                words = [*map(str, column.cells), *str(column.header).split()]
+                column.width = max(map(cell_len, words))
+        console.width = max(console.width, console.measure(table, options=wide).minimum)
+    for part in (title, table, caption):
+        if part is not None:
+            console.print(part, width=width if isinstance(part, str) else None, highlight=False)
