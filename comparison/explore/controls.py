@@ -6,7 +6,7 @@ from typing import Any
 
 import panel as pn
 
-from crazybilliards.comparison.explore.presets import PRESETS
+from crazybilliards.comparison.explore.presets import PRESETS, Preset
 from crazybilliards.comparison.explore.setting import Setting
 
 SPEEDS = (0.02, 0.1, 0.5, 3, 30, 300)  # T per second
@@ -27,6 +27,7 @@ class Controls:
 
     def __init__(self, setting: Setting) -> None:
         self.setting = setting
+        self.setting_widgets = setting.widgets()
         self.play = pn.widgets.Toggle(name="Pause", value=True, button_type="primary")
         self.step = pn.widgets.Button(name="Step", description="Move on to the next collision")
         self.reset = pn.widgets.Button(
@@ -38,9 +39,7 @@ class Controls:
         self.speed = pn.widgets.RadioButtonGroup(
             name="speed", options={f"{speed:g}": speed for speed in SPEEDS}, value=SLOW
         )
-        self.preset = pn.widgets.Select(
-            name="figure of the paper", options={NO_PRESET: None, **_BY_LABEL}
-        )
+        self.preset = pn.widgets.Select(name="figure of the paper", options=[NO_PRESET, *_BY_LABEL])
         self.solve = pn.widgets.Button(name=SOLVE)
         self.quantity = pn.widgets.Select(name="measured", options=QUANTITIES)
         self.history = pn.widgets.Select(name="in time", options=HISTORIES)
@@ -61,9 +60,14 @@ class Controls:
         self.message.object = f"<div role='alert'>{message}</div>"
         self.message.visible = bool(message)
 
+    @property
+    def chosen(self) -> Preset | None:
+        """The preset chosen."""
+        return _BY_LABEL.get(self.preset.value)
+
     def show_look(self) -> None:
         """Say what to look for in the preset chosen."""
-        preset = self.preset.value
+        preset = self.chosen
         self.look.visible = preset is not None
         if preset is not None:
             self.look.object = f"<b>{preset.label}.</b> {preset.look}"
@@ -81,8 +85,8 @@ class Controls:
 
     def forget_preset(self) -> None:
         """Do not claim to show a figure whose parameters were changed."""
-        if self.preset.value is not None and self.preset.value.chain != self.setting.chain():
-            self.preset.value = None
+        if self.chosen is not None and self.chosen.chain != self.setting.chain():
+            self.preset.value = NO_PRESET
 
     def panel(self) -> list[Any]:
         """Return what stands beside the pictures, from top to bottom."""
@@ -90,12 +94,12 @@ class Controls:
             pn.pane.HTML("<h1>Crazy billiards</h1>"),
             self.message,
             pn.FlexBox(self.play, self.step, self.reset, self.push),
-            pn.pane.HTML("speed [T per second]", css_classes=["label"]),
+            pn.pane.HTML("speed [T per second]", css_classes=["status"]),
             self.speed,
             self.status,
             self.preset,
             self.look,
-            *self.setting.widgets(),
+            *self.setting_widgets,
             self.solve,
             self.accuracy,
         ]

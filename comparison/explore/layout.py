@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from importlib.resources import files
+from pathlib import Path
 
 import panel as pn
+from bokeh.models import CustomJS
 
 from crazybilliards.comparison.explore.controls import Controls
-from crazybilliards.comparison.explore.pictures import Pictures
+from crazybilliards.comparison.explore.pictures import PICTURES, Pictures
 
+NOTEBOOKS = Path(__file__).parents[2] / "notebooks"
 _HERE = files("crazybilliards.comparison.explore")
 # The containers are grids. Their children lie in the container's own shadow tree.
 _PAGE = """
@@ -42,21 +45,39 @@ def arrange(controls: Controls, pictures: Pictures) -> pn.viewable.Viewable:
     )
     measured = pn.Column(controls.quantity, *pictures.measured.values(), **wide)
     in_time = pn.Column(controls.history, *pictures.in_time.values(), **wide)
-    help_text = pn.pane.HTML(_read("help.html"), css_classes=["help"], **wide)
+    help_text = pn.pane.HTML(
+        _read("help.html").replace("NOTEBOOKS", _links()), css_classes=["help"], **wide
+    )
     right = pn.Column(
         in_space, pn.Column(measured, in_time, stylesheets=[_PAIR], **wide), help_text, **wide
     )
     left = pn.Column(*controls.panel(), sizing_mode="stretch_width", css_classes=["controls"])
     page = pn.Column(left, right, stylesheets=[_PAGE], **wide)
     if pn.state.curdoc is not None:
-        pn.state.curdoc.js_on_event("document_ready", _named())
+        pn.state.curdoc.js_on_event("document_ready", _names(controls))
     return page
 
 
-def _named() -> object:
-    from bokeh.models import CustomJS
+def _names(controls: Controls) -> CustomJS:
+    """Give names to sliders, numbers, lists and pictures, in the order of the page."""
+    lists = (controls.preset, controls.setting_widgets[-1], controls.quantity, controls.history)
+    arguments = {
+        "parameters": [widget.name for widget in controls.setting_widgets[:-1]],
+        "lists": [each.name for each in lists],
+        "pictures": list(PICTURES),
+    }
+    return CustomJS(args=arguments, code=_read("page.js"))
 
-    return CustomJS(code=_read("page.js"))
+
+def _links() -> str:
+    """Return links to the notebooks, where they lie beside the package."""
+    if not NOTEBOOKS.is_dir():
+        return "<p>The notebooks of the repository, in its folder notebooks.</p>"
+    items = (
+        f"<li><a href='notebooks/{path.name}' download>{path.stem.replace('_', ' ')}</a></li>"
+        for path in sorted(NOTEBOOKS.glob("*.ipynb"))
+    )
+    return f"<p>Notebooks, to open with JupyterLab:</p><ul>{''.join(items)}</ul>"
 
 
 def _read(name: str) -> str:

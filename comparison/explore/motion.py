@@ -65,7 +65,7 @@ class Rods:
             plot.on_event(event, lambda event: grabbed(event.x))
         plot.on_event(PanEnd, lambda event: grabbed(None))
         self.plot = plot
-        self.key = pn.pane.HTML(css_classes=["key"], sizing_mode="stretch_width")
+        self.key = pn.pane.HTML(sizing_mode="stretch_width", margin=(5, 16, 0, 84))
 
     @property
     def fastest(self) -> float:
@@ -79,8 +79,8 @@ class Rods:
         fast = 2.5 * chain.free_velocity_width * centre_width(chain)
         self._colours.update(low=-fast, high=fast)
         self.key.object = (
-            f"<span>−{fast:.2g} R/T</span><span class='scale'>velocity v</span>"
-            f"<span>{fast:.2g} R/T</span>"
+            f"<div class='key'><span>−{fast:.2g} R/T</span><span>velocity v</span>"
+            f"<span>{fast:.2g} R/T</span></div>"
         )
         self._anchors.data = {"x": chain.anchors}
 
@@ -94,7 +94,7 @@ class Rods:
 
 
 class Strip:
-    """Space and time: a row for each moment, the newest on top; black where two rods met."""
+    """Space and time: a row for each moment, the newest on top; a bar where two rods met."""
 
     def __init__(self, rods: Rods) -> None:
         self._rods = rods

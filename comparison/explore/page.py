@@ -222,7 +222,7 @@ class Page:
         self.pictures.strip.clear(self._row_time)
 
     def _take_preset(self, event: Any) -> None:
-        preset = event.new
+        preset = self.controls.chosen
         self.controls.show_look()
         if preset is None:
             return

@@ -17,6 +17,19 @@ from crazybilliards.comparison.explore.theories import Densities
 from crazybilliards.comparison.explore.times import Times
 from crazybilliards.model import Chain
 
+# What each shows, in the order of the page.
+PICTURES = (
+    "rods where they are, coloured by velocity",
+    "space and time: where the rods were, and where they met",
+    "density against position, simulation and theories",
+    "velocity width of each rod, simulation and theories",
+    "velocity distributions of middle and outermost rods",
+    "avalanche sizes",
+    "kinetic energy in time",
+    "kinetic energy in time, logarithmic",
+    "collisions per contact in time",
+)
+
 
 class Pictures:
     """The pictures of one page, by what they show."""
@@ -41,7 +54,7 @@ class Pictures:
             )
         }
         self.legend = pn.pane.HTML(
-            "Below: where the rods were, the present on top. Black: two rods met.",
+            "Where the rods were, the present on top. A short bar: two rods met.",
             css_classes=["progress"],
         )
         self.measured = {

@@ -26,7 +26,7 @@ from bokeh.settings import settings
 from tornado.web import RequestHandler
 from tornado.websocket import WebSocketClosedError
 
-from crazybilliards.comparison.explore.layout import prepare
+from crazybilliards.comparison.explore.layout import NOTEBOOKS, prepare
 from crazybilliards.comparison.explore.page import make_page
 from crazybilliards.comparison.explore.session import Session
 from crazybilliards.model import Chain
@@ -107,6 +107,7 @@ def _make_server(
         show=False,
         start=False,
         verbose=False,
+        static_dirs={"notebooks": str(NOTEBOOKS)} if NOTEBOOKS.is_dir() else {},
     )
     others = f"(?!({re.escape(address)}|{re.escape(number)})$).*"
     refusal = (".*", _WrongName, {"url": f"http://{address}:{port}/"})
