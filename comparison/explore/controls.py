@@ -7,6 +7,7 @@ from typing import Any
 import panel as pn
 
 from crazybilliards.comparison.explore.presets import PRESETS, Preset
+from crazybilliards.comparison.explore.session import Session
 from crazybilliards.comparison.explore.setting import Setting
 
 SPEEDS = (0.02, 0.1, 0.5, 3, 30, 300)  # T per second
@@ -76,6 +77,19 @@ class Controls:
         """Say how far each theory can be trusted."""
         self.accuracy.visible = bool(notes)
         self.accuracy.object = "<br>".join(f"{name}: {note}" for name, note in notes.items())
+
+    def show_progress(self, session: Session, *, held: bool) -> None:
+        """Say since when the chain has been measured, or when that begins."""
+        waiting = session.measured_from - session.time
+        if session.diverged:
+            words = "the chain has run away: there is no steady state to measure"
+        elif held:
+            words = "you hold a rod: nothing is measured"
+        elif waiting <= 0:
+            words = f"measured for {session.measured_duration:.3g} T"
+        else:
+            words = f"equilibrating, {waiting / self.speed.value:.0f} s at this speed"
+        self.progress.object = words
 
     def show_solving(self, seconds: float | None) -> None:
         """Say for how long the kinetic equation has been solved; None: it is not."""

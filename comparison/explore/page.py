@@ -50,6 +50,7 @@ class Page:
     """
 
     def __init__(self, threads: Executor, turn: Lock) -> None:
+        self._document, self._closed = pn.state.curdoc, False
         self.setting = Setting()
         self.controls = Controls(self.setting)
         self._address = Address(self.setting, self.controls.say)
@@ -67,7 +68,7 @@ class Page:
         self._begin()
         self._address.write()
         self.controls.say(self._address.refusal)
-        self._clock = pn.state.add_periodic_callback(self._frame, period=_PERIOD)
+        pn.state.add_periodic_callback(self._frame, period=_PERIOD)
         pn.state.on_session_destroyed(self._close)
 
     def view(self) -> pn.viewable.Viewable:
@@ -88,12 +89,11 @@ class Page:
 
     def _poster(self) -> Callable[[Callable[[], None]], None]:
         """Return what calls a function in this page's turn, unless the page has been closed."""
-        loop, document = IOLoop.current(), pn.state.curdoc
-        self._closed = False
+        loop = IOLoop.current()
 
         def in_turn(function: Callable[[], None]) -> None:
             if not self._closed:
-                document.add_next_tick_callback(function)
+                self._document.add_next_tick_callback(function)
 
         return lambda function: loop.add_callback(in_turn, function)
 
@@ -104,6 +104,8 @@ class Page:
     # -- the clock --------------------------------------------------------------------------
 
     def _frame(self) -> None:
+        if self._document.session_context.session.connection_count == 0:
+            return  # closed, and soon forgotten
         now = perf_counter()
         elapsed, self._last = min(now - self._last, _LONGEST), now
         self._frames += 1
@@ -159,24 +161,11 @@ class Page:
             if measured is not None:
                 self.pictures.density.show(smooth(measured))
                 self.pictures.panels[self.controls.quantity.value].show(session, measured)
-        self.controls.progress.object = self._progress()
+        self.controls.show_progress(session, held=self._grabbed is not None)
         self.controls.status.object = (
             f"t = {session.time:.4g} T, {speed:.2g} T per second<br>"
             f"a free rod's velocity width is W = {session.chain.free_velocity_width:.3g} R/T"
         )
-
-    def _progress(self) -> str:
-        """Say since when it has been measured, or when that begins."""
-        session = self.session
-        waiting = session.measured_from - session.time
-        if session.diverged:
-            return "the chain has run away: there is no steady state to measure"
-        if self._grabbed is not None:
-            return "you hold a rod: nothing is measured"
-        if waiting <= 0:
-            return f"measured for {session.measured_duration:.3g} T"
-        seconds = waiting / self.controls.speed.value
-        return f"equilibrating, {seconds:.0f} s at this speed: then it is measured"
 
     # -- what a user does -------------------------------------------------------------------
 

@@ -23,7 +23,7 @@ THEORIES: Mapping[str, Mapping[str, Any]] = {
     "kinetic": {"color": "#D55E00", "line_width": 2.5, "line_dash": "dotdash"},
 }
 LABELS = {
-    "exact": "exact equilibrium",
+    "exact": "exact",
     "balance": "force balance",
     "kinetic": "kinetic equation",
 }
@@ -66,7 +66,7 @@ def add_legend(plot: Any, *items: LegendItem) -> None:
         ncols="auto",
         padding=0,
         margin=0,
-        spacing=14,
+        spacing=10,
         label_standoff=5,
         border_line_alpha=0,
         background_fill_alpha=0,

@@ -105,7 +105,7 @@ class Setting(param.Parameterized):
                 ("restitution", "restitution e", 0.01),
                 ("amplitude", "noise amplitude A [M R/√T³]", 0.1),
                 ("damping", "damping γ [M/T]", 0.1),
-                ("gap", "gap g between anchored rods [R]", 0.05),
+                ("gap", "gap g at the anchors [R]", 0.05),
             )
         ]
         return [

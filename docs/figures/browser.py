@@ -32,15 +32,23 @@ return found;
 """
 
 
+class Server(str):
+    """The address of a page that is served, and the process that serves it."""
+
+    process: subprocess.Popen[str]
+
+
 @contextmanager
-def served() -> Iterator[str]:
+def served() -> Iterator[Server]:
     """Serve the page at a free port; Ctrl-C ends it with the status that shells expect."""
     process = subprocess.Popen(
         [*COMMAND, "explore", "--no-browser", "--port", "0"], stdout=subprocess.PIPE, text=True
     )
     assert process.stdout is not None
     try:
-        yield process.stdout.readline().split()[0]
+        server = Server(process.stdout.readline().split()[0])
+        server.process = process
+        yield server
         process.send_signal(signal.SIGINT)
         assert process.wait(600) == 130
     finally:
