@@ -10,6 +10,7 @@ const give = (elements, names) => elements.forEach((element, place) => {
 const name = () => {
   give(all('.noUi-handle'), parameters);
   give(all('input.bk-input'), parameters.map(each => `${each}, as a number`));
+  give(all('.bk-spin-btn'), parameters.flatMap(each => [`${each}, up`, `${each}, down`]));
   give(all('select'), lists);
   const pictured = all('.bk-Figure');
   pictured.forEach(each => each.setAttribute('role', 'img'));

@@ -3,9 +3,8 @@
     python docs/figures/explore.py FOLDER [NAME ...]
 
 writes one PNG for each: the page at three widths, light and dark; each preset; a chain that runs
-away; slow motion after a push. ``explore.png`` of this folder is ``wide-light`` of a chain for
-which the kinetic equation was solved. It also lists what the keyboard reaches, and fails if
-something of that has no name.
+away; slow motion, which is ``explore.png`` of this folder; a chain for which the kinetic equation
+was solved. It also lists what can be operated, and fails if something of that has no name.
 """
 
 import sys
@@ -105,7 +104,7 @@ def looks(album: Album) -> dict[str, Callable[[], None]]:
             for name, width in WIDTHS.items()
             for dark in (False, True)
         },
-        "explore": solved,
+        "solved": solved,
         "runs-away": runs_away,
         "slow-motion": slow,
         **{
