@@ -1,4 +1,4 @@
-"""The page: the widgets, the pictures, and the clock that moves the chain.
+"""The page: the clock that moves the chain, and what follows from what a user does.
 
 Every frame advances the session by the time that passed, at the speed chosen, within a budget of
 computing so that the page stays responsive; every few frames what was measured is drawn anew.
@@ -6,20 +6,27 @@ computing so that the page stays responsive; every few frames what was measured 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from concurrent.futures import Executor
+from threading import Lock
 from time import perf_counter
 from typing import Any
 
+import numpy as np
 import panel as pn
+from tornado.ioloop import IOLoop
 
 from crazybilliards.comparison.coverage import smooth
-from crazybilliards.comparison.explore.drawing import Density, Rods, Times, Widths
-from crazybilliards.comparison.explore.presets import PRESETS
+from crazybilliards.comparison.explore.address import Address
+from crazybilliards.comparison.explore.controls import Controls
+from crazybilliards.comparison.explore.layout import arrange
+from crazybilliards.comparison.explore.pictures import Pictures
 from crazybilliards.comparison.explore.session import Session
 from crazybilliards.comparison.explore.setting import Setting
 from crazybilliards.comparison.explore.theories import (
     Background,
     Densities,
+    Solver,
     elastic_densities,
     kinetic_density,
 )
@@ -27,102 +34,111 @@ from crazybilliards.model import Chain
 
 _PERIOD = 33  # ms from frame to frame
 _BUDGET = 0.012  # s of computing in a frame
+_STEP_BUDGET = 0.3  # s of computing until the next collision
 _LONGEST = 0.1  # s that a frame makes up for; a page that slept does not catch up
 _FRAMES_PER_DRAWING = 8
-_NO_PRESET = "(choose)"
-_CHAINS = {preset.label: preset.chain for preset in PRESETS}
-_SPEEDS = (3, 10, 30, 100, 300)  # T per second
+_STEPS_PER_ROW = 3
+_STEPPING_SPEED = 0.1  # at which Step goes on, if the speed is no slow one
+_PUSH = 8.0  # widths of a free rod
 
 
 class Page:
     """One page in one browser: its own chain, setting and clock.
 
-    ``threads`` compute what takes a moment, ``processes`` what takes seconds: a thread that
-    computes for long would slow the chain down.
+    ``threads`` compute what takes a moment; what takes seconds is computed in a process of its
+    own, one at a time of all that share ``turn``.
     """
 
-    def __init__(self, threads: Executor, processes: Executor) -> None:
+    def __init__(self, threads: Executor, turn: Lock) -> None:
+        self._document, self._closed = pn.state.curdoc, False
         self.setting = Setting()
+        self.controls = Controls(self.setting)
+        self._address = Address(self.setting, self.controls.say)
         self.session = Session(self.setting.chain())
-        self.rods = Rods()
-        self.density, self.widths, self.times = Density(self.rods), Widths(), Times()
+        self.pictures = Pictures(self._grab)
         self._rows: list[tuple[float, float, float]] = []
-        self._frames, self._last, self._drawn = 0, perf_counter(), (perf_counter(), 0.0)
-        self._make_widgets()
-        post = pn.state.curdoc.add_next_tick_callback
-        self._elastic = Background(threads, elastic_densities, self._show_theories, post)
-        self._kinetic = Background(processes, kinetic_density, self._show_theories, post)
-        self.setting.param.watch(self._changed, self.setting.parameters())
+        self._frames, self._owed_rows = 0, 0.0
+        self._last, self._drawn = perf_counter(), (perf_counter(), 0.0)
+        self._grabbed: int | None = None
+        self._notes: dict[str, str] = {}
+        self._elastic = Background(threads, elastic_densities, self._show_theories, self._poster())
+        self._kinetic = Solver(kinetic_density, turn)
+        self._listen()
+        self._set_pace()
         self._begin()
-        if pn.state.location is not None:
-            names = self.setting.parameters()
-            pn.state.location.sync(self.setting, names, on_error=self._refuse_address)
+        self._address.write()
+        self.controls.say(self._address.refusal)
         pn.state.add_periodic_callback(self._frame, period=_PERIOD)
-
-    def _make_widgets(self) -> None:
-        self.preset = pn.widgets.Select(
-            name="figure of the paper",
-            options=[_NO_PRESET, *_CHAINS],
-        )
-        self.preset.param.watch(self._take_preset, "value")
-        self.play = pn.widgets.Toggle(name="Pause", value=True, button_type="primary")
-        self.play.param.watch(self._name_toggle, "value")
-        self.reset = pn.widgets.Button(name="Reset")
-        self.reset.on_click(self._restart)
-        self.speed = pn.widgets.RadioButtonGroup(
-            name="speed", options={str(speed): speed for speed in _SPEEDS}, value=30
-        )
-        self.solve = pn.widgets.Button(name="Solve the kinetic equation")
-        self.solve.on_click(self._ask_kinetic)
-        self.status = pn.pane.HTML(styles={"font-size": "12px"})
-        self.message = pn.pane.Alert(alert_type="warning", visible=False, margin=(4, 10))
+        pn.state.on_session_destroyed(self._close)
 
     def view(self) -> pn.viewable.Viewable:
         """Return the layout."""
-        controls = pn.Column(
-            pn.pane.HTML("<h2 style='margin:0'>Crazy billiards</h2>"),
-            pn.Row(self.play, self.reset),
-            pn.pane.HTML("speed [T per second]", margin=(5, 10, 0, 10)),
-            self.speed,
-            self.preset,
-            *self.setting.widgets(),
-            self.solve,
-            self.status,
-            self.message,
-            pn.pane.HTML(
-                "The address of this page holds the setting: who opens it sees the same chain.",
-                styles={"font-size": "12px", "color": "#555555"},
-            ),
-            width=330,
-        )
-        pictures = pn.Column(
-            self.rods.plot,
-            pn.Row(self.density.plot, self.widths.plot, sizing_mode="stretch_width"),
-            pn.Row(self.times.energy, self.times.rate, sizing_mode="stretch_width"),
-            sizing_mode="stretch_width",
-        )
-        return pn.Row(controls, pictures, sizing_mode="stretch_width")
+        return arrange(self.controls, self.pictures)
+
+    def _listen(self) -> None:
+        controls = self.controls
+        self.setting.param.watch(self._changed, self.setting.parameters())
+        controls.preset.param.watch(self._take_preset, "value")
+        controls.speed.param.watch(self._set_pace, "value")
+        controls.quantity.param.watch(self._set_pace, "value")
+        controls.history.param.watch(self._set_pace, "value")
+        controls.step.on_click(self._step)
+        controls.reset.on_click(self._restart)
+        controls.push.on_click(self._push)
+        controls.solve.on_click(self._ask_kinetic)
+
+    def _poster(self) -> Callable[[Callable[[], None]], None]:
+        """Return what calls a function in this page's turn, unless the page has been closed."""
+        loop = IOLoop.current()
+
+        def in_turn(function: Callable[[], None]) -> None:
+            if not self._closed:
+                self._document.add_next_tick_callback(function)
+
+        return lambda function: loop.add_callback(in_turn, function)
+
+    def _close(self, context: Any) -> None:
+        self._closed = True
+        self._kinetic.cancel()
 
     # -- the clock --------------------------------------------------------------------------
 
     def _frame(self) -> None:
+        if self._document.session_context.session.connection_count == 0:
+            return  # closed, and soon forgotten
         now = perf_counter()
         elapsed, self._last = min(now - self._last, _LONGEST), now
         self._frames += 1
         session = self.session
-        if self.play.value and not session.diverged:
+        if self.controls.play.value and not session.diverged:
             time, collisions = session.time, session.collisions
-            session.advance(self.speed.value * elapsed, _BUDGET)
+            self._advance(elapsed)
             if session.time > time:
                 self._keep(time, collisions)
+            self.pictures.rods.show(session)
             if session.diverged:
-                self._say(
-                    f"The chain diverged at t = {session.time:.4g} T: collisions with e > 1 put in "
-                    "more energy than the damping takes out. Change a parameter, or reset."
-                )
-            self.rods.show(session)
+                self._draw()
+                self.controls.say(self.pictures.times.explain_divergence(session.energies))
         if self._frames % _FRAMES_PER_DRAWING == 0:
             self._draw()
+            self._poll_kinetic()
+
+    def _advance(self, elapsed: float) -> None:
+        """Move the chain; in slow motion row by row of the strip."""
+        speed = self.controls.speed.value
+        if not self.controls.slow:
+            self.session.advance(speed * elapsed, _BUDGET)
+            return
+        rows = elapsed * 1000 / _PERIOD + self._owed_rows
+        self._owed_rows = rows % 1
+        for _ in range(int(rows)):
+            self.session.advance(self._row_time, _BUDGET)
+            self.pictures.strip.add(self.session, self.session.contacts_met())
+        self.pictures.strip.show()
+
+    @property
+    def _row_time(self) -> float:
+        return float(self.controls.speed.value * _PERIOD / 1000)
 
     def _keep(self, time: float, collisions: int) -> None:
         """Take down energy and collisions of a frame."""
@@ -137,22 +153,18 @@ class Page:
         now = perf_counter()
         self._drawn = now, session.time
         speed = max(session.time - before, 0.0) / (now - then)
+        self.pictures.density.follow_zoom()
         if self._rows:
-            self.times.show(self._rows)
+            self.pictures.times.show(self._rows)
             self._rows.clear()
             measured = session.measured()
             if measured is not None:
-                self.density.show(smooth(measured))
-                self.widths.show(measured)
-        waiting = session.measured_from - session.time
-        measuring = (
-            f"measured for {session.measured_duration:.0f} T"
-            if waiting <= 0
-            else f"measuring begins in {waiting:.0f} T"
-        )
-        self.status.object = (
-            f"t = {session.time:.1f} T, {speed:.1f} T per second<br>{measuring}<br>"
-            f"free width W = {session.chain.free_velocity_width:.3g} R/T"
+                self.pictures.density.show(smooth(measured))
+                self.pictures.panels[self.controls.quantity.value].show(session, measured)
+        self.controls.show_progress(session, held=self._grabbed is not None)
+        self.controls.status.object = (
+            f"t = {session.time:.4g} T, {speed:.2g} T per second<br>"
+            f"a free rod's velocity width is W = {session.chain.free_velocity_width:.3g} R/T"
         )
 
     # -- what a user does -------------------------------------------------------------------
@@ -160,6 +172,7 @@ class Page:
     def _changed(self, *events: Any) -> None:
         self.session.change(self.setting.chain())
         self._begin()
+        self._address.write()
 
     def _restart(self, event: Any) -> None:
         self.session.restart()
@@ -168,56 +181,114 @@ class Page:
     def _begin(self) -> None:
         """Show the session's chain as it is now, of which nothing was measured yet."""
         chain = self.session.chain
-        self._say("")
-        if self.session.time == 0:
-            self.times.clear()
-            self._rows.clear()
-        self.rods.begin(chain)
-        self.rods.show(self.session)
-        self.density.clear()
-        self.widths.begin(chain)
-        self.times.begin(chain)
-        if _CHAINS.get(self.preset.value) != chain:
-            self.preset.value = _NO_PRESET
+        self.controls.say("")
+        self.controls.forget_preset()
+        self._notes.clear()
+        self.controls.show_accuracy(self._notes)
+        self._rows.clear()
+        self._grabbed = None
+        self.pictures.begin(self.session)
+        self.pictures.arrange(self.controls.quantity.value, self.controls.history.value, chain)
+        self.pictures.strip.clear(self._row_time)
+        if self._kinetic.chain != chain:
+            self._kinetic.cancel()
+        self.controls.show_solving(self._kinetic.seconds if self._kinetic.chain else None)
         if chain.restitution == 1:
             self._elastic.ask(chain)
 
-    def _take_preset(self, event: Any) -> None:
-        if event.new in _CHAINS:
-            self.setting.take(_CHAINS[event.new])
+    def _set_pace(self, *events: Any) -> None:
+        """Take the steps that speed and pictures need."""
+        controls = self.controls
+        slow = controls.slow
+        self.session.pace(
+            self._row_time / _STEPS_PER_ROW if slow else np.inf,
+            resolved=slow,
+            avalanches=controls.quantity.value == "avalanches",
+        )
+        self.pictures.arrange(
+            controls.quantity.value, controls.history.value, self.session.chain, strip=slow
+        )
+        self.pictures.strip.clear(self._row_time)
 
-    def _name_toggle(self, event: Any) -> None:
-        self.play.name = "Pause" if event.new else "Play"
+    def _take_preset(self, event: Any) -> None:
+        preset = self.controls.chosen
+        self.controls.show_look()
+        if preset is None:
+            return
+        self.setting.take(preset.chain)
+        self.controls.quantity.value = preset.quantity
+        self.controls.speed.value = 30
+        if preset.figure == "energy":
+            self.controls.history.value = "energy"
+            self._restart(event)
+        if preset.solved:
+            self._ask_kinetic(event)
+
+    def _step(self, event: Any) -> None:
+        """Move on to the next collision, and say which rods met."""
+        self.controls.play.value = False
+        if not self.controls.slow:
+            self.controls.speed.value = _STEPPING_SPEED
+        session, strip = self.session, self.pictures.strip
+        deadline = perf_counter() + _STEP_BUDGET
+        met: list[int] = []
+        while not met and perf_counter() < deadline and not session.diverged:
+            met = session.advance_to_collision(self._row_time)
+            strip.add(session, met)
+        strip.show()
+        self.pictures.rods.show(session)
+        pairs = ", ".join(f"{contact + 1} and {contact + 2}" for contact in met)
+        found = f"rods {pairs} met" if met else "no two rods have met yet"
+        self.controls.say(f"t = {session.time:.5g} T: {found}.")
+
+    def _push(self, event: Any) -> None:
+        chain = self.session.chain
+        self.session.push(0, _PUSH * chain.free_velocity_width)
+        self.pictures.rods.show(self.session)
+
+    def _grab(self, x: float | None) -> None:
+        """Follow the mouse with the rod it took hold of."""
+        session = self.session
+        if x is None:
+            if self._grabbed is not None:
+                session.release()
+                self._grabbed = None
+            return
+        if self._grabbed is None:
+            self._grabbed = int(np.abs(session.positions - x).argmin())
+        session.hold(self._grabbed, x)
+        self.pictures.rods.show(session)
+
+    # -- the kinetic equation ---------------------------------------------------------------
 
     def _ask_kinetic(self, event: Any) -> None:
-        self.solve.name = "Solving ..."
-        self.solve.disabled = True
-        self._kinetic.ask(self.session.chain)
+        if self._kinetic.chain is None:
+            self._kinetic.ask(self.session.chain)
+            self.controls.show_solving(0.0)
+        else:
+            self._kinetic.cancel()
+            self.controls.show_solving(None)
+
+    def _poll_kinetic(self) -> None:
+        chain = self._kinetic.chain
+        if chain is None:
+            return
+        outcome = self._kinetic.poll()
+        self.controls.show_solving(self._kinetic.seconds if outcome is None else None)
+        if outcome is not None:
+            self._show_theories(chain, outcome)
 
     def _show_theories(self, chain: Chain, outcome: Densities | BaseException) -> None:
         """Show what was computed, if it is still of this chain."""
-        if not self._kinetic.busy:
-            self.solve.name = "Solve the kinetic equation"
-            self.solve.disabled = False
         if chain != self.session.chain:
             return
         if isinstance(outcome, BaseException):
-            self._say(f"No theory for this chain: {outcome}")
+            self.controls.say(f"No theory for this chain: {outcome}")
             return
-        for name, theory in outcome.items():
-            self.density.show_theory(name, theory)
-            if "velocity_width" in theory:
-                self.widths.show_theory(theory)
-
-    def _refuse_address(self, refused: dict[str, Any]) -> None:
-        asked = ", ".join(f"{name}={value}" for name, value in refused.items())
-        self._say(f"The address asks for {asked}; the page takes {self.setting.ranges()}.")
-
-    def _say(self, message: str) -> None:
-        self.message.object = message
-        self.message.visible = bool(message)
+        self._notes |= self.pictures.show_theories(outcome)
+        self.controls.show_accuracy(self._notes)
 
 
-def make_page(threads: Executor, processes: Executor) -> pn.viewable.Viewable:
+def make_page(threads: Executor, turn: Lock) -> pn.viewable.Viewable:
     """Return a new page, for one browser."""
-    return Page(threads, processes).view()
+    return Page(threads, turn).view()

@@ -18,6 +18,7 @@ import sys
 import webbrowser
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from threading import Lock
 
 import panel as pn
 from bokeh.server.server import Server
@@ -25,9 +26,9 @@ from bokeh.settings import settings
 from tornado.web import RequestHandler
 from tornado.websocket import WebSocketClosedError
 
+from crazybilliards.comparison.explore.layout import NOTEBOOKS, prepare
 from crazybilliards.comparison.explore.page import make_page
 from crazybilliards.comparison.explore.session import Session
-from crazybilliards.comparison.sweeps import process_pool
 from crazybilliards.model import Chain
 from crazybilliards.model.process import announced
 
@@ -73,13 +74,13 @@ def serve(
         )
     with announced(True):
         Session(Chain(size=2)).advance(1.0)
-    pn.extension()
+    prepare()
     _expect_closed_pages()
-    # Interrupted, process_pool kills a computation under way; a thread's takes a moment only.
-    with ThreadPoolExecutor(1) as threads, process_pool(1) as processes:
+    turn = Lock()
+    with ThreadPoolExecutor(1) as threads:
 
         def new_page() -> pn.viewable.Viewable:  # Panel calls functions only, no partial()
-            return make_page(threads, processes)
+            return make_page(threads, turn)
 
         server = _make_server(new_page, address, str(number), port)
         server.start()
@@ -106,6 +107,7 @@ def _make_server(
         show=False,
         start=False,
         verbose=False,
+        static_dirs={"notebooks": str(NOTEBOOKS)} if NOTEBOOKS.is_dir() else {},
     )
     others = f"(?!({re.escape(address)}|{re.escape(number)})$).*"
     refusal = (".*", _WrongName, {"url": f"http://{address}:{port}/"})

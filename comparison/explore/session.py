@@ -3,26 +3,29 @@
 The kernels are those of :func:`crazybilliards.particles.simulate`, as are the default time step
 and the collision law. What differs is that nobody knows in advance how long it will run: sums
 are kept without blocks, hence without error bars, and start anew when a parameter is changed,
-after six relaxation times in which the chain forgets what it was.
+after six relaxation times in which the chain forgets what it was. In slow motion the steps are
+shorter and collisions are resolved one by one.
 """
 
 from __future__ import annotations
 
 import math
+from collections import deque
 from time import perf_counter
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from crazybilliards.comparison.explore.sums import Distributions, Sums
+from crazybilliards.kinetic import equilibrium_states
 from crazybilliards.model import Chain
-from crazybilliards.model.grid import deposit, position_grid, thermal_reach
 from crazybilliards.model.vocabulary import result
-from crazybilliards.particles.laws.avalanche import make_tally
+from crazybilliards.particles.laws.avalanche import Tally, make_tally, make_waves
 from crazybilliards.particles.laws.law import make_scratch
 from crazybilliards.particles.noise import make_noise
 from crazybilliards.particles.scales import default_time_step, relaxation_time, typical_speed
-from crazybilliards.particles.stepping import advance, bounded, make_dynamics
+from crazybilliards.particles.stepping import Dynamics, advance, bounded, make_dynamics
 
 Array = NDArray[np.float64]
 
@@ -32,10 +35,15 @@ _STRIDE = 10  # steps from snapshot to snapshot, as in simulate
 # of them. simulate waits for 1e6, but its steps get slower with every collision: nobody wants to
 # look at that.
 _DIVERGED = 1e3
+_MOST_ENERGIES = 20_000
+_SINGLE = 1 / 500  # of the usual time step: two collisions hardly ever fall into such a step
 
 
 class Session:
-    """A chain in motion, from rest at its anchors, and what was measured of it.
+    """A chain in motion, and what was measured of it.
+
+    At e = 1 it starts with a state drawn from the exact equilibrium, and is measured at once. Any
+    other chain starts from rest at its anchors.
 
     Parameters
     ----------
@@ -56,6 +64,8 @@ class Session:
         Reduced positions [R] and velocities [R/T], shape (L,).
     diverged
         Whether the chain blew up; it then stands still, in its last good state.
+    energies
+        The latest times [T] with the kinetic energy, of the chain as it is now.
 
     Raises
     ------
@@ -74,29 +84,41 @@ class Session:
     """
 
     def __init__(self, chain: Chain, seed: int = 0) -> None:
+        self._seed = seed
         self._noise = make_noise(np.random.SeedSequence(seed))
         self._owed = 0.0  # steps
+        self._longest, self._resolved, self._waves = math.inf, False, False
+        self._held: tuple[int, float] | None = None
         self._prepare(chain)
-        self.restart()
+        self._start()
 
     def restart(self) -> None:
         """Put the rods at rest at their anchors and measure anew."""
-        self.time, self.collisions, self.diverged = 0.0, 0, False
-        self.y, self.v = self.chain.reduced_anchors, np.zeros(self.chain.size)
-        self._measure_anew()
+        self._begin(self.chain.reduced_anchors, np.zeros(self.chain.size))
+        self.measured_from = self._relaxed()
 
     def change(self, chain: Chain) -> None:
         """Go on with other parameters and measure anew.
 
         Rods stay where they are and keep their velocities, whatever becomes of their anchors. A
-        chain of another size, or one that has diverged, starts from rest.
+        chain of another size, or one that has diverged, starts anew.
         """
         kept = chain.size == self.chain.size and not self.diverged
         self._prepare(chain)
         if kept:
             self._measure_anew()
         else:
-            self.restart()
+            self._start()
+
+    def pace(self, longest_step: float, *, resolved: bool, avalanches: bool = False) -> None:
+        """Take no longer steps than this [T], and resolve collisions one by one or not.
+
+        ``resolved`` is for :meth:`contacts_met`; ``avalanches`` are counted with it, from now on.
+        """
+        asked = longest_step, resolved or avalanches, avalanches
+        if asked != (self._longest, self._resolved, self._waves):
+            self._longest, self._resolved, self._waves = asked
+            self._prepare(self.chain)
 
     def advance(self, duration: float, budget: float = math.inf) -> None:
         """Move on by ``duration`` [T], or as far as ``budget`` seconds of computing go.
@@ -107,10 +129,45 @@ class Session:
         steps, self._owed = int(due), due % 1
         deadline = perf_counter() + budget
         while steps > 0 and not self.diverged:
-            self._take(min(_STRIDE, steps))
+            self._take(min(_STRIDE, steps), self._dynamics)
             steps -= _STRIDE
             if perf_counter() > deadline:
                 return
+
+    def advance_to_collision(self, duration: float) -> list[int]:
+        """Move on until rods collide; return the contacts, from 0, that did.
+
+        Empty if none did within ``duration`` [T], or the chain diverged.
+        """
+        end = self.time + duration
+        self.contacts_met()
+        while self.time < end and not self.diverged:
+            self._take(1, self._single)
+            if met := self.contacts_met():
+                return met
+        return []
+
+    def contacts_met(self) -> list[int]:
+        """Return the contacts, from 0, where rods met since the last call, if resolved."""
+        met = np.flatnonzero(self._tally.contacts)
+        self._tally.contacts[met] = 0
+        return [int(contact) for contact in met]
+
+    def hold(self, rod: int, x: float) -> None:
+        """Take hold of a rod, counted from 0, and keep it at x [R]; it pushes others aside."""
+        self._held = rod, x - float(self._offsets[rod])
+        self._keep_hold()
+        self.measured_from = math.inf
+
+    def release(self) -> None:
+        """Let go of the rod that is held, from rest, and measure anew."""
+        self._held = None
+        self._measure_anew()
+
+    def push(self, rod: int, speed: float) -> None:
+        """Add to the velocity [R/T] of a rod, counted from 0, and measure anew."""
+        self.v[rod] += speed
+        self._measure_anew()
 
     @property
     def positions(self) -> Array:
@@ -129,57 +186,102 @@ class Session:
 
     def measured(self) -> xr.Dataset | None:
         """Return ``velocity_width`` over particle and ``density`` over x; None before any."""
-        if self._snapshots == 0:
+        if self._sums.snapshots == 0:
             return None
-        density = self._weights / (self._snapshots * self._spacing)
         return result(
             self.chain,
             {
-                "velocity_width": ("particle", np.sqrt(self._squares / self._snapshots)),
-                "density": ("x", density),
+                "velocity_width": ("particle", self._sums.velocity_widths()),
+                "density": ("x", self._sums.density()),
             },
             source="simulation",
             method={"method": "event-driven", "time_step": self._dynamics.step.time_step},
-            coordinates={"x": self._x},
+            coordinates={"x": self._sums.x},
             status="diverged" if self.diverged else "completed",
             end_time=self.time,
         )
+
+    def distributions(self) -> Distributions:
+        """Return the velocity distributions measured; :meth:`measured` must not be None."""
+        return self._sums.distributions()
+
+    def avalanche_sizes(self) -> NDArray[np.int64]:
+        """Return how many hits triggered 0, 1, 2, ... collisions, shape (L,), if counted."""
+        return np.asarray(self._tally.triggered.sizes.sum(axis=0))
 
     def _prepare(self, chain: Chain) -> None:
         """Make what the kernels need for this chain."""
         chain.require_steady_state()
         self.chain = chain
-        time_step = default_time_step(chain)
-        rest = chain.reduced_anchors, np.zeros(chain.size)
-        speed = typical_speed(chain, math.inf, *rest)
-        self._dynamics = make_dynamics(chain, time_step, speed=speed, diverged=_DIVERGED)
+        usual = default_time_step(chain)
+        self._dynamics = self._make_dynamics(min(usual, self._longest), self._resolved)
+        self._single = self._make_dynamics(usual * _SINGLE, True)
         self._scratch = make_scratch(chain.size)
-        self._tally = make_tally(chain.size, contacts=False)
+        self._silent = make_tally(chain.size, contacts=False)
+        self._tally = make_tally(chain.size, contacts=True)
+        if self._waves:
+            self._tally = Tally(self._tally.contacts, make_waves(0), make_waves(chain.size))
         self._offsets = chain.physical(np.zeros(chain.size))
         self._owed = 0.0
 
-    def _measure_anew(self) -> None:
-        self.measured_from = self.time + _RELAXATIONS * relaxation_time(self.chain)
-        # Flippers (e > 1) drive a chain apart by several times the free reach.
-        reach = thermal_reach(self.chain) * (5 if self.chain.restitution > 1 else 1)
-        self._x = position_grid(self.chain, reach)
-        self._spacing = float(self._x[1] - self._x[0])
-        self._weights = np.zeros(self._x.size)
-        self._squares = np.zeros(self.chain.size)
-        self._snapshots = 0
+    def _make_dynamics(self, time_step: float, counted: bool) -> Dynamics:
+        rest = self.chain.reduced_anchors, np.zeros(self.chain.size)
+        speed = typical_speed(self.chain, math.inf, *rest)
+        return make_dynamics(
+            self.chain, time_step, speed=speed, diverged=_DIVERGED, counted=counted
+        )
 
-    def _take(self, steps: int) -> None:
+    def _start(self) -> None:
+        """Start in equilibrium where it is known, from rest otherwise."""
+        if self.chain.restitution != 1:
+            self.restart()
+            return
+        drawn = equilibrium_states(self.chain, 1, self._seed)
+        offsets = self._offsets
+        self._begin(drawn.position.values[0] - offsets, drawn.velocity.values[0].copy())
+
+    def _begin(self, y: Array, v: Array) -> None:
+        self.time, self.collisions, self.diverged = 0.0, 0, False
+        self.y, self.v = y, v
+        self._held = None
+        self._measure_anew()
+        self.measured_from = 0.0
+
+    def _relaxed(self) -> float:
+        return self.time + _RELAXATIONS * relaxation_time(self.chain)
+
+    def _measure_anew(self) -> None:
+        self.measured_from = self._relaxed()
+        self._sums = Sums(self.chain)
+        self.energies: deque[tuple[float, float]] = deque(maxlen=_MOST_ENERGIES)
+
+    def _keep_hold(self) -> None:
+        """Put the rod that is held where it is held, and others out of its way."""
+        if self._held is None:
+            return
+        rod, y = self._held
+        self.y[rod], self.v[rod] = y, 0.0
+        left, right = slice(0, rod), slice(rod + 1, None)
+        in_the_way = self.y[left] > y
+        self.v[left] = np.where(in_the_way, np.minimum(self.v[left], 0.0), self.v[left])
+        self.y[left] = np.minimum(self.y[left], y)
+        in_the_way = self.y[right] < y
+        self.v[right] = np.where(in_the_way, np.maximum(self.v[right], 0.0), self.v[right])
+        self.y[right] = np.maximum(self.y[right], y)
+
+    def _take(self, steps: int, dynamics: Dynamics) -> None:
         """Take some steps and a snapshot; nothing of it if the chain blows up on the way."""
         before = self.y.copy(), self.v.copy()
         state = self.y, self.v, self._noise
-        met = advance(*state, self._dynamics, self._scratch, self._tally, steps)
-        if met < 0 or not bounded(self.y, self.v, self._dynamics.fastest):
+        tally = self._tally if dynamics is self._single or self._resolved else self._silent
+        met = advance(*state, dynamics, self._scratch, tally, steps)
+        if met < 0 or not bounded(self.y, self.v, dynamics.fastest):
             self.y, self.v = before
             self.diverged = True
             return
-        self.time += steps * self._dynamics.step.time_step
+        self.time += steps * dynamics.step.time_step
         self.collisions += met
+        self._keep_hold()
+        self.energies.append((self.time, self.kinetic_energy))
         if self.time > self.measured_from:
-            self._squares += self.v * self.v
-            deposit(self.positions, self._x[0], self._spacing, self._weights)
-            self._snapshots += 1
+            self._sums.add(self.positions, self.v)

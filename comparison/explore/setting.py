@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
+from urllib.parse import parse_qsl
+
 import param
 from panel.widgets import EditableFloatSlider, EditableIntSlider, Select, Widget
 
@@ -11,11 +15,12 @@ from crazybilliards.model import Chain
 class Setting(param.Parameterized):
     """The parameters of the chain, named as those of :class:`crazybilliards.model.Chain`."""
 
-    size = param.Integer(100, bounds=(2, 300))
+    # A chain whose rods have room: one sees them collide.
+    size = param.Integer(20, bounds=(2, 300))
     restitution = param.Number(1.0, bounds=(0.0, 1.1))
-    amplitude = param.Number(1.0, bounds=(0.1, 30.0))
+    amplitude = param.Number(10.0, bounds=(0.1, 30.0))
     damping = param.Number(1.0, bounds=(0.1, 20.0))
-    gap = param.Number(0.0, bounds=(0.0, 5.0))
+    gap = param.Number(1.0, bounds=(0.0, 5.0))
     spring = param.Selector(default="linear", objects=["linear", "quadratic"])
 
     @classmethod
@@ -31,15 +36,66 @@ class Setting(param.Parameterized):
         """Take over the parameters of a chain, all at once."""
         self.param.update(**{name: getattr(chain, name) for name in self.parameters()})
 
-    def ranges(self) -> str:
-        """Return in words what each parameter takes."""
-        numbers = [
-            f"{name} {low:g} to {high:g}"
-            for name in self.parameters()
-            if name != "spring"
-            for low, high in [self.param[name].bounds]
-        ]
-        return ", ".join([*numbers, "spring linear or quadratic"])
+    def query(self) -> dict[str, str]:
+        """Return the parameters as an address holds them."""
+        values = {name: getattr(self, name) for name in self.parameters()}
+        return {
+            name: value if isinstance(value, str) else f"{value:.12g}"
+            for name, value in values.items()
+        }
+
+    def take_query(self, query: str) -> None:
+        """Take over the query of an address, ``?size=30&amplitude=2``: all of it or nothing.
+
+        Names that are none of ours are left to others.
+
+        Raises
+        ------
+        ValueError
+            If a parameter is not a number, or not in its range; nothing has changed then.
+        """
+        asked = {
+            name: text
+            for name, text in parse_qsl(query.removeprefix("?"), keep_blank_values=True)
+            if name in self.parameters()
+        }
+        wrong: dict[str, str] = {}
+        values: dict[str, Any] = {}
+        for name, text in asked.items():
+            try:
+                values[name] = self._read(name, text)
+            except ValueError:
+                wrong[name] = text
+        if wrong:
+            said = ", ".join(f"{name}={text}" for name, text in wrong.items())
+            raise ValueError(
+                f"The address asks for {said}, which this page does not take. Nothing of the "
+                f"address was used. It takes {self._ranges(wrong)}."
+            )
+        self.param.update(**values)
+
+    def _read(self, name: str, text: str) -> Any:
+        """Return the value of a parameter; raise a ValueError unless the page takes it."""
+        of = self.param[name]
+        if isinstance(of, param.Selector):
+            if text not in of.objects:
+                raise ValueError(name)
+            return text
+        value = int(text) if isinstance(of, param.Integer) else float(text)
+        low, high = of.bounds
+        if not low <= value <= high:
+            raise ValueError(name)
+        return value
+
+    def _ranges(self, names: Mapping[str, str]) -> str:
+        """Return in words what these parameters take."""
+        return ", ".join(
+            f"{name} {' or '.join(of.objects)}"
+            if isinstance(of, param.Selector)
+            else f"{name} {of.bounds[0]:g} to {of.bounds[1]:g}"
+            for name in names
+            for of in [self.param[name]]
+        )
 
     def widgets(self) -> list[Widget]:
         """Return a widget for each parameter."""
@@ -47,8 +103,8 @@ class Setting(param.Parameterized):
             EditableFloatSlider.from_param(self.param[name], name=label, step=step)
             for name, label, step in (
                 ("restitution", "restitution e", 0.01),
-                ("amplitude", "noise amplitude A [M R/T^(3/2)]", 0.1),
-                ("damping", "damping gamma [M/T]", 0.1),
+                ("amplitude", "noise amplitude A [M R/√T³]", 0.1),
+                ("damping", "damping γ [M/T]", 0.1),
                 ("gap", "gap g at the anchors [R]", 0.05),
             )
         ]

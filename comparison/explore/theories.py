@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+import multiprocessing
+import signal
 from collections.abc import Callable, Mapping
 from concurrent.futures import Executor, Future
+from multiprocessing.connection import Connection
+from threading import Lock
+from time import monotonic
 
 import xarray as xr
 
@@ -25,11 +30,12 @@ def elastic_densities(chain: Chain) -> dict[str, xr.Dataset]:
 def kinetic_density(chain: Chain) -> dict[str, xr.Dataset]:
     """Return the kinetic equation's smoothed density, and its widths ``velocity_width``."""
     theory = phase_space(chain, cells=_CELLS)
-    return {"kinetic": smooth(theory).assign(velocity_width=theory.velocity_width)}
+    density = smooth(theory).assign(velocity_width=theory.velocity_width)
+    return {"kinetic": density.assign_attrs(theory.attrs)}
 
 
 class Background:
-    """A computation for whichever chain is asked for last, one at a time.
+    """A computation of a moment for whichever chain is asked for last, one at a time.
 
     Parameters
     ----------
@@ -52,16 +58,16 @@ class Background:
     ) -> None:
         self._executor, self._job, self._deliver, self._post = executor, job, deliver, post
         self._wanted: Chain | None = None
-        self.busy = False
+        self._busy = False
 
     def ask(self, chain: Chain) -> None:
         """Compute for this chain, as soon as the computation under way is done."""
         self._wanted = chain
-        if not self.busy:
+        if not self._busy:
             self._start(chain)
 
     def _start(self, chain: Chain) -> None:
-        self.busy = True
+        self._busy = True
 
         def done(future: Future[Densities]) -> None:
             self._post(lambda: self._arrived(chain, future))
@@ -69,8 +75,86 @@ class Background:
         self._executor.submit(self._job, chain).add_done_callback(done)
 
     def _arrived(self, chain: Chain, future: Future[Densities]) -> None:
-        self.busy = False
+        self._busy = False
         if self._wanted is not None and self._wanted != chain:
             self._start(self._wanted)
         else:
             self._deliver(chain, future.exception() or future.result())
+
+
+class Solver:
+    """A computation of many seconds, in a process that can be ended.
+
+    Parameters
+    ----------
+    job
+        What is computed of a chain: a function of a module.
+    turn
+        Shared by all solvers, of which one computes at a time.
+    """
+
+    def __init__(self, job: Callable[[Chain], Densities], turn: Lock) -> None:
+        self._job, self._turn = job, turn
+        self._process: multiprocessing.process.BaseProcess | None = None
+        self._answer: Connection | None = None
+        self._began = 0.0
+        self.chain: Chain | None = None
+
+    @property
+    def seconds(self) -> float:
+        """How long it has been computing; 0 while it waits for its turn."""
+        return monotonic() - self._began if self._process else 0.0
+
+    def ask(self, chain: Chain) -> None:
+        """Compute for this chain; what is under way is given up."""
+        self.cancel()
+        self.chain = chain
+
+    def poll(self) -> Densities | BaseException | None:
+        """Go on, and return the outcome once, or what the job raised; to be called often."""
+        if self.chain is None:
+            return None
+        if self._process is None or self._answer is None:
+            if self._turn.acquire(blocking=False):
+                self._begin(self.chain)
+            return None
+        # A process that has ended without an answer has closed its end.
+        if not self._answer.poll():
+            return None
+        try:
+            outcome: Densities | BaseException = self._answer.recv()
+        except EOFError:
+            outcome = ValueError("the computation was ended from outside")
+        self.cancel()
+        return outcome
+
+    def cancel(self) -> None:
+        """End the computation under way, if any."""
+        self.chain = None
+        if self._process is None or self._answer is None:
+            return
+        self._process.kill()
+        self._process.join()
+        self._process.close()
+        self._answer.close()
+        self._process = self._answer = None
+        self._turn.release()
+
+    def _begin(self, chain: Chain) -> None:
+        context = multiprocessing.get_context("spawn")
+        self._answer, there = context.Pipe(duplex=False)
+        self._process = context.Process(
+            target=_compute, args=(self._job, chain, there), daemon=True
+        )
+        self._process.start()
+        there.close()
+        self._began = monotonic()
+
+
+def _compute(job: Callable[[Chain], Densities], chain: Chain, answer: Connection) -> None:
+    """Send the outcome of a job, or its error."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the page's process ends this one
+    try:
+        answer.send(job(chain))
+    except ValueError as error:
+        answer.send(error)

@@ -3,23 +3,15 @@
 import subprocess
 import sys
 import time
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 from crazybilliards.comparison.explore.presets import PRESETS
 from crazybilliards.comparison.explore.session import Session
+from crazybilliards.comparison.explore.sums import Sums
 from crazybilliards.model import Chain
-
-COMMAND = [sys.executable, "-c", "from crazybilliards.comparison.commands.line import main; main()"]
-CHROMIUM, DRIVER = Path("/usr/bin/chromium"), Path("/usr/bin/chromedriver")
-FLAGS = (
-    "--headless=new --no-sandbox --disable-gpu --disable-quic --no-first-run "
-    "--disable-background-networking --disable-component-update --disable-sync "
-    "--window-size=1400,1040"
-)
-
+from crazybilliards.model.grid import position_grid
 
 # -- the live chain -------------------------------------------------------------------------
 
@@ -76,10 +68,10 @@ def test_parameters_change_while_the_rods_stay_where_they_are():
     assert session.measured() is not None
 
 
-def test_another_number_of_rods_starts_from_rest():
+def test_another_number_of_rods_starts_from_rest_off_restitution_one():
     session = Session(Chain(size=10))
     session.advance(10.0)
-    longer = Chain(size=12, gap=0.5)
+    longer = Chain(size=12, gap=0.5, restitution=0.9)
     session.change(longer)
     assert session.time == 0
     assert session.positions == pytest.approx(longer.anchors)
@@ -119,6 +111,101 @@ def test_divergence_is_reported_and_the_chain_stands_still():
     assert session.time == 0
 
 
+@pytest.mark.parametrize("reach", [20.0, 150.0, 1100.0])
+def test_the_density_follows_the_rods_however_far_they_get(reach):
+    chain = Chain(size=60, restitution=1.05)
+    sums = Sums(chain)
+    near, far = chain.anchors, np.linspace(-reach, reach, 60)
+    for positions in (near, far, near):
+        sums.add(positions, np.zeros(60))
+    assert sums.x[-1] == -sums.x[0] > reach
+    assert np.allclose(np.diff(sums.x), position_grid(chain)[1] - position_grid(chain)[0])
+    spacing = sums.x[1] - sums.x[0]
+    assert float(sums.density().sum()) * spacing == pytest.approx(60)
+    # Two thirds of the snapshots are where they would be on a grid that never grew.
+    assert float(sums.density()[abs(sums.x) < 61].sum()) * spacing > 40
+
+
+def test_an_elastic_chain_starts_in_equilibrium_and_a_reset_one_at_rest():
+    chain = Chain(size=300)
+    session = Session(chain)
+    assert session.measured_from == session.time == 0
+    share = float((session.v**2).mean()) / chain.free_velocity_width**2
+    assert abs(share - 1) < 5 * np.sqrt(2 / 300)
+    session.restart()
+    assert not session.v.any()
+    assert session.measured_from > 0
+    assert not Session(chain.replace(restitution=0.9)).v.any()
+
+
+@pytest.mark.parametrize("restitution", [0.0, 0.7, 1.0, 1.05])
+def test_a_step_ends_with_the_first_collision(restitution):
+    session = Session(Chain(size=10, gap=1.0, restitution=restitution), seed=3)
+    for _ in range(5):
+        before = session.collisions
+        met = []
+        while not met:
+            assert session.collisions == before
+            met = session.advance_to_collision(0.05)
+        assert session.collisions > before
+        room = np.diff(session.positions) - 2
+        assert room[met].max() < 0.05
+        assert (room >= -1e-12).all()
+
+
+def test_slow_motion_tells_which_contacts_met():
+    session = Session(Chain(size=10, gap=0.5))
+    session.pace(0.01, resolved=True)
+    session.contacts_met()
+    before, contacts = session.collisions, set()
+    for _ in range(3000):
+        session.advance(0.01)
+        contacts |= set(session.contacts_met())
+    assert session.collisions > before
+    assert contacts == set(range(9))
+    assert session.contacts_met() == []
+
+
+def test_a_rod_that_is_held_pushes_others_aside_and_nothing_is_measured():
+    session = Session(Chain(size=10, gap=1.0), seed=1)
+    session.advance(20.0)
+    session.hold(3, 10.0)
+    for _ in range(20):
+        session.advance(0.3)
+        assert session.positions[3] == pytest.approx(10.0)
+        assert (np.diff(session.positions) >= 2 - 1e-12).all()
+    session.release()
+    assert session.measured() is None
+    session.advance(0.5)
+    assert session.positions[3] < 10.0
+    session.advance(session.measured_from - session.time + 1.0)
+    assert session.measured() is not None
+
+
+def test_a_push_adds_momentum_to_one_rod():
+    session = Session(Chain(size=10, gap=1.0))
+    before = session.v.copy()
+    session.push(0, 5.0)
+    assert session.v - before == pytest.approx([5.0] + [0.0] * 9)
+
+
+def test_thinning_keeps_the_extremes_of_an_oscillating_curve():
+    from crazybilliards.comparison.explore.plots import thinned
+
+    x = np.arange(9000) / 10
+    values = 1 + np.cos(2 * np.pi * x / 3)
+    seen, shown = thinned(x, values, 500)
+    assert seen.size <= 500
+    assert (np.diff(seen) > 0).all()
+    # Every stretch shows a crest and a trough; every 18th point would show a wave of 9.
+    assert shown[::2].min() < 0.1 or shown[1::2].min() < 0.1
+    pairs = shown[: shown.size // 2 * 2].reshape(-1, 2)
+    assert (pairs.max(axis=1) > 1.9).all()
+    assert (pairs.min(axis=1) < 0.1).all()
+    few = thinned(x[:400], values[:400], 500)
+    assert np.array_equal(few[1], values[:400])
+
+
 @pytest.mark.parametrize("wrong", [{"damping": 0}, {"amplitude": 0}, {"stiffness": 0}])
 def test_chains_without_a_scale_are_refused_in_one_line(wrong):
     session = Session(Chain(size=5))
@@ -137,6 +224,24 @@ def test_presets_have_names_of_their_own_within_the_sliders():
         setting = Setting()
         setting.take(preset.chain)
         assert setting.chain() == preset.chain
+
+
+def test_an_address_is_taken_whole_or_not_at_all():
+    from crazybilliards.comparison.explore.setting import Setting
+
+    setting = Setting()
+    before = setting.chain()
+    for wrong in ("amplitude=100", "size=2.5", "gap=nan", "spring=cubic", "damping="):
+        with pytest.raises(ValueError, match=wrong.split("=")[0]) as refused:
+            setting.take_query(f"?size=30&restitution=0.5&{wrong}&theme=dark")
+        assert "theme" not in str(refused.value)
+        assert "restitution" not in str(refused.value)
+        assert setting.chain() == before
+    setting.take_query("?size=30&restitution=0.5&other=1")
+    assert setting.chain() == before.replace(size=30, restitution=0.5)
+    copy = Setting()
+    copy.take_query("&".join(f"{name}={value}" for name, value in setting.query().items()))
+    assert copy.chain() == setting.chain()
 
 
 # -- the command ----------------------------------------------------------------------------

@@ -1,117 +1,97 @@
 """The page of ``crazybilliards explore`` in a browser."""
 
 import os
-import signal
-import subprocess
-import sys
 import time
-from pathlib import Path
 
 import numpy as np
 import pytest
+from browser import (
+    CHROMIUM,
+    DRIVER,
+    SOURCE,
+    chromium,
+    column,
+    elements,
+    errors,
+    press,
+    served,
+    texts,
+    until,
+    visit,
+)
 
 from crazybilliards.comparison.explore.presets import PRESETS
 from crazybilliards.model import Chain
 from crazybilliards.model.process import cores
 
-COMMAND = [sys.executable, "-c", "from crazybilliards.comparison.commands.line import main; main()"]
-CHROMIUM, DRIVER = Path("/usr/bin/chromium"), Path("/usr/bin/chromedriver")
-FLAGS = (
-    "--headless=new --no-sandbox --disable-gpu --disable-quic --no-first-run "
-    "--disable-background-networking --disable-component-update --disable-sync "
-    "--window-size=1400,1040"
-)
-
-
-SOURCE = "Bokeh.documents[0].get_model_by_name(arguments[0])"
-DEEP = """
-const found = [];
-const walk = root => root.querySelectorAll('*').forEach(each => {
-  if (each.matches(arguments[0])) found.push(each);
-  if (each.shadowRoot) walk(each.shadowRoot);
-});
-walk(document);
-return found;
-"""
-
 
 @pytest.fixture(scope="module")
 def address():
-    """Serve the page; Ctrl-C ends it with the status that shells expect."""
     if os.name == "nt":
         pytest.skip("sends a POSIX signal")
-    process = subprocess.Popen(
-        [*COMMAND, "explore", "--no-browser", "--port", "0"], stdout=subprocess.PIPE, text=True
-    )
-    try:
-        yield process.stdout.readline().split()[0]
-        process.send_signal(signal.SIGINT)
-        assert process.wait(600) == 130
-    finally:
-        process.kill()
-        process.stdout.close()
+    with served() as address:
+        yield address
 
 
 @pytest.fixture(scope="module")
-def browser(tmp_path_factory):
-    """Return a headless Chromium."""
+def browser():
     if not (CHROMIUM.exists() and DRIVER.exists()):
         pytest.skip(f"needs {CHROMIUM} and {DRIVER}: apt-get install chromium chromium-driver")
-    from selenium import webdriver
-
-    options = webdriver.ChromeOptions()
-    options.binary_location = str(CHROMIUM)
-    for flag in (*FLAGS.split(), f"--user-data-dir={tmp_path_factory.mktemp('profile')}"):
-        options.add_argument(flag)
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
-    driver = webdriver.Chrome(
-        options=options, service=webdriver.ChromeService(executable_path=str(DRIVER))
-    )
-    yield driver
-    driver.quit()
-
-
-def until(condition, seconds=600.0):
-    """Wait for a condition to be true; return what it returned."""
-    end = time.monotonic() + seconds
-    while not (found := condition()):
-        assert time.monotonic() < end, "waited for too long"
-        time.sleep(0.05)
-    return found
-
-
-def visit(browser, address, query=""):
-    """Open the page and wait until it moves."""
-    browser.get("about:blank")
-    browser.get(address + query)
-    ready = f"return !!(window.Bokeh && Bokeh.documents.length && {SOURCE})"
-    until(lambda: browser.execute_script(ready, "rods"))
-    until(lambda: len(column(browser, "rods", "x")) > 0)
-
-
-def column(browser, source, name):
-    script = f"return Array.from({SOURCE}.data[arguments[1]])"
-    return browser.execute_script(script, source, name)
+    with chromium() as driver:
+        yield driver
 
 
 def type_number(browser, index, text):
     """Type into the number beside the slider of this index and press Enter."""
     from selenium.webdriver.common.keys import Keys
 
-    field = browser.execute_script(DEEP, "input.bk-input")[index]
+    field = elements(browser, "input.bk-input")[index]
     listen = "arguments[0].addEventListener('change', () => { window.typed = performance.now(); })"
     browser.execute_script(listen, field)
     field.send_keys(Keys.END, *[Keys.BACKSPACE] * 8, text, Keys.ENTER)
 
 
-def errors(browser):
-    return [line["message"] for line in browser.get_log("browser") if line["level"] == "SEVERE"]
+def positions(browser):
+    return np.array(column(browser, "rods", "x"))
+
+
+def choose(browser, option):
+    """Choose what a list offers."""
+    from selenium.webdriver.support.ui import Select
+
+    for each in elements(browser, "select"):
+        if option in [shown.text for shown in Select(each).options]:
+            Select(each).select_by_visible_text(option)
+            return
+    raise AssertionError(f"no list offers {option}")
+
+
+def said(browser):
+    return " ".join(texts(browser, ".alert"))
+
+
+def standing(browser):
+    """Wait until the rods stand still; return where."""
+    before = None
+    while not np.array_equal(before, now := positions(browser)):
+        before = now
+        time.sleep(1.0)
+    return now
+
+
+def busy():
+    """Return whether others keep this machine so busy that no speed is promised."""
+    return os.getloadavg()[0] > cores() + 2  # two for the page and the browser
+
+
+LONG = "?size=100&amplitude=1&gap=0"
 
 
 @pytest.mark.compiled
 def test_page_moves_at_twenty_frames_a_second_with_nothing_from_elsewhere(browser, address):
-    visit(browser, address)
-    assert len(column(browser, "rods", "x")) == 100
+    visit(browser, address, LONG)
+    press(browser, "30")
+    assert len(positions(browser)) == 100
     # Frames are counted in the browser: those that arrive, and those it has time to paint.
     count = (
         """
@@ -132,10 +112,8 @@ def test_page_moves_at_twenty_frames_a_second_with_nothing_from_elsewhere(browse
         *frames, seconds = np.array(browser.execute_script(look)) - before
         rates.append(min(frames) / seconds)
     print(f"frames per second: {np.round(rates, 1)}")
-    # The best of three: other programs may take this machine for a while. If they have more than
-    # it has cores, no rate is promised.
-    busy = os.getloadavg()[0] > cores() + 2  # two for the page and the browser
-    assert max(rates) >= (0.1 if busy else 20)
+    # The best of three: other programs may take this machine for a while.
+    assert max(rates) >= (0.1 if busy() else 20)
     loaded = browser.execute_script(
         "return performance.getEntriesByType('resource').map(entry => entry.name)"
     )
@@ -146,7 +124,7 @@ def test_page_moves_at_twenty_frames_a_second_with_nothing_from_elsewhere(browse
 
 @pytest.mark.compiled
 def test_a_number_typed_changes_theory_and_address_and_opens_again(browser, address):
-    visit(browser, address)
+    visit(browser, address, LONG)
     until(lambda: column(browser, "exact density", "x"))
     note = (
         SOURCE
@@ -163,7 +141,7 @@ def test_a_number_typed_changes_theory_and_address_and_opens_again(browser, addr
         until(lambda: browser.execute_script("return window.drawn"))
         reactions.append(browser.execute_script("return window.drawn - window.typed") / 1000)
     print(f"reaction to a number: {np.round(reactions, 2)} s")
-    assert min(reactions) < 1
+    assert min(reactions) < (60 if busy() else 1)
     after = max(column(browser, "exact density", "x"))
     assert after > before + 10
     free = Chain(amplitude=10).free_velocity_width
@@ -175,9 +153,7 @@ def test_a_number_typed_changes_theory_and_address_and_opens_again(browser, addr
     until(lambda: not column(browser, "exact density", "x"))
     query = browser.current_url.removeprefix(address)
     visit(browser, address, query)
-    values = [
-        each.get_attribute("value") for each in browser.execute_script(DEEP, "input.bk-input")
-    ]
+    values = [each.get_attribute("value") for each in elements(browser, "input.bk-input")]
     assert [float(value) for value in values[:5]] == [100, 0.9, 10, 1, 0]
     assert errors(browser) == []
 
@@ -187,46 +163,104 @@ def test_a_slider_that_is_moved_changes_the_chain(browser, address):
     from selenium.webdriver.common.keys import Keys
 
     visit(browser, address)
-    handles = browser.execute_script(DEEP, ".noUi-handle")
+    handles = elements(browser, ".noUi-handle")
     assert len(handles) == 5
     handles[0].send_keys(*[Keys.ARROW_RIGHT] * 3)
-    until(lambda: "size=103" in browser.current_url)
-    until(lambda: len(column(browser, "rods", "x")) == 103)
+    until(lambda: "size=23" in browser.current_url)
+    until(lambda: len(column(browser, "rods", "x")) == 23)
     assert errors(browser) == []
 
 
 @pytest.mark.compiled
-def test_a_preset_and_the_kinetic_equation(browser, address):
-    from selenium.webdriver.support.ui import Select
-
+def test_a_preset_shows_its_panel_and_solves_the_kinetic_equation(browser, address):
     visit(browser, address)
     [small] = [preset for preset in PRESETS if preset.figure == "widths-size"]
-    Select(browser.execute_script(DEEP, "select")[0]).select_by_visible_text(small.label)
-    until(lambda: len(column(browser, "rods", "x")) == small.chain.size)
+    choose(browser, small.label)
+    until(lambda: len(positions(browser)) == small.chain.size)
     until(lambda: "size=25" in browser.current_url and "damping=4" in browser.current_url)
-    [solve] = [
-        button
-        for button in browser.execute_script(DEEP, "button")
-        if button.text == "Solve the kinetic equation"
-    ]
-    solve.click()
     widths = until(lambda: column(browser, "kinetic widths", "width"))
     assert len(widths) == 25
     # Short driven chains are hottest in the middle.
     assert widths[12] > widths[0] > small.chain.free_velocity_width
+    [tails] = [preset for preset in PRESETS if preset.figure == "velocities-elastic"]
+    choose(browser, tails.label)
+    # All v are likely that were seen, and a Gaussian reaches no further than this.
+    v = np.array(until(lambda: column(browser, "velocity distribution", "v")))
+    assert 1 < abs(v).max() < 6
     assert errors(browser) == []
 
 
 @pytest.mark.compiled
-def test_pages_say_what_is_wrong(browser, address):
-    def said():
-        return " ".join(each.text for each in browser.execute_script(DEEP, ".alert"))
+def test_solving_can_be_cancelled_and_asked_for_again(browser, address):
+    def solving():
+        return [text for text in texts(browser, "button") if "olv" in text]
 
-    visit(browser, address, "?size=5000")
-    until(lambda: "size=5000" in said() and "size 2 to 300" in said())
-    visit(browser, address, "?restitution=1.1&damping=0.4")
-    until(lambda: "diverged" in said())
-    stopped = column(browser, "rods", "x")
-    time.sleep(0.5)
-    assert column(browser, "rods", "x") == stopped
+    visit(browser, address, "?size=100&restitution=0.95&amplitude=1&gap=0")
+    press(browser, "Solve")
+    until(lambda: solving()[0].startswith("Solving"))
+    press(browser, "Solving")
+    until(lambda: solving() == ["Solve the kinetic equation"])
+    press(browser, "Solve")
+    until(lambda: column(browser, "kinetic density", "x"))
+    assert errors(browser) == []
+
+
+@pytest.mark.compiled
+def test_an_address_is_taken_whole_or_not_at_all(browser, address):
+    visit(browser, address, "?size=30&amplitude=100&spring=quadratic")
+    until(lambda: "amplitude=100" in said(browser))
+    assert "amplitude 0.1 to 30" in said(browser)
+    assert "size" not in said(browser)
+    assert len(positions(browser)) == 20
+    until(lambda: "size=20" in browser.current_url and "amplitude=10&" in browser.current_url)
+    fields = [each.get_attribute("value") for each in elements(browser, "input.bk-input")]
+    assert [float(value) for value in fields[:5]] == [20, 1, 10, 1, 1]
+    assert errors(browser) == []
+
+
+@pytest.mark.compiled
+def test_a_chain_that_runs_away_says_so_with_its_growth(browser, address):
+    visit(browser, address, "?size=100&restitution=1.01&damping=0.4&amplitude=1&gap=0")
+    press(browser, "300")
+    until(lambda: "runs away" in said(browser))
+    assert "The energy grew like exp(" in said(browser)
+    assert len(column(browser, "growth", "time")) == 2
+    assert errors(browser) == []
+
+
+@pytest.mark.compiled
+def test_step_goes_on_to_a_collision_and_says_which(browser, address):
+    visit(browser, address)
+    press(browser, "Step")
+    until(lambda: " met." in said(browser))
+    words = said(browser)
+    contact = int(words.split("rods ")[1].split(" and ")[0]) - 1
+    x = standing(browser)
+    # In contact, but for what they moved since, within one five-hundredth of a time step.
+    assert x[contact + 1] - x[contact] == pytest.approx(2.0, abs=0.01)
+    press(browser, "Step")
+    until(lambda: said(browser) != words)
+    assert errors(browser) == []
+
+
+@pytest.mark.compiled
+def test_a_rod_that_is_dragged_stays_with_the_mouse_until_it_is_let_go(browser, address):
+    from selenium.webdriver import ActionChains
+
+    visit(browser, address)
+    press(browser, "Pause")
+    frame = elements(browser, ".bk-Canvas")[0]
+    x = standing(browser)
+    mouse = ActionChains(browser).move_to_element(frame).click_and_hold()
+    mouse.move_by_offset(-150, 0).perform()
+    until(lambda: not np.array_equal(positions(browser), x))
+    held = standing(browser)
+    # The one in the middle was taken, and pushes all that are in its way.
+    moved = np.flatnonzero(held != x)
+    assert set(moved) <= set(range(12))
+    assert held[moved[-1]] < x[moved[-1]] - 5
+    assert (np.diff(held) >= 2 - 1e-9).all()
+    ActionChains(browser).release().perform()
+    press(browser, "Play")
+    until(lambda: not np.array_equal(positions(browser), held))
     assert errors(browser) == []

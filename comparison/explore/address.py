@@ -1,0 +1,52 @@
+"""The address of a page: it holds the setting, and restores it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import panel as pn
+
+from crazybilliards.comparison.explore.setting import Setting
+
+
+class Address:
+    """Keeps the address of the page now served and a setting together.
+
+    Parameters
+    ----------
+    setting
+        Takes over at once what the address asks for.
+    say
+        Called with why a later address is refused.
+
+    Attributes
+    ----------
+    refusal
+        Why the first address was refused; nothing: it was not.
+    """
+
+    def __init__(self, setting: Setting, say: Callable[[str], None]) -> None:
+        self._setting, self._say = setting, say
+        self.refusal = self._take()
+        if pn.state.location is not None:
+            pn.state.location.param.watch(self._follow, "search")
+
+    def write(self) -> None:
+        """Show the setting in the address."""
+        if pn.state.location is not None:
+            pn.state.location.update_query(**self._setting.query())
+
+    def _take(self) -> str:
+        if pn.state.location is None:
+            return ""
+        try:
+            self._setting.take_query(pn.state.location.search)
+        except ValueError as error:
+            return str(error)
+        return ""
+
+    def _follow(self, event: Any) -> None:
+        if refusal := self._take():
+            self.write()
+            self._say(refusal)

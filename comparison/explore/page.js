@@ -1,0 +1,33 @@
+// Names for what Bokeh draws without one: for screen readers, and for whoever works without a mouse.
+const all = (selector, root = document) => [...root.querySelectorAll('*')].flatMap(each => [
+  ...(each.matches(selector) ? [each] : []),
+  ...(each.shadowRoot ? all(selector, each.shadowRoot) : []),
+]);
+const give = (elements, names) => elements.forEach((element, place) => {
+  if (names[place] && element.getAttribute('aria-label') !== names[place])
+    element.setAttribute('aria-label', names[place]);
+});
+const name = () => {
+  give(all('.noUi-handle'), parameters);
+  give(all('input.bk-input'), parameters.map(each => `${each}, as a number`));
+  give(all('.bk-spin-btn'), parameters.flatMap(each => [`${each}, up`, `${each}, down`]));
+  give(all('select'), lists);
+  const pictured = all('.bk-Figure');
+  pictured.forEach(each => each.setAttribute('role', 'img'));
+  give(pictured, pictures);
+  all('button').forEach(each => {
+    const speed = /^[0-9.]+$/.test(each.textContent.trim());
+    if (!speed) return;
+    each.setAttribute('aria-label', `speed ${each.textContent.trim()} T per second`);
+    each.setAttribute('aria-pressed', each.classList.contains('bk-active'));
+  });
+};
+document.documentElement.lang = 'en';
+if (!document.querySelector('meta[name=viewport]')) {
+  const viewport = document.createElement('meta');
+  viewport.name = 'viewport';
+  viewport.content = 'width=device-width, initial-scale=1';
+  document.head.append(viewport);
+}
+name();
+setInterval(name, 1000);  // widgets are made anew when what they offer changes

@@ -1,0 +1,115 @@
+"""All pictures of a page, and which of them are shown."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import panel as pn
+import xarray as xr
+
+from crazybilliards.comparison.explore.density import Density
+from crazybilliards.comparison.explore.motion import Rods, Strip
+from crazybilliards.comparison.explore.panels import Avalanches, Velocities, Widths
+from crazybilliards.comparison.explore.plots import LABELS
+from crazybilliards.comparison.explore.session import Session
+from crazybilliards.comparison.explore.theories import Densities
+from crazybilliards.comparison.explore.times import Times
+from crazybilliards.model import Chain
+
+# What each shows, in the order of the page.
+PICTURES = (
+    "rods where they are, coloured by velocity",
+    "space and time: where the rods were, and where they met",
+    "density against position, simulation and theories",
+    "velocity width of each rod, simulation and theories",
+    "velocity distributions of middle and outermost rods",
+    "avalanche sizes",
+    "kinetic energy in time",
+    "kinetic energy in time, logarithmic",
+    "collisions per contact in time",
+)
+
+
+class Pictures:
+    """The pictures of one page, by what they show."""
+
+    def __init__(self, grabbed: Callable[[float | None], None]) -> None:
+        self.rods = Rods(grabbed)
+        self.strip = Strip(self.rods)
+        self.density = Density(self.rods)
+        self.widths = Widths()
+        self.panels: dict[str, Any] = {
+            "widths": self.widths,
+            "velocities": Velocities(),
+            "avalanches": Avalanches(),
+        }
+        self.times = Times()
+        self.in_space = {
+            name: pn.pane.Bokeh(picture.plot, sizing_mode="stretch_width")
+            for name, picture in (
+                ("rods", self.rods),
+                ("strip", self.strip),
+                ("density", self.density),
+            )
+        }
+        self.legend = pn.pane.HTML(
+            "Where the rods were, the present on top. A short bar: two rods met.",
+            css_classes=["progress"],
+        )
+        self.measured = {
+            name: pn.pane.Bokeh(panel.plot, sizing_mode="stretch_width")
+            for name, panel in self.panels.items()
+        }
+        self.in_time = {
+            name: pn.pane.Bokeh(plot, sizing_mode="stretch_width")
+            for name, plot in (
+                ("energy", self.times.energy),
+                ("log energy", self.times.log_energy),
+                ("rate", self.times.rate),
+            )
+        }
+
+    def begin(self, session: Session) -> None:
+        """Show a chain of which nothing was measured yet."""
+        chain = session.chain
+        self.rods.begin(chain)
+        self.rods.show(session)
+        self.density.clear()
+        for panel in self.panels.values():
+            panel.begin(chain)
+        self.times.begin(chain)
+        if session.time == 0:
+            self.times.clear()
+
+    def arrange(self, quantity: str, history: str, chain: Chain, strip: bool | None = None) -> None:
+        """Show what was chosen; the energy of flippers on a logarithmic axis."""
+        if history == "energy" and chain.restitution > 1:
+            history = "log energy"
+        for chosen, panes in ((quantity, self.measured), (history, self.in_time)):
+            for name, pane in panes.items():
+                pane.visible = name == chosen
+        if strip is not None:
+            self.in_space["strip"].visible = self.legend.visible = strip
+
+    def show_theories(self, theories: Densities) -> dict[str, str]:
+        """Show theories; return how far each can be trusted, by its name."""
+        notes = {}
+        for name, theory in theories.items():
+            self.density.show_theory(name, theory)
+            if "velocity_width" in theory:
+                self.widths.show_theory(theory)
+            if note := _trust(theory):
+                notes[LABELS[name]] = note
+        return notes
+
+
+def _trust(theory: xr.Dataset) -> str:
+    """Say in words what errors a theory states."""
+    kinds = {"model_error": "of the model", "mesh_error": "of the mesh"}
+    stated = [
+        f"{100 * theory.attrs[name]:.2g} % {of}"
+        for name, of in kinds.items()
+        if theory.attrs.get(name, float("nan")) >= 0
+    ]
+    return f"errors expected: {', '.join(stated)}" if stated else ""

@@ -1,0 +1,91 @@
+"""What the pictures of the page have in common: type, colours, legends, and how they are thinned.
+
+Colours are those of :mod:`crazybilliards.comparison.drawing`: the simulation black, each theory
+its own colour and dash.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from bokeh.models import Legend, LegendItem
+from bokeh.plotting import figure
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+BLACK, GREY = "#000000", "#767676"
+THEORIES: Mapping[str, Mapping[str, Any]] = {
+    "exact": {"color": "#E69F00", "line_width": 3},
+    "balance": {"color": "#0072B2", "line_width": 2, "line_dash": "dashed"},
+    "kinetic": {"color": "#D55E00", "line_width": 2.5, "line_dash": "dotdash"},
+}
+LABELS = {
+    "exact": "exact",
+    "balance": "force balance",
+    "kinetic": "kinetic equation",
+}
+# Pictures that stand one above the other have frames of the same width.
+_LEFT, _RIGHT = 84, 16
+_TYPE = "14px"
+_TOOLS = "pan,box_zoom,wheel_zoom,reset,save"
+
+
+def make_plot(height: int, *, tools: str = _TOOLS, **settings: Any) -> Any:
+    """Return an empty picture; ``settings`` are Bokeh's."""
+    plot = figure(
+        tools=tools,
+        height=height,
+        sizing_mode="stretch_width",
+        min_border_left=_LEFT,
+        min_border_right=_RIGHT,
+        background_fill_color=None,
+        border_fill_color=None,
+        outline_line_color="#b0b0b0",
+        active_scroll=None,
+        **settings,
+    )
+    plot.toolbar.autohide = True
+    plot.toolbar.logo = None
+    plot.toolbar_inner = True
+    plot.title.text_font_size = _TYPE
+    plot.title.text_font_style = "normal"
+    plot.axis.axis_label_text_font_size = _TYPE
+    plot.axis.axis_label_text_font_style = "normal"
+    plot.axis.major_label_text_font_size = _TYPE
+    return plot
+
+
+def add_legend(plot: Any, *items: LegendItem) -> None:
+    """Put a legend above the picture."""
+    legend = Legend(
+        items=list(items),
+        orientation="horizontal",
+        ncols="auto",
+        padding=0,
+        margin=0,
+        spacing=10,
+        label_standoff=5,
+        border_line_alpha=0,
+        background_fill_alpha=0,
+        label_text_font_size=_TYPE,
+    )
+    plot.add_layout(legend, "above")
+
+
+def thinned(x: Array, values: Array, most: int) -> tuple[Array, Array]:
+    """Return at most ``most`` points of a curve, lowest and highest of each stretch of it.
+
+    Every n-th point of an oscillating curve would be another curve, of a longer wave.
+    """
+    if x.size <= most:
+        return x, values
+    length = -(-2 * x.size // most)
+    whole = x.size // length * length
+    stretches = values[:whole].reshape(-1, length)
+    extremes = np.stack([stretches.argmin(axis=1), stretches.argmax(axis=1)], axis=1)
+    extremes.sort(axis=1)
+    kept = (extremes + length * np.arange(stretches.shape[0])[:, None]).ravel()
+    return x[kept], values[kept]

@@ -1,0 +1,124 @@
+"""A headless Chromium and the page of ``crazybilliards explore``, for whoever looks at it."""
+
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+CHROMIUM, DRIVER = Path("/usr/bin/chromium"), Path("/usr/bin/chromedriver")
+FLAGS = (
+    "--headless=new --no-sandbox --disable-gpu --disable-quic --no-first-run "
+    "--disable-background-networking --disable-component-update --disable-sync "
+    "--window-size=1400,1040 --hide-scrollbars"
+)
+COMMAND = [sys.executable, "-c", "from crazybilliards.comparison.commands.line import main; main()"]
+SOURCE = "Bokeh.documents[0].get_model_by_name(arguments[0])"
+DEEP = """
+const found = [];
+const unsaid = ['STYLE', 'LINK'];
+const said = each => each.shadowRoot ? [...each.shadowRoot.children]
+  .filter(child => !unsaid.includes(child.tagName)).map(said).join(' ') : each.innerText;
+const walk = root => root.querySelectorAll('*').forEach(each => {
+  if (each.matches(arguments[0])) found.push(each);
+  if (each.shadowRoot) walk(each.shadowRoot);
+});
+walk(document);
+return found;
+"""
+
+
+class Server(str):
+    """The address of a page that is served, and the process that serves it."""
+
+    process: subprocess.Popen[str]
+
+
+@contextmanager
+def served() -> Iterator[Server]:
+    """Serve the page at a free port; Ctrl-C ends it with the status that shells expect."""
+    process = subprocess.Popen(
+        [*COMMAND, "explore", "--no-browser", "--port", "0"], stdout=subprocess.PIPE, text=True
+    )
+    assert process.stdout is not None
+    try:
+        server = Server(process.stdout.readline().split()[0])
+        server.process = process
+        yield server
+        process.send_signal(signal.SIGINT)
+        assert process.wait(600) == 130
+    finally:
+        process.kill()
+        process.stdout.close()
+
+
+@contextmanager
+def chromium() -> Iterator[Any]:
+    """Start a headless Chromium."""
+    from selenium import webdriver
+
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
+        options = webdriver.ChromeOptions()
+        options.binary_location = str(CHROMIUM)
+        for flag in (*FLAGS.split(), f"--user-data-dir={profile}"):
+            options.add_argument(flag)
+        options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+        service = webdriver.ChromeService(executable_path=str(DRIVER))
+        driver = webdriver.Chrome(options=options, service=service)
+        try:
+            yield driver
+        finally:
+            driver.quit()
+
+
+def until(condition: Callable[[], Any], seconds: float = 600.0) -> Any:
+    """Wait for a condition to be true; return what it returned."""
+    end = time.monotonic() + seconds
+    while not (found := condition()):
+        assert time.monotonic() < end, "waited for too long"
+        time.sleep(0.05)
+    return found
+
+
+def visit(browser: Any, address: str, query: str = "") -> None:
+    """Open the page and wait until it moves."""
+    browser.get("about:blank")
+    browser.get(address + query)
+    ready = f"return !!(window.Bokeh && Bokeh.documents.length && {SOURCE})"
+    until(lambda: browser.execute_script(ready, "rods"))
+    until(lambda: len(column(browser, "rods", "x")) > 0)
+
+
+def column(browser: Any, source: str, name: str) -> list[float]:
+    """Return a column of one of the page's sources."""
+    script = f"return Array.from({SOURCE}.data[arguments[1]])"
+    return list(browser.execute_script(script, source, name))
+
+
+def elements(browser: Any, selector: str) -> list[Any]:
+    """Return the elements of the page that match, shadow trees included."""
+    return list(browser.execute_script(DEEP, selector))
+
+
+def texts(browser: Any, selector: str) -> list[str]:
+    """Return what the elements that match say, all at one moment."""
+    return list(browser.execute_script(_with_found("found.map(said)"), selector))
+
+
+def press(browser: Any, name: str) -> None:
+    """Press the button whose name begins like this."""
+    script = "found.find(each => each.innerText.trim().startsWith(arguments[1])).click()"
+    browser.execute_script(_with_found(script), "button", name)
+
+
+def _with_found(expression: str) -> str:
+    return DEEP.replace("return found;", f"return {expression};")
+
+
+def errors(browser: Any) -> list[str]:
+    """Return what the browser's console says of errors."""
+    return [line["message"] for line in browser.get_log("browser") if line["level"] == "SEVERE"]
