@@ -185,12 +185,12 @@ def draw(results: Results) -> Figure:
     ends = np.array([8, 2e5])
     paper = ends**_PAPER * reference(100.0) / 100.0**_PAPER
     # On top they are one line to the eye; below, each is told from the other.
-    for line, label, look in (
-        (reference(ends), f"$L^{{{reference.exponent:.3f}}}$", {"color": "0.4"}),
-        (paper, f"paper: $L^{{{_PAPER}}}$", {"color": "black", "linestyle": "--"}),
+    for line, label, colour, dashes in (
+        (reference(ends), f"$L^{{{reference.exponent:.3f}}}$", "0.4", "-"),
+        (paper, f"paper: $L^{{{_PAPER}}}$", "black", "--"),
     ):
-        top.plot(ends, line / unit, label=label, **look)
-        bottom.plot(ends, line / reference(ends), **look)
+        top.plot(ends, line / unit, label=label, color=colour, linestyle=dashes)
+        bottom.plot(ends, line / reference(ends), color=colour, linestyle=dashes)
     top.set(xscale="log", yscale="log", ylabel="central width $W_v^{\\min}/W$")
     bottom.set(xlabel="number of rods $L$", ylabel="ratio to the fit", ylim=(0.75, 1.15))
     mark_clipped(bottom)
