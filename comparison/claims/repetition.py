@@ -75,6 +75,16 @@ def estimate(results: Results, name: str, quantity: Callable[[xr.Dataset], float
     return Estimate(float(np.mean(values)), spread * float(t.ppf(norm.cdf(1), number - 1)))
 
 
+def normal_deviate(deviation: float, runs: int) -> float:
+    """Return how many standard errors of a normal distribution are as unlikely as a deviation.
+
+    ``deviation`` is in units of the error of :func:`estimate` from so many runs. That error is
+    itself uncertain: five of those of two runs come about by chance once in thirty times.
+    """
+    scattered = deviation * float(t.ppf(norm.cdf(1), runs - 1))
+    return float(norm.isf(t.sf(scattered, runs - 1)))
+
+
 def central_width(run: xr.Dataset) -> float:
     """W_v in the centre: root mean square over the middle tenth of the rods, at least two."""
     size = run.sizes["particle"]

@@ -2,11 +2,13 @@
 
 import numpy as np
 import pytest
+from scipy.stats import norm, t
 
 from crazybilliards.comparison.claims.repetition import (
     border_width,
     central_width,
     estimate,
+    normal_deviate,
     pooled,
 )
 from crazybilliards.comparison.claims.verdicts import (
@@ -88,6 +90,18 @@ def test_signs_and_limits(value, error, positive, small):
     measured = Estimate(value, error)
     assert positive_claim("grows", "change", measured).verdict == positive
     assert small_claim("vanishes", "it", measured, 0.1).verdict == small
+
+
+def test_errors_of_few_runs_are_uncertain_themselves():
+    """Twice the same with 10 000 experiments of two runs each, and the limits of many runs."""
+    assert normal_deviate(1.0, 2) == pytest.approx(1)
+    assert normal_deviate(5.0, 1000) == pytest.approx(5, rel=0.02)
+    runs = np.random.default_rng(1).normal(size=(10_000, 2))
+    error = runs.std(axis=1, ddof=1) / 2**0.5 * t.ppf(norm.cdf(1), 1)
+    beyond = np.mean(np.abs(runs.mean(axis=1)) > 5 * error)
+    assert 2 * norm.sf(normal_deviate(5.0, 2)) == pytest.approx(
+        beyond, abs=5 * (beyond / 1e4) ** 0.5
+    )
 
 
 def test_sameness():

@@ -9,7 +9,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from crazybilliards.comparison.claims.repetition import estimate, members, pooled
+from crazybilliards.comparison.claims.repetition import estimate, members, normal_deviate, pooled
 from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
 from crazybilliards.comparison.claims.verdicts import (
     Claim,
@@ -100,7 +100,10 @@ def claims(results: Results) -> list[Claim]:
         same_claim(
             "the same exponent for all L",
             _listed(found),
-            _deviation(found),
+            max(
+                normal_deviate(each, len(members(results, step_name(size, None))))
+                for size, each in _deviations(found).items()
+            ),
             source=_SOURCE,
             ours="the sizes below 1000 and the time step",
         ),
@@ -113,11 +116,11 @@ def _listed(found: dict[int, Estimate]) -> str:
     return ", ".join(f"{size}: {each}" for size, each in found.items())
 
 
-def _deviation(found: dict[int, Estimate]) -> float:
-    """Return the largest deviation from the common mean, in standard errors."""
+def _deviations(found: dict[int, Estimate]) -> dict[int, float]:
+    """Return the deviations from the common mean, in standard errors."""
     weights = [1 / each.error**2 for each in found.values()]
     mean = float(np.average([each.value for each in found.values()], weights=weights))
-    return max(abs(each.value - mean) / each.error for each in found.values())
+    return {size: abs(each.value - mean) / each.error for size, each in found.items()}
 
 
 def _fit_claim(runs: dict[int, xr.Dataset]) -> Claim:
@@ -183,7 +186,7 @@ def _limit_claims(results: Results, found: dict[int, Estimate]) -> list[Claim]:
         same_claim(
             "the same exponent for all L in the limit dt -> 0",
             _listed(limit),
-            _deviation(limit),
+            max(_deviations(limit).values()),
             in_limit=True,
             reason="the sum of two power laws is no exact law, and its exponent depends on L",
         ),
