@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -173,7 +174,7 @@ def draw(results: Results) -> Figure:
     for number, (label, widths) in enumerate(series.items()):
         sizes = np.array(list(widths))
         values, errors = np.array(list(widths.values())).T
-        style = {
+        style: dict[str, Any] = {
             "fmt": SYMBOLS[number % len(SYMBOLS)],
             "color": COLOURS[number % len(COLOURS)],
             "markerfacecolor": "none",
