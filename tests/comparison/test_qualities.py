@@ -1,7 +1,7 @@
 """Quick quality decides like full quality or not at all, on stored verdicts of both.
 
-``quick_verdicts.json`` holds what a quick run gave, without figures 3, 4 and 7. After a change of what is
-claimed or of the rules, write it anew from ``crazybilliards reproduce all --json``.
+``quick_verdicts.json`` holds what a quick run gave, without figures 3, 4 and 7. After a change of
+what is claimed or of the rules, write it anew from ``crazybilliards reproduce all --json``.
 """
 
 import html

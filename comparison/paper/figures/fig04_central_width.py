@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -173,7 +174,7 @@ def draw(results: Results) -> Figure:
     for number, (label, widths) in enumerate(series.items()):
         sizes = np.array(list(widths))
         values, errors = np.array(list(widths.values())).T
-        style = {
+        style: dict[str, Any] = {
             "fmt": SYMBOLS[number % len(SYMBOLS)],
             "color": COLOURS[number % len(COLOURS)],
             "markerfacecolor": "none",
@@ -185,12 +186,12 @@ def draw(results: Results) -> Figure:
     ends = np.array([8, 2e5])
     paper = ends**_PAPER * reference(100.0) / 100.0**_PAPER
     # On top they are one line to the eye; below, each is told from the other.
-    for line, label, look in (
-        (reference(ends), f"$L^{{{reference.exponent:.3f}}}$", {"color": "0.4"}),
-        (paper, f"paper: $L^{{{_PAPER}}}$", {"color": "black", "linestyle": "--"}),
+    for line, label, colour, dashes in (
+        (reference(ends), f"$L^{{{reference.exponent:.3f}}}$", "0.4", "-"),
+        (paper, f"paper: $L^{{{_PAPER}}}$", "black", "--"),
     ):
-        top.plot(ends, line / unit, label=label, **look)
-        bottom.plot(ends, line / reference(ends), **look)
+        top.plot(ends, line / unit, dashes, color=colour, label=label)
+        bottom.plot(ends, line / reference(ends), dashes, color=colour)
     top.set(xscale="log", yscale="log", ylabel="central width $W_v^{\\min}/W$")
     bottom.set(xlabel="number of rods $L$", ylabel="ratio to the fit", ylim=(0.75, 1.15))
     mark_clipped(bottom)
