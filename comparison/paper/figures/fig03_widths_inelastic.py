@@ -262,14 +262,7 @@ def _draw_steps(ax: Axes, results: Results) -> None:
         )
         at = first * 1.25 ** (number - 1.5)  # beside one another
         limit = limit_estimate(results, size, _exponent)
-        ax.errorbar(
-            at,
-            limit.value,
-            limit.error,
-            fmt=SYMBOLS[number],
-            color=COLOURS[number],
-            linewidth=0.8,
-        )
+        ax.errorbar(at, *limit, fmt=SYMBOLS[number], color=COLOURS[number], linewidth=0.8)
     ax.axhline(_PAPER, color="0.4", linestyle="--", label="paper")
     ax.plot([], [], "o", color="0.4", markerfacecolor="none", label="at a time step")
     ax.plot([], [], "o", color="0.4", label=LABEL)

@@ -190,8 +190,8 @@ def draw(results: Results) -> Figure:
         (reference(ends), f"$L^{{{reference.exponent:.3f}}}$", "0.4", "-"),
         (paper, f"paper: $L^{{{_PAPER}}}$", "black", "--"),
     ):
-        top.plot(ends, line / unit, label=label, color=colour, linestyle=dashes)
-        bottom.plot(ends, line / reference(ends), color=colour, linestyle=dashes)
+        top.plot(ends, line / unit, dashes, color=colour, label=label)
+        bottom.plot(ends, line / reference(ends), dashes, color=colour)
     top.set(xscale="log", yscale="log", ylabel="central width $W_v^{\\min}/W$")
     bottom.set(xlabel="number of rods $L$", ylabel="ratio to the fit", ylim=(0.75, 1.15))
     mark_clipped(bottom)
