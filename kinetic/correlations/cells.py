@@ -36,28 +36,36 @@ def make_cells(size: int, most: int = MOST) -> Cells:
     return Cells(rods, centres, ends[1:-1], np.diff(centres))
 
 
-def at_distance(covariance: Array, places: Array, wanted: Array, distance: float) -> Array:
+def at_distance(
+    covariance: Array, places: Array, wanted: Array, distance: float, nearest: int = 1
+) -> Array:
     """Return the covariance at a short distance, continued from that of different cells.
 
-    Along a line across the diagonal: through the covariances with the next cell and the next but
-    one. The diagonal itself is left out: on it lie what cells add of their own.
+    Along a line across the diagonal: through the covariances of cells ``nearest`` and one more
+    apart. What lies closer is left out: on the diagonal is what cells add of their own, and next
+    to it what the last collision of two neighbours left.
 
     Parameters
     ----------
     covariance
-        Symmetric, shape (M, M), M > 2, between fields at ``places``.
+        Symmetric, shape (M, M), M > nearest + 1, between fields at ``places``.
     wanted
         Middles of the pairs.
     distance
         Between the two of a pair, in rods.
     """
     symmetric = (covariance + covariance.T) / 2
-    near, far = np.diag(symmetric, 1), np.diag(symmetric, 2)
-    near_middle, far_middle = (places[1:] + places[:-1]) / 2, (places[2:] + places[:-2]) / 2
-    near_apart = np.diff(places)
-    far_apart = np.interp(near_middle, far_middle, places[2:] - places[:-2])
-    slope = (near - np.interp(near_middle, far_middle, far)) / (far_apart - near_apart)
+    near_middle, near_apart, near = _side_diagonal(symmetric, places, nearest)
+    far_middle, far_apart, far = _side_diagonal(symmetric, places, nearest + 1)
+    further = np.interp(near_middle, far_middle, far_apart) - near_apart
+    slope = (near - np.interp(near_middle, far_middle, far)) / further
     return np.asarray(np.interp(wanted, near_middle, near + slope * (near_apart - distance)))
+
+
+def _side_diagonal(covariance: Array, places: Array, apart: int) -> tuple[Array, Array, Array]:
+    """Return middle, distance and covariance of all pairs that many cells apart."""
+    first, second = places[:-apart], places[apart:]
+    return (first + second) / 2, second - first, np.diag(covariance, apart)
 
 
 def of_cells(at_contacts: Array) -> Array:

@@ -5,7 +5,7 @@ the other: the label of their contact is distributed as Beta(i, L - i), and what
 temperature, force and loss, is a mean over it. The mean gap of the two follows from the chance
 binom(L, i) N^i (1 - N)^(L - i) that a place with the label N lies between them,
 
-    <y_{i+1} - y_i> = int binom(L, i) N^i (1 - N)^(L-i) dy = E[1/n_E] L/(L + 1),
+    <y_{i+1} - y_i> = int binom(L, i) N^i (1 - N)^(L-i) dy = E[1/n] L/(L + 1),
 
 the mean being over Beta(i + 1, L - i + 1).
 """
@@ -29,11 +29,9 @@ class OneRod(NamedTuple):
     """Profiles of f at the M - 1 contacts, in free units."""
 
     temperature: Array  # T, variance of the velocity
-    density: Array  # n_E, points per length
-    force: Array  # n_E T
+    force: Array  # n T
     gap: Array  # mean gap of two neighbours
-    cubes: Array  # n_E <|v - u|^3>, with 8/sqrt(pi) as the unit: n_E T^(3/2) of Gaussians
-    spread: float  # <y^2>
+    cubes: Array  # n <|v - u|^3>, with 8/sqrt(pi) as the unit: n T^(3/2) of Gaussians
 
 
 def profiles_of_one_rod(cells: Cells, state: State) -> OneRod:
@@ -47,11 +45,9 @@ def profiles_of_one_rod(cells: Cells, state: State) -> OneRod:
     cubes = np.concatenate([cubes[::-1], cubes])
     return OneRod(
         labels.mean(whole.variance, below, above),
-        labels.mean(density, below, above),
         labels.mean(density * whole.variance, below, above),
         labels.mean(1 / density, below + 1, above + 1) * size / (size + 1),
         labels.mean(cubes, below, above),
-        float(labels.share @ whole.y**2),
     )
 
 

@@ -20,8 +20,8 @@ the ends. Written x' = M x, the covariance of all fields is a local part, that o
 
 Q is what collisions do to two independent rods, [psi, phi] of :mod:`.collision_moments`:
 
-    V V:            Lambda + 2 Gamma h_c      Theta Theta:  b [H2, H2] n Theta^(5/2)
-    V q:            b [v, H3] n Theta^(5/2)   q q:          b [H3, H3] n Theta^(7/2)
+    V V:            2 Gamma h_c, and Lambda between the two      q q:  b [H3, H3] n Theta^(7/2)
+    V q:            b [v, H3] n Theta^(5/2)             Theta Theta:  b [H2, H2] n Theta^(5/2)
     g Theta:        Lambda g, as rods that are close by chance collide, and cool, more often.
 
 **The noise of the velocities** is exact in its sum. Noise feeds the total momentum with 2 Gamma W^2
@@ -29,6 +29,11 @@ per rod, collisions with nothing. The local part holds Theta of it, which dampin
 rate 2 Gamma Theta. What feeds h is the rest, 2 Gamma (W^2 - Theta), and with the energy of all
 rods, Gamma sum (W^2 - T) = sum Lambda/2, and Theta = T - h_c, that is Lambda + 2 Gamma h_c. The
 centre of mass then has the variance W^2/L whatever e is, as it must.
+
+**Where it sits.** A collision makes the covariance <v_i v_{i+1}> of two rods and takes from <v_i^2>
+and <v_{i+1}^2>, which the local part holds. So Lambda stands beside the diagonal: a contact adds
+half of it to (i, i + 1) and half to (i + 1, i). For waves that is the same as on the diagonal, at
+the border it is not.
 """
 
 from __future__ import annotations
@@ -48,7 +53,7 @@ Array = NDArray[np.float64]
 class Background(NamedTuple):
     """The steady state that pairs fluctuate about, at the M - 1 contacts, in free units."""
 
-    density: Array  # n, rods per length where they collide
+    density: Array  # n, rods per length where they collide, P/Theta
     gap: Array  # g, the mean gap of two rods
     temperature: Array  # Theta
     pressure: Array  # P
@@ -153,7 +158,11 @@ def _noise(cells: Cells, state: Background, moments: CollisionMoments, damping: 
     u, V, Th, q = _parts(M)
     Q = np.zeros((4 * M - 3, 4 * M - 3))
     kept = 2 * damping * of_cells(state.shared) / N
-    Q[V, V] = np.diag(_of_cell_means(cells, energy) + kept)
+    # Of the contacts that one between cells stands for, the others lie within the two.
+    within = 1 - 1 / cells.distances
+    between = energy / (2 * N[1:] * N[:-1])
+    Q[V, V] = np.diag(_of_cell_means(cells, within * energy) + kept)
+    Q[V, V] += np.diag(between, 1) + np.diag(between, -1)
     # Displacements as sums of gaps, the centre of mass at rest.
     sums = np.tril(np.ones((M, M - 1)), -1)
     Q[u, Th] = (sums - N @ sums / N.sum()) * (energy * state.gap)

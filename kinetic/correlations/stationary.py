@@ -5,15 +5,14 @@ strangers. Here its collision terms carry the factor a(l) of :mod:`.closure`, wh
 covariances of pairs of rods of :mod:`.pair_covariance`; these follow from the density and the
 temperature that the kinetic equation has. Both are solved in turn until they agree:
 
-    f with the factor a  ->  T(l), n_E(l)  ->  covariances h  ->  Theta, n, F, p  ->  a.
+    f with the factor a  ->  T(l), P(l)  ->  covariances h  ->  Theta, F, h_uu  ->  a.
 
 No number is fitted, and nothing from a simulation goes in. At e = 1 all h vanish.
 
-Moments of rod i: W_v(i)^2 is the mean of T over the labels of the i-th of L independent points, as
-for independent points, but without a term for the centre of mass, which h contains. With s the
-compression of :mod:`.closure` and q_i the width of independent points,
+f holds the rods within their neighbourhood, h_uu the motion of whole neighbourhoods. With y_i, q_i
+and w_i the mean, width and velocity width of the i-th of L independent points,
 
-    <y_i> = y_i(independent)/s,      W_x(i)^2 = q_i^2/s^2 + h_uu(i).
+    <y_i> = y_i,      W_x(i)^2 = q_i^2 + h_uu(i),      W_v(i)^2 = w_i^2 + h_uu(i).
 """
 
 from __future__ import annotations
@@ -23,10 +22,14 @@ from dataclasses import replace
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
-from scipy.interpolate import PchipInterpolator
 
 from crazybilliards.kinetic.correlations.cells import make_cells
-from crazybilliards.kinetic.correlations.closure import Closure, background, implied
+from crazybilliards.kinetic.correlations.closure import (
+    Closure,
+    background,
+    collective_variance,
+    implied,
+)
 from crazybilliards.kinetic.correlations.collision_moments import moments_of_collisions
 from crazybilliards.kinetic.correlations.fixed_point import NoFixedPointError, find_fixed_point
 from crazybilliards.kinetic.correlations.one_rod import profiles_of_one_rod
@@ -36,7 +39,6 @@ from crazybilliards.kinetic.correlations.pair_covariance import (
 )
 from crazybilliards.kinetic.correlations.stationary_result import Correlated, assemble
 from crazybilliards.kinetic.kinetic_equation.continuation import (
-    State,
     continued,
     elastic_state,
     fitted,
@@ -63,8 +65,7 @@ _BYTES_PER_CELL = 4e4
 _ROUGHLY = 1e-6
 _AGREEMENT = 0.5  # of the tolerance: what ln a may be off; a width changes by less than half of it
 _MOST_ITERATIONS = 40
-# Where the theory was solved. Simulations were compared from 30 to 300 rods.
-_LEAST_RESTITUTION = 0.5
+# Where the theory was solved. Simulations were compared from 10 to 300 rods.
 _SIZES = 10, 1000
 _DAMPINGS = 0.24, 1.5  # gamma/sqrt(k m)
 
@@ -77,8 +78,8 @@ def correlated_phase_space(
     Parameters
     ----------
     chain
-        10 to 1000 rods on linear springs without gap, restitution 0.5 to 1, damping 0.24 to 1.5
-        sqrt(k m). It was compared with simulations of 30 to 300 rods.
+        10 to 1000 rods on linear springs without gap, restitution 0 to 1, damping 0.24 to 1.5
+        sqrt(k m). It was compared with simulations of 10 to 300 rods.
     tolerance
         One rod and pairs are brought to agree, and the mesh is refined, until no velocity width
         changes by more, relatively.
@@ -111,7 +112,7 @@ def correlated_phase_space(
     --------
     >>> theory = correlated_phase_space(Chain(size=30, restitution=0.9), cells=16)
     >>> theory.velocity_width.values[[0, 7, 14]].round(3)
-    array([0.256, 0.204, 0.193])
+    array([0.26 , 0.205, 0.194])
     """
     check_correlated_phase_space(chain, tolerance=tolerance, cells=cells)
     try:
@@ -135,7 +136,7 @@ def check_correlated_phase_space(chain: Chain, *, tolerance: float, cells: int |
     require_chain(chain, theory, linear=True, gapless=True)
     damping = coefficients(chain, free_units(chain), 2).damping
     for name, value, (low, high), remedy in (
-        ("restitution", chain.restitution, (_LEAST_RESTITUTION, 1.0), "phase_space and simulate"),
+        ("restitution", chain.restitution, (0.0, 1.0), "phase_space and simulate"),
         ("size", chain.size, _SIZES, "phase_space and simulate"),
         ("damping/sqrt(k m)", damping, _DAMPINGS, "phase_space and simulate"),
     ):
@@ -155,7 +156,7 @@ def _solve(chain: Chain, tolerance: float, cells: int | None) -> tuple[Correlate
         more = round(_FINER * found.state.space.cells)
         require_memory(f"cells={more}", _BYTES_PER_CELL * more**2)
         finer = found._replace(state=refined(found.state, more))
-        error = float(np.abs(np.sqrt(_variances(found.state) / _variances(finer.state)) - 1).max())
+        error = float(np.abs(np.sqrt(_variances(found) / _variances(finer)) - 1).max())
         found = finer
         if error < tolerance:
             return found, error
@@ -171,16 +172,15 @@ def _agree(chain: Chain, tolerance: float) -> Correlated:
     state = refined(continued(chain, elastic_state(chain, 2, _CELLS)), _CELLS)
     cells, of_collisions = make_cells(chain.size), moments_of_collisions(chain.restitution)
     damping = coefficients(chain, free_units(chain), 2).damping
-    labels = cells.contacts / chain.size - 0.5
     known: list[Correlated] = []
 
     def image(vector: Array) -> Array:
         nonlocal state
         closure = Closure.unpacked(vector)
-        factor = PchipInterpolator(labels, np.exp(closure.log_factor))
-        state = fitted(solved(replace(state, factor=factor), _ROUGHLY))
+        factors = closure.factors(cells, chain.size)
+        state = fitted(solved(replace(state, factors=factors), _ROUGHLY))
         rod = profiles_of_one_rod(cells, state)
-        around = background(rod, closure, chain.restitution, damping)
+        around = background(rod, closure, chain.restitution)
         pairs = solve_pairs(cells, around, of_collisions, damping)
         known[:] = [Correlated(state, closure, around, pairs, np.nan, 0)]
         return implied(chain.size, cells, rod, around, pairs).packed()
@@ -196,6 +196,8 @@ def _agree(chain: Chain, tolerance: float) -> Correlated:
     return found
 
 
-def _variances(state: State) -> Array:
-    whole = mirrored(moments(state.space, state.f))
-    return points(state.chain.size, whole).velocity_variance
+def _variances(found: Correlated) -> Array:
+    state, size = found.state, found.state.chain.size
+    own = points(size, mirrored(moments(state.space, state.f))).velocity_variance
+    rods = np.arange(size) + 0.5
+    return np.asarray(own + collective_variance(make_cells(size), found.pairs, rods))

@@ -9,8 +9,9 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from crazybilliards.kinetic.correlations.accuracy import expected_accuracy
-from crazybilliards.kinetic.correlations.cells import Cells, make_cells, of_cells
-from crazybilliards.kinetic.correlations.closure import Closure
+from crazybilliards.kinetic.correlations.cells import Cells, at_distance, make_cells, of_cells
+from crazybilliards.kinetic.correlations.closure import Closure, collective_variance
+from crazybilliards.kinetic.correlations.collective_motion import as_seen_in_place
 from crazybilliards.kinetic.correlations.collision_moments import moments_of_collisions
 from crazybilliards.kinetic.correlations.pair_covariance import (
     Background,
@@ -43,22 +44,23 @@ def assemble(found: Correlated, mesh_error: float) -> xr.Dataset:
     chain, (length, velocity) = state.chain, free_units(state.chain)
     cells, rods = make_cells(chain.size), np.arange(chain.size) + 0.5
     of = points(chain.size, mirrored(moments(state.space, state.f)))
-    y, v, f = state.space.sampled(state.f)
-    fields = profiles_over_x(state)
-    compression = np.exp(found.closure.log_compression)
-    shared_place = np.interp(rods, cells.centres, np.diag(found.pairs.displacement))
+    collective = collective_variance(cells, found.pairs, rods)
+    velocity_variance = of.velocity_variance + collective
+    seen = as_seen_in_place(state, rods, collective)
+    y, v, f = seen.space.sampled(seen.f)
+    fields = profiles_over_x(seen)
     dataset = result(
         chain,
         {
             "phase_space_density": (("y", "velocity"), chain.size / (length * velocity) * f),
             **{name: ("x", values) for name, values in fields.items() if name != "x"},
-            "velocity_width": ("particle", velocity * np.sqrt(of.velocity_variance)),
-            "mean_displacement": ("particle", length * of.position / compression),
+            "velocity_width": ("particle", velocity * np.sqrt(velocity_variance)),
+            "mean_displacement": ("particle", length * of.position),
             "displacement_width": (
                 "particle",
-                length * np.sqrt(of.position_variance / compression**2 + shared_place),
+                length * np.sqrt(of.position_variance + collective),
             ),
-            **_of_pairs(found, cells, of.velocity_variance),
+            **_of_pairs(found, cells, velocity_variance),
         },
         coordinates={
             "x": fields["x"],
@@ -87,9 +89,11 @@ def _of_pairs(
     chain, (length, velocity) = found.state.chain, free_units(found.state.chain)
     around, contacts = found.background, np.arange(1.0, chain.size)
     lost = dissipation(around, moments_of_collisions(chain.restitution))
+    # Half of the neighbours leave one another, and have their last collision's share as well.
+    near = at_distance(found.pairs.velocity, cells.centres, cells.contacts, 1.0)
     shared, pressure, loss = (
         np.interp(contacts, cells.contacts, values)
-        for values in (around.shared, around.pressure, lost)
+        for values in ((around.shared + near) / 2, around.pressure, lost)
     )
     own = (velocity_variance[1:] + velocity_variance[:-1]) / 2
     along = {

@@ -13,11 +13,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import PchipInterpolator
 
 from crazybilliards.kinetic.kinetic_equation.velocity_moments import fitting_box
 from crazybilliards.kinetic.kinetic_equation.velocity_space import Box, VelocitySpace
 from crazybilliards.kinetic.kinetic_equation.weak_form import (
+    Factors,
     NotSolvedError,
     Units,
     coefficients,
@@ -43,7 +43,7 @@ class State:
     space: VelocitySpace
     f: Array
     residual: float
-    factor: PchipInterpolator | None = None  # of the collision terms along the label
+    factors: Factors | None = None  # of collisions and noise along the label
 
     def energy(self) -> float:
         """Mean of v^2, 1 at restitution 1."""
@@ -135,7 +135,7 @@ def solved(guess: State, tolerance: float = 1e-10) -> State:
     space = guess.space
     f = guess.f / (space.whole_mass @ guess.f)
     numbers = coefficients(guess.chain, free_units(guess.chain), guess.order)
-    f, residual = stationary_state(space, numbers, f, tolerance, guess.factor)
+    f, residual = stationary_state(space, numbers, f, tolerance, guess.factors)
     return replace(guess, f=f, residual=residual)
 
 

@@ -26,8 +26,9 @@ In units of a length l and a velocity c, and with f normalised to 1, the equatio
     phi = F l/m c^2,   Gamma = gamma l/m c,   D = A^2 l/2 m^2 c^3,
     kappa = lambda L,  kappa_2 = lambda^2 L/2.
 
-Theories in which colliding points are not independent may put a factor before both collision terms,
-which is a function of the label.
+Other theories may put factors before both collision terms and before the noise, which are functions
+of the label. In these theories the colliding points are not independent, and a part of the motion,
+with the noise that feeds it, is left out of f.
 """
 
 from __future__ import annotations
@@ -117,28 +118,36 @@ class Mean(NamedTuple):
     """Fields that depend on f as a whole, tables over the quadrature points."""
 
     force: Array
+    noise: Array
     I1: Array
     I3: Array
     I3v: Array
+
+
+class Factors(NamedTuple):
+    """Factors of the terms of the equation, functions of the label N/L - 1/2."""
+
+    collisions: PchipInterpolator
+    noise: PchipInterpolator
 
 
 class Equation:
     """The weak form on one mesh with one set of coefficients."""
 
     def __init__(
-        self, space: VelocitySpace, numbers: Coefficients, factor: PchipInterpolator | None = None
+        self, space: VelocitySpace, numbers: Coefficients, factors: Factors | None = None
     ) -> None:
-        """Take the factor before the collision terms as a function of the label N/L - 1/2."""
-        self.space, self.numbers = space, numbers
-        self._factor = factor
-        self._slope = factor.derivative() if factor else None
+        """Take factors other than 1 as functions of the label."""
+        self.space, self.numbers, self._factors = space, numbers, factors
 
     def mean(self, f: Array) -> Mean:
         """Return force and collision integrals for a distribution."""
         table = self.space.table(self.space.interpolate(f)[0])
         label = self._label(table)
         force = self._force(self.space.y - self.numbers.gap * label)
-        return Mean(force, *self._integrals(table, self._along_label(label)[0]))
+        collisions, noise = self._along_label(label)
+        noise = np.broadcast_to(self.numbers.noise * noise, table.shape)
+        return Mean(force, noise, *self._integrals(table, collisions))
 
     def _integrals(self, table: Array, factor: Array) -> list[Array]:
         return [factor * (table @ kernel.T) for kernel in self.space.kernels]
@@ -148,14 +157,16 @@ class Equation:
         label = self.space.cumulative(table @ self.space.v_weights)
         return label if self.space.symmetric else label - 0.5
 
-    def _along_label(self, label: Array) -> tuple[Array, Array]:
-        """Return the factor of the collision terms and its derivative, as columns."""
-        if self._factor is None or self._slope is None:
-            return np.ones((label.size, 1)), np.zeros((label.size, 1))
-        ends = self._factor.x[[0, -1]]
+    def _along_label(self, label: Array, derivative: int = 0) -> tuple[Array, Array]:
+        """Return the factors of collisions and noise, or their derivatives, as columns."""
+        if self._factors is None:
+            constant = np.full((label.size, 1), 0.0 if derivative else 1.0)
+            return constant, constant
+        ends = self._factors.collisions.x[[0, -1]]
         within = np.clip(label, *ends)
-        slope = np.where(within == label, self._slope(within), 0.0)
-        return self._factor(within)[:, None], slope[:, None]
+        varies = np.where(within == label, 1.0, 0.0) if derivative else 1.0
+        collisions, noise = ((varies * each(within, derivative))[:, None] for each in self._factors)
+        return collisions, noise
 
     def _force(self, displacement: Array) -> Array:
         force = self.numbers.spring * spring.force(displacement, self.numbers.exponent)
@@ -164,7 +175,7 @@ class Equation:
     def matrix(self, mean: Mean) -> csc_matrix:
         """Assemble the weak form with given force and integrals, on the unknowns."""
         fields = {name: self.space.field(table) for name, table in mean._asdict().items()}
-        names = ("damping", "noise", "drag", "diffusion")
+        names = ("damping", "drag", "diffusion")
         numbers = {name: getattr(self.numbers, name) for name in names}
         whole = transport.assemble(self.space.basis, **fields, **numbers)
         return (self.space.unknowns.T @ whole @ self.space.unknowns).tocsc()
@@ -176,13 +187,15 @@ class Equation:
         label = self._label(f_table)
         displacement = space.y - numbers.gap * label
         stiffness = numbers.spring * spring.stiffness(displacement, numbers.exponent)
-        factor, factor_slope = self._along_label(label)
+        factor, _ = self._along_label(label)
+        factor_slope, noise_slope = self._along_label(label, derivative=1)
         of_f = self._collisions(f_table, slope, self._integrals(f_table, factor_slope))
+        of_f = of_f + numbers.noise * noise_slope * slope
 
         def change(df: Array) -> Array:
             table = space.table(space.interpolate(df)[0])
             flux = self._collisions(f_table, slope, self._integrals(table, factor))
-            if numbers.gap > 0 or self._factor is not None:
+            if numbers.gap > 0 or self._factors is not None:
                 shift = space.cumulative(table @ space.v_weights)
                 flux = flux - (stiffness * numbers.gap * shift)[:, None] * f_table
                 flux = flux + shift[:, None] * of_f
@@ -213,15 +226,15 @@ def stationary_state(
     numbers: Coefficients,
     guess: Array,
     tolerance: float = 1e-10,
-    factor: PchipInterpolator | None = None,
+    factors: Factors | None = None,
 ) -> Solution:
     """Solve the stationary equation with int f = 1 by Newton's method.
 
     The sparse part of the Jacobian (with frozen integrals) is factorised. It preconditions GMRES
     for the whole Jacobian, which the integrals make dense. ``tolerance`` is that of the last step,
-    relative to max f. ``factor`` is that of the collision terms, see ``Equation``.
+    relative to max f. ``factors`` are those of the terms, see ``Equation``.
     """
-    f, equation = guess, Equation(space, numbers, factor)
+    f, equation = guess, Equation(space, numbers, factors)
     for _ in range(_MOST_STEPS):
         matrix = equation.matrix(equation.mean(f))
         residual = np.append(-(matrix @ f), 1 - space.whole_mass @ f)

@@ -1,18 +1,23 @@
 """The kinetic equation with pair correlations: exact at e = 1, its balances, simulations."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.interpolate import PchipInterpolator
 
 from crazybilliards.kinetic import correlated_phase_space, equilibrium, phase_space
+from crazybilliards.kinetic.correlations.collective_motion import as_seen_in_place
 from crazybilliards.kinetic.kinetic_equation.continuation import (
     elastic_state,
     free_units,
     solved,
 )
+from crazybilliards.kinetic.kinetic_equation.velocity_moments import moments
 from crazybilliards.kinetic.kinetic_equation.velocity_space import Box, VelocitySpace
 from crazybilliards.kinetic.kinetic_equation.weak_form import (
     Equation,
+    Factors,
     coefficients,
     stationary_state,
 )
@@ -93,10 +98,12 @@ def test_simulation(restitution, theory):
     shared, relative = found.neighbour_covariance.values, found.relative_temperature.values
     expected = (shared / (shared + relative))[10:19].mean()
     standard_error = measured.std(ddof=1) / 4
-    assert abs(measured.mean() - expected) < 5 * standard_error
+    # The page's table: Theta/T of the theory is that of simulations to 0.02 in the centre.
+    assert abs(measured.mean() - expected) < 0.02 + 5 * standard_error
     assert expected > 10 * standard_error, "the simulation is long enough to see the correlation"
     wide = (found.displacement_width / run.displacement_width).values - 1
-    assert np.abs(wide).max() < 0.07
+    error = (run.displacement_width_error / run.displacement_width).values.max()
+    assert np.abs(wide).max() < 0.07 + 5 * error
 
 
 @pytest.mark.compiled
@@ -109,26 +116,33 @@ def test_correlations_warm_a_long_chain():
     assert float(found / strangers) == pytest.approx(1.09, abs=0.02)
 
 
-def test_a_constant_factor_is_that_of_the_collisions():
+def along(collisions, noise):
+    return Factors(
+        *(PchipInterpolator(LABELS, values + 0 * LABELS) for values in (collisions, noise))
+    )
+
+
+def test_constant_factors_are_those_of_collisions_and_noise():
     state = elastic_state(CHAIN, 2, 10)
     numbers = coefficients(CHAIN, free_units(CHAIN), 2)
-    factor = PchipInterpolator(LABELS, 0 * LABELS + 0.7)
-    with_factor = stationary_state(state.space, numbers, state.f, factor=factor).f
-    weaker = numbers._replace(drag=0.7 * numbers.drag, diffusion=0.7 * numbers.diffusion)
+    with_factors = stationary_state(state.space, numbers, state.f, factors=along(0.7, 0.9)).f
+    weaker = numbers._replace(
+        drag=0.7 * numbers.drag, diffusion=0.7 * numbers.diffusion, noise=0.9 * numbers.noise
+    )
     expected = stationary_state(state.space, weaker, state.f).f
-    np.testing.assert_allclose(with_factor, expected, atol=1e-8 * expected.max())
+    np.testing.assert_allclose(with_factors, expected, atol=1e-8 * expected.max())
 
 
 @pytest.mark.parametrize("symmetric", [True, False])
-def test_the_variation_knows_the_factor(symmetric):
-    """Newton's method needs how the factor moves with the label: a difference quotient."""
+def test_the_variation_knows_the_factors(symmetric):
+    """Newton's method needs how the factors move with the label: a difference quotient."""
     space = VelocitySpace(Box(4.0, 4.0, 1.0, 1.0), 6, symmetric)
     y, v = space.axes
     f = space.nodal(np.exp(-(y[:, None] ** 2 + v**2) / 2))
     f = f / (space.whole_mass @ f)
     change = space.nodal(np.exp(-((y[:, None] - 0.5) ** 2 + v**2) / 1.5)) * 0.01
-    factor = PchipInterpolator(LABELS, 1 + 0.5 * np.cos(3 * LABELS))
-    equation = Equation(space, coefficients(CHAIN, free_units(CHAIN), 2), factor)
+    factors = along(1 + 0.5 * np.cos(3 * LABELS), 1 - 0.4 * np.cos(2 * LABELS))
+    equation = Equation(space, coefficients(CHAIN, free_units(CHAIN), 2), factors)
     frozen = equation.matrix(equation.mean(f))
     step = 1e-5
     shifted = [equation.matrix(equation.mean(f + sign * step * change)) for sign in (1, -1)]
@@ -137,27 +151,40 @@ def test_the_variation_knows_the_factor(symmetric):
     np.testing.assert_allclose(found, expected, atol=1e-5 * np.abs(frozen @ f).max())
 
 
-def test_a_factor_of_one_changes_nothing():
-    chain = Chain(size=30, restitution=0.95)
-    state = solved(elastic_state(chain, 2, 8))
-    with_one = solved(
-        type(state)(
-            state.chain,
-            state.order,
-            state.space,
-            state.f,
-            state.residual,
-            PchipInterpolator(LABELS, 1 + 0 * LABELS),
-        )
-    )
-    np.testing.assert_allclose(with_one.f, state.f, atol=1e-9 * state.f.max())
+def test_factors_of_one_change_nothing():
+    state = solved(elastic_state(CHAIN.replace(restitution=0.95), 2, 8))
+    with_ones = solved(replace(state, factors=along(1, 1)))
+    np.testing.assert_allclose(with_ones.f, state.f, atol=1e-9 * state.f.max())
+
+
+def test_collective_motion_widens_what_is_seen():
+    """Variances add, at every place for the velocities; the number of rods stays."""
+    state = elastic_state(CHAIN, 2, 16)
+    seen = as_seen_in_place(state, np.array([0.0, 30.0]), np.array([0.2, 0.2]))
+    still, moving = (moments(each.space, each.f) for each in (state, seen))
+    y, weights = moving.y, moving.weights * moving.density
+    assert weights.sum() == pytest.approx(1, abs=1e-4)
+    assert weights @ y**2 == pytest.approx(1.2, abs=4e-3)
+    inside = y < 2
+    np.testing.assert_allclose(moving.variance[inside], still.variance[inside] + 0.2, rtol=0.01)
+    unmoved = as_seen_in_place(state, np.array([0.0, 30.0]), np.zeros(2))
+    np.testing.assert_allclose(unmoved.f, state.f, atol=1e-3 * state.f.max())
+
+
+@pytest.mark.compiled
+def test_the_coldest_place_is_warmer_than_the_coldest_rods(theory):
+    """Warmer rods come there with their neighbourhood: 0.182 and 0.162 in a simulation."""
+    found, free = theory(0.75), CHAIN.free_velocity_width**2
+    rod = float(found.velocity_width[CHAIN.size // 2]) ** 2 / free
+    place = float(found.velocity_variance.interp(x=0)) / free
+    assert rod == pytest.approx(0.162, abs=0.008)
+    assert place == pytest.approx(0.182, abs=0.008)
 
 
 @pytest.mark.parametrize(
     ("changes", "reason"),
     [
-        ({"restitution": 1.05}, "restitution from 0.5 to 1 only, got 1.05; phase_space"),
-        ({"restitution": 0.4}, "restitution from 0.5 to 1 only, got 0.4"),
+        ({"restitution": 1.05}, "restitution from 0 to 1 only, got 1.05; phase_space"),
         ({"size": 9}, "size from 10 to 1000 only, got 9"),
         ({"size": 1001}, "size from 10 to 1000 only"),
         ({"damping": 0.4}, r"damping/sqrt\(k m\) from 0.24 to 1.5 only"),

@@ -5,11 +5,13 @@ import pytest
 from scipy.integrate import dblquad
 
 from crazybilliards.kinetic.correlations.cells import at_distance, make_cells
-from crazybilliards.kinetic.correlations.closure import recovery
+from crazybilliards.kinetic.correlations.closure import Closure, background, implied
 from crazybilliards.kinetic.correlations.collision_moments import moments_of_collisions
 from crazybilliards.kinetic.correlations.fixed_point import NoFixedPointError, find_fixed_point
+from crazybilliards.kinetic.correlations.one_rod import OneRod
 from crazybilliards.kinetic.correlations.pair_covariance import (
     Background,
+    PairCovariance,
     dissipation,
     linear_response,
     solve_pairs,
@@ -98,22 +100,73 @@ def test_covariances_are_continued_linearly_to_a_short_distance(size):
     covariance = 3 - 0.01 * apart + 0.002 * middle + 7 * np.eye(cells.rods.size)
     found = at_distance(covariance, cells.centres, cells.contacts, 1.0)
     np.testing.assert_allclose(found, 3 - 0.01 + 0.002 * cells.contacts, rtol=2e-3)
+    # What neighbours have beyond that, from their own last collision, is left out as well.
+    contact = np.full(cells.contacts.size, 5.0)
+    spiked = covariance + np.diag(contact, 1) + np.diag(contact, -1)
+    found = at_distance(spiked, cells.centres, cells.contacts, 1.0, nearest=2)
+    np.testing.assert_allclose(found, 3 - 0.01 + 0.002 * cells.contacts, rtol=2e-3)
 
 
-@pytest.mark.parametrize("restitution", [0.5, 0.75, 0.9])
-def test_recovery_between_collisions(restitution):
-    """Rods that collide all the time do not recover, those that hardly do forget."""
-    one = np.ones(1)
-    never, always = (recovery(restitution, damping, one, one)[0] for damping in (1e-9, 1e9))
-    assert never == pytest.approx(2 / (1 + restitution**2), rel=1e-6)
-    assert always == pytest.approx(1, rel=1e-6)
-    between = recovery(restitution, 1.0, one, one)[0]
-    # The cycle itself: w^2 = 1 - c exp(-z t), its end, once multiplied by e^2, being its start.
-    z = 2 * np.sqrt(np.pi)
-    t = (np.arange(200_000) + 0.5) / 200_000
-    c = (1 - restitution**2) / (1 - restitution**2 * np.exp(-z))
-    cycle = 1 - c * np.exp(-z * t)
-    assert between == pytest.approx((1 - c * np.exp(-z)) / cycle.mean(), rel=1e-6)
+def a_gas(size):
+    """Return cells, one rod and no pair correlations, for the closure."""
+    cells = make_cells(size)
+    one = np.ones(size - 1)
+    rod = OneRod(0.3 * one, 7 * one, 0.05 * one, 7 * 0.3**0.5 * one)
+    nothing = np.zeros((size, size))
+    contacts = np.zeros((size - 1, size - 1))
+    return cells, rod, PairCovariance(nothing, nothing, contacts, contacts, contacts)
+
+
+@pytest.mark.parametrize("restitution", [0.0, 0.5, 0.9])
+def test_a_collision_takes_its_share_of_the_force(restitution):
+    """Lambda = (1 - e) P <w^2>/<w>, by sampling the pairs that meet: Gaussians before it."""
+    cells, rod, _ = a_gas(12)
+    shared = Closure.independent(cells)._replace(shared=np.full(11, 0.2))
+    state = background(rod, shared, restitution)
+    loss = dissipation(state, moments_of_collisions(restitution))
+    rng = np.random.default_rng(2)
+    w = np.abs(rng.normal(size=400_000)) * np.sqrt(2 * 0.3 * 0.8)  # of approaching neighbours
+    rate = 2 * rod.force[0] / (1 + restitution) / (w * w).mean()  # they meet in proportion to w
+    taken = rate * (w * (1 - restitution**2) * w**2 / 2)
+    assert abs(taken.mean() - loss[0]) < 5 * taken.std() / np.sqrt(w.size)
+
+
+def test_strangers_collide_as_in_the_kinetic_equation():
+    """To first order in 1 - e, without correlations, the factor is that of L - 1 partners."""
+    cells, rod, none = a_gas(12)
+    for restitution in (0.99, 0.9):
+        state = background(rod, Closure.independent(cells), restitution)
+        factor = np.exp(implied(12, cells, rod, state, none).log_factor)
+        np.testing.assert_allclose(factor, (1 - 1 / 12) * 2 / (1 + restitution), rtol=1e-12)
+
+
+def test_the_closure_of_known_covariances():
+    """Clustering to second order, and the bounds of an iteration."""
+    cells, rod, none = a_gas(12)
+    last = np.diag(np.full(11, 0.02), 1) + np.diag(np.full(11, 0.02), -1)  # their own collision's
+    pairs = none._replace(
+        velocity=none.velocity + 0.06 + last,
+        displacement=none.displacement + 0.02,
+        gap_temperature=none.gap_temperature + 0.3,
+        temperature=none.temperature + 0.2,
+    )
+    start = Closure.independent(cells)._replace(collective=np.full(11, 0.02))
+    state = background(rod, start, 0.5)
+    found = implied(12, cells, rod, state, pairs)
+    np.testing.assert_allclose(found.shared, 0.06 / 0.32)
+    np.testing.assert_allclose(found.collective, 0.02)
+    np.testing.assert_allclose(found.factors(cells, 12).noise(0.1), 0.98)
+    # The same fluctuations, a hundred times smaller: their mean is that of second order.
+    size, (nodes, weights) = 1e-2, np.polynomial.hermite_e.hermegauss(8)
+    spread = np.linalg.cholesky(size**2 * np.array([[0.5, 0.3], [0.3, 0.2]]))
+    gap, temperature = 1 + np.tensordot(spread, np.meshgrid(nodes, nodes), 1)
+    weights = np.outer(weights, weights) / (2 * np.pi)
+    ratio = (weights * temperature**1.5 / gap).sum() / (weights * temperature / gap).sum()
+    expected = np.exp(found.log_clustering)
+    np.testing.assert_allclose(1 + (ratio - 1) / size**2, expected, atol=1e-3)
+    assert found.is_possible
+    assert not found._replace(shared=found.shared + 0.9).is_possible
+    np.testing.assert_array_equal(Closure.unpacked(found.packed()).shared, found.shared)
 
 
 def some_background(size):
@@ -158,7 +211,20 @@ def test_covariances_are_stationary_symmetric_and_possible(size):
         np.testing.assert_allclose(each, each[::-1, ::-1], atol=1e-9 * np.abs(each).max())
     local = np.interp(cells.centres, cells.contacts, state.temperature) / cells.rods
     assert np.linalg.eigvalsh(pairs.velocity + np.diag(local)).min() > 0
-    assert np.linalg.eigvalsh(pairs.displacement).min() > 0
+
+
+def test_a_collision_correlates_the_two_that_meet():
+    """Not each with itself: beside the diagonal stands what a contact takes, one half each."""
+    cells, state = some_background(30)
+    state = state._replace(shared=0 * state.shared)
+    moments = moments_of_collisions(0.7)
+    response = linear_response(cells, state, moments, 0.3)
+    warmth = np.sqrt(np.interp(cells.centres, cells.contacts, state.temperature))
+    noise = response.noise[30:60, 30:60] * np.outer(warmth, warmth)
+    taken = dissipation(state, moments)
+    assert noise.sum() == pytest.approx(taken.sum(), rel=0.02)
+    np.testing.assert_array_equal(np.diag(noise), 0)
+    assert np.diag(noise, 1).sum() == pytest.approx(noise.sum() / 2)
 
 
 def test_free_rods_keep_what_they_have():
