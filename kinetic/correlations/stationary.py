@@ -199,5 +199,5 @@ def _agree(chain: Chain, tolerance: float) -> Correlated:
 def _variances(found: Correlated) -> Array:
     state, size = found.state, found.state.chain.size
     own = points(size, mirrored(moments(state.space, state.f))).velocity_variance
-    rods = np.arange(size) + 0.5
+    rods: Array = np.arange(0.5, size)
     return np.asarray(own + collective_variance(make_cells(size), found.pairs, rods))

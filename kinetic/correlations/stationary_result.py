@@ -42,7 +42,8 @@ def assemble(found: Correlated, mesh_error: float) -> xr.Dataset:
     """Return the solution as a result."""
     state = found.state
     chain, (length, velocity) = state.chain, free_units(state.chain)
-    cells, rods = make_cells(chain.size), np.arange(chain.size) + 0.5
+    cells = make_cells(chain.size)
+    rods: Array = np.arange(0.5, chain.size)
     of = points(chain.size, mirrored(moments(state.space, state.f)))
     collective = collective_variance(cells, found.pairs, rods)
     velocity_variance = of.velocity_variance + collective
