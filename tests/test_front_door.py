@@ -101,13 +101,16 @@ def installed(tmp_path_factory):
     return wheel, binaries
 
 
+PACKED = ("*.py", "*.pyi", "py.typed", "*.jinja", "*.mplstyle", "*.css", "*.js", "*.html")
+
+
 def test_the_wheel_holds_every_module_and_stub(installed):
     with zipfile.ZipFile(installed[0]) as archive:
         shipped = {name for name in archive.namelist() if not name.split("/")[0].endswith("info")}
     wanted = {
         (Path("crazybilliards" + name.replace(".", "/")) / path.relative_to(ROOT / folder))
         for folder, name in FOLDERS.items()
-        for pattern in ("*.py", "*.pyi", "py.typed", "*.jinja", "*.mplstyle")
+        for pattern in PACKED
         for path in (ROOT / folder).rglob(pattern)
     }
     assert shipped == {path.as_posix() for path in wanted}
