@@ -161,6 +161,8 @@ def chain_of(dataset: xr.Dataset) -> Chain:
 
 def require(dataset: xr.Dataset, names: Iterable[str]) -> None:
     """Raise a ValueError naming the first of ``names`` that the result lacks."""
+    if not isinstance(dataset, xr.Dataset):
+        raise ValueError(f"not a crazybilliards result: {type(dataset).__name__}")
     for name in names:
         if name not in dataset:
             has = ", ".join(map(str, dataset.data_vars)) or "nothing"

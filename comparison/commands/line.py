@@ -25,6 +25,8 @@ from crazybilliards.comparison.commands.answers import with_json
 from crazybilliards.comparison.commands.output import INTERRUPTED
 from crazybilliards.comparison.commands.streams import READER_GONE, plain_streams
 
+_LONGEST = 400  # characters of an error message
+
 app = typer.Typer(
     add_completion=False,
     rich_markup_mode=None,
@@ -94,5 +96,8 @@ def _run() -> int | None:
 
 
 def _complain(message: str) -> int:
-    print(f"crazybilliards: error: {' '.join(message.split())}", file=sys.stderr)
+    message = " ".join(message.split())
+    if len(message) > _LONGEST:  # it quotes an argument without end
+        message = f"{message[:_LONGEST]} ..."
+    print(f"crazybilliards: error: {message}", file=sys.stderr)
     return 2

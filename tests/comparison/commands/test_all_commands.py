@@ -36,6 +36,13 @@ def test_help_shows_an_example_and_loads_nothing_heavy(arguments):
     assert done.stderr == ""
 
 
+def test_an_error_that_quotes_an_endless_argument_is_cut(run):
+    done = run("compare", "--json", "9" * 5000)
+    assert done.returncode == 2
+    assert "unexpected extra argument" in done.stderr
+    assert len(done.stderr) < 500
+
+
 def test_an_unknown_command_and_an_unusable_folder_are_one_line(run, tmp_path):
     done = run("simulat")
     assert (done.returncode, done.stderr.count("\n")) == (2, 1)
