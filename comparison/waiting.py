@@ -1,4 +1,4 @@
-"""What a command is doing, on a terminal, while it does what has no progress bar of its own."""
+"""Show on a terminal what a command is doing if it has no progress bar."""
 
 from __future__ import annotations
 

@@ -31,7 +31,7 @@ def announced(progress: bool) -> Iterator[None]:
 
 
 def announce_compilation() -> None:
-    """Say it, if this is ``announced`` and was not said yet."""
+    """Print once that kernels are being compiled, inside ``announced``."""
     if _to_announce.get():
         _to_announce.set(False)
         message = "crazybilliards: compiling the kernels, once (they are cached) ..."
@@ -51,9 +51,9 @@ def interrupts_held_back() -> Iterator[None]:
         for number in (signal.SIGINT, signal.SIGTERM)
         if callable(handler := signal.getsignal(number))  # one set in C cannot be restored
     }
-    for number in before:
-        signal.signal(number, lambda number, _: came.append(number))
     try:
+        for number in before:
+            signal.signal(number, lambda number, _: came.append(number))
         yield
     finally:
         for number, handler in before.items():

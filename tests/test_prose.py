@@ -20,12 +20,7 @@ PAGES = [
     ROOT / "paper.md",
     *(page for page in sorted((ROOT / "docs").rglob("*.md")) if page != WRITTEN_BY_A_PROGRAM),
 ]
-MODULES = [
-    path
-    for room in ROOMS
-    for path in sorted((ROOT / room).rglob("*.py"))
-    if "explore" not in path.parts
-]
+MODULES = [path for room in ROOMS for path in sorted((ROOT / room).rglob("*.py"))]
 AVOID = {
     r"\boff (restitution|\$?e\b)": "for e != 1",
     r"\bwhoever\b": "name the person or thing",

@@ -1,7 +1,7 @@
 """The error bars of a limit dt -> 0 mean what they say: 68 % of the values lie within one.
 
 100 independent limits of 30 rods at e = 0 against one long run at a quarter of the default step,
-which is off by less than 0.05 % and whose errors are a tenth of theirs. For every quantity the
+which is off by less than 0.05 % and whose errors are a seventh of theirs. For every quantity the
 share of values within one of its own errors is counted over runs and rods, nodes or bins. The error
 of that share is at most 4.7 %.
 """
@@ -25,7 +25,7 @@ def reference():
     """Return the values of a long run by name, and where their errors are to be looked at."""
     run = simulate(
         CHAIN,
-        duration=200_000,
+        duration=100_000,
         time_step=default_time_step(CHAIN) / 4,
         every=10 * default_time_step(CHAIN),
         replicas=2,

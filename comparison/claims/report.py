@@ -28,7 +28,7 @@ _NO_DATE = {"pdf": {"CreationDate": None}, "svg": {"Date": None}}
 _VERSIONS = ("crazybilliards", "numpy", "numba", "scipy", "scikit-fem", "py-pde", "xarray")
 OF_PAPER = "Statements of the paper"
 OWN = "Our own findings"
-_LIMIT = "the limit dt -> 0; the error holds what is left of the step"
+_LIMIT = "the limit dt -> 0; the error includes the remaining error of the step"
 
 
 @dataclass(frozen=True)

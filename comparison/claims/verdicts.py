@@ -12,11 +12,11 @@ paper comes out as
 
 A finding of our own is ``confirmed``, ``refuted`` or ``undecided``.
 
-**Rules.** A number p, quoted to a precision d (half a unit of its last digit, or what "about"
-grants), comes out if the measured value lies within d plus three standard errors of p. If it does
-only because the errors are large, three of them more than 2 d, that is undecided: a longer
-simulation could still refute it. That something is positive, or larger than
-something else, is decided at three standard errors. That something vanishes is decided by a stated
+**Rules.** A number p, quoted to a precision d (half a unit of its last digit, or the
+tolerance of "about"), comes out if the measured value lies within d plus three standard errors of
+p. If it does only because the errors are large, three of them more than 2 d, that is undecided: a
+longer simulation could still refute it. That something is positive, or larger than something else,
+is decided at three standard errors. That something vanishes is decided by a stated
 limit, at as many. That two things are the same comes out if no difference exceeds what chance
 explains: five standard errors for the largest of many.
 
@@ -89,7 +89,7 @@ class Claim:
     exactly
         What is true beyond what an eye can see, whatever the verdict (or "").
     in_limit
-        Whether the number is the limit of a vanishing time step, its error including the
+        Whether the number is the limit of a vanishing time step. Its error then includes the
         remaining error of the step. Otherwise it belongs to the time step of its runs.
     """
 
@@ -127,7 +127,7 @@ def number_claim(
     """Compare a measured number with the one quoted."""
     chance = _SIGNIFICANT * measured.error
     holds: bool | None = abs(measured.value - paper) <= precision + chance
-    if math.isnan(chance) or (holds and chance > _LARGEST_CHANCE * precision):
+    if math.isnan(measured.value + chance) or (holds and chance > _LARGEST_CHANCE * precision):
         holds = None
     return _claim(statement, str(measured), holds, paper=f"{paper:g}", **about)
 

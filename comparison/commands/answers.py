@@ -25,7 +25,7 @@ _COLUMNS = {
     "mean_displacement": "<dx>",
     "displacement_width": "W_x",
 }
-# What --json prints in the end; None: text is printed.
+# Facts that --json prints; None if text is printed.
 _facts: ContextVar[dict[str, Any] | None] = ContextVar("facts", default=None)
 _Option = Annotated[
     bool,
@@ -83,6 +83,8 @@ def _plain(value: Any) -> Any:
         return {str(key): _plain(each) for key, each in value.items()}
     if isinstance(value, list | tuple):
         return [_plain(each) for each in value]
+    if hasattr(value, "item"):  # of numpy
+        value = value.item()
     if value is None or isinstance(value, str | bool | int):
         return value
     number = float(value)
@@ -104,7 +106,8 @@ def answer_rods(result: xr.Dataset, title: str, caption: str) -> None:
         table.add_row(str(rod.particle.item()), *(_measured(rod, name) for name in columns))
         errors = [f"{name}_error" for name in columns if f"{name}_error" in rod]
         noted.append({name: rod[name].item() for name in ("particle", *columns, *errors)})
-    note(rods=noted)
+    units = {name: result[name].attrs["units"] for name in columns}
+    note(rods=noted, units=units)
     print_table(table)
 
 

@@ -112,14 +112,14 @@ def _print(theory: Theory, result: xr.Dataset) -> None:
 
 
 def _caveat(theory: Theory, model_error: float) -> str:
-    """Say how wrong the theory is, however well its equations are solved."""
+    """Return the error of the theory itself in words."""
     if model_error == 0:
         return "The theory is exact for this chain."
     if math.isnan(model_error):
-        return "How wrong the theory is was not measured on chains like this one: simulate tells."
+        return "The error of the theory was not measured for chains like this one."
     return (
-        f"How wrong the theory is, in {theory.judged_by}: up to {model_error:.1%} (measured on "
-        "chains like this one)."
+        f"The error of the theory, in {theory.judged_by}, is up to {100 * model_error:.2g} % "
+        "(measured on chains like this one)."
     )
 
 

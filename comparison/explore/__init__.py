@@ -1,5 +1,5 @@
-"""The page of ``crazybilliards explore``: a chain that moves in the browser, beside its theory.
+"""The page of ``crazybilliards explore``.
 
-The simulation and the presets need nothing but this package; ``drawing``, ``page`` and ``server``
-need Panel, the extra ``explore``. Hence nothing is imported here.
+``session``, ``sums`` and ``presets`` need only this package. The other modules may need Panel, the
+extra ``explore``, so this file imports nothing.
 """

@@ -1,4 +1,4 @@
-"""The address of a page: it holds the setting, and restores it."""
+"""The address of the page stores the setting."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from crazybilliards.comparison.explore.setting import Setting
 
 
 class Address:
-    """Keeps the address of the page now served and a setting together.
+    """Keep the page's address and a setting in agreement.
 
     Parameters
     ----------
@@ -23,7 +23,7 @@ class Address:
     Attributes
     ----------
     refusal
-        Why the first address was refused; nothing: it was not.
+        Why the first address was refused, or an empty text.
     """
 
     def __init__(self, setting: Setting, say: Callable[[str], None]) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from html import escape
 from typing import Any
 
 import panel as pn
@@ -57,8 +58,9 @@ class Controls:
         return bool(self.speed.value <= SLOW)
 
     def say(self, message: str) -> None:
-        """Say something at the top of the page; nothing: be silent."""
-        self.message.object = f"<div role='alert'>{message}</div>"
+        """Show a message at the top of the page; an empty text hides it."""
+        # A message may quote the address, which anybody can write.
+        self.message.object = f"<div role='alert'>{escape(message)}</div>"
         self.message.visible = bool(message)
 
     @property
@@ -74,12 +76,12 @@ class Controls:
             self.look.object = f"<b>{preset.label}.</b> {preset.look}"
 
     def show_accuracy(self, notes: dict[str, str]) -> None:
-        """Say how far each theory can be trusted."""
+        """Show the error of each theory."""
         self.accuracy.visible = bool(notes)
         self.accuracy.object = "<br>".join(f"{name}: {note}" for name, note in notes.items())
 
     def show_progress(self, session: Session, *, held: bool) -> None:
-        """Say since when the chain has been measured, or when that begins."""
+        """Show how long the chain has been measured, or when the measurement begins."""
         waiting = session.measured_from - session.time
         if session.diverged:
             words = "the chain has run away: there is no steady state to measure"
@@ -92,13 +94,13 @@ class Controls:
         self.progress.object = words
 
     def show_solving(self, seconds: float | None) -> None:
-        """Say for how long the kinetic equation has been solved; None: it is not."""
+        """Show how long the solver has run; None if it is not running."""
         solving = seconds is not None
         self.solve.name = f"Solving, {seconds:.0f} s: cancel" if solving else SOLVE
         self.solve.button_type = "warning" if solving else "default"
 
     def forget_preset(self) -> None:
-        """Do not claim to show a figure whose parameters were changed."""
+        """Deselect the preset if the parameters no longer match it."""
         if self.chosen is not None and self.chosen.chain != self.setting.chain():
             self.preset.value = NO_PRESET
 

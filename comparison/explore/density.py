@@ -1,4 +1,4 @@
-"""The density building up over the theories, all smoothed as in the paper."""
+"""The measured density and the theories, all smoothed as in the paper."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _MOST_OF_A_LINE = 2000
 
 
 class Density:
-    """The density building up over the theories; what was measured, in its title."""
+    """The measured density and the theories."""
 
     def __init__(self, rods: Rods) -> None:
         self._range = rods.range
@@ -51,7 +51,7 @@ class Density:
         self.plot = plot
 
     def clear(self) -> None:
-        """Show nothing: the chain is another one."""
+        """Remove all curves."""
         self.measured.data = {"x": [], "density": []}
         for name, source in self.theories.items():
             source.data = {"x": [], "density": []}
@@ -59,7 +59,7 @@ class Density:
         self._known.clear()
 
     def show(self, smoothed: xr.Dataset) -> None:
-        """Show what was measured so far."""
+        """Show the measured density."""
         self.measured.data = self._seen(smoothed, _MOST_POINTS)
 
     def follow_zoom(self) -> None:

@@ -59,7 +59,7 @@ def arrange(controls: Controls, pictures: Pictures) -> pn.viewable.Viewable:
 
 
 def _names(controls: Controls) -> CustomJS:
-    """Give names to sliders, numbers, lists and pictures, in the order of the page."""
+    """Name sliders, numbers, lists and pictures for screen readers, in page order."""
     lists = (controls.preset, controls.setting_widgets[-1], controls.quantity, controls.history)
     arguments = {
         "parameters": [widget.name for widget in controls.setting_widgets[:-1]],

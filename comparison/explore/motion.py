@@ -1,4 +1,4 @@
-"""The rods where they are, and below them the strip that shows where they were."""
+"""The present rods, and a strip with their past positions."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def _palette() -> list[str]:
 
 
 class Rods:
-    """The rods where they are, coloured by velocity, their anchors as ticks underneath.
+    """The rods coloured by velocity, with ticks at their anchors.
 
     Parameters
     ----------
@@ -43,6 +43,7 @@ class Rods:
 
     def __init__(self, grabbed: Callable[[float | None], None]) -> None:
         self.range = Range1d(-1, 1)
+        self.half = 1.0  # of the range when it is not zoomed [R]
         self.source = ColumnDataSource({"x": [], "v": []}, name="rods")
         self._anchors = ColumnDataSource({"x": []})
         self._colours = LinearColorMapper(palette=_palette(), low=-1, high=1)
@@ -73,9 +74,9 @@ class Rods:
         return float(self._colours.high)
 
     def begin(self, chain: Chain) -> None:
-        """Fit axes and colours to a chain."""
-        half = float(chain.anchors[-1]) + 5 * chain.radius + 4 * chain.thermal_length
-        self.range.update(start=-half, end=half)
+        """Set axes and colours for a chain."""
+        self.half = float(chain.anchors[-1]) + 5 * chain.radius + 4 * chain.thermal_length
+        self.range.update(start=-self.half, end=self.half)
         fast = 2.5 * chain.free_velocity_width * centre_width(chain)
         self._colours.update(low=-fast, high=fast)
         self.key.object = (
@@ -85,16 +86,17 @@ class Rods:
         self._anchors.data = {"x": chain.anchors}
 
     def show(self, session: Session) -> None:
-        """Move the rods; make room where they need more than there is."""
+        """Move the rods, and widen the axis if they leave it."""
         x = session.positions
         self.source.data = {"x": x, "v": session.v.copy()}
         reach = float(np.abs(x[[0, -1]]).max()) + session.chain.radius
         if reach > self.range.end and self.range.start == -self.range.end:
-            self.range.update(start=-1.3 * reach, end=1.3 * reach)
+            self.half = 1.3 * reach
+            self.range.update(start=-self.half, end=self.half)
 
 
 class Strip:
-    """Space and time: a row for each moment, the newest on top; a bar where two rods met."""
+    """Space and time: one row per moment, newest on top. A bar marks a collision."""
 
     def __init__(self, rods: Rods) -> None:
         self._rods = rods
@@ -121,9 +123,9 @@ class Strip:
         self.clear(1.0)
 
     def clear(self, row_time: float) -> None:
-        """Forget what was, and go on with so much time [T] from row to row."""
+        """Clear the strip and set the time between rows [T]."""
         self._row_time = row_time
-        self._half = float(self._rods.range.end)
+        self._half = self._rods.half
         self._image[:] = _EMPTY
         self._met_before = set()
         self._ages.update(start=ROWS * row_time, end=0)
@@ -131,7 +133,7 @@ class Strip:
 
     def add(self, session: Session, met: list[int]) -> None:
         """Add a row on top: the rods where they are, and the contacts where they met."""
-        if self._rods.range.end > 1.01 * self._half:
+        if self._rods.half > 1.01 * self._half:
             self.clear(self._row_time)
         self._image[1:] = self._image[:-1]
         self._image[0] = self._row(session, set(met))

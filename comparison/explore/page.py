@@ -1,7 +1,7 @@
-"""The page: the clock that moves the chain, and what follows from what a user does.
+"""The page runs a clock and reacts to the user.
 
-Every frame advances the session by the time that passed, at the speed chosen, within a budget of
-computing so that the page stays responsive; every few frames what was measured is drawn anew.
+In every frame the session advances by the elapsed time times the chosen speed, within a limit on
+computing time, so that the page stays responsive. The measurements are redrawn every few frames.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ from crazybilliards.model import Chain
 _PERIOD = 33  # ms from frame to frame
 _BUDGET = 0.012  # s of computing in a frame
 _STEP_BUDGET = 0.3  # s of computing until the next collision
-_LONGEST = 0.1  # s that a frame makes up for; a page that slept does not catch up
+_LONGEST = 0.1  # s; a frame advances by no more than this, even after a longer pause
 _FRAMES_PER_DRAWING = 8
 _STEPS_PER_ROW = 3
 _STEPPING_SPEED = 0.1  # at which Step goes on, if the speed is no slow one
@@ -43,10 +43,10 @@ _PUSH = 8.0  # widths of a free rod
 
 
 class Page:
-    """One page in one browser: its own chain, setting and clock.
+    """One page in one browser, with its own chain, setting and clock.
 
-    ``threads`` compute what takes a moment; what takes seconds is computed in a process of its
-    own, one at a time of all that share ``turn``.
+    ``threads`` run short computations. Long ones run in separate processes, one at a time for all
+    pages that share ``turn``.
     """
 
     def __init__(self, threads: Executor, turn: Lock) -> None:
@@ -77,7 +77,7 @@ class Page:
 
     def _listen(self) -> None:
         controls = self.controls
-        self.setting.param.watch(self._changed, self.setting.parameters())
+        self._watched = self.setting.param.watch(self._changed, self.setting.parameters())
         controls.preset.param.watch(self._take_preset, "value")
         controls.speed.param.watch(self._set_pace, "value")
         controls.quantity.param.watch(self._set_pace, "value")
@@ -88,7 +88,7 @@ class Page:
         controls.solve.on_click(self._ask_kinetic)
 
     def _poster(self) -> Callable[[Callable[[], None]], None]:
-        """Return what calls a function in this page's turn, unless the page has been closed."""
+        """Return a function that schedules calls on this page's event loop until it is closed."""
         loop = IOLoop.current()
 
         def in_turn(function: Callable[[], None]) -> None:
@@ -100,12 +100,15 @@ class Page:
     def _close(self, context: Any) -> None:
         self._closed = True
         self._kinetic.cancel()
+        # Panel keeps the setting of a closed page for ever, and through this watcher the page.
+        self.setting.param.unwatch(self._watched)
 
     # -- the clock --------------------------------------------------------------------------
 
     def _frame(self) -> None:
         if self._document.session_context.session.connection_count == 0:
-            return  # closed, and soon forgotten
+            self._kinetic.cancel()
+            return  # the browser has closed the page
         now = perf_counter()
         elapsed, self._last = min(now - self._last, _LONGEST), now
         self._frames += 1
@@ -124,7 +127,7 @@ class Page:
             self._poll_kinetic()
 
     def _advance(self, elapsed: float) -> None:
-        """Move the chain; in slow motion row by row of the strip."""
+        """Advance the chain; in slow motion, one row of the strip at a time."""
         speed = self.controls.speed.value
         if not self.controls.slow:
             self.session.advance(speed * elapsed, _BUDGET)
@@ -141,7 +144,7 @@ class Page:
         return float(self.controls.speed.value * _PERIOD / 1000)
 
     def _keep(self, time: float, collisions: int) -> None:
-        """Take down energy and collisions of a frame."""
+        """Record the energy and the collision rate of a frame."""
         session = self.session
         contacts = (session.chain.size - 1) * (session.time - time)
         rate = (session.collisions - collisions) / contacts
@@ -179,7 +182,7 @@ class Page:
         self._begin()
 
     def _begin(self) -> None:
-        """Show the session's chain as it is now, of which nothing was measured yet."""
+        """Show the session's chain without any measurements."""
         chain = self.session.chain
         self.controls.say("")
         self.controls.forget_preset()
@@ -197,7 +200,7 @@ class Page:
             self._elastic.ask(chain)
 
     def _set_pace(self, *events: Any) -> None:
-        """Take the steps that speed and pictures need."""
+        """Set the time step for the chosen speed and pictures."""
         controls = self.controls
         slow = controls.slow
         self.session.pace(
@@ -221,11 +224,13 @@ class Page:
         if preset.figure == "energy":
             self.controls.history.value = "energy"
             self._restart(event)
-        if preset.solved:
+        if preset.solved and self._kinetic.chain is None:
             self._ask_kinetic(event)
 
     def _step(self, event: Any) -> None:
         """Move on to the next collision, and say which rods met."""
+        if self.session.diverged:
+            return
         self.controls.play.value = False
         if not self.controls.slow:
             self.controls.speed.value = _STEPPING_SPEED

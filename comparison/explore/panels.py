@@ -1,8 +1,6 @@
-"""What is measured besides the density: velocity widths, their distributions, avalanches."""
+"""Pictures of velocity widths, velocity distributions and avalanche sizes."""
 
 from __future__ import annotations
-
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -10,6 +8,7 @@ from bokeh.models import ColumnDataSource, DataRange1d, LegendItem, Range1d
 
 from crazybilliards.comparison.explore.plots import (
     BLACK,
+    GREY,
     LABELS,
     THEORIES,
     Array,
@@ -26,9 +25,7 @@ _PAPERS_EXPONENT = -2.2  # of avalanche sizes at e = 0
 
 
 class Widths:
-    """The velocity widths building up, the free rod's width, and those of the kinetic equation."""
-
-    title = "velocity width of each rod"
+    """Measured velocity widths, the free rod's width, and those of the kinetic equation."""
 
     def __init__(self) -> None:
         plot = make_plot(
@@ -78,8 +75,6 @@ class Widths:
 
 class Velocities:
     """Velocity distributions at the border and in the middle, beside that of a free rod."""
-
-    title = "velocity distribution"
 
     def __init__(self) -> None:
         plot = make_plot(
@@ -137,34 +132,31 @@ class Velocities:
 class Avalanches:
     """Sizes of avalanches: how many collisions a hit triggers, in the paper's count."""
 
-    title = "avalanche sizes"
-
     def __init__(self) -> None:
         plot = make_plot(
             _HEIGHT,
             x_axis_type="log",
             y_axis_type="log",
-            x_range=Range1d(0.8, 100),
+            x_range=Range1d(0.8, 300),
             y_range=Range1d(1e-6, 2),
             x_axis_label="collisions triggered N (log)",
             y_axis_label="probability p(N)",
         )
         self.measured = ColumnDataSource({"size": [], "p": []}, name="avalanche sizes")
-        self.paper = ColumnDataSource({"size": [], "p": []})
+        self.paper = ColumnDataSource({"size": [], "p": []}, name="paper's avalanches")
         circles = plot.scatter("size", "p", source=self.measured, size=6, color=BLACK, fill_alpha=0)
-        line = plot.line("size", "p", source=self.paper, color="#767676", line_dash="dashed")
-        add_legend(
-            plot,
-            LegendItem(label="simulation", renderers=[circles]),
-            LegendItem(label="the paper's power law, exponent -2.2", renderers=[line]),
-        )
+        line = plot.line("size", "p", source=self.paper, color=GREY, line_dash="dashed")
+        self._item = LegendItem(label="the paper's power law, exponent -2.2", renderers=[line])
+        add_legend(plot, LegendItem(label="simulation", renderers=[circles]), self._item)
         self.plot = plot
 
     def begin(self, chain: Chain) -> None:
-        """Show only the slope of the paper."""
+        """Show only the paper's power law, which it states for e = 0."""
         self.measured.data = {"size": [], "p": []}
-        size = np.array([1.0, 100.0])
+        stated = chain.restitution == 0
+        size = np.array([1.0, 300.0] if stated else [])
         self.paper.data = {"size": size, "p": 0.6 * size**_PAPERS_EXPONENT}
+        self._item.visible = stated
 
     def show(self, session: Session, measured: xr.Dataset) -> None:
         """Show how many hits triggered how many collisions so far."""
@@ -172,6 +164,3 @@ class Avalanches:
         sizes = np.flatnonzero(counts) + 1
         if sizes.size:
             self.measured.data = {"size": sizes, "p": counts[sizes - 1] / counts.sum()}
-
-
-PANELS: tuple[Any, ...] = (Widths, Velocities, Avalanches)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Any
 
@@ -17,7 +18,7 @@ from crazybilliards.comparison.explore.theories import Densities
 from crazybilliards.comparison.explore.times import Times
 from crazybilliards.model import Chain
 
-# What each shows, in the order of the page.
+# Descriptions of the pictures, in page order.
 PICTURES = (
     "rods where they are, coloured by velocity",
     "space and time: where the rods were, and where they met",
@@ -54,7 +55,7 @@ class Pictures:
             )
         }
         self.legend = pn.pane.HTML(
-            "Where the rods were, the present on top. A short bar: two rods met.",
+            "Where the rods were, with the present at the top. A short bar marks a collision.",
             css_classes=["progress"],
         )
         self.measured = {
@@ -71,7 +72,7 @@ class Pictures:
         }
 
     def begin(self, session: Session) -> None:
-        """Show a chain of which nothing was measured yet."""
+        """Reset all pictures for a chain without measurements."""
         chain = session.chain
         self.rods.begin(chain)
         self.rods.show(session)
@@ -83,7 +84,7 @@ class Pictures:
             self.times.clear()
 
     def arrange(self, quantity: str, history: str, chain: Chain, strip: bool | None = None) -> None:
-        """Show what was chosen; the energy of flippers on a logarithmic axis."""
+        """Show the chosen pictures. For e > 1 the energy axis is logarithmic."""
         if history == "energy" and chain.restitution > 1:
             history = "log energy"
         for chosen, panes in ((quantity, self.measured), (history, self.in_time)):
@@ -105,11 +106,11 @@ class Pictures:
 
 
 def _trust(theory: xr.Dataset) -> str:
-    """Say in words what errors a theory states."""
-    kinds = {"model_error": "of the model", "mesh_error": "of the mesh"}
-    stated = [
-        f"{100 * theory.attrs[name]:.2g} % {of}"
-        for name, of in kinds.items()
-        if theory.attrs.get(name, float("nan")) >= 0
-    ]
-    return f"errors expected: {', '.join(stated)}" if stated else ""
+    """Return the error of a theory's model in words."""
+    error = float(theory.attrs.get("model_error", math.nan))
+    if error == 0:
+        return ""
+    quantity = "velocity widths" if "velocity_width" in theory else "the density"
+    if math.isnan(error):
+        return f"the error of {quantity} was not measured for such chains"
+    return f"expected error of {quantity}: {100 * error:.2g} %"

@@ -1,4 +1,4 @@
-"""What the pictures of the page have in common: type, colours, legends, and how they are thinned.
+"""Common fonts, colours, legends and thinning of the pictures.
 
 Colours are those of :mod:`crazybilliards.comparison.drawing`: the simulation black, each theory
 its own colour and dash.
@@ -76,16 +76,18 @@ def add_legend(plot: Any, *items: LegendItem) -> None:
 
 
 def thinned(x: Array, values: Array, most: int) -> tuple[Array, Array]:
-    """Return at most ``most`` points of a curve, lowest and highest of each stretch of it.
+    """Return at most ``most`` points of a curve, with the extremes of each of its intervals.
 
-    Every n-th point of an oscillating curve would be another curve, of a longer wave.
+    Every n-th point of an oscillating curve would show a false, longer wave.
     """
     if x.size <= most:
         return x, values
     length = -(-2 * x.size // most)
-    whole = x.size // length * length
-    stretches = values[:whole].reshape(-1, length)
+    # The last interval is filled up with its last value, which is then found at the end itself.
+    filled = np.pad(values, (0, -x.size % length), mode="edge")
+    x = np.pad(x, (0, -x.size % length), mode="edge")
+    stretches = filled.reshape(-1, length)
     extremes = np.stack([stretches.argmin(axis=1), stretches.argmax(axis=1)], axis=1)
     extremes.sort(axis=1)
     kept = (extremes + length * np.arange(stretches.shape[0])[:, None]).ravel()
-    return x[kept], values[kept]
+    return x[kept], filled[kept]

@@ -25,11 +25,11 @@ class Preset:
     look
         One sentence: what to look for.
     chain
-        The chain; off e = 1 the kinetic equation is solved for it where it is good.
+        The chain. See ``solved`` for the kinetic equation.
     quantity
         What is drawn beside the density.
     remark
-        What tells it from another preset of the same figure.
+        Distinguishes two presets of the same figure.
     """
 
     figure: str
@@ -47,7 +47,7 @@ class Preset:
 
     @property
     def solved(self) -> bool:
-        """Whether the kinetic equation is good for it, and not the exact solution better."""
+        """Whether the page solves the kinetic equation: 0.9 <= e <= 1.05, e != 1."""
         return 0.9 <= self.chain.restitution <= 1.05 and self.chain.restitution != 1
 
 

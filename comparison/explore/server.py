@@ -1,10 +1,8 @@
-"""Serving the page: on the loopback address, to pages that came from there.
+"""Serve the page on the loopback address.
 
-A program that listens on a port is open to more than its user: to other machines, and to every
-site that is open in a browser of this one. So it takes a flag to be reached from other machines;
-the websocket, through which a page talks to its chain, is open only to pages that came from the
-address served; and whoever asks for another name, as a site does whose name was made to point
-here, is told the right address and gets nothing else.
+Other machines and other sites in the browser could reach an open port. The server therefore
+listens on the loopback address unless a flag allows another one, accepts websockets only from
+pages it served, and answers requests under another host name with the right address.
 """
 
 from __future__ import annotations
@@ -55,8 +53,8 @@ def serve(
     KeyboardInterrupt
         On Ctrl-C.
     ValueError
-        If there is no such address here, it stands for all of them, it takes ``open_to_network``,
-        or the port is taken. The port has not been opened then.
+        If the address is not one of this machine, if it stands for all addresses, if it needs
+        ``open_to_network``, or if the port is taken. The port is not opened in these cases.
     """
     address = address.lower()  # as browsers name it
     number = _look_up(address)
@@ -68,8 +66,8 @@ def serve(
     port = _free_port(address, str(number), port)
     if not number.is_loopback:
         print(
-            f"crazybilliards: warning: whoever reaches {address} can open the page and keep this "
-            "machine computing; it asks for no password",
+            f"crazybilliards: warning: anybody who can reach {address} can open the page and use "
+            "this machine's processor; the page asks for no password",
             file=sys.stderr,
         )
     with announced(True):
@@ -95,7 +93,7 @@ def serve(
 def _make_server(
     new_page: Callable[[], pn.viewable.Viewable], address: str, number: str, port: int
 ) -> Server:
-    """Return a server of pages by these two names of its address, and by no other."""
+    """Return a server that answers only under these two names of its address."""
     origins = [f"{name}:{port}" for name in (address, number)]
     settings.allowed_ws_origin.set_value(origins)  # whatever BOKEH_ALLOW_WS_ORIGIN says
     server = pn.serve(
@@ -117,7 +115,7 @@ def _make_server(
 
 
 def _expect_closed_pages() -> None:
-    """Do not report that a frame was not delivered: somebody has closed the page."""
+    """Silence errors about frames that were sent to a closed page."""
 
     def worth_saying(record: logging.LogRecord) -> bool:
         return not (record.exc_info and isinstance(record.exc_info[1], WebSocketClosedError))
@@ -127,7 +125,7 @@ def _expect_closed_pages() -> None:
 
 
 class _WrongName(RequestHandler):
-    """Says where the page is to whoever asks for it by another name."""
+    """Tell a client that used another host name where the page is."""
 
     def initialize(self, url: str) -> None:
         self._url = url
@@ -135,11 +133,11 @@ class _WrongName(RequestHandler):
     def prepare(self) -> None:
         self.set_status(421)
         self.set_header("Content-Type", "text/plain")
-        self.finish(f"The page is at {self._url} and goes by no other name.\n")
+        self.finish(f"The page answers only at {self._url}\n")
 
 
 def _look_up(address: str) -> ipaddress.IPv4Address:
-    """Return the one address of this machine that is meant."""
+    """Return the address as a number."""
     try:
         number = ipaddress.IPv4Address(socket.gethostbyname(address))
     except (OSError, UnicodeError) as error:

@@ -1,10 +1,9 @@
 """A chain that moves while its parameters are changed: state, stepping in chunks, running sums.
 
 The kernels are those of :func:`crazybilliards.particles.simulate`, as are the default time step
-and the collision law. What differs is that nobody knows in advance how long it will run: sums
-are kept without blocks, hence without error bars, and start anew when a parameter is changed,
-after six relaxation times in which the chain forgets what it was. In slow motion the steps are
-shorter and collisions are resolved one by one.
+and the collision law. The duration is not known in advance. The sums are therefore kept without
+blocks and have no error bars. They start again when a parameter changes, after six relaxation
+times. In slow motion the steps are shorter and collisions are resolved one by one.
 """
 
 from __future__ import annotations
@@ -32,8 +31,7 @@ Array = NDArray[np.float64]
 _RELAXATIONS = 6
 _STRIDE = 10  # steps from snapshot to snapshot, as in simulate
 # Typical speeds beyond which the chain has blown up. Steady states of e > 1 stay within some tens
-# of them. simulate waits for 1e6, but its steps get slower with every collision: nobody wants to
-# look at that.
+# of them. simulate allows 1e6, but its steps become slow long before that.
 _DIVERGED = 1e3
 _MOST_ENERGIES = 20_000
 _SINGLE = 1 / 500  # of the usual time step: two collisions hardly ever fall into such a step
@@ -50,7 +48,7 @@ class Session:
     chain
         The chain; it must have noise, damping and springs.
     seed
-        Of the random numbers. The same seed, changes and durations give the same motion.
+        Seed of the random numbers. The same seed, changes and durations give the same motion.
 
     Attributes
     ----------
@@ -63,14 +61,14 @@ class Session:
     y, v
         Reduced positions [R] and velocities [R/T], shape (L,).
     diverged
-        Whether the chain blew up; it then stands still, in its last good state.
+        Whether the chain diverged. It then keeps its last finite state.
     energies
         The latest times [T] with the kinetic energy, of the chain as it is now.
 
     Raises
     ------
     ValueError
-        If the chain has no steady state whatever its restitution; here and in :meth:`change`.
+        If the chain has no steady state at any restitution. :meth:`change` raises it too.
 
     Examples
     --------
@@ -100,8 +98,8 @@ class Session:
     def change(self, chain: Chain) -> None:
         """Go on with other parameters and measure anew.
 
-        Rods stay where they are and keep their velocities, whatever becomes of their anchors. A
-        chain of another size, or one that has diverged, starts anew.
+        Rods keep their positions and velocities even if their anchors move. A chain of another
+        size, or one that has diverged, starts anew. A rod that was held is let go.
         """
         kept = chain.size == self.chain.size and not self.diverged
         self._prepare(chain)
@@ -154,14 +152,13 @@ class Session:
         return [int(contact) for contact in met]
 
     def hold(self, rod: int, x: float) -> None:
-        """Take hold of a rod, counted from 0, and keep it at x [R]; it pushes others aside."""
+        """Hold a rod, counted from 0, at x [R]. It pushes other rods aside."""
         self._held = rod, x - float(self._offsets[rod])
         self._keep_hold()
         self.measured_from = math.inf
 
     def release(self) -> None:
         """Let go of the rod that is held, from rest, and measure anew."""
-        self._held = None
         self._measure_anew()
 
     def push(self, rod: int, speed: float) -> None:
@@ -206,7 +203,7 @@ class Session:
         return self._sums.distributions()
 
     def avalanche_sizes(self) -> NDArray[np.int64]:
-        """Return how many hits triggered 0, 1, 2, ... collisions, shape (L,), if counted."""
+        """Return how many hits triggered 0, 1, 2, ... collisions while measured, shape (L,)."""
         return np.asarray(self._tally.triggered.sizes.sum(axis=0))
 
     def _prepare(self, chain: Chain) -> None:
@@ -243,7 +240,6 @@ class Session:
     def _begin(self, y: Array, v: Array) -> None:
         self.time, self.collisions, self.diverged = 0.0, 0, False
         self.y, self.v = y, v
-        self._held = None
         self._measure_anew()
         self.measured_from = 0.0
 
@@ -251,7 +247,9 @@ class Session:
         return self.time + _RELAXATIONS * relaxation_time(self.chain)
 
     def _measure_anew(self) -> None:
+        self._held = None
         self.measured_from = self._relaxed()
+        self._tally.triggered.sizes[:] = 0
         self._sums = Sums(self.chain)
         self.energies: deque[tuple[float, float]] = deque(maxlen=_MOST_ENERGIES)
 
@@ -270,7 +268,7 @@ class Session:
         self.y[right] = np.maximum(self.y[right], y)
 
     def _take(self, steps: int, dynamics: Dynamics) -> None:
-        """Take some steps and a snapshot; nothing of it if the chain blows up on the way."""
+        """Take some steps and a snapshot; restore the previous state if the chain diverges."""
         before = self.y.copy(), self.v.copy()
         state = self.y, self.v, self._noise
         tally = self._tally if dynamics is self._single or self._resolved else self._silent
@@ -285,3 +283,5 @@ class Session:
         self.energies.append((self.time, self.kinetic_energy))
         if self.time > self.measured_from:
             self._sums.add(self.positions, self.v)
+        else:
+            self._tally.triggered.sizes[:] = 0

@@ -1,4 +1,4 @@
-"""What a user sets on the page: the parameters of a chain with the range of each."""
+"""The chain parameters that the user can set, with their ranges."""
 
 from __future__ import annotations
 
@@ -11,11 +11,13 @@ from panel.widgets import EditableFloatSlider, EditableIntSlider, Select, Widget
 
 from crazybilliards.model import Chain
 
+_LONGEST = 20  # letters of a wrong value that are shown
+
 
 class Setting(param.Parameterized):
     """The parameters of the chain, named as those of :class:`crazybilliards.model.Chain`."""
 
-    # A chain whose rods have room: one sees them collide.
+    # The default rods have room, so that collisions are visible.
     size = param.Integer(20, bounds=(2, 300))
     restitution = param.Number(1.0, bounds=(0.0, 1.1))
     amplitude = param.Number(10.0, bounds=(0.1, 30.0))
@@ -45,14 +47,14 @@ class Setting(param.Parameterized):
         }
 
     def take_query(self, query: str) -> None:
-        """Take over the query of an address, ``?size=30&amplitude=2``: all of it or nothing.
+        """Set the parameters from a query, ``?size=30&amplitude=2``.
 
-        Names that are none of ours are left to others.
+        If one value is wrong, none is set. Unknown names are ignored.
 
         Raises
         ------
         ValueError
-            If a parameter is not a number, or not in its range; nothing has changed then.
+            If a parameter is not a number, or not in its range; the setting is then unchanged.
         """
         asked = {
             name: text
@@ -67,7 +69,7 @@ class Setting(param.Parameterized):
             except ValueError:
                 wrong[name] = text
         if wrong:
-            said = ", ".join(f"{name}={text}" for name, text in wrong.items())
+            said = ", ".join(f"{name}={_shortened(text)}" for name, text in wrong.items())
             raise ValueError(
                 f"The address asks for {said}, which this page does not take. Nothing of the "
                 f"address was used. It takes {self._ranges(wrong)}."
@@ -113,3 +115,9 @@ class Setting(param.Parameterized):
             *sliders,
             Select.from_param(self.param.spring, name="spring"),
         ]
+
+
+def _shortened(text: str) -> str:
+    """Return the beginning of a text on one line."""
+    line = " ".join(text.split())
+    return line if len(line) <= _LONGEST else line[:_LONGEST] + "..."

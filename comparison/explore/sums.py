@@ -27,7 +27,7 @@ class Distributions(NamedTuple):
 
 
 class Sums:
-    """What was measured of a chain, from the first snapshot added on.
+    """Sums of the measurements since the first snapshot.
 
     Attributes
     ----------
@@ -79,7 +79,7 @@ class Sums:
         return Distributions(self._v, *both)
 
     def _make_room(self, reach: float) -> None:
-        """Widen the grid, on nodes it would have had from the start, if rods are beyond it."""
+        """Extend the grid on the same nodes if rods leave it."""
         room = self.x[-1] - 4 * self._chain.radius  # smoothing spreads a rod by that
         if reach < room:
             return

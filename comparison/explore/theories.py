@@ -1,4 +1,4 @@
-"""The theories beside the moving chain, computed elsewhere so that it keeps moving."""
+"""Theories beside the simulation, computed outside the event loop."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def kinetic_density(chain: Chain) -> dict[str, xr.Dataset]:
 
 
 class Background:
-    """A computation of a moment for whichever chain is asked for last, one at a time.
+    """Short computation for the latest requested chain, one at a time.
 
     Parameters
     ----------
@@ -83,7 +83,7 @@ class Background:
 
 
 class Solver:
-    """A computation of many seconds, in a process that can be ended.
+    """Long computation in a process that can be stopped.
 
     Parameters
     ----------
@@ -111,19 +111,17 @@ class Solver:
         self.chain = chain
 
     def poll(self) -> Densities | BaseException | None:
-        """Go on, and return the outcome once, or what the job raised; to be called often."""
+        """Start or check the computation; return its result or error once, else None."""
         if self.chain is None:
             return None
         if self._process is None or self._answer is None:
-            if self._turn.acquire(blocking=False):
-                self._begin(self.chain)
-            return None
+            return self._begin(self.chain) if self._turn.acquire(blocking=False) else None
         # A process that has ended without an answer has closed its end.
         if not self._answer.poll():
             return None
         try:
             outcome: Densities | BaseException = self._answer.recv()
-        except EOFError:
+        except (EOFError, OSError):
             outcome = ValueError("the computation was ended from outside")
         self.cancel()
         return outcome
@@ -140,15 +138,22 @@ class Solver:
         self._process = self._answer = None
         self._turn.release()
 
-    def _begin(self, chain: Chain) -> None:
+    def _begin(self, chain: Chain) -> OSError | None:
+        """Start a process; return the error if the system refuses one."""
         context = multiprocessing.get_context("spawn")
-        self._answer, there = context.Pipe(duplex=False)
-        self._process = context.Process(
-            target=_compute, args=(self._job, chain, there), daemon=True
-        )
-        self._process.start()
-        there.close()
-        self._began = monotonic()
+        answer, there = context.Pipe(duplex=False)
+        process = context.Process(target=_compute, args=(self._job, chain, there), daemon=True)
+        try:
+            process.start()
+        except OSError as error:
+            answer.close()
+            self.chain = None
+            self._turn.release()
+            return error
+        finally:
+            there.close()
+        self._process, self._answer, self._began = process, answer, monotonic()
+        return None
 
 
 def _compute(job: Callable[[Chain], Densities], chain: Chain, answer: Connection) -> None:
@@ -158,3 +163,5 @@ def _compute(job: Callable[[Chain], Densities], chain: Chain, answer: Connection
         answer.send(job(chain))
     except ValueError as error:
         answer.send(error)
+    except Exception as error:
+        answer.send(ValueError(f"{type(error).__name__}: {error}"))

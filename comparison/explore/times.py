@@ -1,4 +1,4 @@
-"""Kinetic energy and collisions in time, and what a chain teaches that runs away."""
+"""Kinetic energy and collision rate in time, and an explanation of divergence."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _GROWN = 10.0  # times the energy of free rods: beyond, noise hardly counts
 
 
 class Times:
-    """Kinetic energy, and collisions per contact and time, as they go.
+    """Kinetic energy, and collisions per contact and time.
 
     The energy's axis is logarithmic for e > 1, where it may grow without end.
     """
@@ -64,17 +64,17 @@ class Times:
         return make_plot(_HEIGHT, x_axis_label="time t [T]", y_axis_label=label, **settings)
 
     def begin(self, chain: Chain) -> None:
-        """Know the mean energy of free rods, L T/2."""
+        """Set the chain and remove the fitted growth."""
         self._chain = chain
         self._show_growth({"time": [], "energy": []})
 
     def clear(self) -> None:
-        """Forget the past: the clock was set back."""
+        """Clear the curves after the clock was reset."""
         self.source.data = {"time": [], "energy": [], "free": [], "rate": []}
         self._show_growth({"time": [], "energy": []})
 
     def show(self, rows: Sequence[tuple[float, float, float]]) -> None:
-        """Go on by some times, each with its energy and rate of collisions."""
+        """Append rows of time, energy and collision rate."""
         time, energy, rate = map(list, zip(*rows, strict=True))
         free = [self._chain.size * self._chain.temperature / 2] * len(rows)
         self.source.stream(
@@ -82,8 +82,10 @@ class Times:
         )
 
     def explain_divergence(self, energies: Iterable[tuple[float, float]]) -> str:
-        """Draw how the energy grew, and say why it did, for a chain that has diverged."""
+        """Draw how the energy of a diverged chain grew, and return the reason in words."""
         chain = self._chain
+        if chain.restitution <= 1:
+            return "A rod was moved so far that the time step cannot follow it. Press Reset."
         words = (
             f"The chain runs away. Each collision at e = {chain.restitution:g} adds energy, and "
             f"the damping γ = {chain.damping:g} takes out less than that. "

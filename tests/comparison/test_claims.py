@@ -38,7 +38,8 @@ from crazybilliards.particles import simulate
         (-0.49, 0.01, None),  # within three errors, but these are large
         (-0.52, 0.01, False),
         (-0.46, 0.2, None),
-        (np.nan, 0.01, False),
+        (np.nan, 0.01, None),
+        (np.nan, np.inf, None),
         (-0.46, np.nan, None),
     ],
 )
@@ -58,12 +59,12 @@ def test_numbers(value, error, holds):
     assert chosen.verdict == expected[holds]
 
 
-@pytest.mark.parametrize("truth", [0.0, 0.9, 2.0, 6.0, 30.0])
+@pytest.mark.parametrize("truth", [0.0, 0.9, 6.0, 30.0])
 def test_a_short_simulation_decides_like_a_long_one_or_not_at_all(truth):
     """Of 300 short and long runs with a number off by ``truth`` precisions, errors 9 to 1.
 
-    Only numbers that are off by 1 to 5 precisions may come out in a short run and not in a long
-    one: it holds up to 3, and three of its errors are 2 at most.
+    Numbers that are off by 1 to 5 precisions are left out: they may come out in a short run and not
+    in a long one, because a number holds up to 3, and three of its errors are 2 at most.
     """
     rng = np.random.default_rng(5)
     precision, contradicted = 0.01, 0
@@ -73,7 +74,7 @@ def test_a_short_simulation_decides_like_a_long_one_or_not_at_all(truth):
             for e in (error, error / 9)
         )
         contradicted += {short.verdict, long.verdict} == {"confirmed", "refuted"}
-    assert contradicted == 0 or 1 < truth < 5
+    assert contradicted == 0
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,7 @@
 """The page of ``crazybilliards explore`` in a browser."""
 
 import os
+from urllib.parse import quote
 
 import numpy as np
 import pytest
@@ -43,8 +44,6 @@ def type_number(browser, index, text):
     from selenium.webdriver.common.keys import Keys
 
     field = elements(browser, "input.bk-input")[index]
-    listen = "arguments[0].addEventListener('change', () => { window.typed = performance.now(); })"
-    browser.execute_script(listen, field)
     field.send_keys(Keys.END, *[Keys.BACKSPACE] * 8, text, Keys.ENTER)
 
 
@@ -152,7 +151,7 @@ def test_a_preset_shows_its_panel_and_solves_the_kinetic_equation(browser, addre
     choose(browser, tails.label)
     # All v are likely that were seen, and a Gaussian reaches no further than this.
     v = np.array(until(lambda: column(browser, "velocity distribution", "v")))
-    assert 1 < abs(v).max() < 6
+    assert 1 < abs(v).max() < 5.9
     assert errors(browser) == []
 
 
@@ -161,11 +160,14 @@ def test_solving_can_be_cancelled_and_asked_for_again(browser, address):
     def solving():
         return [text for text in texts(browser, "button") if "olv" in text]
 
-    visit(browser, address, "?size=100&restitution=0.95&amplitude=1&gap=0")
+    # A chain that takes long, so that the button still cancels when it is pressed.
+    visit(browser, address, "?size=300&restitution=0.5&amplitude=1&gap=0")
     press(browser, "Solve")
     until(lambda: solving()[0].startswith("Solving"))
     press(browser, "Solving")
     until(lambda: solving() == ["Solve the kinetic equation"])
+    assert not column(browser, "kinetic density", "x")
+    visit(browser, address, "?size=100&restitution=0.95&amplitude=1&gap=0")
     press(browser, "Solve")
     until(lambda: column(browser, "kinetic density", "x"))
     assert errors(browser) == []
@@ -182,6 +184,15 @@ def test_an_address_is_taken_whole_or_not_at_all(browser, address):
     fields = [each.get_attribute("value") for each in elements(browser, "input.bk-input")]
     assert [float(value) for value in fields[:5]] == [20, 1, 10, 1, 1]
     assert errors(browser) == []
+
+
+@pytest.mark.compiled
+def test_what_an_address_asks_for_is_shown_as_text(browser, address):
+    script = "<script>window.ran=1</script><img src=x onerror='window.ran=1'>"
+    visit(browser, address, f"?amplitude={quote(script)}&gap={quote(script[26:])}")
+    until(lambda: "amplitude=<script>" in said(browser))
+    assert not elements(browser, ".alert script, .alert img")
+    assert browser.execute_script("return window.ran") is None
 
 
 @pytest.mark.compiled

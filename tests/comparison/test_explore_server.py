@@ -151,7 +151,7 @@ def test_pages_from_elsewhere_may_not(port, origin):
 def test_a_foreign_name_that_points_here_gets_nothing_but_the_address(port, host, path):
     status, text = get(port, f"{host}:{port}", path)
     assert status == 421
-    assert text == f"The page is at http://localhost:{port}/ and goes by no other name.\n"
+    assert text == f"The page answers only at http://localhost:{port}/\n"
 
 
 def test_only_loopback_listens(port):
