@@ -121,7 +121,7 @@ class Session:
     def advance(self, duration: float, budget: float = math.inf) -> None:
         """Move on by ``duration`` [T], or as far as ``budget`` seconds of computing go.
 
-        Whole steps are taken; what is left over is added to the next duration.
+        Only whole steps are taken; the remaining time is added to the next duration.
         """
         due = duration / self._dynamics.step.time_step + self._owed
         steps, self._owed = int(due), due % 1

@@ -106,7 +106,7 @@ class Solver:
         return monotonic() - self._began if self._process else 0.0
 
     def ask(self, chain: Chain) -> None:
-        """Compute for this chain; what is under way is given up."""
+        """Compute for this chain; stop a computation under way."""
         self.cancel()
         self.chain = chain
 

@@ -230,7 +230,6 @@ def test_thinning_keeps_the_extremes_of_an_oscillating_curve():
     step = np.where(np.arange(1499) < 1495, 0.0, 1.0)
     seen, shown = thinned(np.arange(1499.0), step, 500)
     assert shown[-1] == 1
-    assert seen[-1] == 1498
     assert (np.diff(seen) >= 0).all()
 
 
