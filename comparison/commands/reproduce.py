@@ -126,9 +126,9 @@ def _print_list() -> None:
     listed = []
     for group in groups().values():
         for study in group:
-            number = study.number if isinstance(study, PaperFigure) else ""
+            number = study.number if isinstance(study, PaperFigure) else None
             listed.append({"number": number, "name": study.name, "title": study.title})
-            say(f"{number:3}  {study.name:28s} {study.title}")
+            say(f"{number or '':3}  {study.name:28s} {study.title}")
     note(studies=listed)
 
 
