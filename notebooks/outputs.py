@@ -36,12 +36,15 @@ def smaller(picture):
 
 def keep(script):
     """Write the notebook of a script with the outputs of its execution."""
+    from nbconvert.preprocessors import CoalesceStreamsPreprocessor  # the tests have no nbconvert
+
     executed = nbformat.read(EXECUTED / f"{script.stem}.ipynb", as_version=4)
     if fingerprint(executed) != fingerprint(jupytext.read(script)):
         raise SystemExit(f"{script.name} is newer than its execution; run: make render")
     paired = {"cell_metadata_filter": "tags,-all", "formats": "ipynb,py:percent"}
     metadata = {"jupytext": paired, "kernelspec": executed.metadata.kernelspec}
     executed.metadata = nbformat.from_dict({**metadata, "executed": fingerprint(executed)})
+    executed, _ = CoalesceStreamsPreprocessor().preprocess(executed, {})
     for number, cell in enumerate(executed.cells):
         cell.id = f"cell-{number}"
         tags = cell.metadata.get("tags", [])

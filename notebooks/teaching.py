@@ -53,10 +53,11 @@ def right(answer, expected, *, at=(), tolerance=1e-6):
 def check(answer, expected, *, at=(), hint, tolerance=1e-6):
     """Say whether an answer is missing, right, or wrong; a wrong one is given a hint.
 
-    A missing answer is ``...``, or a function that returns None.
+    A missing answer is ``...``, or a function that returns this or None.
     """
     try:
-        if answer is ... or (at and answer(*at[0]) is None):
+        given = answer(*at[0]) if at else answer
+        if given is ... or given is None:
             print("Your turn: replace the dots, and run the cell again.")
         elif right(answer, expected, at=at, tolerance=tolerance):
             print("Right.")
