@@ -35,7 +35,7 @@ from IPython.display import HTML
 from matplotlib.animation import FuncAnimation
 from matplotlib.patches import Rectangle
 from scipy.optimize import isotonic_regression
-from teaching import COLOURS, GREEN, RED, agree, check, panels, right
+from teaching import COLOURS, RED, agree, check, panels, right
 
 from crazybilliards.comparison import standalone_page
 from crazybilliards.model import Chain
