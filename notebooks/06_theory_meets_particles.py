@@ -22,11 +22,11 @@
 # theory of *gases* predict where the rods are?
 #
 # [Mani, Böttcher, Herrmann and Helbing](https://arxiv.org/abs/1404.7460) answer with a force
-# balance: the pressure of a gas of hard rods holds the springs. This lesson repeats their
+# balance: the pressure of a gas of hard rods balances the springs. This lesson repeats their
 # calculation. It compares the result with a force balance that needs no fit, and with the exact
 # solution. At the end you know which of the three is right, where, and why.
 #
-# *Level: third year. You need: lesson 4, sections 1 and 5; the pressure of a gas. Time: 60
+# *Level: third year. You need: lesson 4, sections 1 to 5; the pressure of a gas. Time: 60
 # minutes.*
 
 # %% tags=["hide-input"]
@@ -161,7 +161,7 @@ assert abs(fit.scale / s - 1.41) < 0.03
 # $\langle\Delta x\rangle = x - (2R+g)(N - L/2)$, where $g$ is the gap between anchors, here 0. The
 # equation now contains only $\rho$, and `force_balance` solves it as a boundary-value problem.
 #
-# **The exact solution.** [Lesson 4](04_the_elastic_chain_is_exactly_solvable.ipynb), section 1,
+# **The exact solution.** [Lesson 4](04_the_elastic_chain_is_exactly_solvable.ipynb), sections 1 and 3,
 # derives it. Subtract the rods' own length from their positions. In this reduced coordinate the
 # rods are the **order statistics** of 100 independent Gaussian numbers.
 
