@@ -230,7 +230,7 @@ assert labels_off.maximum < paper_off.maximum < 0.04
 # describe single rods.
 # </details>
 #
-# ## 5. Is the fit to blame?
+# ## 5. Does the error come from the fit?
 #
 # [Lesson 4](04_the_elastic_chain_is_exactly_solvable.ipynb), section 5, explains why an arctanh fits
 # the mean displacement at all, and compares it with Blom's formula.

@@ -145,7 +145,7 @@ plt.show()
 # In $y$ the stationary chain is a Gaussian cloud of width $s$. Such a cloud *breathes*: its width
 # $\sigma(t)$ changes, and its form does not. [Lesson
 # 4](04_the_elastic_chain_is_exactly_solvable.ipynb), section 7, shows this for elastic rods and
-# solves it exactly. Here we look at the same motion with the eyes of a fluid. The flow is
+# solves it exactly. Here we describe the same motion by the equations of the fluid. The flow is
 # $V = (\sigma'/\sigma)\,y$, and the equations of section 1 reduce to two ordinary differential
 # equations:
 #
@@ -228,7 +228,7 @@ assert max(off) < 1e-3  # hydrodynamics, and the exact solution of the package
 # heat. So the first term is negative: the rods *cool*, to less than half of $W_0^2$, and the push
 # becomes weaker. The second term is then positive: the noise returns heat, but only at the rate
 # $2\gamma/m$, which is no faster than the chain moves. The isothermal fluid is kept at $W_0^2$ by
-# assumption. It receives heat from nowhere while it expands, and the push carries it to 1.56 $s$.
+# assumption. The model adds heat while it expands, and the push carries it to 1.56 $s$.
 #
 # At rest the assumption is right, because $W^2 = W_0^2$ holds in the steady state for $e = 1$. **A
 # closure that is right in the steady state can be wrong on the way to it.**
