@@ -51,9 +51,12 @@ def keep(script):
         cell.metadata = nbformat.from_dict({"tags": tags} if tags else {})
         if HIDDEN.intersection(tags):
             cell.metadata["jupyter"] = {"source_hidden": True}  # as JupyterLab knows it
-        for output in cell.get("outputs", []):
+        if cell.cell_type != "code":
+            continue
+        # A widget shows nothing without its kernel.
+        cell.outputs = [output for output in cell.outputs if WIDGET not in output.get("data", {})]
+        for output in cell.outputs:
             data = output.get("data", {})
-            data.pop(WIDGET, None)  # shows nothing without its kernel
             if "image/png" in data:
                 data["image/png"] = smaller(data["image/png"])
     nbformat.write(executed, script.with_suffix(".ipynb"))
