@@ -31,6 +31,15 @@ def test_they_are_numbered_and_paired():
 
 
 @each_notebook
+def test_a_lesson_is_in_the_list_of_lessons(path):
+    pages = FOLDER.parent / "docs"
+    table = (pages / "notebooks.md").read_text(encoding="utf-8")
+    assert f"](notebooks/{path.name})" in table
+    needs = (pages / "teach_a_week.md").read_text(encoding="utf-8").split("needs which")[1]
+    assert f"\n| {int(path.stem[:2])} |" in needs
+
+
+@each_notebook
 def test_a_notebook_is_its_script(path):
     """Mend with: make render LESSON=NN."""
     notebook, script = (jupytext.read(path.with_suffix(end)) for end in (".ipynb", ".py"))
@@ -70,6 +79,9 @@ def test_what_a_student_sees(path):
     assert not any(line.lstrip().startswith("assert ") for line in lines)
     assert any("your code here" in line for line in lines)
     assert any(line.startswith("check(") for line in lines)
+    text = "\n".join(cell.source for cell in notebook.cells if cell.cell_type == "markdown")
+    assert text.count("<details>") == text.count("</details>")
+    assert text.count("**Predict") <= text.count("**Run")
 
 
 def wrong(x):
