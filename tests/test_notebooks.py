@@ -58,6 +58,9 @@ def test_outputs_belong_to_the_code(path):
     assert notebook.metadata.get("executed") == fingerprint(jupytext.read(path.with_suffix(".py")))
     code = [cell for cell in notebook.cells if cell.cell_type == "code"]
     assert [cell.execution_count for cell in code] == list(range(1, len(code) + 1))
+    hidden = [cell for cell in code if HIDDEN.intersection(cell.metadata.get("tags", []))]
+    assert hidden
+    assert all(cell.metadata.jupyter.source_hidden for cell in hidden)  # for JupyterLab
     outputs = [output for cell in code for output in cell.outputs]
     assert any("image/png" in output.get("data", {}) for output in outputs)
     assert not any(output.get("name") == "stderr" for output in outputs)
