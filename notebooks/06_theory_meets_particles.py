@@ -51,6 +51,7 @@ from crazybilliards.particles import simulate
 # %%
 chain = Chain(size=100, amplitude=10)
 W, s = chain.free_velocity_width, chain.thermal_length
+k, m, R = chain.stiffness, chain.mass, chain.radius
 print(f"velocity width W = {W:.3f} R/T, thermal length s = {s:.2f} R")
 
 # %% [markdown]
@@ -112,13 +113,6 @@ plt.show()
 #
 # **Task.** Write the right side of this equation as a function.
 
-# %%
-k, m, R = chain.stiffness, chain.mass, chain.radius
-
-
-def slope(density, displacement): ...  # your code here
-
-
 # %% tags=["remove-cell"]
 def slope_solution(density, displacement):
     return -k / (m * W**2) * displacement * density * (1 - 2 * R * density) ** 2
@@ -128,7 +122,12 @@ places = [(0.4, 5.0), (0.1, -12.0)]
 assert right(slope_solution, slope_solution, at=places)
 assert not right(lambda *given: -slope_solution(*given), slope_solution, at=places)
 
+
 # %%
+def slope(density, displacement):
+    return ...  # your code here
+
+
 hint = "the springs pull inwards: with a displacement above 0 the density falls with x"
 check(slope, slope_solution, at=places, hint=hint)
 

@@ -299,10 +299,6 @@ assert largest < 1e-3
 # of sound $c$ as a function of the density.
 
 
-# %%
-def sound_speed(density): ...  # your code here
-
-
 # %% tags=["remove-cell"]
 def sound_speed_solution(density):
     return W / (1 - 2 * chain.radius * density)
@@ -312,7 +308,12 @@ densities = [(0.0,), (0.1,), (0.4,)]
 assert right(sound_speed_solution, sound_speed_solution, at=densities)
 assert not right(lambda density: W, sound_speed_solution, at=densities)
 
+
 # %%
+def sound_speed(density):
+    return ...  # your code here
+
+
 hint = "differentiate p with the quotient rule, and take the square root"
 check(sound_speed, sound_speed_solution, at=densities, hint=hint)
 

@@ -88,10 +88,6 @@ for e in (0.9, 1.0, 1.05):
 # as a function of the two velocities and of $e$.
 
 
-# %%
-def gain(v, u, e): ...  # your code here
-
-
 # %% tags=["remove-cell"]
 def gain_solution(v, u, e):
     return (e**2 - 1) / 4 * (v - u) ** 2
@@ -105,7 +101,12 @@ assert np.isclose(gained, gain_solution(*cases[1]))
 assert right(gain_solution, gain_solution, at=cases)
 assert not right(lambda v, u, e: 2 * gain_solution(v, u, e), gain_solution, at=cases)
 
+
 # %%
+def gain(v, u, e):
+    return ...  # your code here
+
+
 hint = "each point changes its velocity by (1 - e)/2 of the relative velocity"
 check(gain, gain_solution, at=cases, hint=hint)
 

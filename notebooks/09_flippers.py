@@ -30,7 +30,7 @@
 # \sqrt{M/k}$ for times. Between collisions rod $i$ obeys $m\ddot x = -\gamma\dot x - F(x - x_i^0) +
 # A\,\xi(t)$ with white noise $\xi$. Linear springs have $F(d) = k d$, quadratic ones $F(d) = k d|d|$.
 #
-# *Level: third year. You need: lesson 8, sections 1 and 5; a separable differential equation. Time:
+# *Level: master. You need: lesson 8, sections 1 and 5; a separable differential equation. Time:
 # 100 minutes.*
 
 # %% tags=["hide-input"]
@@ -115,8 +115,7 @@ assert 35 < end.mean() < 45
 # Above the critical size $L_c$ the energy grows exponentially. The paper has this balance in words
 # and proportionalities, $\dot E\sim C_fE-\gamma E$ with an unknown collision frequency $C_f$.
 #
-# **Task.** Write the rate of growth $\dot E/E$ as a function. Keep $(e^2-1)/2$, and do not replace it
-# by $e - 1$.
+# The numbers of our chain:
 
 # %%
 L, e, m, k, gamma = 100, linear.restitution, linear.mass, linear.stiffness, linear.damping
@@ -124,8 +123,9 @@ critical = np.pi * gamma / ((e - 1) * np.sqrt(k * m))
 first_order = gamma / m * (L / critical - 1)
 print(f"L_c = {critical:.1f} rods; rate with e - 1: {first_order:.4f} per T")
 
-
-def growth_rate(L, e): ...  # your code here
+# %% [markdown]
+# **Task.** Write the rate of growth $\dot E/E$ as a function. Keep $(e^2-1)/2$, and do not replace it
+# by $e - 1$.
 
 
 # %% tags=["remove-cell"]
@@ -142,7 +142,12 @@ assert not right(
 )
 unexpanded = growth_rate_solution(L, e)
 
+
 # %%
+def growth_rate(L, e):
+    return ...  # your code here
+
+
 hint = "the gain of half a period, divided by half a period, minus gamma/m"
 check(growth_rate, growth_rate_solution, at=chains, hint=hint)
 
