@@ -137,9 +137,9 @@ _SAME = (
 )
 
 
-# docutils puts the index of a letter with dots below the letter, as if it were a limit.
+# docutils puts the index of a letter with dots or a bar below the letter, as if it were a limit.
 _ACCENT = re.compile(
-    r"<munderover>\s*(<mi>\w</mi>)\s*(<(m\w+)>.*?</\3>)\s*(<mo[^>]*>[¨˙]</mo>)\s*</munderover>",
+    r"<munderover>\s*(<mi>\w</mi>)\s*(<(m\w+)>.*?</\3>)\s*(<mo[^>]*>.</mo>)\s*</munderover>",
     re.DOTALL,
 )
 _TAG = re.compile(r"\\tag\{(.*?)\}")

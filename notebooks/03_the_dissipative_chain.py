@@ -422,7 +422,7 @@ plt.show()
 # therefore be quoted with the range of its fit and with the time step.
 #
 # The scatter between the runs is larger than the error that one run claims, because avalanches that
-# meet end together and are not independent.
+# meet go on and end together.
 #
 # </details>
 #
