@@ -108,20 +108,28 @@ assert sp.simplify(noise - A**2 / (2 * m**2) * phase * (((v - V) / W**2) ** 2 - 
 # $\rho/\sqrt{2\pi}$, without the $1/W_v$ of `eq2`. Which value has its integral over $v$? Write it
 # with the symbols `rho` and `W`.
 
+# %% tags=["remove-cell"]
+printed_15 = rho / sp.sqrt(2 * sp.pi) * sp.exp(-((v - V) ** 2) / (2 * W**2))
+printed_15 = sp.simplify(sp.integrate(printed_15, (v, -sp.oo, sp.oo)))
+assert printed_15 == rho * W
+
+
+def at_a_point(expression):
+    """A number for an expression, to compare expressions of different form; dots stay dots."""
+    return expression if expression is ... else sp.sympify(expression).subs({rho: 0.3, W: 0.5})
+
+
+assert right(at_a_point(W * rho), at_a_point(printed_15))
+assert not right(at_a_point(rho), at_a_point(printed_15))
+
 # %%
 integral_of_15 = ...  # your code here
-main_text = rho * P * W  # (15) as printed
-as_numbers = {rho: 0.3, W: 0.5}
-printed_15 = sp.integrate(main_text, (v, -sp.oo, sp.oo)).subs(as_numbers)
-answer = ... if integral_of_15 is ... else sp.sympify(integral_of_15).subs(as_numbers)
-check(answer, float(printed_15), hint="A Gaussian needs the factor 1/W for the integral 1.")
 
-# %% tags=["remove-cell"]
-assert right((rho * W).subs(as_numbers), float(printed_15))
-assert not right(rho.subs(as_numbers), float(printed_15))
-printed_as = rho / sp.sqrt(2 * sp.pi) * sp.exp(-((v - V) ** 2) / (2 * W**2))
-assert sp.simplify(printed_as - main_text) == 0
-assert sp.simplify(sp.integrate(main_text, (v, -sp.oo, sp.oo)) - rho * W) == 0
+check(
+    at_a_point(integral_of_15),
+    at_a_point(printed_15),
+    hint="The integral of a Gaussian of width W is 1 with the prefactor 1 / (sqrt(2 pi) W).",
+)
 
 # %% [markdown]
 # <details><summary>Solution</summary>
