@@ -7,11 +7,12 @@ BIN    := $(VENV)/bin
 OLDEST := .venv-lowest
 OUTPUT ?= results
 QUALITY ?= quick
+LESSON ?= [0-9]
 CHECK_PYTHON := $(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
   { echo "Python 3.11 or later is needed; name one with: make PYTHON=python3.12 ..."; exit 1; }
 ROOMS  := model particles kinetic comparison
 
-.PHONY: help run test test-lowest torture coverage check audit reproduce notebooks browser docs \
+.PHONY: help run test test-lowest torture coverage check audit reproduce notebooks render browser docs \
   linkcheck benchmark clean
 .DEFAULT_GOAL := help
 
@@ -25,6 +26,7 @@ help:
 	@echo "make audit      look up known vulnerabilities of every package used (needs the network)"
 	@echo "make reproduce  draw every figure and check every claim of the paper (4 min; QUALITY=full 1 h)"
 	@echo "make notebooks  execute the notebooks, into build/notebooks/"
+	@echo "make render     write the notebooks from their scripts, with outputs (LESSON=03: only that one)"
 	@echo "make docs       build the documentation into build/docs/ and execute its examples"
 	@echo "make linkcheck  look up every address the pages point to (needs the network)"
 	@echo "make benchmark  measure the speed"
@@ -70,14 +72,21 @@ reproduce: $(VENV)/installed
 
 # Copies of the notebooks are executed, and the documentation shows their outputs.
 notebooks: $(VENV)/installed-notebooks
-	rm -rf build/notebooks
 	mkdir -p build/notebooks
-	cp notebooks/*.ipynb build/notebooks
-	$(BIN)/python -m pytest -n 2 --nbmake --nbmake-timeout=300 --overwrite build/notebooks
-	touch build/notebooks/executed
+	rm -f build/notebooks/$(LESSON)*.ipynb
+	cp notebooks/$(LESSON)*.ipynb notebooks/teaching.py build/notebooks
+	$(BIN)/python -m pytest -n 2 --nbmake --nbmake-timeout=300 --overwrite build/notebooks/$(LESSON)*.ipynb
+	test "$(LESSON)" != "[0-9]" || touch build/notebooks/executed
 
-build/notebooks/executed: $(wildcard notebooks/*.ipynb)
+build/notebooks/executed: $(wildcard notebooks/*.ipynb) notebooks/teaching.py
 	$(MAKE) notebooks
+
+# The committed notebooks show their outputs on the web. A test compares code and outputs.
+render: $(VENV)/installed-notebooks
+	$(BIN)/jupytext --quiet --update --to ipynb notebooks/$(LESSON)*.py
+	$(MAKE) notebooks
+	$(BIN)/python notebooks/outputs.py notebooks/$(LESSON)*.py
+	test "$(LESSON)" != "[0-9]" || touch build/notebooks/executed
 
 # The test of the page needs a browser and is skipped without one. Root on Debian can install it.
 browser:

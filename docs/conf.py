@@ -137,6 +137,11 @@ _SAME = (
 )
 
 
+# docutils puts the index of a letter with dots or a bar below the letter, as if it were a limit.
+_ACCENT = re.compile(
+    r"<munderover>\s*(<mi>\w</mi>)\s*(<(m\w+)>.*?</\3>)\s*(<mo[^>]*>.</mo>)\s*</munderover>",
+    re.DOTALL,
+)
 _TAG = re.compile(r"\\tag\{(.*?)\}")
 
 
@@ -150,6 +155,7 @@ def mathml(node, **options) -> str:
     except MathError as error:
         logger.warning("formula %r: %s", formula, error, location=node)
         return f"<code>{escape(formula)}</code>"
+    text = _ACCENT.sub(r'<msub><mover accent="true">\1\4</mover>\2</msub>', text)
     # Bars are brackets, not signs between two things; averages keep the height of the line.
     text = re.sub(r'<mo( class="math\w+")?>(?=[|\u2223]</mo>)', '<mo lspace="0" rspace="0">', text)
     return re.sub(r"<mo>(?=[⟨⟩]</mo>)", '<mo stretchy="false">', text)

@@ -1,6 +1,7 @@
 # ---
 # jupyter:
 #   jupytext:
+#     cell_metadata_filter: tags,-all
 #     formats: ipynb,py:percent
 #     text_representation:
 #       extension: .py
@@ -16,19 +17,23 @@
 # %% [markdown]
 # # Theory meets particles
 #
-# **Question.** A hundred hard rods sit on a line, touching, each tied to its own anchor by a damped
-# spring and shaken by noise. They collide elastically. Can the theory of *gases* tell where they are?
+# **Question.** A hundred hard rods lie on a line, and each one touches its neighbours. A damped
+# spring ties each rod to its own anchor, and noise shakes it. The rods collide elastically. Can a
+# theory of *gases* predict where the rods are?
 #
-# The answer of [Mani, Böttcher, Herrmann and Helbing](https://arxiv.org/abs/1404.7460) is a force
-# balance: the pressure of a gas of hard rods against the springs. This notebook repeats their
-# analytics section, puts a theory without any fit beside it, and then the exact solution. At the
-# end you know which of the three is right, where, and why.
+# [Mani, Böttcher, Herrmann and Helbing](https://arxiv.org/abs/1404.7460) answer with a force
+# balance: the pressure of a gas of hard rods balances the springs. This lesson repeats their
+# calculation. It compares the result with a force balance that needs no fit, and with the exact
+# solution. At the end you know which of the three is right, where, and why.
 #
-# Everything below runs in well under a minute (the first run compiles for some seconds more).
+# *Level: third year. You need: lesson 4, sections 1 to 5; the pressure of a gas. Time: 60
+# minutes.*
 
-# %%
+# %% tags=["hide-input"]
 import matplotlib.pyplot as plt
 import numpy as np
+from scipy.special import ndtri
+from teaching import GREEN, ORANGE, PINK, agree, check, panels, right
 
 from crazybilliards.comparison import deviation, fit_arctanh, overlay, smooth
 from crazybilliards.kinetic import equilibrium, force_balance
@@ -38,107 +43,157 @@ from crazybilliards.particles import simulate
 # %% [markdown]
 # ## 1. The chain
 #
-# Between collisions rod $i$ obeys $m\ddot x = -\gamma\dot x - k(x - x^0_i) + A\,\xi(t)$. Lengths are in
-# units of the rod radius $R$. Without collisions each rod would be a Brownian oscillator: its
-# velocity Gaussian with width $W = A/\sqrt{2m\gamma}$, its displacement with $s = \sqrt{T/k}$,
-# $T = mW^2$.
+# Between collisions rod $i$ obeys $m\ddot x = -\gamma\dot x - k(x - x^0_i) + A\,\xi(t)$. The unit
+# of length is the rod radius $R$. Without collisions each rod would be a Brownian oscillator. Its
+# velocity would be Gaussian with the width $W = A/\sqrt{2m\gamma}$, and its displacement Gaussian
+# with the width $s = W\sqrt{m/k}$.
 
 # %%
 chain = Chain(size=100, amplitude=10)
 W, s = chain.free_velocity_width, chain.thermal_length
-print(f"velocity width W = {W:.3f}, thermal length s = {s:.2f} R")
+k, m, R = chain.stiffness, chain.mass, chain.radius
+print(f"velocity width W = {W:.3f} R/T, thermal length s = {s:.2f} R")
 
 # %% [markdown]
-# **Predict.** The rods are 200 R long in all and $s = 7$ R. Will the chain with collisions be
-# longer than 200 R? By about $s$? More? And will collisions change the velocities' width?
+# **Predict.** The rods are 200 R long in all, and $s = 7$ R. How far, in units of $s$, do the
+# collisions push the outermost rods away from their anchors? Do collisions change the width of the
+# velocities?
 #
 # **Run.**
 
 # %%
 run = simulate(chain, duration=100_000, replicas=2, seed=1, progress=False)
-run
-
-# %%
-fig, (left, right) = plt.subplots(1, 2, figsize=(10, 3.4), layout="constrained")
-overlay({"simulation": run}, "mean_displacement", ax=left)
-overlay({"simulation": run}, "velocity_width", ax=right)
-left.axhline(s, color="0.6", label="s")
-right.axhline(W, color="#E69F00", label="W, free rods")
-for ax in (left, right):
-    ax.legend()
-
-# %% [markdown]
-# **Explain.** The outermost rods are pushed out by $2.5\,s$. The velocities do not notice the
-# collisions at all: at restitution 1 the stationary state is an equilibrium state, and there the
-# velocities are independent of the positions.
-
-# %%
 outermost = run.mean_displacement.values[-1] / s
-pulls = (run.velocity_width - W) / run.velocity_width_error
-print(f"outermost rod: {outermost:.3f} s")
-print(f"velocity widths: off by at most {abs(pulls).max():.1f} standard errors")
+print(f"mean displacement of the outermost rod: {outermost:.3f} s")
+agree("velocity widths and W", run.velocity_width, W, run.velocity_width_error)
+
+# %% tags=["remove-cell"]
 assert 2.4 < outermost < 2.6
-assert abs(pulls).max() < 5
+
+# %% tags=["hide-input"]
+left, right_panel = panels(2)
+overlay({"simulation": run}, "mean_displacement", ax=left)
+overlay({"simulation": run}, "velocity_width", ax=right_panel)
+left.axhline(s, color="0.6", label="s")
+right_panel.axhline(W, color=ORANGE, label="W, free rods")
+right_panel.set_ylim(0.98 * W, 1.02 * W)
+left.legend()
+right_panel.legend()
+plt.show()
 
 # %% [markdown]
+# <details><summary>Explain</summary>
+#
+# Collisions push the outermost rods out by $2.5\,s$. They do not change the velocities. For
+# $e = 1$ the steady state is a state of thermal equilibrium, and in equilibrium the velocities are
+# independent of the positions.
+# </details>
+#
 # ## 2. The density
 #
-# The paper bins the density by the *fraction of each bin that rods cover*, and then takes a running
-# average over a rod length. Both are convolutions with a box of length $2R$; `smooth` does both.
-# Compare densities only after the same smoothing.
+# The paper bins the density by the *fraction of each bin that rods cover*. Then it takes a running
+# average over the length of a rod. Both steps are convolutions with a box of length $2R$, and
+# `smooth` does both. Two densities can be compared only after the same smoothing.
 
 # %%
-ax = overlay({"simulation": smooth(run)})
+ax = overlay({"simulation": smooth(run)}, ax=panels(width=6))
 ax.axhline(chain.close_packed_density, color="0.6", linewidth=1)
-ax.text(0, chain.close_packed_density - 0.005, "close packing", ha="center", va="top", color="0.4")
-ax.set_ylim(0, 0.53);
+ax.text(0, 0.505, "close packing", ha="center", color="0.4")
+ax.set_ylim(0, 0.55)
+plt.show()
 
 # %% [markdown]
 # ## 3. The gas-kinetic force balance
 #
-# The pressure of hard rods with velocity variance $W^2$ is $\rho W^2/(1-2R\rho)$ (times $m$). Its
-# gradient balances the springs, $-k\langle\Delta x\rangle$ per rod:
+# Hard rods with the velocity variance $W^2$ and the density $\rho$ have the pressure
+# $m\rho W^2/(1-2R\rho)$. In the steady state the gradient of the pressure balances the springs. The
+# spring of a rod pulls with $-k\langle\Delta x\rangle$ on average, so
 #
 # $$\rho' = -\frac{k}{mW^2}\,\langle\Delta x\rangle(x)\;\rho\,(1-2R\rho)^2 .$$
 #
-# One thing is missing: the mean displacement $\langle\Delta x\rangle(x)$ of the rods found at $x$.
+# **Task.** Write the right side of this equation as a function.
+
+# %% tags=["remove-cell"]
+def slope_solution(density, displacement):
+    return -k / (m * W**2) * displacement * density * (1 - 2 * R * density) ** 2
+
+
+places = [(0.4, 5.0), (0.1, -12.0)]
+assert right(slope_solution, slope_solution, at=places)
+assert not right(lambda *given: -slope_solution(*given), slope_solution, at=places)
+
+
+# %%
+def slope(density, displacement):
+    return ...  # your code here
+
+
+hint = "the springs pull inwards: with a displacement above 0 the density falls with x"
+check(slope, slope_solution, at=places, hint=hint)
+
+# %% [markdown]
+# <details><summary>Solution</summary>
 #
-# **The paper's route**: measure it in the simulation, fit $B\,\mathrm{arctanh}(Cx)$, integrate.
+# ```python
+# def slope(density, displacement):
+#     return -k / (m * W**2) * displacement * density * (1 - 2 * R * density) ** 2
+# ```
+# </details>
+#
+# The equation needs one more thing: the mean displacement $\langle\Delta x\rangle(x)$ of the rods
+# found at $x$. We compare two ways to get it.
+#
+# **The paper's way.** Measure the displacement in the simulation, fit $B\,\mathrm{arctanh}(Cx)$ to
+# it, and integrate the equation.
 
 # %%
 fit = fit_arctanh(run)
 print(f"B = {fit.scale / s:.2f} s, 1/C = {1 / fit.steepness:.1f} R, misfit {fit.misfit:.3f} R")
 paper = force_balance(chain, displacement=fit)
+
+# %% tags=["remove-cell"]
 assert abs(fit.scale / s - 1.41) < 0.03
 
 # %% [markdown]
-# **A route without a fit**: the $N$-th rod from the left belongs to the $N$-th anchor, so
-# $\langle\Delta x\rangle = x - (2R+g)(N - L/2)$ with the label $N(x) = \int\rho$. That closes the
-# equation; it is solved as a boundary-value problem.
+# **A way without any fit.** The $N$-th rod from the left belongs to the $N$-th anchor. At $x$ the
+# number of rods to the left is $N(x) = \int_{-\infty}^x\rho$. Therefore
+# $\langle\Delta x\rangle = x - (2R+g)(N - L/2)$, where $g$ is the gap between anchors, here 0. The
+# equation now contains only $\rho$, and `force_balance` solves it as a boundary-value problem.
+#
+# **The exact solution.** [Lesson 4](04_the_elastic_chain_is_exactly_solvable.ipynb), sections 1 and 3,
+# derives it. Subtract the rods' own length from their positions. In this reduced coordinate the
+# rods are the **order statistics** of 100 independent Gaussian numbers.
 
 # %%
 labels = force_balance(chain)
-
-# %% [markdown]
-# **The exact solution.** Take the rods' own length out, $y_i = x_i - 2R(i - \frac{L+1}{2})$. The rods
-# become points that may touch but not pass, and elastic collisions leave the Gibbs measure of
-# *ordered* points unchanged. Without gaps all anchors coincide in $y$: the rods are the **order
-# statistics** of 100 independent Gaussian draws.
-
-# %%
 exact = equilibrium(chain)
-print(f"residual of the recursion: {exact.attrs['residual']:.1e}")
+print(f"error of the numerical solution: {exact.attrs['residual']:.1e}")
+
+# %% tags=["remove-cell"]
+# The solution by labels obeys the equation of the task.
+given = labels.density.values, labels.displacement.values
+assert abs(np.gradient(given[0], labels.x.values) - slope_solution(*given)).max() < 1e-5
 
 # %% [markdown]
 # ## 4. All of it in one picture
+#
+# **Predict.** Which of the three theories is closest to the simulation? Where along the chain is
+# the largest error of the other two?
+#
+# **Run.**
 
 # %%
 results = {
     "simulation": smooth(run),
     "exact": smooth(exact),
-    "force balance, by labels": smooth(labels),
+    "force balance, without any fit": smooth(labels),
     "force balance, arctanh fit": smooth(paper),
 }
+for name in list(results)[1:]:
+    d = deviation(results["simulation"], results[name])
+    print(f"{name:30s} largest difference {100 * d.maximum:.1f} % of close packing")
+
+# %% tags=["hide-input"]
 fig, (above, below) = plt.subplots(
     2, 1, figsize=(7, 5), sharex=True, height_ratios=(3, 1.4), layout="constrained"
 )
@@ -154,74 +209,91 @@ for name, result in results.items():
 overlay(differences, ax=below)
 above.set_xlabel("")
 below.set_xlim(-150, 150)
-below.set_ylabel(r"difference $\times 2R$");
+below.set_ylabel(r"minus exact, $\times 2R$")
+plt.show()
 
-# %%
-for name in list(results)[1:]:
-    d = deviation(results["simulation"], results[name])
-    print(f"{name}: max {d.maximum:.4f}, rms {d.rms:.4f} of close packing;")
-    print(f"    at most {d.maximum_in_errors:.1f} standard errors")
-
+# %% tags=["remove-cell"]
 exact_off = deviation(results["simulation"], results["exact"])
-labels_off = deviation(results["simulation"], results["force balance, by labels"])
+labels_off = deviation(results["simulation"], results["force balance, without any fit"])
 paper_off = deviation(results["simulation"], results["force balance, arctanh fit"])
 assert exact_off.maximum < 0.01
 assert exact_off.maximum_in_errors < 5
 assert labels_off.maximum < paper_off.maximum < 0.04
 
 # %% [markdown]
-# **Explain.** Simulation and exact solution agree within the error bars, everywhere. The two force
-# balances are off by about 3 % of close packing, and only near the ends of the chain: there a few
-# rods share the slope, and a fluid knows no single rods. The fit adds its own error, but it is not
-# the main one: *the force balance with the arctanh is about as good as the force balance can be*.
+# <details><summary>Explain</summary>
 #
-# ## 5. Where does the arctanh come from?
+# The exact solution agrees with the simulation everywhere within five standard errors. The two
+# force balances are wrong by about 3 % of close packing, and only near the ends of the chain. The
+# density falls to zero there within a few rods. A fluid describes a smooth density and cannot
+# describe single rods.
+# </details>
 #
-# Nothing in the chain makes an arctanh. The mean displacement of rod $i$ is the expected $i$-th order
-# statistic, close to $s\,\Phi^{-1}\!\big((i-\frac38)/(L+\frac14)\big)$ (Blom). Over most of the chain
-# the two curves can hardly be told apart.
+# ## 5. Does the error come from the fit?
+#
+# [Lesson 4](04_the_elastic_chain_is_exactly_solvable.ipynb), section 5, explains why an arctanh fits
+# the mean displacement at all, and compares it with Blom's formula.
+#
+# **Predict.** Replace the fit by the *exact* mean displacement. By how much does the error of the
+# force balance fall?
+#
+# **Run.**
 
 # %%
-from scipy.special import ndtri
+best = force_balance(chain, displacement=exact)
+for name, result in (("exact displacement", best), ("arctanh fit", paper)):
+    error = deviation(smooth(exact), smooth(result)).maximum
+    print(f"force balance with the {name}: wrong by {100 * error:.1f} % of close packing")
 
+# %% tags=["hide-input"]
 i = exact.particle.values
 blom = s * ndtri((i - 3 / 8) / (chain.size + 1 / 4))
 position = exact.mean_position.values
-fig, ax = plt.subplots(figsize=(6, 3), layout="constrained")
-ax.plot(position, blom - exact.mean_displacement, label="Blom's quantile", color="#009E73")
-ax.plot(
-    position, fit(position) - exact.mean_displacement, ":", label="arctanh fit", color="#CC79A7"
-)
-ax.set_xlabel("mean position x [R]")
-ax.set_ylabel("minus exact [R]")
+ax = panels(width=6, height=3)
+ax.plot(position, blom - exact.mean_displacement, label="Blom's formula", color=GREEN)
+ax.plot(position, fit(position) - exact.mean_displacement, ":", label="arctanh fit", color=PINK)
+ax.set(xlabel="mean position x [R]", ylabel="displacement minus exact [R]")
 ax.legend()
+plt.show()
+
+# %% tags=["remove-cell"]
 assert np.abs(blom - exact.mean_displacement).max() < 0.01 * s
 assert np.abs(fit(position) - exact.mean_displacement).max() < 0.05 * s
+best_off = deviation(smooth(exact), smooth(best)).maximum
+assert 0.8 < best_off / deviation(smooth(exact), smooth(paper)).maximum < 1
 
 # %% [markdown]
+# <details><summary>Explain</summary>
+#
+# The error falls only from 3.1 % to 2.8 %. The picture shows the reason: the fit is wrong by less
+# than 0.1 R, a hundredth of $s$. The arctanh is a good description of the displacement, and the
+# remaining error belongs to the force balance itself.
+# </details>
+#
 # ## Exercises
 #
-# **1.** Repeat section 4 for $A = 1$. Which theory breaks down, where, and why there?
+# **1.** Repeat section 4 for $A = 1$. Which theory fails, where, and why there?
 #
 # <details><summary>Solution</summary>
 #
-# `chain.replace(amplitude=1)` gives $s = 0.7$ R: the rods hardly move, the chain is nearly a crystal.
-# Exact solution and simulation still agree; both force balances are off by some 14 % of close
-# packing within the last rod or two, where the fluid smears the half rod beyond the last label over
-# a Gaussian tail. Inside, they are right to better than 1 %.
+# `chain.replace(amplitude=1)` gives $s = 0.7$ R. The rods hardly move, and the chain is nearly a
+# crystal. The exact solution and the simulation still agree. Both force balances are wrong by some
+# 14 % of close packing at the outermost rod, because a fluid has a smooth tail where the chain ends
+# with half a rod. Inside the fourth rod from each end, they are right to better than 1 %.
 # </details>
 #
 # **2.** Put gaps between the anchors, `gap=0.2`. Does the arctanh still fit the displacement?
 #
 # <details><summary>Solution</summary>
 #
-# No: inside the chain the rods now have room, and the displacement has a plateau at zero that no
-# arctanh has (the misfit at $A = 10$ grows from 0.02 R to 0.4 R, and the density of the paper's route
-# is off by 13 %). The force balance by labels knows about the gap and stays at 2-3 %.
+# No. Inside the chain the rods now have room, so their mean displacement is zero on a plateau. An
+# arctanh has no plateau. At $A = 10$ the misfit grows from 0.02 R to 0.4 R, and the density of the
+# paper's force balance is wrong by 13 %. The force balance without any fit contains the gap, and
+# its error stays at 2 to 3 %.
 # </details>
 #
-# **3.** The label closure holds for any spring. Compare it with `equilibrium` for `spring="quadratic"`
-# without a simulation at all.
+# **3.** The force balance without any fit works for every spring. Compare it with `equilibrium` for
+# `spring="quadratic"`. You need no simulation.
 #
 # <details><summary>Solution</summary>
 #

@@ -1,6 +1,7 @@
 # ---
 # jupyter:
 #   jupytext:
+#     cell_metadata_filter: tags,-all
 #     formats: ipynb,py:percent
 #     text_representation:
 #       extension: .py
@@ -17,39 +18,44 @@
 # # Flippers
 #
 # **Question.** The flippers of a pinball machine throw the ball back faster than it came. A hundred
-# rods on springs do that to one another: every collision multiplies their relative velocity by
-# $e = 1.01$. Damping works against it. The energy grows without end, but *how*: exponentially, or
-# to infinity in a finite time? And what decides?
+# rods on springs do the same to one another: every collision multiplies their relative velocity by
+# $e = 1.01$. Damping takes energy out. In this chain the energy grows without end. Does it grow
+# exponentially, or does it become infinite in a finite time? What decides which?
 #
-# [Mani, Böttcher, Herrmann and Helbing](https://arxiv.org/abs/1404.7460) saw both. This notebook
-# repeats their simulations, derives the two laws from one balance of energy, and then finds that
-# the second one hides a third actor.
+# [Mani, Böttcher, Herrmann and Helbing](https://arxiv.org/abs/1404.7460) found both. This lesson
+# repeats their simulations and explains the two laws by a balance of energy. Then it shows that the
+# balance is not enough for the second law.
 #
-# Units: the rod radius $R$ for lengths, $M$ for masses (a rod has $m = 4\pi/3\,M$), $T =
+# The units are the rod radius $R$ for lengths, $M$ for masses (a rod has $m = 4\pi/3\,M$), and $T =
 # \sqrt{M/k}$ for times. Between collisions rod $i$ obeys $m\ddot x = -\gamma\dot x - F(x - x_i^0) +
-# A\,\xi(t)$ with white noise $\xi$; $F(d) = k d$ for linear springs, $k d|d|$ for quadratic ones.
+# A\,\xi(t)$ with white noise $\xi$. Linear springs have $F(d) = k d$, quadratic ones $F(d) = k d|d|$.
 #
-# Everything below runs in well under a minute (the first run compiles for some seconds more).
+# *Level: master. You need: lesson 8, sections 1 and 5; a separable differential equation. Time:
+# 100 minutes.*
 
-# %%
+# %% tags=["hide-input"]
 import matplotlib.pyplot as plt
 import numpy as np
 from IPython.display import HTML
 from matplotlib.animation import FuncAnimation
 from scipy.integrate import quad
 from scipy.optimize import linear_sum_assignment
+from teaching import BLUE, GREEN, ORANGE, agree, check, mean_and_error, panels, right
 
 from crazybilliards.comparison import fit_growth, fit_singularity, standalone_page, tail_length
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
 
-BLUE, ORANGE, GREEN, PINK = "#0072B2", "#E69F00", "#009E73", "#CC79A7"
-
 # %% [markdown]
-# ## 1. Two springs, two fates
+# ## 1. Two springs
 #
-# Both chains have the same rods, the same restitution, the same damping and the same noise. All
-# rods start at rest, at their anchors. Only the springs differ.
+# Two chains have the same rods, the same restitution, the same damping and the same noise. All rods
+# start at rest, at their anchors. Only the springs differ.
+#
+# **Predict.** How does the energy of each chain grow with time? Think of a straight line on a
+# logarithmic scale, of a curve that bends down, and of one that bends up.
+#
+# **Run.** We simulate twelve runs for each kind of spring.
 
 # %%
 linear = Chain(size=100, restitution=1.01, damping=0.4)
@@ -64,71 +70,102 @@ def release(chain, seed, **settings):
 seeds = range(12)
 slow = [release(linear, seed, duration=150, time_step=0.02, every=0.2) for seed in seeds]
 fast = [release(quadratic, seed, duration=100, time_step=0.002, every=0.1) for seed in seeds]
+end = np.array([run.attrs["end_time"] for run in fast])
+print("status of the quadratic runs:", {run.attrs["status"] for run in fast})
+print(f"they end at t = {end.mean():.1f} T, with a standard deviation of {end.std(ddof=1):.1f} T")
 
-fig, ax = plt.subplots(figsize=(7, 3.8), layout="constrained")
+# %% tags=["hide-input"]
+ax = panels(width=7)
 for runs, colour, name in ((slow, BLUE, "linear springs"), (fast, ORANGE, "quadratic springs")):
     for run in runs:
         ax.semilogy(run.time, run.kinetic_energy, color=colour, linewidth=0.8, alpha=0.7)
     ax.plot([], [], color=colour, label=name)
 ax.set(xlabel="time t [T]", ylabel=r"kinetic energy [M R$^2$/T$^2$]", ylim=(1, 1e12))
-_ = ax.legend(frameon=False)
+ax.legend(frameon=False)
+plt.show()
 
-# %% [markdown]
-# Every line is a run with noise of its own. Linear springs give a straight line on this scale: an
-# exponential. With quadratic springs all runs shoot up at about the same time, near 40 T, and there
-# is nothing after that. The chain did not stop, and the program did not fail:
-
-# %%
-end = np.array([run.attrs["end_time"] for run in fast])
-print("status of the quadratic runs:", {run.attrs["status"] for run in fast})
-print(f"they end at t = {end.mean():.1f} T, give or take {end.std(ddof=1):.1f} T")
+# %% tags=["remove-cell"]
 assert all(run.attrs["status"] == "diverged" for run in fast)
 assert all(run.attrs["status"] == "completed" for run in slow)
 assert all(np.isfinite(run.kinetic_energy).all() for run in fast)
 assert 35 < end.mean() < 45
 
 # %% [markdown]
-# **A divergence is a result.** `simulate` stops when a rod is a million times faster than a
-# typical one. It gives back everything measured before, with the status `diverged` and the time
-# `end_time`; there is never a NaN in it. (A long run on linear springs ends in the same way. It
-# only takes much longer: an exponential reaches any speed.)
-
-# %% [markdown]
+# <details><summary>Explain</summary>
+#
+# Every line is a run with its own noise. With linear springs the energy becomes a straight line on
+# this scale, so it grows exponentially. With quadratic springs the energy of all runs grows faster
+# and faster, and becomes infinite at nearly the same time, near 40 T.
+#
+# **A divergence is a result.** `simulate` stops when a rod is a million times faster than a typical
+# one. It returns everything that it has measured before, with the status `diverged` and the time
+# `end_time`. The result never contains a NaN. (A long run on linear springs ends in the same way, but
+# much later, because an exponential reaches every speed.)
+# </details>
+#
 # ## 2. Linear springs: one balance of energy
 #
-# Take the rods' own length out, $y_i = x_i - 2R(i - \frac{L+1}{2})$. The rods become points with
-# one common anchor at $y = 0$. Exchange the labels of two points when they collide: then they pass
-# *through* one another, and the collision only multiplies their relative velocity by $e$.
-#
-# **One pair.** The distance $r = y_i - y_j$ is an oscillator, $m\ddot r = -\gamma\dot r - kr$. Two
-# points meet when $r = 0$, once in half a period $\pi\sqrt{m/k}$ (weak damping), whatever the
-# amplitude. All the energy of their relative motion, $E_{ij} = \frac m4\dot r^2 + \frac k4 r^2$, is
-# then kinetic, and the encounter adds $(e^2-1)E_{ij}$.
-#
-# **All pairs.** With the centre of mass at rest, $\sum_{i<j} E_{ij} = \frac L2 E$. So half a period
-# brings $(e^2-1)\frac L2 E \approx (e-1)LE$. Damping takes $2\gamma/m$ times the kinetic energy per
-# time, which is half of $E$: $\gamma/m$ per time, $\pi\gamma/\sqrt{km}$ in half a period. Together
+# [Lesson 8](08_beyond_restitution_one.ipynb), section 5, derives the balance of energy for linear
+# springs. In half a period $\pi\sqrt{m/k}$ each pair of rods meets once, and the encounters add
+# $(e^2-1)\frac L2E \approx (e-1)LE$ to the energy $E$. Damping takes $\frac\gamma mE$ per time. So
 #
 # $$\dot E = \frac\gamma m\left(\frac L{L_c} - 1\right)E,\qquad
 # L_c = \frac{\pi\gamma}{(e-1)\sqrt{km}} .$$
 #
-# Above the critical size $L_c$ the energy grows exponentially. The paper has this balance in words and
-# proportionalities, $\dot E\sim C_fE-\gamma E$ with an unknown collision frequency $C_f$. The rate and
-# $L_c$ are derived here.
+# Above the critical size $L_c$ the energy grows exponentially. The paper has this balance in words
+# and proportionalities, $\dot E\sim C_fE-\gamma E$ with an unknown collision frequency $C_f$.
 #
-# **Predict.** What are $L_c$ and the rate here? How much changes if you keep $(e^2-1)/2 = 0.01005$
-# instead of $e - 1 = 0.01$?
+# The numbers of our chain:
 
 # %%
 L, e, m, k, gamma = 100, linear.restitution, linear.mass, linear.stiffness, linear.damping
 critical = np.pi * gamma / ((e - 1) * np.sqrt(k * m))
 first_order = gamma / m * (L / critical - 1)
-unexpanded = (e**2 - 1) / 2 * L / (np.pi * np.sqrt(m / k)) - gamma / m
-print(f"L_c = {critical:.1f} rods")
-print(f"rate: {first_order:.4f} per T; with e^2 - 1 not expanded {unexpanded:.4f} per T")
+print(f"L_c = {critical:.1f} rods; rate with e - 1: {first_order:.4f} per T")
 
 # %% [markdown]
-# **Run.** Fit an exponential where the energy is above $10^3$: there the noise no longer matters.
+# **Task.** Write the rate of growth $\dot E/E$ as a function. Keep $(e^2-1)/2$, and do not replace it
+# by $e - 1$.
+
+
+# %% tags=["remove-cell"]
+def growth_rate_solution(L, e):
+    return (e**2 - 1) / 2 * L / (np.pi * np.sqrt(m / k)) - gamma / m
+
+
+chains = [(100, 1.01), (200, 1.01), (50, 1.05)]
+assert right(growth_rate_solution, growth_rate_solution, at=chains)
+assert not right(
+    lambda L, e: gamma / m * (L * (e - 1) * np.sqrt(k * m) / np.pi / gamma - 1),
+    growth_rate_solution,
+    at=chains,
+)
+unexpanded = growth_rate_solution(L, e)
+
+
+# %%
+def growth_rate(L, e):
+    return ...  # your code here
+
+
+hint = "the gain of half a period, divided by half a period, minus gamma/m"
+check(growth_rate, growth_rate_solution, at=chains, hint=hint)
+
+# %% [markdown]
+# <details><summary>Solution</summary>
+#
+# ```python
+# def growth_rate(L, e):
+#     return (e**2 - 1) / 2 * L / (np.pi * np.sqrt(m / k)) - gamma / m
+# ```
+#
+# The rate is 0.0608 per T here. With $e - 1$ it is 0.0600 per T.
+# </details>
+#
+# **Predict.** Does the simulation tell the two rates apart?
+#
+# **Run.** We fit an exponential where the energy is above $10^3$, because the noise no longer
+# matters there.
 
 
 # %%
@@ -138,50 +175,45 @@ def beyond(time, energy, threshold):
     return time[first:], energy[first:]
 
 
-def mean_and_error(values):
-    """Return the mean of independent values and its standard error."""
-    return np.mean(values), np.std(values, ddof=1) / np.sqrt(len(values))
-
-
 fits = [fit_growth(*beyond(run.time.values, run.kinetic_energy.values, 1e3)) for run in slow]
 rate, rate_error = mean_and_error([fit.rate for fit in fits])
-print(f"measured rate: {rate:.4f} +- {rate_error:.4f} per T")
-assert abs(rate - unexpanded) < 5 * rate_error
+print(f"measured rate: {rate:.4f} +- {rate_error:.4f} per T, from twelve runs")
+print(f"error that one fit gives: {fits[0].rate_error:.5f} per T")
+print(f"scatter of the fits:      {np.std([fit.rate for fit in fits], ddof=1):.5f} per T")
+
+# %% tags=["hide-input"]
+agree("measured rate and the balance with e^2 - 1", rate, unexpanded, rate_error)
+
+# %% tags=["remove-cell"]
 assert abs(rate / first_order - 1) < 0.02
+assert abs(rate - first_order) > 5 * rate_error
 
 # %% [markdown]
-# **Explain.** The balance without expansion gives the rate within its error; the first order is 1 %
-# off, as it should be when $e - 1$ is 1 %. Nothing was fitted. The error bar is the scatter between
-# twelve independent runs. One fit alone claims to be more certain than that, because the energy of
-# a single run wanders slowly about its mean growth:
-
-# %%
-print(f"error that one fit gives: {fits[0].rate_error:.5f}")
-print(f"scatter of the fits:      {np.std([fit.rate for fit in fits], ddof=1):.5f}")
-
-# %% [markdown]
+# <details><summary>Explain</summary>
+#
+# Yes. The balance with $(e^2-1)/2$ gives the measured rate within its error, and nothing was fitted.
+# The first order is 1 % lower. This is expected, because $e - 1$ is 1 %.
+#
+# The error is the scatter of twelve independent runs divided by $\sqrt{12}$. One fit alone gives too
+# small an error, because the energy of a single run wanders slowly about its mean growth.
+# </details>
+#
 # ## 3. The cloud in phase space
 #
-# A point on a linear spring runs round the origin of the $(y, v)$ plane, once in $2\pi\sqrt{m/k} =
-# 12.9$ T. All points turn at the same speed; that is why the cloud keeps its shape and every pair
-# meets once in half a turn.
+# In the reduced coordinate $y$ rods that exchange their names in a collision are points that pass
+# through one another. A point on a linear spring runs round the origin of the $(y, v)$ plane once in
+# $2\pi\sqrt{m/k} = 12.9$ T.
 #
-# The simulation knows rods, not points. To colour the points we carry them on from picture to
-# picture: turn the cloud by the known angle and look which point is where.
+# **Predict.** Colour each point by its angle at the start. Do the colours keep their order while the
+# cloud turns and grows, or do the points mix?
+#
+# **Run.** The simulation knows rods and not points. To colour the points we follow them from picture
+# to picture: we turn the cloud by the known angle, and look which point is closest.
 
 # %%
-every, frames = 0.6, 60
-film = simulate(
-    linear,
-    warmup=60,
-    duration=64 * every,
-    time_step=0.02,
-    every=every,
-    observe=["snapshots"],
-    seed=0,
-    progress=False,
-)
-frequency = np.sqrt(k / m)
+every, frames, frequency = 0.6, 60, np.sqrt(k / m)
+watch = {"every": every, "observe": ["snapshots"], "progress": False}
+film = simulate(linear, warmup=60, duration=64 * every, time_step=0.02, seed=0, **watch)
 y = linear.reduced(film.position.values[0])[:frames]
 cloud = y + 1j * film.velocity.values[0][:frames] / frequency  # a turn is now a phase
 
@@ -190,28 +222,12 @@ for later in cloud[1:]:
     expected = points[-1] * np.exp(-1j * frequency * every)
     points.append(later[linear_sum_assignment(abs(expected[:, None] - later))[1]])
 points = np.array(points)
-# A turn back by the angle travelled should leave every point where it was, growth apart.
-turned = points * np.exp(1j * frequency * every * np.arange(frames))[:, None]
-kept = abs(np.angle(turned[20] / turned[0]))
-print(f"after 12 T the median point is {np.median(kept):.2f} rad off a rigid turn")
-growth = np.sqrt((abs(points[-1]) ** 2).mean() / (abs(points[0]) ** 2).mean())
-expected_growth = np.exp(unexpanded / 2 * every * (frames - 1))
-print(f"the cloud grew {growth:.2f} times; exp(rate t/2) = {expected_growth:.2f}")
-assert np.median(kept) < 0.5
-assert abs(growth / expected_growth - 1) < 0.15
 
-# %%
-picture, ax = plt.subplots(figsize=(4.6, 4.6), dpi=60, layout="constrained")
+# %% tags=["hide-input"]
+picture, ax = plt.subplots(figsize=(4.6, 4.6), dpi=60)
 reach = 1.05 * abs(points).max()
-dots = ax.scatter(
-    points[0].real,
-    points[0].imag * frequency,
-    c=np.angle(points[0]),
-    cmap="twilight",
-    s=18,
-    edgecolors="0.3",
-    linewidths=0.4,
-)
+look = {"cmap": "twilight", "s": 18, "edgecolors": "0.3", "linewidths": 0.4}
+dots = ax.scatter(points[0].real, points[0].imag * frequency, c=np.angle(points[0]), **look)
 ax.set(xlim=(-reach, reach), ylim=(-reach * frequency, reach * frequency))
 ax.set(xlabel="y [R]", ylabel="v [R/T]")
 title = ax.set_title("")
@@ -224,58 +240,106 @@ def draw(number):
     return dots, title
 
 
-animation = FuncAnimation(picture, draw, frames=frames, interval=100)
+animation = FuncAnimation(picture, draw, frames=range(0, frames, 2), interval=200)
 film_of_the_cloud = standalone_page(animation)
 plt.close(picture)
 HTML(film_of_the_cloud)
 
-# %% [markdown]
-# **Explain.** The wheel turns nearly three times and grows about threefold: its amplitude grows at
-# half the rate of the energy. Colours blur slowly, because each encounter kicks, but no point
-# overtakes the others for good: fast and slow points turn equally fast, meet equally often, and
-# gain the same *fraction*.
+# %% tags=["hide-input"]
+# A turn back by the angle travelled should leave every point where it was, except for the growth.
+turned = points * np.exp(1j * frequency * every * np.arange(frames))[:, None]
+kept = abs(np.angle(turned[20] / turned[0]))
+print(f"after 12 T the median point is {np.median(kept):.2f} rad away from a rigid turn")
+growth = np.sqrt((abs(points[-1]) ** 2).mean() / (abs(points[0]) ** 2).mean())
+expected_growth = np.exp(unexpanded / 2 * every * (frames - 1))
+print(f"the cloud grew {growth:.2f} times; exp(rate t/2) = {expected_growth:.2f}")
+
+# %% tags=["remove-cell"]
+assert len(film_of_the_cloud) < 1e6
+assert np.median(kept) < 0.5
+assert abs(growth / expected_growth - 1) < 0.15
 
 # %% [markdown]
+# <details><summary>Explain</summary>
+#
+# The cloud turns nearly three times and becomes about three times as large. Its amplitude grows at
+# half the rate of the energy. The colours blur slowly, because each encounter changes a velocity.
+# But they keep their order. All points turn at the same rate, so they all meet equally often and
+# gain the same *fraction* of their energy.
+# </details>
+#
 # ## 4. Quadratic springs: why a finite time
 #
-# **Predict.** On a quadratic spring, does a rod with a large amplitude swing faster or slower than
-# one with a small amplitude? What does that do to the number of encounters per time?
+# **Predict.** On a quadratic spring, does a rod with a large amplitude have a longer or a shorter
+# period than a rod with a small amplitude? What does this mean for the number of encounters per
+# time?
 #
-# The energy of a rod with amplitude $a$ is $E_1 = ka^3/3$, so its velocity is $\sim E_1^{1/2}$, its
-# amplitude $\sim E_1^{1/3}$ and its frequency $\sim E_1^{1/6}$. Each half period brings a fixed
-# fraction of the energy. Hence
+# **Run.** A rod of energy $E_1$ moves in the potential $ky^3/3$. Half a period takes
+# $\tau(E_1) = 2\int_0^a\mathrm{d}y\,/\sqrt{2(E_1 - ky^3/3)/m}$ with the amplitude $a$.
+
+
+# %%
+def half_period(energy):
+    """Return half the period of a rod on a quadratic spring [T]."""
+    amplitude = (3 * energy / k) ** (1 / 3)
+    integral = quad(lambda x: (1 - x**3) ** -0.5, 0, 1)[0]  # x = y/a
+    return 2 * amplitude * integral / np.sqrt(2 * energy / m)
+
+
+for energy in (1.0, 64.0, 64.0**2):
+    print(f"energy {energy:6.0f}: half a period takes {half_period(energy):.3f} T")
+
+# %% tags=["remove-cell"]
+assert np.isclose(half_period(1.0), 2 * half_period(64.0))
+
+# %% [markdown]
+# <details><summary>Explain</summary>
+#
+# The period is shorter: 64 times the energy halves it, so the frequency is proportional to
+# $E_1^{1/6}$. Rods with more energy meet more often.
+# </details>
+#
+# Each half period adds a fixed fraction of the energy. Therefore
 #
 # $$\dot E = \alpha E^{7/6} - \beta E,\qquad \beta = \frac{6\gamma}{5m} .$$
 #
-# ($\beta$: damping takes $2\gamma/m$ times the kinetic energy, and in a cubic potential the virial
-# theorem, $2\langle E_\mathrm{kin}\rangle = 3\langle E_\mathrm{pot}\rangle$, makes that 3/5 of
-# $E$.) Without damping $u = E^{-1/6}$ falls on a straight line, $\dot u = -\alpha/6$, and hits
-# zero at some $t_c$: $E \propto (t_c - t)^{-6}$. With damping $\dot u = -\alpha/6 + \beta u/6$, so
+# (Damping takes $2\gamma/m$ times the kinetic energy per time. In a cubic potential the virial
+# theorem says $2\langle E_\mathrm{kin}\rangle = 3\langle E_\mathrm{pot}\rangle$, so the kinetic
+# energy is 3/5 of $E$.) Without damping $u = E^{-1/6}$ falls on a straight line, $\dot u =
+# -\alpha/6$. It reaches zero at some time $t_c$, so $E \propto (t_c - t)^{-6}$. With damping
+# $\dot u = -\alpha/6 + \beta u/6$, and
 #
 # $$E = \left[\frac{\beta/\alpha}{1 - \mathrm{e}^{-\beta(t_c - t)/6}}\right]^6 .$$
+#
+# The exponent that one measures is the slope $-\mathrm{d}\ln E/\mathrm{d}\ln(t_c - t)$. By this
+# formula it is below 6, and it approaches 6 near the end:
 
 # %%
 beta = 6 * gamma / (5 * m)
-left = np.geomspace(0.1, 100, 200)
-alpha_guess = 0.1
-energy = (beta / alpha_guess / (1 - np.exp(-beta * left / 6))) ** 6
-slope = -np.gradient(np.log(energy), np.log(left))
-closed = beta * left / (np.exp(beta * left / 6) - 1)  # the same, differentiated by hand
-assert np.abs(slope / closed - 1)[1:-1].max() < 0.01
 for time_left in (1, 10, 20, 40):
-    effective = np.interp(time_left, left, closed)
-    print(f"{time_left:3d} T before the end the exponent is {effective:.2f}")
+    slope = beta * time_left / (np.exp(beta * time_left / 6) - 1)
+    print(f"{time_left:3d} T before the end the exponent is {slope:.2f}")
+
+# %% tags=["remove-cell"]
+left = np.geomspace(0.1, 100, 200)
+formula = (beta / 0.1 / (1 - np.exp(-beta * left / 6))) ** 6
+numerical = -np.gradient(np.log(formula), np.log(left))
+closed = beta * left / (np.exp(beta * left / 6) - 1)
+assert np.abs(numerical / closed - 1)[1:-1].max() < 0.01
 
 # %% [markdown]
-# So the exponent seen in a measurement should be a little below 6, and the closer to the end the
-# closer to 6.
+# Damping can also be removed exactly. Let $G = E\,\mathrm{e}^{\beta t}$ and $\theta =
+# \frac6\beta(1 - \mathrm{e}^{-\beta t/6})$. Then $\mathrm{d}G/\mathrm{d}\theta = \alpha G^{7/6}$,
+# which gives a pure power law with the exponent 6.
 #
-# **Run.** `fit_singularity` fits $C\,(t_c - t)^{-p}$ with all three numbers free. We fit to
-# everything above a threshold, for several thresholds. The raw snapshots let us compute the whole
-# energy, springs included, and the share of every rod.
+# **Predict.** We fit $C\,(t_c - t)^{-p}$ to the simulated energies above a threshold, once as they
+# are and once with damping removed. Which exponents $p$ do you expect?
+#
+# **Run.** `fit_singularity` fits $C$, $t_c$ and $p$. The raw snapshots give the whole energy,
+# springs included, and the share of every rod.
 
 
-# %%
+# %% tags=["hide-input"]
 class Run:
     """Energies of the rods of one chain, from release to the end."""
 
@@ -292,65 +356,53 @@ class Run:
         self.number = self.energy**2 / (rods**2).sum(axis=1)  # rods that share the energy
 
 
+# %%
 runaways = [Run(quadratic, seed, duration=100, time_step=0.002, every=0.02) for seed in range(12)]
 
-# %%
-thresholds = (1e3, 1e4, 1e5, 1e6)
-print("threshold   exponent, plain fit   exponent, damping taken out")
-plain, undamped = {}, {}
-for threshold in thresholds:
-    both = []
-    for run in runaways:
-        t, E = beyond(run.time, run.kinetic, threshold)
-        # E exp(beta t) against the time below obeys the equation without damping.
-        free_time = 6 / beta * (1 - np.exp(-beta * (t - t[0]) / 6))
-        free_energy = E * np.exp(beta * (t - t[0]))
-        both.append(
-            (fit_singularity(t, E).exponent, fit_singularity(free_time, free_energy).exponent)
-        )
-    plain[threshold], undamped[threshold] = (
-        mean_and_error(each) for each in zip(*both, strict=True)
-    )
-    found = (*plain[threshold], *undamped[threshold])
-    print("  {:.0e}      {:.2f} +- {:.2f}          {:.2f} +- {:.2f}".format(threshold, *found))
+
+def exponents(run, threshold):
+    """Return the fitted exponent, as it is and with damping removed."""
+    t, E = beyond(run.time, run.kinetic, threshold)
+    theta = 6 / beta * (1 - np.exp(-beta * (t - t[0]) / 6))
+    G = E * np.exp(beta * (t - t[0]))
+    return fit_singularity(t, E).exponent, fit_singularity(theta, G).exponent
+
+
+fitted = {
+    threshold: mean_and_error([exponents(run, threshold) for run in runaways])
+    for threshold in (1e3, 1e4, 1e5, 1e6)
+}
+
+# %% tags=["hide-input"]
+print("threshold   exponent, as it is   exponent, damping removed")
+for threshold, (p, error) in fitted.items():
+    columns = threshold, p[0], error[0], p[1], error[1]
+    print("  {:.0e}      {:.2f} +- {:.2f}          {:.2f} +- {:.2f}".format(*columns))
+
+# %% tags=["remove-cell"]
+for p, error in fitted.values():
+    assert p[0] < 5.4
+    assert p[1] + 5 * error[1] < 6
+assert fitted[1e3][0][1] > fitted[1e3][0][0]
 
 # %% [markdown]
-# **Explain, first attempt.** The plain exponents lie between 4 and 5: well below 6. Damping can be
-# taken out exactly. Put $G = E\,\mathrm{e}^{\beta t}$ and $\theta = \frac6\beta(1 -
-# \mathrm{e}^{-\beta t/6})$; then $\mathrm{d}G/\mathrm{d}\theta = \alpha G^{7/6}$, a pure power law.
-# The last column is a fit to that. It should be 6. It is higher than the plain exponent, but not 6:
-# damping is part of the story, and not all of it.
-
-# %%
-for threshold in thresholds:
-    exponent, error = undamped[threshold]
-    assert plain[threshold][0] < 5.4
-    assert exponent + 5 * error < 6
-assert undamped[1e3][0] > plain[1e3][0]
-
-# %% [markdown]
-# ## 5. The winner takes all
+# <details><summary>Explain, first attempt</summary>
 #
-# **Predict.** On linear springs all rods swing equally fast. On quadratic ones a rod that has a
-# little more energy swings a little faster. What becomes of its lead?
+# The exponents of the energy as it is lie between 4 and 5, well below 6. With damping removed they
+# should be 6. They are near 5: larger than before, but not 6. So damping is one reason for a small
+# exponent, and there must be another one.
+# </details>
 #
-# **Run.** The number of rods that share the energy is $P = (\sum E_i)^2/\sum E_i^2$: $L$ if all
-# have the same, 1 if one has everything.
+# ## 5. How many rods share the energy?
+#
+# **Predict.** On linear springs all rods have the same period. On quadratic springs a rod with a
+# little more energy has a shorter one. What becomes of its lead?
+#
+# **Run.** The number of rods that share the energy is $P = (\sum E_i)^2/\sum E_i^2$. It is $L$ if all
+# rods have the same energy, and 1 if one rod has everything.
 
 # %%
 steady = [Run(linear, seed, duration=300, time_step=0.02, every=0.2) for seed in range(6)]
-fig, ax = plt.subplots(figsize=(6.4, 3.6), layout="constrained")
-for runs, colour, name in (
-    (steady, BLUE, "linear springs"),
-    (runaways, ORANGE, "quadratic springs"),
-):
-    for run in runs:
-        ax.loglog(run.energy, run.number, color=colour, linewidth=0.7, alpha=0.5)
-    ax.plot([], [], color=colour, label=name)
-ax.set(xlabel=r"energy of the chain [M R$^2$/T$^2$]", ylabel="rods that share it, P")
-ax.set(xlim=(1e2, 1e12), ylim=(0.8, 120))
-ax.set_yticks([1, 3, 10, 30, 100], ["1", "3", "10", "30", "100"])
-ax.legend(frameon=False)
 
 
 def shared_by(runs, energy):
@@ -359,63 +411,96 @@ def shared_by(runs, energy):
 
 
 for energy in (1e3, 1e5, 1e7, 1e9):
-    print(
-        f"E = {energy:.0e}: linear {np.mean(shared_by(steady, energy)):.0f} rods,"
-        f" quadratic {np.mean(shared_by(runaways, energy)):.1f}"
-    )
+    each, other = np.mean(shared_by(steady, energy)), np.mean(shared_by(runaways, energy))
+    print(f"E = {energy:.0e}: on linear springs {each:.0f} rods, on quadratic ones {other:.1f}")
+richest = np.mean([run.share[-1] for run in runaways])
+print(f"share of the richest rod at the end, on quadratic springs: {richest:.2f}")
+
+# %% tags=["hide-input"]
+ax = panels(width=6.4)
+named = ((steady, BLUE, "linear springs"), (runaways, ORANGE, "quadratic springs"))
+for runs, colour, name in named:
+    for run in runs:
+        ax.loglog(run.energy, run.number, color=colour, linewidth=0.7, alpha=0.5)
+    ax.plot([], [], color=colour, label=name)
+ax.set(xlabel=r"energy of the chain [M R$^2$/T$^2$]", ylabel="rods that share it, P")
+ax.set(xlim=(1e2, 1e12), ylim=(0.8, 120))
+ax.set_yticks([1, 3, 10, 30, 100], ["1", "3", "10", "30", "100"])
+ax.legend(frameon=False)
+plt.show()
+
+# %% tags=["remove-cell"]
 assert min(shared_by(steady, 1e9)) > 20
 assert max(shared_by(runaways, 1e9)) < 4
-print(f"share of the richest rod at the end: {np.mean([run.share[-1] for run in runaways]):.2f}")
-assert np.mean([run.share[-1] for run in runaways]) > 0.9
+assert richest > 0.9
 
 # %% [markdown]
-# **Explain.** On quadratic springs the rich get richer, and in the end one point has everything.
-# This changes the law of growth, for the frequency is that of a *rod*: if $P$ rods share $E$, each
-# swings like $(E/P)^{1/6}$, and
+# <details><summary>Explain</summary>
+#
+# On quadratic springs the rod in the lead meets others more often, so its lead grows. In the end
+# one point has nearly all the energy. This changes the law of growth, because the frequency is that
+# of a *rod*. If $P$ rods share $E$, each has the frequency of the energy $E/P$, and
 #
 # $$\alpha = \alpha_1 P^{-1/6} .$$
 #
-# As $P$ falls from some 40 to 1, $\alpha$ grows almost twofold. The growth is steeper than
-# $E^{7/6}$, and a steeper law has a smaller exponent: $\dot E\propto E^{1+1/p}$ gives
+# As $P$ falls from some 40 to 1, $\alpha$ grows to nearly twice its value. The energy then grows more
+# steeply than $E^{7/6}$, and a steeper law has a smaller exponent: $\dot E\propto E^{1+1/p}$ gives
 # $(t_c-t)^{-p}$.
+# </details>
 #
 # **The last rod** can be computed without any fit. It passes through the $L - 1$ others, which are
-# nearly at rest, and each time $v \to v + \frac{e-1}2 v$. Half a period multiplies its energy by
-# $[(1+e)/2]^{2(L-1)}$. Half a period of a point with energy $E$ takes
+# nearly at rest, and each of them changes its velocity by $v \to v + \frac{e-1}2 v$. So half a period
+# multiplies its energy by $[(1+e)/2]^{2(L-1)}$. Half a period takes $\tau(E) = c\,E^{-1/6}$ (section
+# 4), so
 #
-# $$\tau(E) = 2\int_0^a\frac{\mathrm{d}y}{\sqrt{2(E - ky^3/3)/m}}
-# = c\,E^{-1/6},\quad\text{so}\quad \alpha_1 = \frac{2(L-1)}{c}\ln\frac{1+e}2 .$$
+# $$\alpha_1 = \frac{2(L-1)}{c}\ln\frac{1+e}2 .$$
 
 # %%
-integral = quad(lambda x: (1 - x**3) ** -0.5, 0, 1)[0]
-c = 2 * integral * (3 / k) ** (1 / 3) * np.sqrt(m / 2)
+c = half_period(1.0)
 factor = ((1 + e) / 2) ** (2 * (L - 1))
 alpha_1 = np.log(factor) / c
 print(f"half a period multiplies the energy by {factor:.2f}; alpha_1 = {alpha_1:.4f}")
 
+# %% [markdown]
+# **Predict.** Follow the last rod from turning point to turning point. How long do 200 half periods
+# take, if the energy at the start is $10^6$ and the first one takes about 0.6 T?
+#
+# **Run.**
 
+
+# %%
 def last_rod(energy, halves):
     """Follow one rod from turning point to turning point: energy, and time since the first."""
     energies, times = [energy], [0.0]
     for _ in range(halves):
-        half = c * energies[-1] ** (-1 / 6)
         after = factor * energies[-1]
-        # Half of the way in before the others are met, half of it out with the new energy.
-        times.append(times[-1] + half / 2 + c * after ** (-1 / 6) / 2)
+        # Half of the way in with the old energy, half of the way out with the new one.
+        times.append(times[-1] + half_period(energies[-1]) / 2 + half_period(after) / 2)
         energies.append(after * np.exp(-beta * (times[-1] - times[-2])))
     return np.array(energies), np.array(times)
 
 
 energies, times = last_rod(1e6, 200)
-print(f"200 half periods take {times[-1]:.2f} T; 100 of them {times[100]:.2f} T")
+print(f"half a period at the start takes {half_period(1e6):.2f} T")
+print(f"100 half periods take {times[100]:.4f} T, 200 of them {times[-1]:.4f} T")
+
+# %% tags=["remove-cell"]
 assert times[-1] - times[100] < 1e-6  # the sum converges: infinitely many in a finite time
 
 # %% [markdown]
-# The energies form a geometric sequence, the times a converging one: like the clicks of a ball that
-# bounces to rest, run backwards. Compare with the simulation, in the last moments of a run.
+# <details><summary>Explain</summary>
+#
+# The energies form a geometric sequence, so the times form one too, and their sum converges.
+# Infinitely many half periods take a finite time. This is the film of a bouncing ball that comes to
+# rest, run backwards.
+# </details>
+#
+# **Predict.** Does the simulated energy grow smoothly in the last moments of a run?
+#
+# **Run.** We compare the runs with one rod that has all the energy, and with 40 rods that share it.
 
-# %%
-fig, (left_ax, right_ax) = plt.subplots(1, 2, figsize=(9.5, 3.8), layout="constrained")
+# %% tags=["hide-input"]
+left_ax, right_ax = panels(2, width=9.5, height=3.8)
 ratios = []
 for run in runaways:
     t, E = beyond(run.time, run.energy, 1e3)
@@ -439,51 +524,56 @@ left_ax.set(xlabel="time before the end $t - t_c$ [T]", ylabel="$E^{-1/6}$, in u
 left_ax.set(xlim=(-17, 0.5), ylim=(0, 0.34))
 left_ax.legend(frameon=False)
 
-run = runaways[0]
-begin = int(np.argmax((run.share > 0.9) & (run.energy > 1e8)))
-right_ax.semilogy(run.time[begin:], run.energy[begin:], color=ORANGE, label="simulation, one run")
+
+def alone(run):
+    """Return at which times one rod has nearly all of a large energy."""
+    return (run.share > 0.9) & (run.energy > 1e8)
+
+
+run = max(runaways, key=lambda run: alone(run).sum())
+begin = int(np.argmax(alone(run)))
 still = run.kinetic / run.energy
 first = begin + int(np.argmin(still[begin : begin + 15]))
-energies, times = last_rod(run.energy[first], 12)
-right_ax.plot(
-    run.time[first] + times,
-    energies,
-    "ko",
-    markersize=5,
-    markerfacecolor="none",
-    label="one rod, from turn to turn",
-)
+energies, times = last_rod(run.energy[first], 9)
+right_ax.semilogy(run.time[begin:], run.energy[begin:], color=ORANGE, label="simulation, one run")
+look = {"markersize": 5, "markerfacecolor": "none", "label": "one rod, from turn to turn"}
+right_ax.plot(run.time[first] + times, energies, "ko", **look)
 right_ax.set(xlabel="time t [T]", ylabel=r"energy [M R$^2$/T$^2$]")
 right_ax.set(ylim=(run.energy[begin] / 3, 1e12), xlim=(run.time[begin] - 0.1, run.time[-1] + 0.2))
 right_ax.legend(frameon=False)
+plt.show()
 growth, growth_error = mean_and_error(ratios)
-print(
-    f"ln of the factor per half period: {growth:.3f} +- {growth_error:.3f},"
-    f" one rod {np.log(factor):.3f}"
-)
+print(f"ln of the factor per half period: {growth:.3f} +- {growth_error:.3f}")
+print(f"of one rod without the others: {np.log(factor):.3f}")
 
-# %% [markdown]
-# **Explain.** A straight line in this picture is the law $(t_c - t)^{-6}$. The runs are bent: far
-# from the end they fall as if some tens of rods shared the energy, at the end as one rod. So the
-# exponent 6 is right, but only for the last moments; over any range that a fit can use it comes out
-# smaller. Exponents from fits over a few decades tell where one looked.
-#
-# On the right the energy climbs a staircase: a step when the one rod crosses the others, a plateau
-# on the way out and back. The circles know nothing of the simulation but their first point. The
-# factor per half period is 1 to 2 % below that of one rod, for the rest of the energy (less than a
-# tenth) belongs to slower rods.
-
-# %%
+# %% tags=["remove-cell"]
+assert alone(run).any()
 assert abs(growth / np.log(factor) - 1) < 0.03
 
 # %% [markdown]
+# <details><summary>Explain</summary>
+#
+# On the left the law $(t_c - t)^{-6}$ is a straight line near the end. The runs are bent. Far from
+# the end they fall as if some tens of rods shared the energy, and at the end as one rod. So the
+# exponent 6 is right for the last moments only. Over any range that a fit can use, the exponent comes
+# out smaller, and it depends on the range.
+#
+# On the right the energy climbs in steps. It rises when the one rod crosses the others, and it stays
+# constant on the way out and back. The circles use the simulation for their first point only. The
+# logarithm of the factor per half period is 1 % below that of one rod, because the rest of the energy
+# (less than a tenth) belongs to slower rods.
+# </details>
+#
 # ## 6. Flippers with a steady state
 #
-# With more damping the chain finds a balance: at $e = 1.05$ and $\gamma = 4$ the critical size is
-# 123 rods, and 100 rods stay below it. But a point that happens to be fast passes all the others
-# and is driven by each of them. What does that do to the distribution of velocities?
+# With more damping the chain has a steady state. For $e = 1.05$ and $\gamma = 4$ the critical size is
+# 123 rods, and 100 rods are below it. But a point that happens to be fast passes all the others, and
+# each of them drives it on.
 #
-# **Predict.** Which rod carries the fast points: one in the centre or one at the border?
+# **Predict.** What does the distribution of the velocities of the outermost left rod look like? Is it
+# symmetric? Is it a Gaussian?
+#
+# **Run.** We compare $\gamma = 4$ with $\gamma = 10$.
 
 # %%
 settings = {
@@ -500,6 +590,7 @@ weak, strong = (
 )
 
 
+# %% tags=["hide-input"]
 def border_density(runs):
     """Return v and p(v) of the left border, averaged with the mirror image of the right one."""
     p = np.mean([run.velocity_density.sel(particle=[1, 100]).values for run in runs], axis=0)
@@ -519,7 +610,7 @@ def kurtosis(v, p):
     return weight @ centred**4 / (weight @ centred**2) ** 2 - 3
 
 
-fig, axes = plt.subplots(1, 2, figsize=(9, 3.6), sharey=True, layout="constrained")
+axes = panels(2, width=9, sharey=True)
 for ax, runs, g in zip(axes, (weak, strong), (4, 10), strict=True):
     v, p = border_density(runs)
     w = border_width(runs)
@@ -540,8 +631,9 @@ x = np.linspace(-11, -3, 50)
 tail = share * w / length * np.exp((x + 3) * w / length)
 axes[0].plot(x, tail, color=GREEN, linestyle="--", linewidth=2, label="exponential tail")
 handles, labels = axes[0].get_legend_handles_labels()
-_ = fig.legend(handles, labels, loc="outside lower center", ncols=3, frameon=False)
-# %%
+axes[0].figure.legend(handles, labels, loc="outside lower center", ncols=3, frameon=False)
+plt.show()
+
 tails = []
 for run in weak:
     v, p = border_density([run])
@@ -550,79 +642,94 @@ for run in weak:
 ratio, ratio_error = mean_and_error(tails)
 print(f"length of the tail beyond 5 widths over that beyond 3: {ratio:.2f} +- {ratio_error:.2f}")
 print("(an exponential has 1, a Gaussian 0.65)")
-assert ratio > 0.75
-
 excess = {}
 for runs, g in ((weak, 4), (strong, 10)):
     excess[g] = mean_and_error([kurtosis(*border_density([run])) for run in runs])
     print("gamma = {}: excess kurtosis of the border {:.2f} +- {:.2f}".format(g, *excess[g]))
+
+# %% tags=["remove-cell"]
+assert ratio > 0.75
 assert excess[4][0] - 5 * excess[4][1] > 2
 assert excess[10][0] + 5 * excess[10][1] < 2
 
 # %% [markdown]
-# **Explain.** The left border is thrown to the left: its tail is on that side only. It is close to
-# an exponential, a straight line on this scale, and has nothing of a Gaussian. A point that crosses the whole chain is pushed by each of the other
-# 99, and would leave it $1.025^{99} = 11.5$ times as fast as it came if they were at rest and
-# nothing damped it; the rod at the border is where it comes out. At $\gamma = 10$ the damping
-# stops most points on the way. The distribution is a Gaussian nearly everywhere; a faint tail of
-# the same kind is left.
+# <details><summary>Explain</summary>
 #
-# **Avalanches.** The same push can be followed from rod to rod: a wave starts when a rod hits its
-# right neighbour with their total momentum to the right, and grows by one for each neighbour hit
-# on. Count the waves that begin at the ten leftmost rods.
+# At $\gamma = 4$ the distribution has a tail on one side. The left rod is thrown to the left, so the
+# tail is at negative velocities. It is a straight line on this scale, so it is close to an
+# exponential and far from a Gaussian. Each of the other 99 points pushes a point that crosses the
+# whole chain. If they were at rest and nothing damped it, it would leave the chain $1.025^{99} =
+# 11.5$ times as fast as it came. It comes out as the rod at the border.
+#
+# At $\gamma = 10$ the damping stops most points on the way. The distribution is nearly a Gaussian,
+# with a faint tail of the same kind.
+# </details>
+#
+# **Avalanches.** The same push can be followed from rod to rod. A wave starts when a rod hits its
+# right neighbour and their total momentum points to the right. Its size grows by one for each further
+# neighbour that is hit.
+#
+# **Predict.** Count the waves that begin at the ten leftmost rods. At which damping do more of them
+# reach 80 rods?
+#
+# **Run.**
 
 # %%
-fig, ax = plt.subplots(figsize=(5.6, 3.6), layout="constrained")
-spanning = {}
-for runs, g, colour, symbol in ((weak, 4, BLUE, "o"), (strong, 10, ORANGE, "s")):
-    counts = [run.avalanche_count.sel(particle=slice(1, 10)).sum("particle").values for run in runs]
-    spanning[g] = mean_and_error([1e4 * each[79:].sum() / each.sum() for each in counts])
-    total = np.sum(counts, axis=0)
+counts, spanning = {}, {}
+for runs, g in ((weak, 4), (strong, 10)):
+    left_end = [run.avalanche_count.sel(particle=slice(1, 10)).sum("particle") for run in runs]
+    counts[g] = np.array([each.values for each in left_end])  # of sizes 1, 2, 3...
+    spanning[g] = mean_and_error([1e4 * each[79:].sum() / each.sum() for each in counts[g]])
+    print("gamma = {}: of 10^4 waves {:.0f} +- {:.0f} reach 80 rods".format(g, *spanning[g]))
+
+# %% tags=["hide-input"]
+ax = panels(width=5.6)
+for g, colour, symbol in ((4, BLUE, "o"), (10, ORANGE, "s")):
+    total = counts[g].sum(axis=0)
     sizes = np.arange(1, total.size + 1)[total > 0]
-    share = total[total > 0] / total.sum()
-    ax.loglog(
-        sizes,
-        share,
-        symbol,
-        color=colour,
-        markersize=4,
-        markerfacecolor="none",
-        label=rf"$\gamma$ = {g}",
-    )
-    print("gamma = {}: of 10^4 waves {:.2f} +- {:.2f} reach 80 rods".format(g, *spanning[g]))
+    look = {"markersize": 4, "markerfacecolor": "none", "label": rf"$\gamma$ = {g}"}
+    ax.loglog(sizes, total[total > 0] / total.sum(), symbol, color=colour, **look)
 ax.set(xlabel="collisions of a wave, $N_c$", ylabel="share of the waves")
 ax.legend(frameon=False)
-difference = spanning[4][0] - spanning[10][0]
-assert difference > 5 * np.hypot(spanning[4][1], spanning[10][1])
+plt.show()
+
+# %% tags=["remove-cell"]
+surplus = spanning[4][0] - spanning[10][0]
+assert surplus > 5 * np.hypot(spanning[4][1], spanning[10][1])
 
 # %% [markdown]
-# At weak damping some waves span the chain: they are the fast points of section 5, seen rod by rod.
+# <details><summary>Explain</summary>
+#
+# At $\gamma = 4$ several times as many waves cross the chain. These waves are the fast points, seen
+# rod by rod.
+# </details>
 #
 # ## Exercises
 #
-# **1.** Is the finite time real, or does the time step make it? Repeat the quadratic runs of
+# **1.** Is the finite time real, or is it an effect of the time step? Repeat the quadratic runs of
 # section 1 with steps from 0.02 T to 0.0005 T.
 #
 # <details><summary>Solution</summary>
 #
 # Twelve runs each end at $39.4 \pm 0.4$ T (step 0.02), $39.6 \pm 0.5$ (0.008), $39.8 \pm 0.4$
-# (0.002) and $39.5 \pm 0.4$ (0.0005): the step makes no difference. The balance says why. The time
-# still left, at energy $E$, is of the order of $6/(\alpha E^{1/6})$, and a step that is too long
-# matters only at energies where next to nothing is left.
+# (0.002) and $39.5 \pm 0.4$ (0.0005). The step makes no difference, and the balance gives the
+# reason. At the energy $E$ the remaining time is of the order of $6/(\alpha E^{1/6})$. A step becomes
+# too long only at energies where nearly no time remains.
 # </details>
 #
-# **2.** Can damping save the quadratic chain? Noise alone holds it at the energy $E_0 =
+# **2.** Can damping prevent the divergence of the quadratic chain? Noise alone holds it at the energy $E_0 =
 # \frac53\cdot \frac{LA^2}{4\gamma}$, so $\dot E = \alpha E^{7/6} - \beta(E - E_0)$. From which
-# $\gamma$ on has this a state at rest? Take $\alpha = \alpha_1P^{-1/6}$ with $P = 45$. Try it.
+# $\gamma$ on does this equation have a state at rest? Take $\alpha = \alpha_1P^{-1/6}$ with
+# $P = 45$. Try it.
 #
 # <details><summary>Solution</summary>
 #
-# The right side is smallest at $E^{1/6} = 6\beta/7\alpha$ and is $\beta(E_0 - E/7)$ there. It
-# reaches zero if $(6\beta/7\alpha)^6 > 7E_0$, which with $\beta = 6\gamma/5m$ means $\gamma >
-# 0.95$. Six simulations each: at $\gamma = 0.4$, 0.6, 0.8 all diverge, after about 40, 48 and 67
-# T. At $\gamma = 1$ they still do, but after 110 to 160 T: they wait for a fluctuation that
-# carries them over the barrier. At 1.2 and 1.5 none did in 1000 T. But the barrier is finite, so
-# some day one will.
+# The right side is smallest at $E^{1/6} = 6\beta/7\alpha$, and its value there is
+# $\beta(E_0 - E/7)$. It reaches zero if $(6\beta/7\alpha)^6 > 7E_0$, which with $\beta = 6\gamma/5m$
+# means $\gamma > 0.95$. Six simulations each: at $\gamma = 0.4$, 0.6 and 0.8 all diverge, after about
+# 40, 48 and 67 T. At $\gamma = 1$ they still diverge, but after 110 to 160 T, when a fluctuation
+# carries them over the barrier. At 1.2 and 1.5 none diverged in 1000 T. The barrier is finite, so
+# they will diverge at some later time.
 # </details>
 #
 # **3.** Linear springs: measure the growth rate for $L = 70$, 80, 130 and 160. Where does the
@@ -630,10 +737,11 @@ assert difference > 5 * np.hypot(spanning[4][1], spanning[10][1])
 #
 # <details><summary>Solution</summary>
 #
-# Measured $0.0142$, $0.0291$ (in 300 T), $0.1093$ and $0.1593$ (in 150 T) per T, with errors up to
-# 0.0001; the balance with $e^2 - 1$ gives 0.0139, 0.0296, 0.1077 and 0.1546. At $L = 160$ it is 3 %
-# too low: the energy there grows by a factor $\mathrm{e}$ in half a period, and the balance supposed
-# a small change. At $L = 70$, near the critical size, growth is so slow that the noise still counts
-# in the fit: in 150 T one finds $0.0155 \pm 0.0004$, in 1000 T $0.0131$. The latter is 6 % less than
-# the balance says, for the rate is the small difference of the drive and the damping, $0.0955$.
+# The measured rates are $0.0142$, $0.0291$ (in 300 T), $0.1093$ and $0.1593$ (in 150 T) per T, with
+# errors up to 0.0001. The balance with $e^2 - 1$ gives 0.0139, 0.0296, 0.1077 and 0.1546. At
+# $L = 160$ it is 3 % too low. There the energy grows by a factor $\mathrm{e}$ in half a period, and
+# the balance assumes a small change. At $L = 70$, near the critical size, growth is so slow that the
+# noise still matters in the fit: in 150 T one finds $0.0155 \pm 0.0004$, in 1000 T $0.0131$. The
+# latter is 6 % less than the balance says, because the rate is the small difference of the drive and
+# the damping, $0.0955$.
 # </details>

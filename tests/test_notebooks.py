@@ -1,27 +1,124 @@
-"""Notebooks and the scripts they are paired with say the same, and hold no results."""
+"""Notebooks are their scripts, show the outputs of their own code, and go at a student's pace."""
 
+import re
 from pathlib import Path
 
 import jupytext
 import pytest
+from outputs import HIDDEN, fingerprint
+from teaching import agree, check, right
 
 FOLDER = Path(__file__).parents[1] / "notebooks"
 NOTEBOOKS = sorted(FOLDER.glob("*.ipynb"))
+LONGEST_CELL = 15
+each_notebook = pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+
+
+def visible_code(notebook):
+    """Return the lines of code of every cell that a student sees."""
+    return [
+        [line for line in cell.source.splitlines() if line.strip()]
+        for cell in notebook.cells
+        if cell.cell_type == "code" and not HIDDEN.intersection(cell.metadata.get("tags", []))
+    ]
 
 
 def test_they_are_numbered_and_paired():
     names = [path.stem for path in NOTEBOOKS]
-    assert [name[:3] for name in names] == [f"{n:02d}_" for n in range(1, len(names) + 1)]
-    assert [path.stem for path in sorted(FOLDER.glob("*.py"))] == names
+    assert len({name[:3] for name in names}) == len(names)
+    assert all(re.match(r"\d\d_", name) for name in names)
+    assert [path.stem for path in sorted(FOLDER.glob("[0-9]*.py"))] == names
 
 
-@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+@each_notebook
+def test_a_lesson_is_in_the_list_of_lessons(path):
+    pages = FOLDER.parent / "docs"
+    table = (pages / "notebooks.md").read_text(encoding="utf-8")
+    assert f"](notebooks/{path.name})" in table
+    needs = (pages / "teach_a_week.md").read_text(encoding="utf-8").split("needs which")[1]
+    assert f"\n| {int(path.stem[:2])} |" in needs
+
+
+@each_notebook
 def test_a_notebook_is_its_script(path):
-    """Mend with: jupytext --to ipynb notebooks/*.py."""
+    """Mend with: make render LESSON=NN."""
     notebook, script = (jupytext.read(path.with_suffix(end)) for end in (".ipynb", ".py"))
     assert [(cell.cell_type, cell.source) for cell in notebook.cells] == [
         (cell.cell_type, cell.source) for cell in script.cells
     ]
-    for cell in notebook.cells:
-        assert not cell.get("outputs")
-        assert cell.get("execution_count") is None
+    assert [cell.metadata.get("tags", []) for cell in notebook.cells] == [
+        cell.metadata.get("tags", []) for cell in script.cells
+    ]
+
+
+@each_notebook
+def test_outputs_belong_to_the_code(path):
+    """Mend with: make render LESSON=NN."""
+    notebook = jupytext.read(path)
+    assert notebook.metadata.get("executed") == fingerprint(jupytext.read(path.with_suffix(".py")))
+    code = [cell for cell in notebook.cells if cell.cell_type == "code"]
+    assert [cell.execution_count for cell in code] == list(range(1, len(code) + 1))
+    hidden = [cell for cell in code if HIDDEN.intersection(cell.metadata.get("tags", []))]
+    assert hidden
+    assert all(cell.metadata.jupyter.source_hidden for cell in hidden)  # for JupyterLab
+    outputs = [output for cell in code for output in cell.outputs]
+    assert any("image/png" in output.get("data", {}) for output in outputs)
+    assert not any(output.get("name") == "stderr" for output in outputs)
+    assert not any(output.output_type == "error" for output in outputs)
+    assert str(FOLDER.parent) not in str(outputs)
+
+
+def test_the_outputs_are_small():
+    assert sum(path.stat().st_size for path in NOTEBOOKS) < 4e6
+
+
+@each_notebook
+def test_what_a_student_sees(path):
+    """A few lines that carry the idea, no assertions, and a task with a check."""
+    notebook = jupytext.read(path.with_suffix(".py"))
+    cells = visible_code(notebook)
+    assert max(map(len, cells)) <= LONGEST_CELL
+    lines = [line for cell in cells for line in cell]
+    assert not any(line.lstrip().startswith("assert ") for line in lines)
+    assert any("your code here" in line for line in lines)
+    assert any(line.startswith("check(") for line in lines)
+    text = "\n".join(cell.source for cell in notebook.cells if cell.cell_type == "markdown")
+    assert text.count("<details>") == text.count("</details>")
+    assert text.count("**Predict") <= text.count("**Run")
+
+
+def wrong(x):
+    return x + 1
+
+
+def missing(x): ...
+
+
+def broken(x):
+    raise ValueError("no root")
+
+
+@pytest.mark.parametrize(
+    ("answer", "said"),
+    [(abs, "Right."), (wrong, "Not yet. Hint: sign"), (missing, "Your turn"), (broken, "no root")],
+)
+def test_an_answer_is_checked(answer, said, capsys):
+    check(answer, abs, at=[(-1.0,), (2.0,)], hint="sign")
+    assert said in capsys.readouterr().out
+
+
+def test_numbers_are_checked(capsys):
+    check(..., 2.0, hint="half")
+    check([1, 2], [1, 2], hint="half")
+    check([1, 2], 1, hint="half")
+    said = [line.split()[0] for line in capsys.readouterr().out.splitlines()]
+    assert said == ["Your", "Right.", "Not"]
+    assert not right(float("nan"), 1.0)
+    assert right(0.5004, 0.5, tolerance=1e-3)
+
+
+@pytest.mark.parametrize("measured", [6.0, float("nan")])
+def test_disagreement_stops_a_lesson(measured):
+    agree("near", [4.9, 0], 0, 1)
+    with pytest.raises(AssertionError):
+        agree("far", [measured, 0], 0, 1)

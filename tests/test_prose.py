@@ -9,6 +9,7 @@ import ast
 import re
 from pathlib import Path
 
+import jupytext
 import pytest
 
 ROOT = Path(__file__).parents[1]
@@ -20,6 +21,7 @@ PAGES = [
     ROOT / "paper.md",
     *(page for page in sorted((ROOT / "docs").rglob("*.md")) if page != WRITTEN_BY_A_PROGRAM),
 ]
+LESSONS = sorted((ROOT / "notebooks").glob("[0-9]*.py"))
 MODULES = [path for room in ROOMS for path in sorted((ROOT / room).rglob("*.py"))]
 AVOID = {
     r"\boff (restitution|\$?e\b)": "for e != 1",
@@ -64,9 +66,17 @@ def named(path):
     return path.relative_to(ROOT).as_posix()
 
 
-@pytest.mark.parametrize("page", PAGES, ids=named)
+def text_of(page):
+    if page not in LESSONS:
+        return page.read_text(encoding="utf-8")
+    cells = jupytext.read(page).cells
+    text = "\n\n".join(cell.source for cell in cells if cell.cell_type == "markdown")
+    return re.sub(r"</?(details|summary)>", "\n\n", text)
+
+
+@pytest.mark.parametrize("page", PAGES + LESSONS, ids=named)
 def test_a_page_is_plain(page):
-    text = plain(page.read_text(encoding="utf-8"))
+    text = plain(text_of(page))
     assert not found(text)
     long = [each for each in sentences(text) if len(re.findall("[A-Za-z]{2,}", each)) > MOST_WORDS]
     assert not long
