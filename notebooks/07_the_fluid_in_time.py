@@ -30,7 +30,7 @@
 # \frac{4\pi}{3}M$). The unit of time is $\sqrt{M/k}$, written $T$ on the axes. The restitution is
 # 1, and there is no gap between the anchors.
 #
-# *Level: master. You need: lesson 4, section 7, and lesson 6; partial differential equations. Time:
+# *Level: fourth year. You need: lesson 4, section 7, and lesson 6; partial differential equations. Time:
 # 100 minutes.*
 
 # %% tags=["hide-input"]

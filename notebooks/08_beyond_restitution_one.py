@@ -32,7 +32,7 @@
 # collision gives $v_1' - v_2' = -e(v_1 - v_2)$. A single rod would have the velocity width $W =
 # A/\sqrt{2m\gamma}$ and the displacement width $s = W\sqrt{m/k}$.
 #
-# *Level: master. You need: lesson 4, sections 1 and 2; the Fokker-Planck equation (lesson 1). Time:
+# *Level: fourth year. You need: lesson 4, sections 1 and 2; the Fokker-Planck equation (lesson 1). Time:
 # 120 minutes.*
 
 # %% tags=["hide-input"]

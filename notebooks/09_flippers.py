@@ -30,7 +30,7 @@
 # \sqrt{M/k}$ for times. Between collisions rod $i$ obeys $m\ddot x = -\gamma\dot x - F(x - x_i^0) +
 # A\,\xi(t)$ with white noise $\xi$. Linear springs have $F(d) = k d$, quadratic ones $F(d) = k d|d|$.
 #
-# *Level: master. You need: lesson 8, sections 1 and 5; a separable differential equation. Time:
+# *Level: fourth year. You need: lesson 8, sections 1 and 5; a separable differential equation. Time:
 # 100 minutes.*
 
 # %% tags=["hide-input"]
