@@ -207,7 +207,7 @@ def draw_lengths(
             ax.set(xscale="log", xlabel="rods $L$")
         axes[0].set(yscale="log", ylabel=r"correlation length $\xi$ [rods]")
         axes[1].set(ylim=(0, 1), ylabel=r"$\langle v_i v_{i+1}\rangle/T$, centre")
-        axes[2].set(ylim=(-0.1, 1.02), xlabel="separation $r$ [rods]")
+        axes[2].set(ylim=(0, 0.75), xlabel="separation $r$ [rods]")
         axes[2].set(ylabel=r"$\langle v_i v_{i+r}\rangle/T$, centre")
         entitle(axes[2], f"$L = {SHOWN}$")
         legend_above(drawing, axes[0])
