@@ -265,7 +265,9 @@ def draw_ingredients(folder: Path, figure: Path) -> None:
                     label=f"$L = {chain.size}$, $e = {chain.restitution:g}$",
                 )
                 ax.plot(*lines[name], color=COLOURS[number])
-                ax.set(xlabel="label $l/L$", ylabel=name, ylim=(0, None))
+                ax.set(xlabel="label $l/L$", ylabel=name)
+        for ax in axes:
+            ax.set_ylim(bottom=0)
         axes[_MODES].set(xlabel="mode $q$", xlim=(0.8, None), ylim=(0.02, 1))
         axes[_MODES].set(xscale="log", yscale="log")
         legend_above(drawing, axes[0])
