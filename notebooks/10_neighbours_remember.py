@@ -285,7 +285,7 @@ assert abs(of_neighbours) < 0.04
 # <details><summary>Solution</summary>
 #
 # In the centre. Print `run.neighbour_covariance` over `run.velocity_width**2`: at the border the
-# ratio is about 0.16, in the centre 0.44. A rod at the border has neighbours on one side only, and
+# ratio is about 0.15, in the centre 0.4. A rod at the border has neighbours on one side only, and
 # it meets them less often, so noise has more time to pull it away.
 # </details>
 #
