@@ -47,7 +47,12 @@ VOCABULARY = {
     "neighbour_covariance": ("covariance of neighbours' velocities <v_i v_i+1>", "R^2/T^2"),
     "relative_temperature": ("relative temperature <(v_i - v_i+1)^2>/2", "R^2/T^2"),
     "contact_force": ("mean force between neighbours", "M R/T^2"),
+    "contact_temperature": ("relative temperature before a collision", "R^2/T^2"),
+    "rebound_temperature": ("relative temperature after a collision", "R^2/T^2"),
     "contact_loss": ("power that collisions take at a contact", "M R^2/T^3"),
+    "velocity_covariance": ("covariance of velocities <v_i v_i+r>", "R^2/T^2"),
+    "gap_covariance": ("covariance of gaps <g_i g_i+r> - <g_i><g_i+r>", "R^2"),
+    "mean_gap": ("mean free room between neighbours <g_i>", "R"),
     "mode_velocity_variance": ("mean square velocity of a mode <|v_q|^2>", "R^2/T^2"),
     "rods": ("number of rods", "1"),
     "centre": ("mean position of all rods", "R"),
@@ -62,6 +67,7 @@ VOCABULARY = {
     "particle": ("particle i", "1"),
     "contact": ("contact of particle i with i + 1", "1"),
     "mode": ("mode q", "1"),
+    "separation": ("separation r of two particles or contacts", "1"),
     "mean_position": ("mean position <x_i>", "R"),
     "normalized_particle": ("normalized particle i_n", "1"),
 }
@@ -94,14 +100,15 @@ def result(
     method
         How it was computed, for the provenance: anything JSON can hold.
     coordinates
-        Values along the dimensions x, y, time and velocity, if the result has them; the
-        particles get their numbers.
+        Values along the dimensions x, y, time, velocity and so on, if the result has them; the
+        particles and contacts get their numbers.
     status, end_time
         ``completed``, ``diverged`` or ``interrupted``, and the time reached.
     residual
         How well a theory's equations are satisfied, as its function defines.
     particles
-        The particles, from 1, that variables over ``particle`` are given for; None: all.
+        The particles, from 1, that variables over ``particle`` and ``contact`` are given for, a
+        contact having the number of its left particle; None: all.
 
     Raises
     ------
@@ -114,9 +121,11 @@ def result(
         name: (name, np.asarray(values, dtype=float))
         for name, values in (coordinates or {}).items()
     }
+    shown = np.arange(chain.size) if particles is None else np.asarray(particles) - 1
+    if any("contact" in dims for dims, _ in variables.values()):
+        along["contact"] = ("contact", shown[shown < chain.size - 1] + 1)
     if any("particle" in dims for dims, _ in variables.values()):
         ends = max(chain.size - 1, 1)
-        shown = np.arange(chain.size) if particles is None else np.asarray(particles) - 1
         along["particle"] = ("particle", shown + 1)
         along["normalized_particle"] = ("particle", 2 * chain.rank[shown] / ends)
         if "mean_displacement" in variables:

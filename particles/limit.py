@@ -85,7 +85,8 @@ def simulate_limit(
         As in :func:`simulate`.
     observe
         As in :func:`simulate`; must include ``"widths"``. ``"snapshots"`` are refused because
-        they are not averages, collisions and avalanches because they have no limit.
+        they are not averages, collisions and avalanches because they have no limit, and impacts
+        because single collisions are not recorded here.
     replicas
         Independent trajectories at every level, each with a warm-up. ``threads`` of them (None:
         one per core) run at a time.
@@ -187,6 +188,8 @@ def make_runs(
     for observer in observers:
         if not observer.limit:
             raise ValueError(f"observe: {observer.name!r} has no limit of a vanishing time step")
+        if observer.single_collisions:
+            raise ValueError(f"observe: {observer.name!r} needs single collisions, unrecorded here")
     steps = plan_steps(chain, accuracy, warmup, replicas)
     runs = [
         LevelRun(
@@ -240,10 +243,8 @@ def _collect(levels: Levels, interrupted: bool, progress: bool) -> xr.Dataset:
     used = [sampler for level in levels.used for sampler in levels.samplers[level]]
     diverged = any(sampler.diverged for samplers in levels.samplers for sampler in samplers)
     finest = used[-1].finer
-    method = finest.provenance() | {
-        "accuracy": levels.accuracy,
-        "replicas": len(levels.samplers[0]),
-    }
+    method = finest.provenance() | {"accuracy": levels.accuracy}
+    method["replicas"] = len(levels.samplers[0])
     del method["schedule"]
     ends = [sampler.steps * sampler.schedule.time_step for sampler in used]
     collected = partial(

@@ -86,7 +86,10 @@ def simulate(
         Any of ``"widths"`` (velocity_width, mean_velocity, mean_displacement, displacement_width
         and the autocorrelation_time that tells whether warm-up and duration were long enough),
         ``"density"``, ``"velocities"`` (velocity_density), ``"energy"`` (kinetic_energy in time),
-        ``"collisions"`` (collision_rate), ``"avalanches"`` (avalanche_count),
+        ``"covariances"`` (velocity_covariance, gap_covariance, mean_gap, neighbour_covariance,
+        relative_temperature), ``"modes"`` (mode_velocity_variance), ``"collisions"``
+        (collision_rate), ``"impacts"`` (contact_force, contact_loss, contact_temperature,
+        rebound_temperature), ``"avalanches"`` (avalanche_count),
         ``"triggered-collisions"`` (triggered_count) and ``"snapshots"``
         (position and velocity as they are). Observers can also be given as objects, of the
         package, e.g. ``Velocities(bins=801)``, or your own.

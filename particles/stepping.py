@@ -232,13 +232,15 @@ def record(  # type: ignore[no-untyped-def]
     because a drift had too many collisions or a rod became too fast. The counted collisions are
     then those up to the last valid snapshot, because diverging steps may have had a million.
     """
-    contacts = tally.contacts.copy()
+    contacts, impacts = tally.contacts.copy(), tally.impacts.copy()
     for snapshot in range(y_buffer.shape[0]):
         met = advance(y, v, noise, dynamics, scratch, tally, stride)
         if met < 0 or not bounded(y, v, dynamics.fastest):
             tally.contacts[:] = contacts
+            tally.impacts[:] = impacts
             return snapshot
         contacts[:] = tally.contacts
+        impacts[:] = tally.impacts
         y_buffer[snapshot] = y
         v_buffer[snapshot] = v
     return y_buffer.shape[0]

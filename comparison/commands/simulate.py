@@ -41,7 +41,7 @@ def command(
         str,
         typer.Option(
             help="What to measure, separated by commas: widths, density, velocities, energy, "
-            "collisions, avalanches, snapshots."
+            "covariances, modes, collisions, impacts, avalanches, snapshots."
         ),
     ] = "widths,density",
     duration: Annotated[

@@ -20,7 +20,7 @@ from crazybilliards.comparison.explore.sums import Distributions, Sums
 from crazybilliards.kinetic import equilibrium_states
 from crazybilliards.model import Chain
 from crazybilliards.model.vocabulary import result
-from crazybilliards.particles.laws.avalanche import Tally, make_tally, make_waves
+from crazybilliards.particles.laws.avalanche import make_tally, make_waves
 from crazybilliards.particles.laws.law import make_scratch
 from crazybilliards.particles.noise import make_noise
 from crazybilliards.particles.scales import default_time_step, relaxation_time, typical_speed
@@ -217,7 +217,7 @@ class Session:
         self._silent = make_tally(chain.size, contacts=False)
         self._tally = make_tally(chain.size, contacts=True)
         if self._waves:
-            self._tally = Tally(self._tally.contacts, make_waves(0), make_waves(chain.size))
+            self._tally = self._tally._replace(triggered=make_waves(chain.size))
         self._offsets = chain.physical(np.zeros(chain.size))
         self._owed = 0.0
 

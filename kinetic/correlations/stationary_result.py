@@ -67,7 +67,6 @@ def assemble(found: Correlated, mesh_error: float) -> xr.Dataset:
             "x": fields["x"],
             "y": length * y,
             "velocity": velocity * v,
-            "contact": rods[1:] - 0.5,
             "mode": np.arange(cells.rods.size),
         },
         source="theory",

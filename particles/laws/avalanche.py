@@ -32,6 +32,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crazybilliards.model.kernels import inlined, kernel
+from crazybilliards.particles.laws.impacts import make_impacts
 
 Integers = NDArray[np.int64]
 
@@ -52,6 +53,7 @@ class Tally(NamedTuple):
     contacts: Integers  # collisions at each contact, (L - 1,)
     pushes: Waves
     triggered: Waves
+    impacts: NDArray[np.float64]  # see ``impacts.py``, (6, L - 1)
 
 
 def make_waves(size: int) -> Waves:
@@ -70,9 +72,9 @@ def make_waves(size: int) -> Waves:
 
 
 def make_tally(size: int, *, contacts: bool) -> Tally:
-    """Return an empty tally for ``size`` rods, without waves."""
+    """Return an empty tally for ``size`` rods, without waves and impacts."""
     counted = np.zeros(max(size - 1, 0) if contacts else 0, dtype=np.int64)
-    return Tally(counted, make_waves(0), make_waves(0))
+    return Tally(counted, make_waves(0), make_waves(0), make_impacts(0))
 
 
 @kernel

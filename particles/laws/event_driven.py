@@ -37,6 +37,7 @@ import numpy as np
 
 from crazybilliards.model.kernels import inlined, kernel
 from crazybilliards.particles.laws.avalanche import record_collision
+from crazybilliards.particles.laws.impacts import record_impact
 
 # With unsigned indices compiled code need not check for indices from the end of an array.
 INDEX = np.uint64
@@ -116,6 +117,7 @@ def drift(y, v, dt, restitution, merge_speed, most, integers, floats, clusters, 
     # The tournament: the winner at each node, and the time at which its contact closes.
     winner, due = integers[2:].ravel(), floats[:2].ravel()
     tallied = tally.contacts.size + tally.pushes.heads.size + tally.triggered.heads.size > 0
+    summed = tally.impacts.size > 0
     for i in range(y.size):
         first[i] = i
         last[i] = i
@@ -147,6 +149,10 @@ def drift(y, v, dt, restitution, merge_speed, most, integers, floats, clusters, 
         # start, would exchange one kick again and again at the same time and gain energy without
         # bound.
         rebound = (min(restitution, 1.0) if now == 0.0 else restitution) * (v_left - v_right)
+        if summed:
+            separating = rebound if rebound > merge_speed else 0.0
+            indices = np.int64(contact), np.int64(a), np.int64(b)
+            record_impact(*indices, v_left - v_right, separating, tally.impacts)
         if rebound <= merge_speed:
             y_common = y[contact] + (v_left - common) * now
             first[b] = a

@@ -18,8 +18,11 @@ from crazybilliards.particles.observers.base import (
     restore,
 )
 from crazybilliards.particles.observers.collisions import Collisions
+from crazybilliards.particles.observers.covariances import Covariances
 from crazybilliards.particles.observers.density import Density
 from crazybilliards.particles.observers.energy import Energy
+from crazybilliards.particles.observers.impacts import Impacts
+from crazybilliards.particles.observers.modes import Modes
 from crazybilliards.particles.observers.raw import Raw
 from crazybilliards.particles.observers.velocities import Velocities
 from crazybilliards.particles.observers.widths import Widths
@@ -31,7 +34,10 @@ OBSERVERS: dict[str, type[Observer]] = {
         Density,
         Velocities,
         Energy,
+        Covariances,
+        Modes,
         Collisions,
+        Impacts,
         Avalanches,
         TriggeredCollisions,
         Raw,
@@ -41,6 +47,7 @@ OBSERVERS: dict[str, type[Observer]] = {
 __all__ = [
     "OBSERVERS",
     "Averaged",
+    "Covariances",
     "Integers",
     "Observer",
     "Snapshots",

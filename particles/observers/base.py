@@ -151,14 +151,13 @@ class Averaged(Observer):
         self,
         quantities: Mapping[str, Callable[[Array], Array]],
         counts: Integers,
-        dimension: str,
+        *dimensions: str,
     ) -> Variables:
         """Return every quantity, which is a function of the averaged sums, and its error."""
-        dimensions: tuple[str, ...] = (dimension,)
         sums = self.sums
         if self.schedule.ensemble:
             # Times at the end that not every group reached are left out.
-            dimensions, sums = ("time", dimension), sums[:, : counts.shape[1]]
+            dimensions, sums = ("time", *dimensions), sums[:, : counts.shape[1]]
         variables: Variables = {}
         for name, quantity in quantities.items():
             value, error = jackknife(quantity, sums, counts)

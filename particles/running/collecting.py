@@ -74,9 +74,9 @@ def collect(run: Run, replicas: list[Replica], interrupted: bool) -> xr.Dataset:
 def only_chosen(
     chosen: Integers, size: int, dimensions: tuple[str, ...], values: ArrayLike
 ) -> tuple[tuple[str, ...], ArrayLike]:
-    """Keep the chosen particles of a variable that was measured for all of them."""
-    if "particle" not in dimensions:
-        return dimensions, values
-    axis = dimensions.index("particle")
+    """Keep the chosen particles, or contacts, of a variable that was measured for all of them."""
     values = np.asarray(values)
-    return dimensions, values if values.shape[axis] < size else values.take(chosen, axis)
+    for name, number in (("particle", size), ("contact", size - 1)):
+        if name in dimensions and values.shape[dimensions.index(name)] == number:
+            values = values.take(chosen[chosen < number], dimensions.index(name))
+    return dimensions, values

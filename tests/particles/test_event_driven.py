@@ -6,6 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from crazybilliards.particles.laws.avalanche import make_tally, make_waves
+from crazybilliards.particles.laws.impacts import make_impacts
 from crazybilliards.particles.laws.law import EVENTS, Law, drift, make_scratch
 
 MOST = 400
@@ -14,12 +15,12 @@ MOST = 400
 def everything(size):
     """Return a tally that keeps all there is."""
     waves = {"pushes": make_waves(size), "triggered": make_waves(size)}
-    return make_tally(size, contacts=True)._replace(**waves)
+    return make_tally(size, contacts=True)._replace(impacts=make_impacts(size), **waves)
 
 
 def numbers(tally):
     """Return all arrays of a tally."""
-    return [tally.contacts, *tally.pushes, *tally.triggered]
+    return [tally.contacts, *tally.pushes, *tally.triggered, tally.impacts]
 
 
 @st.composite

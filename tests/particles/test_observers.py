@@ -147,7 +147,7 @@ def test_a_checkpoint_keeps_everything_that_observing_changes(observer, average)
     untouched = {name: np.array(value) for name, value in original.state().items()}
     original.observe(some_snapshots(run, generator, 0))
     tally = original.tally(make_tally(5, contacts=True))
-    for array in (tally.contacts, *tally.pushes, *tally.triggered):
+    for array in (tally.contacts, *tally.pushes, *tally.triggered, tally.impacts):
         array += 1  # as the collision kernels do
     state = {name: np.array(value) for name, value in original.state().items()}
     assert any(not np.array_equal(state[name], untouched[name]) for name in state)
@@ -167,7 +167,7 @@ def test_an_observer_gives_what_it_declares(observer):
     result = simulate(Chain(size=4), duration=300, observe=observer(), progress=False)
     variables = {str(name).removesuffix("_error") for name in result.data_vars}
     assert variables == set(observer.gives)
-    common = {"particle", "normalized_particle", "mean_position"}
+    common = {"particle", "normalized_particle", "mean_position", "contact"}
     assert {str(name) for name in result.coords} - common == set(observer.along)
     assert set(observer.gives) <= VOCABULARY.keys()
 

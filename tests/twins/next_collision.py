@@ -8,6 +8,7 @@ import math
 from itertools import pairwise
 
 from crazybilliards.particles.laws.avalanche import record_collision
+from crazybilliards.particles.laws.impacts import record_impact
 
 
 def drift(y, v, dt, restitution, merge_speed, most, tally):
@@ -29,6 +30,8 @@ def drift(y, v, dt, restitution, merge_speed, most, tally):
         common = v_left + (v_right - v_left) * right / (left + right)
         e = min(restitution, 1.0) if now == 0 else restitution
         rebound = e * (v_left - v_right)
+        separating = rebound if rebound > merge_speed else 0.0
+        record_impact(middle, first, last, v_left - v_right, separating, tally.impacts)
         if rebound <= merge_speed:
             bodies[k : k + 2] = [(y_left + (v_left - common) * now, common, first, last)]
             del due[k]

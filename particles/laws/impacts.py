@@ -1,0 +1,43 @@
+"""What single collisions exchange and take, summed up at every contact.
+
+Rods of one mass meet with the closing speed w and separate with w'. With clusters (see
+``event_driven``) of l rods on the left and r on the right, and their reduced mass
+mu = l r/(l + r), in units of a rod's mass, the impulse is mu (w + w'), and the collision takes the
+energy mu (w^2 - w'^2)/2.
+
+The impulse also crosses the contacts within the clusters: j rods beyond a contact of the left
+cluster get the share j/l of it, and in the same way on the right. The impulses at a contact
+therefore add up to the momentum that all rods on one side of it lose in collisions, exactly.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crazybilliards.model.kernels import kernel
+
+# Rows of the sums: mu w, mu w^2/2, mu w', mu w'^2/2, momenta with what crosses within clusters.
+MOMENTUM_BEFORE, ENERGY_BEFORE, MOMENTUM_AFTER, ENERGY_AFTER = range(4)
+_ROWS = 4
+
+
+def make_impacts(size: int) -> NDArray[np.float64]:
+    """Return empty sums for ``size`` rods, shape (4, L - 1); size 0: nothing is summed."""
+    return np.zeros((_ROWS, max(size - 1, 0)))
+
+
+@kernel
+def record_impact(contact, first, last, closing, separating, impacts):  # type: ignore[no-untyped-def]
+    """Add a collision of the rods ``contact`` and ``contact + 1`` (counted from 0).
+
+    ``first`` and ``last`` are the outermost rods of the two clusters that meet.
+    """
+    left, right = float(contact - first + 1), float(last - contact)
+    mass = left * right / (left + right)
+    for other in range(first, last):
+        beyond = (other - first + 1) / left if other <= contact else (last - other) / right
+        impacts[MOMENTUM_BEFORE, other] += beyond * mass * closing
+        impacts[MOMENTUM_AFTER, other] += beyond * mass * separating
+    impacts[ENERGY_BEFORE, contact] += mass * closing * closing / 2
+    impacts[ENERGY_AFTER, contact] += mass * separating * separating / 2

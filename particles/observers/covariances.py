@@ -1,0 +1,125 @@
+"""Covariances of rods a few places apart."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from crazybilliards.model.checks import check_integer
+from crazybilliards.particles.observers.base import (
+    Array,
+    Averaged,
+    Integers,
+    Snapshots,
+    Variables,
+)
+from crazybilliards.particles.run import Run
+
+_MOST = 100_000
+
+
+class Covariances(Averaged):
+    """Covariances of velocities and of gaps, over rods up to ``separations`` places apart.
+
+    ``velocity_covariance`` is <v_i v_{i+r}> over particle i and separation r, about zero as
+    ``velocity_width`` is. ``gap_covariance`` is <g_i g_{i+r}> - <g_i><g_{i+r}> over contact i and
+    separation r, with the free room g_i between the rods i and i + 1, and ``mean_gap`` is <g_i>.
+    Where i + r lies beyond the chain there is NaN. Over the contacts it gives what
+    ``correlated_phase_space`` predicts: ``neighbour_covariance`` <v_i v_{i+1}> and
+    ``relative_temperature`` <(v_i - v_{i+1})^2>/2.
+
+    The sums take 8 (2 separations + 3) L bytes per block. With as many separations as there are
+    rods they hold the whole matrices.
+
+    Parameters
+    ----------
+    separations
+        Largest separation in rods, at least 1. A shorter chain has L - 1.
+    """
+
+    name = "covariances"
+    gives = (
+        "velocity_covariance",
+        "gap_covariance",
+        "mean_gap",
+        "neighbour_covariance",
+        "relative_temperature",
+    )
+    along = ("separation",)
+
+    def __init__(self, separations: int = 10) -> None:
+        self.separations = check_integer("separations", separations, least=1, most=_MOST)
+
+    def prepare(self, run: Run, copies: int) -> None:
+        """Make the sums."""
+        self.schedule = run.schedule
+        self.anchors = run.chain.reduced_anchors
+        self.furthest = self._furthest(run)
+        rows = 2 * (self.furthest + 1) + 1
+        self.sums = np.zeros((run.schedule.blocks, rows, run.chain.size))
+
+    def memory(self, run: Run) -> float:
+        """Return the bytes it keeps."""
+        return 8.0 * (2 * self._furthest(run) + 3) * run.chain.size * run.schedule.blocks
+
+    def _furthest(self, run: Run) -> int:
+        if run.chain.size < 2:
+            raise ValueError("observe: 'covariances' needs a chain of at least 2 rods")
+        return min(self.separations, run.chain.size - 1)
+
+    def observe(self, snapshots: Snapshots) -> None:
+        """Add the products of velocities, those of gaps, and the gaps, to their block."""
+        # Gaps minus those between the anchors: less is lost when the square of a mean is taken off.
+        gaps = np.diff(snapshots.y - self.anchors, axis=1)
+        sums = self.sums[snapshots.block]
+        for row, values in ((0, snapshots.v), (self.furthest + 1, gaps)):
+            size = values.shape[1]
+            for r in range(min(self.furthest, size - 1) + 1):
+                sums[row + r, : size - r] += np.einsum(
+                    "sp,sp->p", values[:, : size - r], values[:, r:]
+                )
+        sums[-1, :-1] += gaps.sum(axis=0)
+
+    def report(self, counts: Integers) -> Variables:
+        """Return all covariances and their standard errors."""
+        last = self.furthest + 1
+        at_anchors = np.diff(self.anchors)
+
+        def of_velocities(average: Array) -> Array:
+            return _known(average[..., :last, :])
+
+        def of_gaps(average: Array) -> Array:
+            products, mean = average[..., last:-1, :-1], average[..., -1, :-1]
+            size = mean.shape[-1]
+            squared = np.zeros_like(products)
+            for r in range(min(self.furthest, size - 1) + 1):
+                squared[..., r, : size - r] = mean[..., : size - r] * mean[..., r:]
+            return _known(products - squared)
+
+        def relative(average: Array) -> Array:
+            own = (average[..., 0, 1:] + average[..., 0, :-1]) / 2
+            return np.asarray(own - average[..., 1, :-1])
+
+        of_contacts = {
+            "mean_gap": lambda average: average[..., -1, :-1] + at_anchors,
+            "neighbour_covariance": lambda average: average[..., 1, :-1],
+            "relative_temperature": relative,
+        }
+        return {
+            **self.averages(
+                {"velocity_covariance": of_velocities}, counts, "particle", "separation"
+            ),
+            **self.averages({"gap_covariance": of_gaps}, counts, "contact", "separation"),
+            **self.averages(of_contacts, counts, "contact"),
+        }
+
+    def coordinates(self) -> dict[str, Array]:
+        """Return the separations."""
+        return {"separation": np.arange(self.furthest + 1, dtype=np.float64)}
+
+
+def _known(by_separation: Array) -> Array:
+    """Return (..., rods, separations) from (..., separations, rods), NaN beyond the chain."""
+    values = np.moveaxis(by_separation, -1, -2)
+    size, separations = values.shape[-2:]
+    inside = np.arange(size)[:, None] + np.arange(separations) < size
+    return np.where(inside, values, np.nan)

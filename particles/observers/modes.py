@@ -1,0 +1,54 @@
+"""Mean squares of the velocities of waves along the chain."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.fft import dct
+
+from crazybilliards.particles.observers.base import (
+    Array,
+    Averaged,
+    Integers,
+    Snapshots,
+    Variables,
+)
+from crazybilliards.particles.run import Run
+
+
+class Modes(Averaged):
+    """mode_velocity_variance: <|v_q|^2> of the waves cos(pi q (i - 1/2)/L), q = 0 to L - 1.
+
+    v_q = sum_i sqrt((2 or, for q = 0, 1)/L) cos(pi q (i - 1/2)/L) v_i is an orthogonal transform,
+    the discrete cosine transform of type II, so the sum over the modes is that of <v_i^2> over the
+    rods. If velocities are independent and equal, all modes have W_v^2. Rods that move together
+    have more in the long waves. On linear springs v_0, that of the centre of mass, has the variance
+    W^2 of a free rod at any restitution.
+
+    The sums take 8 L bytes per block, where the covariances of all pairs would take L times that.
+    """
+
+    name = "modes"
+    gives = ("mode_velocity_variance",)
+    along = ("mode",)
+
+    def prepare(self, run: Run, copies: int) -> None:
+        """Make the sums."""
+        self.schedule = run.schedule
+        self.sums = np.zeros((run.schedule.blocks, run.chain.size))
+
+    def memory(self, run: Run) -> float:
+        """Return the bytes it keeps."""
+        return 8.0 * run.chain.size * run.schedule.blocks
+
+    def observe(self, snapshots: Snapshots) -> None:
+        """Add the squares of the modes of snapshots to their block."""
+        waves = dct(snapshots.v, axis=1, norm="ortho")
+        self.sums[snapshots.block] += np.einsum("sq,sq->q", waves, waves)
+
+    def report(self, counts: Integers) -> Variables:
+        """Return the spectrum and its standard error."""
+        return self.averages({"mode_velocity_variance": lambda average: average}, counts, "mode")
+
+    def coordinates(self) -> dict[str, Array]:
+        """Return the numbers of the modes."""
+        return {"mode": np.arange(self.sums.shape[-1], dtype=np.float64)}

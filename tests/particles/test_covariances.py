@@ -1,0 +1,214 @@
+"""How neighbours move together and what they exchange, against exact cases and raw snapshots."""
+
+import numpy as np
+import pytest
+import xarray as xr
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.fft import dct
+
+from crazybilliards.model import Chain
+from crazybilliards.particles import simulate, simulate_limit
+from crazybilliards.particles.laws.avalanche import make_tally
+from crazybilliards.particles.laws.impacts import make_impacts
+from crazybilliards.particles.laws.law import EVENTS, Law, drift, make_scratch
+from crazybilliards.particles.noise import make_noise
+from crazybilliards.particles.observers import Covariances
+from crazybilliards.particles.running.replica import Replica
+from crazybilliards.particles.stepping import make_dynamics, record
+
+ALL = ["widths", Covariances(separations=9), "modes", "impacts"]
+
+
+def agree(measured, expected, factor=5):
+    """Within ``factor`` standard errors, where something was measured."""
+    values, errors = measured
+    known = np.isfinite(values.values)
+    assert known.any()
+    assert (abs(values.values - expected) <= factor * errors.values)[known].all()
+
+
+def with_error(run, name):
+    """Return a variable and its standard error."""
+    return run[name], run[f"{name}_error"]
+
+
+@pytest.mark.compiled
+def test_rods_that_never_meet_are_independent():
+    chain = Chain(size=4, gap=100)
+    run = simulate(chain, duration=20_000, replicas=2, observe=ALL, progress=False)
+    width, square = chain.free_velocity_width, chain.thermal_length**2
+    agree(with_error(run, "neighbour_covariance"), 0)
+    agree(with_error(run, "velocity_covariance"), width**2 * (run.separation.values == 0))
+    agree(with_error(run, "relative_temperature"), width**2)
+    agree(with_error(run, "mode_velocity_variance"), width**2)
+    agree(with_error(run, "mean_gap"), 100)
+    # The rod between two gaps widens the one and narrows the other.
+    agree(with_error(run, "gap_covariance"), square * np.array([2, -1, 0, 0]))
+    assert (run.contact_force == 0).all()
+    assert run.contact_temperature.isnull().all()
+    assert run.rebound_temperature.isnull().all()
+
+
+@pytest.mark.compiled
+def test_two_elastic_rods_are_two_points_that_pass():
+    """Half normal gaps, and relative velocities that do not depend on them."""
+    chain = Chain(size=2)
+    options = {"duration": 40_000, "time_step": 0.05, "replicas": 2, "progress": False}
+    run = simulate(chain, observe=ALL, **options)
+    width, length = chain.free_velocity_width, chain.thermal_length
+    agree(with_error(run, "neighbour_covariance"), 0)
+    agree(with_error(run, "mode_velocity_variance"), width**2)
+    agree(with_error(run, "mean_gap"), 2 * length / np.sqrt(np.pi))
+    variance = length**2 * (2 - 4 / np.pi)
+    agree([each[:, 0] for each in with_error(run, "gap_covariance")], variance)
+    agree(with_error(run, "contact_force"), chain.stiffness * length / np.sqrt(np.pi))
+    for name in ("relative_temperature", "contact_temperature", "rebound_temperature"):
+        agree(with_error(run, name), width**2)
+        assert (run[f"{name}_error"] / run[name]).item() < 0.02
+    assert (run.contact_loss == 0).all()
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("e", [1.0, 0.75])
+def test_collisions_keep_up_the_springs_and_take_what_noise_gives(e):
+    chain = Chain(size=2, restitution=e)
+    options = {"duration": 40_000, "time_step": 0.02, "every": 0.1, "progress": False}
+    run = simulate(chain, observe=ALL, seed=2, **options)
+    springs = chain.stiffness * run.mean_displacement[1].item()
+    spread = chain.stiffness * run.mean_displacement_error[1].item()
+    assert abs(run.contact_force.item() - springs) < 5 * spread
+    noise = chain.size * chain.amplitude**2 / (2 * chain.mass)
+    squares = run.velocity_width**2
+    taken = noise - chain.damping * float(squares.sum())
+    spread = 4 * chain.damping * float((run.velocity_width * run.velocity_width_error).sum())
+    assert abs(run.contact_loss.item() - taken) < 5 * spread / np.sqrt(2)
+    root = np.sqrt(run.contact_temperature)
+    expected = 2 / np.sqrt(np.pi) * (1 - e) * run.contact_force * root
+    np.testing.assert_allclose(run.contact_loss, expected, rtol=1e-3, atol=1e-15)
+    np.testing.assert_allclose(run.rebound_temperature, e**2 * run.contact_temperature, rtol=1e-3)
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("average", ["time", "ensemble"])
+def test_they_are_the_averages_of_the_snapshots(average):
+    chain = Chain(size=6, restitution=0.5)
+    options = {"duration": 60, "every": 0.5, "replicas": 40, "average": average}
+    observe = [Covariances(separations=3), "modes", "snapshots"]
+    run = simulate(chain, observe=observe, progress=False, **options)
+    over = ("replica",) if average == "ensemble" else ("replica", "time")
+    v, gaps = run.velocity, run.position.diff("particle").drop_vars("particle") - 2
+    axis = run.velocity.get_axis_num("particle")
+    squares = run.velocity.copy(data=dct(v.values, axis=axis, norm="ortho") ** 2).mean(over)
+    np.testing.assert_allclose(run.mode_velocity_variance, squares)
+    np.testing.assert_allclose(run.mean_gap, gaps.mean(over))
+    for r in range(4):
+        own, other = (v.isel(particle=part).values for part in (slice(6 - r), slice(r, 6)))
+        expected = v.isel(particle=slice(6 - r)).copy(data=own * other).mean(over)
+        found = run.velocity_covariance.isel(separation=r)
+        np.testing.assert_allclose(found.isel(particle=slice(6 - r)), expected)
+        assert found.isel(particle=slice(6 - r, 6)).isnull().all()
+        left, right = (gaps.isel(particle=part) for part in (slice(5 - r), slice(r, 5)))
+        found = run.gap_covariance.isel(separation=r)
+        both = (left * right).mean(over) - left.mean(over) * right.mean(over)
+        np.testing.assert_allclose(found.isel(contact=slice(5 - r)), both, rtol=1e-6, atol=1e-12)
+        assert found.isel(contact=slice(5 - r, 5)).isnull().all()
+    neighbours = run.velocity_covariance.isel(separation=1, particle=slice(5))
+    np.testing.assert_array_equal(run.neighbour_covariance, neighbours)
+    relative = (v.diff("particle") ** 2).mean(over) / 2
+    np.testing.assert_allclose(run.relative_temperature, relative)
+
+
+@pytest.mark.compiled
+def test_the_centre_of_mass_knows_nothing_of_collisions():
+    """All rods together: sum_ij <v_i v_j> = L W^2, at every restitution and in the limit."""
+    chain = Chain(size=8, restitution=0)
+    observe = ("widths", "modes", Covariances(separations=99))
+    limit = simulate_limit(chain, accuracy=0.02, seed=1, observe=observe, progress=False)
+    products = limit.velocity_covariance
+    assert limit.sizes["separation"] == 8
+    every = 2 * products.sum() - products.sel(separation=0).sum()
+    np.testing.assert_allclose(every, 8 * limit.mode_velocity_variance[0])
+    of_mass = [each[0] for each in with_error(limit, "mode_velocity_variance")]
+    agree(of_mass, chain.free_velocity_width**2)
+    some = simulate_limit(
+        chain, accuracy=0.02, seed=1, observe=observe, particles=[2, 8], progress=False
+    )
+    assert some.contact.values.tolist() == [2]
+    xr.testing.assert_identical(
+        some.neighbour_covariance, limit.neighbour_covariance.sel(contact=[2])
+    )
+    xr.testing.assert_identical(some.velocity_covariance, products.sel(particle=[2, 8]))
+
+
+@given(
+    seed=st.integers(0, 2**32),
+    size=st.integers(2, 12),
+    e=st.sampled_from([0.0, 0.4, 0.9, 1.0, 1.05]),
+    merge_speed=st.sampled_from([1e-9, 0.3]),
+)
+def test_collisions_make_half_of_the_energy_they_take_into_covariance(seed, size, e, merge_speed):
+    """And what crosses a contact is what the rods on its left lose, clusters included."""
+    generator = np.random.default_rng(seed)
+    y, v = np.cumsum(generator.exponential(size=size)), generator.normal(size=size)
+    y[generator.random(size) < 0.3] = y[0]
+    y.sort()
+    before, impacts = v.copy(), make_impacts(size)
+    tally = make_tally(size, contacts=True)._replace(impacts=impacts)
+    law = Law(EVENTS, e, merge_speed if e < 1 else 0.0, 400)
+    if drift(y, v, 3.0, law, make_scratch(size), tally) < 0:
+        return
+    given_away = np.cumsum(before - v)[:-1]
+    np.testing.assert_allclose(impacts[0] + impacts[2], given_away, atol=1e-9)
+    taken = (impacts[1] - impacts[3]).sum()
+    assert taken == pytest.approx((before**2 - v**2).sum() / 2, abs=1e-9)
+
+    def of_pairs(v):
+        return (np.outer(v, v).sum() - (v**2).sum()) / 2
+
+    assert of_pairs(v) - of_pairs(before) == pytest.approx(taken, abs=1e-9)
+
+
+@pytest.mark.compiled
+def test_an_interrupted_run_goes_on_as_if_it_had_not_been(ctrl_c, tmp_path):
+    options = {"duration": 400, "observe": ALL, "progress": False, "threads": 1}
+    chain = Chain(size=12, restitution=0.6)
+    whole = simulate(chain, **options)
+    ctrl_c(Replica, "_observe", lambda callers: len(callers) > 20)
+    cut = simulate(chain, checkpoint=tmp_path / "state", **options)
+    assert cut.attrs["status"] == "interrupted"
+    resumed = simulate(chain, checkpoint=tmp_path / "state", **options)
+    xr.testing.assert_identical(resumed, whole)
+    some = simulate(chain, particles=[3, 12], **options)
+    for name in ("contact_force", "contact_force_error", "gap_covariance"):
+        xr.testing.assert_identical(some[name], whole[name].sel(contact=[3]))
+
+
+def test_steps_that_diverge_do_not_count():
+    def recorded(most, fastest):
+        dynamics = make_dynamics(Chain(size=5, restitution=0.5), 0.1, speed=1.0, counted=True)
+        tally = make_tally(5, contacts=True)._replace(impacts=make_impacts(5))
+        buffers, noise = np.zeros((2, most, 5)), make_noise(np.random.SeedSequence(3))
+        state = np.zeros(5), np.zeros(5), noise, dynamics._replace(fastest=fastest)
+        return record(*state, make_scratch(5), tally, 7, *buffers), buffers[1], tally.impacts
+
+    _, speeds, _ = recorded(9, np.inf)
+    number, _, kept = recorded(99, np.abs(speeds).max())
+    assert 9 <= number < 99
+    _, _, expected = recorded(number, np.inf)
+    np.testing.assert_array_equal(kept, expected)
+    assert (expected > 0).all()
+
+
+def test_what_they_cannot_do_is_refused():
+    with pytest.raises(ValueError, match="'impacts' needs single collisions, unrecorded here"):
+        simulate_limit(Chain(size=4), observe=("widths", "impacts"), progress=False)
+    with pytest.raises(ValueError, match="'impacts' is averaged over time only"):
+        simulate(Chain(size=4), observe="impacts", average="ensemble", progress=False)
+    with pytest.raises(ValueError, match="'impacts' needs single collisions, which only"):
+        simulate(Chain(size=4), observe="impacts", method="contact-dynamics", progress=False)
+    for name in ("impacts", "covariances"):
+        with pytest.raises(ValueError, match=f"'{name}' needs a chain of at least 2 rods"):
+            simulate(Chain(size=1), observe=name, progress=False)
+    with pytest.raises(ValueError, match="separations must be"):
+        Covariances(separations=0)
