@@ -27,31 +27,16 @@
 # Units as in all lessons: the rod radius $R$, $T = \sqrt{M/k}$ for times. $W$ is the velocity width
 # of a rod without collisions.
 #
-# *Level: fourth year. You need: sections 1 and 2 of lesson 8. Time: 45 minutes.*
+# *Level: fourth year. You need: lesson 8, sections 1 and 2. Time: 45 minutes.*
 
 # %% tags=["hide-input"]
-import matplotlib.pyplot as plt
 import numpy as np
+from teaching import BLUE, ORANGE, PINK, check, panels
 
 from crazybilliards.kinetic import correlated_phase_space, phase_space
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
 from crazybilliards.particles.observers import Covariances
-
-BLUE, ORANGE, PINK, BLACK = "#0072B2", "#E69F00", "#CC79A7", "#000000"
-plt.rcParams.update({"figure.constrained_layout.use": True, "figure.dpi": 80})
-
-
-def check(answer, expected, at, hint):
-    """Say whether a function is still to be written, right, or wrong."""
-    given = answer(*at[0])
-    if given is ...:
-        print("Your turn: replace the dots, and run the cell again.")
-    elif all(np.isclose(answer(*each), expected(*each)) for each in at):
-        print("Right.")
-    else:
-        print(f"Not yet. Hint: {hint}")
-
 
 # %% [markdown]
 # ## 1. Do neighbours move together?
@@ -113,7 +98,8 @@ def my_change_of_product(v, u, e):
     return ...  # your code here: v' u' - v u
 
 
-check(my_change_of_product, change_of_product, pairs, "Write v u = (v+u)^2/4 - (v-u)^2/4.")
+hint = "Write v u = (v+u)^2/4 - (v-u)^2/4."
+check(my_change_of_product, change_of_product, at=pairs, hint=hint)
 
 # %% [markdown]
 # <details><summary>Solution</summary>
@@ -194,7 +180,7 @@ for e, run in runs.items():
     print(f"e = {e}: <v_i^2> = {own / W**2:.3f} W^2, sum over all j: {total[e] / W**2:.2f} W^2")
 
 # %% tags=["hide-input"]
-_, ax = plt.subplots(figsize=(6.5, 3.6))
+ax = panels(width=6.5)
 for (e, run), colour in zip(runs.items(), (PINK, BLUE), strict=True):
     separations = np.arange(0, 61, 2)
     pairs_around = [
@@ -239,14 +225,14 @@ for name, theory in (("phase_space", strangers), ("correlated_phase_space", neig
     print(f"{name}: W_v in the centre {100 * (centre / simulated - 1):+.0f} %")
 
 # %% tags=["hide-input"]
-_, (left, right) = plt.subplots(1, 2, figsize=(10, 3.6))
+left, right = panels(2)
 run = runs[0.75]
 left.errorbar(
     run.particle[::3],
     run.velocity_width[::3] / W,
     run.velocity_width_error[::3] / W,
     fmt="o",
-    color=BLACK,
+    color="black",
     markerfacecolor="none",
     label="simulation",
 )
@@ -257,7 +243,7 @@ left.plot(
 left.set(xlabel="rod i", ylabel="$W_v/W$")
 left.legend(frameon=False)
 right.plot(
-    run.contact[::3], run.neighbour_covariance[::3] / W**2, "o", color=BLACK, markerfacecolor="none"
+    run.contact[::3], run.neighbour_covariance[::3] / W**2, "o", color="black", markerfacecolor="none"
 )
 right.plot(neighbours.contact, neighbours.neighbour_covariance / W**2, color=BLUE)
 right.axhline(1 / 100, color=ORANGE)  # the centre of mass
@@ -274,7 +260,7 @@ assert abs(of_neighbours) < 0.04
 # **Explain.** Too cold: strangers lose more. The left picture shows the widths, the right one the
 # covariance of neighbours. The first theory has only that of the centre of mass, $W^2/L$. The second theory was derived
 # while simulations of this chain were looked at, so the agreement alone proves little. The page
-# *Rods that have hit one another before* of the documentation says how right it is elsewhere, and
+# on pair correlations in the documentation says how right it is elsewhere, and
 # where it fails.
 #
 # ## Exercises
