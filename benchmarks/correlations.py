@@ -104,7 +104,9 @@ def row(chain: Chain, run: xr.Dataset) -> str:
     begin = time.process_time()
     theory = correlated_phase_space(chain)
     seconds = time.process_time() - begin
-    before, after = (width_deviation(run, each) for each in (phase_space(chain), theory))
+    before, after = (
+        width_deviation(run, each) for each in (phase_space(chain, tolerance=4e-3), theory)
+    )
     shared, relative = theory.neighbour_covariance.values, theory.relative_temperature.values
     width = theory.displacement_width.values / even(run.displacement_width.values) - 1
     middle, measured = chain.size // 2 - 1, even(run.relative.values)

@@ -68,7 +68,7 @@ _AGREEMENT = 0.5  # of the tolerance: what ln a may be off; a width changes by l
 _MOST_ITERATIONS = 40
 _WAY = 0.5, 0.2  # restitutions that smaller ones are reached from
 _AGREEMENT_ON_THE_WAY = 0.05
-# Where the theory was solved. Simulations were compared from 10 to 300 rods.
+# Where the theory was solved. Simulations were compared with gamma from 0.4 to 3.
 _SIZES = 10, 1000
 _DAMPINGS = 0.14, 1.5  # gamma/sqrt(k m)
 
@@ -82,7 +82,7 @@ def correlated_phase_space(
     ----------
     chain
         10 to 1000 rods on linear springs without gap, restitution 0 to 1, damping 0.14 to 1.5
-        sqrt(k m). It was compared with simulations of 10 to 300 rods.
+        sqrt(k m).
     tolerance
         One rod and pairs are brought to agree, and the mesh is refined, until no velocity width
         changes by more, relatively.

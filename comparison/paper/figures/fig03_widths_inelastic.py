@@ -36,7 +36,7 @@ from crazybilliards.comparison.paper.vanishing_step import (
 from crazybilliards.model import chain_of
 
 _SIZES = predictions.SIZES
-_THEORY = f"theory {predictions.PAIRS}"
+_THEORY = "theory with pairs"
 _CROSS: dict[str, Any] = {"marker": "+", "linestyle": "none"}
 _PAPER, _PRECISION = -0.46, 0.015
 _ERROR = "velocity_width_error"
@@ -232,7 +232,7 @@ def draw(results: Results) -> Figure:
     widths.set(xscale="log", yscale="log", ylabel="velocity width $W_v/W$")
     widths.plot([], [], color="0.4", label="fit of two power laws")
     predictions.draw_widths_by_size(widths, results, label=_THEORY)
-    widths.legend()
+    widths.legend(loc="lower left")
     widths.tick_params(labelbottom=False)
     ratio.axhline(1, color="0.4", linewidth=0.8)
     ratio.set(xlabel="particle $i$", ylabel=f"$W_v$ over that of\n{LABEL}")
@@ -276,7 +276,7 @@ def _draw_steps(ax: Axes, results: Results) -> None:
     ax.plot([], [], "o", color="0.4", markerfacecolor="none", label="at a time step")
     ax.plot([], [], "o", color="0.4", label=LABEL)
     ax.plot([], [], **_CROSS, color="0.4", label=_THEORY)
-    ax.legend(loc="upper left")
+    ax.legend(loc="upper right")
     ax.set(xscale="log", xlabel="time step $dt$ [T]", ylabel=r"exponent $\nu$")
     ax.set_xticks([first, 1e-3, 1e-2], [r"$\to 0$", "$10^{-3}$", "$10^{-2}$"])
     ax.set_xticks([tenth * k for tenth in (1e-3, 1e-2) for k in range(2, 10)], minor=True)
