@@ -24,7 +24,7 @@ STRANGERS = re.compile(
     re.MULTILINE,
 )
 BOTH = re.compile(
-    rf"^\| (\d+) \| {NUMBER} \| 1 \| {NUMBER} -> {NUMBER} \| {NUMBER} -> {NUMBER} \|", re.MULTILINE
+    rf"^\| (\d+) \| {NUMBER} \| 1 \| (\S+) -> {NUMBER} \| (\S+) -> {NUMBER} \|", re.MULTILINE
 )
 LINEAR = 2.0  # per cent; the axis is linear up to there, and logarithmic beyond
 TICKS = (0, 0.5, 0.75, 0.9, 0.98, 1)
@@ -58,10 +58,12 @@ def of_both() -> tuple[list[Error], list[Error]]:
     for heading in (HELD_OUT, DERIVED_WITH):
         part = text.split(heading + "\n")[1].split("\n## ")[0]
         for size, e, *errors in BOTH.findall(part):
-            before, after, border_before, border_after = map(float, errors)
             held_out = heading == HELD_OUT
-            without.append(Error(int(size), float(e), before, border_before, held_out))
-            with_them.append(Error(int(size), float(e), after, border_after, held_out))
+            if errors[0] != "-":  # solved without correlations as well
+                values = float(errors[0]), float(errors[2])
+                without.append(Error(int(size), float(e), *values, held_out))
+            values = float(errors[1]), float(errors[3])
+            with_them.append(Error(int(size), float(e), *values, held_out))
     return without, with_them
 
 
@@ -85,7 +87,7 @@ def draw_errors(ax: Axes, errors: list[Error], which: str, sizes: list[int]) -> 
                 **look,
             )
     driven = [each for each in errors if each.driven]
-    for marker, each in zip("<^>", driven, strict=False):
+    for marker, each in zip("x+*", driven, strict=False):
         label = rf"$L = {each.size}$, $\gamma = 4$"
         ax.plot(DRIVEN, getattr(each, which), marker, color="black", mfc="none", label=label)
 
