@@ -82,6 +82,18 @@ def kinetic_equation(size: int, restitution: float, damping: float, quality: Qua
     return {kinetic_name(size, restitution, damping): Case("phase_space", chain, settings)}
 
 
+def correlated_equation(size: int, restitution: float, quality: Quality) -> Cases:
+    """Return that of the kinetic equation with pair correlations; quick: on a coarser mesh."""
+    chain = Chain(size=size, restitution=restitution)
+    settings = {"cells": 22} if quality == "quick" else {}
+    return {correlated_name(size, restitution): Case("correlated_phase_space", chain, settings)}
+
+
+def correlated_name(size: int, restitution: float) -> str:
+    """Return the name of :func:`correlated_equation`."""
+    return f"theory of pairs L={size} e={restitution:g}"
+
+
 def kinetic_name(size: int, restitution: float, damping: float) -> str:
     """Return the name of :func:`kinetic_equation`."""
     return f"theory L={size} e={restitution:g} gamma={damping:g}"

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import json
+
 from crazybilliards.comparison.claims.repetition import repeated
-from crazybilliards.comparison.claims.study import Cases, Quality
+from crazybilliards.comparison.claims.study import Cases, Quality, Results
 from crazybilliards.comparison.paper.chains import SIZES, dissipative, dissipative_name
 from crazybilliards.model import Chain
 
@@ -33,3 +35,9 @@ def at_steps(quality: Quality, sizes: tuple[int, ...] = SIZES) -> Cases:
 def step_name(size: int, step: float | None) -> str:
     """Return the name of the runs at a step; None: the default one."""
     return dissipative_name(size, 0.0) if step is None else f"L={size} dt={step:g}"
+
+
+def chain_step(results: Results, size: int) -> float:
+    """Return the default time step of that size, as the result records it."""
+    run = results[f"{step_name(size, None)}/0"]
+    return float(json.loads(run.attrs["provenance"])["schedule"]["time_step"])

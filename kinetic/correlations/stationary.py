@@ -39,6 +39,7 @@ from crazybilliards.kinetic.correlations.pair_covariance import (
 )
 from crazybilliards.kinetic.correlations.stationary_result import Correlated, assemble
 from crazybilliards.kinetic.kinetic_equation.continuation import (
+    State,
     continued,
     elastic_state,
     fitted,
@@ -59,15 +60,17 @@ Array = NDArray[np.float64]
 
 _CELLS = 22  # of the mesh on which one rod and pairs are brought to agreement
 _FINER = 1.5
-_MOST_CELLS = 60
+_MOST_CELLS = 80
 _LARGEST_MESH = 150
 _BYTES_PER_CELL = 4e4
 _ROUGHLY = 1e-6
 _AGREEMENT = 0.5  # of the tolerance: what ln a may be off; a width changes by less than half of it
 _MOST_ITERATIONS = 40
-# Where the theory was solved. Simulations were compared from 10 to 300 rods.
+_WAY = 0.5, 0.2  # restitutions that smaller ones are reached from
+_AGREEMENT_ON_THE_WAY = 0.05
+# Where the theory was solved. Simulations were compared with gamma from 0.4 to 3.
 _SIZES = 10, 1000
-_DAMPINGS = 0.24, 1.5  # gamma/sqrt(k m)
+_DAMPINGS = 0.14, 1.5  # gamma/sqrt(k m)
 
 
 def correlated_phase_space(
@@ -78,8 +81,8 @@ def correlated_phase_space(
     Parameters
     ----------
     chain
-        10 to 1000 rods on linear springs without gap, restitution 0 to 1, damping 0.24 to 1.5
-        sqrt(k m). It was compared with simulations of 10 to 300 rods.
+        10 to 1000 rods on linear springs without gap, restitution 0 to 1, damping 0.14 to 1.5
+        sqrt(k m).
     tolerance
         One rod and pairs are brought to agree, and the mesh is refined, until no velocity width
         changes by more, relatively.
@@ -134,11 +137,10 @@ def check_correlated_phase_space(chain: Chain, *, tolerance: float, cells: int |
     require_memory(f"cells={finest}", _BYTES_PER_CELL * finest**2)
     theory = "the kinetic equation with pair correlations"
     require_chain(chain, theory, linear=True, gapless=True)
-    damping = coefficients(chain, free_units(chain), 2).damping
     for name, value, (low, high), remedy in (
         ("restitution", chain.restitution, (0.0, 1.0), "phase_space and simulate"),
         ("size", chain.size, _SIZES, "phase_space and simulate"),
-        ("damping/sqrt(k m)", damping, _DAMPINGS, "phase_space and simulate"),
+        ("damping/sqrt(k m)", _damping(chain), _DAMPINGS, "phase_space and simulate"),
     ):
         if not low <= value <= high:
             raise ValueError(
@@ -168,11 +170,27 @@ def _solve(chain: Chain, tolerance: float, cells: int | None) -> tuple[Correlate
 
 
 def _agree(chain: Chain, tolerance: float) -> Correlated:
-    """Bring one rod and pairs to agreement, from the state of independent points."""
-    state = refined(continued(chain, elastic_state(chain, 2, _CELLS)), _CELLS)
+    """Bring one rod and pairs to agreement, from the state of independent points.
+
+    Independent points are too far from long chains at small restitutions: the iteration fails
+    there. It goes by way of larger restitutions, from each to the next.
+    """
+    larger = [e for e in _WAY if e > chain.restitution]
+    first = chain.replace(restitution=larger[0]) if larger else chain
+    state = refined(continued(first, elastic_state(first, 2, _CELLS)), _CELLS)
+    closure, iterations = Closure.independent(make_cells(chain.size)), 0
+    for restitution in larger:
+        on_the_way = chain.replace(restitution=restitution)
+        found = _agreed(replace(state, chain=on_the_way), closure, _AGREEMENT_ON_THE_WAY)
+        state, closure, iterations = found.state, found.closure, iterations + found.iterations
+    found = _agreed(replace(state, chain=chain), closure, _AGREEMENT * tolerance)
+    return _checked(found._replace(iterations=iterations + found.iterations))
+
+
+def _agreed(state: State, closure: Closure, agreement: float) -> Correlated:
+    """Find the state and closure of the chain of ``state`` that agree, from these two."""
+    chain, known = state.chain, list[Correlated]()
     cells, of_collisions = make_cells(chain.size), moments_of_collisions(chain.restitution)
-    damping = coefficients(chain, free_units(chain), 2).damping
-    known: list[Correlated] = []
 
     def image(vector: Array) -> Array:
         nonlocal state
@@ -181,19 +199,33 @@ def _agree(chain: Chain, tolerance: float) -> Correlated:
         state = fitted(solved(replace(state, factors=factors), _ROUGHLY))
         rod = profiles_of_one_rod(cells, state)
         around = background(rod, closure, chain.restitution)
-        pairs = solve_pairs(cells, around, of_collisions, damping)
+        pairs = solve_pairs(cells, around, of_collisions, _damping(chain))
         known[:] = [Correlated(state, closure, around, pairs, np.nan, 0)]
         return implied(chain.size, cells, rod, around, pairs).packed()
 
-    start = Closure.independent(cells).packed()
-    end = find_fixed_point(image, start, _AGREEMENT * tolerance, _MOST_ITERATIONS)
-    found = known[0]._replace(residual=end.residual, iterations=end.evaluations)
+    end = find_fixed_point(image, closure.packed(), agreement, _MOST_ITERATIONS)
+    return known[0]._replace(residual=end.residual, iterations=end.evaluations)
+
+
+def _checked(found: Correlated) -> Correlated:
+    """Raise if the agreement is at a bound, or not stable."""
     if not found.closure.is_possible:
         raise NoFixedPointError("the correlations are too large for a linear theory of them")
-    growth = linear_response(cells, found.background, of_collisions, damping).largest_growth()
-    if growth > 0:
+    chain = found.state.chain
+    response = linear_response(
+        make_cells(chain.size),
+        found.background,
+        moments_of_collisions(chain.restitution),
+        _damping(chain),
+    )
+    if (growth := response.largest_growth()) > 0:
         raise NoFixedPointError(f"the state is not stable: deviations grow at the rate {growth:g}")
     return found
+
+
+def _damping(chain: Chain) -> float:
+    """Return gamma/sqrt(k m)."""
+    return coefficients(chain, free_units(chain), 2).damping
 
 
 def _variances(found: Correlated) -> Array:

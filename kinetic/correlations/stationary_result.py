@@ -73,12 +73,13 @@ def assemble(found: Correlated, mesh_error: float) -> xr.Dataset:
         method={"theory": "kinetic equation with pair correlations", "cells": state.space.cells},
         residual=found.residual,
     )
+    accuracy = expected_accuracy(chain.restitution, chain.size)
     dataset.attrs |= {
         "iterations": found.iterations,
         "mesh_error": mesh_error,
         "cells": state.space.cells,
-        "model_error": expected_accuracy(chain.restitution).inner,
-        "border_error": expected_accuracy(chain.restitution).border,
+        "model_error": accuracy.inner,
+        "border_error": accuracy.border,
     }
     return dataset
 

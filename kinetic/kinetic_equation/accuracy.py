@@ -1,6 +1,6 @@
 """How far the theory is from simulations: the errors in the table of its page, by size and e.
 
-    python benchmarks/validity.py FOLDER FIGURE
+    python benchmarks/validity.py FOLDER
 
 measures them: velocity widths of chains without gap, linear springs. They are errors of the
 theory, not of its numerical solution.

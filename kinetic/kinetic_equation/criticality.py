@@ -38,7 +38,6 @@ from crazybilliards.kinetic.kinetic_equation.velocity_space import (
 from crazybilliards.kinetic.kinetic_equation.weak_form import (
     Coefficients,
     Equation,
-    along_velocity,
     newton_step,
 )
 from crazybilliards.kinetic.requirements import require_chain
@@ -208,7 +207,7 @@ def _state_of_unit_energy(state: _State, damping: float, tau: float) -> _State:
         mean = equation.mean(f)
         matrix = equation.matrix(mean)
         table = space.table(space.interpolate(f)[0])
-        by_drag = space.assemble(along_velocity, flux=space.field(table * mean.I1))
+        by_drag = -space.against_slopes(space.field(table * mean.I1))
         residual = np.concatenate([-(matrix @ f), [1 - row @ f for row in conditions]])
         columns = np.column_stack([space.whole_mass, by_drag])
         step = newton_step(matrix, columns, conditions, equation.variation(f), residual)

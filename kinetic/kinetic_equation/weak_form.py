@@ -42,7 +42,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 from scipy.sparse import csc_matrix, hstack, vstack
 from scipy.sparse.linalg import LinearOperator, gmres
-from skfem import BilinearForm, LinearForm
+from skfem import BilinearForm
 from skfem.helpers import grad
 
 from crazybilliards.kinetic.kinetic_equation.velocity_space import (
@@ -100,12 +100,6 @@ def transport(f, p, w):  # type: ignore[no-untyped-def]
     through = (w.force + w.damping * v + w.drag * w.I1) * f + w.noise * grad(f)[1]
     spread = w.diffusion * (w.I3 * grad(f)[1] + w.I3v * f)
     return v * f * grad(p)[0] - (through + spread) * grad(p)[1]
-
-
-@LinearForm
-def along_velocity(p, w):  # type: ignore[no-untyped-def]
-    """Minus a flux along v, against a test function."""
-    return -w.flux * grad(p)[1]
 
 
 @BilinearForm
@@ -199,7 +193,7 @@ class Equation:
                 shift = space.cumulative(table @ space.v_weights)
                 flux = flux - (stiffness * numbers.gap * shift)[:, None] * f_table
                 flux = flux + shift[:, None] * of_f
-            return space.assemble(along_velocity, flux=space.field(flux))
+            return -space.against_slopes(space.field(flux))
 
         return change
 

@@ -32,6 +32,8 @@ def short_run(case):
     if case.job == "simulate_limit":
         settings = {**case.settings, "accuracy": 0.1, "warmup": 2.0}
         return result(Case(case.job, case.chain, settings))
+    if case.job == "correlated_phase_space":
+        return result(Case(case.job, case.chain.replace(restitution=0.9), {"cells": 8}))
     if case.job != "simulate":
         return result(case)
     settings, chain = dict(case.settings), case.chain

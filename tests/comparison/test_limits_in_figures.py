@@ -19,7 +19,7 @@ from crazybilliards.comparison.paper.vanishing_step import (
     limit_name,
     limits,
 )
-from crazybilliards.model import Chain
+from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.vocabulary import result
 
 NOISE = 1e-3
@@ -51,7 +51,7 @@ def made_up(chain, job, *, seed=0, scale=1.0, steeper=0.0):
         error = np.hypot(NOISE, BIAS) * width.min()
         variables["central_velocity_width"] = ((), width.min())
         variables["central_velocity_width_error"] = ((), error)
-    source = "theory" if job == "phase_space" else "simulation"
+    source = "theory" if job.endswith("phase_space") else "simulation"
     run = result(chain, variables, source=source, method={"schedule": {"time_step": 5e-4}})
     if job == "simulate_limit":
         run.attrs["time_step_error"] = BIAS
@@ -212,3 +212,42 @@ def test_the_page_of_claims_says_which_number_is_a_limit():
         for figure, each in zip(WITH_LIMITS.values(), reproduced, strict=True)
     ]
     assert "imits of a vanishing" not in markdown(without, "quick").split("##")[0]
+
+
+# -- theories ---------------------------------------------------------------------------------
+
+
+def test_both_theories_are_judged_for_themselves():
+    """The made-up theories have the simulation's widths; then one of them is a fifth too cold."""
+    figure, results = WITH_LIMITS[7], made_up_results(7)
+
+    def found():
+        return {
+            claim.statement: claim.verdict
+            for claim in figure.claims(results)
+            if "kinetic equation" in claim.statement
+        }
+
+    strangers, pairs = (
+        f"the kinetic equation{name} gives W_v in the centre, e = 0.95"
+        for name in ("", " with pair correlations")
+    )
+    assert found() == {strangers: "confirmed", pairs: "confirmed"}
+    theory = results["theory of pairs L=1000 e=0.95"]
+    results["theory of pairs L=1000 e=0.95"] = theory.assign(
+        velocity_width=0.8 * theory.velocity_width
+    )
+    assert found() == {strangers: "confirmed", pairs: "refuted"}
+
+
+@pytest.mark.parametrize("number", [3, 7])
+def test_theories_are_drawn_beside_the_runs(number):
+    results = made_up_results(number)
+    drawn = WITH_LIMITS[number].draw(results)
+    shown = [line.get_ydata() for line in drawn.axes[0].lines]
+    plt.close(drawn)
+    theories = {name: each for name, each in results.items() if name.startswith("theory")}
+    assert len(theories) == {3: 1, 7: 2}[number]
+    for name, theory in theories.items():
+        widths = theory.velocity_width / chain_of(theory).free_velocity_width
+        assert any(np.array_equal(each, widths) for each in shown), name

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from scipy.special import erf
+from skfem import LinearForm
 
 from crazybilliards.kinetic.kinetic_equation.order_statistics import points
 from crazybilliards.kinetic.kinetic_equation.velocity_moments import fitting_box, moments
@@ -107,3 +108,16 @@ def test_order_statistics_of_a_gaussian():
     lever = points(40, seen).lever
     np.testing.assert_allclose(lever, 1, atol=0.02)
     np.testing.assert_allclose(lever[1:-1], 1, atol=2e-3)
+
+
+@pytest.mark.parametrize("symmetric", [True, False])
+def test_interpolation_and_slopes_are_those_of_the_elements(symmetric):
+    space = VelocitySpace(BOX, 5, symmetric)
+    f = np.random.default_rng(1).normal(size=space.unknowns.shape[1])
+    field = space.basis.interpolate(space.unknowns @ f)
+    value, slope = space.interpolate(f)
+    np.testing.assert_allclose(value, np.asarray(field), atol=1e-13)
+    np.testing.assert_allclose(slope, field.grad[1], atol=1e-12)
+    flux = LinearForm(lambda p, w: w.flux * p.grad[1])
+    expected = space.assemble(flux, flux=value)
+    np.testing.assert_allclose(space.against_slopes(value), expected, atol=1e-12)

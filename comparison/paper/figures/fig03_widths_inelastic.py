@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import json
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -22,9 +22,10 @@ from crazybilliards.comparison.claims.verdicts import (
 from crazybilliards.comparison.drawing import COLOURS, SYMBOLS, draw_rods
 from crazybilliards.comparison.fits import fit_border_power_law
 from crazybilliards.comparison.layout import mosaic
+from crazybilliards.comparison.paper import predictions
 from crazybilliards.comparison.paper.chains import LARGE
 from crazybilliards.comparison.paper.power_laws import fits_in_plot
-from crazybilliards.comparison.paper.time_steps import STEPS, at_steps, step_name
+from crazybilliards.comparison.paper.time_steps import STEPS, at_steps, chain_step, step_name
 from crazybilliards.comparison.paper.vanishing_step import (
     LABEL,
     common_bias,
@@ -34,18 +35,20 @@ from crazybilliards.comparison.paper.vanishing_step import (
 )
 from crazybilliards.model import chain_of
 
-_SIZES = (30, 100, 300, LARGE)
+_SIZES = predictions.SIZES
+_THEORY = "theory with pairs"
+_CROSS: dict[str, Any] = {"marker": "+", "linestyle": "none"}
 _PAPER, _PRECISION = -0.46, 0.015
 _ERROR = "velocity_width_error"
 _SOURCE = "section seq:e_0, eq:power_law, fig.2"
 
 
 def cases(quality: Quality) -> Cases:
-    """E = 0, four sizes, four time steps and the limit."""
+    """E = 0, four sizes, four time steps and the limit; the theory with pair correlations."""
     cases = at_steps(quality, _SIZES)
     for size in _SIZES:
         cases |= limits(size, 0.0, quality)
-    return cases
+    return cases | predictions.by_size(quality)
 
 
 def exponent(results: Results, size: int, step: float | None = None) -> Estimate:
@@ -180,6 +183,7 @@ def _limit_claims(results: Results, found: dict[int, Estimate]) -> list[Claim]:
                 each,
                 in_limit=True,
                 reason="the sum of two power laws is no exact law, and its exponent depends on L",
+                theory=predictions.exponent_of_size(results, size),
             )
             for size, each in limit.items()
         ),
@@ -227,7 +231,8 @@ def draw(results: Results) -> Figure:
         draw_rods(ratio, over, "velocity_width", number=number, along="particle", label="")
     widths.set(xscale="log", yscale="log", ylabel="velocity width $W_v/W$")
     widths.plot([], [], color="0.4", label="fit of two power laws")
-    widths.legend()
+    predictions.draw_widths_by_size(widths, results, label=_THEORY)
+    widths.legend(loc="lower left")
     widths.tick_params(labelbottom=False)
     ratio.axhline(1, color="0.4", linewidth=0.8)
     ratio.set(xlabel="particle $i$", ylabel=f"$W_v$ over that of\n{LABEL}")
@@ -246,6 +251,7 @@ def _over_limit(results: Results, size: int) -> xr.Dataset:
 
 def _draw_steps(ax: Axes, results: Results) -> None:
     """Draw nu against the time step, the limit as full symbols at the left margin."""
+    theories = predictions.predicted_by_size(results)
     first = 0.3 * min(chain_step(results, size) for size in _SIZES)
     for number, size in enumerate(_SIZES):
         steps = [chain_step(results, size), *reversed(STEPS)]
@@ -263,20 +269,18 @@ def _draw_steps(ax: Axes, results: Results) -> None:
         at = first * 1.25 ** (number - 1.5)  # beside one another
         limit = limit_estimate(results, size, _exponent)
         ax.errorbar(at, *limit, fmt=SYMBOLS[number], color=COLOURS[number], linewidth=0.8)
+        if size in theories:
+            nu = -predictions.minus_nu(theories[size])
+            ax.plot(at, nu, **_CROSS, color=COLOURS[number])
     ax.axhline(_PAPER, color="0.4", linestyle="--", label="paper")
     ax.plot([], [], "o", color="0.4", markerfacecolor="none", label="at a time step")
     ax.plot([], [], "o", color="0.4", label=LABEL)
-    ax.legend(loc="upper left")
+    ax.plot([], [], **_CROSS, color="0.4", label=_THEORY)
+    ax.legend(loc="upper right")
     ax.set(xscale="log", xlabel="time step $dt$ [T]", ylabel=r"exponent $\nu$")
     ax.set_xticks([first, 1e-3, 1e-2], [r"$\to 0$", "$10^{-3}$", "$10^{-2}$"])
     ax.set_xticks([tenth * k for tenth in (1e-3, 1e-2) for k in range(2, 10)], minor=True)
     ax.set_xlim(0.5 * first, 4e-2)
-
-
-def chain_step(results: Results, size: int) -> float:
-    """Return the default time step of that size, as the result records it."""
-    run = results[f"{step_name(size, None)}/0"]
-    return float(json.loads(run.attrs["provenance"])["schedule"]["time_step"])
 
 
 FIGURE = PaperFigure(
@@ -284,7 +288,8 @@ FIGURE = PaperFigure(
     name="widths-inelastic",
     title="Velocity widths at e = 0: power laws from both borders",
     caption="(a) W_v against the rod's number, e = 0, at the default time step, with the fits "
-    "a [(i - c)^nu + (L + 1 - c - i)^nu] to all rods. (b) The exponent against the time step; the "
+    "a [(i - c)^nu + (L + 1 - c - i)^nu] to all rods; dotted: the "
+    "kinetic equation with pair correlations. (b) The exponent against the time step; the "
     "leftmost open symbol of each size is the default step, the full one the limit. (c) W_v over "
     "its limit dt -> 0.",
     cases=cases,

@@ -23,10 +23,9 @@ from crazybilliards.comparison.claims.verdicts import (
     eye_claim,
     positive_claim,
     same_claim,
-    small_claim,
 )
 from crazybilliards.comparison.drawing import COLOURS, SYMBOLS, along_the_chain, draw_rods
-from crazybilliards.comparison.fits import ExponentialFit, fit_border_power_law, fit_exponential
+from crazybilliards.comparison.fits import ExponentialFit, fit_exponential
 from crazybilliards.comparison.layout import legend_above, mosaic
 from crazybilliards.comparison.paper.chains import (
     LARGE,
@@ -35,39 +34,36 @@ from crazybilliards.comparison.paper.chains import (
     dissipative_name,
     elastic,
     elastic_name,
-    kinetic_equation,
-    kinetic_name,
 )
 from crazybilliards.comparison.paper.power_laws import fits_in_plot
+from crazybilliards.comparison.paper.predictions import (
+    CROSSES,
+    LINES,
+    by_restitution,
+    centre_claims,
+    listed,
+    minus_nu,
+    predicted,
+)
 from crazybilliards.comparison.paper.vanishing_step import LABEL, central_limit, limit_name, limits
-from crazybilliards.comparison.studies.restitutions import width_deviation
 from crazybilliards.model import chain_of
 
-SOLVED_FOR = {"quick": (0.95,), "full": (0.85, 0.92, 0.95)}
 IN_LIMIT = {"quick": (0.0, 0.95), "full": RESTITUTIONS}
 _ELASTIC_SIZE = 100
 _SOURCE = "section seq:e_larger, fig.4"
-_THEORY = "kinetic equation"
 _OPEN: dict[str, Any] = {"fmt": SYMBOLS[0], "color": "black", "markerfacecolor": "none"}
 _OURS = "the restitutions (those of fig.5, and 0.5) and the time step"
 
 
 def cases(quality: Quality) -> Cases:
-    """L = 1000 at six restitutions, L = 100 at e = 1; limits; the kinetic equation."""
+    """L = 1000 at six restitutions, L = 100 at e = 1; limits; theories."""
     cases: Cases = {}
     for restitution in RESTITUTIONS:
         cases |= dissipative(LARGE, restitution, quality)
-    for restitution in SOLVED_FOR[quality]:
-        cases |= kinetic_equation(LARGE, restitution, 1.0, quality)
+    cases |= by_restitution(quality)
     for restitution in IN_LIMIT[quality]:
         cases |= limits(LARGE, restitution, quality)
     return cases | elastic(_ELASTIC_SIZE, quality)
-
-
-def theories(results: Results) -> dict[float, xr.Dataset]:
-    """Return the kinetic equation's results by restitution."""
-    names = {e: kinetic_name(LARGE, e, 1.0) for e in RESTITUTIONS}
-    return {e: results[name] for e, name in names.items() if name in results}
 
 
 def _central_widths(results: Results) -> dict[float, Estimate]:
@@ -80,9 +76,6 @@ def _central_limits(results: Results) -> dict[float, Estimate]:
 
 
 def _exponents(results: Results) -> dict[float, Estimate]:
-    def minus_nu(run: xr.Dataset) -> float:
-        return -fit_border_power_law(run).exponent
-
     return {e: estimate(results, dissipative_name(LARGE, e), minus_nu) for e in RESTITUTIONS}
 
 
@@ -119,7 +112,7 @@ def claims(results: Results) -> list[Claim]:
             exactly="the profile is no sum of two power laws: the residuals are systematic",
         ),
         *_exponential_claims(results),
-        *_theory_claims(results),
+        *centre_claims(results),
         *_limit_claims(results),
     ]
 
@@ -139,39 +132,15 @@ def _exponential_claims(results: Results) -> list[Claim]:
             float(np.abs(residuals).max()),
             source=f"{_SOURCE}, inset",
             ours=_OURS,
-            theory=", ".join(
-                f"{e:g}: {-fit_border_power_law(theory).exponent:.3f}"
-                for e, theory in theories(results).items()
-            ),
+            theory=listed(predicted(results), minus_nu, *RESTITUTIONS),
             reason="the exponents scatter about the curve by more than their errors",
         ),
         positive_claim(
-            "the exponential has an amplitude below 1; as printed, without one, it does not fit",
+            "the exponential has an amplitude below 1; read as an equality, without one, it does not fit",
             f"a = {amplitude}; 1 - a:",
             Estimate(1 - amplitude.value, amplitude.error),
         ),
     ]
-
-
-def _theory_claims(results: Results) -> list[Claim]:
-    claims = []
-    for e, theory in theories(results).items():
-        name = dissipative_name(LARGE, e)
-        deviation = width_deviation(pooled(results, name), theory)
-        # Rods of the centre move together: only runs are independent.
-        centre = estimate(results, name, central_width)
-        claims.append(
-            small_claim(
-                f"the kinetic equation gives W_v in the centre, e = {e:g}",
-                "relative deviation",
-                Estimate(deviation.centre, centre.error / centre.value),
-                0.05,
-                theory="nothing fitted",
-                reason="correlations of velocities, which the theory leaves out, grow with "
-                "L (1 - e)",
-            )
-        )
-    return claims
 
 
 def _limit_claims(results: Results) -> list[Claim]:
@@ -202,7 +171,6 @@ def draw(results: Results) -> Figure:
         [["widths", "exponents"], ["widths", "centre"]], height=3.9, width_ratios=(1.4, 1)
     )
     left = axes["widths"]
-    predicted = theories(results)
     names = {e: dissipative_name(LARGE, e) for e in RESTITUTIONS}
     names[1.0] = elastic_name(_ELASTIC_SIZE)
     for number, (e, name) in enumerate(names.items()):
@@ -210,25 +178,31 @@ def draw(results: Results) -> Figure:
         unit = chain_of(run).free_velocity_width
         label = f"$e = {e:g}$" + (f", $L = {_ELASTIC_SIZE}$" if e == 1 else "")
         draw_rods(left, run, "velocity_width", number=number, unit=unit, label=label)
-        if e in predicted:
-            theory = predicted[e]
-            # Above the symbols: one of them passes over those of another restitution.
-            left.plot(
-                theory.normalized_particle,
-                theory.velocity_width / unit,
-                color=COLOURS[number],
-                path_effects=[withStroke(linewidth=1.9, foreground="white")],
-                zorder=4,
-            )
+        _draw_theories(left, results, e, unit, COLOURS[number])
     along_the_chain(left)
     left.set(ylabel="velocity width $W_v/W$", yscale="log")
-    solved = rf"kinetic equation, $e \geq {min(predicted):g}$"
-    left.plot([], [], color="0.4", label=solved)
+    for theory, of_theory in predicted(results).items():
+        solved = rf"{theory}, $e \geq {min(of_theory):g}$"
+        left.plot([], [], LINES[theory], color="0.4", label=solved)
     legend_above(figure, left)
     axes["exponents"].sharex(axes["centre"])
     _draw_exponents(axes["exponents"], results)
     _draw_centre(axes["centre"], results)
     return figure
+
+
+def _draw_theories(ax: Axes, results: Results, e: float, unit: float, colour: str) -> None:
+    for theory, of_theory in predicted(results).items():
+        if e in of_theory:
+            # Above the symbols: one of them passes over those of another restitution.
+            ax.plot(
+                of_theory[e].normalized_particle,
+                of_theory[e].velocity_width / unit,
+                LINES[theory],
+                color=colour,
+                path_effects=[withStroke(linewidth=1.9, foreground="white")],
+                zorder=4,
+            )
 
 
 def _draw_centre(ax: Axes, results: Results) -> None:
@@ -243,8 +217,9 @@ def _draw_centre(ax: Axes, results: Results) -> None:
     ):
         values, errors = np.array(list(found.values())).T / unit
         ax.errorbar(list(found), values, errors, label=label, **style)
-    predicted = {e: central_width(theory) / unit for e, theory in theories(results).items()}
-    ax.plot(list(predicted), list(predicted.values()), "x", color=COLOURS[4], label=_THEORY)
+    for theory, of_theory in predicted(results).items():
+        centres = [central_width(each) / unit for each in of_theory.values()]
+        ax.plot(list(of_theory), centres, **CROSSES[theory], label=theory)
     ax.set(xlabel="restitution $e$", ylabel="central width $W_v^{\\min}/W$")
     ax.legend()
 
@@ -260,14 +235,9 @@ def _draw_exponents(ax: Axes, results: Results) -> None:
         label="simulation",
         **_OPEN,
     )
-    for e, theory in theories(results).items():
-        ax.plot(
-            e,
-            -fit_border_power_law(theory).exponent,
-            "x",
-            color=COLOURS[4],
-            label=None if e != max(theories(results)) else _THEORY,
-        )
+    for theory, of_theory in predicted(results).items():
+        exponents = [minus_nu(each) for each in of_theory.values()]
+        ax.plot(list(of_theory), exponents, **CROSSES[theory], label=theory)
     fine = np.linspace(0, 1, 101)
     ax.plot(fine, fit(fine), "0.4", label=rf"fit, $\lambda = {fit.rate:.1f}$")
     ax.set(ylabel=r"exponent $-\nu$")
@@ -280,10 +250,10 @@ FIGURE = PaperFigure(
     name="widths-restitution",
     title="Velocity widths for several restitutions",
     caption="(a) W_v against the normalized particle number, L = 1000 (e = 1: L = 100). Lines: "
-    "the kinetic equation in the colour of its e, where it was solved, at the largest e below 1; "
-    "nothing of the simulation goes into it. (b) The exponent of the two power laws against the "
-    "restitution, and a exp(-lambda (1 - e)) + d fitted to it. (c) W_v in the centre at the "
-    "default time step and in the limit of a vanishing one.",
+    "the kinetic equation in the colour of its e, dashed for strangers, full with pair "
+    "correlations; nothing of the simulation goes into them. (b) The exponent of the two "
+    "power laws against the restitution, and a exp(-lambda (1 - e)) + d fitted to it. (c) W_v in "
+    "the centre at the default time step and in the limit of a vanishing one.",
     cases=cases,
     draw=draw,
     claims=claims,

@@ -15,8 +15,13 @@ from crazybilliards.comparison.claims.verdicts import About, Claim, Estimate, po
 from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_rods, mark_clipped
 from crazybilliards.comparison.layout import legend_above, panels
 from crazybilliards.comparison.paper.chains import LARGE, dissipative, dissipative_name
-from crazybilliards.comparison.paper.figures import fig07_widths_restitution
 from crazybilliards.comparison.paper.figures.fig05_displacements_inelastic import swelling
+from crazybilliards.comparison.paper.predictions import (
+    LINES,
+    by_restitution,
+    listed,
+    predicted,
+)
 from crazybilliards.model import chain_of
 
 _FRAME = 0.7
@@ -25,9 +30,8 @@ _RESTITUTIONS = (0.0, 0.75, 0.85, 0.92, 0.95)
 
 
 def cases(quality: Quality) -> Cases:
-    """L = 1000 at five restitutions, and the kinetic equation."""
-    wanted = fig07_widths_restitution.cases(quality)
-    cases = {name: case for name, case in wanted.items() if name.startswith("theory")}
+    """L = 1000 at five restitutions, and the kinetic equation without and with pairs."""
+    cases = by_restitution(quality)
     for restitution in _RESTITUTIONS:
         cases |= dissipative(LARGE, restitution, quality)
     return cases
@@ -36,16 +40,13 @@ def cases(quality: Quality) -> Cases:
 def claims(results: Results) -> list[Claim]:
     """Check: displacements grow with e, and the border has the larger energy at large e."""
     found = {e: estimate(results, dissipative_name(LARGE, e), swelling) for e in _RESTITUTIONS}
-    predicted = {
-        e: swelling(theory) for e, theory in fig07_widths_restitution.theories(results).items()
-    }
     growing = [
         positive_claim(
             f"the mean displacement grows from e = {low:g} to {high:g}",
             f"slope of <dx> against i_n: {found[low]} and {found[high]}, difference",
             found[high].minus(found[low]),
             source="section seq:e_larger, fig.5",
-            theory=", ".join(f"{e:g}: {predicted[e]:.3f}" for e in (low, high) if e in predicted),
+            theory=listed(predicted(results), swelling, low, high),
         )
         for low, high in itertools.pairwise(_RESTITUTIONS)
     ]
@@ -90,7 +91,6 @@ def _excess(run: xr.Dataset, name: str) -> float:
 def draw(results: Results) -> Figure:
     """Draw <dx> against i_n, and of the rods at the left border against i; theory as lines."""
     figure, (whole, border) = panels(1, 2, height=2.5)
-    predicted = fig07_widths_restitution.theories(results)
     for number, e in enumerate(_RESTITUTIONS):
         run = pooled(results, dissipative_name(LARGE, e))
         s, colour = chain_of(run).thermal_length, COLOURS[number]
@@ -98,15 +98,17 @@ def draw(results: Results) -> Figure:
         look: Any = {"number": number, "unit": s, "label": f"$e = {e:g}$"}
         draw_rods(whole, run, "mean_displacement", **look)
         draw_rods(border, half, "mean_displacement", along="particle", **look)
-        if e in predicted:
-            shift = predicted[e].mean_displacement / s
-            whole.plot(predicted[e].normalized_particle, shift, color=colour)
-            border.plot(half.particle, shift[: LARGE // 2], color=colour)
+        for theory, of_theory in predicted(results).items():
+            if e in of_theory:
+                shift, style = of_theory[e].mean_displacement / s, LINES[theory]
+                whole.plot(of_theory[e].normalized_particle, shift, style, color=colour)
+                border.plot(half.particle, shift[: LARGE // 2], style, color=colour)
     along_the_chain(whole)
     whole.set(ylabel=_LABEL, ylim=(-_FRAME, _FRAME))
     mark_clipped(whole)
     border.set(xscale="log", xlabel="particle $i$", ylabel=_LABEL)
-    whole.plot([], [], color="0.4", label="kinetic equation")
+    for theory, style in LINES.items():
+        whole.plot([], [], style, color="0.4", label=theory)
     legend_above(figure, whole)
     return figure
 
@@ -117,7 +119,8 @@ FIGURE = PaperFigure(
     title="Mean displacements for several restitutions",
     caption="Mean displacement, L = 1000, in units of the thermal length s, (a) of all rods "
     "against the normalized particle number, (b) of the left half against the rod's number. "
-    "Lines: the kinetic equation. Triangles at the frame of (a): rods beyond it, which (b) shows.",
+    "Lines: the kinetic equation, dashed for strangers, full with pair "
+    "correlations. Triangles at the frame of (a): rods beyond it, which (b) shows.",
     cases=cases,
     draw=draw,
     claims=claims,

@@ -1,0 +1,47 @@
+"""The errors that the theory with pair correlations states are the largest ones of its page."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from crazybilliards.kinetic.correlations.accuracy import expected_accuracy
+
+PAGE = Path(__file__).parents[2] / "docs" / "correlations.md"
+ROW = re.compile(
+    r"^\| (\d+) \| ([\d.]+) \| [\d.]+ \| \S+ -> \S+ \| \S+ -> (\S+) \| \S+ -> (\S+) \|",
+    re.MULTILINE,
+)
+ROUNDED = 5e-4
+
+
+def rows():
+    """Return size, restitution, and errors of inner particles and border of all chains."""
+    found = ROW.findall(PAGE.read_text(encoding="utf-8"))
+    return [
+        (int(size), float(e), float(inner) / 100, abs(float(border)) / 100)
+        for size, e, border, inner in found
+    ]
+
+
+def test_every_chain_of_the_page_is_within_the_errors():
+    assert len(rows()) == 43
+    for size, e, inner, border in rows():
+        expected = expected_accuracy(e, size)
+        assert inner <= expected.inner + ROUNDED, (size, e)
+        assert border <= expected.border + ROUNDED, (size, e)
+
+
+@pytest.mark.parametrize("long", [False, True])
+def test_no_error_is_larger_than_that_of_some_chain(long):
+    of_size = [row for row in rows() if (row[0] > 300) == long]
+    for e in {row[1] for row in of_size}:
+        stated = expected_accuracy(e, of_size[0][0])
+        assert stated.inner <= max(row[2] for row in of_size if row[1] == e) + ROUNDED
+        assert stated.border <= max(row[3] for row in of_size if row[1] == e) + ROUNDED
+
+
+def test_between_measured_restitutions_the_larger_error_counts():
+    assert expected_accuracy(0.6, 100) == expected_accuracy(0.5, 100)
+    assert expected_accuracy(0.96, 600) == (0.019, 0.011)
+    assert expected_accuracy(0.1, 1000).inner == 0.226
