@@ -70,6 +70,7 @@ for e, run in runs.items():
 assert abs(correlation[1]) < 0.03
 assert 0.38 < correlation[0.75] < 0.50
 
+
 # %% [markdown]
 # **Explain.** At $e = 1$ the correlation is zero within the error: in equilibrium all velocities
 # are independent, although neighbours hit one another all the time. At $e = 0.75$ it is not even
@@ -82,7 +83,6 @@ assert 0.38 < correlation[0.75] < 0.50
 # $$v' = \tfrac12(v+u) - \tfrac e2(v-u),\qquad u' = \tfrac12(v+u) + \tfrac e2(v-u).$$
 #
 # **Your turn.** By how much does the product $vu$ change in a collision?
-
 
 # %% tags=["remove-cell"]
 def change_of_product(v, u, e):
@@ -243,7 +243,11 @@ left.plot(
 left.set(xlabel="rod i", ylabel="$W_v/W$")
 left.legend(frameon=False)
 right.plot(
-    run.contact[::3], run.neighbour_covariance[::3] / W**2, "o", color="black", markerfacecolor="none"
+    run.contact[::3],
+    run.neighbour_covariance[::3] / W**2,
+    "o",
+    color="black",
+    markerfacecolor="none",
 )
 right.plot(neighbours.contact, neighbours.neighbour_covariance / W**2, color=BLUE)
 right.axhline(1 / 100, color=ORANGE)  # the centre of mass

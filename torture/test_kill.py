@@ -3,8 +3,8 @@
 Each of four jobs, `simulate` with a checkpoint and the commands `sweep`, `reproduce` and `compare`,
 is killed at random moments by SIGKILL, SIGTERM or Ctrl-C (SIGINT to the whole process group): ten
 kills in a row, the same call after each, and then to the end, ten times over. `compare` keeps
-nothing when it is killed, so each attempt takes its whole time: five times for it. After every kill each
-file is whole or has a name that says that it is none, and no process is left; in the end the
+nothing when it is killed, so each attempt takes its whole time: five times for it. After every kill
+each file is whole or has a name that says that it is none, and no process is left; in the end the
 files are those of an undisturbed run and no others. A fifth job does nothing but write.
 
 Importing and compiling would take most of the time. So this process has done both, and each

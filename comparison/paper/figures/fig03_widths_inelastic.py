@@ -190,14 +190,14 @@ def _limit_claims(results: Results, found: dict[int, Estimate]) -> list[Claim]:
         same_claim(
             "the same exponent for all L in the limit dt -> 0",
             _listed(limit),
-            max(_deviations(limit).values()),
+            float(np.max(list(_deviations(limit).values()))),
             in_limit=True,
             reason="the sum of two power laws is no exact law, and its exponent depends on L",
         ),
         same_claim(
             "the default time step leaves the exponents as they are in the limit dt -> 0",
             f"nu at the default step less that of the limit, by L: {_listed(shifts)}",
-            max(abs(each.value) / each.error for each in shifts.values()),
+            float(np.max([abs(each.value) / each.error for each in shifts.values()])),
         ),
     ]
 

@@ -136,7 +136,8 @@ def _exponential_claims(results: Results) -> list[Claim]:
             reason="the exponents scatter about the curve by more than their errors",
         ),
         positive_claim(
-            "the exponential has an amplitude below 1; read as an equality, without one, it does not fit",
+            "the exponential has an amplitude below 1; read as an equality, without one, it does "
+            "not fit",
             f"a = {amplitude}; 1 - a:",
             Estimate(1 - amplitude.value, amplitude.error),
         ),
@@ -160,7 +161,7 @@ def _limit_claims(results: Results) -> list[Claim]:
         same_claim(
             "the default time step gives W_v in the centre as in the limit dt -> 0",
             f"W_v at the default step less that of the limit, by e: {listed}",
-            max(abs(each.value) / each.error for each in shifts.values()),
+            float(np.max([abs(each.value) / each.error for each in shifts.values()])),
         ),
     ]
 
