@@ -93,7 +93,8 @@ def installed(tmp_path_factory):
     run(sys.executable, "-m", "venv", "--without-pip", there / "venv")
     binaries = there / "venv" / ("Scripts" if os.name == "nt" else "bin")
     python = binaries / "python"
-    packages = Path(run(python, "-c", "import site; print(site.getsitepackages()[-1])").strip())
+    where = "import sysconfig; print(sysconfig.get_path('purelib'))"
+    packages = Path(run(python, "-c", where).strip())
     borrowed = [path for path in sys.path if path.endswith("-packages")]
     (packages / "borrowed.pth").write_text("\n".join(borrowed), encoding="utf-8")
     [wheel] = there.glob("*.whl")
