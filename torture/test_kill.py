@@ -16,6 +16,7 @@ import os
 import re
 import signal
 import sys
+import threading
 import time
 import traceback
 import warnings
@@ -24,6 +25,7 @@ from pathlib import Path
 import matplotlib as mpl
 import numpy as np
 import pytest
+from tqdm import tqdm
 
 from crazybilliards.comparison.commands.line import main
 from crazybilliards.comparison.paper import figures
@@ -90,6 +92,9 @@ def command(*arguments):
 @pytest.fixture(scope="module", autouse=True)
 def prepared():
     """Import and compile everything; two cheap figures stand for all."""
+    # The progress bars' lock is one semaphore of all forks: a kill that comes while an attempt holds it
+    # would stop all later ones. A lock of threads is each process's own.
+    tqdm.set_lock(threading.RLock())
     mpl.use("Agg")
     mpl.pyplot.close(mpl.pyplot.figure())
     for restitution in (0.9, 1.0):
