@@ -20,7 +20,7 @@ help:
 	@echo "make run        compare simulation and theory at e = 1; figures into $(OUTPUT)/"
 	@echo "make test       run the tests"
 	@echo "make test-lowest  run the tests with the oldest allowed version of every package"
-	@echo "make torture    test kills, full disks, bad input and long runs (8 min; docs/reliability.md)"
+	@echo "make torture    test kills, full disks, bad input and long runs (12 min; docs/reliability.md)"
 	@echo "make coverage   show which lines the tests reach, kernels included (12 min)"
 	@echo "make check      check lint, format and types"
 	@echo "make audit      look up known vulnerabilities of every package used (needs the network)"

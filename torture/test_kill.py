@@ -92,8 +92,8 @@ def command(*arguments):
 @pytest.fixture(scope="module", autouse=True)
 def prepared():
     """Import and compile everything; two cheap figures stand for all."""
-    # The progress bars' lock is one semaphore of all forks: a kill that comes while an attempt holds it
-    # would stop all later ones. A lock of threads is each process's own.
+    # The lock of the progress bars is one semaphore of all forks. A kill that comes while it is
+    # held would stop all later attempts. A lock of threads belongs to one process.
     tqdm.set_lock(threading.RLock())
     mpl.use("Agg")
     mpl.pyplot.close(mpl.pyplot.figure())
