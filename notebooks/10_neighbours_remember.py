@@ -105,7 +105,7 @@ check(my_change_of_product, change_of_product, at=pairs, hint=hint)
 # <details><summary>Solution</summary>
 #
 # A product is $\frac14$ of the square of the sum less $\frac14$ of the square of the difference.
-# The sum stays, and the difference is multiplied by $-e$. So
+# The sum is conserved, and the difference is multiplied by $-e$. So
 #
 # $$v'u' - vu = \frac{1-e^2}4(v-u)^2 .$$
 #
@@ -152,18 +152,18 @@ ratio = share[0.75, "rebound_temperature"] / share[0.75, "contact_temperature"]
 assert abs(ratio - 0.75**2) < 0.01
 
 # %% [markdown]
-# **Explain.** At $e = 1$ all are $T$. At $e = 0.75$ neighbours have a relative temperature of 0.6 $T$,
+# **Explain.** At $e = 1$ all are $T$. At $e = 0.75$ neighbours have a relative temperature of 0.585 $T$,
 # since they have the rest in common. Rods that are about to collide have less, 0.44 $T$. Where rods
 # happen to be close they collide often, and are cold. After the collision $e^2 = 0.56$ of that
 # remains. Then noise and other neighbours pull the two apart again. So a collision takes less than
 # one of strangers would. At the same force between the rods the loss goes like the root of the
-# relative temperature before a collision, and $\sqrt{0.44} = 0.67$: a third less.
+# relative temperature before a collision, and $\sqrt{0.44} = 0.66$: a third less.
 #
 # ## 4. How far do they remember?
 #
 # A rod is hit by both neighbours, and these are hit by theirs. So the memory spreads. But all
 # collisions together cannot change the total momentum. On linear springs the centre of mass is an
-# oscillator that knows nothing of collisions. Its velocity has the mean square $W^2/L$ at any $e$.
+# oscillator on which collisions do not act. Its velocity has the mean square $W^2/L$ at any $e$.
 #
 # **Predict.** Add up $\langle v_iv_j\rangle$ over all rods $j$, and average over $i$. What is the
 # sum at $e = 1$? And at $e = 0.75$, where $\langle v_i^2\rangle$ is much smaller?

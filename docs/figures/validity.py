@@ -42,7 +42,7 @@ class Error(NamedTuple):
     driven: bool = False
 
 
-def strangers() -> list[Error]:
+def independent() -> list[Error]:
     """Return the rows of the kinetic equation's page."""
     text = (DOCS / "kinetic_equation.md").read_text(encoding="utf-8")
     return [
@@ -109,8 +109,8 @@ def finish(ax: Axes) -> None:
 def main() -> None:
     """Write the picture."""
     without, with_them = of_both()
-    known = {(each.size, each.restitution) for each in strangers()}
-    first = strangers() + [
+    known = {(each.size, each.restitution) for each in independent()}
+    first = independent() + [
         each for each in without if (each.size, each.restitution) not in known and each.size > 10
     ]
     second = [each for each in with_them if each.size > 10]
@@ -121,12 +121,12 @@ def main() -> None:
             which = ("centre", "border")[number % 2]
             draw_errors(ax, (first, second)[number // 2], which, sizes)
             finish(ax)
-            theory = ("strangers", "with pair correlations")[number // 2]
+            theory = ("independent points", "with pair correlations")[number // 2]
             entitle(ax, f"{which}, {theory}")
         for ax in axes[2:]:
             ax.set_xlabel(r"restitution $e$, linear in $\sqrt{1 - e}$ up to 1")
         for ax in axes[::2]:
-            ax.set_ylabel("$W_v$: theory less simulation [%]\n(negative: too cold)")
+            ax.set_ylabel("$W_v$: theory $-$ simulation [%]\n(negative: too small)")
         legend_above(figure, axes[0])
         figure.savefig(Path(__file__).with_suffix(".png"))
         plt.close(figure)

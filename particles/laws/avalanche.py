@@ -53,7 +53,7 @@ class Tally(NamedTuple):
     contacts: Integers  # collisions at each contact, (L - 1,)
     pushes: Waves
     triggered: Waves
-    impacts: NDArray[np.float64]  # see ``impacts.py``, (6, L - 1)
+    impacts: NDArray[np.float64]  # see ``impacts.py``, (4, L - 1)
 
 
 def make_waves(size: int) -> Waves:

@@ -57,3 +57,4 @@ def test_every_theory_has_it():
     assert errors[1:] == [0.138, 0.138, 0.099, 0.027, 0.007, 0.007]
     assert np.isnan(errors[0])
     assert np.isnan(force_balance(Chain(gap=0.5)).attrs["model_error"])
+    assert np.isnan(force_balance(Chain(), velocity_variance=2.0).attrs["model_error"])
