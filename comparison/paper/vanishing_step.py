@@ -27,7 +27,7 @@ LABEL = r"limit $dt \to 0$"
 # Number of limits, and the accuracy of each: at e = 0, where exponents have their errors from the
 # scatter between them, and at larger restitutions, where they cost ten times as much.
 _INELASTIC = {"quick": (3, 0.02), "full": (5, 0.005)}
-_DISSIPATIVE = {"quick": (1, 0.05), "full": (1, 0.01)}
+_DISSIPATIVE = {"quick": (1, 0.05), "full": (1, 0.015)}
 
 
 def limits(size: int, restitution: float, quality: Quality) -> Cases:
