@@ -16,6 +16,7 @@ import matplotlib
 matplotlib.use("Agg")
 import numpy as np
 import xarray as xr
+from ingredients import draw_ingredients
 from matplotlib.axes import Axes
 
 from crazybilliards.comparison.drawing import COLOURS, SYMBOLS
@@ -35,7 +36,6 @@ CLOSER = (Chain(size=100, restitution=0.75), Chain(size=30, restitution=0.5))
 CLOSER_DURATION = 12_000.0
 FINER = 4  # than the default time step, for what collisions exchange
 CELLS = 22
-_MODES = 3  # panel of the spectrum
 
 
 def kept(folder: Path, name: str, make: Callable[[], xr.Dataset]) -> xr.Dataset:
@@ -205,12 +205,13 @@ def draw_lengths(
             _draw_covariances(axes[2], runs[SHOWN], how)
         for ax in axes[:2]:
             ax.set(xscale="log", xlabel="rods $L$")
+            ax.set_xticks(SIZES, [f"{size}" for size in SIZES])
         axes[0].set(yscale="log", ylabel=r"correlation length $\xi$ [rods]")
         axes[1].set(ylim=(0, 1), ylabel=r"$\langle v_i v_{i+1}\rangle/T$, centre")
         axes[2].set(ylim=(0, 0.75), xlabel="separation $r$ [rods]")
         axes[2].set(ylabel=r"$\langle v_i v_{i+r}\rangle/T$, centre")
         entitle(axes[2], f"$L = {SHOWN}$")
-        legend_above(drawing, axes[0])
+        legend_above(drawing, axes[0], "symbols: simulation, lines: theory")
         drawing.savefig(figure)
 
 
@@ -218,65 +219,21 @@ def _draw_covariances(ax: Axes, run: xr.Dataset, how: dict[str, object]) -> None
     """Draw covariances of rods at equal distances from the centre, over their temperatures."""
     size = run.sizes["particle"]
     separations = np.unique(np.geomspace(1, size // 2, 14).astype(int))
-    values = []
+    values, errors = [], []
     for r in separations:
         first = np.arange((size - r) // 2 - size // 20, (size - r) // 2 + size // 20 + 1)
         widths = run.velocity_width.values
-        products = run.velocity_covariance.values[first, r]
-        values.append(products.sum() / (widths[first] * widths[first + r]).sum())
-    ax.plot(separations, values, linewidth=0.6, **how)
-
-
-def ingredients(run: xr.Dataset, chain: Chain) -> dict[str, tuple[xr.DataArray, np.ndarray]]:
-    """Return coordinate and values, in free units, of what is drawn of a result."""
-    width = chain.free_velocity_width
-    own = run.velocity_width.values**2
-    contact = run.contact / chain.size
-    force, loss = run.contact_force.values, run.contact_loss.values
-    root = np.sqrt(np.pi) / 2 / (1 - chain.restitution) * loss / force
-    return {
-        "$T/W^2$": ((run.particle - 0.5) / chain.size, own / width**2),
-        r"$\Theta/T$": (contact, 2 * run.relative_temperature.values / (own[1:] + own[:-1])),
-        r"$h_c = \langle v_i v_{i+1}\rangle/W^2$": (
-            contact,
-            run.neighbour_covariance.values / width**2,
-        ),
-        r"$\langle|v_q|^2\rangle/W^2$": (run.mode, run.mode_velocity_variance.values / width**2),
-        r"force $P\ [k s]$": (contact, force / (chain.stiffness * chain.thermal_length)),
-        r"before a collision: $F\sqrt{\Theta}/W$": (contact, root / width),
-    }
-
-
-def draw_ingredients(folder: Path, figure: Path) -> None:
-    with house_style():
-        drawing, axes = panels(2, 3, height=2.3)
-        for number, chain in enumerate(CLOSER):
-            run, theory = measured_closely(chain, folder), solved(chain, folder)
-            runs, lines = ingredients(run, chain), ingredients(theory, chain)
-            for ax, (name, (place, values)) in zip(axes, runs.items(), strict=True):
-                every = max(1, len(values) // 30) if ax is not axes[_MODES] else 1
-                ax.plot(
-                    place[::every],
-                    values[::every],
-                    linestyle="none",
-                    marker=SYMBOLS[number],
-                    markerfacecolor="none",
-                    color=COLOURS[number],
-                    label=f"$L = {chain.size}$, $e = {chain.restitution:g}$",
-                )
-                ax.plot(*lines[name], color=COLOURS[number])
-                ax.set(xlabel="label $l/L$", ylabel=name)
-        for ax in axes:
-            ax.set_ylim(bottom=0)
-        axes[_MODES].set(xlabel="mode $q$", xlim=(0.8, None), ylim=(0.02, 1))
-        axes[_MODES].set(xscale="log", yscale="log")
-        legend_above(drawing, axes[0])
-        drawing.savefig(figure)
+        temperature = (widths[first] * widths[first + r]).mean()
+        values.append(run.velocity_covariance.values[first, r].mean() / temperature)
+        # Neighbouring pairs err together.
+        errors.append(run.velocity_covariance_error.values[first, r].mean() / temperature)
+    ax.errorbar(separations, values, errors, linestyle="none", **how)
 
 
 def main(folder: Path, figures: Path) -> None:
     folder.mkdir(parents=True, exist_ok=True)
-    draw_ingredients(folder, figures / "ingredients.png")
+    closely = [(chain, measured_closely(chain, folder), solved(chain, folder)) for chain in CLOSER]
+    draw_ingredients(closely, figures / "ingredients.png")
     draw_lengths(tabulate(folder), figures / "neighbours.png")
 
 

@@ -4,6 +4,7 @@ python benchmarks/report.py results/benchmark.json docs/figures/cost.png
 """
 
 import json
+import re
 import sys
 from collections import defaultdict
 from pathlib import Path
@@ -44,6 +45,12 @@ def main(source: Path, figure: Path) -> None:
     draw(costs, figure)
 
 
+def in_letters_of_print(work: str) -> str:
+    """Return the name of some work with its symbols as formulas."""
+    work = re.sub(r"\be ?= ?([\d.]+)", r"$e = \1$", work)
+    return re.sub(r"\bdt ?= ?1e(-\d+)", r"$dt = 10^{\1}$", work)
+
+
 def draw(costs: dict[str, dict[int, float]], figure: Path) -> None:
     with house_style():
         drawn, [ax] = panels(1, 1, height=4.2, wanted=1)
@@ -52,7 +59,7 @@ def draw(costs: dict[str, dict[int, float]], figure: Path) -> None:
             if work != NOISE:
                 look = {"color": COLOURS[number - 1], "marker": SYMBOLS[number - 1]}
                 look |= {"markerfacecolor": "none"}
-            ax.plot(list(by_size), list(by_size.values()), label=work, **look)
+            ax.plot(list(by_size), list(by_size.values()), label=in_letters_of_print(work), **look)
         for name, cost in PEERS.items():
             ax.plot(1000, cost, "*", color="black", markersize=7, markerfacecolor="none")
             ax.annotate(name, (1000, cost), xytext=(6, -3), textcoords="offset points")

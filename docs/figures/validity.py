@@ -24,20 +24,29 @@ STRANGERS = re.compile(
     re.MULTILINE,
 )
 BOTH = re.compile(
-    rf"^\| (\d+) \| {NUMBER} \| 1 \| (\S+) -> {NUMBER} \| (\S+) -> {NUMBER} \|", re.MULTILINE
+    rf"^\| (\d+) \| {NUMBER} \| 1 \| (\S+) -> {NUMBER} \| (\S+) -> {NUMBER} \| [^|]* "
+    r"\| ([^|]*) \|",
+    re.MULTILINE,
 )
 LINEAR = 2.0  # per cent; the axis is linear up to there, and logarithmic beyond
+LABELLED = (-50, -20, -10, -5, -2, 0, 2, 5)
+# Even steps in the linear part, decades beyond: they show where the axis changes.
+UNLABELLED = (-40, -30, *range(-9, -2), *np.arange(-1.5, 2, 0.5), 3, 4, 6, 7)
 TICKS = (0, 0.5, 0.75, 0.9, 0.98, 1)
 DRIVEN = 0.14  # where e = 1.05 stands, beyond the break of the axis
+DRIVEN_COLOUR = "0.45"
+LEFT = -1.13  # end of the axis
 
 
 class Error(NamedTuple):
-    """Errors of W_v of one chain, in per cent."""
+    """Errors of W_v of one chain, and the standard errors of its simulation, in per cent."""
 
     size: int
     restitution: float
     centre: float
     border: float
+    centre_error: float
+    border_error: float
     held_out: bool
     driven: bool = False
 
@@ -46,8 +55,17 @@ def independent() -> list[Error]:
     """Return the rows of the kinetic equation's page."""
     text = (DOCS / "kinetic_equation.md").read_text(encoding="utf-8")
     return [
-        Error(int(size), float(e), float(centre), float(border), False, bool(driven))
-        for e, driven, size, centre, border, _, _ in STRANGERS.findall(text)
+        Error(
+            int(size),
+            float(e),
+            float(centre),
+            float(border),
+            float(rod),
+            float(rod),
+            False,
+            bool(driven),
+        )
+        for e, driven, size, centre, border, _, rod in STRANGERS.findall(text)
     ]
 
 
@@ -57,13 +75,16 @@ def of_both() -> tuple[list[Error], list[Error]]:
     without, with_them = list[Error](), list[Error]()
     for heading in (HELD_OUT, DERIVED_WITH):
         part = text.split(heading + "\n")[1].split("\n## ")[0]
-        for size, e, *errors in BOTH.findall(part):
+        for size, e, *errors, simulated in BOTH.findall(part):
             held_out = heading == HELD_OUT
+            # Of the centre, if it is there, a rod and the border; "-" where none is stated.
+            each = [float(number) for number in simulated.split(",") if number != "-"] or [np.nan]
+            stated = each[0], each[-1], held_out
             if errors[0] != "-":  # solved without correlations as well
                 values = float(errors[0]), float(errors[2])
-                without.append(Error(int(size), float(e), *values, held_out))
+                without.append(Error(int(size), float(e), *values, *stated))
             values = float(errors[1]), float(errors[3])
-            with_them.append(Error(int(size), float(e), *values, held_out))
+            with_them.append(Error(int(size), float(e), *values, *stated))
     return without, with_them
 
 
@@ -79,31 +100,50 @@ def draw_errors(ax: Axes, errors: list[Error], which: str, sizes: list[int]) -> 
         look = {"color": COLOURS[number], "marker": SYMBOLS[number]}
         for held_out in (False, True):
             shown = [each for each in of_size if each.held_out == held_out]
-            ax.plot(
+            if not shown:
+                continue
+            ax.errorbar(
                 [place(each) for each in shown],
                 [getattr(each, which) for each in shown],
+                [getattr(each, f"{which}_error") for each in shown],
                 markerfacecolor=look["color"] if held_out else "none",
-                label=f"$L = {size}$" + (", held out" if held_out else "") if shown else None,
+                label=f"$L = {size}$" + (", held out" if held_out else ""),
+                linewidth=0.8,
                 **look,
             )
     driven = [each for each in errors if each.driven]
     for marker, each in zip("x+*", driven, strict=False):
+        value, error = getattr(each, which), getattr(each, f"{which}_error")
+        look = {"color": DRIVEN_COLOUR, "markerfacecolor": "none", "linestyle": "none"}
         label = rf"$L = {each.size}$, $\gamma = 4$"
-        ax.plot(DRIVEN, getattr(each, which), marker, color="black", mfc="none", label=label)
+        ax.errorbar(DRIVEN, value, error, marker=marker, markersize=5, label=label, **look)
 
 
 def finish(ax: Axes) -> None:
-    """Give a panel its axes."""
+    """Give a panel its axes, and mark where they change."""
     ax.axhspan(-LINEAR, LINEAR, color="0.93", zorder=0)
     ax.axhline(0, color="0.6", linewidth=0.6, zorder=0)
     ax.set_yscale("symlog", linthresh=LINEAR)
-    ax.set_yticks([-50, -20, -10, -5, -2, 0, 2, 5], minor=False)
-    ax.set_yticks([], minor=True)
+    ax.set_yticks(LABELLED)
+    ax.set_yticks(UNLABELLED, minor=True)
     ax.yaxis.set_major_formatter(lambda value, _: f"{value:+g}" if value else "0")
+    ax.yaxis.set_minor_formatter("")
     ax.set_ylim(-60, 8)
+    for y, scale in ((4, "log."), (0, "linear"), (-11, "logarithmic")):
+        ax.text(LEFT + 0.035, y, scale, rotation="vertical", va="center", color="0.4")
     ax.set_xticks([*(-np.sqrt(1 - np.array(TICKS))), DRIVEN], [*(f"{e:g}" for e in TICKS), "1.05"])
-    ax.set_xlim(-1.05, 1.5 * DRIVEN)
-    ax.annotate("//", (DRIVEN / 2, 0), xycoords=("data", "axes fraction"), ha="center", va="center")
+    ax.set_xlim(LEFT, 1.5 * DRIVEN)
+    for y in (0, 1):
+        gap = {"facecolor": "white", "edgecolor": "none", "pad": 0}
+        ax.text(
+            DRIVEN / 2,
+            y,
+            "//",
+            transform=ax.get_xaxis_transform(),
+            bbox=gap,
+            ha="center",
+            va="center",
+        )
 
 
 def main() -> None:
