@@ -18,11 +18,13 @@
 # # Neighbours remember
 #
 # **Question.** Collisions cool a chain of rods. How much one collision takes depends on the
-# relative velocity of the two rods. Two neighbours in a cold chain are about to collide. Do they
-# meet as strangers, or have they something in common?
+# relative velocity of the two rods. Two neighbours in a cold chain are about to collide. Are their
+# velocities independent of each other, or are they correlated?
 #
-# Lesson 8 solved a kinetic equation in which rods that meet are strangers. For $e = 0.75$ and 100
-# rods it is too cold in the centre. Here you measure why, and see the correction.
+# In this lesson two rods are called *strangers* if their velocities are independent. Lesson 8 solved
+# a kinetic equation which assumes that rods that meet are strangers. For $e = 0.75$ and 100 rods its
+# velocity width in the centre is wrong by 9 %. Here you measure the reason, and see a theory that
+# corrects it.
 #
 # Units as in all lessons: the rod radius $R$, $T = \sqrt{M/k}$ for times. $W$ is the velocity width
 # of a rod without collisions.
@@ -73,8 +75,8 @@ assert 0.38 < correlation[0.75] < 0.50
 
 # %% [markdown]
 # **Explain.** At $e = 1$ the correlation is zero within the error: in equilibrium all velocities
-# are independent, although neighbours hit one another all the time. At $e = 0.75$ it is not even
-# small. Neighbours have more than a third of their mean square velocity in common.
+# are independent, although neighbours hit one another all the time. At $e = 0.75$ the correlation is
+# large: the covariance of neighbours is more than a third of their mean square velocity.
 #
 # ## 2. Where it comes from
 #
@@ -116,14 +118,15 @@ check(my_change_of_product, change_of_product, at=pairs, hint=hint)
 # </details>
 #
 # The change is never negative: every collision below $e = 1$ makes the two rods a little more
-# alike. The squares lose $v'^2+u'^2-v^2-u^2 = -\frac{1-e^2}2(v-u)^2$. **The covariance that a
-# collision makes is half of what it takes from the squares.** The momentum of the two is kept, and
-# $(v+u)^2 = v^2+u^2+2vu$ says that what the squares lose, the products get.
+# alike. The squares change by $v'^2+u'^2-v^2-u^2 = -\frac{1-e^2}2(v-u)^2$. **The covariance that a
+# collision makes is half of what it takes from the squares.** The reason is that the momentum $v + u$
+# of the two is conserved. In $(v+u)^2 = v^2+u^2+2vu$ the product term $2vu$ therefore grows by as much
+# as the squares lose.
 #
 # ## 3. The next collision
 #
-# What a collision takes is $\frac{1-e^2}4m(v-u)^2$. For strangers of the temperature
-# $T = \langle v^2\rangle$ the mean of $\frac12(v-u)^2$ is $T$. For neighbours it is the *relative
+# A collision takes the energy $\frac{1-e^2}4m(v-u)^2$. For strangers of the temperature
+# $T = \langle v^2\rangle$ the mean of $\frac12(v-u)^2$ is $T$. For neighbours this mean is the *relative
 # temperature* $\Theta = T - \langle v_iv_{i+1}\rangle$. The observer `impacts` looks only at rods
 # that collide. Just before they do, they have the relative temperature `contact_temperature`, and
 # just after it `rebound_temperature`.
@@ -152,17 +155,18 @@ ratio = share[0.75, "rebound_temperature"] / share[0.75, "contact_temperature"]
 assert abs(ratio - 0.75**2) < 0.01
 
 # %% [markdown]
-# **Explain.** At $e = 1$ all are $T$. At $e = 0.75$ neighbours have a relative temperature of 0.585 $T$,
-# since they have the rest in common. Rods that are about to collide have less, 0.44 $T$. Where rods
-# happen to be close they collide often, and are cold. After the collision $e^2 = 0.56$ of that
-# remains. Then noise and other neighbours pull the two apart again. So a collision takes less than
-# one of strangers would. At the same force between the rods the loss goes like the root of the
-# relative temperature before a collision, and $\sqrt{0.44} = 0.66$: a third less.
+# **Explain.** At $e = 1$ all four are $T$. At $e = 0.75$ neighbours have a relative temperature of
+# 0.585 $T$, because their covariance is the rest of $T$. Rods that are about to collide have a lower one,
+# 0.44 $T$. The reason is that rods which happen to be close collide often, and are cold. After the
+# collision $e^2 = 0.56$ of the 0.44 $T$ remains. Then noise and other neighbours make the two velocities
+# different again. So a collision takes less than one of strangers would. At the same force between the
+# rods the loss is proportional to the root of the relative temperature before a collision. This root is
+# $\sqrt{0.44} = 0.66$, so the loss is a third smaller.
 #
 # ## 4. How far do they remember?
 #
-# A rod is hit by both neighbours, and these are hit by theirs. So the memory spreads. But all
-# collisions together cannot change the total momentum. On linear springs the centre of mass is an
+# A rod is hit by both neighbours, and these are hit by theirs. So correlations spread along the
+# chain. But all collisions together cannot change the total momentum. On linear springs the centre of mass is an
 # oscillator on which collisions do not act. Its velocity has the mean square $W^2/L$ at any $e$.
 #
 # **Predict.** Add up $\langle v_iv_j\rangle$ over all rods $j$, and average over $i$. What is the
@@ -199,19 +203,19 @@ for e in runs:
 
 # %% [markdown]
 # **Explain.** The sum is $W^2$ at both restitutions, within its error of 10 to 20 %. Collisions
-# take nothing from it. They only spread the square of one rod over products with others. (The pink
+# do not change it. They only turn squares of one rod into products with other rods. (The pink
 # point at $r = 0$ lies outside of the picture, at 1.) So the ratio $W^2/\langle v^2\rangle$ says
-# how many rods move together, in the mean over the chain. A cold chain *is* a chain whose rods move
-# together.
+# how many rods move together, in the mean over the chain. The colder the chain is, the more of its
+# rods move together.
 #
 # ## 5. Two theories
 #
-# `phase_space` is the kinetic equation of lesson 8, in which rods that meet are strangers.
+# `phase_space` is the kinetic equation of lesson 8, which assumes that rods that meet are strangers.
 # `correlated_phase_space` computes the covariances as well, from what one collision does (section
-# 2) and how sound carries it along the chain. Nothing is fitted in either.
+# 2) and from how sound carries covariances along the chain. No number is fitted in either theory.
 #
-# **Predict.** A theory of strangers lets every collision take as much as $T$ allows. Will it be too
-# hot or too cold in the centre?
+# **Predict.** In a theory of strangers every collision takes the energy that belongs to $T$ and not to
+# $\Theta$. Will its velocity width in the centre be too large or too small?
 #
 # **Run.**
 
@@ -261,11 +265,11 @@ assert -0.13 < of_strangers < -0.05
 assert abs(of_neighbours) < 0.04
 
 # %% [markdown]
-# **Explain.** Too cold: strangers lose more. The left picture shows the widths, the right one the
-# covariance of neighbours. The first theory has only that of the centre of mass, $W^2/L$. The second theory was derived
-# while simulations of this chain were looked at, so the agreement alone proves little. The page
-# on pair correlations in the documentation says how right it is elsewhere, and
-# where it fails.
+# **Explain.** The width is too small, because strangers lose more energy. The left picture shows the
+# widths, the right one the covariance of neighbours. In the first theory this covariance is only that
+# of the centre of mass, $W^2/L$. The second theory was derived while simulations of this chain were
+# looked at, so the agreement alone proves little. The page on pair correlations in the documentation
+# compares it with other chains, and says where it fails.
 #
 # ## Exercises
 #
