@@ -8,7 +8,6 @@ one core.
 """
 
 import sys
-from collections.abc import Callable
 from pathlib import Path
 
 import matplotlib
@@ -16,12 +15,13 @@ import matplotlib
 matplotlib.use("Agg")
 import numpy as np
 import xarray as xr
+from kept import kept
 from matplotlib.axes import Axes
 
 from crazybilliards.comparison.drawing import COLOURS, SYMBOLS
 from crazybilliards.comparison.layout import entitle, house_style, legend_above, panels
 from crazybilliards.kinetic import correlated_phase_space
-from crazybilliards.model import Chain, load, save
+from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
 from crazybilliards.particles.observers import Covariances
 from crazybilliards.particles.scales import default_time_step
@@ -36,14 +36,6 @@ CLOSER_DURATION = 12_000.0
 FINER = 4  # than the default time step, for what collisions exchange
 CELLS = 22
 _MODES = 3  # panel of the spectrum
-
-
-def kept(folder: Path, name: str, make: Callable[[], xr.Dataset]) -> xr.Dataset:
-    """Return a result that was computed now or before."""
-    path = folder / f"{name}.nc"
-    if not path.exists():
-        save(make(), path)
-    return load(path)
 
 
 def named(chain: Chain) -> str:
@@ -65,7 +57,7 @@ def measured(chain: Chain, folder: Path) -> xr.Dataset:
             progress=False,
         ).drop_vars(["gap_covariance", "gap_covariance_error"])
 
-    return kept(folder, f"run_{named(chain)}", make)
+    return kept(folder / f"run_{named(chain)}.nc", make)
 
 
 def measured_closely(chain: Chain, folder: Path) -> xr.Dataset:
@@ -83,7 +75,7 @@ def measured_closely(chain: Chain, folder: Path) -> xr.Dataset:
             progress=False,
         )
 
-    return kept(folder, f"closely_{named(chain)}", make)
+    return kept(folder / f"closely_{named(chain)}.nc", make)
 
 
 def solved(chain: Chain, folder: Path) -> xr.Dataset:
@@ -92,7 +84,7 @@ def solved(chain: Chain, folder: Path) -> xr.Dataset:
     def make() -> xr.Dataset:
         return correlated_phase_space(chain, cells=CELLS).drop_vars("phase_space_density")
 
-    return kept(folder, f"theory_{named(chain)}", make)
+    return kept(folder / f"theory_{named(chain)}.nc", make)
 
 
 def length_of(result: xr.Dataset, rods: int) -> float:
