@@ -6,6 +6,7 @@ order, so that results do not depend on the number of threads.
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from copy import copy
@@ -131,12 +132,28 @@ class Observer(ABC):
 class Averaged(Observer):
     """An observer that keeps ``sums``, shape (blocks, ...), and reports averages of them.
 
+    :meth:`shape` says what a block has. An observer that keeps anything else extends
+    :meth:`prepare` and, if that is large, :meth:`memory`.
+
     Joining puts the blocks of all replicas one after the other. In an ensemble a block is a time.
     The joined shape is then (groups, times, ...), and averages are over groups.
     """
 
     schedule: Schedule
     sums: Array
+
+    def shape(self, run: Run) -> tuple[int, ...]:
+        """Return the shape of the sums of one block: one number a rod."""
+        return (run.chain.size,)
+
+    def memory(self, run: Run) -> float:
+        """Return the bytes of the sums."""
+        return 8.0 * run.schedule.blocks * math.prod(self.shape(run))
+
+    def prepare(self, run: Run, copies: int) -> None:
+        """Make the sums."""
+        self.schedule = run.schedule
+        self.sums = np.zeros((run.schedule.blocks, *self.shape(run)))
 
     def join(self, others: Sequence[Self]) -> None:
         """Append the blocks of other replicas, or the groups."""
