@@ -54,6 +54,8 @@ class Observer(ABC):
         The variables that it reports. Their meanings and units are in the vocabulary.
     along
         The coordinates that it adds to the result, e.g. ``("velocity",)``.
+    least_rods
+        The size of the shortest chain that it can measure.
     single_collisions
         Whether it needs every single collision, not only snapshots.
     ensemble
@@ -65,6 +67,7 @@ class Observer(ABC):
     name: ClassVar[str]
     gives: ClassVar[tuple[str, ...]]
     along: ClassVar[tuple[str, ...]] = ()
+    least_rods: ClassVar[int] = 1
     single_collisions: ClassVar[bool] = False
     ensemble: ClassVar[bool] = True
     limit: ClassVar[bool] = True

@@ -45,6 +45,7 @@ class Covariances(Averaged):
         "relative_temperature",
     )
     along = ("separation",)
+    least_rods = 2
 
     def __init__(self, separations: int = 10) -> None:
         self.separations = check_integer("separations", separations, least=1, most=_MOST)
@@ -60,8 +61,6 @@ class Covariances(Averaged):
         self.furthest = self._furthest(run)
 
     def _furthest(self, run: Run) -> int:
-        if run.chain.size < 2:
-            raise ValueError("observe: 'covariances' needs a chain of at least 2 rods")
         return min(self.separations, run.chain.size - 1)
 
     def observe(self, snapshots: Snapshots) -> None:
