@@ -14,9 +14,10 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
-from neighbours import length_of, measured, middle_of, solved, spread_of
+from neighbours import length_of, measured, solved, spread_of
 
 from crazybilliards.comparison import fit_border_power_law
+from crazybilliards.comparison.claims.repetition import middle_tenth
 from crazybilliards.model import Chain
 
 SIZES = (30, 100, 300, 1000, 3000)
@@ -31,7 +32,7 @@ def quantities(result: xr.Dataset, chain: Chain) -> Quantities:
 
     def root(name: str, power: int) -> tuple[float, float]:
         values = result[name].values
-        middle = middle_of(values.size)  # of L rods, or of L - 1 contacts
+        middle = middle_tenth(values.size)  # of L rods, or of L - 1 contacts
         squares = values[middle] ** power
         value = float(np.sqrt(squares.mean()))
         if not simulated:

@@ -18,6 +18,7 @@ import xarray as xr
 from kept import kept
 from matplotlib.axes import Axes
 
+from crazybilliards.comparison.claims.repetition import middle_tenth
 from crazybilliards.comparison.drawing import COLOURS, SYMBOLS
 from crazybilliards.comparison.layout import entitle, house_style, legend_above, panels
 from crazybilliards.kinetic import correlated_phase_space
@@ -121,17 +122,11 @@ def spread_of(run: xr.Dataset, rods: int) -> float:
     return float(np.std([length_of(each, rods) for each in drawn]))
 
 
-def middle_of(places: int) -> slice:
-    """Return the middle tenth of rods or contacts."""
-    half = max(1, places // 20)
-    return slice(places // 2 - half, (places + 1) // 2 + half)
-
-
 def in_the_centre(result: xr.Dataset) -> tuple[float, float]:
     """Return <v_i v_i+1>/T at the contacts of the middle tenth, and its error."""
     own = result.velocity_width.values**2
     own = (own[1:] + own[:-1]) / 2
-    middle = middle_of(own.size)
+    middle = middle_tenth(own.size)
     share = float(result.neighbour_covariance.values[middle].mean() / own[middle].mean())
     if "neighbour_covariance_error" not in result:
         return share, 0.0
