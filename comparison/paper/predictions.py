@@ -93,12 +93,12 @@ def exponent_of_size(results: Results, size: int) -> str:
     return f"{PAIRS} {-minus_nu(theories[size]):.3f}" if size in theories else ""
 
 
-def draw_widths_by_size(ax: Axes, results: Results, label: str) -> None:
+def draw_widths_by_size(ax: Axes, results: Results) -> None:
     """Draw W_v(i)/W of the theory at e = 0 as dotted lines."""
     for size, theory in predicted_by_size(results).items():
         widths = theory.velocity_width / chain_of(theory).free_velocity_width
         ax.plot(theory.particle, widths, ":", color=COLOURS[SIZES.index(size)], zorder=4)
-    ax.plot([], [], ":", color="0.4", label=label)
+    ax.plot([], [], ":", color="0.4", label=PAIRS)
 
 
 def listed(found: Theories, value: Callable[[xr.Dataset], float], *restitutions: float) -> str:

@@ -21,6 +21,7 @@ from crazybilliards.comparison.claims.verdicts import (
     Claim,
     Estimate,
     eye_claim,
+    largest_deviate,
     positive_claim,
     same_claim,
 )
@@ -161,7 +162,7 @@ def _limit_claims(results: Results) -> list[Claim]:
         same_claim(
             "the default time step gives W_v in the centre as in the limit dt -> 0",
             f"W_v at the default step less that of the limit, by e: {listed}",
-            float(np.max([abs(each.value) / each.error for each in shifts.values()])),
+            largest_deviate(shifts.values()),
         ),
     ]
 
