@@ -252,8 +252,8 @@ FIGURE = PaperFigure(
     name="widths-restitution",
     title="Velocity widths for several restitutions",
     caption="(a) W_v against the normalized particle number, L = 1000 (e = 1: L = 100). Lines: "
-    "the kinetic equation in the colour of its e, dashed for strangers, full with pair "
-    "correlations; nothing of the simulation goes into them. (b) The exponent of the two "
+    "the kinetic equation in the colour of its e, dashed without pair correlations, full with "
+    "them; nothing of the simulation goes into these lines. (b) The exponent of the two "
     "power laws against the restitution, and a exp(-lambda (1 - e)) + d fitted to it. (c) W_v in "
     "the centre at the default time step and in the limit of a vanishing one.",
     cases=cases,

@@ -117,8 +117,8 @@ FIGURE = PaperFigure(
     title="Mean displacements for several restitutions",
     caption="Mean displacement, L = 1000, in units of the thermal length s, (a) of all rods "
     "against the normalized particle number, (b) of the left half against the rod's number. "
-    "Lines: the kinetic equation, dashed for strangers, full with pair "
-    "correlations. Triangles at the frame of (a): rods beyond it, which (b) shows.",
+    "Lines: the kinetic equation, dashed without pair correlations, full with them. "
+    "Triangles at the frame of (a): rods beyond it, which (b) shows.",
     cases=cases,
     draw=draw,
     claims=claims,
