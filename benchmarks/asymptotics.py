@@ -52,7 +52,7 @@ def quantities(result: xr.Dataset, chain: Chain) -> Quantities:
         "relative": root("relative_temperature", 1),
         "common": root("neighbour_covariance", 1),
         "force": (force, force_error),
-        "xi": (length_of(result, rods), spread_of(result, rods) if simulated else 0.0),
+        "xi": (length_of(result), spread_of(result) if simulated else 0.0),
     }
 
 

@@ -19,7 +19,7 @@ DOCS = Path(__file__).parents[1]
 HELD_OUT = "## Chains that were held out"
 DERIVED_WITH = "## Chains that it was derived with"
 NUMBER = r"([-+]?[\d.]+)"
-STRANGERS = re.compile(
+KINETIC_EQUATION = re.compile(
     rf"^\| {NUMBER}(, gamma = 4)? \| (\d+) \| {NUMBER} \| {NUMBER} \| {NUMBER} \| {NUMBER} \|$",
     re.MULTILINE,
 )
@@ -29,6 +29,7 @@ BOTH = re.compile(
 LINEAR = 2.0  # per cent; the axis is linear up to there, and logarithmic beyond
 TICKS = (0, 0.5, 0.75, 0.9, 0.98, 1)
 DRIVEN = 0.14  # where e = 1.05 stands, beyond the break of the axis
+MARKERS_OF_DRIVEN = {30: "x", 60: "+", 100: "*"}
 
 
 class Error(NamedTuple):
@@ -47,7 +48,7 @@ def independent() -> list[Error]:
     text = (DOCS / "kinetic_equation.md").read_text(encoding="utf-8")
     return [
         Error(int(size), float(e), float(centre), float(border), False, bool(driven))
-        for e, driven, size, centre, border, _, _ in STRANGERS.findall(text)
+        for e, driven, size, centre, border, _, _ in KINETIC_EQUATION.findall(text)
     ]
 
 
@@ -86,9 +87,8 @@ def draw_errors(ax: Axes, errors: list[Error], which: str, sizes: list[int]) -> 
                 label=f"$L = {size}$" + (", held out" if held_out else "") if shown else None,
                 **look,
             )
-    driven = [each for each in errors if each.driven]
-    for marker, each in zip("x+*", driven, strict=False):
-        label = rf"$L = {each.size}$, $\gamma = 4$"
+    for each in (each for each in errors if each.driven):
+        label, marker = rf"$L = {each.size}$, $\gamma = 4$", MARKERS_OF_DRIVEN[each.size]
         ax.plot(DRIVEN, getattr(each, which), marker, color="black", mfc="none", label=label)
 
 
