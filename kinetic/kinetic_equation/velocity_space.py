@@ -245,7 +245,7 @@ class VelocitySpace:
         Newton's method interpolates thousands of times; scikit-fem needs ten times as long for it.
         """
         shape, nodes = self.basis.dx.shape, self.basis.element_dofs
-        points: Array = np.arange(self.basis.dx.size).reshape(shape)
+        points = np.arange(self.basis.dx.size).reshape(shape)
         rows, columns = np.tile(points.ravel(), len(nodes)), np.repeat(nodes, shape[1])
         functions = [each[0] for each in self.basis.basis]
         return [
