@@ -14,10 +14,11 @@ from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
+from kept import complete, kept
 
-from crazybilliards.comparison.studies.restitutions import width_deviation
+from crazybilliards.comparison.studies.restitutions import tenth_rounded_outward, width_deviation
 from crazybilliards.kinetic import correlated_phase_space, phase_space
-from crazybilliards.model import Chain, load, save
+from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
 from crazybilliards.particles.scales import default_time_step
 
@@ -57,10 +58,12 @@ HELD_OUT = (
 
 
 def simulated(case: Case, folder: Path) -> xr.Dataset:
-    """Return a simulation with what its snapshots say, done now or before."""
+    """Return the widths of a simulation and what its snapshots give, done now or before."""
     chain = case.chain
     path = folder / f"L{chain.size}_e{chain.restitution:g}_gamma{chain.damping:g}.nc"
-    if not path.exists():
+    checkpoint = path.with_suffix(".checkpoint")
+
+    def make() -> xr.Dataset:
         run = simulate(
             chain,
             duration=case.duration,
@@ -69,13 +72,15 @@ def simulated(case: Case, folder: Path) -> xr.Dataset:
             seed=7,
             observe=("widths", "snapshots"),
             threads=1,
-            checkpoint=path.with_suffix(".checkpoint"),
+            checkpoint=checkpoint,
             checkpoint_interval=120,
             progress=False,
         )
-        save(reduced(run), path)
-        path.with_suffix(".checkpoint").unlink()
-    return load(path)
+        return reduced(complete(run))
+
+    run = kept(path, make)
+    checkpoint.unlink(missing_ok=True)
+    return run
 
 
 def reduced(run: xr.Dataset) -> xr.Dataset:
@@ -88,11 +93,11 @@ def reduced(run: xr.Dataset) -> xr.Dataset:
     mean_square = (v**2).mean(axis=0)
     mean_square = (mean_square[1:] + mean_square[:-1]) / 2
     relative = 1 - (v[:, 1:] * v[:, :-1]).mean(axis=0) / mean_square
-    middle = (v[:, (9 * size) // 20 : -(-11 * size // 20)] ** 2).mean(axis=1)
+    middle = (v[:, tenth_rounded_outward(size)] ** 2).mean(axis=1)
     blocks = middle[: middle.size // BLOCKS * BLOCKS].reshape(BLOCKS, -1).mean(axis=1)
     error = blocks.std(ddof=1) / np.sqrt(BLOCKS) / blocks.mean() / 2
-    kept = run.drop_vars(["position", "velocity"]).drop_dims("time", errors="ignore")
-    return kept.assign(relative=("between", relative), centre_error=error)
+    rest = run.drop_vars(["position", "velocity"]).drop_dims("time", errors="ignore")
+    return rest.assign(relative=("between", relative), centre_error=error)
 
 
 def even(values: np.ndarray) -> np.ndarray:

@@ -8,7 +8,6 @@ one core.
 """
 
 import sys
-from collections.abc import Callable
 from pathlib import Path
 
 import matplotlib
@@ -17,12 +16,14 @@ matplotlib.use("Agg")
 import numpy as np
 import xarray as xr
 from ingredients import draw_ingredients
+from kept import kept
 from matplotlib.axes import Axes
 
+from crazybilliards.comparison.claims.repetition import middle_tenth
 from crazybilliards.comparison.drawing import COLOURS, SYMBOLS
 from crazybilliards.comparison.layout import entitle, house_style, legend_above, panels
 from crazybilliards.kinetic import correlated_phase_space
-from crazybilliards.model import Chain, load, save
+from crazybilliards.model import Chain, chain_of
 from crazybilliards.particles import simulate
 from crazybilliards.particles.observers import Covariances
 from crazybilliards.particles.scales import default_time_step
@@ -30,20 +31,11 @@ from crazybilliards.particles.scales import default_time_step
 RESTITUTIONS = (0.95, 0.9, 0.75, 0.5, 0.0)
 SIZES = (30, 100, 300, 1000)
 DURATIONS = {30: 8000.0, 100: 6000.0, 300: 3000.0, 1000: 1000.0, 3000: 300.0}
-IN_THEORY = 300  # rods, in the longest chain solved here
 SHOWN = 100  # rods, of the chains whose covariances are drawn
 CLOSER = (Chain(size=100, restitution=0.75), Chain(size=30, restitution=0.5))
 CLOSER_DURATION = 12_000.0
 FINER = 4  # than the default time step, for what collisions exchange
 CELLS = 22
-
-
-def kept(folder: Path, name: str, make: Callable[[], xr.Dataset]) -> xr.Dataset:
-    """Return a result that was computed now or before."""
-    path = folder / f"{name}.nc"
-    if not path.exists():
-        save(make(), path)
-    return load(path)
 
 
 def named(chain: Chain) -> str:
@@ -65,7 +57,7 @@ def measured(chain: Chain, folder: Path) -> xr.Dataset:
             progress=False,
         ).drop_vars(["gap_covariance", "gap_covariance_error"])
 
-    return kept(folder, f"run_{named(chain)}", make)
+    return kept(folder / f"run_{named(chain)}.nc", make)
 
 
 def measured_closely(chain: Chain, folder: Path) -> xr.Dataset:
@@ -83,7 +75,7 @@ def measured_closely(chain: Chain, folder: Path) -> xr.Dataset:
             progress=False,
         )
 
-    return kept(folder, f"closely_{named(chain)}", make)
+    return kept(folder / f"closely_{named(chain)}.nc", make)
 
 
 def solved(chain: Chain, folder: Path) -> xr.Dataset:
@@ -92,20 +84,20 @@ def solved(chain: Chain, folder: Path) -> xr.Dataset:
     def make() -> xr.Dataset:
         return correlated_phase_space(chain, cells=CELLS).drop_vars("phase_space_density")
 
-    return kept(folder, f"theory_{named(chain)}", make)
+    return kept(folder / f"theory_{named(chain)}.nc", make)
 
 
-def length_of(result: xr.Dataset, rods: int) -> float:
+def length_of(result: xr.Dataset) -> float:
     """Return the correlation length xi in rods, from the spectrum of the velocities.
 
     Correlations exp(-r/xi) have the spectrum S = S_inf + (S_0 - S_inf)/(1 + (k xi)^2) with
     k = pi q/L; here xi is 1/k where a spectrum lies halfway between S_0, which is that of the
     centre of mass, and its shortest waves.
     """
-    spectrum = result.mode_velocity_variance.values
-    wave = np.pi * result.mode.values / rods
+    chain, spectrum = chain_of(result), result.mode_velocity_variance.values
+    wave = np.pi * result.mode.values / chain.size
     short = spectrum[-max(3, spectrum.size // 10) :].mean()
-    whole = chain_width(rods) ** 2
+    whole = chain.free_velocity_width**2
     below = (spectrum[1:] - short) / (whole - short)
     first = int(np.argmax(below < 0.5)) + 1
     if first == 1:  # between the centre of mass and the first mode
@@ -115,31 +107,21 @@ def length_of(result: xr.Dataset, rods: int) -> float:
     return float(1 / np.interp(0.5, shares, waves))
 
 
-def chain_width(rods: int) -> float:
-    return Chain(size=rods).free_velocity_width
-
-
-def spread_of(run: xr.Dataset, rods: int) -> float:
+def spread_of(run: xr.Dataset) -> float:
     """Return the standard error of the length: that under independent errors of all modes."""
     generator = np.random.default_rng(0)
     noise = (
         generator.normal(size=(100, run.sizes["mode"])) * run.mode_velocity_variance_error.values
     )
     drawn = [run.assign(mode_velocity_variance=run.mode_velocity_variance + each) for each in noise]
-    return float(np.std([length_of(each, rods) for each in drawn]))
-
-
-def middle_of(places: int) -> slice:
-    """Return the middle tenth of rods or contacts."""
-    half = max(1, places // 20)
-    return slice(places // 2 - half, (places + 1) // 2 + half)
+    return float(np.std([length_of(each) for each in drawn]))
 
 
 def in_the_centre(result: xr.Dataset) -> tuple[float, float]:
     """Return <v_i v_i+1>/T at the contacts of the middle tenth, and its error."""
     own = result.velocity_width.values**2
     own = (own[1:] + own[:-1]) / 2
-    middle = middle_of(own.size)
+    middle = middle_tenth(own.size)
     share = float(result.neighbour_covariance.values[middle].mean() / own[middle].mean())
     if "neighbour_covariance_error" not in result:
         return share, 0.0
@@ -148,58 +130,56 @@ def in_the_centre(result: xr.Dataset) -> tuple[float, float]:
     return share, float(errors.mean() / own[middle].mean())
 
 
-def tabulate(folder: Path) -> dict[tuple[float, int], tuple[xr.Dataset, xr.Dataset | None]]:
+def tabulate(folder: Path) -> dict[tuple[float, int], tuple[xr.Dataset, xr.Dataset]]:
     """Print the table, and return simulation and theory of every chain."""
-    found: dict[tuple[float, int], tuple[xr.Dataset, xr.Dataset | None]] = {}
+    found: dict[tuple[float, int], tuple[xr.Dataset, xr.Dataset]] = {}
     print("| e | L | xi, simulation | theory | <v v'>/T, simulation | theory | W^2/<v^2> |")
     print("|---|---|---|---|---|---|---|")
     for e in RESTITUTIONS:
         for size in SIZES:
             chain = Chain(size=size, restitution=e)
             run = measured(chain, folder)
-            theory = solved(chain, folder) if size <= IN_THEORY else None
+            theory = solved(chain, folder)
             found[e, size] = run, theory
             shared, error = in_the_centre(run)
             together = chain.free_velocity_width**2 / float((run.velocity_width**2).mean())
             print(
-                f"| {e:g} | {size} | {length_of(run, size):.1f} ± {spread_of(run, size):.1f} | "
-                + (f"{length_of(theory, size):.1f}" if theory is not None else "")
-                + f" | {shared:.3f} ± {error:.3f} | "
-                + (f"{in_the_centre(theory)[0]:.3f}" if theory is not None else "")
-                + f" | {together:.2f} |",
+                f"| {e:g} | {size} | {length_of(run):.1f} ± {spread_of(run):.1f} "
+                f"| {length_of(theory):.1f} | {shared:.3f} ± {error:.3f} "
+                f"| {in_the_centre(theory)[0]:.3f} | {together:.2f} |",
                 flush=True,
             )
     return found
 
 
 def draw_lengths(
-    found: dict[tuple[float, int], tuple[xr.Dataset, xr.Dataset | None]], figure: Path
+    found: dict[tuple[float, int], tuple[xr.Dataset, xr.Dataset]], figure: Path
 ) -> None:
     with house_style():
         drawing, axes = panels(1, 3, height=2.6)
         for number, e in enumerate(RESTITUTIONS):
             how = {"color": COLOURS[number], "marker": SYMBOLS[number], "markerfacecolor": "none"}
             runs = {size: found[e, size][0] for size in SIZES}
-            theories = {size: found[e, size][1] for size in SIZES if size <= IN_THEORY}
+            theories = {size: found[e, size][1] for size in SIZES}
             for ax, value, error in (
                 (axes[0], length_of, spread_of),
                 (
                     axes[1],
-                    lambda each, _: in_the_centre(each)[0],
-                    lambda each, _: in_the_centre(each)[1],
+                    lambda each: in_the_centre(each)[0],
+                    lambda each: in_the_centre(each)[1],
                 ),
             ):
                 ax.errorbar(
                     list(runs),
-                    [value(run, size) for size, run in runs.items()],
-                    [error(run, size) for size, run in runs.items()],
+                    [value(run) for run in runs.values()],
+                    [error(run) for run in runs.values()],
                     linestyle="none",
                     label=f"$e = {e:g}$",
                     **how,
                 )
                 ax.plot(
                     list(theories),
-                    [value(each, size) for size, each in theories.items() if each is not None],
+                    [value(each) for each in theories.values()],
                     color=COLOURS[number],
                 )
             _draw_covariances(axes[2], runs[SHOWN], how)

@@ -9,9 +9,12 @@ one core. docs/figures/validity.py draws the table, with that of benchmarks/corr
 import sys
 from pathlib import Path
 
+import xarray as xr
+from kept import kept
+
 from crazybilliards.comparison.studies.restitutions import WidthDeviation, width_deviation
 from crazybilliards.kinetic import phase_space
-from crazybilliards.model import Chain, load, save
+from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
 
 RESTITUTIONS = (0.0, 0.5, 0.75, 0.9, 0.95, 0.98, 1.0)
@@ -23,13 +26,13 @@ DRIVEN = ((30, 20_000.0), (60, 20_000.0), (100, 50_000.0))  # e = 1.05, gamma = 
 def compared(chain: Chain, duration: float, folder: Path) -> WidthDeviation:
     """Return the deviations for a chain, simulated now or before."""
     path = folder / f"L{chain.size}_e{chain.restitution:g}_gamma{chain.damping:g}_{duration:g}.nc"
-    if path.exists():
-        run = load(path)
-    else:
-        run = simulate(
+
+    def make() -> xr.Dataset:
+        return simulate(
             chain, duration=duration, seed=2, observe="widths", threads=1, progress=False
         )
-        save(run, path)
+
+    run = kept(path, make)
     theory = phase_space(chain, tolerance=4e-3)
     return width_deviation(run, theory)
 

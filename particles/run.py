@@ -43,6 +43,7 @@ class Measurement(Protocol):
     name: ClassVar[str]
     gives: ClassVar[tuple[str, ...]]
     along: ClassVar[tuple[str, ...]]
+    least_rods: ClassVar[int]
     single_collisions: ClassVar[bool]
     ensemble: ClassVar[bool]
     limit: ClassVar[bool]
@@ -187,6 +188,10 @@ def _check_observers(run: Run) -> None:
     """Raise if an observer cannot work in this run, or if two report the same variable."""
     given: dict[str, str] = {}
     for observer in run.observers:
+        if run.chain.size < observer.least_rods:
+            raise ValueError(
+                f"observe: {observer.name!r} needs a chain of at least {observer.least_rods} rods"
+            )
         if run.average == "ensemble" and not observer.ensemble:
             raise ValueError(
                 f"observe: {observer.name!r} is averaged over time only, not over an ensemble"

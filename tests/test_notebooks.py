@@ -11,6 +11,7 @@ from teaching import agree, check, right
 FOLDER = Path(__file__).parents[1] / "notebooks"
 NOTEBOOKS = sorted(FOLDER.glob("*.ipynb"))
 LONGEST_CELL = 15
+OF_A_MACHINE = re.compile(r"(?<![\w.])/(?:home|Users|root|tmp|var/folders)\b|[A-Za-z]:\\+Users\b")
 each_notebook = pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
 
 
@@ -66,6 +67,21 @@ def test_outputs_belong_to_the_code(path):
     assert not any(output.get("name") == "stderr" for output in outputs)
     assert not any(output.output_type == "error" for output in outputs)
     assert str(FOLDER.parent) not in str(outputs)
+    assert not [text for output in outputs for text in texts(output) if OF_A_MACHINE.search(text)]
+
+
+def texts(output):
+    """Return what an output says, without its pictures."""
+    data = output.get("data", {}).items()
+    return [output.get("text", ""), *(str(each) for kind, each in data if "image/png" not in kind)]
+
+
+@pytest.mark.parametrize(
+    "path", ["/home/eva/a.py", "'/tmp/x'", "/root", r"C:\\Users\\eva", "/Users/e"]
+)
+def test_a_path_of_a_machine_is_seen(path):
+    assert OF_A_MACHINE.search(f"File {path}")
+    assert not OF_A_MACHINE.search("docs/home/page, 1/tmp, <a href='https://a.org/tmp'>")
 
 
 def test_the_outputs_are_small():
@@ -83,8 +99,9 @@ def test_what_a_student_sees(path):
     assert any("your code here" in line for line in lines)
     assert any(line.startswith("check(") for line in lines)
     text = "\n".join(cell.source for cell in notebook.cells if cell.cell_type == "markdown")
-    assert text.count("<details>") == text.count("</details>")
-    assert text.count("**Predict") <= text.count("**Run")
+    assert 0 < text.count("<details>") == text.count("</details>")
+    assert 0 < text.count("**Predict") <= text.count("**Run")
+    assert "hint=" in "\n".join(lines)
 
 
 def wrong(x):

@@ -85,11 +85,19 @@ def normal_deviate(deviation: float, runs: int) -> float:
     return float(norm.isf(t.sf(scattered, runs - 1)))
 
 
+def middle_tenth(places: int) -> slice:
+    """Return the middle tenth of rods or of contacts.
+
+    Each half is rounded down, but not to nothing: 2 of 30, 10 of 100. An odd number has the one
+    in the middle as well: 9 of 99.
+    """
+    half = max(places // 20, 1)
+    return slice(max(places // 2 - half, 0), places - places // 2 + half)
+
+
 def central_width(run: xr.Dataset) -> float:
-    """W_v in the centre: root mean square over the middle tenth of the rods, at least two."""
-    size = run.sizes["particle"]
-    half = max(size // 20, 1)
-    middle = slice(size // 2 - half, size - size // 2 + half)
+    """W_v in the centre: root mean square over the middle tenth of the rods."""
+    middle = middle_tenth(run.sizes["particle"])
     return float(np.sqrt((run.velocity_width.values[middle] ** 2).mean()))
 
 

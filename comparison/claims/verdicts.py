@@ -34,8 +34,11 @@ beside a steep line one sees the horizontal distance.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal, NamedTuple, TypedDict, Unpack
+
+import numpy as np
 
 Verdict = Literal[
     "reproduced", "not reproduced", "cannot be decided", "confirmed", "refuted", "undecided"
@@ -63,6 +66,11 @@ class Estimate(NamedTuple):
     def minus(self, other: Estimate) -> Estimate:
         """Return the difference to an independent one."""
         return Estimate(self.value - other.value, math.hypot(self.error, other.error))
+
+
+def largest_deviate(differences: Iterable[Estimate]) -> float:
+    """Return the magnitude that is largest in standard errors; NaN if one is not determined."""
+    return float(np.max([abs(each.value) / each.error for each in differences]))
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -23,7 +23,7 @@ class Distributions(NamedTuple):
 
     v: Array
     border: Array  # of the two outermost rods, outward positive
-    middle: Array  # of the middle tenth, or the two in the middle of short chains
+    middle: Array  # of the middle tenth, or the one or two in the middle of short chains
 
 
 class Sums:
@@ -49,6 +49,7 @@ class Sums:
         fastest = (_REACH_OF_FLIPPERS if driven else _REACH) * chain.free_velocity_width
         self._v = np.linspace(-fastest, fastest, _BINS)
         self._border, self._middle = np.zeros(_BINS), np.zeros(_BINS)
+        # Not ``middle_tenth`` of the claims: of three rods that takes the outermost ones as well.
         share = max(chain.size // 20, 1)
         self._centre = slice(max((chain.size - 1) // 2 - share + 1, 0), chain.size // 2 + share)
 

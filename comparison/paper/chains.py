@@ -83,7 +83,10 @@ def kinetic_equation(size: int, restitution: float, damping: float, quality: Qua
 
 
 def correlated_equation(size: int, restitution: float, quality: Quality) -> Cases:
-    """Return that of the kinetic equation with pair correlations; quick: on a coarser mesh."""
+    """Return the prediction of the kinetic equation with pair correlations.
+
+    Quick: on a coarser mesh.
+    """
     chain = Chain(size=size, restitution=restitution)
     settings = {"cells": 22} if quality == "quick" else {}
     return {correlated_name(size, restitution): Case("correlated_phase_space", chain, settings)}

@@ -26,22 +26,22 @@ from crazybilliards.comparison.studies.restitutions import width_deviation
 from crazybilliards.model import chain_of
 
 SIZES = (30, 100, 300, LARGE)  # of chains at e = 0
-_OF_STRANGERS = {"quick": (0.95,), "full": (0.85, 0.92, 0.95)}
+_OF_INDEPENDENT = {"quick": (0.95,), "full": (0.85, 0.92, 0.95)}
 _OF_PAIRS = {"quick": (0.95,), "full": RESTITUTIONS}
 _SIZES_OF_PAIRS = {"quick": (30,), "full": SIZES}
 
-STRANGERS, PAIRS = "kinetic equation", "with pair correlations"
-LINES = {STRANGERS: "--", PAIRS: "-"}
+INDEPENDENT, PAIRS = "kinetic equation", "with pair correlations"
+LINES = {INDEPENDENT: "--", PAIRS: "-"}
 CROSSES: dict[str, dict[str, Any]] = {
-    STRANGERS: {"marker": "x", "linestyle": "none", "color": COLOURS[4]},
+    INDEPENDENT: {"marker": "x", "linestyle": "none", "color": COLOURS[4]},
     PAIRS: {"marker": "+", "linestyle": "none", "color": COLOURS[2]},
 }
 _REASONS = {
-    STRANGERS: "correlations of velocities, which the theory leaves out, grow with L (1 - e)",
+    INDEPENDENT: "correlations of velocities, which the theory leaves out, grow with L (1 - e)",
     PAIRS: "the theory is linear in fluctuations, and in long chains those of gaps are as large as "
     "their means",
 }
-_CLAIMED = {STRANGERS: f"the {STRANGERS}", PAIRS: f"the {STRANGERS} {PAIRS}"}
+_CLAIMED = {INDEPENDENT: f"the {INDEPENDENT}", PAIRS: f"the {INDEPENDENT} {PAIRS}"}
 
 Theories = dict[str, dict[float, xr.Dataset]]  # by name, then by restitution
 
@@ -49,7 +49,7 @@ Theories = dict[str, dict[float, xr.Dataset]]  # by name, then by restitution
 def by_restitution(quality: Quality) -> Cases:
     """Return the theories of L = 1000."""
     cases: Cases = {}
-    for restitution in _OF_STRANGERS[quality]:
+    for restitution in _OF_INDEPENDENT[quality]:
         cases |= kinetic_equation(LARGE, restitution, 1.0, quality)
     for restitution in _OF_PAIRS[quality]:
         cases |= correlated_equation(LARGE, restitution, quality)
@@ -59,7 +59,7 @@ def by_restitution(quality: Quality) -> Cases:
 def predicted(results: Results) -> Theories:
     """Return the results of :func:`by_restitution`."""
     names = {
-        STRANGERS: {e: kinetic_name(LARGE, e, 1.0) for e in RESTITUTIONS},
+        INDEPENDENT: {e: kinetic_name(LARGE, e, 1.0) for e in RESTITUTIONS},
         PAIRS: {e: correlated_name(LARGE, e) for e in RESTITUTIONS},
     }
     return {
@@ -93,12 +93,12 @@ def exponent_of_size(results: Results, size: int) -> str:
     return f"{PAIRS} {-minus_nu(theories[size]):.3f}" if size in theories else ""
 
 
-def draw_widths_by_size(ax: Axes, results: Results, label: str) -> None:
+def draw_widths_by_size(ax: Axes, results: Results) -> None:
     """Draw W_v(i)/W of the theory at e = 0 as dotted lines."""
     for size, theory in predicted_by_size(results).items():
         widths = theory.velocity_width / chain_of(theory).free_velocity_width
         ax.plot(theory.particle, widths, ":", color=COLOURS[SIZES.index(size)], zorder=4)
-    ax.plot([], [], ":", color="0.4", label=label)
+    ax.plot([], [], ":", color="0.4", label=PAIRS)
 
 
 def listed(found: Theories, value: Callable[[xr.Dataset], float], *restitutions: float) -> str:
@@ -108,7 +108,7 @@ def listed(found: Theories, value: Callable[[xr.Dataset], float], *restitutions:
         there = {e: value(theories[e]) for e in restitutions if e in theories}
         if there:
             values = ", ".join(f"{e:g}: {each:.3f}" for e, each in there.items())
-            texts.append(values if name == STRANGERS else f"{name} {values}")
+            texts.append(values if name == INDEPENDENT else f"{name} {values}")
     return "; ".join(texts)
 
 

@@ -19,7 +19,7 @@ DOCS = Path(__file__).parents[1]
 HELD_OUT = "## Chains that were held out"
 DERIVED_WITH = "## Chains that it was derived with"
 NUMBER = r"([-+]?[\d.]+)"
-STRANGERS = re.compile(
+KINETIC_EQUATION = re.compile(
     rf"^\| {NUMBER}(, gamma = 4)? \| (\d+) \| {NUMBER} \| {NUMBER} \| {NUMBER} \| {NUMBER} \|$",
     re.MULTILINE,
 )
@@ -34,6 +34,7 @@ LABELLED = (-50, -20, -10, -5, -2, 0, 2, 5)
 UNLABELLED = (-40, -30, *range(-9, -2), *np.arange(-1.5, 2, 0.5), 3, 4, 6, 7)
 TICKS = (0, 0.5, 0.75, 0.9, 0.98, 1)
 DRIVEN = 0.14  # where e = 1.05 stands, beyond the break of the axis
+MARKERS_OF_DRIVEN = {30: "x", 60: "+", 100: "*"}
 DRIVEN_COLOUR = "0.45"
 LEFT = -1.13  # end of the axis
 
@@ -65,7 +66,7 @@ def independent() -> list[Error]:
             False,
             bool(driven),
         )
-        for e, driven, size, centre, border, _, rod in STRANGERS.findall(text)
+        for e, driven, size, centre, border, _, rod in KINETIC_EQUATION.findall(text)
     ]
 
 
@@ -111,11 +112,10 @@ def draw_errors(ax: Axes, errors: list[Error], which: str, sizes: list[int]) -> 
                 linewidth=0.8,
                 **look,
             )
-    driven = [each for each in errors if each.driven]
-    for marker, each in zip("x+*", driven, strict=False):
+    for each in (each for each in errors if each.driven):
         value, error = getattr(each, which), getattr(each, f"{which}_error")
         look = {"color": DRIVEN_COLOUR, "markerfacecolor": "none", "linestyle": "none"}
-        label = rf"$L = {each.size}$, $\gamma = 4$"
+        label, marker = rf"$L = {each.size}$, $\gamma = 4$", MARKERS_OF_DRIVEN[each.size]
         ax.errorbar(DRIVEN, value, error, marker=marker, markersize=5, label=label, **look)
 
 

@@ -1,8 +1,8 @@
 r"""The kinetic equation with pair correlations: rods that have hit one another before.
 
-The kinetic equation of :mod:`..kinetic_equation.stationary` lets every collision be one of
-strangers. Here its collision terms carry the factor a(l) of :mod:`.closure`, which follows from the
-covariances of pairs of rods of :mod:`.pair_covariance`; these follow from the density and the
+In the kinetic equation of :mod:`..kinetic_equation.stationary` colliding rods are independent of
+one another. Here its collision terms carry the factor a(l) of :mod:`.closure`, which follows from
+the covariances of pairs of rods of :mod:`.pair_covariance`; these follow from the density and the
 temperature that the kinetic equation has. Both are solved in turn until they agree:
 
     f with the factor a  ->  T(l), P(l)  ->  covariances h  ->  Theta, F, h_uu  ->  a.

@@ -245,9 +245,8 @@ class VelocitySpace:
         Newton's method interpolates thousands of times; scikit-fem needs ten times as long for it.
         """
         shape, nodes = self.basis.dx.shape, self.basis.element_dofs
-        points: Array = np.arange(self.basis.dx.size).reshape(shape)
-        rows = np.concatenate([points.ravel() for _ in nodes])
-        columns = np.concatenate([np.repeat(each, shape[1]) for each in nodes])
+        points = np.arange(self.basis.dx.size).reshape(shape)
+        rows, columns = np.tile(points.ravel(), len(nodes)), np.repeat(nodes, shape[1])
         functions = [each[0] for each in self.basis.basis]
         return [
             csr_matrix((np.concatenate(values), (rows, columns))) @ self.unknowns

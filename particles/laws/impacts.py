@@ -19,12 +19,12 @@ from crazybilliards.model.kernels import kernel
 
 # Rows of the sums: mu w, mu w^2/2, mu w', mu w'^2/2, momenta with what crosses within clusters.
 MOMENTUM_BEFORE, ENERGY_BEFORE, MOMENTUM_AFTER, ENERGY_AFTER = range(4)
-_ROWS = 4
+ROWS = 4
 
 
 def make_impacts(size: int) -> NDArray[np.float64]:
     """Return empty sums for ``size`` rods, shape (4, L - 1); size 0: nothing is summed."""
-    return np.zeros((_ROWS, max(size - 1, 0)))
+    return np.zeros((ROWS, max(size - 1, 0)))
 
 
 @kernel

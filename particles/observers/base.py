@@ -6,6 +6,7 @@ order, so that results do not depend on the number of threads.
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from copy import copy
@@ -53,6 +54,8 @@ class Observer(ABC):
         The variables that it reports. Their meanings and units are in the vocabulary.
     along
         The coordinates that it adds to the result, e.g. ``("velocity",)``.
+    least_rods
+        The size of the shortest chain that it can measure.
     single_collisions
         Whether it needs every single collision, not only snapshots.
     ensemble
@@ -64,6 +67,7 @@ class Observer(ABC):
     name: ClassVar[str]
     gives: ClassVar[tuple[str, ...]]
     along: ClassVar[tuple[str, ...]] = ()
+    least_rods: ClassVar[int] = 1
     single_collisions: ClassVar[bool] = False
     ensemble: ClassVar[bool] = True
     limit: ClassVar[bool] = True
@@ -131,12 +135,28 @@ class Observer(ABC):
 class Averaged(Observer):
     """An observer that keeps ``sums``, shape (blocks, ...), and reports averages of them.
 
+    :meth:`shape` says what a block has. An observer that keeps anything else extends
+    :meth:`prepare` and, if that is large, :meth:`memory`.
+
     Joining puts the blocks of all replicas one after the other. In an ensemble a block is a time.
     The joined shape is then (groups, times, ...), and averages are over groups.
     """
 
     schedule: Schedule
     sums: Array
+
+    def shape(self, run: Run) -> tuple[int, ...]:
+        """Return the shape of the sums of one block: one number a rod."""
+        return (run.chain.size,)
+
+    def memory(self, run: Run) -> float:
+        """Return the bytes of the sums."""
+        return 8.0 * run.schedule.blocks * math.prod(self.shape(run))
+
+    def prepare(self, run: Run, copies: int) -> None:
+        """Make the sums."""
+        self.schedule = run.schedule
+        self.sums = np.zeros((run.schedule.blocks, *self.shape(run)))
 
     def join(self, others: Sequence[Self]) -> None:
         """Append the blocks of other replicas, or the groups."""

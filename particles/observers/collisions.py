@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from crazybilliards.particles.observers.base import Averaged, Integers, Snapshots, Variables
-from crazybilliards.particles.run import Run
 
 
 class Collisions(Averaged):
@@ -20,15 +17,6 @@ class Collisions(Averaged):
     single_collisions = True
     ensemble = False
     limit = False
-
-    def prepare(self, run: Run, copies: int) -> None:
-        """Make the sums."""
-        self.schedule = run.schedule
-        self.sums = np.zeros((run.schedule.blocks, run.chain.size))
-
-    def memory(self, run: Run) -> float:
-        """Return the bytes it keeps."""
-        return 8.0 * run.chain.size * run.schedule.blocks
 
     def observe(self, snapshots: Snapshots) -> None:
         """Add the collisions since the last snapshots."""

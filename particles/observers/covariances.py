@@ -45,25 +45,22 @@ class Covariances(Averaged):
         "relative_temperature",
     )
     along = ("separation",)
+    least_rods = 2
 
     def __init__(self, separations: int = 10) -> None:
         self.separations = check_integer("separations", separations, least=1, most=_MOST)
 
+    def shape(self, run: Run) -> tuple[int, ...]:
+        """Return the shape of the sums of one block: two products by separation, and the gaps."""
+        return 2 * self._furthest(run) + 3, run.chain.size
+
     def prepare(self, run: Run, copies: int) -> None:
         """Make the sums."""
-        self.schedule = run.schedule
+        super().prepare(run, copies)
         self.anchors = run.chain.reduced_anchors
         self.furthest = self._furthest(run)
-        rows = 2 * (self.furthest + 1) + 1
-        self.sums = np.zeros((run.schedule.blocks, rows, run.chain.size))
-
-    def memory(self, run: Run) -> float:
-        """Return the bytes it keeps."""
-        return 8.0 * (2 * self._furthest(run) + 3) * run.chain.size * run.schedule.blocks
 
     def _furthest(self, run: Run) -> int:
-        if run.chain.size < 2:
-            raise ValueError("observe: 'covariances' needs a chain of at least 2 rods")
         return min(self.separations, run.chain.size - 1)
 
     def observe(self, snapshots: Snapshots) -> None:

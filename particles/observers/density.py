@@ -40,18 +40,17 @@ class Density(Averaged):
     gives = ("density", "density_block", "outside")
     along = ("x",)
 
+    def shape(self, run: Run) -> tuple[int, ...]:
+        """Return the shape of the sums of one block: one number a node of the grid."""
+        return (_grid(run).size,)
+
     def prepare(self, run: Run, copies: int) -> None:
         """Make the sums."""
-        self.schedule = run.schedule
+        super().prepare(run, copies)
         self.x = _grid(run)
         self.first, self.spacing = self.x[0], self.x[1] - self.x[0]
         self.offsets = run.chain.physical(np.zeros(run.chain.size))
-        self.sums = np.zeros((run.schedule.blocks, self.x.size))
         self.outside = 0
-
-    def memory(self, run: Run) -> float:
-        """Return the bytes it keeps."""
-        return 8.0 * _grid(run).size * run.schedule.blocks
 
     def observe(self, snapshots: Snapshots) -> None:
         """Put every rod of every snapshot on the grid."""

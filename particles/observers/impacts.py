@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from crazybilliards.particles.laws.avalanche import Tally
@@ -10,6 +12,7 @@ from crazybilliards.particles.laws.impacts import (
     ENERGY_BEFORE,
     MOMENTUM_AFTER,
     MOMENTUM_BEFORE,
+    ROWS,
     make_impacts,
 )
 from crazybilliards.particles.observers.base import (
@@ -54,21 +57,23 @@ class Impacts(Averaged):
 
     name = "impacts"
     gives = ("contact_force", "contact_loss", "contact_temperature", "rebound_temperature")
+    least_rods = 2
     single_collisions = True
     ensemble = False
 
-    def prepare(self, run: Run, copies: int) -> None:
-        """Make the sums."""
-        self.schedule = run.schedule
-        self.mass = run.chain.mass
-        self.current = make_impacts(run.chain.size)
-        self.sums = np.zeros((run.schedule.blocks, *self.current.shape))
+    def shape(self, run: Run) -> tuple[int, ...]:
+        """Return the shape of the sums of one block: the four rows of every contact."""
+        return ROWS, run.chain.size - 1
 
     def memory(self, run: Run) -> float:
-        """Return the bytes it keeps."""
-        if run.chain.size < 2:
-            raise ValueError("observe: 'impacts' needs a chain of at least 2 rods")
-        return 32.0 * run.chain.size * (run.schedule.blocks + 1)
+        """Return the bytes of the sums, and of those since the last snapshots."""
+        return super().memory(run) + 8.0 * math.prod(self.shape(run))
+
+    def prepare(self, run: Run, copies: int) -> None:
+        """Make the sums."""
+        super().prepare(run, copies)
+        self.mass = run.chain.mass
+        self.current = make_impacts(run.chain.size)
 
     def tally(self, tally: Tally) -> Tally:
         """Return the tally with the sums since the last snapshots."""

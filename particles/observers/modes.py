@@ -12,7 +12,6 @@ from crazybilliards.particles.observers.base import (
     Snapshots,
     Variables,
 )
-from crazybilliards.particles.run import Run
 
 
 class Modes(Averaged):
@@ -30,15 +29,6 @@ class Modes(Averaged):
     name = "modes"
     gives = ("mode_velocity_variance",)
     along = ("mode",)
-
-    def prepare(self, run: Run, copies: int) -> None:
-        """Make the sums."""
-        self.schedule = run.schedule
-        self.sums = np.zeros((run.schedule.blocks, run.chain.size))
-
-    def memory(self, run: Run) -> float:
-        """Return the bytes it keeps."""
-        return 8.0 * run.chain.size * run.schedule.blocks
 
     def observe(self, snapshots: Snapshots) -> None:
         """Add the squares of the modes of snapshots to their block."""

@@ -42,15 +42,14 @@ class Widths(Averaged):
     name = "widths"
     gives = (*_QUANTITIES, "autocorrelation_time")
 
+    def shape(self, run: Run) -> tuple[int, ...]:
+        """Return the shape of the sums of one block: those of d, d^2, v and v^2 of every rod."""
+        return 4, run.chain.size
+
     def prepare(self, run: Run, copies: int) -> None:
         """Make the sums."""
-        self.schedule = run.schedule
+        super().prepare(run, copies)
         self.anchors = run.chain.reduced_anchors
-        self.sums = np.zeros((run.schedule.blocks, 4, run.chain.size))
-
-    def memory(self, run: Run) -> float:
-        """Return the bytes it keeps."""
-        return 32.0 * run.chain.size * run.schedule.blocks
 
     def observe(self, snapshots: Snapshots) -> None:
         """Add snapshots to the sums of their block."""

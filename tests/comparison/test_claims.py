@@ -8,6 +8,7 @@ from crazybilliards.comparison.claims.repetition import (
     border_width,
     central_width,
     estimate,
+    middle_tenth,
     normal_deviate,
     pooled,
 )
@@ -190,6 +191,16 @@ def test_pooling_runs_is_averaging_them():
     middle = np.mean([each.mean_position.values for each in simulated.values()], axis=0)
     np.testing.assert_allclose(run.mean_position, middle)
     assert run.velocity_width.attrs["units"] == "R/T"
+
+
+@pytest.mark.parametrize(
+    ("places", "found"),
+    [(1, [0]), (2, [0, 1]), (3, [0, 1, 2]), (30, [14, 15]), (99, list(range(45, 54)))],
+)
+def test_the_middle_tenth_is_in_the_middle(places, found):
+    middle = np.arange(places)[middle_tenth(places)]
+    assert list(middle) == found
+    assert list(places - 1 - middle[::-1]) == found
 
 
 def test_widths_of_centre_and_border():

@@ -228,16 +228,16 @@ def test_both_theories_are_judged_for_themselves():
             if "kinetic equation" in claim.statement
         }
 
-    strangers, pairs = (
+    independent, pairs = (
         f"the kinetic equation{name} gives W_v in the centre, e = 0.95"
         for name in ("", " with pair correlations")
     )
-    assert found() == {strangers: "confirmed", pairs: "confirmed"}
+    assert found() == {independent: "confirmed", pairs: "confirmed"}
     theory = results["theory of pairs L=1000 e=0.95"]
     results["theory of pairs L=1000 e=0.95"] = theory.assign(
         velocity_width=0.8 * theory.velocity_width
     )
-    assert found() == {strangers: "confirmed", pairs: "refuted"}
+    assert found() == {independent: "confirmed", pairs: "refuted"}
 
 
 @pytest.mark.parametrize("number", [3, 7])

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
@@ -15,6 +13,7 @@ from crazybilliards.comparison.claims.verdicts import (
     Claim,
     Estimate,
     eye_claim,
+    largest_deviate,
     number_claim,
     positive_claim,
     same_claim,
@@ -36,8 +35,7 @@ from crazybilliards.comparison.paper.vanishing_step import (
 from crazybilliards.model import chain_of
 
 _SIZES = predictions.SIZES
-_THEORY = "theory with pairs"
-_CROSS: dict[str, Any] = {"marker": "+", "linestyle": "none"}
+_CROSS = predictions.CROSSES[predictions.PAIRS]
 _PAPER, _PRECISION = -0.46, 0.015
 _ERROR = "velocity_width_error"
 _SOURCE = "section seq:e_0, eq:power_law, fig.2"
@@ -197,7 +195,7 @@ def _limit_claims(results: Results, found: dict[int, Estimate]) -> list[Claim]:
         same_claim(
             "the default time step leaves the exponents as they are in the limit dt -> 0",
             f"nu at the default step less that of the limit, by L: {_listed(shifts)}",
-            float(np.max([abs(each.value) / each.error for each in shifts.values()])),
+            largest_deviate(shifts.values()),
         ),
     ]
 
@@ -231,7 +229,7 @@ def draw(results: Results) -> Figure:
         draw_rods(ratio, over, "velocity_width", number=number, along="particle", label="")
     widths.set(xscale="log", yscale="log", ylabel="velocity width $W_v/W$")
     widths.plot([], [], color="0.4", label="fit of two power laws")
-    predictions.draw_widths_by_size(widths, results, label=_THEORY)
+    predictions.draw_widths_by_size(widths, results)
     widths.legend(loc="lower left")
     widths.tick_params(labelbottom=False)
     ratio.axhline(1, color="0.4", linewidth=0.8)
@@ -271,11 +269,11 @@ def _draw_steps(ax: Axes, results: Results) -> None:
         ax.errorbar(at, *limit, fmt=SYMBOLS[number], color=COLOURS[number], linewidth=0.8)
         if size in theories:
             nu = -predictions.minus_nu(theories[size])
-            ax.plot(at, nu, **_CROSS, color=COLOURS[number])
+            ax.plot(at, nu, **_CROSS | {"color": COLOURS[number]})
     ax.axhline(_PAPER, color="0.4", linestyle="--", label="paper")
     ax.plot([], [], "o", color="0.4", markerfacecolor="none", label="at a time step")
     ax.plot([], [], "o", color="0.4", label=LABEL)
-    ax.plot([], [], **_CROSS, color="0.4", label=_THEORY)
+    ax.plot([], [], **_CROSS | {"color": "0.4"}, label=predictions.PAIRS)
     ax.legend(loc="upper right")
     ax.set(xscale="log", xlabel="time step $dt$ [T]", ylabel=r"exponent $\nu$")
     ax.set_xticks([first, 1e-3, 1e-2], [r"$\to 0$", "$10^{-3}$", "$10^{-2}$"])
@@ -288,10 +286,10 @@ FIGURE = PaperFigure(
     name="widths-inelastic",
     title="Velocity widths at e = 0: power laws from both borders",
     caption="(a) W_v against the rod's number, e = 0, at the default time step, with the fits "
-    "a [(i - c)^nu + (L + 1 - c - i)^nu] to all rods; dotted: the "
-    "kinetic equation with pair correlations. (b) The exponent against the time step; the "
-    "leftmost open symbol of each size is the default step, the full one the limit. (c) W_v over "
-    "its limit dt -> 0.",
+    "a [(i - c)^nu + (L + 1 - c - i)^nu] to all rods; dotted, in (b) "
+    "crosses: the kinetic equation with pair correlations. (b) The exponent against the time "
+    "step; the leftmost open symbol of each size is the default step, the full one the limit. (c) "
+    "W_v over its limit dt -> 0.",
     cases=cases,
     draw=draw,
     claims=claims,

@@ -21,6 +21,7 @@ from crazybilliards.comparison.claims.verdicts import (
     Claim,
     Estimate,
     eye_claim,
+    largest_deviate,
     positive_claim,
     same_claim,
 )
@@ -161,7 +162,7 @@ def _limit_claims(results: Results) -> list[Claim]:
         same_claim(
             "the default time step gives W_v in the centre as in the limit dt -> 0",
             f"W_v at the default step less that of the limit, by e: {listed}",
-            float(np.max([abs(each.value) / each.error for each in shifts.values()])),
+            largest_deviate(shifts.values()),
         ),
     ]
 
@@ -251,8 +252,8 @@ FIGURE = PaperFigure(
     name="widths-restitution",
     title="Velocity widths for several restitutions",
     caption="(a) W_v against the normalized particle number, L = 1000 (e = 1: L = 100). Lines: "
-    "the kinetic equation in the colour of its e, dashed for strangers, full with pair "
-    "correlations; nothing of the simulation goes into them. (b) The exponent of the two "
+    "the kinetic equation in the colour of its e, dashed without pair correlations, full with "
+    "them; nothing of the simulation goes into these lines. (b) The exponent of the two "
     "power laws against the restitution, and a exp(-lambda (1 - e)) + d fitted to it. (c) W_v in "
     "the centre at the default time step and in the limit of a vanishing one.",
     cases=cases,

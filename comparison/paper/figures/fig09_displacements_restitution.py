@@ -9,7 +9,7 @@ from typing import Any
 import xarray as xr
 from matplotlib.figure import Figure
 
-from crazybilliards.comparison.claims.repetition import estimate, pooled
+from crazybilliards.comparison.claims.repetition import estimate, middle_tenth, pooled
 from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
 from crazybilliards.comparison.claims.verdicts import About, Claim, Estimate, positive_claim
 from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_rods, mark_clipped
@@ -83,9 +83,7 @@ def _excess(run: xr.Dataset, name: str) -> float:
     else:
         squares = run.mean_displacement.values**2 + run.displacement_width.values**2
         energy = squares / chain.thermal_length**2
-    half = max(energy.size // 20, 1)
-    middle = energy[energy.size // 2 - half : energy.size // 2 + half]
-    return float(energy[[0, -1]].mean() - middle.mean())
+    return float(energy[[0, -1]].mean() - energy[middle_tenth(energy.size)].mean())
 
 
 def draw(results: Results) -> Figure:
@@ -119,8 +117,8 @@ FIGURE = PaperFigure(
     title="Mean displacements for several restitutions",
     caption="Mean displacement, L = 1000, in units of the thermal length s, (a) of all rods "
     "against the normalized particle number, (b) of the left half against the rod's number. "
-    "Lines: the kinetic equation, dashed for strangers, full with pair "
-    "correlations. Triangles at the frame of (a): rods beyond it, which (b) shows.",
+    "Lines: the kinetic equation, dashed without pair correlations, full with them. "
+    "Triangles at the frame of (a): rods beyond it, which (b) shows.",
     cases=cases,
     draw=draw,
     claims=claims,

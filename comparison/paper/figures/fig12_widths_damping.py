@@ -10,6 +10,7 @@ from crazybilliards.comparison.claims.repetition import (
     border_width,
     central_width,
     estimate,
+    middle_tenth,
     pooled,
 )
 from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
@@ -85,9 +86,7 @@ def _frequency_claim(results: Results, damping: float) -> Claim:
 
 def _crowding(run: xr.Dataset) -> float:
     rate = run.collision_rate.values[:-1]  # the last rod has no right neighbour
-    half = max(rate.size // 20, 1)
-    middle = rate[rate.size // 2 - half : rate.size // 2 + half + 1]
-    return float(np.log(middle.mean() / rate[[0, -1]].mean()))
+    return float(np.log(rate[middle_tenth(rate.size)].mean() / rate[[0, -1]].mean()))
 
 
 def _power_law_claim(results: Results) -> Claim:
