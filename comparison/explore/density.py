@@ -67,6 +67,7 @@ class Density:
 
     def show(self, smoothed: xr.Dataset) -> None:
         """Show the measured density."""
+        self._anchored.data = {"x": [], "density": []}
         self.measured.data = self._seen(smoothed, _MOST_POINTS)
 
     def follow_zoom(self) -> None:

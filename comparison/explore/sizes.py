@@ -54,8 +54,8 @@ class Sizes:
         )
         circles = plot.scatter(**names, source=self.measured, size=8, color=BLACK)
         self._items = [
-            LegendItem(label="long runs, time step → 0", renderers=[squares]),
-            LegendItem(label="the paper: L^−0.38", renderers=[line]),
+            LegendItem(label="long runs", renderers=[squares]),
+            LegendItem(label="paper: L^−0.38", renderers=[line]),
         ]
         add_legend(plot, LegendItem(label="measured here", renderers=[circles]), *self._items)
         self.plot = plot
