@@ -73,6 +73,26 @@ def largest_deviate(differences: Iterable[Estimate]) -> float:
     return float(np.max([abs(each.value) / each.error for each in differences]))
 
 
+class Decisive(NamedTuple):
+    """The number that decides a claim, for programs.
+
+    Attributes
+    ----------
+    value, error
+        What was measured, and its standard error. Deviations from a line are shares of the
+        plotted range; largest differences are in standard errors, and their own error is NaN.
+    expected
+        What it is compared with.
+    limit
+        How far it may lie from ``expected``; NaN: it has to be larger than ``expected``.
+    """
+
+    value: float
+    error: float
+    expected: float
+    limit: float
+
+
 @dataclass(frozen=True, kw_only=True)
 class Claim:
     """One statement and what became of it.
@@ -90,6 +110,8 @@ class Claim:
         The paper's number (empty for a statement without one).
     measured, theory
         What was found here, with its standard error, and what theory predicts (or "").
+    decisive
+        The number in ``measured`` that decides.
     verdict
         Computed from the measured value and its error.
     reason
@@ -103,6 +125,7 @@ class Claim:
 
     statement: str
     measured: str
+    decisive: Decisive
     verdict: Verdict
     source: str = ""
     ours: str = ""
@@ -137,7 +160,8 @@ def number_claim(
     holds: bool | None = abs(measured.value - paper) <= precision + chance
     if math.isnan(measured.value + chance) or (holds and chance > _LARGEST_CHANCE * precision):
         holds = None
-    return _claim(statement, str(measured), holds, paper=f"{paper:g}", **about)
+    decisive = Decisive(*measured, expected=paper, limit=precision)
+    return _claim(statement, str(measured), decisive, holds, paper=f"{paper:g}", **about)
 
 
 def positive_claim(
@@ -147,22 +171,25 @@ def positive_claim(
     holds: bool | None = None
     if abs(measured.value) > _SIGNIFICANT * measured.error:
         holds = measured.value > 0
-    return _claim(statement, f"{quantity} {measured}", holds, **about)
+    decisive = Decisive(*measured, expected=0.0, limit=math.nan)
+    return _claim(statement, f"{quantity} {measured}", decisive, holds, **about)
 
 
 def small_claim(
     statement: str, quantity: str, measured: Estimate, limit: float, **about: Unpack[About]
 ) -> Claim:
     """Decide whether a number that should vanish is below ``limit``."""
-    holds = _below(measured, limit)
-    return _claim(statement, f"{quantity} {measured} (limit {limit:g})", holds, **about)
+    decisive = Decisive(*measured, expected=0.0, limit=limit)
+    found = f"{quantity} {measured} (limit {limit:g})"
+    return _claim(statement, found, decisive, _below(measured, limit), **about)
 
 
 def same_claim(statement: str, measured: str, deviation: float, **about: Unpack[About]) -> Claim:
     """Decide whether two things are the same; ``deviation``: the largest, in standard errors."""
     holds = bool(deviation < _LARGEST_OF_MANY) if math.isfinite(deviation) else None
     found = f"{measured}; largest difference {deviation:.1f} standard errors"
-    return _claim(statement, found, holds, **about)
+    decisive = Decisive(float(deviation), math.nan, expected=0.0, limit=_LARGEST_OF_MANY)
+    return _claim(statement, found, decisive, holds, **about)
 
 
 def eye_claim(
@@ -190,7 +217,8 @@ def eye_claim(
         f"{quantity}: off by at most {percent} % of the plotted range (visible: "
         f"{100 * EYE:g} %), {significance:.1f} standard errors"
     )
-    return _claim(statement, found, _below(deviation, EYE), **about)
+    decisive = Decisive(*deviation, expected=0.0, limit=EYE)
+    return _claim(statement, found, decisive, _below(deviation, EYE), **about)
 
 
 def _below(measured: Estimate, limit: float) -> bool | None:
@@ -203,7 +231,13 @@ def _below(measured: Estimate, limit: float) -> bool | None:
 
 
 def _claim(
-    statement: str, measured: str, holds: bool | None, *, paper: str = "", **about: Unpack[About]
+    statement: str,
+    measured: str,
+    decisive: Decisive,
+    holds: bool | None,
+    *,
+    paper: str = "",
+    **about: Unpack[About],
 ) -> Claim:
     """Return the claim with its verdict; ``holds`` None: the statistics do not suffice."""
     verdict: Verdict = "undecided"
@@ -214,4 +248,11 @@ def _claim(
         verdict = "confirmed" if holds else "refuted"
     if holds:
         about["reason"] = ""
-    return Claim(statement=statement, measured=measured, verdict=verdict, paper=paper, **about)
+    return Claim(
+        statement=statement,
+        measured=measured,
+        decisive=decisive,
+        verdict=verdict,
+        paper=paper,
+        **about,
+    )

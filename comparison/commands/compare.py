@@ -6,6 +6,7 @@ Only the standard library and typer are imported up here, so that ``--help`` ans
 from __future__ import annotations
 
 from dataclasses import asdict
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -121,19 +122,13 @@ def _inelastic(chain: Chain, restitution: str, **settings: Any) -> xr.DataTree:
 
 
 def _write_comparison(tree: xr.DataTree, folder: Path, suffix: str) -> None:
-    import matplotlib
-
-    matplotlib.use("Agg")
-    from crazybilliards.comparison.layout import house_style
     from crazybilliards.comparison.studies.elastic_figures import draw_density, draw_displacement
-    from crazybilliards.comparison.waiting import waiting_for
     from crazybilliards.model import save
 
     # The data first: a failing picture must not cost the computation.
     wrote(save(tree, folder / f"comparison{suffix}.nc"))
-    with waiting_for("drawing"), house_style():
-        figures = {"density": draw_density(tree), "displacement": draw_displacement(tree)}
-        write_figures(folder, suffix, **figures)
+    drawings = {"density": draw_density, "displacement": draw_displacement}
+    write_figures(folder, suffix, {name: partial(draw, tree) for name, draw in drawings.items()})
 
 
 def _print_deviations(tree: xr.DataTree) -> None:
@@ -181,24 +176,17 @@ def _print_deviations(tree: xr.DataTree) -> None:
 
 
 def _write_restitutions(tree: xr.DataTree, folder: Path, suffix: str) -> None:
-    import matplotlib
-
-    matplotlib.use("Agg")
-    from crazybilliards.comparison.layout import house_style
     from crazybilliards.comparison.studies.restitution_figures import draw_phase_space, draw_widths
     from crazybilliards.comparison.studies.restitutions import THEORY
-    from crazybilliards.comparison.waiting import waiting_for
     from crazybilliards.model import save
 
     wrote(save(tree, folder / f"comparison{suffix}.nc"))
-    with waiting_for("drawing"), house_style():
-        figures = {"widths": draw_widths(tree)}
-        figures |= {
-            f"phase_space_{name}": draw_phase_space(group[THEORY].to_dataset())
-            for name, group in tree.children.items()
-            if THEORY in group
-        }
-        write_figures(folder, suffix, **figures)
+    drawings = {"widths": partial(draw_widths, tree)}
+    for name, group in tree.children.items():
+        if THEORY in group:
+            theory = group[THEORY].to_dataset()
+            drawings[f"phase_space_{name}"] = partial(draw_phase_space, theory)
+    write_figures(folder, suffix, drawings)
 
 
 def _print_widths(tree: xr.DataTree) -> None:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
@@ -91,16 +91,28 @@ def check_file(path: Path) -> None:
     check_folder(path.parent)
 
 
-def write_figures(folder: Path, suffix: str, **figures: Figure) -> None:
-    """Write pictures, none of them half, and say so."""
+def write_figures(folder: Path, suffix: str, drawings: Mapping[str, Callable[[], Figure]]) -> None:
+    """Draw pictures and write each, none of them half, before the next one is drawn.
+
+    Ctrl-C then costs no picture that was drawn.
+    """
     from io import BytesIO
 
+    import matplotlib
+
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+
+    from crazybilliards.comparison.layout import house_style
+    from crazybilliards.comparison.waiting import waiting_for
     from crazybilliards.model.storage import write_atomically
 
-    for name, figure in figures.items():
-        picture = BytesIO()
-        figure.savefig(picture, format="png")
+    for number, (name, draw) in enumerate(drawings.items(), start=1):
         path = folder / f"{name}{suffix}.png"
+        with waiting_for(f"drawing {path.name}, {number} of {len(drawings)}"), house_style():
+            figure, picture = draw(), BytesIO()
+            figure.savefig(picture, format="png")
+            plt.close(figure)
         write_atomically(path, picture.getvalue())
         wrote(path)
 

@@ -5,6 +5,7 @@ Only the standard library and typer are imported up here, so that ``--help`` ans
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -103,10 +104,6 @@ def command(
 def _write_relaxation(tree: xr.DataTree, folder: Path, suffix: str) -> None:
     import tempfile
 
-    import matplotlib
-
-    matplotlib.use("Agg")
-    from crazybilliards.comparison.layout import house_style
     from crazybilliards.comparison.studies import relaxation_figures as figures
     from crazybilliards.comparison.studies.animation_page import standalone_page
     from crazybilliards.comparison.studies.relaxation import condensed
@@ -116,25 +113,24 @@ def _write_relaxation(tree: xr.DataTree, folder: Path, suffix: str) -> None:
 
     tree = condensed(tree)
     wrote(save(tree, folder / f"relaxation{suffix}.nc"))
-    with waiting_for("drawing"), house_style():
-        write_figures(
-            folder,
-            suffix,
-            spacetime=figures.draw_spacetime(tree),
-            profiles=figures.draw_profiles(tree),
-            cloud=figures.draw_cloud(tree),
-        )
+    drawings = {
+        "spacetime": figures.draw_spacetime,
+        "profiles": figures.draw_profiles,
+        "cloud": figures.draw_cloud,
+    }
+    write_figures(folder, suffix, {name: partial(draw, tree) for name, draw in drawings.items()})
     animation = figures.animate(tree)
+    page, gif = (folder / f"relaxation{suffix}.{kind}" for kind in ("html", "gif"))
+    with waiting_for(f"drawing {page.name}"):
+        text = standalone_page(animation, title=figures.title(tree), text=_WHAT_TO_SEE)
+    write_atomically(page, text.encode())
+    wrote(page)
     # matplotlib wants a name, not a stream.
-    with waiting_for("drawing the animation"), tempfile.TemporaryDirectory() as scratch:
-        page = standalone_page(animation, title=figures.title(tree), text=_WHAT_TO_SEE)
-        gif = Path(scratch, "relaxation.gif")
-        animation.save(gif, writer="pillow", dpi=100)
-        contents = {"html": page.encode(), "gif": gif.read_bytes()}
-    for kind, content in contents.items():
-        path = folder / f"relaxation{suffix}.{kind}"
-        write_atomically(path, content)
-        wrote(path)
+    with waiting_for(f"drawing {gif.name}"), tempfile.TemporaryDirectory() as scratch:
+        drawn = Path(scratch, gif.name)
+        animation.save(drawn, writer="pillow", dpi=100)
+        write_atomically(gif, drawn.read_bytes())
+    wrote(gif)
 
 
 def _print_distances(tree: xr.DataTree) -> None:

@@ -177,7 +177,8 @@ def _print_claims(reproduced: list[Reproduced]) -> None:
             say(f"\n{each.study.heading}")
         for claim in each.claims:
             said = details(claim)
-            noted.append({"figure": each.study.name, "claim": claim.statement} | said)
+            which = {"figure": each.study.name, "claim": claim.statement}
+            noted.append(which | said | {"decisive": claim.decisive._asdict()})
             say(_indented(1, f"{claim.statement}: {claim.verdict}"))
             for name in (name for name in said if name in _PRINTED):
                 say(_indented(2, f"{name}: {said[name]}"))

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import inspect
 import math
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -23,6 +24,7 @@ from crazybilliards.comparison.theories import THEORIES
 
 if TYPE_CHECKING:
     import xarray as xr
+    from matplotlib.figure import Figure
 
     from crazybilliards.comparison.theories import Theory
     from crazybilliards.model import Chain
@@ -124,20 +126,23 @@ def _caveat(theory: Theory, model_error: float) -> str:
 
 
 def _write(theory: Theory, result: xr.Dataset, folder: Path) -> None:
-    import matplotlib
-
-    matplotlib.use("Agg")
-    from crazybilliards.comparison.drawing import overlay
-    from crazybilliards.comparison.layout import house_style, panels
     from crazybilliards.comparison.studies.restitution_figures import draw_phase_space, draw_profile
-    from crazybilliards.comparison.waiting import waiting_for
     from crazybilliards.model import save
 
     wrote(save(result, folder / "theory.nc"))
-    with waiting_for("drawing"), house_style():
-        density, [ax] = panels(1, 1, wanted=1)
-        overlay({theory.title: result}, ax=ax).legend(loc="lower center")
-        figures = {"density": density, "profile": draw_profile(result, theory.title)}
-        if "phase_space_density" in result:
-            figures["phase_space"] = draw_phase_space(result)
-        write_figures(folder, "", **figures)
+    drawings = {
+        "density": partial(_draw_density, theory, result),
+        "profile": partial(draw_profile, result, theory.title),
+    }
+    if "phase_space_density" in result:
+        drawings["phase_space"] = partial(draw_phase_space, result)
+    write_figures(folder, "", drawings)
+
+
+def _draw_density(theory: Theory, result: xr.Dataset) -> Figure:
+    from crazybilliards.comparison.drawing import overlay
+    from crazybilliards.comparison.layout import panels
+
+    figure, [ax] = panels(1, 1, wanted=1)
+    overlay({theory.title: result}, ax=ax).legend(loc="lower center")
+    return figure

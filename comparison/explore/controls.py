@@ -19,6 +19,7 @@ QUANTITIES = {
     "velocity width of each rod": "widths",
     "velocity distribution": "velocities",
     "avalanche sizes": "avalanches",
+    "central width against L": "sizes",
 }
 HISTORIES = {"kinetic energy": "energy", "collisions per contact": "rate"}
 _BY_LABEL = {preset.label: preset for preset in PRESETS}

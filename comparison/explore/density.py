@@ -16,6 +16,7 @@ from crazybilliards.comparison.explore.plots import (
     make_plot,
     thinned,
 )
+from crazybilliards.model import Chain
 
 _MOST_POINTS = 500
 _MOST_OF_A_LINE = 2000
@@ -38,6 +39,9 @@ class Density:
             "x", "density", source=self.measured, size=4, color=BLACK, fill_alpha=0
         )
         items = [LegendItem(label="simulation", renderers=[circles])]
+        # Of the rods at their anchors: it is not drawn, but gives axes to an empty picture.
+        self._anchored = ColumnDataSource({"x": [], "density": []})
+        plot.line("x", "density", source=self._anchored, line_alpha=0)
         self.theories: dict[str, ColumnDataSource] = {}
         self._known: dict[str, xr.Dataset] = {}
         self._drawn_range = (0.0, 0.0)
@@ -50,8 +54,11 @@ class Density:
         add_legend(plot, *items, *self._items.values())
         self.plot = plot
 
-    def clear(self) -> None:
+    def begin(self, chain: Chain) -> None:
         """Remove all curves."""
+        anchors = chain.anchors
+        density = [1 / float(anchors[1] - anchors[0])] * 2
+        self._anchored.data = {"x": [anchors[0], anchors[-1]], "density": density}
         self.measured.data = {"x": [], "density": []}
         for name, source in self.theories.items():
             source.data = {"x": [], "density": []}
@@ -60,6 +67,7 @@ class Density:
 
     def show(self, smoothed: xr.Dataset) -> None:
         """Show the measured density."""
+        self._anchored.data = {"x": [], "density": []}
         self.measured.data = self._seen(smoothed, _MOST_POINTS)
 
     def follow_zoom(self) -> None:

@@ -8,10 +8,13 @@ const give = (elements, names) => elements.forEach((element, place) => {
     element.setAttribute('aria-label', names[place]);
 });
 const name = () => {
+  document.querySelector('[data-root-id] > *')?.setAttribute('role', 'main');
   give(all('.noUi-handle'), parameters);
   give(all('input.bk-input'), parameters.map(each => `${each}, as a number`));
   give(all('.bk-spin-btn'), parameters.flatMap(each => [`${each}, up`, `${each}, down`]));
   give(all('select'), lists);
+  // Tab passes by what has no use without a mouse: arrow keys change the numbers, too.
+  all('.bk-spin-btn, .bk-events').forEach(each => { each.tabIndex = -1; });
   const pictured = all('.bk-Figure');
   pictured.forEach(each => each.setAttribute('role', 'img'));
   give(pictured, pictures);

@@ -14,6 +14,7 @@ from crazybilliards.comparison.explore.motion import Rods, Strip
 from crazybilliards.comparison.explore.panels import Avalanches, Velocities, Widths
 from crazybilliards.comparison.explore.plots import LABELS
 from crazybilliards.comparison.explore.session import Session
+from crazybilliards.comparison.explore.sizes import Sizes
 from crazybilliards.comparison.explore.theories import Densities
 from crazybilliards.comparison.explore.times import Times
 from crazybilliards.model import Chain
@@ -26,6 +27,7 @@ PICTURES = (
     "velocity width of each rod, simulation and theories",
     "velocity distributions of middle and outermost rods",
     "avalanche sizes",
+    "velocity width in the centre against the number of rods",
     "kinetic energy in time",
     "kinetic energy in time, logarithmic",
     "collisions per contact in time",
@@ -44,6 +46,7 @@ class Pictures:
             "widths": self.widths,
             "velocities": Velocities(),
             "avalanches": Avalanches(),
+            "sizes": Sizes(),
         }
         self.times = Times()
         self.in_space = {
@@ -76,7 +79,7 @@ class Pictures:
         chain = session.chain
         self.rods.begin(chain)
         self.rods.show(session)
-        self.density.clear()
+        self.density.begin(chain)
         for panel in self.panels.values():
             panel.begin(chain)
         self.times.begin(chain)

@@ -11,7 +11,7 @@ from typing import Any, Literal
 from crazybilliards.comparison.paper.reproducible import find_studies
 from crazybilliards.model import Chain
 
-Quantity = Literal["widths", "velocities", "avalanches"]
+Quantity = Literal["widths", "velocities", "avalanches", "sizes"]
 
 
 @dataclass(frozen=True)
@@ -75,8 +75,9 @@ PRESETS = (
     ),
     _preset(
         "central-width",
-        "Watch the middle of the velocity widths, then double L: the longer the chain, the colder "
-        "its middle.",
+        "Change L: the point of every chain that you measure stays. The longer the chain, the "
+        "colder its middle, a little faster than the paper's power law in long chains.",
+        "sizes",
         size=30,
         restitution=0.0,
     ),

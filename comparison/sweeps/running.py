@@ -7,7 +7,9 @@ workers of a cluster need no common file system.
 
 from __future__ import annotations
 
+import shutil
 import signal
+import textwrap
 from collections.abc import Iterable, Iterator
 from concurrent.futures import CancelledError, Executor, Future
 from concurrent.futures.process import BrokenProcessPool
@@ -26,6 +28,7 @@ from crazybilliards.model.storage import make_folder, write_sealed
 
 # Cases that are submitted and have not returned: enough for a cluster, few in memory.
 _MOST_UNDER_WAY = 1000
+_BESIDE = len("100%|          | 1:00:00<1:00:00, last ")  # what stands beside a case's title
 
 
 @dataclass
@@ -107,8 +110,7 @@ def compute_missing(
     with tqdm(
         total=missing.work,
         desc=f"0 of {len(missing)} cases",
-        unit=" steps",
-        unit_scale=True,
+        bar_format="{l_bar}{bar:10}| {elapsed}<{remaining}{postfix}",
         disable=None if progress else True,
     ) as bar:
         under_way = _UnderWay(executor, missing, outcome, bar)
@@ -176,7 +178,9 @@ class _UnderWay:
             self.outcome.written += 1
         done = self.outcome.written + len(self.outcome.failed)
         self.bar.set_description(f"{done} of {self.number} cases", refresh=False)
-        self.bar.set_postfix_str(f"last {case.title}", refresh=False)
+        room = shutil.get_terminal_size().columns - len(self.bar.desc) - _BESIDE
+        last = textwrap.shorten(case.title, max(room, 0), placeholder=" ...")
+        self.bar.set_postfix_str(f"last {last}", refresh=False)
         self.bar.update(case.work)
 
 

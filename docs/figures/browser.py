@@ -84,6 +84,14 @@ def until(condition: Callable[[], Any], seconds: float = 600.0) -> Any:
     return found
 
 
+def show_as(browser: Any, width: int, height: int, *, dark: bool = False) -> None:
+    """Show pages as on a screen of so many pixels, in light or dark mode."""
+    scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
+    browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [scheme]})
+    metrics = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 500}
+    browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", metrics)
+
+
 def visit(browser: Any, address: str, query: str = "") -> None:
     """Open the page and wait until it moves."""
     browser.get("about:blank")

@@ -13,7 +13,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from browser import chromium, column, elements, press, served, texts, until, visit
+from browser import chromium, column, elements, press, served, show_as, texts, until, visit
 from selenium.webdriver.support.ui import Select
 
 from crazybilliards.comparison.explore.presets import PRESETS
@@ -41,23 +41,20 @@ class Album:
 
     def open(self, query: str = "", *, width: int = 1400, dark: bool = False) -> None:
         """Open the page in a window of this width, tall enough for all of it."""
-        scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
-        self.browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [scheme]})
-        metrics = {
-            "width": width,
-            "height": 1260 if width > 1100 else 1900,
-            "deviceScaleFactor": 1,
-            "mobile": width < 500,
-        }
-        self.browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", metrics)
+        show_as(self.browser, width, 1260 if width > 1100 else 1900, dark=dark)
+        self.shown = width, dark
         visit(self.browser, self.address, query)
 
     def keep(self, name: str) -> None:
         """Take a picture of all of the page."""
+        # The page itself ends here, and the window further down or further up.
+        end = "return document.querySelector('[role=main]').getBoundingClientRect().bottom"
+        width, dark = self.shown
+        show_as(self.browser, width, int(self.browser.execute_script(end)) + 8, dark=dark)
+        time.sleep(1)
         size = self.browser.execute_cdp_cmd("Page.getLayoutMetrics", {})["cssContentSize"]
-        shown = self.browser.execute_script("return window.innerWidth")
-        if size["width"] > shown:
-            print(f"{name}: {size['width']} pixels wide, on a screen of {shown}")
+        if size["width"] > width:
+            print(f"{name}: {size['width']} pixels wide, on a screen of {width}")
         self.browser.get_screenshot_as_file(str(self.folder / f"{name}.png"))
         print(self.folder / f"{name}.png", flush=True)
 
@@ -90,7 +87,8 @@ def looks(album: Album) -> dict[str, Callable[[], None]]:
         album.open(SOLVED)
         press(album.browser, "30")
         press(album.browser, "Solve")
-        until(lambda: "Solve the kinetic equation" in texts(album.browser, "button"), 120)
+        until(lambda: column(album.browser, "kinetic density", "x"), 120)
+        until(lambda: "measured for" in " ".join(texts(album.browser, ".progress")), 120)
         time.sleep(5)
 
     def preset(label: str) -> None:

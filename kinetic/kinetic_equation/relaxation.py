@@ -148,7 +148,12 @@ def relax_phase_space(
     most = _DIVERGED * max(flow.energy(), 1.0)
     status = "completed"
     try:
-        for _ in tqdm(range(count), disable=None if progress else True, unit="output"):
+        for _ in tqdm(
+            range(count),
+            desc="kinetic equation",
+            unit=" outputs",
+            disable=None if progress else True,
+        ):
             flow = flow.advanced(interval / unit_time / steps, steps)
             if not flow.sound() or flow.energy() > most:
                 status = "diverged"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from concurrent.futures import FIRST_EXCEPTION, Future, ThreadPoolExecutor, wait
-from threading import Event
+from threading import Event, Lock
 
 from tqdm import tqdm
 
@@ -24,7 +24,7 @@ def run_all(
 
     ``progress``: whether to show a bar; a text stands in front of it.
     """
-    stop = Event()
+    stop, one_by_one = Event(), Lock()
     with (
         tqdm(
             total=sum(replica.total for replica in replicas),
@@ -32,6 +32,7 @@ def run_all(
             desc=progress if isinstance(progress, str) else "simulating",
             unit=unit,
             unit_scale=True,
+            bar_format="{l_bar}{bar}| {elapsed}<{remaining}, {rate_fmt}",
             disable=None if progress else True,
         ) as bar,
         ThreadPoolExecutor(min(threads, len(replicas))) as pool,
@@ -40,7 +41,9 @@ def run_all(
 
         def work(replica: Replica) -> None:
             for done in replica.work(stop):
-                bar.update(done)
+                with one_by_one:
+                    # Rounded up, so that many short times never add up to less than all.
+                    bar.update(min(done * (1 + 1e-9), bar.total - bar.n))
 
         futures: list[Future[None]] = []
         interrupted = False

@@ -94,6 +94,17 @@ def test_signs_and_limits(value, error, positive, small):
     assert small_claim("vanishes", "it", measured, 0.1).verdict == small
 
 
+def test_the_number_that_decides_is_there_for_programs():
+    measured = Estimate(0.1, 0.02)
+    assert number_claim("nu", 0.3, 0.01, measured).decisive == (0.1, 0.02, 0.3, 0.01)
+    assert small_claim("vanishes", "it", measured, 0.5).decisive == (0.1, 0.02, 0, 0.5)
+    assert eye_claim("fits", "rods", measured, 3.0).decisive == (0.1, 0.02, 0, 0.02)
+    np.testing.assert_equal(
+        positive_claim("grows", "change", measured).decisive, (0.1, 0.02, 0, np.nan)
+    )
+    np.testing.assert_equal(same_claim("equal", "both", 3.2).decisive, (3.2, np.nan, 0, 5))
+
+
 def test_errors_of_few_runs_are_uncertain_themselves():
     """Twice the same with 10 000 experiments of two runs each, and the limits of many runs."""
     assert normal_deviate(1.0, 2) == pytest.approx(1)

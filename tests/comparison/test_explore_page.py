@@ -1,19 +1,14 @@
 """The page of ``crazybilliards explore`` in a browser."""
 
-import os
 from urllib.parse import quote
 
 import numpy as np
 import pytest
 from browser import (
-    CHROMIUM,
-    DRIVER,
-    chromium,
     column,
     elements,
     errors,
     press,
-    served,
     texts,
     until,
     visit,
@@ -21,22 +16,6 @@ from browser import (
 
 from crazybilliards.comparison.explore.presets import PRESETS
 from crazybilliards.model import Chain
-
-
-@pytest.fixture(scope="module")
-def address():
-    if os.name == "nt":
-        pytest.skip("sends a POSIX signal")
-    with served() as address:
-        yield address
-
-
-@pytest.fixture(scope="module")
-def browser():
-    if not (CHROMIUM.exists() and DRIVER.exists()):
-        pytest.skip(f"needs {CHROMIUM} and {DRIVER}: apt-get install chromium chromium-driver")
-    with chromium() as driver:
-        yield driver
 
 
 def type_number(browser, index, text):

@@ -1,5 +1,6 @@
 """Reproducing the paper: verdicts follow from numbers, every figure is there, the page is whole."""
 
+import json
 import re
 import sys
 from concurrent.futures import ThreadPoolExecutor
@@ -21,6 +22,7 @@ from crazybilliards.comparison.claims.report import (
     reproduce,
 )
 from crazybilliards.comparison.claims.study import PaperFigure
+from crazybilliards.comparison.claims.verdicts import EYE
 from crazybilliards.comparison.commands.line import main
 from crazybilliards.comparison.paper.figures import FIGURES, fig17_density
 from crazybilliards.comparison.paper.reproducible import find_studies
@@ -165,6 +167,12 @@ def test_a_figure_its_claims_and_nothing_computed_twice(command, tmp_path, monke
     assert status == 0
     assert "1 cases, 1 of them" in again
     assert again.splitlines()[1:] == printed.splitlines()[2:]
+    # The same for programs, with the number that decides.
+    status, facts, _ = command("16", "--json")
+    claim, *_ = json.loads(facts)["claims"]
+    assert (claim["figure"], claim["verdict"]) == ("arctanh", "reproduced")
+    decisive = claim["decisive"]
+    assert 0 < decisive["value"] + 3 * decisive["error"] < decisive["limit"] == EYE
     # After an edit of the simulation: with --keep-old the same, otherwise it is computed anew.
     other = replace(JOBS["simulate"], source="other source code")
     monkeypatch.setitem(JOBS, "simulate", other)

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from crazybilliards.comparison.studies import restitution_figures
 from crazybilliards.model import load
 
 QUICK = ["compare", "--size", "10", "--duration", "1000", "--amplitudes", "1,5"]
@@ -94,6 +95,19 @@ def test_compare_restitutions(run, tmp_path):
         "widths.png",
     ]
     assert set(load(tmp_path / "comparison.nc").children) == {"restitution_0.9", "restitution_1"}
+    assert "kinetic equation minus simulation" in " ".join(done.stdout.split())
+
+
+@pytest.mark.compiled
+def test_ctrl_c_while_a_picture_is_drawn_keeps_those_before(run, tmp_path, monkeypatch):
+    def stopped(theory):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(restitution_figures, "draw_phase_space", stopped)
+    arguments = ["--restitution", "0.9", "--size", "10", "--duration", "200"]
+    done = run("compare", *arguments, "--output", str(tmp_path))
+    assert done.returncode == 130
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["comparison.nc", "widths.png"]
     assert "kinetic equation minus simulation" in " ".join(done.stdout.split())
 
 
