@@ -6,10 +6,12 @@ from html import escape
 from importlib.metadata import version as version_of
 from pathlib import Path
 
-from docutils.nodes import SkipNode
+from docutils.nodes import SkipNode, Text, image, math
 from docutils.utils.math import MathError
 from docutils.utils.math.latex2mathml import tex2mathml
+from imagesize import getDPI
 from sphinx.util import logging
+from sphinx.util.images import get_image_size
 from sphinx.util.math import get_node_equation_number
 
 logger = logging.getLogger(__name__)
@@ -53,6 +55,8 @@ nb_execution_excludepatterns = ["notebooks/*"]
 nb_execution_timeout = 300
 nb_execution_raise_on_error = True
 nb_merge_streams = True
+# Sliders need a running notebook. Without one their scripts, from outside, would show nothing.
+nb_ipywidgets_js = {}
 
 # Addresses outside are looked at by `sphinx-build -b linkcheck`, links inside by every build.
 linkcheck_timeout = 20
@@ -92,8 +96,9 @@ def copy_notebooks() -> None:
 def as_restructured_text(app, what, name, thing, options, lines) -> None:
     """Docstrings are plain text: set equations apart, and let no bar or star have a meaning."""
     if what == "property":
-        # Otherwise napoleon takes what stands before a colon in the first line for a type.
-        lines.insert(0, "")
+        # Otherwise napoleon takes what stands before a colon in the first line for a type. It
+        # skips empty lines, but not an empty comment.
+        lines[:0] = ["..", ""]
     if what == "module":
         lines[:] = _equations_as_code(lines)
     quoted = False
@@ -105,6 +110,17 @@ def as_restructured_text(app, what, name, thing, options, lines) -> None:
             parts[::2] = [re.sub(r"\||(?<=\()\*+(?=\))", _escaped, part) for part in parts[::2]]
             lines[number] = "".join(parts)
         quoted = quoted or line.startswith(".. code-block::")
+
+
+_TOGETHER = re.compile(r"^:ivar (\w+(?:, \w+)+):(.*\n(?: .*\n)*)", re.MULTILINE)
+
+
+def repeat_fields(app, what, name, thing, options, lines) -> None:
+    """Repeat the field of attributes told together, which Sphinx takes for a type and a name."""
+    lines[:] = _TOGETHER.sub(
+        lambda told: "".join(f":ivar {each}:{told[2]}" for each in told[1].split(", ")),
+        "\n".join(lines),
+    ).split("\n")
 
 
 def _equations_as_code(lines: list[str]) -> list[str]:
@@ -130,7 +146,7 @@ def _escaped(match: re.Match[str]) -> str:
 # What docutils does not know, and stands in notebooks: short fractions, sizes of brackets, names of
 # dots and of aligned equations.
 _SAME = (
-    (re.compile(r"\\frac\s*(\d)\s*(\d)"), r"\\frac{\1}{\2}"),
+    (re.compile(r"\\([dt]?frac)\s*(\w)\s*(\d)"), r"\\\1{\2}{\3}"),
     (re.compile(r"\\[bB]igg?(?![a-zA-Z])"), ""),
     (re.compile(r"\\dots(?![a-zA-Z])"), r"\\ldots"),
     (re.compile(r"\\(begin|end)\{align\*?\}"), r"\\\1{aligned}"),
@@ -142,6 +158,11 @@ _ACCENT = re.compile(
     r"<munderover>\s*(<mi>\w</mi>)\s*(<(m\w+)>.*?</\3>)\s*(<mo[^>]*>.</mo>)\s*</munderover>",
     re.DOTALL,
 )
+# Names of functions keep a thin space from what stands before and behind, unless it is a bracket.
+_APPLY = "<mo>&ApplyFunction;</mo>"
+_BEFORE = re.compile(rf"(</m(?!o>)\w+>)(?=\s*<mi[^>]*>\w+</mi>\s*{_APPLY})")
+_BEHIND = re.compile(rf"{_APPLY}(?!\s*(?:<mrow>\s*)?<mo)")
+_THIN = '<mspace width="0.17em"></mspace>'
 _TAG = re.compile(r"\\tag\{(.*?)\}")
 
 
@@ -157,14 +178,43 @@ def mathml(node, **options) -> str:
         return f"<code>{escape(formula)}</code>"
     text = _ACCENT.sub(r'<msub><mover accent="true">\1\4</mover>\2</msub>', text)
     # Bars are brackets, not signs between two things; averages keep the height of the line.
-    text = re.sub(r'<mo( class="math\w+")?>(?=[|\u2223]</mo>)', '<mo lspace="0" rspace="0">', text)
+    text = re.sub(r'<mo stretchy="false"[^>]*>([|\u2223])</mo>', r"<mi>\1</mi>", text)
+    text = re.sub(r"<mo([^>]*)>(?=[|\u2223]</mo>)", r'<mo\1 lspace="0" rspace="0">', text)
+    text = _BEHIND.sub(_APPLY + _THIN, _BEFORE.sub(r"\1" + _THIN, text))
     return re.sub(r"<mo>(?=[⟨⟩]</mo>)", '<mo stretchy="false">', text)
 
 
 def write_inline_formula(translator, node) -> None:
     """Write a formula within a line."""
-    translator.body.append(mathml(node))
+    formula = mathml(node)
+    if "behind" in node:
+        formula = f'<span class="glued">{node["before"]}{formula}{escape(node["behind"])}</span>'
+    translator.body.append(formula)
     raise SkipNode
+
+
+def glue_formulas(app, doctree, page) -> None:
+    """Give brackets, full stops and the like to the formula, for no line to break in between."""
+    for formula in list(doctree.findall(math)):
+        parent, place = formula.parent, formula.parent.index(formula)
+        behind = parent[place + 1] if place + 1 < len(parent) else None
+        before = parent[place - 1] if place else None
+        formula["before"] = "(" if isinstance(before, Text) and before.endswith("(") else ""
+        sign = re.match(r"[^\s\w]*(?:(?<=-)\w+)?", behind) if isinstance(behind, Text) else None
+        formula["behind"] = sign[0] if sign else ""
+        if formula["before"]:
+            parent[place - 1] = Text(before[:-1])
+        if formula["behind"]:
+            parent[place + 1] = Text(behind[sign.end() :])
+
+
+def mark_pictures(app, doctree, page) -> None:
+    """Tell wide pictures, which small screens scroll, from those for one column of print."""
+    for picture in doctree.findall(image):
+        file = app.srcdir / picture["uri"]
+        if size := get_image_size(file):
+            inches = size[0] / max(getDPI(file)[0], 72)
+            picture["classes"].append("panels" if inches > 6 else "panel")
 
 
 def write_formula(translator, node) -> None:
@@ -183,5 +233,8 @@ def setup(app) -> None:
     """Let Sphinx know of the above."""
     copy_notebooks()
     app.add_html_math_renderer("mathml", (write_inline_formula, None), (write_formula, None))
+    app.connect("doctree-resolved", mark_pictures)
+    app.connect("doctree-resolved", glue_formulas)
     # Before napoleon, which turns the sections of docstrings into fields.
     app.connect("autodoc-process-docstring", as_restructured_text, priority=400)
+    app.connect("autodoc-process-docstring", repeat_fields, priority=600)
