@@ -9,6 +9,7 @@ from pathlib import Path
 from docutils.nodes import SkipNode, Text, image, math
 from docutils.utils.math import MathError
 from docutils.utils.math.latex2mathml import tex2mathml
+from imagesize import getDPI
 from sphinx.util import logging
 from sphinx.util.images import get_image_size
 from sphinx.util.math import get_node_equation_number
@@ -177,6 +178,7 @@ def mathml(node, **options) -> str:
         return f"<code>{escape(formula)}</code>"
     text = _ACCENT.sub(r'<msub><mover accent="true">\1\4</mover>\2</msub>', text)
     # Bars are brackets, not signs between two things; averages keep the height of the line.
+    text = re.sub(r'<mo stretchy="false"[^>]*>([|\u2223])</mo>', r"<mi>\1</mi>", text)
     text = re.sub(r"<mo([^>]*)>(?=[|\u2223]</mo>)", r'<mo\1 lspace="0" rspace="0">', text)
     text = _BEHIND.sub(_APPLY + _THIN, _BEFORE.sub(r"\1" + _THIN, text))
     return re.sub(r"<mo>(?=[⟨⟩]</mo>)", '<mo stretchy="false">', text)
@@ -207,12 +209,12 @@ def glue_formulas(app, doctree, page) -> None:
 
 
 def mark_pictures(app, doctree, page) -> None:
-    """Tell pictures of several panels, which small screens scroll, from those of one panel."""
+    """Tell wide pictures, which small screens scroll, from those for one column of print."""
     for picture in doctree.findall(image):
-        size = get_image_size(app.srcdir / picture["uri"])
-        if size:
-            several = size[0] > 1.6 * size[1] or size[0] > 1000
-            picture["classes"].append("panels" if several else "panel")
+        file = app.srcdir / picture["uri"]
+        if size := get_image_size(file):
+            inches = size[0] / max(getDPI(file)[0], 72)
+            picture["classes"].append("panels" if inches > 6 else "panel")
 
 
 def write_formula(translator, node) -> None:
