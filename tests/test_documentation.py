@@ -1,12 +1,14 @@
-"""The reference lists everything that may be imported."""
+"""The reference lists everything that may be imported, and formulas are set as they are meant."""
 
 import importlib
 import re
+import runpy
 from pathlib import Path
 
 import pytest
 
-REFERENCE = Path(__file__).parent.parent / "docs" / "api"
+DOCS = Path(__file__).parent.parent / "docs"
+REFERENCE = DOCS / "api"
 PAGES = {
     "model": "crazybilliards.model",
     "particles": "crazybilliards.particles",
@@ -25,3 +27,14 @@ def test_every_public_name_stands_in_the_reference(page):
     described = re.findall(rf"auto(?:function|class):: {PAGES[page]}\.(\w+)\n", text)
     elsewhere = {"load_sweep"} if page == "comparison" else set()
     assert set(described) == set(public) - elsewhere
+
+
+@pytest.mark.parametrize("short", [r"\tfrac12 x", r"\dfrac 12 x", r"\frac12 x"])
+def test_a_short_fraction_is_set_like_a_long_one(short):
+    pytest.importorskip("sphinx")
+    from docutils.nodes import math
+
+    mathml = runpy.run_path(str(DOCS / "conf.py"))["mathml"]
+    long = re.sub(r"(frac) ?12", r"\1{1}{2}", short)
+    assert mathml(math("", short)) == mathml(math("", long))
+    assert "<mfrac" in mathml(math("", short))
