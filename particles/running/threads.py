@@ -25,9 +25,10 @@ def run_all(
     ``progress``: whether to show a bar; a text stands in front of it.
     """
     stop, one_by_one = Event(), Lock()
+    total = sum(replica.total for replica in replicas)
     with (
         tqdm(
-            total=sum(replica.total for replica in replicas),
+            total=total,
             initial=sum(replica.done for replica in replicas),
             desc=progress if isinstance(progress, str) else "simulating",
             unit=unit,
@@ -43,7 +44,7 @@ def run_all(
             for done in replica.work(stop):
                 with one_by_one:
                     # Rounded up, so that many short times never add up to less than all.
-                    bar.update(min(done * (1 + 1e-9), bar.total - bar.n))
+                    bar.update(min(done * (1 + 1e-9), total - bar.n))
 
         futures: list[Future[None]] = []
         interrupted = False
