@@ -287,11 +287,11 @@ class Page:
         """Show what was computed, if it is still of this chain."""
         if chain != self.session.chain:
             return
-        if isinstance(outcome, BaseException):
+        if not isinstance(outcome, BaseException):
+            self._notes |= self.pictures.show_theories(outcome)
+            self.controls.show_accuracy(self._notes)
+        elif not self.session.diverged:  # which the page has explained already
             self.controls.say(f"No theory for this chain: {outcome}")
-            return
-        self._notes |= self.pictures.show_theories(outcome)
-        self.controls.show_accuracy(self._notes)
 
 
 def make_page(threads: Executor, turn: Lock) -> pn.viewable.Viewable:

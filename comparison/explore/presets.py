@@ -47,8 +47,9 @@ class Preset:
 
     @property
     def solved(self) -> bool:
-        """Whether the page solves the kinetic equation: 0.9 <= e <= 1.05, e != 1."""
-        return 0.9 <= self.chain.restitution <= 1.05 and self.chain.restitution != 1
+        """Whether the page solves the kinetic equation: 0.9 <= e <= 1.05, e != 1, steady."""
+        steady = self.figure != "energy"
+        return steady and 0.9 <= self.chain.restitution <= 1.05 and self.chain.restitution != 1
 
 
 def _preset(
