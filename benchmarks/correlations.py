@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
-from kept import complete, kept
+from kept import complete, kept_or_made
 
 from crazybilliards.comparison.studies.restitutions import tenth_rounded_outward, width_deviation
 from crazybilliards.kinetic import correlated_phase_space, phase_space
@@ -78,7 +78,7 @@ def simulated(case: Case, folder: Path) -> xr.Dataset:
         )
         return reduced(complete(run))
 
-    run = kept(path, make)
+    run = kept_or_made(path, make)
     checkpoint.unlink(missing_ok=True)
     return run
 

@@ -12,7 +12,7 @@ from crazybilliards.model import Chain
 _MODES = 3  # panel of the spectrum
 
 
-def ingredients(
+def values_of(
     run: xr.Dataset, chain: Chain
 ) -> dict[str, tuple[xr.DataArray, np.ndarray, np.ndarray]]:
     """Return coordinate, values and errors, in free units, of what is drawn of a result.
@@ -57,7 +57,7 @@ def draw_ingredients(results: list[tuple[Chain, xr.Dataset, xr.Dataset]], figure
     with house_style():
         drawing, axes = panels(2, 3, height=2.3)
         for number, (chain, run, theory) in enumerate(results):
-            runs, lines = ingredients(run, chain), ingredients(theory, chain)
+            runs, lines = values_of(run, chain), values_of(theory, chain)
             for ax, (name, found) in zip(axes, runs.items(), strict=True):
                 last = len(found[0]) - 1
                 shown = np.linspace(0, last, 30).astype(int)

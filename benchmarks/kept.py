@@ -8,7 +8,7 @@ import xarray as xr
 from crazybilliards.model import load, save
 
 
-def kept(path: Path, make: Callable[[], xr.Dataset]) -> xr.Dataset:
+def kept_or_made(path: Path, make: Callable[[], xr.Dataset]) -> xr.Dataset:
     """Return the result in a file, or make it and write the file.
 
     Exits as :func:`complete` does if the result is incomplete; there is no file then.
@@ -19,13 +19,14 @@ def kept(path: Path, make: Callable[[], xr.Dataset]) -> xr.Dataset:
 
 
 def complete(result: xr.Dataset) -> xr.Dataset:
-    """Return a result, or exit with a message if Ctrl-C interrupted it.
+    """Return a result, or exit with a message if it was interrupted or has diverged.
 
-    An interrupted run has larger errors than the tables say, and nobody would see that in its file.
+    Such a run has larger errors than the tables say, and nobody would see that in its file.
     """
-    if result.attrs.get("status") == "interrupted":
+    status = result.attrs.get("status", "completed")
+    if status != "completed":
         raise SystemExit(
-            "interrupted: the unfinished result is not kept; start again, from the checkpoint if "
+            f"{status}: the unfinished result is not kept; start again, from the checkpoint if "
             "there is one"
         )
     return result

@@ -2,7 +2,7 @@
 
     python benchmarks/neighbours.py FOLDER FIGURES
 
-Prints the tables of docs/correlations.md and draws ``neighbours.png`` and ``ingredients.png`` into
+Prints the table of docs/correlations.md and draws ``neighbours.png`` and ``ingredients.png`` into
 FIGURES. Results are kept in FOLDER, so that a second run only draws. Takes a quarter of an hour on
 one core.
 """
@@ -16,7 +16,7 @@ matplotlib.use("Agg")
 import numpy as np
 import xarray as xr
 from ingredients import draw_ingredients
-from kept import kept
+from kept import kept_or_made
 from matplotlib.axes import Axes
 
 from crazybilliards.comparison.claims.repetition import middle_tenth
@@ -57,7 +57,7 @@ def measured(chain: Chain, folder: Path) -> xr.Dataset:
             progress=False,
         ).drop_vars(["gap_covariance", "gap_covariance_error"])
 
-    return kept(folder / f"run_{named(chain)}.nc", make)
+    return kept_or_made(folder / f"run_{named(chain)}.nc", make)
 
 
 def measured_closely(chain: Chain, folder: Path) -> xr.Dataset:
@@ -75,7 +75,7 @@ def measured_closely(chain: Chain, folder: Path) -> xr.Dataset:
             progress=False,
         )
 
-    return kept(folder / f"closely_{named(chain)}.nc", make)
+    return kept_or_made(folder / f"closely_{named(chain)}.nc", make)
 
 
 def solved(chain: Chain, folder: Path) -> xr.Dataset:
@@ -84,7 +84,7 @@ def solved(chain: Chain, folder: Path) -> xr.Dataset:
     def make() -> xr.Dataset:
         return correlated_phase_space(chain, cells=CELLS).drop_vars("phase_space_density")
 
-    return kept(folder / f"theory_{named(chain)}.nc", make)
+    return kept_or_made(folder / f"theory_{named(chain)}.nc", make)
 
 
 def length_of(result: xr.Dataset) -> float:

@@ -45,10 +45,9 @@ def main(source: Path, figure: Path) -> None:
     draw(costs, figure)
 
 
-def in_letters_of_print(work: str) -> str:
-    """Return the name of some work with its symbols as formulas."""
-    work = re.sub(r"\be ?= ?([\d.]+)", r"$e = \1$", work)
-    return re.sub(r"\bdt ?= ?1e(-\d+)", r"$dt = 10^{\1}$", work)
+def with_formula(work: str) -> str:
+    """Return the name of some work with the restitution as a formula."""
+    return re.sub(r"\be ?= ?([\d.]+)", r"$e = \1$", work)
 
 
 def draw(costs: dict[str, dict[int, float]], figure: Path) -> None:
@@ -59,7 +58,7 @@ def draw(costs: dict[str, dict[int, float]], figure: Path) -> None:
             if work != NOISE:
                 look = {"color": COLOURS[number - 1], "marker": SYMBOLS[number - 1]}
                 look |= {"markerfacecolor": "none"}
-            ax.plot(list(by_size), list(by_size.values()), label=in_letters_of_print(work), **look)
+            ax.plot(list(by_size), list(by_size.values()), label=with_formula(work), **look)
         for name, cost in PEERS.items():
             ax.plot(1000, cost, "*", color="black", markersize=7, markerfacecolor="none")
             ax.annotate(name, (1000, cost), xytext=(6, -3), textcoords="offset points")

@@ -10,7 +10,7 @@ import sys
 from pathlib import Path
 
 import xarray as xr
-from kept import kept
+from kept import kept_or_made
 
 from crazybilliards.comparison.studies.restitutions import WidthDeviation, width_deviation
 from crazybilliards.kinetic import phase_space
@@ -32,7 +32,7 @@ def compared(chain: Chain, duration: float, folder: Path) -> WidthDeviation:
             chain, duration=duration, seed=2, observe="widths", threads=1, progress=False
         )
 
-    run = kept(path, make)
+    run = kept_or_made(path, make)
     theory = phase_space(chain, tolerance=4e-3)
     return width_deviation(run, theory)
 

@@ -31,6 +31,7 @@ _OF_PAIRS = {"quick": (0.95,), "full": RESTITUTIONS}
 _SIZES_OF_PAIRS = {"quick": (30,), "full": SIZES}
 
 INDEPENDENT, PAIRS = "kinetic equation", "with pair correlations"
+PAIRS_ALONE = "theory with pairs"  # in a figure without the other theory and with less room
 LINES = {INDEPENDENT: "--", PAIRS: "-"}
 CROSSES: dict[str, dict[str, Any]] = {
     INDEPENDENT: {"marker": "x", "linestyle": "none", "color": COLOURS[4]},
@@ -98,7 +99,7 @@ def draw_widths_by_size(ax: Axes, results: Results) -> None:
     for size, theory in predicted_by_size(results).items():
         widths = theory.velocity_width / chain_of(theory).free_velocity_width
         ax.plot(theory.particle, widths, ":", color=COLOURS[SIZES.index(size)], zorder=4)
-    ax.plot([], [], ":", color="0.4", label=PAIRS)
+    ax.plot([], [], ":", color="0.4", label=PAIRS_ALONE)
 
 
 def listed(found: Theories, value: Callable[[xr.Dataset], float], *restitutions: float) -> str:

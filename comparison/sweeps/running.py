@@ -29,6 +29,7 @@ from crazybilliards.model.storage import make_folder, write_sealed
 # Cases that are submitted and have not returned: enough for a cluster, few in memory.
 _MOST_UNDER_WAY = 1000
 _BESIDE = len("100%|          | 1:00:00<1:00:00, last ")  # what stands beside a case's title
+_LEAST_ROOM = 10  # letters for the name of a case; a narrower terminal does not show it
 
 
 @dataclass
@@ -179,8 +180,9 @@ class _UnderWay:
         done = self.outcome.written + len(self.outcome.failed)
         self.bar.set_description(f"{done} of {self.number} cases", refresh=False)
         room = shutil.get_terminal_size().columns - len(self.bar.desc) - _BESIDE
-        last = textwrap.shorten(case.title, max(room, 0), placeholder=" ...")
-        self.bar.set_postfix_str(f"last {last}", refresh=False)
+        if room >= _LEAST_ROOM:
+            last = textwrap.shorten(case.title, room, placeholder=" ...")
+            self.bar.set_postfix_str(f"last {last}", refresh=False)
         self.bar.update(case.work)
 
 

@@ -34,6 +34,7 @@ def simulated() -> dict[float, np.ndarray]:
 def main() -> None:
     """Write the picture."""
     measured = simulated()
+    assert set(measured) <= set(RESTITUTIONS), "a restitution of the table has no line"
     with house_style():
         figure, [ax] = panels(1, 1, height=2.9, wanted=1)
         for colour, (e, line) in zip(COLOURS, RESTITUTIONS.items(), strict=False):

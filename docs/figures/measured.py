@@ -33,7 +33,7 @@ def main() -> None:
                 "simulation": run,
             }
             densities = {name: smooth(each) for name, each in densities.items()}
-            for name, each in densities.items():
+            for name, each in list(densities.items())[:-1]:
                 print(f"e = {e:g}, {name}: {deviation(each, densities['simulation'])}")
             overlay(densities, ax=ax)
             entitle(ax, f"$e = {e:g}$")

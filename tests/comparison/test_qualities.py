@@ -36,6 +36,10 @@ def test_no_quick_verdict_contradicts_a_full_one(full):
     assert contradicted == {}
 
 
+def test_the_quick_claims_are_claims_of_the_page(full):
+    assert QUICK.keys() <= full.keys()
+
+
 def test_every_figure_with_claims_is_among_them(full):
     def figures(verdicts):
         return {name.split(":")[0] for name in verdicts}

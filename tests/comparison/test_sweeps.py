@@ -136,6 +136,13 @@ def test_cases_that_fail_are_named_and_the_others_kept(tmp_path):
     assert missing_cases([bad, good], tmp_path) == [bad]
 
 
+@pytest.mark.parametrize("columns", [1, 20, 57, 80, 200])
+def test_the_terminal_may_be_narrow(columns, tmp_path, monkeypatch):
+    monkeypatch.setenv("COLUMNS", str(columns))
+    case = Case("equilibrium", Chain(size=3, amplitude=12.5, damping=2.0), {})
+    assert run_cases([case], tmp_path, AtOnce()) == {}
+
+
 def test_whatever_is_wrong_with_a_case_does_not_cost_the_others(tmp_path, monkeypatch):
     bad, good = sweep().cases()[:2]
     job = JOBS["simulate"]

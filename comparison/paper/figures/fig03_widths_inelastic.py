@@ -273,7 +273,7 @@ def _draw_steps(ax: Axes, results: Results) -> None:
     ax.axhline(_PAPER, color="0.4", linestyle="--", label="paper")
     ax.plot([], [], "o", color="0.4", markerfacecolor="none", label="at a time step")
     ax.plot([], [], "o", color="0.4", label=LABEL)
-    ax.plot([], [], **_CROSS | {"color": "0.4"}, label=predictions.PAIRS)
+    ax.plot([], [], **_CROSS | {"color": "0.4"}, label=predictions.PAIRS_ALONE)
     ax.legend(loc="upper right")
     ax.set(xscale="log", xlabel="time step $dt$ [T]", ylabel=r"exponent $\nu$")
     ax.set_xticks([first, 1e-3, 1e-2], [r"$\to 0$", "$10^{-3}$", "$10^{-2}$"])
