@@ -143,10 +143,13 @@ def _escaped(match: re.Match[str]) -> str:
     return "".join(f"\\{sign}" for sign in match[0])
 
 
-# What docutils does not know, and stands in notebooks: short fractions, sizes of brackets, names of
-# dots and of aligned equations.
+# What docutils does not know, and stands in notebooks: short fractions, powers of a modulus, sizes of
+# brackets, names of dots and of aligned equations.
 _SAME = (
     (re.compile(r"\\([dt]?frac)\s*(\w)\s*(\d)"), r"\\\1{\2}{\3}"),
+    # A power belongs to all of a modulus; otherwise the closing bar alone is its base.
+    (re.compile(r"\\lvert(.*?)\\rvert(?=\^)"), r"{\\lvert\1\\rvert}"),
+    (re.compile(r"\|(\w+)\|(?=\^)"), r"{|\1|}"),
     (re.compile(r"\\[bB]igg?(?![a-zA-Z])"), ""),
     (re.compile(r"\\dots(?![a-zA-Z])"), r"\\ldots"),
     (re.compile(r"\\(begin|end)\{align\*?\}"), r"\\\1{aligned}"),
@@ -179,7 +182,8 @@ def mathml(node, **options) -> str:
     text = _ACCENT.sub(r'<msub><mover accent="true">\1\4</mover>\2</msub>', text)
     # Bars are brackets, not signs between two things; averages keep the height of the line.
     text = re.sub(r'<mo stretchy="false"[^>]*>([|\u2223])</mo>', r"<mi>\1</mi>", text)
-    text = re.sub(r"<mo([^>]*)>(?=[|\u2223]</mo>)", r'<mo\1 lspace="0" rspace="0">', text)
+    upright = r'<mo\1 stretchy="false" lspace="0" rspace="0">'
+    text = re.sub(r"<mo([^>]*)>(?=[|\u2223]</mo>)", upright, text)
     text = _BEHIND.sub(_APPLY + _THIN, _BEFORE.sub(r"\1" + _THIN, text))
     return re.sub(r"<mo>(?=[⟨⟩]</mo>)", '<mo stretchy="false">', text)
 

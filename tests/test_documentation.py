@@ -38,3 +38,12 @@ def test_a_short_fraction_is_set_like_a_long_one(short):
     long = re.sub(r"(frac) ?12", r"\1{1}{2}", short)
     assert mathml(math("", short)) == mathml(math("", long))
     assert "<mfrac" in mathml(math("", short))
+
+
+@pytest.mark.parametrize("power", [r"\lvert v - u\rvert^3", "|d|^n"])
+def test_a_power_of_a_modulus_is_of_all_of_it(power):
+    pytest.importorskip("sphinx")
+    from docutils.nodes import math
+
+    written = runpy.run_path(str(DOCS / "conf.py"))["mathml"](math("", power))
+    assert re.search(r"<msup>\s*<mrow>.*\|.*\|.*</mrow>", written, re.DOTALL)
