@@ -221,7 +221,7 @@ class Page:
         self.setting.take(preset.chain)
         self.controls.quantity.value = preset.quantity
         self.controls.speed.value = 30
-        if preset.figure == "energy":
+        if not preset.steady:
             self.controls.history.value = "energy"
             self._restart(event)
         if preset.solved and self._kinetic.chain is None:
