@@ -121,7 +121,7 @@ class Page:
             self.pictures.rods.show(session)
             if session.diverged:
                 self._draw()
-                self.controls.say(self.pictures.times.explain_divergence(session.energies))
+                self.controls.say(self.pictures.show_divergence(session))
         if self._frames % _FRAMES_PER_DRAWING == 0:
             self._draw()
             self._poll_kinetic()
