@@ -121,7 +121,7 @@ class Page:
             self.pictures.rods.show(session)
             if session.diverged:
                 self._draw()
-                self.controls.say(self.pictures.times.explain_divergence(session.energies))
+                self.controls.say(self.pictures.show_divergence(session))
         if self._frames % _FRAMES_PER_DRAWING == 0:
             self._draw()
             self._poll_kinetic()
@@ -221,7 +221,7 @@ class Page:
         self.setting.take(preset.chain)
         self.controls.quantity.value = preset.quantity
         self.controls.speed.value = 30
-        if preset.figure == "energy":
+        if not preset.steady:
             self.controls.history.value = "energy"
             self._restart(event)
         if preset.solved and self._kinetic.chain is None:

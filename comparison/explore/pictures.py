@@ -41,12 +41,12 @@ class Pictures:
         self.rods = Rods(grabbed)
         self.strip = Strip(self.rods)
         self.density = Density(self.rods)
-        self.widths = Widths()
+        self.widths, self.sizes = Widths(), Sizes()
         self.panels: dict[str, Any] = {
             "widths": self.widths,
             "velocities": Velocities(),
             "avalanches": Avalanches(),
-            "sizes": Sizes(),
+            "sizes": self.sizes,
         }
         self.times = Times()
         self.in_space = {
@@ -95,6 +95,11 @@ class Pictures:
                 pane.visible = name == chosen
         if strip is not None:
             self.in_space["strip"].visible = self.legend.visible = strip
+
+    def show_divergence(self, session: Session) -> str:
+        """Show how the energy of a diverged chain grew; return the reason in words."""
+        self.sizes.forget(session.chain)
+        return self.times.explain_divergence(session.energies)
 
     def show_theories(self, theories: Densities) -> dict[str, str]:
         """Show theories; return how far each can be trusted, by its name."""

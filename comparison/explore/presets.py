@@ -23,13 +23,15 @@ class Preset:
     figure
         Its name.
     look
-        One sentence: what to look for.
+        What to look for.
     chain
         The chain. See ``solved`` for the kinetic equation.
     quantity
         What is drawn beside the density.
     remark
         Distinguishes two presets of the same figure.
+    steady
+        Whether the chain has a steady state. One without is shown from its start, with its energy.
     """
 
     figure: str
@@ -37,6 +39,7 @@ class Preset:
     chain: Chain
     quantity: Quantity
     remark: str = ""
+    steady: bool = True
 
     @property
     def label(self) -> str:
@@ -48,14 +51,19 @@ class Preset:
     @property
     def solved(self) -> bool:
         """Whether the page solves the kinetic equation: 0.9 <= e <= 1.05, e != 1, steady."""
-        steady = self.figure != "energy"
-        return steady and 0.9 <= self.chain.restitution <= 1.05 and self.chain.restitution != 1
+        restitution = self.chain.restitution
+        return self.steady and 0.9 <= restitution <= 1.05 and restitution != 1
 
 
 def _preset(
-    figure: str, look: str, quantity: Quantity = "widths", remark: str = "", **parameters: Any
+    figure: str,
+    look: str,
+    quantity: Quantity = "widths",
+    remark: str = "",
+    steady: bool = True,
+    **parameters: Any,
 ) -> Preset:
-    return Preset(figure, look, Chain(**parameters), quantity, remark)
+    return Preset(figure, look, Chain(**parameters), quantity, remark, steady)
 
 
 PRESETS = (
@@ -143,6 +151,7 @@ PRESETS = (
         "The energy grows exponentially, a straight line on its logarithmic axis, until the chain "
         "has run away.",
         remark="linear springs",
+        steady=False,
         size=100,
         restitution=1.01,
         damping=0.4,
@@ -152,6 +161,7 @@ PRESETS = (
         "The energy curves upwards on its logarithmic axis: it becomes infinite after a finite "
         "time.",
         remark="quadratic springs",
+        steady=False,
         size=100,
         restitution=1.01,
         damping=0.4,
