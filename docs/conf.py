@@ -143,8 +143,8 @@ def _escaped(match: re.Match[str]) -> str:
     return "".join(f"\\{sign}" for sign in match[0])
 
 
-# What docutils does not know, and stands in notebooks: short fractions, powers of a modulus, sizes of
-# brackets, names of dots and of aligned equations.
+# What docutils does not know, and stands in notebooks: short fractions, powers of a modulus, sizes
+# of brackets, names of dots and of aligned equations.
 _SAME = (
     (re.compile(r"\\([dt]?frac)\s*(\w)\s*(\d)"), r"\\\1{\2}{\3}"),
     # A power belongs to all of a modulus; otherwise the closing bar alone is its base.
