@@ -25,7 +25,7 @@ _LIMIT_OF = Chain(size=2, restitution=0.0)
 _PAPERS_EXPONENT = -0.38
 _HEIGHT = 350
 # A chain gets its point after so many relaxation times of measurement. Its width is then known to
-# 5 to 8 % (one standard deviation of 20 runs each, of 2 to 30 rods at e = 0 and e = 1), which is
+# 6 to 8 % (one standard deviation of 20 runs each, of 2 to 30 rods at e = 0 and e = 1), which is
 # less than the size of a symbol. At 30 T per second this takes three seconds for damping 1: longer
 # than a slider stays at a value that it only passes.
 _ENOUGH = 10
