@@ -29,9 +29,10 @@ _HEIGHT = 350
 # less than the size of a symbol. At 30 T per second this takes three seconds for damping 1: longer
 # than a slider stays at a value that it only passes.
 _ENOUGH = 10
-# The range of widths follows the points, but shows these at least: noise of chains that are all as
-# fast as a free rod would fill the picture otherwise.
-_SHOWN_AT_LEAST = [0.1, 2.0]
+# The range of widths follows the points, but shows these at least. Noise of chains that are all as
+# fast as a free rod would fill the picture otherwise, and Bokeh labels an axis of less than two
+# decades at its upper end only.
+_SHOWN_AT_LEAST = [0.02, 2.0]
 
 
 class Sizes:
