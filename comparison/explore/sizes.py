@@ -25,13 +25,14 @@ _LIMIT_OF = Chain(size=2, restitution=0.0)
 _PAPERS_EXPONENT = -0.38
 _HEIGHT = 350
 # A chain gets its point after so many relaxation times of measurement. Its width is then known to
-# 5 to 8 % (one standard deviation of 20 runs each, of 2 to 30 rods at e = 0 and e = 1), which is
+# 6 to 8 % (one standard deviation of 20 runs each, of 2 to 30 rods at e = 0 and e = 1), which is
 # less than the size of a symbol. At 30 T per second this takes three seconds for damping 1: longer
 # than a slider stays at a value that it only passes.
 _ENOUGH = 10
-# The range of widths follows the points, but shows these at least: noise of chains that are all as
-# fast as a free rod would fill the picture otherwise.
-_SHOWN_AT_LEAST = [0.1, 2.0]
+# The range of widths follows the points, but shows these at least. Noise of chains that are all as
+# fast as a free rod would fill the picture otherwise, and Bokeh labels an axis of less than two
+# decades at its upper end only.
+_SHOWN_AT_LEAST = [0.02, 2.0]
 
 
 class Sizes:
