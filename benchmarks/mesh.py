@@ -18,7 +18,8 @@ FINEST = 60
 
 
 def main() -> None:
-    print("| e, gamma | cells | W_v, largest error, % | <dx>, largest error / s | seconds |")
+    displacement = r"$\langle\Delta x\rangle$, largest error / s"
+    print(f"| e, gamma | cells | W_v, largest error, % | {displacement} | seconds |")
     print("|---|---|---|---|---|")
     for restitution, damping in CASES:
         chain = Chain(restitution=restitution, damping=damping)

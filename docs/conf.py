@@ -6,7 +6,7 @@ from html import escape
 from importlib.metadata import version as version_of
 from pathlib import Path
 
-from docutils.nodes import SkipNode, Text, image, math
+from docutils.nodes import SkipNode, Text, entry, image, math
 from docutils.utils.math import MathError
 from docutils.utils.math.latex2mathml import tex2mathml
 from imagesize import getDPI
@@ -150,6 +150,8 @@ _SAME = (
     # A power belongs to all of a modulus; otherwise the closing bar alone is its base.
     (re.compile(r"\\lvert(.*?)\\rvert(?=\^)"), r"{\\lvert\1\\rvert}"),
     (re.compile(r"\|(\w+)\|(?=\^)"), r"{|\1|}"),
+    (re.compile(r"\\[bB]igg?(?=[(\[])"), r"\\left"),
+    (re.compile(r"\\[bB]igg?(?=[)\]])"), r"\\right"),
     (re.compile(r"\\[bB]igg?(?![a-zA-Z])"), ""),
     (re.compile(r"\\dots(?![a-zA-Z])"), r"\\ldots"),
     (re.compile(r"\\(begin|end)\{align\*?\}"), r"\\\1{aligned}"),
@@ -221,6 +223,13 @@ def mark_pictures(app, doctree, page) -> None:
             picture["classes"].append("panels" if inches > 6 else "panel")
 
 
+def mark_numbers(app, doctree, page) -> None:
+    """Tell cells of tables that hold numbers only."""
+    for cell in doctree.findall(entry):
+        if re.fullmatch(r"[-+±\d.,e%→> /()]+", cell.astext()):
+            cell["classes"].append("number")
+
+
 def write_formula(translator, node) -> None:
     """Write a formula on a line of its own, with its number if it has one."""
     translator.body.append(translator.starttag(node, "div", CLASS="math"))
@@ -238,6 +247,7 @@ def setup(app) -> None:
     copy_notebooks()
     app.add_html_math_renderer("mathml", (write_inline_formula, None), (write_formula, None))
     app.connect("doctree-resolved", mark_pictures)
+    app.connect("doctree-resolved", mark_numbers)
     app.connect("doctree-resolved", glue_formulas)
     # Before napoleon, which turns the sections of docstrings into fields.
     app.connect("autodoc-process-docstring", as_restructured_text, priority=400)

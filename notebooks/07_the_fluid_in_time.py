@@ -435,7 +435,7 @@ assert all(abs(ratio - 1) < 0.03 for ratio in measured.values())
 # rods carry it a short way. Each point is a damped oscillator with noise. A point that starts at
 # $y_0$ with the mean push $u(y_0)$ is Gaussian at time $t$,
 #
-# $$(y, v)\sim\mathcal N\!\big(M\,(y_0, u(y_0)),\; \Sigma - M\,\mathrm{diag}(s^2,0)\,M^\top\big),
+# $$(y, v)\sim\mathcal N\!\big(M\,(y_0, u(y_0)),\; \Sigma - M\,\mathrm{diag}(s^2,\,0)\,M^\top\big),
 # \qquad M = e^{Bt},\quad B = \begin{pmatrix}0&1\\-k/m&-\gamma/m\end{pmatrix},$$
 #
 # with $\Sigma = \mathrm{diag}(s^2, W^2)$ at rest. The integral over the Gaussian of $y_0$ gives the

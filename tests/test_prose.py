@@ -82,6 +82,15 @@ def test_a_page_is_plain(page):
     assert not long
 
 
+@pytest.mark.parametrize("page", PAGES + LESSONS, ids=named)
+def test_markdown_shows_all_of_a_page(page):
+    """A line that begins with a per cent sign would be a comment, and <dx> a tag."""
+    text = re.sub(r"```.*?```|\$\$.*?\$\$", "", text_of(page), flags=re.DOTALL)
+    text = re.sub(r"`[^`]*`|\$[^$]*\$", "X", text)
+    assert not re.findall(r"^ *%.*", text, re.MULTILINE)
+    assert not re.findall(r"<(?!br>)[A-Za-z]\w*>", text)
+
+
 @pytest.mark.parametrize("module", MODULES, ids=named)
 def test_docstrings_are_plain(module):
     tree = ast.parse(module.read_text(encoding="utf-8"))
