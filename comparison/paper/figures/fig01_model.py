@@ -19,25 +19,25 @@ _CEILING = 2.7  # height of the anchors
 def draw(results: Results) -> Figure:
     """Draw four rods on springs, displaced from their anchors."""
     chain = Chain(size=len(_DISPLACEMENTS), gap=1.6)
-    figure, [ax] = panels(1, 1, height=1.35, wanted=1)
+    figure, [ax] = panels(1, 1, height=1.45, wanted=1)
     for i, (anchor, shift) in enumerate(zip(chain.anchors, _DISPLACEMENTS, strict=True), start=1):
         _spring(ax, anchor, anchor + shift)
         ax.add_patch(Circle((anchor + shift, 0), chain.radius, facecolor="0.93", edgecolor="black"))
         ax.plot([anchor - 0.35, anchor + 0.35], [_CEILING] * 2, color=COLOURS[4], linewidth=2)
-        ax.text(anchor, _CEILING + 0.2, rf"$x_{i}^0$", ha="center", color=COLOURS[4])
+        ax.text(anchor, _CEILING + 0.5, rf"$x_{i}^0$", ha="center", color=COLOURS[4])
         ax.text(anchor + shift, 0, rf"$x_{i}$", ha="center", va="center")
     _measure(ax, chain.anchors[1], chain.anchors[2], -1.5, r"$2R + g$")
     _measure(ax, chain.anchors[0] + _DISPLACEMENTS[0], chain.anchors[0], -1.5, r"$\Delta x_1$")
     shaken = chain.anchors[3] + _DISPLACEMENTS[3]
     ax.annotate(
         "",
-        xy=(shaken + 1.05, 0),
-        xytext=(shaken + 2.0, 0),
+        xy=(shaken + 1.1, 0),
+        xytext=(shaken + 2.3, 0),
         arrowprops={"arrowstyle": "<->", "color": COLOURS[0]},
     )
-    ax.text(shaken + 1.1, 0.2, r"$A\,\xi_4(t)$", color=COLOURS[0])
+    ax.text(shaken + 1.2, 0.5, r"$A\,\xi_4(t)$", color=COLOURS[0])
     ax.axhline(-chain.radius, color="0.6", linewidth=0.8, zorder=0)
-    ax.set(xlim=(chain.anchors[0] - 3, chain.anchors[-1] + 3), ylim=(-2.4, 3.6), aspect="equal")
+    ax.set(xlim=(chain.anchors[0] - 3, chain.anchors[-1] + 3.4), ylim=(-2.4, 4.1), aspect="equal")
     ax.set_axis_off()
     return figure
 
