@@ -6,6 +6,7 @@ from html import escape
 from typing import Any
 
 import panel as pn
+from panel.links import Callback
 
 from crazybilliards.comparison.explore.presets import PRESETS, Preset
 from crazybilliards.comparison.explore.session import Session
@@ -99,6 +100,16 @@ class Controls:
         solving = seconds is not None
         self.solve.name = f"Solving, {seconds:.0f} s: cancel" if solving else SOLVE
         self.solve.button_type = "warning" if solving else "default"
+
+    def close(self) -> None:
+        """Let go of the widgets of a closed page.
+
+        Panel's table of callbacks has an entry for each number field beside a slider. The entry
+        refers back to its field, so Panel would keep the widgets of every page for ever.
+        """
+        for widget in self.setting_widgets:
+            for part in widget.select():
+                Callback.registry.pop(part, None)
 
     def forget_preset(self) -> None:
         """Deselect the preset if the parameters no longer match it."""

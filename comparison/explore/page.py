@@ -77,7 +77,7 @@ class Page:
 
     def _listen(self) -> None:
         controls = self.controls
-        self._watched = self.setting.param.watch(self._changed, self.setting.parameters())
+        self.setting.param.watch(self._changed, self.setting.parameters())
         controls.preset.param.watch(self._take_preset, "value")
         controls.speed.param.watch(self._set_pace, "value")
         controls.quantity.param.watch(self._set_pace, "value")
@@ -100,8 +100,7 @@ class Page:
     def _close(self, context: Any) -> None:
         self._closed = True
         self._kinetic.cancel()
-        # Panel keeps the setting of a closed page for ever, and through this watcher the page.
-        self.setting.param.unwatch(self._watched)
+        self.controls.close()
 
     # -- the clock --------------------------------------------------------------------------
 

@@ -4,6 +4,7 @@ from concurrent.futures import ThreadPoolExecutor
 from threading import Lock
 
 import pytest
+from panel.links import Callback
 
 from crazybilliards.comparison.coverage import smooth
 from crazybilliards.comparison.explore.density import Density
@@ -70,3 +71,11 @@ def test_an_empty_density_has_the_axes_of_rods_at_their_anchors():
     picture.begin(chain)
     assert len(drawn()) == 1
     assert drawn() != [picture.measured.data]
+
+
+def test_panel_keeps_nothing_of_a_page_that_is_closed(page):
+    # Other tests may have left pages of theirs.
+    fields = {part for widget in page.controls.setting_widgets for part in widget.select()}
+    assert fields & set(Callback.registry)
+    page._close(None)
+    assert not fields & set(Callback.registry)
