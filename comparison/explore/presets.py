@@ -85,7 +85,8 @@ PRESETS = (
     _preset(
         "central-width",
         "Change L: the point of every chain that you measure stays. The longer the chain, the "
-        "colder its middle, a little faster than the paper's power law in long chains.",
+        "colder its middle. In long chains the width falls a little faster than the paper's power "
+        "law.",
         "sizes",
         size=30,
         restitution=0.0,
