@@ -28,7 +28,7 @@ from crazybilliards.particles.scales import relaxation_time
 from crazybilliards.particles.stepping import advance, make_dynamics
 
 CASES = [(0.0, 100), (0.0, 1000), (0.5, 100)]  # restitution, size
-OLD_ERROR = 0.24  # in units of r^(3/2)
+OLD_ERROR = {0.0: 0.24, 0.5: 0.06}  # of version 0.1, in units of r^(3/2), by restitution
 WARM_UP = 12  # relaxation times
 TIMED = 2_000_000  # rod-steps
 
@@ -49,7 +49,7 @@ def seconds_per_rod_step(chain: Chain, time_step: float) -> float:
 def old_work(chain: Chain, accuracy: float, limit: xr.Dataset) -> tuple[float, float]:
     """Return the time step that version 0.1 would need, and its rod-steps."""
     bias = accuracy * math.sqrt(2 / 5)
-    kick = (bias / OLD_ERROR) ** (2 / 3) * limit.central_velocity_width.item()
+    kick = (bias / OLD_ERROR[chain.restitution]) ** (2 / 3) * limit.central_velocity_width.item()
     time_step = (kick * chain.mass / chain.amplitude) ** 2
     base = json.loads(limit.attrs["provenance"])["levels"][0]
     variance = (base["error"] / base["value"]) ** 2 * base["duration"]
@@ -82,7 +82,7 @@ def main() -> None:
         print(
             f"| {restitution} | {size} | {width:.5f} ± {error.item() / width:.2%} | {steps} | "
             f"{work:.2g} | {seconds:.0f} | {step:.1e} | {old:.2g} | {old_seconds:.0f} | "
-            f"{old / work:.0f}, {old_seconds / seconds:.0f} |",
+            f"{old / work:.2g}, {old_seconds / seconds:.2g} |",
             flush=True,
         )
 

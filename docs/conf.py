@@ -93,6 +93,13 @@ def copy_notebooks() -> None:
             copy.write_text(text, encoding="utf-8")
 
 
+def point_to_copies(app, page, source) -> None:
+    """Turn links to ../notebooks/, which are right in the repository, into links to the copies."""
+    if not page.startswith("notebooks/"):
+        source[0] = source[0].replace("](../notebooks/", "](notebooks/")
+        source[0] = source[0].replace("](../../notebooks/", "](../notebooks/")
+
+
 def as_restructured_text(app, what, name, thing, options, lines) -> None:
     """Docstrings are plain text: set equations apart, and let no bar or star have a meaning."""
     if what == "property":
@@ -245,6 +252,7 @@ def write_formula(translator, node) -> None:
 def setup(app) -> None:
     """Let Sphinx know of the above."""
     copy_notebooks()
+    app.connect("source-read", point_to_copies)
     app.add_html_math_renderer("mathml", (write_inline_formula, None), (write_formula, None))
     app.connect("doctree-resolved", mark_pictures)
     app.connect("doctree-resolved", mark_numbers)

@@ -15,7 +15,8 @@ velocity, v1' - v2' = -e (v1 - v2) (eq. ``eq:rest``).
 Rods become points that may touch but not pass, y_1 <= ... <= y_L, with anchors spaced g. The
 displacement from the anchor is the same in both. The whole package computes in y.
 
-Units: length R, mass M, time sqrt(M/k).
+Units: length R, mass M, time T. With the defaults a rod has the radius 1 R and the mass 4 pi/3 M,
+and a linear spring has the stiffness 1 M/T^2.
 """
 
 from __future__ import annotations

@@ -335,9 +335,9 @@ assert np.allclose(closed_form, theory)
 # ## 4. Your own simulation
 #
 # Euler's scheme keeps all forces constant during a step $\Delta t$. The velocity changes first. The
-# new velocity then moves the rod. The paper uses this scheme. The random kicks of a step add up
-# like a random walk, so the noise contributes $\frac Am\sqrt{\Delta t}\,\xi$, which is *not*
-# proportional to $\Delta t$.
+# new velocity then moves the rod. The paper uses Euler's scheme too, without saying which of the two
+# velocities moves the rod. The random kicks of a step add up like a random walk, so the noise
+# contributes $\frac Am\sqrt{\Delta t}\,\xi$, which is *not* proportional to $\Delta t$.
 #
 # **Your turn.** Write one step. `xi` is a Gaussian number of variance 1.
 

@@ -33,7 +33,7 @@
 # Lengths are in rod radii $R$, masses in $M$ (a rod has $m = \frac{4\pi}{3}M$), times in
 # $\sqrt{M/k}$. The restitution is 1 until section 6.
 #
-# *Level: fourth year. You need: lessons 1 and 4, the pressure of a gas as a flux of momentum. Time:
+# *Level: fourth year. You need: lessons 1, 2 and 4, the pressure of a gas as a flux of momentum. Time:
 # 120 minutes.*
 
 # %% tags=["hide-input"]

@@ -29,6 +29,18 @@ def test_every_public_name_stands_in_the_reference(page):
     assert set(described) == set(public) - elsewhere
 
 
+def test_every_link_of_a_page_is_right_in_the_repository_too():
+    pages = [*DOCS.parent.glob("*.md"), *DOCS.rglob("*.md")]
+    assert len(pages) > 40
+    dead = [
+        f"{page.relative_to(DOCS.parent)}: {target}"
+        for page in pages
+        for target in re.findall(r"\]\((?!https?:|#)([^)#\s]+)", page.read_text(encoding="utf-8"))
+        if not (page.parent / target).exists()
+    ]
+    assert dead == []
+
+
 @pytest.mark.parametrize("short", [r"\tfrac12 x", r"\dfrac 12 x", r"\frac12 x"])
 def test_a_short_fraction_is_set_like_a_long_one(short):
     pytest.importorskip("sphinx")

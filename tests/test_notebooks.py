@@ -35,7 +35,7 @@ def test_they_are_numbered_and_paired():
 def test_a_lesson_is_in_the_list_of_lessons(path):
     pages = FOLDER.parent / "docs"
     table = (pages / "notebooks.md").read_text(encoding="utf-8")
-    assert f"](notebooks/{path.name})" in table
+    assert f"](../notebooks/{path.name})" in table
     needs = (pages / "teach_a_week.md").read_text(encoding="utf-8").split("needs which")[1]
     assert f"\n| {int(path.stem[:2])} |" in needs
 

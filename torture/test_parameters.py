@@ -8,8 +8,8 @@ ordinary ones. Every call must end in one of three ways:
 * one ValueError or TypeError of one line;
 * for a run that would take long: the return after a Ctrl-C, which is sent after two seconds.
 
-Any other exception, any warning, a NaN, a call that outlives Ctrl-C by a minute, or one that asks
-for more address space than the limit set here fails the test.
+Any other exception, any warning, a NaN, a call that outlives Ctrl-C by ten minutes, or one
+that asks for more address space than the limit set here fails the test.
 """
 
 from __future__ import annotations

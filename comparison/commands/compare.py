@@ -66,8 +66,9 @@ def command(
 
     Without --restitution: the elastic chain at several driving amplitudes, with its exact
     equilibrium, the force balance closed by labels and the paper's force balance with a fitted
-    displacement. With it: chains of other restitutions, with the kinetic equation (good
-    for 0.9 to 1.05), into which nothing from the simulation goes.
+    displacement. With it: chains of other restitutions, with the kinetic equation, into
+    which nothing from the simulation goes (good for 0.9 to 1.05 and about 100 rods; longer chains
+    need a restitution closer to 1).
 
     Draws everything over one another and prints how far apart it is.
 
@@ -86,9 +87,7 @@ def command(
             write, show = _write_comparison, _print_deviations
         else:
             if amplitudes is not None:
-                raise ValueError(
-                    "amplitudes only set the scale here: give restitution or amplitudes"
-                )
+                raise ValueError("give restitution or amplitudes, not both")
             tree = _inelastic(chain, restitution, **settings)
             write, show = _write_restitutions, _print_widths
         status = tree.attrs["status"]

@@ -53,8 +53,9 @@ def crazybilliards(
 ) -> None:
     """Noisy rods on springs colliding in one dimension: simulation and theory side by side.
 
-    Lengths are in units of the rod radius R, masses in M, times in T = sqrt(M/k). Results are
-    written as NetCDF files; with --json a command prints its tables for machines.
+    Lengths are in R, masses in M, times in T: by default a rod has the radius 1 R and the mass
+    4 pi/3 M, and a spring the stiffness 1 M/T^2. Results are written as NetCDF files; with --json a
+    command prints its tables for machines.
 
     Example: crazybilliards compare --output results
     """

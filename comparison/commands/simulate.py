@@ -41,7 +41,7 @@ def command(
         str,
         typer.Option(
             help="What to measure, separated by commas: widths, density, velocities, energy, "
-            "covariances, modes, collisions, impacts, avalanches, snapshots."
+            "covariances, modes, collisions, impacts, avalanches, triggered-collisions, snapshots."
         ),
     ] = "widths,density",
     duration: Annotated[
@@ -61,7 +61,10 @@ def command(
         ),
     ] = None,
     every: Annotated[
-        float | None, typer.Option(help="Time between snapshots [T]; default: 10 time steps.")
+        float | None,
+        typer.Option(
+            help="Time between snapshots [T]; default: 10 time steps, for an ensemble duration/100."
+        ),
     ] = None,
     average: Annotated[
         str, typer.Option(help="Average over the time, or over an ensemble of replicas.")

@@ -63,8 +63,9 @@ def command(
     """Predict a chain's steady state from a theory, without a simulation.
 
     Prints velocity widths and displacements of some rods; draws the density and the rods, of the
-    kinetic equation also the phase-space density f(y, v). The kinetic equation is good for
-    restitutions of 0.9 to 1.05. Refuses where there is no steady state.
+    kinetic equation also the phase-space density f(y, v). The kinetic equation phase_space
+    is good for restitutions of 0.9 to 1.05 and about 100 rods; longer chains need one closer to 1.
+    correlated_phase_space takes 0 to 1. Refuses where there is no steady state.
 
     Example: crazybilliards theory --output results --restitution 1.05 --damping 4 --critical
 

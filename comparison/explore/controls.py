@@ -50,7 +50,7 @@ class Controls:
         self.status = pn.pane.HTML(css_classes=["status"])
         self.progress = pn.pane.HTML(css_classes=["progress"])
         self.look = pn.pane.HTML(css_classes=["look"], visible=False)
-        self.accuracy = pn.pane.HTML(css_classes=["status"], visible=False)
+        self.accuracy = pn.pane.HTML(css_classes=["status"])
         self.message = pn.pane.Alert(alert_type="warning", visible=False)
         self.play.param.watch(self._name_toggle, "value")
 
@@ -79,15 +79,14 @@ class Controls:
 
     def show_accuracy(self, notes: dict[str, str]) -> None:
         """Show the error of each theory."""
-        self.accuracy.visible = bool(notes)
         self.accuracy.object = "<br>".join(f"{name}: {note}" for name, note in notes.items())
 
-    def show_progress(self, session: Session, *, held: bool) -> None:
+    def show_progress(self, session: Session) -> None:
         """Show how long the chain has been measured, or when the measurement begins."""
         waiting = session.measured_from - session.time
         if session.diverged:
             words = "the chain has run away: there is no steady state to measure"
-        elif held:
+        elif session.holds:
             words = "you hold a rod: nothing is measured"
         elif waiting <= 0:
             words = f"measured for {session.measured_duration:.3g} T"

@@ -28,6 +28,7 @@ class Density:
     def __init__(self, rods: Rods) -> None:
         self._range = rods.range
         plot = make_plot(
+            "density against position, simulation and theories",
             330,
             x_range=rods.range,
             y_range=DataRange1d(start=0, only_visible=True),

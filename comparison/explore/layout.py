@@ -9,7 +9,7 @@ import panel as pn
 from bokeh.models import CustomJS
 
 from crazybilliards.comparison.explore.controls import Controls
-from crazybilliards.comparison.explore.pictures import PICTURES, Pictures
+from crazybilliards.comparison.explore.pictures import Pictures
 
 NOTEBOOKS = Path(__file__).parents[2] / "notebooks"
 _HERE = files("crazybilliards.comparison.explore")
@@ -43,8 +43,8 @@ def arrange(controls: Controls, pictures: Pictures) -> pn.viewable.Viewable:
         panes["density"],
         **wide,
     )
-    measured = pn.Column(controls.quantity, *pictures.measured.values(), **wide)
-    in_time = pn.Column(controls.history, *pictures.in_time.values(), **wide)
+    measured = pn.Column(controls.quantity, pictures.chosen_measured, **wide)
+    in_time = pn.Column(controls.history, pictures.chosen_in_time, **wide)
     help_text = pn.pane.HTML(
         _read("help.html").replace("NOTEBOOKS", _links()), css_classes=["help"], **wide
     )
@@ -59,12 +59,11 @@ def arrange(controls: Controls, pictures: Pictures) -> pn.viewable.Viewable:
 
 
 def _names(controls: Controls) -> CustomJS:
-    """Name sliders, numbers, lists and pictures for screen readers, in page order."""
+    """Name sliders, numbers and lists for screen readers, in page order."""
     lists = (controls.preset, controls.setting_widgets[-1], controls.quantity, controls.history)
     arguments = {
         "parameters": [widget.name for widget in controls.setting_widgets[:-1]],
         "lists": [each.name for each in lists],
-        "pictures": list(PICTURES),
     }
     return CustomJS(args=arguments, code=_read("page.js"))
 

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 import panel as pn
 from bokeh.events import Pan, PanEnd, PanStart
-from bokeh.models import ColumnDataSource, LinearColorMapper, Range1d
+from bokeh.models import ColumnDataSource, LinearColorMapper, Range1d, Span
 from numpy.typing import NDArray
 
-from crazybilliards.comparison.explore.plots import BLACK, GREY, make_plot
+from crazybilliards.comparison.explore.plots import BLACK, GREY, PALE_GREY, make_plot
 from crazybilliards.comparison.explore.session import Session
 from crazybilliards.model import Chain
 from crazybilliards.particles.scales import centre_width
@@ -36,18 +36,24 @@ class Rods:
 
     Parameters
     ----------
-    grabbed
+    dragged
         Called with x [R] where the mouse takes hold and where it moves to, and with None when it
         lets go.
     """
 
-    def __init__(self, grabbed: Callable[[float | None], None]) -> None:
+    def __init__(self, dragged: Callable[[float | None], None]) -> None:
         self.range = Range1d(-1, 1)
         self.half = 1.0  # of the range when it is not zoomed [R]
         self.source = ColumnDataSource({"x": [], "v": []}, name="rods")
         self._anchors = ColumnDataSource({"x": []})
         self._colours = LinearColorMapper(palette=_palette(), low=-1, high=1)
-        plot = make_plot(150, tools="", x_range=self.range, y_range=Range1d(-1.2, 0.8))
+        plot = make_plot(
+            "rods where they are, coloured by velocity",
+            150,
+            tools="",
+            x_range=self.range,
+            y_range=Range1d(-1.2, 0.8),
+        )
         plot.rect(
             "x",
             0,
@@ -59,12 +65,15 @@ class Rods:
             line_width=0.5,
         )
         plot.segment("x", -1.15, "x", -0.8, source=self._anchors, color=GREY, line_width=1.5)
+        # Bokeh draws the outline together with what it drew last: the last anchor of a former axis,
+        # if nothing comes after the anchors.
+        plot.add_layout(Span(location=-1.2, dimension="width", line_color=PALE_GREY))
         plot.yaxis.visible = False
         plot.grid.visible = False
         plot.xaxis.visible = False
         for event in (PanStart, Pan):
-            plot.on_event(event, lambda event: grabbed(event.x))
-        plot.on_event(PanEnd, lambda event: grabbed(None))
+            plot.on_event(event, lambda event: dragged(event.x))
+        plot.on_event(PanEnd, lambda event: dragged(None))
         self.plot = plot
         self.key = pn.pane.HTML(sizing_mode="stretch_width", margin=(5, 16, 0, 84))
 
@@ -86,13 +95,13 @@ class Rods:
         self._anchors.data = {"x": chain.anchors}
 
     def show(self, session: Session) -> None:
-        """Move the rods, and widen the axis if they leave it."""
+        """Move the rods; widen the axis first if they would leave it."""
         x = session.positions
-        self.source.data = {"x": x, "v": session.v.copy()}
         reach = float(np.abs(x[[0, -1]]).max()) + session.chain.radius
         if reach > self.range.end and self.range.start == -self.range.end:
             self.half = 1.3 * reach
             self.range.update(start=-self.half, end=self.half)
+        self.source.data = {"x": x, "v": session.v.copy()}
 
 
 class Strip:
@@ -105,7 +114,13 @@ class Strip:
         self._met_before: set[int] = set()
         self.source = ColumnDataSource(name="strip")
         self._ages = Range1d(1, 0)
-        plot = make_plot(260, tools="save", x_range=rods.range, y_range=self._ages)
+        plot = make_plot(
+            "space and time: where the rods were, and where they met",
+            260,
+            tools="save",
+            x_range=rods.range,
+            y_range=self._ages,
+        )
         palette = ["#ffffff", *_palette(), BLACK]
         plot.image(
             "image",

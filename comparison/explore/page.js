@@ -15,9 +15,6 @@ const name = () => {
   give(all('select'), lists);
   // Tab passes by what has no use without a mouse: arrow keys change the numbers, too.
   all('.bk-spin-btn, .bk-events').forEach(each => { each.tabIndex = -1; });
-  const pictured = all('.bk-Figure');
-  pictured.forEach(each => each.setAttribute('role', 'img'));
-  give(pictured, pictures);
   all('button').forEach(each => {
     const speed = /^[0-9.]+$/.test(each.textContent.trim());
     if (!speed) return;

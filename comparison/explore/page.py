@@ -27,7 +27,8 @@ from crazybilliards.comparison.explore.theories import (
     Background,
     Densities,
     Solver,
-    elastic_densities,
+    balance_density,
+    exact_density,
     kinetic_density,
 )
 from crazybilliards.model import Chain
@@ -55,13 +56,15 @@ class Page:
         self.controls = Controls(self.setting)
         self._address = Address(self.setting, self.controls.say)
         self.session = Session(self.setting.chain())
-        self.pictures = Pictures(self._grab)
+        self.pictures = Pictures(self._drag)
         self._rows: list[tuple[float, float, float]] = []
         self._frames, self._owed_rows = 0, 0.0
         self._last, self._drawn = perf_counter(), (perf_counter(), 0.0)
-        self._grabbed: int | None = None
         self._notes: dict[str, str] = {}
-        self._elastic = Background(threads, elastic_densities, self._show_theories, self._poster())
+        self._elastic = [
+            Background(threads, job, self._show_theories, self._poster())
+            for job in (balance_density, exact_density)  # the faster one first
+        ]
         self._kinetic = Solver(kinetic_density, turn)
         self._listen()
         self._set_pace()
@@ -119,20 +122,17 @@ class Page:
                 self._keep(time, collisions)
             self.pictures.rods.show(session)
             if session.diverged:
-                self._draw()
-                self.controls.say(self.pictures.show_divergence(session))
+                self._explain_divergence()
         if self._frames % _FRAMES_PER_DRAWING == 0:
             self._draw()
             self._poll_kinetic()
 
     def _advance(self, elapsed: float) -> None:
         """Advance the chain; in slow motion, one row of the strip at a time."""
-        speed = self.controls.speed.value
         if not self.controls.slow:
-            self.session.advance(speed * elapsed, _BUDGET)
+            self.session.advance(self.controls.speed.value * elapsed, _BUDGET)
             return
-        rows = elapsed * 1000 / _PERIOD + self._owed_rows
-        self._owed_rows = rows % 1
+        rows, self._owed_rows = divmod(elapsed * 1000 / _PERIOD + self._owed_rows, 1)
         for _ in range(int(rows)):
             self.session.advance(self._row_time, _BUDGET)
             self.pictures.strip.add(self.session, self.session.contacts_met())
@@ -149,6 +149,10 @@ class Page:
         rate = (session.collisions - collisions) / contacts
         self._rows.append((session.time, session.kinetic_energy, rate))
 
+    def _explain_divergence(self) -> None:
+        self._draw()
+        self.controls.say(self.pictures.show_divergence(self.session))
+
     def _draw(self) -> None:
         """Show what was measured."""
         session, (then, before) = self.session, self._drawn
@@ -163,7 +167,7 @@ class Page:
             if measured is not None:
                 self.pictures.density.show(smooth(measured))
                 self.pictures.panels[self.controls.quantity.value].show(session, measured)
-        self.controls.show_progress(session, held=self._grabbed is not None)
+        self.controls.show_progress(session)
         self.controls.status.object = (
             f"t = {session.time:.4g} T, {speed:.2g} T per second<br>"
             f"a free rod's velocity width is W = {session.chain.free_velocity_width:.3g} R/T"
@@ -183,25 +187,24 @@ class Page:
     def _begin(self) -> None:
         """Show the session's chain without any measurements."""
         chain = self.session.chain
+        if chain.restitution == 1:
+            for theory in self._elastic:  # at once, because the user waits for the answer
+                theory.ask(chain)
         self.controls.say("")
         self.controls.forget_preset()
         self._notes.clear()
         self.controls.show_accuracy(self._notes)
         self._rows.clear()
-        self._grabbed = None
         self.pictures.begin(self.session)
         self.pictures.arrange(self.controls.quantity.value, self.controls.history.value, chain)
         self.pictures.strip.clear(self._row_time)
         if self._kinetic.chain != chain:
             self._kinetic.cancel()
         self.controls.show_solving(self._kinetic.seconds if self._kinetic.chain else None)
-        if chain.restitution == 1:
-            self._elastic.ask(chain)
 
     def _set_pace(self, *events: Any) -> None:
         """Set the time step for the chosen speed and pictures."""
-        controls = self.controls
-        slow = controls.slow
+        controls, slow = self.controls, self.controls.slow
         self.session.pace(
             self._row_time / _STEPS_PER_ROW if slow else np.inf,
             resolved=slow,
@@ -227,7 +230,7 @@ class Page:
             self._ask_kinetic(event)
 
     def _step(self, event: Any) -> None:
-        """Move on to the next collision, and say which rods met."""
+        """Move on to the next collision; say which rods met, or why the chain diverged."""
         if self.session.diverged:
             return
         self.controls.play.value = False
@@ -241,27 +244,24 @@ class Page:
             strip.add(session, met)
         strip.show()
         self.pictures.rods.show(session)
+        if session.diverged:
+            self._explain_divergence()
+            return
         pairs = ", ".join(f"{contact + 1} and {contact + 2}" for contact in met)
         found = f"rods {pairs} met" if met else "no two rods have met yet"
         self.controls.say(f"t = {session.time:.5g} T: {found}.")
 
     def _push(self, event: Any) -> None:
-        chain = self.session.chain
-        self.session.push(0, _PUSH * chain.free_velocity_width)
+        self.session.push(0, _PUSH * self.session.chain.free_velocity_width)
         self.pictures.rods.show(self.session)
 
-    def _grab(self, x: float | None) -> None:
-        """Follow the mouse with the rod it took hold of."""
-        session = self.session
+    def _drag(self, x: float | None) -> None:
+        """Let the rod that the mouse took hold of follow it, or let go of it."""
         if x is None:
-            if self._grabbed is not None:
-                session.release()
-                self._grabbed = None
-            return
-        if self._grabbed is None:
-            self._grabbed = int(np.abs(session.positions - x).argmin())
-        session.hold(self._grabbed, x)
-        self.pictures.rods.show(session)
+            self.session.release()
+        else:
+            self.session.hold(x)
+            self.pictures.rods.show(self.session)
 
     # -- the kinetic equation ---------------------------------------------------------------
 

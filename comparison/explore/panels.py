@@ -29,6 +29,7 @@ class Widths:
 
     def __init__(self) -> None:
         plot = make_plot(
+            "velocity width of each rod, simulation and theories",
             _HEIGHT,
             x_range=DataRange1d(range_padding=0.02),
             y_range=DataRange1d(start=0, only_visible=True),
@@ -78,6 +79,7 @@ class Velocities:
 
     def __init__(self) -> None:
         plot = make_plot(
+            "velocity distributions of middle and outermost rods",
             _HEIGHT,
             y_axis_type="log",
             y_range=Range1d(1e-4, 3),
@@ -134,6 +136,7 @@ class Avalanches:
 
     def __init__(self) -> None:
         plot = make_plot(
+            "avalanche sizes",
             _HEIGHT,
             x_axis_type="log",
             y_axis_type="log",

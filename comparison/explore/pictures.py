@@ -19,26 +19,12 @@ from crazybilliards.comparison.explore.theories import Densities
 from crazybilliards.comparison.explore.times import Times
 from crazybilliards.model import Chain
 
-# Descriptions of the pictures, in page order.
-PICTURES = (
-    "rods where they are, coloured by velocity",
-    "space and time: where the rods were, and where they met",
-    "density against position, simulation and theories",
-    "velocity width of each rod, simulation and theories",
-    "velocity distributions of middle and outermost rods",
-    "avalanche sizes",
-    "velocity width in the centre against the number of rods",
-    "kinetic energy in time",
-    "kinetic energy in time, logarithmic",
-    "collisions per contact in time",
-)
-
 
 class Pictures:
     """The pictures of one page, by what they show."""
 
-    def __init__(self, grabbed: Callable[[float | None], None]) -> None:
-        self.rods = Rods(grabbed)
+    def __init__(self, dragged: Callable[[float | None], None]) -> None:
+        self.rods = Rods(dragged)
         self.strip = Strip(self.rods)
         self.density = Density(self.rods)
         self.widths, self.sizes = Widths(), Sizes()
@@ -73,6 +59,9 @@ class Pictures:
                 ("rate", self.times.rate),
             )
         }
+        self.chosen_measured, self.chosen_in_time = (
+            pn.Column(sizing_mode="stretch_width", margin=0) for _ in range(2)
+        )
 
     def begin(self, session: Session) -> None:
         """Reset all pictures for a chain without measurements."""
@@ -90,9 +79,14 @@ class Pictures:
         """Show the chosen pictures. For e > 1 the energy axis is logarithmic."""
         if history == "energy" and chain.restitution > 1:
             history = "log energy"
-        for chosen, panes in ((quantity, self.measured), (history, self.in_time)):
-            for name, pane in panes.items():
-                pane.visible = name == chosen
+        # The browser does not have the other pictures. Bokeh would lay out the whole page whenever
+        # a hidden picture gets new data.
+        for column, pane in (
+            (self.chosen_measured, self.measured[quantity]),
+            (self.chosen_in_time, self.in_time[history]),
+        ):
+            if column.objects != [pane]:
+                column.objects = [pane]
         if strip is not None:
             self.in_space["strip"].visible = self.legend.visible = strip
 

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-BLACK, GREY = "#000000", "#767676"
+BLACK, GREY, PALE_GREY = "#000000", "#767676", "#b0b0b0"
 THEORIES: Mapping[str, Mapping[str, Any]] = {
     "exact": {"color": "#E69F00", "line_width": 3},
     "balance": {"color": "#0072B2", "line_width": 2, "line_dash": "dashed"},
@@ -33,9 +33,10 @@ _TYPE = "14px"
 _TOOLS = "pan,box_zoom,wheel_zoom,reset,save"
 
 
-def make_plot(height: int, *, tools: str = _TOOLS, **settings: Any) -> Any:
-    """Return an empty picture; ``settings`` are Bokeh's."""
+def make_plot(description: str, height: int, *, tools: str = _TOOLS, **settings: Any) -> Any:
+    """Return an empty picture; screen readers say its description. ``settings`` are Bokeh's."""
     plot = figure(
+        html_attributes={"role": "img", "aria-label": description},
         tools=tools,
         height=height,
         sizing_mode="stretch_width",
@@ -43,7 +44,7 @@ def make_plot(height: int, *, tools: str = _TOOLS, **settings: Any) -> Any:
         min_border_right=_RIGHT,
         background_fill_color=None,
         border_fill_color=None,
-        outline_line_color="#b0b0b0",
+        outline_line_color=PALE_GREY,
         active_scroll=None,
         **settings,
     )

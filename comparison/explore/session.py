@@ -86,7 +86,8 @@ class Session:
         self._noise = make_noise(np.random.SeedSequence(seed))
         self._owed = 0.0  # steps
         self._longest, self._resolved, self._waves = math.inf, False, False
-        self._held: tuple[int, float] | None = None
+        # The rod that is held, its place y [R], and the distance from the mouse to this place [R].
+        self._held: tuple[int, float, float] | None = None
         self._prepare(chain)
         self._start()
 
@@ -151,15 +152,29 @@ class Session:
         self._tally.contacts[met] = 0
         return [int(contact) for contact in met]
 
-    def hold(self, rod: int, x: float) -> None:
-        """Hold a rod, counted from 0, at x [R]. It pushes other rods aside."""
-        self._held = rod, x - float(self._offsets[rod])
+    def hold(self, x: float) -> None:
+        """Hold the rod that is nearest to x [R], and later move it as far as x moves.
+
+        It pushes other rods aside.
+        """
+        if self._held is None:
+            rod = int(np.abs(self.positions - x).argmin())
+            distance = float(self.y[rod]) - x
+        else:
+            rod, _, distance = self._held
+        self._held = rod, x + distance, distance
         self._keep_hold()
         self.measured_from = math.inf
 
+    @property
+    def holds(self) -> bool:
+        """Whether a rod is held."""
+        return self._held is not None
+
     def release(self) -> None:
-        """Let go of the rod that is held, from rest, and measure anew."""
-        self._measure_anew()
+        """Let go of the rod that is held, if any, from rest, and measure anew."""
+        if self.holds:
+            self._measure_anew()
 
     def push(self, rod: int, speed: float) -> None:
         """Add to the velocity [R/T] of a rod, counted from 0, and measure anew."""
@@ -257,15 +272,12 @@ class Session:
         """Put the rod that is held where it is held, and others out of its way."""
         if self._held is None:
             return
-        rod, y = self._held
+        rod, y, _ = self._held
         self.y[rod], self.v[rod] = y, 0.0
-        left, right = slice(0, rod), slice(rod + 1, None)
-        in_the_way = self.y[left] > y
-        self.v[left] = np.where(in_the_way, np.minimum(self.v[left], 0.0), self.v[left])
-        self.y[left] = np.minimum(self.y[left], y)
-        in_the_way = self.y[right] < y
-        self.v[right] = np.where(in_the_way, np.maximum(self.v[right], 0.0), self.v[right])
-        self.y[right] = np.maximum(self.y[right], y)
+        side = np.sign(np.arange(self.chain.size) - rod)
+        in_the_way = side * (self.y - y) < 0
+        self.y[in_the_way] = y
+        self.v[in_the_way & (side * self.v < 0)] = 0.0
 
     def _take(self, steps: int, dynamics: Dynamics) -> None:
         """Take some steps and a snapshot; restore the previous state if the chain diverges."""

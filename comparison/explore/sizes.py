@@ -48,6 +48,7 @@ class Sizes:
 
     def __init__(self) -> None:
         plot = make_plot(
+            "velocity width in the centre against the number of rods",
             _HEIGHT,
             x_axis_type="log",
             y_axis_type="log",

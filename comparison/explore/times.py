@@ -35,16 +35,20 @@ class Times:
         self.source = ColumnDataSource(name="times")
         self.fitted = ColumnDataSource({"time": [], "energy": []}, name="growth")
         self._chain = Chain()
-        self.energy = self._energy_plot(y_range=DataRange1d(start=0))
-        self.log_energy = self._energy_plot(y_axis_type="log")
+        self.energy = self._energy_plot("kinetic energy in time", y_range=DataRange1d(start=0))
+        self.log_energy = self._energy_plot(
+            "kinetic energy in time, logarithmic", y_axis_type="log"
+        )
         # Dissipative rods that start in contact collide fifty times as often at first.
-        self.rate = self._plot("collisions per contact [1/T]", y_axis_type="log")
+        self.rate = self._plot(
+            "collisions per contact in time", "collisions per contact [1/T]", y_axis_type="log"
+        )
         self.rate.line("time", "rate", source=self.source, color=BLACK)
         self.rate.x_range = self.log_energy.x_range = self.energy.x_range
         self.clear()
 
-    def _energy_plot(self, **settings: Any) -> Any:
-        plot = self._plot("kinetic energy [M R²/T²]", **settings)
+    def _energy_plot(self, description: str, **settings: Any) -> Any:
+        plot = self._plot(description, "kinetic energy [M R²/T²]", **settings)
         simulation = plot.line("time", "energy", source=self.source, color=BLACK)
         free = plot.line("time", "free", source=self.source, **THEORIES["exact"])
         growth = plot.line(
@@ -60,8 +64,10 @@ class Times:
         return plot
 
     @staticmethod
-    def _plot(label: str, **settings: Any) -> Any:
-        return make_plot(_HEIGHT, x_axis_label="time t [T]", y_axis_label=label, **settings)
+    def _plot(description: str, label: str, **settings: Any) -> Any:
+        return make_plot(
+            description, _HEIGHT, x_axis_label="time t [T]", y_axis_label=label, **settings
+        )
 
     def begin(self, chain: Chain) -> None:
         """Set the chain and remove the fitted growth."""
@@ -102,7 +108,8 @@ class Times:
             critical = chain.size / (1 + expected * chain.mass / chain.damping)
             if expected > 0:
                 words += (
-                    f"Theory, for rods much faster than noise makes them: exp({expected:.2g} t). "
+                    f"Theory, for weak damping and rods much faster than noise makes them: "
+                    f"exp({expected:.2g} t). "
                     f"It is steady for fewer than {critical:.3g} rods. "
                 )
         return words + "Lower e or L, raise γ, or press Reset to see it again."

@@ -110,7 +110,7 @@ def read_sweep(path: Path) -> Sweep:
     Raises
     ------
     ValueError
-        If the file is not TOML, or a table is missing, unknown or not a table.
+        If the file is not TOML, or a table is unknown or not a table.
     """
     try:
         tables = tomllib.loads(path.read_text(encoding="utf-8"))

@@ -80,7 +80,8 @@ def run_cases(
     ValueError
         For the first case of a :class:`Sweep` that is wrong, before any work.
     RuntimeError
-        If a worker or the scheduler of a dask cluster dies. Finished cases are kept.
+        If a worker of ``process_pool`` or the scheduler of a dask cluster dies. Finished cases
+        are kept.
     OSError
         If the folder cannot be written to, or another process is filling it.
     """
@@ -103,7 +104,7 @@ def compute_missing(
     Raises
     ------
     RuntimeError
-        If a worker or the scheduler of a dask cluster dies.
+        If a worker of ``process_pool`` or the scheduler of a dask cluster dies.
     OSError
         If a file cannot be written.
     """

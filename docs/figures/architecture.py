@@ -18,9 +18,9 @@ ROOT = Path(__file__).parents[2]
 PICTURE = Path(__file__).with_suffix(".svg")
 # name: (left, bottom, width, height, colour)
 ROOMS = {
-    "comparison": (0.0, 9.7, 12.0, 5.2, "#F6DDEB"),
-    "particles": (0.0, 4.1, 5.9, 5.2, "#D5E8F5"),
-    "kinetic": (6.1, 4.1, 5.9, 5.2, "#FBE8C3"),
+    "comparison": (0.0, 12.3, 12.0, 5.2, "#F6DDEB"),
+    "particles": (0.0, 4.1, 5.9, 7.8, "#D5E8F5"),
+    "kinetic": (6.1, 4.1, 5.9, 7.8, "#FBE8C3"),
     "model": (0.0, 0.0, 12.0, 3.7, "#D4EFE6"),
 }
 # From, to, where along the line.
@@ -104,8 +104,8 @@ def _direct(graph: Graph) -> Graph:
 
 def draw() -> Figure:
     """Return the figure."""
-    figure, ax = plt.subplots(figsize=(8.6, 10.0))
-    ax.set(xlim=(-0.1, 12.1), ylim=(-0.1, 15.0))
+    figure, ax = plt.subplots(figsize=(8.6, 11.7))
+    ax.set(xlim=(-0.1, 12.1), ylim=(-0.1, 17.6))
     ax.axis("off")
     for room, (left, bottom, width, height, colour) in ROOMS.items():
         _box(ax, left, bottom, width, height, colour)
@@ -122,7 +122,8 @@ def _draw_units(ax: Axes, room: str) -> None:
     graph = unit_imports(room)
     level = levels(graph)
     floors = max(level.values()) + 1
-    half_wide, half_high = 0.62, 0.19
+    half_wide, half_high, margin = 0.62, 0.19, 0.3
+    usable = width - 2 * margin
     places = {}
     for floor in range(floors):
         names = sorted(name for name in graph if level[name] == floor)
@@ -130,7 +131,7 @@ def _draw_units(ax: Axes, room: str) -> None:
         for number, name in enumerate(names):
             # Rows stand against each other, for arrows to pass between boxes.
             shift = 0.22 * (-1) ** floor
-            places[name] = left + (number + 0.5) * width / len(names) + shift, y
+            places[name] = left + margin + (number + 0.5) * usable / len(names) + shift, y
     for name, targets in _direct(graph).items():
         x, y = places[name]
         for target in sorted(targets):

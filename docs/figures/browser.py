@@ -107,6 +107,11 @@ def column(browser: Any, source: str, name: str) -> list[float]:
     return list(browser.execute_script(script, source, name))
 
 
+def has(browser: Any, source: str) -> bool:
+    """Whether one of the pictures shown has this source."""
+    return bool(browser.execute_script(f"return !!{SOURCE}", source))
+
+
 def elements(browser: Any, selector: str) -> list[Any]:
     """Return the elements of the page that match, shadow trees included."""
     return list(browser.execute_script(DEEP, selector))

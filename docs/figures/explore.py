@@ -7,7 +7,7 @@ away; slow motion, which is ``explore.png`` of this folder; a chain for which th
 was solved. It also lists what can be operated, and fails if something of that has no name.
 """
 
-import sys
+import argparse
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -141,4 +141,8 @@ def main(folder: Path, *names: str) -> None:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]), *sys.argv[2:])
+    parser = argparse.ArgumentParser(description=main.__doc__)
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("names", nargs="*", metavar="NAME")
+    given = parser.parse_args()
+    main(given.folder, *given.names)

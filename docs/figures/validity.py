@@ -161,7 +161,7 @@ def main() -> None:
             which = ("centre", "border")[number % 2]
             draw_errors(ax, (first, second)[number // 2], which, sizes)
             finish(ax)
-            theory = ("independent points", "with pair correlations")[number // 2]
+            theory = ("without pair correlations", "with pair correlations")[number // 2]
             entitle(ax, f"{which}, {theory}")
         for ax in axes[2:]:
             ax.set_xlabel(r"restitution $e$, linear in $\sqrt{1 - e}$ up to 1")

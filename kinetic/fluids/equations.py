@@ -7,7 +7,8 @@ the mass m and any spring:
     rho_t + (rho V)_x = 0,
     V_t + V V_x = -(1/rho) (rho W^2/(1 - 2 R rho))_x - F(<dx>)/m - (gamma/m) V,
 
-with the pressure of hard rods and the springs' force at the mean displacement.
+with the pressure of hard rods and the springs' force at the mean displacement, which for a
+non-linear spring is an approximation of the mean force.
 
 **Displacement.** By labels, which the flow carries along, N_t + V N_x = 0, and then
 <dx> = x - (2R + g)(N - L/2) without an input. Or a frozen profile <dx>(x), such as the one that the

@@ -14,10 +14,10 @@ that independent points have. With the widths w_i and q_i of independent points
     W_x(i)^2 = q_i^2 + (s^2 + <y^2> - 2 c_i)/L,     c_i = L Cov(y_i, Y) = (1/n) int_y^inf y' n dy'.
 
 On quadratic springs the second correction is left out, because the centre of mass is then coupled
-to the other modes. Nothing is fitted. The result is exact at e = 1 and to first order in lambda L.
-The energy of all rods is then m W^2/2 for the centre of mass plus L - 1 times the mean of the
-relative motions, in which each pair of rods collides with the drag lambda L of the kinetic
-equation.
+to the other modes. Nothing is fitted. The result is exact at e = 1. The energy of all rods is exact
+to first order in lambda L, because it is m W^2/2 for the centre of mass plus L - 1 times the mean
+of the relative motions, in which each pair of rods collides with the drag lambda L of the kinetic
+equation. The first-order term of a single rod has a relative error of order 1/L.
 """
 
 from __future__ import annotations

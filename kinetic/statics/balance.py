@@ -6,8 +6,9 @@ the gradient of the pressure rho W^2/(1 - 2 R rho) of hard rods against the spri
     rho' = -(k / (m W^2)) <dx>(x) rho (1 - 2 R rho)^2,                                    (*)
 
 with the velocity variance W^2 = A^2/(2 m gamma) of the elastic chain and the mean displacement
-<dx> from their anchors of the rods at x. For a non-linear spring k <dx> becomes F(<dx>). In the
-density of the reduced coordinate, rho_y = rho/(1 - 2 R rho), it reads
+<dx> from their anchors of the rods at x. For a non-linear spring k <dx> becomes F(<dx>), which
+neglects how much the displacements at one place differ. In the density of the reduced coordinate,
+rho_y = rho/(1 - 2 R rho), it reads
 
     (ln rho_y)' = -(F(<dx>) / (m W^2)) / (1 + 2 R rho_y),                                (**)
 

@@ -16,7 +16,7 @@ origin. There are two counts:
     clusters.
 
 Waves with the same front share their future. They are kept in a linked list that moves as a whole.
-Each collision starts at most one wave, and each wave ends once, so a collision costs O(1) on
+Each counted collision starts at most one wave, and each wave ends once, so one costs O(1) on
 average:
 
     collision of c and c+1    rightward: waves on c+1 end, those on c move to c+1, one starts at c

@@ -9,7 +9,8 @@ class Collisions(Averaged):
     """collision_rate: collisions of each particle with its right neighbour, per time.
 
     The last particle has no such rate. Rods that have merged into a cluster do not collide again
-    until the next step. For e < 1 the rate depends on the time step and is infinite for dt -> 0.
+    until the next step. For e < 1 the rate depends on the time step. For e < 0.163 it is
+    infinite for dt -> 0.
     """
 
     name = "collisions"

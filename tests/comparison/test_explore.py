@@ -169,7 +169,11 @@ def test_slow_motion_tells_which_contacts_met():
 def test_a_rod_that_is_held_pushes_others_aside_and_nothing_is_measured():
     session = Session(Chain(size=10, gap=1.0), seed=1)
     session.advance(20.0)
-    session.hold(3, 10.0)
+    before = session.positions
+    # Where the mouse takes hold, within the rod, it stays.
+    session.hold(before[3] + 0.7)
+    assert session.positions == pytest.approx(before, abs=1e-12)
+    session.hold(10.7)
     for _ in range(20):
         session.advance(0.3)
         assert session.positions[3] == pytest.approx(10.0)
@@ -186,8 +190,10 @@ def test_a_rod_that_is_held_is_let_go_when_the_chain_changes_or_is_pushed():
     chain = Chain(size=10, gap=1.0)
     for act in (lambda session: session.change(chain), lambda session: session.push(0, 1.0)):
         session = Session(chain, seed=1)
-        session.hold(3, 10.0)
+        session.hold(session.positions[3])
+        session.hold(10.0)
         act(session)
+        assert not session.holds
         assert np.isfinite(session.measured_from)
         session.advance(3.0)
         assert session.positions[3] != pytest.approx(10.0)

@@ -35,6 +35,13 @@ def test_why_a_chain_ran_away_is_not_replaced_by_a_refusal_of_the_theory(page):
     assert "No theory for this chain: no steady state" in page.controls.message.object
 
 
+def test_a_chain_that_diverges_in_a_step_says_why(page):
+    page.session.v[0] = 1e9
+    page._step(None)
+    assert page.session.diverged
+    assert "the time step cannot follow it" in page.controls.message.object
+
+
 @pytest.mark.parametrize(
     "preset",
     [each for each in PRESETS if each.figure in ("energy", "gap")],
