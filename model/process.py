@@ -6,7 +6,7 @@ import os
 import signal
 import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
 
@@ -41,35 +41,56 @@ def announce_compilation() -> None:
 @contextmanager
 def interrupts_held_back() -> Iterator[None]:
     """Delay Ctrl-C, and a SIGTERM that acts like it, to the end of the block or function."""
-    if threading.current_thread() is not threading.main_thread():
-        yield  # only the main thread receives signals
-        return
     # Blocking the signals in this thread is not enough: another thread would receive them.
     came: list[int] = []
-    before = {
-        number: handler
+    held = [
+        number
         for number in (signal.SIGINT, signal.SIGTERM)
-        if callable(handler := signal.getsignal(number))  # one set in C cannot be restored
-    }
+        if callable(signal.getsignal(number))  # one set in C cannot be restored
+    ]
     try:
-        for number in before:
-            signal.signal(number, lambda number, _: came.append(number))
-        yield
+        with _handled(dict.fromkeys(held, lambda number, _: came.append(number))):
+            yield
     finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
         if came:
             signal.raise_signal(came[0])
 
 
 @contextmanager
+def interrupts_noted() -> Iterator[list[int]]:
+    """Add Ctrl-C, and the SIGTERM that batch systems send before they kill, to the list it yields.
+
+    Neither raises an error in this block. An error that comes in the middle of the code of a lock
+    leaves the lock held, and then a pool of threads waits for it without end. A handler for Ctrl-C
+    that a program has set itself stays.
+    """
+    came: list[int] = []
+    handlers: dict[int, Callable[..., object]] = {}
+    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+        handlers[signal.SIGINT] = lambda number, _: came.append(number)
+    handlers[signal.SIGTERM] = lambda number, _: came.append(number)
+    with _handled(handlers):
+        yield came
+
+
+@contextmanager
 def terminated_like_interrupted() -> Iterator[None]:
     """Make SIGTERM, which batch systems send before they kill, act like Ctrl-C in this block."""
+    with _handled({signal.SIGTERM: signal.default_int_handler}):
+        yield
+
+
+@contextmanager
+def _handled(handlers: Mapping[int, Callable[..., object]]) -> Iterator[None]:
+    """Set handlers of signals in this block, in the order given."""
     if threading.current_thread() is not threading.main_thread():
         yield  # only the main thread may change handlers, and only it receives signals
         return
-    before = signal.signal(signal.SIGTERM, signal.default_int_handler)
+    before = {}
     try:
+        for number, handler in handlers.items():
+            before[number] = signal.signal(number, handler)
         yield
     finally:
-        signal.signal(signal.SIGTERM, before)
+        for number, earlier in before.items():
+            signal.signal(number, earlier)

@@ -24,6 +24,7 @@ from tqdm import tqdm
 from crazybilliards.comparison.sweeps.case import Case, compute
 from crazybilliards.comparison.sweeps.missing import Missing, check_cases, find_missing
 from crazybilliards.model.locks import locked
+from crazybilliards.model.process import interrupts_held_back
 from crazybilliards.model.storage import make_folder, write_sealed
 
 # Cases that are submitted and have not returned: enough for a cluster, few in memory.
@@ -160,10 +161,10 @@ class _UnderWay:
         return not self.back.empty()
 
     def submit(self, case: Case) -> None:
-        with _ctrl_c_held_back():
+        with interrupts_held_back(), _ctrl_c_blocked():
             future = self.executor.submit(compute, case, case.source)
-        self.cases[future] = case
-        future.add_done_callback(self.back.put)
+            self.cases[future] = case
+            future.add_done_callback(self.back.put)
 
     def take_one(self) -> None:
         """Wait for the next case and write it, or record why it has no result."""
@@ -196,8 +197,8 @@ def _write(path: Path, content: bytes) -> None:
 
 
 @contextmanager
-def _ctrl_c_held_back() -> Iterator[None]:
-    """Start workers that never receive Ctrl-C; in this process it acts after the block."""
+def _ctrl_c_blocked() -> Iterator[None]:
+    """Start workers that never receive Ctrl-C: they inherit what this thread blocks."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return

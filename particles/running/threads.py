@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from concurrent.futures import FIRST_EXCEPTION, Future, ThreadPoolExecutor, wait
+from signal import SIGINT
 from threading import Event, Lock
 
 from tqdm import tqdm
 
-from crazybilliards.model.process import terminated_like_interrupted
+from crazybilliards.model.process import interrupts_noted
 from crazybilliards.particles.running.checkpoint import Checkpoint
 from crazybilliards.particles.running.replica import Replica
 
@@ -27,6 +28,7 @@ def run_all(
     stop, one_by_one = Event(), Lock()
     total = sum(replica.total for replica in replicas)
     with (
+        interrupts_noted() as signals,
         tqdm(
             total=total,
             initial=sum(replica.done for replica in replicas),
@@ -37,7 +39,6 @@ def run_all(
             disable=None if progress else True,
         ) as bar,
         ThreadPoolExecutor(min(threads, len(replicas))) as pool,
-        terminated_like_interrupted(),
     ):
 
         def work(replica: Replica) -> None:
@@ -47,25 +48,29 @@ def run_all(
                     bar.update(min(done * (1 + 1e-9), total - bar.n))
 
         futures: list[Future[None]] = []
-        interrupted = False
         try:
             futures.extend(pool.submit(work, replica) for replica in replicas)
-            _finish(futures, replicas, keeper)
-        except KeyboardInterrupt:
-            interrupted = True
-            stop.set()
-            _finish(futures, replicas, keeper)
+            _finish(futures, replicas, keeper, signals, stop)
+        except KeyboardInterrupt:  # from a handler that is not ours
+            signals.append(SIGINT)
+            _finish(futures, replicas, keeper, signals, stop)
         finally:
             stop.set()  # otherwise leaving the block would wait for the end of the run
-    return interrupted
+    return bool(signals)
 
 
 def _finish(
-    futures: list[Future[None]], replicas: Sequence[Replica], keeper: Checkpoint | None
+    futures: list[Future[None]],
+    replicas: Sequence[Replica],
+    keeper: Checkpoint | None,
+    signals: Sequence[int],
+    stop: Event,
 ) -> None:
     """Wait for all, or for the first failure; save checkpoints and react to signals soon."""
     timeout = 0.5 if keeper is None else min(0.5, keeper.interval)
     while True:
+        if signals:
+            stop.set()
         done, pending = wait(futures, timeout=timeout, return_when=FIRST_EXCEPTION)
         for future in done:
             future.result()

@@ -52,16 +52,15 @@ def refused(run):
 
 # A command that gets Ctrl-C when its simulation has measured for a while.
 MEASURING = """
-import os, signal
+import itertools, os, signal
 from crazybilliards.comparison.commands.line import main
 from crazybilliards.particles.observers.widths import Widths
 
-observe, calls = Widths.observe, []
+observe, calls = Widths.observe, itertools.count(1)  # which two threads cannot both advance to 20
 
 def and_interrupt(self, *arguments):
     observe(self, *arguments)
-    calls.append(1)
-    if len(calls) == 20:
+    if next(calls) == 20:
         os.kill(os.getpid(), signal.SIGINT)
 
 Widths.observe = and_interrupt
