@@ -85,8 +85,8 @@ def simulate_limit(
         As in :func:`simulate`.
     observe
         As in :func:`simulate`; must include ``"widths"``. ``"snapshots"`` are refused because
-        they are not averages, collisions and avalanches because they have no limit, and impacts
-        because single collisions are not recorded here.
+        they are not averages, collisions and avalanches because they have no limit for small e,
+        and impacts because single collisions are not recorded here.
     replicas
         Independent trajectories at every level, each with a warm-up. ``threads`` of them (None:
         one per core) run at a time.
