@@ -4,11 +4,12 @@
 
 W_v in the centre of the chain, to ``--accuracy`` in all. The limit is computed, and its rod-steps
 and seconds of one core are counted, warm-up and pilot rounds included. The other one is worked out
-for the scheme of version 0.1, which was off by 0.24 r^(3/2) for a velocity kick r W_v of one step,
-r = (A/m) sqrt(dt)/W_v. With the bias b and the standard error s the accuracy is sqrt(b^2 + s^2).
-The work ~ 1/(dt s^2) is least where b^2 is 2/5 of it, as b ~ dt^(3/4). This gives dt, and the
-duration follows from the variance of W_v that the limit's longest step has shown. The seconds are
-those of today's kernels at that step.
+for the scheme of version 0.1, once with the error b that this version stated, 0.24 r^(3/2) for a
+velocity kick r W_v of one step, r = (A/m) sqrt(dt)/W_v, and once with the error that its scheme has
+at 100 rods (``time_step.py``, with ``--uncorrected`` at e = 0). With the standard error s the
+accuracy is sqrt(b^2 + s^2). The work ~ 1/(dt s^2) is least where b^2 is 2/5 of it, as b ~ dt^(3/4).
+This gives dt, and the duration follows from the variance of W_v that the limit's longest step has
+shown. The seconds are those of today's kernels at that step.
 """
 
 import argparse
@@ -18,6 +19,7 @@ import time
 
 import numpy as np
 import xarray as xr
+from scipy.optimize import brentq
 
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate_limit
@@ -28,7 +30,8 @@ from crazybilliards.particles.scales import relaxation_time
 from crazybilliards.particles.stepping import advance, make_dynamics
 
 CASES = [(0.0, 100), (0.0, 1000), (0.5, 100)]  # restitution, size
-OLD_ERROR = {0.0: 0.24, 0.5: 0.06}  # of version 0.1, in units of r^(3/2), by restitution
+STATED = (0.24, 0.0)  # by version 0.1: its error is a r^(3/2) - b r^2 with these a, b
+MEASURED = {0.0: (0.21, 0.25), 0.5: (0.028, 0.0)}  # by restitution
 WARM_UP = 12  # relaxation times
 TIMED = 2_000_000  # rod-steps
 
@@ -46,11 +49,13 @@ def seconds_per_rod_step(chain: Chain, time_step: float) -> float:
     return (time.process_time() - begin) / (steps * chain.size)
 
 
-def old_work(chain: Chain, accuracy: float, limit: xr.Dataset) -> tuple[float, float]:
-    """Return the time step that version 0.1 would need, and its rod-steps."""
+def old_work(
+    chain: Chain, accuracy: float, limit: xr.Dataset, error: tuple[float, float]
+) -> tuple[float, float]:
+    """Return the time step that version 0.1 would need with this error, and its rod-steps."""
     bias = accuracy * math.sqrt(2 / 5)
-    kick = (bias / OLD_ERROR[chain.restitution]) ** (2 / 3) * limit.central_velocity_width.item()
-    time_step = (kick * chain.mass / chain.amplitude) ** 2
+    kick = brentq(lambda r: error[0] * r**1.5 - error[1] * r**2 - bias, 0, 0.3)
+    time_step = (kick * limit.central_velocity_width.item() * chain.mass / chain.amplitude) ** 2
     base = json.loads(limit.attrs["provenance"])["levels"][0]
     variance = (base["error"] / base["value"]) ** 2 * base["duration"]
     duration = variance / (accuracy**2 - bias**2) + WARM_UP * relaxation_time(chain)
@@ -63,8 +68,12 @@ def main() -> None:
     parser.add_argument("--case", type=int, nargs="*", default=range(len(CASES)))
     asked = parser.parse_args()
     simulate_limit(Chain(size=2, restitution=0), accuracy=0.1, progress=False)  # compiles
-    print("| e | L | W_v | levels | rod-steps | s | 0.1: dt | rod-steps | s | ratio of both |")
-    print("|---" * 10 + "|")
+    beside = " | ".join(
+        f"0.1, {error} error: dt | rod-steps | s | ratio of both"
+        for error in ("stated", "measured")
+    )
+    print(f"| e | L | W_v | levels | rod-steps | s | {beside} |")
+    print("|---" * 14 + "|")
     for case in asked.case:
         restitution, size = CASES[case]
         chain = Chain(size=size, restitution=restitution)
@@ -77,12 +86,15 @@ def main() -> None:
         work = sum(level["rod_steps"] for level in levels)
         width, error = limit.central_velocity_width.item(), limit.central_velocity_width_error
         steps = ", ".join(f"{level['time_step']:.2g}" for level in levels)
-        step, old = old_work(chain, asked.accuracy, limit)
-        old_seconds = old * seconds_per_rod_step(chain, step)
+        olds = []
+        for of_its_scheme in (STATED, MEASURED[restitution]):
+            step, old = old_work(chain, asked.accuracy, limit, of_its_scheme)
+            old_seconds = old * seconds_per_rod_step(chain, step)
+            ratios = f"{old / work:.2g}, {old_seconds / seconds:.2g}"
+            olds.append(f"{step:.1e} | {old:.2g} | {old_seconds:.0f} | {ratios}")
         print(
             f"| {restitution} | {size} | {width:.5f} ± {error.item() / width:.2%} | {steps} | "
-            f"{work:.2g} | {seconds:.0f} | {step:.1e} | {old:.2g} | {old_seconds:.0f} | "
-            f"{old / work:.2g}, {old_seconds / seconds:.2g} |",
+            f"{work:.2g} | {seconds:.0f} | {' | '.join(olds)} |",
             flush=True,
         )
 
