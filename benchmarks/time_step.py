@@ -8,8 +8,9 @@ step (or ``--longer`` times it) and at a quarter of it, from eight runs unless t
 steps are driven by the same noise, so that much of the statistical error cancels in their ratio.
 What the finer step is still off is taken from an error ~ dt^(3/2) below the critical restitution
 and at e = 1, and ~ dt^(3/4) elsewhere. The whole table takes hours on one core; ``--share 0.1``
-takes a tenth of the time. With ``--uncorrected`` the longer step has no correction for closed
-contacts, as in version 0.1, and the deviation from the finer step, which has it, is given as it is.
+takes a tenth of the time. With ``--uncorrected``, below the critical restitution, the longer step
+has no correction for closed contacts, as in version 0.1, and the deviation from the finer step,
+which has it, is given as it is.
 """
 
 import argparse
@@ -137,7 +138,7 @@ def reported(copy: Copy, steps: int) -> np.ndarray:
 
 
 def compared(
-    chain: Chain, time_step: float, duration: float, seed: int, *, uncorrected: bool
+    chain: Chain, time_step: float, duration: float, seed: int, *, uncorrected: bool = False
 ) -> np.ndarray:
     """Coarse over fine - 1 for every quantity, of one run."""
     copies = [make_copy(chain, dt) for dt in (time_step, time_step / FINER)]
@@ -173,8 +174,9 @@ def main() -> None:
             compared(chain, step, each, seed, uncorrected=asked.uncorrected)
             for seed in range(asked.runs)
         ]
-        order = 1.5 if restitution < CRITICAL_RESTITUTION or restitution == 1 else 0.75
-        rest = 0.0 if asked.uncorrected else FINER**-order
+        corrected = restitution < CRITICAL_RESTITUTION
+        order = 1.5 if corrected or restitution == 1 else 0.75
+        rest = 0.0 if asked.uncorrected and corrected else FINER**-order
         deviation = 100 / (1 - rest) * np.array(found)
         mean, error = deviation.mean(axis=0), deviation.std(axis=0, ddof=1) / math.sqrt(asked.runs)
         shown = [f"{d:+.2f} ± {s:.2f}" for d, s in zip(mean, error, strict=True)]

@@ -7,7 +7,7 @@ import signal
 import sys
 import threading
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from contextvars import ContextVar
 
 _to_announce: ContextVar[bool] = ContextVar("to_announce", default=False)
@@ -44,9 +44,7 @@ def interrupts_held_back() -> Iterator[None]:
     # Blocking the signals in this thread is not enough: another thread would receive them.
     came: list[int] = []
     held = [
-        number
-        for number in (signal.SIGINT, signal.SIGTERM)
-        if callable(signal.getsignal(number))  # one set in C cannot be restored
+        number for number in (signal.SIGINT, signal.SIGTERM) if callable(signal.getsignal(number))
     ]
     try:
         with _handled(dict.fromkeys(held, lambda number, _: came.append(number))):
@@ -61,8 +59,8 @@ def interrupts_noted() -> Iterator[list[int]]:
     """Add Ctrl-C, and the SIGTERM that batch systems send before they kill, to the list it yields.
 
     Neither raises an error in this block. An error that comes in the middle of the code of a lock
-    leaves the lock held, and then a pool of threads waits for it without end. A handler for Ctrl-C
-    that a program has set itself stays.
+    leaves the lock held, and then a pool of threads waits for it without end. However often they
+    come, the block goes on to its end. A handler for Ctrl-C that a program has set itself stays.
     """
     came: list[int] = []
     handlers: dict[int, Callable[..., object]] = {}
@@ -86,11 +84,10 @@ def _handled(handlers: Mapping[int, Callable[..., object]]) -> Iterator[None]:
     if threading.current_thread() is not threading.main_thread():
         yield  # only the main thread may change handlers, and only it receives signals
         return
-    before = {}
-    try:
+    with ExitStack() as restoring:
         for number, handler in handlers.items():
-            before[number] = signal.signal(number, handler)
+            before = signal.getsignal(number)
+            if before is not None:  # one set in C cannot be restored
+                restoring.callback(signal.signal, number, before)
+                signal.signal(number, handler)
         yield
-    finally:
-        for number, earlier in before.items():
-            signal.signal(number, earlier)

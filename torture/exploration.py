@@ -98,7 +98,7 @@ def interrupted_when_long():
     """Send Ctrl-C after a while, and give up on what does not heed it."""
 
     def interrupt(*_):
-        raise KeyboardInterrupt
+        signal.raise_signal(signal.SIGINT)
 
     before = signal.signal(signal.SIGALRM, interrupt)
     signal.setitimer(signal.ITIMER_REAL, PATIENCE)

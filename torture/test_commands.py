@@ -68,7 +68,7 @@ def ended(arguments, monkeypatch):
     """Run a command; return its exit status."""
 
     def interrupt(*_):
-        raise KeyboardInterrupt
+        signal.raise_signal(signal.SIGINT)
 
     monkeypatch.setattr("sys.argv", ["crazybilliards", *arguments])
     before = signal.signal(signal.SIGALRM, interrupt)
