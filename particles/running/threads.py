@@ -67,7 +67,9 @@ def _finish(
     stop: Event,
 ) -> None:
     """Wait for all, or for the first failure; save checkpoints and react to signals soon."""
-    timeout = 0.5 if keeper is None else min(0.5, keeper.interval)
+    timeout = min(max(0.02, 1e-4 * len(futures)), 0.5)  # to look at many futures takes time
+    if keeper is not None:
+        timeout = min(timeout, keeper.interval)
     while True:
         if signals:
             stop.set()

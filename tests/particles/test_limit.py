@@ -227,14 +227,14 @@ def test_the_checkpoint_of_another_run_is_refused(ctrl_c, tmp_path):
     chain = Chain(size=50, restitution=0)
     path = tmp_path / "state"
     with pytest.raises(KeyboardInterrupt):
-        simulate_limit(chain, checkpoint=path, progress=False)
+        simulate_limit(chain, warmup=1e6, checkpoint=path, progress=False)
     for change, reason in (
         ({"accuracy": 0.02}, "time_step is"),
         ({"replicas": 2}, "replicas is 1 there and 2 here"),
         ({"seed": 1}, "seed is 0 there and 1 here"),
     ):
         with pytest.raises(ValueError, match=reason):
-            simulate_limit(chain, checkpoint=path, progress=False, **change)
+            simulate_limit(chain, warmup=1e6, checkpoint=path, progress=False, **change)
     with pytest.raises(ValueError, match="a checkpoint of another run"):
         simulate(chain, checkpoint=path, progress=False)
 
