@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
-
 from crazybilliards.model import Chain
-from crazybilliards.model.checks import shown
 
 # Parameters that the theories' equations contain, or that `require_chain` can refuse by name. A new
 # parameter of the chain is refused by every theory until it is added here.
@@ -52,13 +49,7 @@ def require_chain(
     remedy
         What to do for a restitution other than 1; the end of that error.
     """
-    for field in fields(chain):
-        value = getattr(chain, field.name)
-        if field.name not in _KNOWN and value != field.default:
-            raise ValueError(
-                f"{theory} does not know the chain's {field.name}: it must be "
-                f"{shown(field.default)}, got {shown(value)}"
-            )
+    chain.require_known(_KNOWN, theory)
     if elastic and chain.restitution != 1:
         raise ValueError(
             f"{theory} holds for elastic collisions only: restitution must be 1, got "

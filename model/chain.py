@@ -22,6 +22,7 @@ and a linear spring has the stiffness 1 M/T^2.
 from __future__ import annotations
 
 import math
+from collections.abc import Collection
 from dataclasses import dataclass, fields, replace
 from typing import Any, Self
 
@@ -29,6 +30,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from crazybilliards.model import spring
+from crazybilliards.model.checks import shown
 from crazybilliards.model.parameters import Parameters
 
 
@@ -80,6 +82,20 @@ class Chain(Parameters):
     def parameters(self) -> dict[str, int | float | str]:
         """Return all parameters as a plain dictionary; ``Chain(**parameters)`` is the inverse."""
         return {field.name: getattr(self, field.name) for field in fields(self)}
+
+    def require_known(self, known: Collection[str], by: str) -> None:
+        """Raise a ValueError unless all parameters outside ``known`` have their default values.
+
+        ``by`` names the method that knows these parameters only, for the error. A new parameter is
+        then refused wherever nobody has thought of it yet, and never ignored.
+        """
+        for each in fields(self):
+            value = getattr(self, each.name)
+            if each.name not in known and value != each.default:
+                raise ValueError(
+                    f"{by} does not know the chain's {each.name}: it must be "
+                    f"{shown(each.default)}, got {shown(value)}"
+                )
 
     # -- geometry ---------------------------------------------------------------------------
 

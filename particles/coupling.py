@@ -61,15 +61,19 @@ def advance_pair(  # type: ignore[no-untyped-def]
         sigma = finer.step.noise if part == WHOLE else finer.step.outer_noise
         for i in range(xi.size):
             together[i] = decay * together[i] + sigma * xi[i]
-        if take_step(y[0], v[0], xi, part, finer, scratch[0], tally) < 0:
+        met = take_step(y[0], v[0], xi, part, finer, scratch[0], tally)
+        if met < 0:
             return -1
+        tally.collisions[0] += met
         if taken % ratio != middle and part != LAST:
             continue
         if taken == middle:
             part = FIRST
         together /= coarser.step.noise if part == WHOLE else coarser.step.outer_noise
-        if take_step(y[1], v[1], together, part, coarser, scratch[1], tally) < 0:
+        met = take_step(y[1], v[1], together, part, coarser, scratch[1], tally)
+        if met < 0:
             return -1
+        tally.collisions[1] += met
         together[:] = 0.0
     return 0
 

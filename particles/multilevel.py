@@ -32,109 +32,24 @@ expected relative one.
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Sequence
-from copy import deepcopy
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.special import ndtr, stdtrit
 
 from crazybilliards.model import Chain
 from crazybilliards.particles.laws.closed_contacts import CRITICAL_RESTITUTION
+from crazybilliards.particles.laws.law import EVENTS, ISOTONIC, SORT
 from crazybilliards.particles.level_steps import Steps, relative_bias
-from crazybilliards.particles.observers import Observer
-from crazybilliards.particles.observers.base import Averaged
-from crazybilliards.particles.observers.error_bars import jackknife_error
-from crazybilliards.particles.running.sampler import Sampler, groups_of
+from crazybilliards.particles.level_terms import CENTRAL, Array, Estimate, estimate
+from crazybilliards.particles.running.sampler import Sampler
 
-Array = NDArray[np.float64]
-
-CENTRAL = "central_velocity_width"
-# The one follows from an error bar and is no average. The other is zero, and the error of a
-# derivative's mean is not that of groups: what one group has too much of, the next one lacks.
-_LEFT_OUT = ("autocorrelation_time", "mean_velocity")
-_ONE_SIGMA = ndtr(1.0)
 _LARGEST_BIAS = 0.7  # largest bias without another level, in units of the accuracy
 _GROWTH = 4  # of a level in one round: its variance is not known well before
 _PILOT_SHARE = 0.25  # of the work, for a longer pilot round
+# Measured costs on one core [ns]: of a step of a chain, of one rod in it, of a collision.
+_STEP, _ROD, _COLLISION = 300.0, 6.0, {SORT: 1.0, ISOTONIC: 15.0, EVENTS: 50.0}
 _WORTH = 1.1  # a round that makes no level longer than this does not pay
-
-
-class Estimate(NamedTuple):
-    """One term of the sum: every variable, its variance, and W_v in the centre in detail."""
-
-    values: dict[str, Array]
-    dimensions: dict[str, tuple[str, ...]]
-    variances: dict[str, Array]
-    snapshots: int
-    correlation: float  # of the widths of both chains; 0 if there is one
-
-    @property
-    def spread(self) -> float:
-        """Variance of W_v in the centre, times the number of snapshots."""
-        return float(self.variances[CENTRAL]) * self.snapshots
-
-
-def _reported(
-    groups: Sequence[Sequence[Sequence[Observer]]], chain: int, counts: NDArray[np.int64]
-) -> dict[str, tuple[tuple[str, ...], Array]]:
-    """Return the joint measurements of some groups, of the finer or the coarser chain."""
-    found: dict[str, tuple[tuple[str, ...], Array]] = {}
-    for first, *others in zip(*(group[chain] for group in groups), strict=True):
-        joined, snapshots = deepcopy(first), counts
-        joined.join(others)
-        if isinstance(joined, Averaged):  # else it works out an error, each time
-            joined.pool()
-            snapshots = counts.sum(keepdims=True)
-        for name, (dimensions, values) in joined.report(snapshots).items():
-            array = np.asarray(values, dtype=float)
-            if name in _LEFT_OUT or name.endswith("_error") or "block" in dimensions:
-                continue
-            if "time" in dimensions:  # of a steady state: all times are the same
-                array = array.mean(axis=dimensions.index("time"))
-                dimensions = tuple(each for each in dimensions if each != "time")
-            found[name] = dimensions, array
-    rods = found["velocity_width"][1]
-    rank = np.abs(np.arange(rods.size) - (rods.size - 1) / 2)
-    middle = rods[rank <= max(0.05 * rods.size, 0.5)]
-    found[CENTRAL] = (), np.sqrt(np.mean(middle**2))
-    return found
-
-
-def estimate(samplers: Sequence[Sampler], *, difference: bool, only: str | None = None) -> Estimate:
-    """Return the finer chain's averages, or by how much they exceed the coarser one's.
-
-    ``only``: name of the only observer to ask, which is quicker.
-    """
-    groups, counts = groups_of(samplers)
-    if only is not None:
-        groups = [[[o for o in chain if o.name == only] for chain in group] for group in groups]
-    whole = [_reported(groups, chain, counts) for chain in range(1 + difference)]
-    left_out: list[dict[str, list[Array]]] = [{name: [] for name in whole[0]} for _ in whole]
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # said already, of all of them together
-        for out in range(len(groups)):
-            rest = groups[:out] + groups[out + 1 :]
-            for chain, each in enumerate(left_out):
-                for name, (_, found) in _reported(rest, chain, np.delete(counts, out)).items():
-                    each[name].append(found)
-    # So few groups: with Student's factor 68 % of the values lie within one error.
-    student = float(stdtrit(counts.size - 1, _ONE_SIGMA)) if counts.size > 1 else 1.0
-    values: dict[str, Array] = {}
-    variances: dict[str, Array] = {}
-    signs = (1.0, -1.0)[: len(whole)]
-    for name in whole[0]:
-        values[name], without = (
-            np.asarray(sum(sign * np.array(part) for sign, part in zip(signs, parts, strict=True)))
-            for parts in ([each[name][1] for each in whole], [each[name] for each in left_out])
-        )
-        variances[name] = (student * jackknife_error(values[name], without, counts)) ** 2
-    widths = np.array([each[CENTRAL] for each in left_out])
-    correlation = float(np.corrcoef(widths)[0, 1]) if difference else 0.0
-    dimensions = {name: each[0] for name, each in whole[0].items()}
-    return Estimate(values, dimensions, variances, int(counts.sum()), correlation)
 
 
 class Levels:
@@ -152,6 +67,15 @@ class Levels:
         begun = [level for level, each in enumerate(self.samplers) if each[0].target]
         base = max(level for level in begun if self.samplers[level][0].coarser is None)
         return range(base, begun[-1] + 1)
+
+    @property
+    def measured(self) -> bool:
+        """Whether every level has two groups with snapshots, so that its errors are known."""
+        groups = (
+            sum(int(np.count_nonzero(sampler.counts)) for sampler in self.samplers[level])
+            for level in self.used
+        )
+        return min(groups) >= 2
 
     def start(self) -> None:
         """Ask for the pilot round; the last level is one in reserve if there are several."""
@@ -213,9 +137,19 @@ class Levels:
         rest = self.steps.ratios[self.used[-1]] ** order - 1
         return {name: np.abs(value) / rest for name, value in terms[-1].values.items()}
 
+    def saving(self, terms: Sequence[Estimate]) -> float:
+        """Estimate how many times the work of the levels a plain run at the last step would take.
+
+        As in the choice of the base, a single chain's spread is taken to be that of the base.
+        """
+        costs = [self._cost(level, level > self.used[0]) for level in self.used]
+        work = sum(math.sqrt(term.spread * c) for term, c in zip(terms, costs, strict=True))
+        return terms[0].spread * self._cost(self.used[-1], coupled=False) / work**2
+
     def described(self, terms: Sequence[Estimate]) -> list[dict[str, Any]]:
         """Return the levels for the provenance; the shares are those in W_v of the centre."""
-        work = sum(sampler.done for samplers in self.samplers for sampler in samplers)
+        begun = [level for level, each in enumerate(self.samplers) if each[0].snapshots]
+        work = sum(self._work(level) for level in begun)
         variance = sum(float(each.variances[CENTRAL]) for each in terms)
         return [
             {
@@ -224,7 +158,7 @@ class Levels:
                 "snapshots": term.snapshots,
                 "duration": term.snapshots * self.steps.interval,
                 "rod_steps": sum(sampler.done for sampler in self.samplers[level]),
-                "share_of_work": sum(s.done for s in self.samplers[level]) / work,
+                "share_of_work": self._work(level) / work,
                 "share_of_variance": float(term.variances[CENTRAL]) / variance,
                 "value": float(term.values[CENTRAL]),
                 "error": math.sqrt(float(term.variances[CENTRAL])),
@@ -244,10 +178,25 @@ class Levels:
         for sampler in self.samplers[level]:
             sampler.extend(target)
 
+    def _work(self, level: int) -> float:
+        """Return the time that the snapshots of a level have cost, in the units of the costs."""
+        samplers = self.samplers[level]
+        cost = self._cost(level, samplers[0].coarser is not None)
+        return cost * sum(sampler.snapshots for sampler in samplers)
+
     def _cost(self, level: int, coupled: bool) -> float:
-        """Return the steps of a rod per snapshot; taking the snapshot costs about one step, too."""
+        """Return the time that a snapshot of a level costs [ns], for one rod of one chain or two.
+
+        The collisions are those measured so far. Seconds are not measured, so that the same seed
+        plans the same work on every machine. Taking the snapshot costs about one step, too.
+        """
+        size, samplers = self.chain.size, self.samplers[level]
+        rods = size * sum(sampler.snapshots for sampler in samplers)
+        met = sum(sampler.collisions[: 1 + coupled].sum() for sampler in samplers) / rods
         steps = self.steps.per_step(level) + (self.steps.per_step(level - 1) if coupled else 0)
-        return float(steps * self.steps.stride + 1 + coupled)
+        taken = float(steps * self.steps.stride + 1 + coupled)
+        collision = _COLLISION[self.samplers[0][0].dynamics.law.operator]
+        return taken * (_STEP / size + _ROD) + met * collision
 
     def _choose_base(self) -> bool:
         """Leave out the levels whose steps are too long to save any work.

@@ -144,6 +144,20 @@ def relaxation_time(chain: Chain) -> float:
     return (half_damping + math.sqrt(half_damping**2 - rate**2)) / rate**2
 
 
+def correlation_time(chain: Chain) -> float:
+    """Longest integral of an autocorrelation function from 0 on [T]; 0 if nothing relaxes.
+
+    It is m/gamma for energies under weak damping, and gamma/k' for displacements under strong
+    damping. With the critical damping, displacements are correlated for twice
+    :func:`relaxation_time`.
+    """
+    if chain.damping == 0:
+        return 0.0
+    stiffness = _relaxing_stiffness(chain)
+    swings = chain.damping / stiffness if stiffness > 0 else 0.0
+    return max(chain.mass / chain.damping, swings)
+
+
 def _relaxing_stiffness(chain: Chain) -> float:
     """Stiffness k' of the linear spring that relaxes as slowly as the chain's own [M/T^2]."""
     if chain.spring == "linear":

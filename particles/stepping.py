@@ -210,6 +210,7 @@ def advance(y, v, noise, dynamics, scratch, tally, steps):  # type: ignore[no-un
         collisions += met
         if step.symmetric:
             part = WHOLE
+    tally.collisions[0] += collisions
     return collisions
 
 

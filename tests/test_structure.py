@@ -24,7 +24,8 @@ FLOORS = {
         {"run"},
         {"observers"},
         {"running"},
-        {"simulation", "multilevel"},
+        {"simulation", "level_terms"},
+        {"multilevel"},
         {"limit"},
     ),
     "kinetic": (

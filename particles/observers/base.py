@@ -62,6 +62,9 @@ class Observer(ABC):
         Whether it can be averaged over replicas at equal times.
     limit
         Whether it reports averages that have a limit of a vanishing time step.
+    histograms
+        Its variables that count how often rods visit nodes or bins. In a limit, the error of a
+        place that was hardly ever visited is unknown.
     """
 
     name: ClassVar[str]
@@ -71,6 +74,7 @@ class Observer(ABC):
     single_collisions: ClassVar[bool] = False
     ensemble: ClassVar[bool] = True
     limit: ClassVar[bool] = True
+    histograms: ClassVar[tuple[str, ...]] = ()
 
     def __str__(self) -> str:
         """Return the name and, if there are any, the parameters."""

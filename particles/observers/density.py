@@ -39,6 +39,7 @@ class Density(Averaged):
     name = "density"
     gives = ("density", "density_block", "outside")
     along = ("x",)
+    histograms = ("density",)
 
     def shape(self, run: Run) -> tuple[int, ...]:
         """Return the shape of the sums of one block: one number a node of the grid."""

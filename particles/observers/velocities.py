@@ -40,6 +40,7 @@ class Velocities(Observer):
     gives = ("velocity_density", "velocity_outside")
     along = ("velocity",)
     ensemble = False
+    histograms = ("velocity_density",)
 
     def __init__(self, bins: int = 401) -> None:
         self.bins = check_integer("bins", bins, least=1, most=_MOST_BINS)

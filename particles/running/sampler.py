@@ -28,7 +28,7 @@ from crazybilliards.particles.stepping import bounded, make_dynamics
 
 Array = NDArray[np.float64]
 
-_CHANGING = ("correlation", "counts", "steps", "snapshots", "over", "reached")
+_CHANGING = ("correlation", "collisions", "counts", "steps", "snapshots", "over", "reached")
 
 
 class Sampler(Replica):
@@ -42,6 +42,7 @@ class Sampler(Replica):
     ) -> None:
         self.finer, self.coarser = finer, coarser
         self.correlation = 0.0
+        self.collisions = np.zeros(2, dtype=np.int64)  # measured ones, of the finer chain first
         self.before = self.target = 0  # snapshots of a group, at the begin and end of a round
         self.measured: list[list[list[Observer]]] = []  # by group and chain, the finer chain first
         counts = np.zeros(groups, dtype=np.int64)
@@ -172,6 +173,8 @@ class Sampler(Replica):
     def _observe(self, block: int, y: Array, v: Array, tally: Tally) -> None:
         if self.coarser is None:
             y, v = y[np.newaxis], v[np.newaxis]
+        self.collisions += tally.collisions
+        tally.collisions[:] = 0
         first = int(self.counts[block])
         for observers, own_y, own_v in zip(self.measured[block], y, v, strict=True):
             for observer in observers:

@@ -1,4 +1,4 @@
-"""No theory ignores a parameter of the chain silently, and the simulation does not either.
+"""No theory ignores a parameter of the chain silently, and no simulation does either.
 
 For every theory and every field of ``Chain``: with that field changed the result changes, or the
 call is refused with a ValueError, or the pair stands in ``MEANINGLESS`` with the reason. The fields
@@ -29,7 +29,7 @@ from crazybilliards.kinetic import (
 from crazybilliards.kinetic.kinetic_equation import criticality
 from crazybilliards.model import Chain
 from crazybilliards.model.checks import check_real
-from crazybilliards.particles import simulate
+from crazybilliards.particles import simulate, simulate_limit
 
 CHAIN = Chain(size=4)
 DRIVEN = Chain(size=4, restitution=1.1)
@@ -105,6 +105,9 @@ THEORIES = {name: theory.solve for name, theory in STATIONARY.items()} | {
         every=1.0,
         observe=("widths", "density"),
         progress=False,
+    ),
+    "simulate_limit": lambda chain: simulate_limit(
+        chain, accuracy=0.1, warmup=1.0, observe=("widths", "density"), progress=False
     ),
 }
 

@@ -18,9 +18,16 @@ def test_ctrl_c_between_two_restorations_leaves_no_handler_behind(monkeypatch):
         return earlier
 
     monkeypatch.setattr(signal, "signal", and_interrupt)
-    with pytest.raises(KeyboardInterrupt), interrupts_noted() as came:
-        signal.raise_signal(signal.SIGINT)
-        signal.raise_signal(signal.SIGTERM)
+    came = []
+
+    def interrupted_thrice():
+        with interrupts_noted() as noted:
+            signal.raise_signal(signal.SIGINT)
+            signal.raise_signal(signal.SIGTERM)
+            came.extend(noted)
+
+    with pytest.raises(KeyboardInterrupt):
+        interrupted_thrice()
     assert came == [signal.SIGINT, signal.SIGTERM]
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
     assert signal.getsignal(signal.SIGTERM) == before
