@@ -6,15 +6,16 @@ r"""The limit of a vanishing time step as a sum over levels: multilevel Monte Ca
 
 The first term is the base. It needs most of the statistics and is cheap, because its step is long.
 In a difference both chains have the same noise (``coupling.py``). The difference therefore
-fluctuates little and needs few of the expensive short steps. The terms are independent. The value
-of a term is that of all its groups of snapshots together, and its standard error is the jackknife
-over the groups (``sampler.py``).
+fluctuates little and needs few of the expensive short steps. The terms are independent
+(``level_terms.py``).
 
-**Durations.** Let V be the variance of W_v in the centre times the duration, and C the number of
-steps of a rod per time. The work for an error s is least for the durations t_l = sqrt(V_l/C_l)
-sum_k sqrt(V_k C_k)/s^2. V is measured in a pilot round, whose snapshots count as well. It takes 64
-relaxation times of the base and 16 of each difference, or four or sixteen times as long while this
-is less than a quarter of the work to come.
+**Durations.** Let V be the variance of W_v in the centre times the duration, and C the cost of a
+unit of time. The work for an error s is least for the durations t_l = sqrt(V_l/C_l)
+sum_k sqrt(V_k C_k)/s^2. V is measured in a pilot round, whose snapshots count as well. Each of its
+32 groups lasts 10 correlation times of the chain in the base and 2.5 in each difference
+(``level_steps.py``), or four or sixteen times as long while this is less than a quarter of the work
+to come. C counts steps and, above e = 0, the collisions that were met: at the default step and e =
+0.5 they cost more than the steps.
 
 **The first step.** A step that is too long to be correlated with the next shorter one saves no
 work. The base is the level from which on the work, (sum_k sqrt(V_k C_k))^2, is least. If this is

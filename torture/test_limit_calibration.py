@@ -11,6 +11,7 @@ import json
 import numpy as np
 import pytest
 
+from crazybilliards.kinetic import equilibrium
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate, simulate_limit
 from crazybilliards.particles.scales import default_time_step
@@ -68,3 +69,24 @@ def test_a_limit_lies_within_its_error_as_often_as_it_should():
     print(coupled, {name: f"{share:.3f}" for name, share in found.items()})
     for name, share in found.items():
         assert share == pytest.approx(SHARE, abs=TOLERANCE), name
+
+
+@pytest.mark.parametrize("accuracy", [0.1, 0.03])
+@pytest.mark.parametrize("damping", [1.0, 4.0, 10.0])
+def test_short_limits_have_honest_errors(damping, accuracy):
+    """At e = 1 the truth is known. With groups of two relaxation times the last number was 1.5.
+
+    Deviations in units of their errors have the root mean square 1, and 200 values determine it to
+    5 %. The errors of velocities include an expected bias, which is zero here.
+    """
+    chain = Chain(size=3, damping=damping)
+    exact = equilibrium(chain)
+    deviations = {"displacement_width": [], "mean_displacement": [], "velocity_width": []}
+    for seed in range(200):
+        limit = simulate_limit(
+            chain, accuracy=accuracy, observe="widths", seed=seed, progress=False
+        )
+        for name, found in deviations.items():
+            found.append((limit[name] - exact[name]).values / limit[f"{name}_error"].values)
+    for name, found in deviations.items():
+        assert np.sqrt(np.mean(np.square(found))) < 1.25, name
