@@ -46,7 +46,7 @@ test-lowest: $(OLDEST)/installed
 
 # Three processes for two cores: these tests wait a lot for others that they kill.
 torture: $(VENV)/installed-test
-	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n 3 --dist worksteal torture
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n 3 --dist worksteal --timeout=3600 torture
 
 # Coverage cannot be measured in compiled kernels. Tests that are quick enough run them as Python.
 coverage: $(VENV)/installed-coverage
@@ -75,7 +75,7 @@ notebooks: $(VENV)/installed-notebooks
 	mkdir -p build/notebooks
 	rm -f build/notebooks/$(LESSON)*.ipynb
 	cp notebooks/$(LESSON)*.ipynb notebooks/teaching.py build/notebooks
-	$(BIN)/python -m pytest -n 2 --nbmake --nbmake-timeout=300 --overwrite build/notebooks/$(LESSON)*.ipynb
+	$(BIN)/python -m pytest -n 2 --nbmake --nbmake-timeout=300 --timeout=1800 --overwrite build/notebooks/$(LESSON)*.ipynb
 	test "$(LESSON)" != "[0-9]" || touch build/notebooks/executed
 
 build/notebooks/executed: $(wildcard notebooks/*.ipynb) notebooks/teaching.py
@@ -105,7 +105,7 @@ linkcheck: $(VENV)/installed-docs build/notebooks/executed
 
 benchmark: $(VENV)/installed-benchmark
 	mkdir -p $(OUTPUT)
-	$(BIN)/python -m pytest benchmarks -o python_files="*.py" --benchmark-columns=median,iqr,rounds \
+	$(BIN)/python -m pytest benchmarks -o python_files="*.py" --timeout=1800 --benchmark-columns=median,iqr,rounds \
 	  --benchmark-max-time=0.3 --benchmark-min-rounds=3 --benchmark-json=$(OUTPUT)/benchmark.json
 	$(BIN)/python benchmarks/report.py $(OUTPUT)/benchmark.json $(OUTPUT)/cost.png
 

@@ -10,6 +10,10 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from contextvars import ContextVar
 
+# The signals that ask a program to end. Windows has no SIGHUP.
+_ENDING = [
+    getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)
+]
 _to_announce: ContextVar[bool] = ContextVar("to_announce", default=False)
 
 
@@ -38,16 +42,33 @@ def announce_compilation() -> None:
         print(message, file=sys.stderr, flush=True)
 
 
+class _Note:
+    """A handler that adds its signals to a list."""
+
+    def __init__(self, came: list[int]) -> None:
+        self.came = came
+
+    def __call__(self, number: int, _: object) -> None:
+        self.came.append(number)
+
+
+class _Interrupt(_Note):
+    """A handler that acts like Ctrl-C the first time, and then lets the results be written."""
+
+    def __call__(self, number: int, _: object) -> None:
+        self.came.append(number)
+        if len(self.came) == 1:  # timeout and batch systems send their signals twice
+            raise KeyboardInterrupt
+
+
 @contextmanager
 def interrupts_held_back() -> Iterator[None]:
-    """Delay Ctrl-C, and a SIGTERM that acts like it, to the end of the block or function."""
+    """Delay Ctrl-C, and signals that act like it, to the end of the block or function."""
     # Blocking the signals in this thread is not enough: another thread would receive them.
     came: list[int] = []
-    held = [
-        number for number in (signal.SIGINT, signal.SIGTERM) if callable(signal.getsignal(number))
-    ]
+    held = [number for number in _ENDING if callable(signal.getsignal(number))]
     try:
-        with _handled(dict.fromkeys(held, lambda number, _: came.append(number))):
+        with _handled(dict.fromkeys(held, _Note(came))):
             yield
     finally:
         if came:
@@ -56,26 +77,55 @@ def interrupts_held_back() -> Iterator[None]:
 
 @contextmanager
 def interrupts_noted() -> Iterator[list[int]]:
-    """Add Ctrl-C, and the SIGTERM that batch systems send before they kill, to the list it yields.
+    """Add Ctrl-C, SIGTERM and SIGHUP to the list that it yields; the block goes on to its end.
 
     Neither raises an error in this block. An error that comes in the middle of the code of a lock
-    leaves the lock held, and then a pool of threads waits for it without end. However often they
-    come, the block goes on to its end. A handler for Ctrl-C that a program has set itself stays.
+    leaves the lock held, and then a pool of threads waits for it without end.
+
+    At the end of the block a signal whose action was the default takes its usual effect: SIGTERM,
+    which batch systems send before they kill, and SIGHUP, of a lost connection, end the program.
+    One that acts like Ctrl-C has no further effect: the caller looks at the list. A signal that the
+    program ignores or handles itself stays as it is.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        If a signal came and the block then raises an error, which would hide the signal.
     """
     came: list[int] = []
-    handlers: dict[int, Callable[..., object]] = {}
-    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
-        handlers[signal.SIGINT] = lambda number, _: came.append(number)
-    handlers[signal.SIGTERM] = lambda number, _: came.append(number)
-    with _handled(handlers):
-        yield came
+    usual = (signal.SIG_DFL, signal.default_int_handler)
+    before = {number: signal.getsignal(number) for number in _ENDING}
+    noted = [n for n, each in before.items() if each in usual or isinstance(each, _Note)]
+    try:
+        with _handled(dict.fromkeys(noted, _Note(came))):
+            yield came
+    except Exception as error:
+        if came:
+            raise KeyboardInterrupt from error
+        raise
+    finally:
+        for number in dict.fromkeys(came):
+            outer = before[number]
+            if isinstance(outer, _Note):
+                outer.came.append(number)
+            elif outer is signal.SIG_DFL:
+                signal.raise_signal(number)
 
 
 @contextmanager
-def terminated_like_interrupted() -> Iterator[None]:
-    """Make SIGTERM, which batch systems send before they kill, act like Ctrl-C in this block."""
-    with _handled({signal.SIGTERM: signal.default_int_handler}):
-        yield
+def terminated_like_interrupted() -> Iterator[list[int]]:
+    """Make SIGTERM and SIGHUP act like Ctrl-C in this block; yield a list of those that came.
+
+    They do so only where their action is the default: nohup, for example, ignores SIGHUP.
+    """
+    came: list[int] = []
+    default = [
+        number
+        for number in _ENDING
+        if number != signal.SIGINT and signal.getsignal(number) is signal.SIG_DFL
+    ]
+    with _handled(dict.fromkeys(default, _Interrupt(came))):
+        yield came
 
 
 @contextmanager

@@ -111,8 +111,8 @@ def simulate(
         The time step is shortened to a whole fraction of it.
     checkpoint
         File for the state of the run, written every ``checkpoint_interval`` seconds and at
-        Ctrl-C or SIGTERM. The same call again continues from there and gives the same bits. A
-        checkpoint of another run, or one that another process is using, is refused.
+        Ctrl-C, SIGTERM or SIGHUP. The same call again continues from there and gives the same
+        bits. A checkpoint of another run, or one that another process is using, is refused.
     progress
         Show a progress bar with the time left, if standard error is a terminal. A text stands in
         front of it, to tell runs apart.
@@ -127,6 +127,10 @@ def simulate(
         has no variables (``warmup=0`` measures from the start). For e != 1
         ``attrs["time_step_error"]`` is the estimated relative error of the smallest velocity
         width due to the time step.
+
+        SIGTERM and SIGHUP end the program, once the checkpoint is written, unless the program
+        ignores them or handles them itself. With the handler ``signal.default_int_handler`` they
+        act like Ctrl-C.
 
     Raises
     ------

@@ -14,6 +14,10 @@ settings.register_profile("crazybilliards", deadline=None, derandomize=True)
 settings.load_profile("crazybilliards")
 
 
+# Started in the background of a script, a process ignores Ctrl-C, and so do those that it starts.
+signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
 @pytest.fixture
 def ctrl_c(monkeypatch):
     """Let Ctrl-C come when a method was called often enough, however long a busy machine takes."""

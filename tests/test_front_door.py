@@ -34,7 +34,7 @@ print(cb.__file__)
 
 def run(*command, **options):
     done = subprocess.run(
-        [*map(str, command)], capture_output=True, text=True, timeout=600, check=False, **options
+        [*map(str, command)], capture_output=True, text=True, timeout=300, check=False, **options
     )
     assert done.returncode == 0, done.stderr
     return done.stdout

@@ -2,7 +2,7 @@
 
 Each option of each command gets nasty values, one at a time, the others being those of a small
 job. The command runs in this process, and a Ctrl-C is sent after two seconds to jobs that are
-long. It must end with status 0, with 2 and one line on standard error, or with 130; never with a
+long. It must end with status 0, with 2 and one line on standard error, or by Ctrl-C; never with a
 traceback, and never with NaN in what it prints.
 """
 

@@ -20,6 +20,7 @@ import threading
 import time
 import traceback
 import warnings
+from functools import partial
 from pathlib import Path
 
 import matplotlib as mpl
@@ -144,6 +145,9 @@ def _attempt(job, folder, begun):
     sys.stdout = sys.stderr = os.fdopen(log, "w", buffering=1)
     fork = multiprocessing.get_context("fork")
     multiprocessing.get_context = lambda name: fork
+    # A worker that is started anew has none of the handlers of its parent; a forked one would.
+    for number in (signal.SIGTERM, signal.SIGHUP):
+        os.register_at_fork(after_in_child=partial(signal.signal, number, signal.SIG_DFL))
     signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
     os.write(begun, b"!")
     job(folder)

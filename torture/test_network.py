@@ -245,7 +245,7 @@ page = subprocess.Popen([sys.executable, "-c", {script!r}], stdout=subprocess.PI
 address = page.stdout.readline().split()[0]
 answer = build_opener(ProxyHandler({{}})).open(address, timeout=600).read().decode()
 page.send_signal({int(signal.SIGINT)})
-assert page.wait(600) == 130
+assert page.wait(600) == -{int(signal.SIGINT)}
 print(json.dumps(answer))
 """
     answer = json.loads(run(guarded, "-c", reader))

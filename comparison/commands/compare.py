@@ -5,6 +5,8 @@ Only the standard library and typer are imported up here, so that ``--help`` ans
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import asdict
 from functools import partial
 from pathlib import Path
@@ -19,6 +21,7 @@ from crazybilliards.comparison.commands.output import (
     exit_unless_completed,
     numbers,
     place,
+    write_figure,
     write_figures,
     writing_to,
 )
@@ -72,7 +75,9 @@ def command(
 
     Draws everything over one another and prints how far apart it is.
 
-    Ctrl-C stops early: what has been computed is written under names with "-interrupted".
+    Ctrl-C or SIGTERM stops early: what has been computed is written under names with
+    "-interrupted". The picture of a restitution is written under such a name as soon as it can be
+    drawn, and gets its own name at the end.
 
     Example: crazybilliards compare --output results --amplitudes 1,10 --gap 0.2
 
@@ -84,12 +89,15 @@ def command(
     with writing_to(output):
         if restitution is None:
             tree = _elastic(chain, amplitudes, **settings)
-            write, show = _write_comparison, _print_deviations
+            write: Callable[..., None] = _write_comparison
+            show = _print_deviations
         else:
             if amplitudes is not None:
                 raise ValueError("give restitution or amplitudes, not both")
-            tree = _inelastic(chain, restitution, **settings)
-            write, show = _write_restitutions, _print_widths
+            drawn: dict[str, Path] = {}
+            early = None if output is None else partial(_draw_early, output, drawn)
+            tree = _inelastic(chain, restitution, finished=early, **settings)
+            write, show = partial(_write_restitutions, drawn), _print_widths
         status = tree.attrs["status"]
         note(status=status)
         try:
@@ -174,15 +182,35 @@ def _print_deviations(tree: xr.DataTree) -> None:
     print_table(table)
 
 
-def _write_restitutions(tree: xr.DataTree, folder: Path, suffix: str) -> None:
+def _draw_early(
+    folder: Path, drawn: dict[str, Path], name: str, results: Mapping[str, xr.Dataset]
+) -> None:
+    """Draw what shows one chain only, while the others are still to be computed."""
+    from crazybilliards.comparison.studies.restitution_figures import draw_phase_space
+    from crazybilliards.comparison.studies.restitutions import THEORY
+
+    if THEORY not in results:
+        return
+    path = folder / f"phase_space_{name}-interrupted.png"
+    # A picture that fails here is drawn once more at the end, when the data have been written.
+    with suppress(Exception):
+        write_figure(path, partial(draw_phase_space, results[THEORY]))
+        drawn[name] = path
+
+
+def _write_restitutions(
+    drawn: Mapping[str, Path], tree: xr.DataTree, folder: Path, suffix: str
+) -> None:
     from crazybilliards.comparison.studies.restitution_figures import draw_phase_space, draw_widths
     from crazybilliards.comparison.studies.restitutions import THEORY
     from crazybilliards.model import save
 
     wrote(save(tree, folder / f"comparison{suffix}.nc"))
+    for name, path in drawn.items():
+        wrote(path.replace(folder / f"phase_space_{name}{suffix}.png"))
     drawings = {"widths": partial(draw_widths, tree)}
     for name, group in tree.children.items():
-        if THEORY in group:
+        if THEORY in group and name not in drawn:
             theory = group[THEORY].to_dataset()
             drawings[f"phase_space_{name}"] = partial(draw_phase_space, theory)
     write_figures(folder, suffix, drawings)

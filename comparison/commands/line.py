@@ -73,12 +73,20 @@ for module in (compare, simulate, theory, relax, reproduce, sweep, explore):
 
 def main() -> None:
     """Entry point: a user's mistake is one line on standard error and exit status 2."""
-    with plain_streams() as output:
+    from crazybilliards.model.process import terminated_like_interrupted
+
+    with plain_streams() as output, terminated_like_interrupted() as signals:
         status = _run()
     if isinstance(output.failed, BrokenPipeError):  # crazybilliards ... | head, say
         status = status or READER_GONE
     elif output.failed is not None:
         status = _complain(f"standard output: {output.failed.strerror}")
+    if status == INTERRUPTED and signals:
+        status = 128 + signals[0]  # as shells say that a signal ended it: 143 for SIGTERM
+    elif status == INTERRUPTED:
+        # Python then ends by the signal itself. After an exit status a loop of a shell goes on.
+        sys.excepthook = lambda *_: None
+        raise KeyboardInterrupt
     sys.exit(status)
 
 

@@ -96,6 +96,14 @@ def write_figures(folder: Path, suffix: str, drawings: Mapping[str, Callable[[],
 
     Ctrl-C then costs no picture that was drawn.
     """
+    for number, (name, draw) in enumerate(drawings.items(), start=1):
+        path = folder / f"{name}{suffix}.png"
+        write_figure(path, draw, f", {number} of {len(drawings)}")
+        wrote(path)
+
+
+def write_figure(path: Path, draw: Callable[[], Figure], which: str = "") -> None:
+    """Draw a picture and write it to a file; ``which`` of them is shown meanwhile."""
     from io import BytesIO
 
     import matplotlib
@@ -107,14 +115,11 @@ def write_figures(folder: Path, suffix: str, drawings: Mapping[str, Callable[[],
     from crazybilliards.comparison.waiting import waiting_for
     from crazybilliards.model.storage import write_atomically
 
-    for number, (name, draw) in enumerate(drawings.items(), start=1):
-        path = folder / f"{name}{suffix}.png"
-        with waiting_for(f"drawing {path.name}, {number} of {len(drawings)}"), house_style():
-            figure, picture = draw(), BytesIO()
-            figure.savefig(picture, format="png")
-            plt.close(figure)
-        write_atomically(path, picture.getvalue())
-        wrote(path)
+    with waiting_for(f"drawing {path.name}{which}"), house_style():
+        figure, picture = draw(), BytesIO()
+        figure.savefig(picture, format="png")
+        plt.close(figure)
+    write_atomically(path, picture.getvalue())
 
 
 def complain_of_divergence(run: xr.Dataset) -> None:

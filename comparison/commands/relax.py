@@ -69,7 +69,8 @@ def command(
     hydrodynamics with a temperature equation, and without gap the exact motion start from the same
     state. Prints how far the rods are from where each theory has them, in thermal lengths.
 
-    Ctrl-C stops early: what has been computed is written under names with "-interrupted".
+    Ctrl-C or SIGTERM stops early: what has been computed is written under names with
+    "-interrupted".
 
     Example: crazybilliards relax --output results --release displaced --by 2 --gap 0.2
     """

@@ -96,7 +96,7 @@ def command(
     Prints how the run ended, and widths and displacements of some rods with their standard
     errors. In Python, crazybilliards.load(FILE) gives the result.
 
-    Ctrl-C stops early: what has been measured is written to FILE-interrupted.nc.
+    Ctrl-C or SIGTERM stops early: what has been measured is written to FILE-interrupted.nc.
 
     Example: crazybilliards simulate --size 50 --restitution 0.9 --output run.nc
 

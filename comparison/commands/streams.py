@@ -50,6 +50,7 @@ class _Stream:
 @contextmanager
 def plain_streams() -> Iterator[_Stream]:
     """Let commands go on where nobody reads them, and show warnings in one line; give stdout."""
+    _open_closed()
     before = sys.stdout, sys.stderr
     output, errors = map(_Stream, before)
     with warnings.catch_warnings():
@@ -60,6 +61,17 @@ def plain_streams() -> Iterator[_Stream]:
             output.flush()
         finally:
             sys.stdout, sys.stderr = before
+
+
+def _open_closed() -> None:
+    """Open a standard stream that was closed, by ``>&-`` in a shell say, to nowhere.
+
+    Otherwise the next file that is opened would get its number, and what a library writes to
+    standard output would go into that file.
+    """
+    for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
+        if getattr(sys, name) is None:
+            setattr(sys, name, open(os.devnull, mode))  # noqa: SIM115
 
 
 def _show_warning(message: Warning | str, *_: object, **__: object) -> None:

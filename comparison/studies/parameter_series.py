@@ -11,7 +11,6 @@ from crazybilliards.comparison.waiting import waiting_for
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain
 from crazybilliards.model.checks import check_integer, check_real
-from crazybilliards.model.process import terminated_like_interrupted
 from crazybilliards.particles import simulate
 from crazybilliards.particles.schedule import make_schedule
 
@@ -47,40 +46,45 @@ def simulate_beside(
     seed: int,
     threads: int | None,
     progress: bool,
+    finished: Callable[[str, Mapping[str, xr.Dataset]], None] | None = None,
 ) -> xr.DataTree:
     """Simulate every chain with its own random numbers, and compute its theories.
+
+    ``finished`` is called with the name of each chain and with its theories, as soon as they are
+    there.
 
     Returns
     -------
     xarray.DataTree
         ``tree["NAME/simulation"]`` and ``tree["NAME/THEORY"]``. ``attrs["status"]`` is
-        ``interrupted`` if Ctrl-C or SIGTERM ended it early (the tree then holds the finished
-        results and the interrupted run), ``diverged`` if a simulation diverged.
+        ``interrupted`` if Ctrl-C ended it early (the tree then holds the finished results and the
+        interrupted run), ``diverged`` if a simulation diverged.
     """
     seeds = np.random.SeedSequence(check_integer("seed", seed, least=0))
     results: dict[str, xr.Dataset] = {}
     status = "completed"
     try:
-        with terminated_like_interrupted():
-            own_seeds = seeds.generate_state(len(chains))
-            for number, (name, chain) in enumerate(chains.items()):
-                what = f"{name.replace('_', ' ')}, {number + 1} of {len(chains)}"
-                run = simulate(
-                    chain,
-                    duration=duration,
-                    seed=int(own_seeds[number]),
-                    replicas=_REPLICAS,
-                    threads=threads,
-                    progress=progress and what,
-                )
-                results[f"{name}/{SIMULATION}"] = run
-                if run.attrs["status"] != "completed":
-                    status = run.attrs["status"]
-                with waiting_for(f"theories of {what}", progress):
-                    beside = theories(chain, run)
-                results |= {f"{name}/{key}": theory for key, theory in beside.items()}
-                if status == "interrupted":
-                    break
+        own_seeds = seeds.generate_state(len(chains))
+        for number, (name, chain) in enumerate(chains.items()):
+            what = f"{name.replace('_', ' ')}, {number + 1} of {len(chains)}"
+            run = simulate(
+                chain,
+                duration=duration,
+                seed=int(own_seeds[number]),
+                replicas=_REPLICAS,
+                threads=threads,
+                progress=progress and what,
+            )
+            results[f"{name}/{SIMULATION}"] = run
+            if run.attrs["status"] != "completed":
+                status = run.attrs["status"]
+            with waiting_for(f"theories of {what}", progress):
+                beside = theories(chain, run)
+            results |= {f"{name}/{key}": theory for key, theory in beside.items()}
+            if finished is not None:
+                finished(name, beside)
+            if status == "interrupted":
+                break
     except KeyboardInterrupt:
         if not results:
             raise

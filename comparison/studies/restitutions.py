@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -40,6 +40,7 @@ def compare_restitutions(
     seed: int = 0,
     threads: int | None = None,
     progress: bool = True,
+    finished: Callable[[str, Mapping[str, xr.Dataset]], None] | None = None,
 ) -> xr.DataTree:
     """Simulate a chain at several restitutions and solve its kinetic equation.
 
@@ -53,6 +54,9 @@ def compare_restitutions(
         Simulated time of each of two replicas [T].
     seed, threads, progress
         As in ``simulate``. Every restitution has its own random numbers.
+    finished
+        A function that is called with the name of each chain, such as ``restitution_0.95``, and
+        with its theories by name, as soon as they are there.
 
     Returns
     -------
@@ -74,6 +78,7 @@ def compare_restitutions(
         seed=seed,
         threads=threads,
         progress=progress,
+        finished=finished,
     )
 
 

@@ -40,7 +40,7 @@ class Server(str):
 
 @contextmanager
 def served() -> Iterator[Server]:
-    """Serve the page at a free port; Ctrl-C ends it with the status that shells expect."""
+    """Serve the page at a free port; Ctrl-C ends it."""
     process = subprocess.Popen(
         [*COMMAND, "explore", "--no-browser", "--port", "0"], stdout=subprocess.PIPE, text=True
     )
@@ -50,7 +50,7 @@ def served() -> Iterator[Server]:
         server.process = process
         yield server
         process.send_signal(signal.SIGINT)
-        assert process.wait(600) == 130
+        assert process.wait(300) == -signal.SIGINT
     finally:
         process.kill()
         process.stdout.close()
@@ -75,7 +75,7 @@ def chromium() -> Iterator[Any]:
             driver.quit()
 
 
-def until(condition: Callable[[], Any], seconds: float = 600.0) -> Any:
+def until(condition: Callable[[], Any], seconds: float = 300.0) -> Any:
     """Wait for a condition to be true; return what it returned."""
     end = time.monotonic() + seconds
     while not (found := condition()):

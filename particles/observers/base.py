@@ -10,11 +10,13 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from copy import copy
+from types import BuiltinFunctionType, FunctionType, NoneType
 from typing import Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from crazybilliards.model import Chain
 from crazybilliards.particles.laws.avalanche import Tally
 from crazybilliards.particles.observers.error_bars import jackknife
 from crazybilliards.particles.run import Run
@@ -24,8 +26,9 @@ Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 Variables = dict[str, tuple[tuple[str, ...], ArrayLike]]
 
-_STATE = (np.ndarray, np.generic, int, float)  # what a checkpoint can hold
-_NO_STATE = (list, dict, set, bytearray)
+_KEPT = (np.ndarray, np.generic, int, float, complex, str)  # what a checkpoint can hold
+# What never changes and is made anew for the same run: by the constructor or by ``prepare``.
+_CONSTANT = (NoneType, Chain, Run, Schedule, FunctionType, BuiltinFunctionType, np.ufunc, type)
 
 
 class Snapshots(NamedTuple):
@@ -99,17 +102,27 @@ class Observer(ABC):
         """
         fresh = copy(self)
         fresh.prepare(run, copies)
-        for name, value in vars(fresh).items():
-            if isinstance(value, _NO_STATE):
-                raise TypeError(f"{self.name}: {name} must be an array or a number")
+        fresh.state()
         return fresh
 
     def state(self) -> dict[str, ArrayLike]:
-        """Return the attributes that a checkpoint keeps: all that are arrays or numbers.
+        """Return the attributes that a checkpoint keeps: all that are arrays, numbers or text.
 
         This includes a few small ones that never change, so that none can be forgotten.
+
+        Raises
+        ------
+        TypeError
+            If an attribute is neither one of these nor a constant.
         """
-        return {name: value for name, value in vars(self).items() if isinstance(value, _STATE)}
+        kept = {name: value for name, value in vars(self).items() if _is_kept(value)}
+        for name, value in vars(self).items():
+            if name not in kept and not _is_constant(value):
+                raise TypeError(
+                    f"{self.name}: {name} must be an array or a number, which a checkpoint can "
+                    f"hold, got {type(value).__name__}"
+                )
+        return kept
 
     def tally(self, tally: Tally) -> Tally:
         """Return the record of single collisions, with the arrays of this observer if any."""
@@ -188,6 +201,20 @@ class Averaged(Observer):
             variables[name] = (dimensions, value)
             variables[f"{name}_error"] = (dimensions, error)
         return variables
+
+
+def _is_kept(value: object) -> bool:
+    """Return whether a checkpoint can hold it; an array of objects would be pickled."""
+    return isinstance(value, _KEPT) and not getattr(value, "dtype", np.dtype(float)).hasobject
+
+
+def _is_constant(value: object) -> bool:
+    if isinstance(value, tuple | frozenset):  # a tuple of arrays is none: they may change
+        return all(
+            _is_constant(each) or (_is_kept(each) and not isinstance(each, np.ndarray))
+            for each in value
+        )
+    return isinstance(value, _CONSTANT)
 
 
 def restore(owner: Any, name: str, value: NDArray[Any]) -> None:

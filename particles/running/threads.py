@@ -1,4 +1,4 @@
-"""Replicas in threads: progress bar, Ctrl-C and SIGTERM, checkpoints during the run."""
+"""Replicas in threads: progress bar, Ctrl-C and the like, checkpoints during the run."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def run_all(
     progress: bool | str,
     unit: str = " time units",
 ) -> bool:
-    """Run the replicas in threads; return whether Ctrl-C or SIGTERM stopped them.
+    """Run the replicas in threads; return whether Ctrl-C, or a signal like it, stopped them.
 
     ``progress``: whether to show a bar; a text stands in front of it.
     """
@@ -54,6 +54,10 @@ def run_all(
         except KeyboardInterrupt:  # from a handler that is not ours
             signals.append(SIGINT)
             _finish(futures, replicas, keeper, signals, stop)
+        except SystemExit:  # from such a handler of SIGTERM
+            stop.set()
+            _finish(futures, replicas, keeper, signals, stop)
+            raise
         finally:
             stop.set()  # otherwise leaving the block would wait for the end of the run
     return bool(signals)

@@ -1,5 +1,6 @@
 """What the page says and draws, without a browser."""
 
+import asyncio
 from concurrent.futures import ThreadPoolExecutor
 from threading import Lock
 
@@ -21,7 +22,8 @@ pytestmark = pytest.mark.filterwarnings("ignore::PendingDeprecationWarning")
 @pytest.fixture
 def page():
     """Return a page whose clock stands still."""
-    with ThreadPoolExecutor(1) as threads:
+    with asyncio.Runner() as runner, ThreadPoolExecutor(1) as threads:
+        runner.get_loop()  # makes the event loop that a page finds where it is served
         yield Page(threads, Lock())
 
 

@@ -91,7 +91,7 @@ def port():
     try:
         yield int(re.match(r"http://localhost:(\d+)/", process.stdout.readline())[1])
         process.send_signal(signal.SIGINT)
-        assert process.wait(600) == 130
+        assert process.wait(300) == -signal.SIGINT
     finally:
         process.kill()
         process.stdout.close()
@@ -99,7 +99,7 @@ def port():
 
 def get(port, host, path="/"):
     """Return status and text of the answer to a browser that was sent here by a host's name."""
-    connection = HTTPConnection("127.0.0.1", port, timeout=6000)
+    connection = HTTPConnection("127.0.0.1", port, timeout=300)
     connection.request("GET", path, headers={"Host": host})
     answer = connection.getresponse()
     text = answer.read().decode()
@@ -115,7 +115,7 @@ def first_message(port, origin):
 
     async def connect():
         socket = await websocket_connect(request, subprotocols=["bokeh", token])
-        message = await asyncio.wait_for(socket.read_message(), 600)
+        message = await asyncio.wait_for(socket.read_message(), 300)
         socket.close()
         while await socket.read_message() is not None:
             pass
@@ -159,4 +159,4 @@ def test_only_loopback_listens(port):
     for *_, (address, *_) in socket.getaddrinfo(socket.gethostname(), None, socket.AF_INET):
         if not address.startswith("127."):
             with pytest.raises(ConnectionRefusedError):
-                socket.create_connection((address, port), timeout=600)
+                socket.create_connection((address, port), timeout=300)

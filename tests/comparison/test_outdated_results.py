@@ -116,7 +116,7 @@ def test_after_an_edit_of_a_theory_its_sweep_gives_the_new_number(tmp_path):
             [*COMMAND, "sweep", "grid.toml", "--output", "results", "--processes", "1", *options],
             capture_output=True,
             text=True,
-            timeout=600,
+            timeout=300,
             check=True,
             cwd=tmp_path,
             env={**os.environ, "PYTHONPATH": str(tmp_path), "PYTHONDONTWRITEBYTECODE": "1"},

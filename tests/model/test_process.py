@@ -1,33 +1,113 @@
-"""Handlers of signals are restored, whatever arrives meanwhile."""
+"""Signals: which are taken, what they do afterwards, and that handlers are restored."""
 
 import signal
+import subprocess
+import sys
 
 import pytest
 
-from crazybilliards.model.process import interrupts_noted
+from crazybilliards.model.process import interrupts_noted, terminated_like_interrupted
+
+ENDING = [getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name)]
 
 
-def test_ctrl_c_between_two_restorations_leaves_no_handler_behind(monkeypatch):
-    before = signal.getsignal(signal.SIGTERM)
+@pytest.fixture
+def handle():
+    """Set the handler of a signal for the time of the test."""
+    before = []
+
+    def handle(number, handler):
+        before.append((number, signal.signal(number, handler)))
+
+    yield handle
+    for number, handler in reversed(before):
+        signal.signal(number, handler)
+
+
+def test_ctrl_c_between_two_restorations_leaves_no_handler_behind(monkeypatch, handle):
+    handle(signal.SIGTERM, signal.default_int_handler)
     setting = signal.signal
 
     def and_interrupt(number, handler):
         earlier = setting(number, handler)
-        if handler is signal.default_int_handler:  # from here on Ctrl-C raises an error again
-            signal.raise_signal(signal.SIGINT)
+        if number == signal.SIGINT and handler is signal.default_int_handler:
+            signal.raise_signal(signal.SIGINT)  # which raises an error again from here on
         return earlier
 
     monkeypatch.setattr(signal, "signal", and_interrupt)
-    came = []
-
-    def interrupted_thrice():
-        with interrupts_noted() as noted:
-            signal.raise_signal(signal.SIGINT)
-            signal.raise_signal(signal.SIGTERM)
-            came.extend(noted)
-
-    with pytest.raises(KeyboardInterrupt):
-        interrupted_thrice()
-    assert came == [signal.SIGINT, signal.SIGTERM]
+    numbers = [signal.SIGINT, signal.SIGTERM]
+    with pytest.raises(KeyboardInterrupt), interrupts_noted() as came:
+        any(map(signal.raise_signal, numbers))
+    assert came == numbers
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
-    assert signal.getsignal(signal.SIGTERM) == before
+    assert signal.getsignal(signal.SIGTERM) is signal.default_int_handler
+
+
+NOTED = """
+import signal
+from crazybilliards.model.process import interrupts_noted
+number = {number}
+signal.signal(number, signal.SIG_DFL)  # nohup, say, ignores SIGHUP
+with interrupts_noted():
+    signal.raise_signal(number)
+    print("went on", flush=True)
+print("survived", flush=True)
+"""
+
+
+@pytest.mark.parametrize("number", ENDING)
+def test_a_signal_that_ends_programs_does_so_after_the_block(number):
+    script = NOTED.format(number=int(number))
+    done = subprocess.run([sys.executable, "-c", script], stdout=subprocess.PIPE, check=False)
+    assert (done.returncode, done.stdout.split()) == (-number, [b"went", b"on"])
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, *ENDING])
+def test_a_signal_that_the_program_handles_or_ignores_stays_its_own(number, handle):
+    own = []
+    for handler in (signal.SIG_IGN, lambda number, _: own.append(number)):
+        handle(number, handler)
+        for taken in (interrupts_noted, terminated_like_interrupted):
+            if taken is terminated_like_interrupted and number == signal.SIGINT:
+                continue  # Ctrl-C is left alone there
+            with taken() as came:
+                signal.raise_signal(number)
+            assert came == []
+    assert own.count(number) == (1 if number == signal.SIGINT else 2)
+
+
+def test_the_end_of_an_outer_block_hears_of_a_signal_in_an_inner_one():
+    with interrupts_noted() as outer:
+        with interrupts_noted() as inner:
+            signal.raise_signal(signal.SIGINT)
+        assert inner == outer == [signal.SIGINT]
+
+
+def test_an_error_does_not_hide_a_signal_that_came():
+    """A program that goes on after errors would never end."""
+
+    def fail(*numbers):
+        any(map(signal.raise_signal, numbers))
+        raise ValueError("an error")
+
+    with pytest.raises(KeyboardInterrupt) as caught, interrupts_noted():
+        fail(signal.SIGINT)
+    assert str(caught.value.__cause__) == "an error"
+    with pytest.raises(ValueError, match="an error"), interrupts_noted():
+        fail()
+
+
+@pytest.mark.parametrize("number", ENDING)
+def test_a_command_is_terminated_like_interrupted_and_only_once(number, handle):
+    handle(number, signal.SIG_DFL)
+    with terminated_like_interrupted() as came:
+        with pytest.raises(KeyboardInterrupt):
+            signal.raise_signal(number)
+        signal.raise_signal(number)  # while results are written
+    assert came == [number, number]
+    with terminated_like_interrupted() as came:
+        with interrupts_noted():
+            signal.raise_signal(number)
+        signal.raise_signal(number)
+    assert came == [number, number]
+    assert signal.getsignal(number) is signal.SIG_DFL

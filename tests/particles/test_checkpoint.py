@@ -21,6 +21,8 @@ from crazybilliards.particles import simulate
 from crazybilliards.particles.running import checkpoint
 from crazybilliards.particles.running.replica import Replica
 
+PATIENCE = 200  # for what must come to an end, in seconds
+
 SCRIPT = """
 import sys
 from crazybilliards.model import Chain, save
@@ -44,9 +46,9 @@ def test_killed_at_random_moments_and_resumed_it_is_the_undisturbed_run(e, tmp_p
     assert run_and_signal(script, "", undisturbed) == 0
     generator = np.random.default_rng(int(10 * e))
     for how in (signal.SIGTERM, signal.SIGKILL, signal.SIGKILL, signal.SIGINT):
-        run_and_signal(script, checkpoint, output, how, after=generator.random() / 2)
-        if how == signal.SIGTERM:
-            assert load(output).attrs["status"] == "interrupted"
+        status = run_and_signal(script, checkpoint, output, how, after=generator.random() / 2)
+        assert status == (0 if how == signal.SIGINT else -how)
+    assert load(output).attrs["status"] == "interrupted"
     # However far it came, now to the end.
     assert run_and_signal(script, checkpoint, output) == 0
     resumed = load(output)
@@ -194,7 +196,11 @@ for number in range(1, 9):
 def test_ctrl_c_may_come_while_the_lock_of_the_threads_is_being_taken():
     """An error between the taking and the block that frees it would leave it held for ever."""
     done = subprocess.run(
-        [sys.executable, "-c", EVERY_ENTRY], capture_output=True, text=True, timeout=300, check=True
+        [sys.executable, "-c", EVERY_ENTRY],
+        capture_output=True,
+        text=True,
+        timeout=PATIENCE,
+        check=True,
     )
     ends = done.stdout.splitlines()
     assert len(ends) == 8
@@ -219,6 +225,61 @@ def test_ctrl_c_during_the_last_writing_keeps_everything(tmp_path, monkeypatch):
     resumed = simulate(Chain(size=10), **arguments)
     xr.testing.assert_equal(resumed, run)
     assert resumed.attrs["status"] == "completed"
+
+
+ENDED = """
+import signal, sys
+from crazybilliards.model import Chain
+from crazybilliards.particles import simulate
+from crazybilliards.particles.observers.widths import Widths
+
+number, handler, checkpoint = int(sys.argv[1]), sys.argv[2], sys.argv[3]
+handlers = {
+    "default": signal.SIG_DFL,
+    "like Ctrl-C": signal.default_int_handler,
+    "exits": lambda number, _: sys.exit(7),
+}
+signal.signal(number, handlers[handler])
+observe, calls = Widths.observe, []
+
+def and_signal(self, *arguments):
+    observe(self, *arguments)
+    calls.append(self)
+    if len(calls) == 20:
+        signal.pthread_kill(threading.main_thread().ident, number)
+
+import threading
+Widths.observe = and_signal
+for attempt in range(2):
+    calls.clear()
+    run = simulate(Chain(size=10), duration=1e9, progress=False, checkpoint=checkpoint,
+                   checkpoint_interval=1e9)
+    print(run.attrs["status"], run.attrs["end_time"], flush=True)
+"""
+
+
+@pytest.mark.compiled
+@pytest.mark.skipif(os.name == "nt", reason="sends a POSIX signal")
+@pytest.mark.parametrize("name", ["SIGTERM", "SIGHUP"])
+@pytest.mark.parametrize(
+    ("handler", "status", "lines"), [("default", None, 0), ("like Ctrl-C", 0, 2), ("exits", 7, 0)]
+)
+def test_a_loop_ends_at_a_signal_after_the_checkpoint_unless_it_asks_for_the_result(
+    name, handler, status, lines, tmp_path
+):
+    number = getattr(signal, name)
+    state = tmp_path / "state"
+    done = subprocess.run(
+        [sys.executable, "-c", ENDED, str(int(number)), handler, state],
+        stdout=subprocess.PIPE,
+        text=True,
+        timeout=PATIENCE,
+        check=False,
+    )
+    assert done.returncode == (-number if status is None else status)
+    assert [line.split()[0] for line in done.stdout.splitlines()] == ["interrupted"] * lines
+    # The first checkpoint, before any work, has measured nothing.
+    assert np.load(io.BytesIO(read_sealed(state)))["0/steps"] > 0
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])

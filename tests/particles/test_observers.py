@@ -2,6 +2,7 @@
 
 import inspect
 import json
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -172,25 +173,75 @@ def test_an_observer_gives_what_it_declares(observer):
     assert set(observer.gives) <= VOCABULARY.keys()
 
 
-def test_what_a_checkpoint_cannot_hold_is_refused():
-    class Listing(Averaged):
-        name = "listing"
-        gives = ("density",)
+class Holding(Averaged):
+    """An observer with an attribute of some kind."""
 
-        def prepare(self, run, copies):
-            self.kept = []
+    name = "holding"
+    gives = ("density",)
 
-        def memory(self, run):
-            return 0.0
+    def __init__(self, held):
+        self.held = held
 
+    def observe(self, snapshots):
+        pass
+
+    def report(self, counts):
+        return {}
+
+
+@pytest.mark.parametrize(
+    "held",
+    [
+        [],
+        {},
+        set(),
+        bytearray(),
+        np.random.default_rng(1),
+        object(),
+        iter([]),
+        (1, [2]),
+        (np.zeros(1),),
+        np.array([None]),
+        SimpleNamespace(count=0),
+    ],
+    ids=lambda held: type(held).__name__,
+)
+def test_what_a_checkpoint_cannot_hold_is_refused(held):
+    message = f"holding: held must be an array or a number, .* got {type(held).__name__}"
+    with pytest.raises(TypeError, match=message):
+        simulate(Chain(size=2), duration=200, observe=Holding(held), progress=False)
+
+
+@pytest.mark.parametrize(
+    "held",
+    [
+        *(None, True, 2, 0.5, 1j, "text", np.float32(3), np.arange(3), Chain(size=3)),
+        *((1, ("a", None)), frozenset({1}), np.cos, max, int, lambda y: y),
+    ],
+    ids=lambda held: type(held).__name__,
+)
+def test_what_a_checkpoint_holds_or_what_never_changes_is_taken(held):
+    run = a_run(Chain(size=2), duration=200, observe=Holding(held))
+    original, resumed = (run.observers[0].prepared(run, 1) for _ in range(2))
+    for name, value in original.state().items():
+        restore(resumed, name, np.array(value))
+    assert type(resumed.held) is type(held)
+    assert np.all(resumed.held == held)
+
+
+def test_an_attribute_made_while_measuring_is_refused_at_the_next_checkpoint(tmp_path):
+    class Late(Holding):
         def observe(self, snapshots):
-            self.kept.append(snapshots)
+            self.held = [snapshots.first]
 
-        def report(self, counts):
-            return {}
-
-    with pytest.raises(TypeError, match="listing: kept must be an array or a number"):
-        simulate(Chain(size=2), duration=200, observe=Listing(), progress=False)
+    with pytest.raises(TypeError, match="held must be an array or a number"):
+        simulate(
+            Chain(size=2),
+            duration=200,
+            observe=Late(0),
+            progress=False,
+            checkpoint=tmp_path / "state",
+        )
 
 
 def test_an_observer_is_taken_as_an_object_with_parameters():

@@ -4,6 +4,7 @@ What only a process of its own can show (what it loads, how it takes a signal) i
 real ones.
 """
 
+import signal
 import subprocess
 import sys
 from typing import NamedTuple
@@ -28,9 +29,10 @@ def run(monkeypatch, capsys):
 
     def run(*arguments):
         monkeypatch.setattr("sys.argv", ["crazybilliards", *map(str, arguments)])
-        with pytest.raises(SystemExit) as caught:
+        monkeypatch.setattr("sys.excepthook", sys.excepthook)
+        with pytest.raises((SystemExit, KeyboardInterrupt)) as caught:
             main()
-        return Ended(caught.value.code or 0, *capsys.readouterr())
+        return Ended(getattr(caught.value, "code", 130) or 0, *capsys.readouterr())
 
     yield run
     plt.close("all")
@@ -50,9 +52,9 @@ def refused(run):
     return refused
 
 
-# A command that gets Ctrl-C when its simulation has measured for a while.
+# A command that gets a signal when its simulation has measured for a while.
 MEASURING = """
-import itertools, os, signal
+import itertools, os, signal, sys
 from crazybilliards.comparison.commands.line import main
 from crazybilliards.particles.observers.widths import Widths
 
@@ -61,8 +63,11 @@ observe, calls = Widths.observe, itertools.count(1)  # which two threads cannot 
 def and_interrupt(self, *arguments):
     observe(self, *arguments)
     if next(calls) == 20:
-        os.kill(os.getpid(), signal.SIGINT)
+        os.kill(os.getpid(), number)
 
+number = int(sys.argv.pop(1))
+if number != signal.SIGINT:
+    signal.signal(number, signal.SIG_DFL)  # nohup, say, ignores SIGHUP
 Widths.observe = and_interrupt
 main()
 """
@@ -70,14 +75,14 @@ main()
 
 @pytest.fixture
 def interrupted():
-    """Run a real command and let Ctrl-C come while it measures."""
+    """Run a real command and let Ctrl-C, or another signal, come while it measures."""
 
-    def interrupted(*arguments):
+    def interrupted(*arguments, number=signal.SIGINT):
         done = subprocess.run(
-            [sys.executable, "-c", MEASURING, *map(str, arguments)],
+            [sys.executable, "-c", MEASURING, str(int(number)), *map(str, arguments)],
             capture_output=True,
             text=True,
-            timeout=600,
+            timeout=300,
             check=False,
         )
         # That kernels are being compiled is said if it takes long, on a busy machine say.

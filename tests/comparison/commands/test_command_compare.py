@@ -1,12 +1,14 @@
 """The command ``compare``: writes all or nothing, refuses in one line, keeps on Ctrl-C."""
 
 import os
+import signal
 from pathlib import Path
 
 import pytest
 
-from crazybilliards.comparison.studies import restitution_figures
-from crazybilliards.model import load
+from crazybilliards.comparison.studies import parameter_series, restitution_figures
+from crazybilliards.model import chain_of, load
+from crazybilliards.particles import simulate
 
 QUICK = ["compare", "--size", "10", "--duration", "1000", "--amplitudes", "1,5"]
 
@@ -107,8 +109,38 @@ def test_ctrl_c_while_a_picture_is_drawn_keeps_those_before(run, tmp_path, monke
     arguments = ["--restitution", "0.9", "--size", "10", "--duration", "200"]
     done = run("compare", *arguments, "--output", str(tmp_path))
     assert done.returncode == 130
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["comparison.nc", "widths.png"]
+    names = sorted(path.name for path in tmp_path.iterdir())
+    assert names == ["comparison-interrupted.nc", "widths-interrupted.png"]
     assert "kinetic equation minus simulation" in " ".join(done.stdout.split())
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("fails", [False, True])
+def test_a_picture_of_one_chain_is_there_while_the_next_is_computed(
+    fails, run, tmp_path, monkeypatch
+):
+    """One that fails costs no computation, and is drawn once more at the end."""
+    draw, drawn, seen = restitution_figures.draw_phase_space, [], []
+
+    def drawing(theory):
+        drawn.append(chain_of(theory).restitution)
+        if fails and len(drawn) == 1:
+            raise OSError("no room")
+        return draw(theory)
+
+    def simulating(*arguments, **settings):
+        seen.append(sorted(path.name for path in tmp_path.glob("*.png")))
+        return simulate(*arguments, **settings)
+
+    monkeypatch.setattr(restitution_figures, "draw_phase_space", drawing)
+    monkeypatch.setattr(parameter_series, "simulate", simulating)
+    arguments = ["--restitution", "0.9,1", "--size", "10", "--duration", "200"]
+    done = run("compare", *arguments, "--output", str(tmp_path))
+    assert done.returncode == 0, done.stderr
+    assert seen == [[], [] if fails else ["phase_space_restitution_0.9-interrupted.png"]]
+    assert drawn == ([0.9, 1.0, 0.9] if fails else [0.9, 1.0])
+    names = ["phase_space_restitution_0.9.png", "phase_space_restitution_1.png", "widths.png"]
+    assert sorted(path.name for path in tmp_path.glob("*.png")) == names
 
 
 @pytest.mark.compiled
@@ -116,7 +148,7 @@ def test_ctrl_c_while_a_picture_is_drawn_keeps_those_before(run, tmp_path, monke
 def test_ctrl_c_saves_what_was_computed_beside_a_finished_result(interrupted, tmp_path):
     (tmp_path / "comparison.nc").write_text("finished")
     done = interrupted(*QUICK[:3], "--duration", "1e9", "--output", tmp_path)
-    assert done.returncode == 130, done.stderr
+    assert done.returncode == -signal.SIGINT, done.stderr
     assert "Traceback" not in done.stderr
     tree = load(tmp_path / "comparison-interrupted.nc")
     assert tree.attrs["status"] == "interrupted"

@@ -1,6 +1,7 @@
 """The command ``simulate``: what the function returns, in a file."""
 
 import os
+import signal
 
 import pytest
 import xarray as xr
@@ -100,9 +101,14 @@ def test_a_chain_that_diverges_ends_with_status_1(run, tmp_path):
 
 @pytest.mark.compiled
 @pytest.mark.skipif(os.name == "nt", reason="sends a POSIX signal")
-def test_ctrl_c_saves_what_was_measured(interrupted, tmp_path):
-    done = interrupted("simulate", "--size", 10, "--duration", 1e9, "--output", tmp_path / "run.nc")
-    assert done.returncode == 130, done.stderr
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])
+def test_ctrl_c_saves_what_was_measured(name, interrupted, tmp_path):
+    """So do what batch systems send before they kill, and a lost connection."""
+    number = getattr(signal, name)
+    arguments = ("--size", 10, "--duration", 1e9, "--output", tmp_path / "run.nc")
+    done = interrupted("simulate", *arguments, number=number)
+    # Ctrl-C must also end a loop of a shell, which looks for the signal.
+    assert done.returncode == (-number if name == "SIGINT" else 128 + number), done.stderr
     assert done.stderr == "crazybilliards: interrupted\n"
     assert load(tmp_path / "run-interrupted.nc").attrs["status"] == "interrupted"
     assert [path.name for path in tmp_path.iterdir()] == ["run-interrupted.nc"]

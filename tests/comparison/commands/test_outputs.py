@@ -2,6 +2,7 @@
 
 import json
 import os
+import shlex
 import subprocess
 import sys
 import warnings
@@ -99,6 +100,25 @@ def test_standard_output_to_a_full_disk_is_one_line():
         )
     assert done.returncode == 2
     assert done.stderr == ("crazybilliards: error: standard output: No space left on device\n")
+
+
+@pytest.mark.skipif(os.name == "nt", reason="closes POSIX streams")
+@pytest.mark.parametrize(
+    ("command", "closed"),
+    [
+        *((command, ">&- 2>&- <&-") for command in [*SMALL, "sweep"]),
+        ("theory", ">&-"),
+        ("theory", "2>&-"),
+    ],
+)
+def test_a_closed_stream_costs_no_work(closed, command, arguments, tmp_path):
+    output = tmp_path / ("run.nc" if command == "simulate" else "results")
+    line = [*COMMAND, *map(str, arguments(command)), "--output", str(output)]
+    done = subprocess.run(
+        f"{shlex.join(line)} {closed}", shell=True, capture_output=True, text=True, check=False
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    assert output.exists()
 
 
 def test_numbers_in_tables_are_never_cut(monkeypatch, capsys):
