@@ -89,6 +89,7 @@ def _excess(run: xr.Dataset, name: str) -> float:
 def draw(results: Results) -> Figure:
     """Draw <dx> against i_n, and of the rods at the left border against i; theory as lines."""
     figure, (whole, border) = panels(1, 2, height=2.5)
+    border.set(xscale="log", xlabel="particle $i$", ylabel=_LABEL)
     for number, e in enumerate(_RESTITUTIONS):
         run = pooled(results, dissipative_name(LARGE, e))
         s, colour = chain_of(run).thermal_length, COLOURS[number]
@@ -104,7 +105,6 @@ def draw(results: Results) -> Figure:
     along_the_chain(whole)
     whole.set(ylabel=_LABEL, ylim=(-_FRAME, _FRAME))
     mark_clipped(whole)
-    border.set(xscale="log", xlabel="particle $i$", ylabel=_LABEL)
     for theory, style in LINES.items():
         whole.plot([], [], style, color="0.4", label=theory)
     legend_above(figure, whole)
