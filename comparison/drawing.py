@@ -183,14 +183,16 @@ def _draw_measured(
     at, y = x.values, values.values
     spread = np.zeros(y.size) if error is None else error.values
     kept = shown[_tell_the_curve(ax, at, y, spread, shown)]
-    look = {"linestyle": "none", "linewidth": 0.8, "markerfacecolor": "none"} | dict(look)
+    look = {"linestyle": "none", "linewidth": 0.8, "markerfacecolor": "none", **look}
     if kept.size:
         ax.errorbar(at[kept], y[kept], None if error is None else spread[kept], **look)
     lined = np.zeros(y.size, dtype=bool)
     for first, last in pairwise(shown):
         lined[first : last + 1] |= not {first, last} <= set(kept)
     if lined.any():
-        same = {name: look[name] for name in ("color", "alpha", "zorder") if name in look}
+        same: dict[str, Any] = {
+            name: look[name] for name in ("color", "alpha", "zorder") if name in look
+        }
         curve = np.where(lined, y, np.nan)
         ax.plot(at, curve, linewidth=0.8, label="" if kept.size else look["label"], **same)
         band = same | {"alpha": 0.3 * same.get("alpha", 1.0), "linewidth": 0}

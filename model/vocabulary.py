@@ -72,6 +72,20 @@ VOCABULARY = {
     "normalized_particle": ("normalized particle i_n", "1"),
 }
 
+# Numbers about a whole result are its attributes, plain numbers in these units.
+ATTRIBUTES = {
+    "end_time": ("time reached, warm-up included", "T"),
+    "seconds": ("computing time", "s"),
+    "residual": ("how far the equations are from satisfied", "1"),
+    "time_step_error": ("relative error of W_v due to the time step", "1"),
+    "correlation": ("correlation of the widths at the last two time steps", "1"),
+    "mesh_error": ("largest relative error of W_v due to the mesh", "1"),
+    "model_error": ("relative error of the theory itself", "1"),
+    "border_error": ("relative error of the theory itself at the border", "1"),
+    "cells": ("cells of the mesh along y", "1"),
+    "iterations": ("iterations until the equations were satisfied", "1"),
+}
+
 _RODS_TOLERANCE = 1e-6
 
 
