@@ -42,6 +42,7 @@ from numpy.typing import NDArray
 from scipy.special import ndtr, stdtrit
 
 from crazybilliards.model import Chain
+from crazybilliards.model.chain import middle_tenth
 from crazybilliards.particles.laws.closed_contacts import CRITICAL_RESTITUTION
 from crazybilliards.particles.level_steps import Steps, relative_bias
 from crazybilliards.particles.observers import Observer
@@ -97,9 +98,7 @@ def _reported(
                 dimensions = tuple(each for each in dimensions if each != "time")
             found[name] = dimensions, array
     rods = found["velocity_width"][1]
-    rank = np.abs(np.arange(rods.size) - (rods.size - 1) / 2)
-    middle = rods[rank <= max(0.05 * rods.size, 0.5)]
-    found[CENTRAL] = (), np.sqrt(np.mean(middle**2))
+    found[CENTRAL] = (), np.sqrt(np.mean(rods[middle_tenth(rods.size)] ** 2))
     return found
 
 

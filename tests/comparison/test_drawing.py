@@ -109,10 +109,14 @@ def test_overlay_draws_symbols_where_straight_lines_between_them_follow_the_curv
     assert np.abs(curve(X) - partly).max() < 0.01 * 0.06
 
 
-def test_noise_alone_is_drawn_as_symbols():
+def test_noise_is_drawn_as_symbols_and_waves_within_it_as_a_line():
+    """All nodes together show a wave of two standard errors; two of them do not."""
     noise = np.random.default_rng(1).normal(size=X.size)
     symbols, _, _ = drawn(overlay({"rods": simulated(X, 0.4 + 0.02 * noise, 0.02)}))
-    assert symbols.size > 40
+    assert symbols.size == 60
+    faint = WAVES + 0.015 * noise
+    symbols, lined, _ = drawn(overlay({"rods": simulated(X, faint, 0.015)}))
+    assert (symbols.size, lined.size) == (0, X.size)
     symbols, _, _ = drawn(overlay({"rods": simulated(X, 0.4 + 0.02 * noise, 0.002)}))
     assert symbols.size == 0
 

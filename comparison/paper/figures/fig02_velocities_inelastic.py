@@ -24,10 +24,11 @@ from crazybilliards.comparison.paper.distributions import (
     off_in_plot,
 )
 from crazybilliards.model import chain_of
+from crazybilliards.model.chain import middle_tenth
 
 _NAME = dissipative_name(LARGE, 0.0)
 _PARTICLES = (1, 10, 100, 500)
-_BULK = range(451, 551)
+_BULK = range(1, LARGE + 1)[middle_tenth(LARGE)]
 _SHOWN = 5.0  # widths of the rod to either side in the plot of its distribution
 _SOURCE = "section seq:e_0, fig.1"
 

@@ -9,7 +9,7 @@ from typing import Any
 import xarray as xr
 from matplotlib.figure import Figure
 
-from crazybilliards.comparison.claims.repetition import estimate, middle_tenth, pooled
+from crazybilliards.comparison.claims.repetition import estimate, pooled
 from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
 from crazybilliards.comparison.claims.verdicts import About, Claim, Estimate, positive_claim
 from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_rods, mark_clipped
@@ -23,6 +23,7 @@ from crazybilliards.comparison.paper.predictions import (
     predicted,
 )
 from crazybilliards.model import chain_of
+from crazybilliards.model.chain import middle_tenth
 
 _FRAME = 0.7
 _LABEL = r"displacement $\langle\Delta x\rangle/s$"
