@@ -53,7 +53,7 @@ class Observer(ABC):
     gives
         The variables that it reports. Their meanings and units are in the vocabulary.
     along
-        The coordinates that it adds to the result, e.g. ``("velocity",)``.
+        The coordinates that it adds to the result, e.g. ``("velocity_bin",)``.
     least_rods
         The size of the shortest chain that it can measure.
     single_collisions
@@ -62,6 +62,8 @@ class Observer(ABC):
         Whether it can be averaged over replicas at equal times.
     limit
         Whether it reports averages that have a limit of a vanishing time step.
+    shares_time
+        Whether it has the times of all snapshots if another observer has them too.
     """
 
     name: ClassVar[str]
@@ -71,6 +73,7 @@ class Observer(ABC):
     single_collisions: ClassVar[bool] = False
     ensemble: ClassVar[bool] = True
     limit: ClassVar[bool] = True
+    shares_time: ClassVar[bool] = False
 
     def __str__(self) -> str:
         """Return the name and, if there are any, the parameters."""

@@ -21,7 +21,7 @@ from crazybilliards.comparison.claims.verdicts import (
 )
 from crazybilliards.comparison.distances import distances_in_plot
 from crazybilliards.comparison.explore.sums import Sums
-from crazybilliards.comparison.paper.distributions import moment
+from crazybilliards.comparison.paper.distributions import mean_shape
 from crazybilliards.comparison.studies.restitutions import width_deviation
 from crazybilliards.model import Chain
 from crazybilliards.model.vocabulary import result
@@ -215,13 +215,21 @@ def test_widths_of_centre_and_border():
 
 @pytest.mark.compiled
 def test_moments_of_a_gaussian():
-    """Skewness 0 and kurtosis 3, within 5 errors of 2 x 5e4 nearly independent velocities."""
+    """Skewness and excess kurtosis are 0, within 5 errors of 1e5 nearly independent velocities."""
     run = simulate(
         Chain(size=2), duration=3e5, every=6.0, observe="velocities", progress=False, seed=3
     )
     n = 1e5
-    assert abs(moment(run, [1, 2], 3)) < 5 * (6 / n) ** 0.5 * 1.5
-    assert abs(moment(run, [1, 2], 4) - 3) < 5 * (24 / n) ** 0.5 * 1.5
+    for name, error in (
+        ("velocity_skewness", (6 / n) ** 0.5),
+        ("velocity_kurtosis", (24 / n) ** 0.5),
+    ):
+        assert abs(mean_shape(run, [1, 2], name)) < 5 * error * 1.5
+        measured = run[f"{name}_error"].values / 2**0.5
+        np.testing.assert_allclose(measured, error, rtol=0.4)  # of the scatter of 64 blocks
+    for name in ("velocity_kurtosis", "velocity_skewness"):
+        with pytest.raises(ValueError, match=f"the result has no '{name}'"):  # an old one
+            mean_shape(run.drop_vars(name), [1, 2], name)
 
 
 def test_the_centre_is_the_same_rods_everywhere():
