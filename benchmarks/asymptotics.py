@@ -17,8 +17,8 @@ import xarray as xr
 from neighbours import length_of, measured, solved, spread_of
 
 from crazybilliards.comparison import fit_border_power_law
-from crazybilliards.comparison.claims.repetition import middle_tenth
 from crazybilliards.model import Chain
+from crazybilliards.model.chain import middle_tenth
 
 SIZES = (30, 100, 300, 1000, 3000)
 Quantities = dict[str, tuple[float, float]]  # value and standard error, 0 in theory

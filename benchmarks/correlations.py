@@ -16,9 +16,10 @@ import numpy as np
 import xarray as xr
 from kept import complete, kept_or_made
 
-from crazybilliards.comparison.studies.restitutions import tenth_rounded_outward, width_deviation
+from crazybilliards.comparison.studies.restitutions import width_deviation
 from crazybilliards.kinetic import correlated_phase_space, phase_space
 from crazybilliards.model import Chain
+from crazybilliards.model.chain import middle_tenth
 from crazybilliards.particles import simulate
 from crazybilliards.particles.scales import default_time_step
 
@@ -93,7 +94,7 @@ def reduced(run: xr.Dataset) -> xr.Dataset:
     mean_square = (v**2).mean(axis=0)
     mean_square = (mean_square[1:] + mean_square[:-1]) / 2
     relative = 1 - (v[:, 1:] * v[:, :-1]).mean(axis=0) / mean_square
-    middle = (v[:, tenth_rounded_outward(size)] ** 2).mean(axis=1)
+    middle = (v[:, middle_tenth(size)] ** 2).mean(axis=1)
     blocks = middle[: middle.size // BLOCKS * BLOCKS].reshape(BLOCKS, -1).mean(axis=1)
     error = blocks.std(ddof=1) / np.sqrt(BLOCKS) / blocks.mean() / 2
     rest = run.drop_vars(["position", "velocity"]).drop_dims("time", errors="ignore")

@@ -19,11 +19,11 @@ from ingredients import draw_ingredients
 from kept import kept_or_made
 from matplotlib.axes import Axes
 
-from crazybilliards.comparison.claims.repetition import middle_tenth
 from crazybilliards.comparison.drawing import COLOURS, SYMBOLS
 from crazybilliards.comparison.layout import entitle, house_style, legend_above, panels
 from crazybilliards.kinetic import correlated_phase_space
 from crazybilliards.model import Chain, chain_of
+from crazybilliards.model.chain import middle_tenth
 from crazybilliards.particles import simulate
 from crazybilliards.particles.observers import Covariances
 from crazybilliards.particles.scales import default_time_step

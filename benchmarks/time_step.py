@@ -20,6 +20,7 @@ from typing import NamedTuple
 import numpy as np
 
 from crazybilliards.model import Chain
+from crazybilliards.model.chain import middle_tenth
 from crazybilliards.model.kernels import kernel
 from crazybilliards.particles.laws.avalanche import make_tally
 from crazybilliards.particles.laws.closed_contacts import CRITICAL_RESTITUTION, strengthen
@@ -126,7 +127,7 @@ def reported(copy: Copy, steps: int) -> np.ndarray:
     second = c**2 * v2 + h**2
     fourth = c**4 * v4 + 6 * c**2 * h**2 * v2 + 3 * h**4
     size = mean.size
-    middle = slice(*np.round(size * np.array([0.45, 0.55])).astype(int))
+    middle = middle_tenth(size)
     tenth = max(size // 10, 1)
     return np.array(
         [

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from itertools import cycle
+from itertools import cycle, pairwise
 from typing import Any, Literal
 
 import matplotlib.pyplot as plt
@@ -11,8 +11,11 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.container import ErrorbarContainer
+from numpy.typing import NDArray
 
 from crazybilliards.model.vocabulary import require
+
+Array = NDArray[np.float64]
 
 # Okabe and Ito's colours, distinct for any colour vision; symbols and line styles differ too.
 COLOURS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#D55E00", "#56B4E9", "#000000")
@@ -30,6 +33,10 @@ _LINES: tuple[dict[str, Any], ...] = (
     {"color": "#009E73", "linestyle": "-.", "linewidth": 1.4},
 )
 _MOST_SYMBOLS = 60
+_SEEN = 0.01  # of the height of the picture, between a curve and a line
+# Standard errors between a curve and lines from node to node that noise makes: at most, of hundreds
+# of nodes whose errors are themselves uncertain, and their root mean square, 1.2 to 1.3.
+_LARGEST, _TYPICAL = 6.0, 2.0
 # How axes are labelled; other variables by their long names.
 _LABELS = {
     "density": r"density $\rho$",
@@ -62,7 +69,9 @@ def overlay(
     ----------
     results
         ``{label: result}``. Simulations are drawn as symbols with their standard errors, theories
-        as lines, in the order given; every one has its own colour.
+        as lines, in the order given; every one has its own colour. Where the symbols of a
+        simulation would hide waves between them, all its values are drawn instead, as a thin line
+        in a band of one standard error.
     quantity
         A variable over x, time or particle. Smooth all densities in the same way first.
     along
@@ -103,11 +112,8 @@ def overlay(
             count = min(abscissa.size, _MOST_SYMBOLS)
             shown = np.linspace(0, abscissa.size - 1, count).round().astype(int)
             error = dataset.get(f"{quantity}_error")
-            look = {"linestyle": "none", "markersize": 3.5, "markerfacecolor": "none"}
-            look |= {"linewidth": 0.8, "label": label, "zorder": 3} | next(symbols) | own
-            ax.errorbar(
-                abscissa[shown], values[shown], None if error is None else error[shown], **look
-            )
+            look = {"markersize": 3.5, "label": label, "zorder": 3} | next(symbols) | own
+            _draw_measured(ax, abscissa, values, error, shown, look)
         else:
             look = {"label": label, "zorder": 2}
             look |= next(lines) | own
@@ -139,6 +145,9 @@ def draw_rods(
 ) -> None:
     """Draw a quantity of the rods as symbols with error bars; a long chain shows some rods.
 
+    As in :func:`overlay` a thin line shows all rods where the symbols would not. Make an axis
+    logarithmic before, because that changes what can be seen.
+
     Parameters
     ----------
     number
@@ -151,17 +160,75 @@ def draw_rods(
     spaced = np.geomspace if along == "particle" else np.linspace
     last = run.particle.size
     shown = np.unique(np.round(spaced(1, last, min(last, _MOST_SYMBOLS))).astype(int)) - 1
-    colour = COLOURS[number % len(COLOURS)]
-    ax.errorbar(
-        run[along][shown],
-        run[quantity][shown] / unit,
-        run[f"{quantity}_error"][shown] / unit,
-        fmt=SYMBOLS[number % len(SYMBOLS)],
-        markerfacecolor="none",
-        linewidth=0.7,
-        color=colour,
-        label=label,
-    )
+    look = {
+        "color": COLOURS[number % len(COLOURS)],
+        "marker": SYMBOLS[number % len(SYMBOLS)],
+        "linewidth": 0.7,
+        "label": label,
+    }
+    error = run[f"{quantity}_error"] / unit
+    _draw_measured(ax, run[along], run[quantity] / unit, error, shown, look)
+
+
+def _draw_measured(
+    ax: Axes,
+    x: xr.DataArray,
+    values: xr.DataArray,
+    error: xr.DataArray | None,
+    shown: NDArray[np.int64],
+    look: Mapping[str, Any],
+) -> None:
+    """Draw the nodes ``shown`` as symbols with error bars, and the stretches they hide as a line.
+
+    ``look``: color, label and other keywords of ``errorbar``.
+    """
+    at, y = x.values, values.values
+    spread = np.zeros(y.size) if error is None else error.values
+    kept = shown[_tell_the_curve(ax, at, y, spread, shown)]
+    look = {"linestyle": "none", "linewidth": 0.8, "markerfacecolor": "none", **look}
+    if kept.size:
+        ax.errorbar(at[kept], y[kept], None if error is None else spread[kept], **look)
+    lined = np.zeros(y.size, dtype=bool)
+    for first, last in pairwise(shown):
+        lined[first : last + 1] |= not {first, last} <= set(kept)
+    if lined.any():
+        same: dict[str, Any] = {
+            name: look[name] for name in ("color", "alpha", "zorder") if name in look
+        }
+        curve = np.where(lined, y, np.nan)
+        ax.plot(at, curve, linewidth=0.8, label="" if kept.size else look["label"], **same)
+        band = same | {"alpha": 0.3 * same.get("alpha", 1.0), "linewidth": 0}
+        ax.fill_between(at, curve - spread, curve + spread, **band)
+
+
+def _tell_the_curve(
+    ax: Axes, x: Array, values: Array, error: Array, shown: NDArray[np.int64]
+) -> NDArray[np.bool_]:
+    """Return which of the nodes ``shown`` can be symbols because they tell the curve around them.
+
+    Symbols further apart than the waves of a curve would show waves that do not exist. Straight
+    lines from a symbol to its neighbours must therefore follow all nodes between, to a hundredth
+    of the picture or to what noise makes. If most symbols fail, or if the other nodes together are
+    further off than noise makes them, none is left.
+    """
+    if ax.get_xscale() == "log":
+        x = np.log(x)
+    if ax.get_yscale() == "log":
+        with np.errstate(divide="ignore", invalid="ignore"):
+            values, error = np.log(values), error / values
+    across, high = (float(np.nanmax(each) - np.nanmin(each)) or 1.0 for each in (x, values))
+    stretch = np.searchsorted(shown[1:-1], np.arange(x.size), side="right")
+    slopes = np.diff(values[shown]) / high / (np.diff(x[shown]) / across)
+    seen = _SEEN * high * np.hypot(1.0, slopes)[stretch]  # a steep line is nearer than it is below
+    missed = np.abs(values - np.interp(x, x[shown], values[shown]))
+    missed[missed <= seen] = 0.0
+    noise = np.where(np.isfinite(error), error, 0.0)
+    hidden = stretch[~(missed <= _LARGEST * noise)]
+    tells = np.ones(shown.size, dtype=bool)
+    tells[hidden] = tells[hidden + 1] = False
+    rest = ~np.isin(stretch, hidden) & (noise > 0)
+    together = np.sum((missed[rest] / noise[rest]) ** 2) > _TYPICAL**2 * rest.sum()
+    return tells & (tells.mean() > 0.5) & ~together
 
 
 def mark_clipped(ax: Axes) -> None:

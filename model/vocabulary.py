@@ -31,6 +31,8 @@ VOCABULARY = {
     "mean_velocity": ("mean velocity <v_i>", "R/T"),
     "velocity_density": ("probability density of v_i", "T/R"),
     "velocity_outside": ("share of velocities beyond the bins", "1"),
+    "velocity_skewness": ("skewness of v_i", "1"),
+    "velocity_kurtosis": ("excess kurtosis of v_i", "1"),
     "kinetic_energy": ("kinetic energy sum m v^2/2", "M R^2/T^2"),
     "collision_rate": ("collisions with the right neighbour per time", "1/T"),
     "avalanche_count": ("waves started by the particle that triggered N_c collisions", "1"),
@@ -61,6 +63,7 @@ VOCABULARY = {
     "unsteadiness": ("rms rate of change, in units of the free case", "1"),
     "position": ("rod centres x_i", "R"),
     "velocity": ("velocity v", "R/T"),
+    "velocity_bin": ("velocity v in the middle of a bin", "R/T"),
     "time": ("time t", "T"),
     "x": ("position x", "R"),
     "y": ("reduced position y", "R"),
@@ -70,6 +73,20 @@ VOCABULARY = {
     "separation": ("separation r of two particles or contacts", "1"),
     "mean_position": ("mean position <x_i>", "R"),
     "normalized_particle": ("normalized particle i_n", "1"),
+}
+
+# Numbers about a whole result are its attributes, plain numbers in these units.
+ATTRIBUTES = {
+    "end_time": ("time reached, warm-up included", "T"),
+    "seconds": ("computing time", "s"),
+    "residual": ("how far the equations are from satisfied", "1"),
+    "time_step_error": ("relative error of W_v due to the time step", "1"),
+    "correlation": ("correlation of the widths at the last two time steps", "1"),
+    "mesh_error": ("largest relative error of W_v due to the mesh", "1"),
+    "model_error": ("relative error of the theory itself", "1"),
+    "border_error": ("relative error of the theory itself at the border", "1"),
+    "cells": ("cells of the mesh along y", "1"),
+    "iterations": ("iterations until the equations were satisfied", "1"),
 }
 
 _RODS_TOLERANCE = 1e-6

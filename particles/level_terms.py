@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ndtr, stdtrit
 
+from crazybilliards.model.chain import middle_tenth
 from crazybilliards.particles.observers import Observer
 from crazybilliards.particles.observers.base import Averaged
 from crazybilliards.particles.observers.error_bars import jackknife_error
@@ -67,9 +68,7 @@ def _reported(
                 dimensions = tuple(each for each in dimensions if each != "time")
             found[name] = dimensions, array
     rods = found["velocity_width"][1]
-    rank = np.abs(np.arange(rods.size) - (rods.size - 1) / 2)
-    middle = rods[rank <= max(0.05 * rods.size, 0.5)]
-    found[CENTRAL] = (), np.sqrt(np.mean(middle**2))
+    found[CENTRAL] = (), np.sqrt(np.mean(rods[middle_tenth(rods.size)] ** 2))
     return found
 
 

@@ -47,6 +47,7 @@ class Measurement(Protocol):
     single_collisions: ClassVar[bool]
     ensemble: ClassVar[bool]
     limit: ClassVar[bool]
+    shares_time: ClassVar[bool]
 
     def memory(self, run: Run) -> float:
         """Return the bytes it would keep for one replica, or for one group of an ensemble."""
@@ -186,7 +187,7 @@ class Run:
 
 def _check_observers(run: Run) -> None:
     """Raise if an observer cannot work in this run, or if two report the same variable."""
-    given: dict[str, str] = {}
+    given: dict[str, Measurement] = {}
     for observer in run.observers:
         if run.chain.size < observer.least_rods:
             raise ValueError(
@@ -204,9 +205,10 @@ def _check_observers(run: Run) -> None:
         # The times of an ensemble are the same for all observers.
         own = set(observer.along) - ({"time"} if run.average == "ensemble" else set())
         for name in sorted(own | set(observer.gives)):
-            if name in given:
+            other = given.setdefault(name, observer)
+            common = name == "time" and observer.shares_time and other.shares_time
+            if other is not observer and not common:
                 raise ValueError(
-                    f"observe: {given[name]!r} and {observer.name!r} would both give {name!r}; "
+                    f"observe: {other.name!r} and {observer.name!r} would both give {name!r}; "
                     "take one of them"
                 )
-            given[name] = observer.name

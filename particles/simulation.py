@@ -85,7 +85,8 @@ def simulate(
     observe
         Any of ``"widths"`` (velocity_width, mean_velocity, mean_displacement, displacement_width
         and the autocorrelation_time that tells whether warm-up and duration were long enough),
-        ``"density"``, ``"velocities"`` (velocity_density), ``"energy"`` (kinetic_energy in time),
+        ``"density"``, ``"velocities"`` (velocity_density,
+        velocity_skewness, velocity_kurtosis), ``"energy"`` (kinetic_energy in time),
         ``"covariances"`` (velocity_covariance, gap_covariance, mean_gap, neighbour_covariance,
         relative_temperature), ``"modes"`` (mode_velocity_variance), ``"collisions"``
         (collision_rate), ``"impacts"`` (contact_force, contact_loss, contact_temperature,

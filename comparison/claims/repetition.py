@@ -18,6 +18,7 @@ from crazybilliards.comparison.claims.study import Cases, Results
 from crazybilliards.comparison.claims.verdicts import Estimate
 from crazybilliards.comparison.sweeps import Case
 from crazybilliards.model import Chain
+from crazybilliards.model.chain import middle_tenth
 
 _SQUARED = ("velocity_width", "displacement_width")
 _COUNTED = ("avalanche_count", "triggered_count")
@@ -83,16 +84,6 @@ def normal_deviate(deviation: float, runs: int) -> float:
     """
     scattered = deviation * float(t.ppf(norm.cdf(1), runs - 1))
     return float(norm.isf(t.sf(scattered, runs - 1)))
-
-
-def middle_tenth(places: int) -> slice:
-    """Return the middle tenth of rods or of contacts.
-
-    Each half is rounded down, but not to nothing: 2 of 30, 10 of 100. An odd number has the one
-    in the middle as well: 9 of 99.
-    """
-    half = max(places // 20, 1)
-    return slice(max(places // 2 - half, 0), places - places // 2 + half)
 
 
 def central_width(run: xr.Dataset) -> float:

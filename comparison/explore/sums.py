@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crazybilliards.model import Chain
+from crazybilliards.model.chain import middle_tenth
 from crazybilliards.model.grid import deposit, position_grid, thermal_reach
 
 Array = NDArray[np.float64]
@@ -23,7 +24,7 @@ class Distributions(NamedTuple):
 
     v: Array
     border: Array  # of the two outermost rods, outward positive
-    middle: Array  # of the middle tenth, or the one or two in the middle of short chains
+    middle: Array  # of the middle tenth of the rods
 
 
 class Sums:
@@ -49,9 +50,7 @@ class Sums:
         fastest = (_REACH_OF_FLIPPERS if driven else _REACH) * chain.free_velocity_width
         self._v = np.linspace(-fastest, fastest, _BINS)
         self._border, self._middle = np.zeros(_BINS), np.zeros(_BINS)
-        # Not ``middle_tenth`` of the claims: of three rods that takes the outermost ones as well.
-        share = max(chain.size // 20, 1)
-        self._centre = slice(max((chain.size - 1) // 2 - share + 1, 0), chain.size // 2 + share)
+        self._centre = middle_tenth(chain.size)
 
     def add(self, positions: Array, v: Array) -> None:
         """Add a snapshot."""

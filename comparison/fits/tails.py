@@ -96,7 +96,10 @@ def fit_avalanches(
 def tail_length(velocity: ArrayLike, density: ArrayLike, beyond: float) -> float:
     """Length w of the exponential tails p(v) ~ exp(-|v|/w) for |v| > ``beyond``, of both sides.
 
-    The maximum-likelihood estimate is the mean excess over ``beyond``.
+    The maximum-likelihood estimate is the mean excess over ``beyond``: the integral of the share of
+    velocities beyond v, over all v > ``beyond``, divided by that share at ``beyond``. The logarithm
+    of the share is taken as linear within a bin, which is right for an exponential tail even in
+    bins as wide as w.
 
     Parameters
     ----------
@@ -116,8 +119,35 @@ def tail_length(velocity: ArrayLike, density: ArrayLike, beyond: float) -> float
     >>> round(tail_length(v, np.exp(-np.abs(v) / 3) / 6, beyond=2.0), 2)
     3.0
     """
-    v, p = np.abs(np.asarray(velocity, dtype=float)), np.asarray(density, dtype=float)
-    weight = p * np.gradient(np.asarray(velocity, dtype=float)) * (v > beyond)
-    if not weight.sum() > 0:
+    v, p = np.asarray(velocity, dtype=float), np.asarray(density, dtype=float)
+    between = (v[1:] + v[:-1]) / 2
+    edges = np.concatenate([[2 * v[0] - between[0]], between, [2 * v[-1] - between[-1]]])
+    right = _beyond(edges, p, beyond)
+    left = _beyond(-edges[::-1], p[::-1], beyond)
+    if not right[0] + left[0] > 0:
         raise ValueError(f"no velocities beyond {beyond:g}")
-    return float(np.average(v - beyond, weights=weight))
+    return (right[1] + left[1]) / (right[0] + left[0])
+
+
+def _beyond(edges: Array, density: Array, start: float) -> tuple[float, float]:
+    """Return the share of velocities above ``start``, and the integral of that share from there."""
+    counts = density * np.diff(edges)
+    shares = np.append(np.cumsum(counts[::-1])[::-1], 0.0)  # above every edge
+    used = (edges[1:] > start) & (shares[:-1] > 0)
+    if not used.any():
+        return 0.0, 0.0
+    low, high, at_low, at_high = (
+        edges[:-1][used],
+        edges[1:][used],
+        shares[:-1][used],
+        shares[1:][used],
+    )
+    # No logarithm where the share ends at 0: the velocities are then evenly spread over the bin.
+    fall = np.log(at_low / np.where(at_high > 0, at_high, at_low))
+    here = np.maximum(low, start)
+    part = (high - here) / (high - low)
+    at_here = np.where(at_high > 0, at_low * np.exp(-fall * (1 - part)), at_low * part)
+    falling = fall > 1e-9
+    mean = np.where(at_high > 0, at_here, at_here / 2)
+    np.divide(at_here - at_high, fall * part, out=mean, where=falling)
+    return float(at_here[0]), float(np.sum(mean * (high - here)))

@@ -12,32 +12,30 @@ from scipy.optimize import curve_fit
 
 from crazybilliards.comparison.distances import distances_in_plot
 from crazybilliards.comparison.drawing import COLOURS, SYMBOLS
+from crazybilliards.model.vocabulary import require
 
 _LEAST = 1e-5  # of the largest density: below, counts are too few to draw
 _SYMBOLS_DRAWN = 41
 
 
-def moment(run: xr.Dataset, particles: Sequence[int], order: int) -> float:
-    """Mean over the particles of their standardized central moment: 3 skewness, 4 kurtosis."""
-    density = run.velocity_density.sel(particle=list(particles))
-    v = run.velocity
-    weight = np.gradient(v.values)
-    values = []
-    for p in density.values:
-        share = p * weight
-        share /= share.sum()
-        mean = share @ v.values
-        deviation = v.values - mean
-        variance = share @ deviation**2
-        values.append(share @ deviation**order / variance ** (order / 2))
-    return float(np.mean(values))
+def mean_shape(run: xr.Dataset, particles: Sequence[int], name: str) -> float:
+    """Mean over the particles of their ``velocity_skewness`` or excess ``velocity_kurtosis``.
+
+    Raises
+    ------
+    ValueError
+        If the result lacks it, because an old version computed it.
+    """
+    require(run, (name,))
+    return float(run[name].sel(particle=list(particles)).mean())
 
 
 def histogram(
     run: xr.Dataset, particles: Sequence[int], reach: float
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return velocities and the mean density of some particles in 41 equal bins to +-``reach``."""
-    v, weight = run.velocity.values, np.gradient(run.velocity.values)
+    v = run.velocity_bin.values
+    weight = np.gradient(v)
     p = run.velocity_density.sel(particle=list(particles)).mean("particle").values
     edges = np.linspace(-reach, reach, _SYMBOLS_DRAWN + 1)
     share, _ = np.histogram(v, edges, weights=p * weight)
@@ -70,7 +68,7 @@ def draw_distributions(
     Gaussians of the same width, and the free rod's.
     """
     run = runs[0]
-    v = run.velocity.values / unit
+    v = run.velocity_bin.values / unit
     reach = 0.0
     for number, particle in enumerate(particles):
         each = np.array([run.velocity_density.sel(particle=particle) for run in runs]) * unit

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import matplotlib.pyplot as plt
@@ -10,10 +9,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.animation import FuncAnimation
 from matplotlib.artist import Artist
-from matplotlib.axes import Axes
-from matplotlib.container import ErrorbarContainer
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from crazybilliards.comparison.coverage import smooth
@@ -110,22 +106,25 @@ def animate(tree: xr.DataTree) -> FuncAnimation:
     densities = _densities(tree)
     times = densities[SIMULATION].time.values
     extent = _extent(densities)
-    # Only symbols and lines move, not error bars.
     densities = {name: each[["density"]].sel(x=slice(*extent)) for name, each in densities.items()}
+    rods = densities[SIMULATION]
     with plt.rc_context(_ON_A_SCREEN):
         figure, ax = plt.subplots(figsize=(8, 4.5), layout="constrained")
-        overlay({name: each.isel(time=0) for name, each in densities.items()}, ax=ax)
+        # Every bin: symbols that tell the curve at one time may show false waves at another.
+        ax.plot(rods.x, rods.density[0], color="black", linewidth=1, label=SIMULATION, zorder=3)
+        fluids = {name: each for name, each in densities.items() if name != SIMULATION}
+        overlay({name: each.isel(time=0) for name, each in fluids.items()}, ax=ax)
         high = max(float(each.density.max()) for each in densities.values())
         ax.set(xlim=extent, ylim=(0, 1.05 * high), xlabel="position $x$ [R]", ylabel=_DENSITY)
         legend_above(figure, ax)
         clock = ax.set_title(" ")
         figure.draw_without_rendering()  # ticks take the size of their letters when they are drawn
-    moving = _movers(ax, densities)
+    lines = {str(line.get_label()): line for line in ax.lines}
 
     def show(frame: int) -> list[Artist]:
         clock.set_text(f"$t = {times[frame]:.2f}$ T")
-        for move in moving:
-            move(frame)
+        for name, each in densities.items():
+            lines[name].set_ydata(each.density.values[frame])
         return []
 
     animation = FuncAnimation(figure, show, frames=times.size, interval=80)
@@ -140,26 +139,6 @@ def title(tree: xr.DataTree) -> str:
         f"{chain.size} rods, A = {chain.amplitude:g}, g = {chain.gap:g}, "
         f"{tree.attrs['release']} by {tree.attrs['by']:g} and released at t = 0"
     )
-
-
-def _movers(ax: Axes, densities: dict[str, xr.Dataset]) -> list[Callable[[int], None]]:
-    """Return functions that set each curve of ``ax`` to a frame."""
-
-    def mover(line: Line2D, result: xr.Dataset) -> Callable[[int], None]:
-        x, values = result.x.values, result.density.values
-        shown = np.isin(x, line.get_xdata())
-
-        def move(frame: int) -> None:
-            line.set_ydata(values[frame][shown])
-
-        return move
-
-    lines = {}
-    for container in ax.containers:  # the symbols
-        if isinstance(container, ErrorbarContainer):
-            lines[str(container.get_label())] = container.lines[0]
-    lines |= {str(line.get_label()): line for line in ax.lines if line.get_label() in densities}
-    return [mover(lines[name], result) for name, result in densities.items()]
 
 
 def _densities(tree: xr.DataTree) -> dict[str, xr.Dataset]:

@@ -16,6 +16,7 @@ from crazybilliards.comparison.studies.parameter_series import (
 )
 from crazybilliards.kinetic import phase_space
 from crazybilliards.model import Chain, chain_of
+from crazybilliards.model.chain import middle_tenth
 
 THEORY = "kinetic_equation"
 
@@ -26,7 +27,7 @@ class WidthDeviation(NamedTuple):
     """Relative deviations of velocity widths, theory minus simulation."""
 
     largest: float  # over the particles 3 to L - 2
-    centre: float  # of the middle tenth of the rods, rounded outward
+    centre: float  # of the middle tenth of the rods
     border: float  # of the first and the last rod
     error: float  # typical standard error of a rod's simulated width
     border_error: float  # that of the border's
@@ -104,15 +105,6 @@ def width_deviations(tree: xr.DataTree) -> dict[str, WidthDeviation]:
     }
 
 
-def tenth_rounded_outward(size: int) -> slice:
-    """Return the middle tenth of the rods, of which it cuts none: 4 of 30 rods, 10 of 100.
-
-    ``middle_tenth`` in ``claims/repetition.py`` takes 2 of 30. The tables of deviations have been
-    computed with this one.
-    """
-    return slice((9 * size) // 20, -(-11 * size // 20))
-
-
 def width_deviation(run: xr.Dataset, theory: xr.Dataset) -> WidthDeviation:
     """Compare the velocity widths of a simulation and a theory of the same chain."""
     size = chain_of(run).size
@@ -128,7 +120,7 @@ def width_deviation(run: xr.Dataset, theory: xr.Dataset) -> WidthDeviation:
     relative_error = (run.velocity_width_error / run.velocity_width).values
     return WidthDeviation(
         largest=float(np.abs(each[inner]).max()),
-        centre=relative(tenth_rounded_outward(size)),
+        centre=relative(middle_tenth(size)),
         border=relative([0, -1]),
         error=float(np.median(relative_error)),
         border_error=float(np.hypot(relative_error[0], relative_error[-1]) / 2),

@@ -19,6 +19,7 @@ from __future__ import annotations
 
 import json
 import math
+import numbers
 import tomllib
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
@@ -26,6 +27,7 @@ from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pandas as pd
 import xarray as xr
 
@@ -33,8 +35,10 @@ from crazybilliards.comparison.sweeps.case import Case, plain, stored_parameters
 from crazybilliards.comparison.sweeps.jobs import JOBS
 from crazybilliards.model import Chain, load
 from crazybilliards.model.checks import shown
+from crazybilliards.model.vocabulary import ATTRIBUTES
 
 _MOST_CASES = 1_000_000
+_TEXTS = ("status", "provenance")  # are always variables
 _CHAIN = [field.name for field in fields(Chain)]
 
 
@@ -142,9 +146,11 @@ def load_sweep(folder: Path) -> xr.Dataset:
         Every variable has a dimension for each parameter with more than one value, in front of
         its own dimensions. Missing cases have NaN and an empty ``status``; shorter chains are
         padded with NaN. Coordinates that depend on the case, such as x or the mean position,
-        have those dimensions too, and the dimension of x is then ``x_index``. ``status``,
-        ``end_time`` and ``provenance`` are variables. The attribute ``parameters`` holds the
-        common parameters as JSON.
+        have those dimensions too, and the dimension of x is then ``x_index``. The attributes that
+        belong to a case are variables without own dimensions: every number (``end_time``,
+        ``time_step_error``, ``mesh_error``, ...; NaN where a case has none), ``status`` and
+        ``provenance``, and every other text that differs between the cases. The attribute
+        ``parameters`` holds the common parameters as JSON.
 
     Raises
     ------
@@ -163,8 +169,10 @@ def load_sweep(folder: Path) -> xr.Dataset:
     names = [*_CHAIN, *(name for name in points[0] if name not in _CHAIN)]
     varied = [name for name in names if table[name].nunique(dropna=False) > 1]
     fixed = {name: value for name, value in points[0].items() if name not in varied}
+    results = _with_attributes(results, leave=varied)
+    texts = [str(name) for name in results[0].data_vars if results[0][name].dtype == object]
     joined = xr.concat(
-        _alike([_with_status(result) for result in results]),
+        _alike(results),
         dim="case",
         join="outer",
         data_vars="all",
@@ -177,8 +185,8 @@ def load_sweep(folder: Path) -> xr.Dataset:
         coordinates = xr.Coordinates.from_pandas_multiindex(index, "case")
         joined = joined.assign_coords(coordinates).unstack("case")
         joined = joined.transpose(*varied, ...)
-        joined["status"] = joined["status"].fillna("")
-        joined["provenance"] = joined["provenance"].fillna("")
+        for name in texts:  # of missing cases
+            joined[name] = joined[name].fillna("")
     else:
         joined = joined.squeeze("case")
     return joined.assign_attrs(parameters=json.dumps(fixed, sort_keys=True))
@@ -217,10 +225,29 @@ def _scalar(value: Any) -> Any:
     return json.dumps(value) if isinstance(value, list) else value
 
 
-def _with_status(result: xr.Dataset) -> xr.Dataset:
-    """Turn the attributes that differ from case to case into variables."""
-    names = ("status", "end_time", "provenance")  # a theory has no end_time
-    return result.assign({name: ((), result.attrs[name]) for name in names if name in result.attrs})
+def _with_attributes(results: Sequence[xr.Dataset], leave: Sequence[str]) -> list[xr.Dataset]:
+    """Turn the attributes of single cases into variables, except those named in ``leave``.
+
+    ``case`` repeats the parameters, which are coordinates.
+    """
+    made = list(results)
+    for name in sorted({name for each in results for name in each.attrs} - {"case", *leave}):
+        values = [each.attrs.get(name) for each in results]
+        given = [value for value in values if value is not None]
+        number = all(isinstance(value, numbers.Real) for value in given)
+        differs = len(given) < len(values) or len({str(value) for value in given}) > 1
+        if not (number or differs or name in _TEXTS):
+            continue
+        meaning, unit = ATTRIBUTES.get(name, (name.replace("_", " "), "1"))
+        described = {"long_name": meaning, "units": unit} if number else {}
+        for place, (dataset, value) in enumerate(zip(made, values, strict=True)):
+            if number:
+                each = np.array(math.nan if value is None else value, dtype=float)
+            else:
+                each = np.array("" if value is None else str(value), dtype=object)
+            made[place] = dataset.assign({name: ((), each, described)})
+            made[place].attrs.pop(name, None)
+    return made
 
 
 def _alike(results: list[xr.Dataset]) -> list[xr.Dataset]:

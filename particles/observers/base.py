@@ -56,7 +56,7 @@ class Observer(ABC):
     gives
         The variables that it reports. Their meanings and units are in the vocabulary.
     along
-        The coordinates that it adds to the result, e.g. ``("velocity",)``.
+        The coordinates that it adds to the result, e.g. ``("velocity_bin",)``.
     least_rods
         The size of the shortest chain that it can measure.
     single_collisions
@@ -68,6 +68,8 @@ class Observer(ABC):
     histograms
         Its variables that count how often rods visit nodes or bins. In a limit, the error of a
         place that was hardly ever visited is unknown.
+    shares_time
+        Whether it has the times of all snapshots if another observer has them too.
     """
 
     name: ClassVar[str]
@@ -78,6 +80,7 @@ class Observer(ABC):
     ensemble: ClassVar[bool] = True
     limit: ClassVar[bool] = True
     histograms: ClassVar[tuple[str, ...]] = ()
+    shares_time: ClassVar[bool] = False
 
     def __str__(self) -> str:
         """Return the name and, if there are any, the parameters."""

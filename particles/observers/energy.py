@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Self
 
 import numpy as np
+from numpy.typing import NDArray
 
 from crazybilliards.particles.observers.base import (
     Array,
@@ -24,18 +25,22 @@ class Energy(Observer):
     """kinetic_energy: sum over the rods of m v^2/2 against time, averaged over the replicas.
 
     Successive snapshots are averaged so that at most 1000 times are kept. An ensemble keeps all
-    times. With two or more replicas kinetic_energy_error is the standard error of their mean.
-    Times that not every replica reached are left out.
+    times, and so does a run that observes the snapshots too. With two or more replicas
+    kinetic_energy_error is the standard error of their mean. Times that not every replica reached
+    are left out, or NaN beside snapshots.
     """
 
     name = "energy"
     gives = ("kinetic_energy",)
     along = ("time",)
+    shares_time = True
 
     def prepare(self, run: Run, copies: int) -> None:
         """Make the sums."""
         self.schedule = run.schedule
-        self.together = 1 if run.schedule.ensemble else -(-run.schedule.snapshots // _MOST_TIMES)
+        self.shared = self._shared(run)
+        every = run.schedule.ensemble or self.shared
+        self.together = 1 if every else -(-run.schedule.snapshots // _MOST_TIMES)
         self.mass = run.chain.mass
         times = -(-run.schedule.snapshots // self.together)
         self.sums = np.zeros((1, times))
@@ -43,7 +48,8 @@ class Energy(Observer):
 
     def memory(self, run: Run) -> float:
         """Return the bytes it keeps."""
-        return 16.0 * (run.schedule.snapshots if run.schedule.ensemble else _MOST_TIMES)
+        every = run.schedule.ensemble or self._shared(run)
+        return 16.0 * (run.schedule.snapshots if every else _MOST_TIMES)
 
     def observe(self, snapshots: Snapshots) -> None:
         """Add the energies of snapshots to their times."""
@@ -62,9 +68,12 @@ class Energy(Observer):
         if self.schedule.ensemble:
             energies, numbers = self.sums[:, : counts.shape[1]], counts
         else:
-            reached = (self.counts > 0).all(axis=0)
+            reached = self._reached()
             energies, numbers = self.sums[:, reached], self.counts[:, reached]
         value, error = jackknife(lambda average: average, energies, numbers)
+        if not self.schedule.ensemble:
+            unknown = (numbers == 0).any(axis=0)
+            value[unknown] = error[unknown] = np.nan
         variables: Variables = {"kinetic_energy": (("time",), value)}
         if len(numbers) > 1:
             variables["kinetic_energy_error"] = (("time",), error)
@@ -76,5 +85,15 @@ class Energy(Observer):
             return {}
         first = np.arange(self.counts.shape[1]) * self.together
         # schedule.times would take too much memory in a long run.
-        times = self.schedule.time(first + (np.mean(self.counts, axis=0) - 1) / 2)
-        return {"time": times[(self.counts > 0).all(axis=0)]}
+        together = self.counts.sum(axis=0) / np.maximum((self.counts > 0).sum(axis=0), 1)
+        times = self.schedule.time(first + (together - 1) / 2)
+        return {"time": times[self._reached()]}
+
+    def _reached(self) -> NDArray[np.bool_]:
+        """Return which times are reported."""
+        counted = self.counts > 0
+        return np.asarray(counted.any(axis=0) if self.shared else counted.all(axis=0))
+
+    @staticmethod
+    def _shared(run: Run) -> bool:
+        return sum(observer.shares_time for observer in run.observers) > 1

@@ -23,13 +23,15 @@ class Raw(Observer):
 
     It takes 16 bytes per particle, snapshot and replica, so ask for few snapshots with ``every``.
     Snapshots that an interrupted run did not reach are NaN. A single time can be the start of
-    another run: ``run.isel(time=-1)``.
+    another run: ``run.isel(time=-1)``. Any other observers can be recorded beside it. Velocity
+    distributions lie over ``velocity_bin``, and the energy is then that of every snapshot.
     """
 
     name = "snapshots"
     gives = ("position", "velocity")
     along = ("time",)
     limit = False
+    shares_time = True
 
     def prepare(self, run: Run, copies: int) -> None:
         """Make the sums."""

@@ -6,7 +6,7 @@ import pytest
 import xarray as xr
 
 from crazybilliards.comparison import compare_elastic, overlay, smooth
-from crazybilliards.comparison.drawing import mark_clipped
+from crazybilliards.comparison.drawing import draw_rods, mark_clipped
 from crazybilliards.comparison.studies.elastic_figures import draw_density, draw_displacement
 from crazybilliards.kinetic import equilibrium, equilibrium_states, force_balance
 from crazybilliards.model import Chain
@@ -51,6 +51,106 @@ def test_overlay_draws_the_rods_at_both_ends_of_a_long_chain():
     assert len(symbols.get_xdata()) == 60
     assert symbols.get_xdata()[[0, -1]].tolist() == [-1, 1]
     assert symbols.get_ydata()[-1] == run.velocity_width[-1]
+
+
+def simulated(x, density, error=1e-4):
+    """Return a density over x as a simulation would report it."""
+    units = {"units": "1/R", "long_name": "density"}
+    return xr.Dataset(
+        {
+            "density": ("x", density, units),
+            "density_error": ("x", np.full(x.size, error), units),
+        },
+        coords={"x": ("x", x, {"units": "R", "long_name": "position x"})},
+        attrs={"source": "simulation"},
+    )
+
+
+def drawn(ax):
+    """Return the symbols' places, the lined nodes' places, and how far the picture is off."""
+    symbols = [each.lines[0].get_xydata() for each in ax.containers]
+    lines = [line.get_xydata() for line in ax.lines if line.get_linestyle() != "None"]
+    lines = [line[np.isfinite(line[:, 1])] for line in lines]
+    empty = np.empty((0, 2))
+    points = np.concatenate([empty, *symbols, *lines])
+    points = points[points[:, 0].argsort()]
+    return (
+        np.concatenate([empty, *symbols])[:, 0],
+        np.concatenate([empty, *lines])[:, 0],
+        lambda x: np.interp(x, *points.T),
+    )
+
+
+X = np.arange(-1400, 1401) * 0.1
+WAVES = 0.4 + 0.03 * np.cos(2 * np.pi * X / 2.5)
+
+
+def test_overlay_draws_every_node_of_a_density_with_waves_between_the_symbols():
+    """Every 47th node of waves of 2.5 R would show a wave of 39 R."""
+    ax = overlay({"rods": simulated(X, WAVES)})
+    symbols, lined, curve = drawn(ax)
+    assert symbols.size == 0
+    np.testing.assert_array_equal(lined, X)
+    np.testing.assert_array_equal(curve(X), WAVES)
+    assert ax.get_legend_handles_labels()[1] == ["rods"]
+    [band] = ax.collections  # of one standard error
+    np.testing.assert_allclose(band.get_datalim(ax.transData).y1, WAVES.max() + 1e-4)
+
+
+def test_overlay_draws_symbols_where_straight_lines_between_them_follow_the_curve():
+    smooth_curve = 0.4 / (1 + np.exp((np.abs(X) - 100) / 8))
+    symbols, lined, curve = drawn(overlay({"rods": simulated(X, smooth_curve)}))
+    assert (symbols.size, lined.size) == (60, 0)
+    assert np.abs(curve(X) - smooth_curve).max() < 0.01 * 0.4
+    partly = np.where(X > 70, WAVES, 0.4)
+    symbols, lined, curve = drawn(overlay({"rods": simulated(X, partly)}))
+    assert symbols.size > 35
+    assert symbols.max() < 70 < lined.max() == X[-1]
+    assert np.abs(curve(X) - partly).max() < 0.01 * 0.06
+
+
+def test_noise_is_drawn_as_symbols_and_waves_within_it_as_a_line():
+    """All nodes together show a wave of two standard errors; two of them do not."""
+    noise = np.random.default_rng(1).normal(size=X.size)
+    symbols, _, _ = drawn(overlay({"rods": simulated(X, 0.4 + 0.02 * noise, 0.02)}))
+    assert symbols.size == 60
+    faint = WAVES + 0.015 * noise
+    symbols, lined, _ = drawn(overlay({"rods": simulated(X, faint, 0.015)}))
+    assert (symbols.size, lined.size) == (0, X.size)
+    symbols, _, _ = drawn(overlay({"rods": simulated(X, 0.4 + 0.02 * noise, 0.002)}))
+    assert symbols.size == 0
+
+
+def test_the_density_of_a_cold_chain_with_a_gap_shows_its_rods():
+    """Rods at e = 0.5 stay near their anchors, 2.5 R apart: the density has that period."""
+    chain = Chain(size=100, restitution=0.5, gap=0.5)
+    run = smooth(simulate(chain, duration=100, observe="density", progress=False))
+    _, lined, curve = drawn(overlay({"rods": run}))
+    inside = run.x.values[np.abs(run.x.values) < 100]
+    assert set(inside) <= set(lined)
+    np.testing.assert_array_equal(curve(inside), run.density.sel(x=inside))
+
+
+def test_pictures_of_rods_follow_the_same_rule_on_their_own_axes():
+    """A wave of a thousandth of the range is seen on a logarithmic axis only."""
+    chain = Chain(size=600)
+    place = np.linspace(-1, 1, 600)
+    values = np.where(np.abs(place) < 0.8, 0.01 + 0.005 * np.cos(2 * np.arange(600)), 1.0)
+    units = {"units": "R/T", "long_name": "width"}
+    run = xr.Dataset(
+        {
+            "velocity_width": ("particle", values, units),
+            "velocity_width_error": ("particle", 1e-6 * values, units),
+        },
+        coords={"particle": chain.rank, "normalized_particle": ("particle", place)},
+    )
+    for scale, hidden in (("linear", True), ("log", False)):
+        _, ax = plt.subplots()
+        ax.set_yscale(scale)
+        draw_rods(ax, run, "velocity_width", number=0, label="rods")
+        symbols, lined, _ = drawn(ax)
+        assert (0.0 in np.round(symbols, 1)) is hidden
+        assert (0.0 in np.round(lined, 1)) is not hidden
 
 
 def test_two_simulations_differ_and_keywords_are_passed_through():

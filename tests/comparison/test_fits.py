@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.stats import laplace, norm
 
 from crazybilliards.comparison import (
     fit_avalanches,
@@ -114,6 +115,26 @@ def test_exponential_growth_is_no_singularity():
         fit_growth([0, 1, 2], [1, -1, 1])
     with pytest.raises(ValueError, match="at least 5 energies"):
         fit_singularity([0, 1], [1, 2])
+
+
+@pytest.mark.parametrize("beyond", [2.0, 3.0, 4.1, 5.0, 6.3])
+def test_tail_lengths_do_not_depend_on_the_bins(beyond):
+    """The bins of simulate are a quarter of w wide there, wider than the tail of a Gaussian."""
+    last = np.arcsinh(1000 / 0.05)
+    edges = 0.05 * np.sinh(np.linspace(-last, last, 402))
+    v, width = (edges[1:] + edges[:-1]) / 2, np.diff(edges)
+    exponential = np.diff(laplace.cdf(edges)) / width
+    assert tail_length(v, exponential, beyond) == pytest.approx(1, rel=1e-3)
+    assert tail_length(v[v < 0], exponential[v < 0], beyond) == pytest.approx(1, rel=1e-3)
+    gauss = np.diff(norm.cdf(edges)) / width
+    exact = norm.pdf(beyond) / norm.sf(beyond) - beyond
+    assert tail_length(v[v < 0], gauss[v < 0], beyond) == pytest.approx(exact, rel=5e-3)
+
+
+def test_the_tail_of_a_single_bin_is_half_of_it():
+    v = np.arange(-3.0, 4.0)
+    assert tail_length(v, (v == 3) * 1.0, 2.5) == pytest.approx(0.5)
+    assert tail_length(v, (np.abs(v) == 3) * 0.5, 2.75) == pytest.approx(0.375)
 
 
 def test_tail_lengths_tell_an_exponential_from_a_gaussian():

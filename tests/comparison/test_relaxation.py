@@ -87,9 +87,13 @@ def test_the_profiles_have_error_bars(tree):
     plt.close("all")
 
 
-def test_the_animation_moves_symbols_and_lines(tree):
+def test_the_animation_moves_lines_through_every_bin(tree):
     animation = animate(tree)
     ax = animation._fig.axes[0]
+    [rods] = [line for line in ax.lines if line.get_label() == "simulation"]
+    x = tree["particles"].x.values
+    shown = rods.get_xdata()
+    np.testing.assert_array_equal(shown, x[(x >= shown[0]) & (x <= shown[-1])])
     before = [line.get_ydata().copy() for line in ax.lines]
     animation._func(10)
     moved = [

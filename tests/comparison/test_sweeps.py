@@ -1,7 +1,9 @@
 """Sweeps: the same case the same file, nothing computed twice, nothing lost."""
 
 import errno
+import io
 import json
+import numbers
 import os
 import signal
 from concurrent.futures import Executor, Future
@@ -20,6 +22,7 @@ from crazybilliards.comparison.sweeps.jobs import JOBS
 from crazybilliards.model import Chain, load, save
 from crazybilliards.model.locks import locked
 from crazybilliards.model.storage import write_sealed
+from crazybilliards.model.vocabulary import ATTRIBUTES
 
 
 class AtOnce(Executor):
@@ -253,6 +256,70 @@ def test_loading_gives_one_dataset_over_the_grid(tmp_path):
     assert json.loads(grid.attrs["parameters"])["damping"] == 2
     # A sweep of one case has no grid.
     assert load_sweep_of_one(tmp_path / "one").velocity_width.dims == ("particle",)
+
+
+def test_numbers_about_a_case_are_variables_over_the_grid(tmp_path):
+    grid = {"size": [3, 5], "restitution": [0.5, 1.0]}
+    cases = sweep(grid=grid).cases()
+    run_cases(cases[:3], tmp_path, AtOnce(), progress=False)
+    loaded = load_sweep(tmp_path)
+    for case in cases[:3]:
+        own = case.load(tmp_path).attrs
+        here = loaded.sel(size=case.chain.size, restitution=case.chain.restitution)
+        for name in ("time_step_error", "end_time", "seconds"):
+            assert float(here[name]) == pytest.approx(own.get(name, np.nan), nan_ok=True)
+    assert np.isfinite(loaded.time_step_error.sel(restitution=0.5)).all()
+    assert np.isnan(loaded.time_step_error.sel(restitution=1.0)).all()  # exact there
+    assert loaded.time_step_error.attrs["units"] == "1"
+    assert loaded.end_time.attrs == {"long_name": "time reached, warm-up included", "units": "T"}
+    assert not {"status", "end_time", "case"} & loaded.attrs.keys()
+    save(loaded, tmp_path / "grid" / "all.nc")
+    xr.testing.assert_identical(
+        load(tmp_path / "grid" / "all.nc").time_step_error, loaded.time_step_error
+    )
+
+
+def test_errors_of_a_theory_are_variables_and_texts_that_differ_too(tmp_path):
+    cases = [
+        Case("phase_space", Chain(size=8, restitution=e), {"cells": 6, "tolerance": 0.1})
+        for e in (0.95, 1.0)
+    ]
+    for number, case in enumerate(cases):
+        result = case_result(case)
+        result.attrs["package_version"] = f"0.{number}"
+        if number:
+            result.attrs["note"] = "by hand"
+        save(result, case.file(tmp_path))
+    loaded = load_sweep(tmp_path)
+    for name in ("model_error", "border_error", "mesh_error", "residual", "iterations", "cells"):
+        own = [case.load(tmp_path).attrs.get(name) for case in cases]
+        if own != [None, None]:
+            np.testing.assert_array_equal(loaded[name], own)
+            assert loaded[name].attrs["units"] == "1"
+    assert loaded.border_error.dims == ("restitution",)
+    assert loaded.package_version.values.tolist() == ["0.0", "0.1"]
+    assert loaded.note.values.tolist() == ["", "by hand"]
+    assert loaded.attrs["source"] == "theory"
+
+
+def case_result(case):
+    return xr.load_dataset(io.BytesIO(compute(case, case.source)))
+
+
+def test_every_number_about_a_result_has_a_meaning_and_a_unit():
+    coarse = {"cells": 6, "tolerance": 0.1}
+    settings = {
+        "simulate": {"duration": 100},
+        "simulate_limit": {"accuracy": 0.05},
+        "phase_space": coarse,
+        "correlated_phase_space": coarse,
+    }
+    for job in JOBS:
+        e = 0.5 if job.startswith("simulate") else 1.0
+        result = case_result(Case(job, Chain(size=10, restitution=e), settings.get(job, {})))
+        found = {name for name, value in result.attrs.items() if isinstance(value, numbers.Real)}
+        assert found <= ATTRIBUTES.keys(), job
+        assert found
 
 
 def load_sweep_of_one(folder):

@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from crazybilliards.model import Chain
+from crazybilliards.model.chain import middle_tenth
 
 positive = st.floats(min_value=1e-6, max_value=1e6)
 gaps = st.floats(0, 10).map(lambda gap: round(gap, 6))
@@ -113,3 +114,19 @@ def test_the_force_is_odd_and_the_slope_of_the_potential(spring):
 def test_parameters_round_trip():
     chain = Chain(size=3, gap=0.25, spring="quadratic")
     assert Chain(**chain.parameters()) == chain
+
+
+@pytest.mark.parametrize(
+    ("places", "found"),
+    [(1, [0]), (2, [0, 1]), (3, [1]), (10, [4, 5]), (30, [13, 14, 15, 16]), (99, range(45, 54))],
+)
+def test_the_middle_tenth_is_in_the_middle(places, found):
+    assert [*range(places)[middle_tenth(places)]] == [*found]
+
+
+def test_the_middle_tenth_is_within_a_twentieth_of_the_middle():
+    for places in range(10, 2001):
+        off = np.abs(Chain(size=places).rank)
+        taken = np.zeros(places, dtype=bool)
+        taken[middle_tenth(places)] = True
+        np.testing.assert_array_equal(taken, 20 * off <= places)

@@ -6,15 +6,17 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+import xarray as xr
 from scipy.integrate import quad
-from scipy.stats import norm
+from scipy.stats import kurtosis, norm, skew
 
-from crazybilliards.model import Chain
+from crazybilliards.model import Chain, load, save
 from crazybilliards.model.vocabulary import VOCABULARY
 from crazybilliards.particles import simulate
 from crazybilliards.particles.laws.avalanche import make_tally
 from crazybilliards.particles.observers import OBSERVERS, Observer, Velocities, restore
 from crazybilliards.particles.observers.base import Averaged, Snapshots
+from crazybilliards.particles.observers.energy import Energy
 from crazybilliards.particles.simulation import make_run
 
 
@@ -76,14 +78,44 @@ def test_elastic_collisions_are_the_zero_crossings_of_gaussian_processes():
     )
 
 
+def test_the_shape_of_a_distribution_is_that_of_the_velocities_not_of_their_bins():
+    """In these bins an exact Gaussian has an excess kurtosis of 0.0028."""
+    run = a_run(Chain(size=2), observe="velocities")
+    observer = run.observers[0].prepared(run, 1)
+    n = 64_000  # the middles of equally likely intervals: a Gaussian to 1e-4
+    gauss = run.chain.free_velocity_width * norm.ppf((np.arange(n) + 0.5) / n)
+    v = np.random.default_rng(1).permutation(np.stack([gauss, np.exp(gauss)], axis=1))
+    for block, part in enumerate(np.array_split(v, run.schedule.blocks)):
+        empty = np.zeros((len(part), 0), dtype=np.int64)
+        observer.observe(Snapshots(block, 0, 0, np.zeros_like(part), part, empty))
+    counts = np.full(run.schedule.blocks, n // run.schedule.blocks)
+    report = observer.report(counts)
+    np.testing.assert_allclose(report["velocity_skewness"][1], skew(v), atol=1e-9)
+    np.testing.assert_allclose(report["velocity_kurtosis"][1], kurtosis(v), rtol=1e-9, atol=1e-9)
+    assert abs(report["velocity_kurtosis"][1][0]) < 1e-3
+    expected = np.sqrt(24 / n)  # of a Gaussian
+    assert report["velocity_kurtosis_error"][1][0] == pytest.approx(expected, rel=0.5)
+
+
+def test_a_rod_with_one_velocity_has_no_shape():
+    run = a_run(Chain(size=2), observe="velocities")
+    observer = run.observers[0].prepared(run, 1)
+    counts = np.zeros(run.schedule.blocks, dtype=np.int64)
+    counts[:2] = 1
+    for block in range(2):
+        still = np.zeros((1, 2))
+        observer.observe(Snapshots(block, 0, 0, still, still, np.zeros((1, 0), dtype=np.int64)))
+    assert np.isnan(observer.report(counts)["velocity_kurtosis"][1]).all()
+
+
 @pytest.mark.compiled
 def test_velocities_are_gaussian_at_restitution_one():
     chain = Chain(size=5)
     run = simulate(chain, duration=50_000, replicas=2, observe="velocities", progress=False)
-    density, v = run.velocity_density, run.velocity.values
+    density, v = run.velocity_density, run.velocity_bin.values
     assert run.velocity_outside == 0
     width = np.gradient(v)
-    np.testing.assert_allclose((density * width).sum("velocity"), 1, rtol=0.01)
+    np.testing.assert_allclose((density * width).sum("velocity_bin"), 1, rtol=0.01)
     W = chain.free_velocity_width
     middle = np.abs(v) < 2 * W
     coarse = density.values.mean(axis=0)[middle]
@@ -247,9 +279,9 @@ def test_an_attribute_made_while_measuring_is_refused_at_the_next_checkpoint(tmp
 def test_an_observer_is_taken_as_an_object_with_parameters():
     options = {"duration": 500, "progress": False}
     fine = simulate(Chain(size=2), observe=["widths", Velocities(bins=801)], **options)
-    assert fine.sizes["velocity"] == 801
+    assert fine.sizes["velocity_bin"] == 801
     usual = simulate(Chain(size=2), observe=["widths", "velocities"], **options)
-    assert usual.sizes["velocity"] == 401
+    assert usual.sizes["velocity_bin"] == 401
     np.testing.assert_array_equal(fine.velocity_width, usual.velocity_width)
     observe = json.loads(fine.attrs["provenance"])["observe"]
     assert observe == ["widths", "velocities(bins=801)"]
@@ -257,19 +289,60 @@ def test_an_observer_is_taken_as_an_object_with_parameters():
         Velocities(bins=0)
 
 
-@pytest.mark.parametrize(
-    ("observe", "name"),
-    [
-        (["velocities", "snapshots"], "velocity"),
-        (["energy", "snapshots"], "time"),
-        ([Velocities(bins=11), Velocities()], "velocity"),
-    ],
-)
-def test_two_observers_that_would_give_one_name_are_refused(observe, name):
-    with pytest.raises(ValueError, match=f"would both give '{name}'"):
-        a_run(Chain(), observe=observe)
-    if "energy" in observe:  # the times of an ensemble are common to all
+def test_two_observers_that_would_give_one_name_are_refused():
+    with pytest.raises(ValueError, match="would both give 'velocity_bin'"):
+        a_run(Chain(), observe=[Velocities(bins=11), Velocities()])
+
+    class OwnTimes(Energy):
+        gives = ("rods",)
+        shares_time = False
+
+    for observe in (["energy", OwnTimes()], [OwnTimes(), "snapshots"]):
+        with pytest.raises(ValueError, match="would both give 'time'"):
+            a_run(Chain(), observe=observe)
+        # The times of an ensemble are common to all.
         a_run(Chain(), observe=observe, average="ensemble")
+
+
+def test_snapshots_are_recorded_beside_all_other_observers(tmp_path):
+    names = [name for name in OBSERVERS if name != "snapshots"]
+    how = {"duration": 1300, "every": 1.0, "replicas": 2, "seed": 4, "progress": False}
+    chain = Chain(size=4, restitution=0.9)
+    run = simulate(chain, observe=[*names, "snapshots"], **how)
+    alone = simulate(chain, observe=names, **how)
+    for name, values in alone.data_vars.items():
+        if "time" not in values.dims:
+            xr.testing.assert_identical(run[name], values)
+    assert run.sizes["time"] > 1000 >= alone.sizes["time"]
+    energy = chain.mass / 2 * (run.velocity**2).sum("particle").mean("replica")
+    np.testing.assert_allclose(run.kinetic_energy, energy.transpose("time"), rtol=1e-12)
+    save(run, tmp_path / "run.nc")
+    xr.testing.assert_identical(load(tmp_path / "run.nc"), run)
+    again = simulate(
+        chain, start=load(tmp_path / "run.nc").isel(time=-1), **how | {"duration": 100}
+    )
+    assert again.attrs["status"] == "completed"
+
+
+def test_energies_beside_snapshots_that_not_all_replicas_reached_are_unknown():
+    """Of an interrupted run; snapshots that some replica reached are kept."""
+    run = a_run(Chain(size=2), observe=["energy", "snapshots"], replicas=2)
+    pairs = [[each.prepared(run, 1) for each in run.observers] for _ in range(2)]
+    v = np.ones((3, 2))
+    for number, pair in enumerate(pairs):
+        for each in pair:
+            part = v[: 3 - number]
+            empty = np.zeros((len(part), 0), dtype=np.int64)
+            each.observe(Snapshots(0, 0, 0, 0 * part, part, empty))
+    reports, times = {}, []
+    for first, second in zip(*pairs, strict=True):
+        first.join([second])
+        reports |= first.report(np.array([3, 2]))
+        times.append(first.coordinates()["time"])
+    assert reports["velocity"][1].shape == (2, 3, 2)
+    np.testing.assert_array_equal(*times)
+    mass = run.chain.mass
+    np.testing.assert_allclose(reports["kinetic_energy"][1], [mass, mass, np.nan])
 
 
 def test_every_observer_has_a_name_of_its_own():

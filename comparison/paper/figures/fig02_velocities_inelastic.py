@@ -20,14 +20,15 @@ from crazybilliards.comparison.paper.distributions import (
     draw_distributions,
     fit_gaussian,
     histogram,
-    moment,
+    mean_shape,
     off_in_plot,
 )
 from crazybilliards.model import chain_of
+from crazybilliards.model.chain import middle_tenth
 
 _NAME = dissipative_name(LARGE, 0.0)
 _PARTICLES = (1, 10, 100, 500)
-_BULK = range(451, 551)
+_BULK = range(1, LARGE + 1)[middle_tenth(LARGE)]
 _SHOWN = 5.0  # widths of the rod to either side in the plot of its distribution
 _SOURCE = "section seq:e_0, fig.1"
 
@@ -43,10 +44,13 @@ def claims(results: Results) -> list[Claim]:
     def both_ends(run: xr.Dataset) -> float:
         # Outward is positive: the mirror image of the left end is the right end.
         left, right = range(1, 4), range(LARGE - 2, LARGE + 1)
-        return (moment(run, right, 3) - moment(run, left, 3)) / 2
+        right_skewness, left_skewness = (
+            mean_shape(run, end, "velocity_skewness") for end in (right, left)
+        )
+        return (right_skewness - left_skewness) / 2
 
     skewness = estimate(results, _NAME, both_ends)
-    kurtosis = estimate(results, _NAME, lambda run: moment(run, _BULK, 4) - 3)
+    kurtosis = estimate(results, _NAME, lambda run: mean_shape(run, _BULK, "velocity_kurtosis"))
     border = estimate(results, _NAME, border_width)
     return [
         eye_claim(

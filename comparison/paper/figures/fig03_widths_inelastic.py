@@ -210,6 +210,7 @@ def draw(results: Results) -> Figure:
     )
     widths, ratio = axes["widths"], axes["ratio"]
     ratio.sharex(widths)
+    widths.set(xscale="log", yscale="log", ylabel="velocity width $W_v/W$")
     for number, size in enumerate(_SIZES):
         run = pooled(results, step_name(size, None))
         unit = chain_of(run).free_velocity_width
@@ -227,7 +228,6 @@ def draw(results: Results) -> Figure:
         widths.plot(half, fit, color=COLOURS[number])
         over = _over_limit(results, size)
         draw_rods(ratio, over, "velocity_width", number=number, along="particle", label="")
-    widths.set(xscale="log", yscale="log", ylabel="velocity width $W_v/W$")
     widths.plot([], [], color="0.4", label="fit of two power laws")
     predictions.draw_widths_by_size(widths, results)
     widths.legend(loc="lower left")

@@ -15,6 +15,7 @@ from crazybilliards.comparison.drawing import along_the_chain, draw_rods
 from crazybilliards.comparison.layout import panels
 from crazybilliards.comparison.paper.chains import LARGE, dissipative, dissipative_name
 from crazybilliards.model import chain_of
+from crazybilliards.model.chain import middle_tenth
 
 _SIZES = (30, 100, 300, LARGE)
 
@@ -35,7 +36,7 @@ def swelling(run: xr.Dataset) -> float:
 
 def _confined(run: xr.Dataset) -> float:
     """Return W_x of the middle tenth of the rods."""
-    middle = np.abs(run.normalized_particle.values) < 0.1
+    middle = middle_tenth(run.sizes["particle"])
     return float(np.sqrt((run.displacement_width.values[middle] ** 2).mean()))
 
 

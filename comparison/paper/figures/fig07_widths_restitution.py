@@ -173,6 +173,7 @@ def draw(results: Results) -> Figure:
         [["widths", "exponents"], ["widths", "centre"]], height=3.9, width_ratios=(1.4, 1)
     )
     left = axes["widths"]
+    left.set(ylabel="velocity width $W_v/W$", yscale="log")
     names = {e: dissipative_name(LARGE, e) for e in RESTITUTIONS}
     names[1.0] = elastic_name(_ELASTIC_SIZE)
     for number, (e, name) in enumerate(names.items()):
@@ -182,7 +183,6 @@ def draw(results: Results) -> Figure:
         draw_rods(left, run, "velocity_width", number=number, unit=unit, label=label)
         _draw_theories(left, results, e, unit, COLOURS[number])
     along_the_chain(left)
-    left.set(ylabel="velocity width $W_v/W$", yscale="log")
     for theory, of_theory in predicted(results).items():
         solved = rf"{theory}, $e \geq {min(of_theory):g}$"
         left.plot([], [], LINES[theory], color="0.4", label=solved)

@@ -29,7 +29,7 @@ from crazybilliards.comparison.paper.distributions import (
     draw_distributions,
     gaussian,
     histogram,
-    moment,
+    mean_shape,
     off_in_plot,
 )
 from crazybilliards.model import Chain, chain_of
@@ -66,7 +66,9 @@ def claims(results: Results) -> list[Claim]:
     unit = chain_of(run).free_velocity_width
     deviation = np.abs(run.velocity_width - unit) / run.velocity_width_error
     kurtosis = estimate(
-        results, elastic_name(_SIZE), lambda run: moment(run, range(1, _SIZE + 1), 4) - 3
+        results,
+        elastic_name(_SIZE),
+        lambda run: mean_shape(run, range(1, _SIZE + 1), "velocity_kurtosis"),
     )
     wrong = [estimate(results, _contact(step), central_width).value / unit for step in _STEPS]
     long = pooled(results, _EXACT)

@@ -9,7 +9,7 @@ from typing import Any
 import xarray as xr
 from matplotlib.figure import Figure
 
-from crazybilliards.comparison.claims.repetition import estimate, middle_tenth, pooled
+from crazybilliards.comparison.claims.repetition import estimate, pooled
 from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
 from crazybilliards.comparison.claims.verdicts import About, Claim, Estimate, positive_claim
 from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_rods, mark_clipped
@@ -23,6 +23,7 @@ from crazybilliards.comparison.paper.predictions import (
     predicted,
 )
 from crazybilliards.model import chain_of
+from crazybilliards.model.chain import middle_tenth
 
 _FRAME = 0.7
 _LABEL = r"displacement $\langle\Delta x\rangle/s$"
@@ -89,6 +90,7 @@ def _excess(run: xr.Dataset, name: str) -> float:
 def draw(results: Results) -> Figure:
     """Draw <dx> against i_n, and of the rods at the left border against i; theory as lines."""
     figure, (whole, border) = panels(1, 2, height=2.5)
+    border.set(xscale="log", xlabel="particle $i$", ylabel=_LABEL)
     for number, e in enumerate(_RESTITUTIONS):
         run = pooled(results, dissipative_name(LARGE, e))
         s, colour = chain_of(run).thermal_length, COLOURS[number]
@@ -104,7 +106,6 @@ def draw(results: Results) -> Figure:
     along_the_chain(whole)
     whole.set(ylabel=_LABEL, ylim=(-_FRAME, _FRAME))
     mark_clipped(whole)
-    border.set(xscale="log", xlabel="particle $i$", ylabel=_LABEL)
     for theory, style in LINES.items():
         whole.plot([], [], style, color="0.4", label=theory)
     legend_above(figure, whole)

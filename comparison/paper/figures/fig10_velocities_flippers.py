@@ -18,7 +18,7 @@ from crazybilliards.comparison.claims.verdicts import Claim, Estimate, positive_
 from crazybilliards.comparison.fits import tail_length
 from crazybilliards.comparison.layout import legend_above, panels
 from crazybilliards.comparison.paper.chains import flippers, flippers_name
-from crazybilliards.comparison.paper.distributions import draw_distributions, moment
+from crazybilliards.comparison.paper.distributions import draw_distributions, mean_shape
 from crazybilliards.model import chain_of
 
 SIZE = 100
@@ -36,7 +36,7 @@ def claims(results: Results) -> list[Claim]:
     """Check: the border is the widest and has an exponential tail."""
     name = flippers_name(SIZE, _DAMPING)
     border = estimate(results, name, border_width)
-    kurtosis = estimate(results, name, lambda run: moment(run, (1, SIZE), 4) - 3)
+    kurtosis = estimate(results, name, lambda run: mean_shape(run, (1, SIZE), "velocity_kurtosis"))
     ratio = estimate(results, name, _tail_ratio)
     narrowest = estimate(results, name, _narrowest)
     source = "section Anti-Dissipation, fig:mom_hist_antidiss_gamma4"
@@ -76,8 +76,8 @@ def _density(run: xr.Dataset) -> xr.DataArray:
 
 def _tail_ratio(run: xr.Dataset) -> float:
     """Length of the border's outward tail far out over that nearer by: 1 if exponential."""
-    outward = run.velocity.values < 0
-    v, p = run.velocity.values[outward], _density(run).values[outward]
+    outward = run.velocity_bin.values < 0
+    v, p = run.velocity_bin.values[outward], _density(run).values[outward]
     width = border_width(run)
     return tail_length(v, p, 5 * width) / tail_length(v, p, _TAIL * width)
 
@@ -89,7 +89,7 @@ def draw(results: Results) -> Figure:
     figure, [ax] = panels(1, 1, height=2.9, wanted=1)
     draw_distributions(ax, members(results, flippers_name(SIZE, _DAMPING)), PARTICLES, unit)
     # The leftmost rod is thrown to the left.
-    v, p = (each.values[run.velocity.values < 0] for each in (run.velocity, _density(run)))
+    v, p = (each.values[run.velocity_bin.values < 0] for each in (run.velocity_bin, _density(run)))
     begin = _TAIL * border_width(run)
     length = tail_length(v, p, begin)
     share = float((p * np.gradient(v))[v < -begin].sum())

@@ -10,7 +10,6 @@ from crazybilliards.comparison.claims.repetition import (
     border_width,
     central_width,
     estimate,
-    middle_tenth,
     pooled,
 )
 from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
@@ -26,6 +25,7 @@ from crazybilliards.comparison.paper.chains import (
     kinetic_name,
 )
 from crazybilliards.model import chain_of
+from crazybilliards.model.chain import middle_tenth
 
 _SIZE = 100
 _RESTITUTION = 1.05

@@ -103,8 +103,9 @@ FIGURE = PaperFigure(
     name="density",
     title="Density at e = 1: simulation and theory",
     caption="L = 100, e = 1, four driving amplitudes. Circles: simulation, smoothed as in the "
-    f"paper. Lines: {'; '.join(LEGEND.values())}. Insets: the right edge, every bin. Below "
-    "each: the difference from the exact density in units of close packing.",
+    "paper; a thin line where circles would hide steps. Other lines: "
+    f"{'; '.join(LEGEND.values())}. Insets: the right edge, every bin. Below each: the difference "
+    "from the exact density in units of close packing.",
     cases=cases,
     draw=draw,
     claims=claims,

@@ -81,12 +81,12 @@ def draw(results: Results) -> Figure:
     figure, axes = panels(2, 2, height=2.3)
     labels = (r"$W_v^2/A^2$ [1/(M T)]", r"$\langle\Delta x\rangle/A$ [T$^{3/2}$/M]")
     for row, restitution in zip((axes[:2], axes[2:]), _RESTITUTIONS, strict=True):
+        row[0].set_yscale("log")
         for number, amplitude in enumerate(_AMPLITUDES):
             scaled = _scaled(results, restitution, amplitude)
             for ax, name, label in zip(row, _DRAWN, labels, strict=True):
                 draw_rods(ax, scaled, name, number=number, label=f"$A = {amplitude:g}$")
                 ax.set_ylabel(label)
-        row[0].set_yscale("log")
         for ax in row:
             along_the_chain(ax)
             entitle(ax, f"$e = {restitution:g}$")

@@ -118,6 +118,7 @@ def draw(results: Results) -> Figure:
     """Draw W_v^2(i) for every gap, a panel a restitution."""
     figure, axes = panels(1, len(_RESTITUTIONS), sharey=True)
     for ax, restitution in zip(axes, _RESTITUTIONS, strict=True):
+        ax.set_yscale("log")
         for number, gap in enumerate((0.0, *_GAPS)):
             run = pooled(results, _name(restitution, gap))
             run = run.assign(
@@ -130,7 +131,6 @@ def draw(results: Results) -> Figure:
             )
         along_the_chain(ax)
         entitle(ax, f"$e = {restitution:g}$")
-        ax.set_yscale("log")
         if at_the_left(ax):
             ax.set_ylabel("velocity variance $W_v^2/W^2$")
     legend_above(figure, axes[0])
