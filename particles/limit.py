@@ -18,7 +18,7 @@ import xarray as xr
 from crazybilliards.model import Chain
 from crazybilliards.model.checks import check_integer, check_real
 from crazybilliards.model.memory import require_memory
-from crazybilliards.model.process import announced, cores
+from crazybilliards.model.process import announced, cores, interrupts_noted
 from crazybilliards.model.vocabulary import result
 from crazybilliards.particles.level_steps import GROUPS, Steps, plan_steps
 from crazybilliards.particles.level_terms import CENTRAL, Estimate
@@ -156,13 +156,16 @@ def simulate_limit(
             Path(checkpoint), identity(samplers[0].finer) | own, checkpoint_interval
         )
     levels.start()
-    with nullcontext() if keeper is None else keeper.resumed(samplers):
+    with (
+        interrupts_noted() as signals,  # between two rounds as well
+        nullcontext() if keeper is None else keeper.resumed(samplers),
+    ):
         while True:
-            interrupted = run_all(samplers, threads, keeper, progress, " rod steps")
+            run_all(samplers, threads, keeper, progress, " rod steps")
             diverged = any(sampler.diverged for sampler in samplers)
-            if interrupted or diverged or not levels.extend():
+            if signals or diverged or not levels.extend():
                 break
-    return _collect(levels, interrupted, progress)
+        return _collect(levels, bool(signals), progress)
 
 
 def make_runs(

@@ -64,19 +64,21 @@ class Levels:
 
     @property
     def used(self) -> range:
-        """The levels of the sum, the base first."""
+        """The levels of the sum, the base first; the one in reserve once it is measured."""
         begun = [level for level, each in enumerate(self.samplers) if each[0].target]
+        if begun[-1] == len(self.samplers) - 1 and self._groups(begun[-1]) < 2:
+            begun = begun[:-1] or begun
         base = max(level for level in begun if self.samplers[level][0].coarser is None)
         return range(base, begun[-1] + 1)
 
     @property
     def measured(self) -> bool:
         """Whether every level has two groups with snapshots, so that its errors are known."""
-        groups = (
-            sum(int(np.count_nonzero(sampler.counts)) for sampler in self.samplers[level])
-            for level in self.used
-        )
-        return min(groups) >= 2
+        return min(self._groups(level) for level in self.used) >= 2
+
+    def _groups(self, level: int) -> int:
+        """Return how many groups of a level have snapshots."""
+        return sum(int(np.count_nonzero(sampler.counts)) for sampler in self.samplers[level])
 
     def start(self) -> None:
         """Ask for the pilot round; the last level is one in reserve if there are several."""

@@ -13,6 +13,7 @@ from crazybilliards.model import Chain, load
 from crazybilliards.particles import limit as limit_module
 from crazybilliards.particles import simulate, simulate_limit
 from crazybilliards.particles.level_steps import plan_steps
+from crazybilliards.particles.multilevel import Levels
 from crazybilliards.particles.running.sampler import Sampler
 from crazybilliards.particles.scales import default_time_step, time_step_error
 
@@ -257,6 +258,15 @@ def test_ctrl_c_gives_the_limit_with_the_errors_so_far(ctrl_c, tmp_path):
     assert deviation < 5 * cut.central_velocity_width_error
     resumed = simulate_limit(chain, **options)
     xr.testing.assert_identical(resumed, whole)
+
+
+@pytest.mark.compiled
+def test_ctrl_c_between_two_rounds_gives_the_limit_with_the_errors_so_far(ctrl_c):
+    """Even where the next round would measure a further level for the first time."""
+    ctrl_c(Levels, "_extend", lambda callers: len(callers) > 2)
+    limit = simulate_limit(Chain(size=12, restitution=0), **{**OPTIONS, "accuracy": 0.01})
+    assert limit.attrs["status"] == "interrupted"
+    assert limit.central_velocity_width_error < 0.1 * limit.central_velocity_width
 
 
 @pytest.mark.compiled
