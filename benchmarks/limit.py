@@ -6,7 +6,7 @@ W_v in the centre of the chain, to ``--accuracy`` in all. The limit is computed,
 and seconds of one core are counted, warm-up and pilot rounds included. The other one is worked out
 for the scheme of version 0.1, once with the error b that this version stated, 0.24 r^(3/2) for a
 velocity kick r W_v of one step, r = (A/m) sqrt(dt)/W_v, and once with the error that its scheme has
-at 100 rods (``time_step.py``, with ``--uncorrected`` at e = 0). With the standard error s the
+at 100 rods (``time_step.py``, with ``--strength 1`` at e = 0). With the standard error s the
 accuracy is sqrt(b^2 + s^2). The work ~ 1/(dt s^2) is least where b^2 is 2/5 of it, as b ~ dt^(3/4).
 This gives dt, and the duration follows from the variance of W_v that the limit's longest step has
 shown. The seconds are those of today's kernels at that step.

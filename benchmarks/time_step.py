@@ -1,16 +1,16 @@
 """How far a time step is from the limit dt -> 0: a table for the documentation.
 
     python benchmarks/time_step.py [--size 100 ...] [--restitution 0 ...] [--longer 1] [--share 1]
-                                   [--runs 8] [--uncorrected]
+                                   [--runs 8] [--strength 1]
 
 For restitutions and sizes: widths, displacements and the kurtosis of the velocities at the default
 step (or ``--longer`` times it) and at a quarter of it, from eight runs unless told otherwise. Both
 steps are driven by the same noise, so that much of the statistical error cancels in their ratio.
 What the finer step is still off is taken from an error ~ dt^(3/2) below the critical restitution
 and at e = 1, and ~ dt^(3/4) elsewhere. The whole table takes hours on one core; ``--share 0.1``
-takes a tenth of the time. With ``--uncorrected``, below the critical restitution, the longer step
-has no correction for closed contacts, as in version 0.1, and the deviation from the finer step,
-which has it, is given as it is.
+takes a tenth of the time. With ``--strength`` the kicks that open closed contacts are that many
+times as strong at the longer step. 1 is no correction, as in version 0.1. The deviation from the
+finer step, which has the default strength, is then given as it is below the critical restitution.
 """
 
 import argparse
@@ -141,12 +141,12 @@ def reported(copy: Copy, steps: int) -> np.ndarray:
 
 
 def compared(
-    chain: Chain, time_step: float, duration: float, seed: int, *, uncorrected: bool = False
+    chain: Chain, time_step: float, duration: float, seed: int, strength: float | None = None
 ) -> np.ndarray:
     """Coarse over fine - 1 for every quantity, of one run."""
     copies = [make_copy(chain, dt) for dt in (time_step, time_step / FINER)]
-    if uncorrected:
-        copies[0] = copies[0]._replace(step=copies[0].step._replace(closed=1.0))
+    if strength is not None:
+        copies[0] = copies[0]._replace(step=copies[0].step._replace(closed=strength))
     noise = make_noise(np.random.SeedSequence(seed))
     tally = make_tally(chain.size, contacts=False)
     steps = math.ceil(duration / time_step)
@@ -163,7 +163,7 @@ def main() -> None:
     parser.add_argument("--longer", type=float, default=1.0, help="in default time steps")
     parser.add_argument("--share", type=float, default=1.0, help="of the full duration")
     parser.add_argument("--runs", type=int, default=8, help="that the duration is shared by")
-    parser.add_argument("--uncorrected", action="store_true", help="the longer step of version 0.1")
+    parser.add_argument("--strength", type=float, help="of the kicks that open closed contacts")
     asked = parser.parse_args()
     print(f"| e | L | time step | {' | '.join(QUANTITIES)} |  (in %)")
     print("|---" * (3 + len(QUANTITIES)) + "|")
@@ -173,13 +173,10 @@ def main() -> None:
         chain = Chain(size=size, restitution=restitution, damping=damping)
         step = asked.longer * default_time_step(chain)
         each = asked.share * duration / asked.runs
-        found = [
-            compared(chain, step, each, seed, uncorrected=asked.uncorrected)
-            for seed in range(asked.runs)
-        ]
+        found = [compared(chain, step, each, seed, asked.strength) for seed in range(asked.runs)]
         corrected = restitution < CRITICAL_RESTITUTION
         order = 1.5 if corrected or restitution == 1 else 0.75
-        rest = 0.0 if asked.uncorrected and corrected else FINER**-order
+        rest = 0.0 if asked.strength is not None and corrected else FINER**-order
         deviation = 100 / (1 - rest) * np.array(found)
         mean, error = deviation.mean(axis=0), deviation.std(axis=0, ddof=1) / math.sqrt(asked.runs)
         shown = [f"{d:+.2f} ± {s:.2f}" for d, s in zip(mean, error, strict=True)]

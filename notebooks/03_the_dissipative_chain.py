@@ -149,8 +149,11 @@ axes[0].figure.colorbar(colours, ax=axes, label="velocity $v/W$")
 plt.show()
 
 # %% [markdown]
-# Now average over time. Neighbours move together, so a reliable error bar must come from the
-# scatter between whole runs. We therefore make a few independent runs of each chain.
+# Now average over time. The error bar of one rod, `velocity_width_error`, is right to 10 or 20 %.
+# But neighbours move together, so the errors of neighbouring rods are not independent. A mean over
+# rods and a fit to a profile are therefore less accurate than the error bars of single rods
+# suggest. Their errors must come from the scatter between whole runs, so we make a few independent
+# runs of each chain.
 
 
 # %%
@@ -188,6 +191,16 @@ for (e, runs), colour, symbol in zip(profiles.items(), (BLUE, ORANGE, GREEN), "o
         f"collisions take {100 * (1 - centre**2):.0f} % in the centre"
     )
     assert centre < border < 1
+widths, stated = (
+    np.array([run[name] for run in profiles[0]])
+    for name in ("velocity_width", "velocity_width_error")
+)
+one_rod = np.sqrt(np.var(widths, axis=0, ddof=1).mean() / (stated**2).mean())
+independent = np.sqrt((stated[:, 45:55] ** 2).mean() / 10)
+ten_rods = np.std([centre_width(run) for run in profiles[0]], ddof=1) / independent
+print("e = 0, scatter between runs over the stated error:")
+print(f"    one rod {one_rod:.1f}, mean over ten rods as if they were independent {ten_rods:.1f}")
+assert 0.7 < one_rod < 1.4 < ten_rods
 left.axhline(1, color="k", linewidth=1, label="e = 1, exact")
 left.axhline(1 / np.sqrt(100), color="0.4", linestyle=":", label=r"floor $1/\sqrt{L}$")
 left.set(xlabel="particle i", ylabel="velocity width $W_v/W$", ylim=(0, 1.05))
@@ -203,6 +216,50 @@ plt.show()
 # $W_v(i)$ is therefore narrow inside and wide at both borders. Even at $e = 0.95$ the centre is far
 # from elastic, because a rod collides so often in a damping time that small losses add up. The
 # border depends on $e$ much less.
+#
+# </details>
+#
+# The profiles at $e = 0$ and 0.5 nearly coincide. To see why, divide the mean square velocity of a
+# rod into two parts,
+#
+# $$\langle v_i^2\rangle = h + \Theta,\qquad h = \langle v_iv_{i+1}\rangle,\qquad
+# \Theta = \tfrac12\langle(v_i - v_{i+1})^2\rangle .$$
+#
+# (Both rods have nearly the same $\langle v^2\rangle$.) The part $h$ is the motion that a rod shares
+# with its neighbour, and $\Theta$ is the relative motion of the two.
+#
+# **Predict.** A collision takes all of the energy of the relative motion at $e = 0$, three quarters of
+# it at 0.5, and a tenth at 0.95. Which of the two parts depends more on $e$? Which is the larger one?
+#
+# **Run.** We measure both parts in the centre.
+
+# %%
+parts = {}
+for e in profiles:
+    one = sticky.replace(restitution=e)
+    run = simulate(one, duration=3000, observe=["widths", "covariances"], seed=1, progress=False)
+    middle = run.isel(particle=slice(45, 55), contact=slice(45, 54))
+    whole = float((middle.velocity_width**2).mean()) / W**2
+    shared = float(middle.neighbour_covariance.mean()) / W**2
+    parts[e] = shared, whole - shared
+    print(f"e = {e}: <v^2> = {whole:.4f} W^2, h = {shared:.4f} W^2, rest {whole - shared:.4f} W^2")
+
+# %% tags=["remove-cell"]
+(shared, relative), (shared_half, relative_half), (_, relative_elastic) = parts.values()
+assert abs(shared_half / shared - 1) < 0.2
+assert 1.1 < relative_half / relative < 1.5 < 8 < relative_elastic / relative
+assert shared > 1.5 * relative
+
+# %% [markdown]
+# <details><summary>Explain</summary>
+#
+# A collision conserves $v_i + v_{i+1}$ and takes the fraction $1 - e^2$ of the energy that belongs to
+# $v_i - v_{i+1}$. At $e = 0$ and 0.5 this fraction is 1 and 0.75, so $\Theta$ differs by a quarter only.
+# And $\Theta$ is the smaller part, about a third of $\langle v_i^2\rangle$. The larger part $h$ is nearly
+# the same in both chains. Because collisions conserve momentum, what they take from the squares of
+# two rods becomes covariance of the two ([lesson 10](10_neighbours_remember.ipynb) shows this), and
+# in both chains they take 95 % of the noise's power. Together $W_v$ differs by 2 %. At $e = 0.95$ a
+# collision takes a tenth of the relative energy, and $\Theta$ is eleven times as large as at $e = 0$.
 #
 # </details>
 #

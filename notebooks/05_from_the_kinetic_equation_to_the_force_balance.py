@@ -258,7 +258,7 @@ assert residual < 1e-6
 # $$\chi = \frac{1}{1-2R\rho} .$$
 #
 # **Where the density varies** and all rods feel the same potential there is an exact answer too
-# (Percus, 1976; the derivation here is ours). Let the chain be in contact with a reservoir of rods
+# (Percus, 1976). Let the chain be in contact with a reservoir of rods
 # with the fugacity $z(x)$. Let $\Xi_-(x)$ be the partition function of all rods that fit to the left
 # of a rod at $x$, and $\Xi_+(x)$ that to the right. Then
 #

@@ -141,9 +141,10 @@ check(gain, gain_solution, at=cases, hint=hint)
 #   `phase_space` uses it for $e \le 1$ only (exercise 1 gives the reason).
 #
 # The equation contains one assumption: the velocities of two points that meet are independent,
-# $f_2 = f f$. This is called molecular chaos. The equation is not in the paper. `phase_space` solves
-# it with finite elements in the $(y, v)$ plane. Rod $i$ is then the $i$-th of $L$ points drawn from
-# $f$.
+# $f_2 = f f$. This is called molecular chaos. The equation is not in the paper. For uniform granular
+# gases near $e = 1$ such a drag is known (McNamara and Young, 1993; Benedetto, Caglioti and Pulvirenti,
+# *A kinetic equation for granular media*, 1997). `phase_space` solves the equation with finite elements
+# in the $(y, v)$ plane. Rod $i$ is then the $i$-th of $L$ points drawn from $f$.
 #
 # **Predict.** 1. For $e = 0.95$ a collision takes 2.5 % of the relative velocity. Is the centre of a
 # chain of 100 rods slower than a free rod by a few per cent, or by much more? 2. For $e = 1.05$ and

@@ -74,9 +74,13 @@ assert 0.38 < correlation[0.75] < 0.50
 
 
 # %% [markdown]
-# **Explain.** At $e = 1$ the correlation is zero within the error: in equilibrium all velocities
-# are independent, although neighbours hit one another all the time. At $e = 0.75$ the correlation is
-# large: the covariance of neighbours is more than a third of their mean square velocity.
+# <details><summary>Explain</summary>
+#
+# At $e = 1$ the correlation is zero within the error: in equilibrium all velocities are independent,
+# although neighbours hit one another all the time. At $e = 0.75$ the correlation is large: the
+# covariance of neighbours is more than a third of their mean square velocity.
+#
+# </details>
 #
 # ## 2. Where it comes from
 #
@@ -85,6 +89,7 @@ assert 0.38 < correlation[0.75] < 0.50
 # $$v' = \tfrac12(v+u) - \tfrac e2(v-u),\qquad u' = \tfrac12(v+u) + \tfrac e2(v-u).$$
 #
 # **Your turn.** By how much does the product $vu$ change in a collision?
+
 
 # %% tags=["remove-cell"]
 def change_of_product(v, u, e):
@@ -127,12 +132,25 @@ check(my_change_of_product, change_of_product, at=pairs, hint=hint)
 #
 # A collision takes the energy $\frac{1-e^2}4m(v-u)^2$. For strangers of the temperature
 # $T = \langle v^2\rangle$ the mean of $\frac12(v-u)^2$ is $T$. For neighbours this mean is the *relative
-# temperature* $\Theta = T - \langle v_iv_{i+1}\rangle$. The observer `impacts` looks only at rods
-# that collide. Just before they do, they have the relative temperature `contact_temperature`, and
-# just after it `rebound_temperature`.
+# temperature* $\Theta = T - \langle v_iv_{i+1}\rangle$.
 #
-# **Predict.** Order the four at $e = 0.75$: $T$, $\Theta$ of all neighbours, $\Theta$ before a
-# collision, $\Theta$ after it. Does a collision take more or less than one of strangers?
+# The observer `impacts` looks only at rods that collide. A pair that approaches with the speed
+# $w = \lvert v-u\rvert$ meets at a rate proportional to $w$, so a mean over collisions weights every pair
+# with its speed. Let $v - u$ be Gaussian, with the variance $2\Theta$. The speeds at which rods meet
+# then have the density $w\,e^{-w^2/4\Theta}/2\Theta$, and their means are
+#
+# $$\langle w\rangle = \sqrt{\pi\Theta},\qquad \langle w^2\rangle = 4\Theta .$$
+#
+# For strangers $\Theta$ is $T$. The mean of $\frac12w^2$ over the collisions of strangers is therefore
+# $2T$, twice that of all pairs. To be compared with $T$, the observer gives the *contact temperature*
+#
+# $$\Theta_c = \frac{\pi}{16}\left(\frac{\langle w^2\rangle}{\langle w\rangle}\right)^2 ,$$
+#
+# which is $T$ for strangers. Its name is `contact_temperature`. `rebound_temperature` is the same of
+# the speeds just after the collisions.
+#
+# **Predict.** Order the four at $e = 0.75$: $T$, $\Theta$ of all neighbours, $\Theta_c$ before a
+# collision, the same after it. Does a collision take more or less than one of strangers?
 #
 # **Run.**
 
@@ -153,15 +171,32 @@ for name in names:
 assert 0.4 < share[0.75, "contact_temperature"] < share[0.75, "relative_temperature"] < 0.65
 ratio = share[0.75, "rebound_temperature"] / share[0.75, "contact_temperature"]
 assert abs(ratio - 0.75**2) < 0.01
+run = runs[0.75]
+by_force = 2 / np.sqrt(np.pi) * (1 - 0.75) * np.sqrt(run.contact_temperature)
+assert np.allclose(run.contact_loss / run.contact_force, by_force, rtol=0.01)
 
 # %% [markdown]
-# **Explain.** At $e = 1$ all four are $T$. At $e = 0.75$ neighbours have a relative temperature of
-# 0.585 $T$, because their covariance is the rest of $T$. Rods that are about to collide have a lower one,
-# 0.44 $T$. The reason is that rods which happen to be close collide often, and are cold. After the
-# collision $e^2 = 0.56$ of the 0.44 $T$ remains. Then noise and other neighbours make the two velocities
-# different again. So a collision takes less than one of strangers would. At the same force between the
-# rods the loss is proportional to the root of the relative temperature before a collision. This root is
-# $\sqrt{0.44} = 0.66$, so the loss is a third smaller.
+# <details><summary>Explain</summary>
+#
+# At $e = 1$ all four are $T$. At $e = 0.75$ neighbours have a relative temperature of 0.585 $T$,
+# because their covariance is the rest of $T$. Rods that are about to collide have a lower one, 0.44 $T$.
+# The reason is that rods which happen to be close collide often, and are cold. After the collision
+# $e^2 = 0.56$ of the 0.44 $T$ remains. Then noise and other neighbours make the two velocities
+# different again.
+#
+# How much less is lost than among strangers? Collisions with the speed $w$ exchange the momentum
+# $\frac{1+e}2mw$ and take the energy $\frac{1-e^2}4mw^2$. Divide the energy that a contact loses in a
+# time by the momentum that crosses it in this time, which is the force between the two rods. The
+# number of collisions cancels:
+#
+# $$\frac{\text{loss}}{\text{force}} = \frac{1-e}2\,\frac{\langle w^2\rangle}{\langle w\rangle}
+# = \frac2{\sqrt\pi}\,(1-e)\sqrt{\Theta_c} .$$
+#
+# The springs of the rods beyond the contact set the force. At the same force the loss is therefore
+# proportional to $\sqrt{\Theta_c}$, and $\sqrt{0.44} = 0.66$: it is a third smaller than that of
+# strangers.
+#
+# </details>
 #
 # ## 4. How far do they remember?
 #
@@ -202,11 +237,14 @@ for e in runs:
     assert abs(total[e] / W**2 - 1) < 0.5
 
 # %% [markdown]
-# **Explain.** The sum is $W^2$ at both restitutions, within its error of 10 to 20 %. Collisions
-# do not change it. They only turn squares of one rod into products with other rods. (The pink
-# point at $r = 0$ lies outside of the picture, at 1.) So the ratio $W^2/\langle v^2\rangle$ says
-# how many rods move together, in the mean over the chain. The colder the chain is, the more of its
-# rods move together.
+# <details><summary>Explain</summary>
+#
+# The sum is $W^2$ at both restitutions, within its error of 10 to 20 %. Collisions do not change it.
+# They only turn squares of one rod into products with other rods. (The pink point at $r = 0$ lies
+# outside of the picture, at 1.) So the ratio $W^2/\langle v^2\rangle$ says how many rods move
+# together, in the mean over the chain. The colder the chain is, the more of its rods move together.
+#
+# </details>
 #
 # ## 5. Two theories
 #
@@ -265,11 +303,15 @@ assert -0.13 < of_strangers < -0.05
 assert abs(of_neighbours) < 0.04
 
 # %% [markdown]
-# **Explain.** The width is too small, because strangers lose more energy. The left picture shows the
-# widths, the right one the covariance of neighbours. In the first theory this covariance is only that
-# of the centre of mass, $W^2/L$. The second theory was derived while simulations of this chain were
-# looked at, so the agreement alone proves little. The page on pair correlations in the documentation
+# <details><summary>Explain</summary>
+#
+# The width is too small, because strangers lose more energy. The left picture shows the widths, the
+# right one the covariance of neighbours. In the first theory this covariance is only that of the
+# centre of mass, $W^2/L$. The second theory was derived while simulations of this chain were looked
+# at, so the agreement alone proves little. The page on pair correlations in the documentation
 # compares it with other chains, and says where it fails.
+#
+# </details>
 #
 # ## Exercises
 #

@@ -41,6 +41,14 @@ def test_every_link_of_a_page_is_right_in_the_repository_too():
     assert dead == []
 
 
+def test_a_script_that_a_page_names_exists():
+    pages = [*DOCS.parent.glob("*.md"), *DOCS.rglob("*.md")]
+    text = "\n".join(page.read_text(encoding="utf-8") for page in pages)
+    named = set(re.findall(r"python\s+((?:benchmarks|docs/figures)/\S+?\.py)", text))
+    assert len(named) > 10
+    assert not [script for script in named if not (DOCS.parent / script).exists()]
+
+
 @pytest.mark.parametrize("short", [r"\tfrac12 x", r"\dfrac 12 x", r"\frac12 x"])
 def test_a_short_fraction_is_set_like_a_long_one(short):
     pytest.importorskip("sphinx")

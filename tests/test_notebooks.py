@@ -101,6 +101,7 @@ def test_what_a_student_sees(path):
     assert 0 < text.count("<details>") == text.count("</details>")
     assert 0 < text.count("**Predict") <= text.count("**Run")
     assert "hint=" in "\n".join(lines)
+    assert "**Explain" not in text  # it would give the answer away: <details> folds it
 
 
 def wrong(x):

@@ -36,6 +36,7 @@ AVOID = {
     r"\bone's own\b": "your own",
     r"\bof today\b": "current",
     r"\bwhat about grants\b": "tolerance",
+    r"\bno script\b": "name the command that prints the number, or leave the number out",
 }
 MOST_WORDS = 45
 

@@ -1,5 +1,8 @@
 r"""Stationary covariances of pairs of rods: fluctuating hydrodynamics in the frame of labels.
 
+For uniform granular fluids driven by noise see T. P. C. van Noije and others
+(arXiv:cond-mat/9810251) and, with friction, G. Gradenigo and others (arXiv:1103.0166).
+
 Rods carry slow fields along the chain: displacement u and velocity V of a place, relative
 temperature Theta and third moment q = <c^3> of the velocities about V. With n(l) rods per length
 and the mean gap g(l) at label l, Lambda what collisions at a contact take from the sum of v^2 per

@@ -9,12 +9,14 @@ are independent (molecular chaos), the density f(y, v, t) of L points obeys
                             + (lambda^2/2) d^2/dv^2 [ f int |v-u|^3 f(y,u) du ],   its diffusion
 
 This is the Kramers-Moyal expansion of the collision operator to second order in lambda. The first
-order is a drag towards the local flow for e < 1 and a drive for e > 1. At e = 1 the equation is the
-Kramers equation. The second-order term is the shot noise of random encounters. For e < 1 it is part
-of the equation, because collisions slow a point down within a fraction of the cloud. For e > 1 it
-is left out, because fast points matter most. A fast point crosses the whole cloud and so meets each
-of the L - 1 others exactly once. F = F(y - g (N - L/2)) is the spring's force in mean field, where
-the anchor of a point is that of its label N(y).
+order is a drag towards the local flow for e < 1 and a drive for e > 1. For uniform granular media
+such a drag is that of D. Benedetto, E. Caglioti and M. Pulvirenti (RAIRO Modél. Math. Anal. Numér.
+31, 615, 1997). At e = 1 the equation is the Kramers equation. The second-order term is the shot
+noise of random encounters. For e < 1 it is part of the equation, because collisions slow a point
+down within a fraction of the cloud. For e > 1 it is left out, because fast points matter most. A
+fast point crosses the whole cloud and so meets each of the L - 1 others exactly once.
+F = F(y - g (N - L/2)) is the spring's force in mean field, where the anchor of a point is that of
+its label N(y).
 
 In units of a length l and a velocity c, and with f normalised to 1, the equation is:
 

@@ -14,11 +14,10 @@ relative kick of a closed contact is ``CLOSED_KICK`` times as strong. The number
 single contact and holds for every chain at e = 0. ``benchmarks/closed_contact.py`` computes it.
 
 The same factor is taken up to the critical restitution exp(-pi/sqrt 3) = 0.163 (Cornell, Swift and
-Bray, Phys. Rev. Lett. 81, 1142, 1998), below which a contact still collapses onto the wall. There
-D(e) vanishes only for much stronger kicks, but practical steps are far from the limit in which this
-matters: in chains at e = 0.1 the factor of e = 0 removes most of the error, and a stronger factor
-adds more error than it removes. Above the critical restitution contacts do not collapse, and no
-factor helps.
+Bray, Phys. Rev. Lett. 81, 1142, 1998), below which a contact still collapses onto the wall. D was
+not worked out there. In chains at e = 0.1 the factor of e = 0 removes the error, and a stronger
+factor adds more error than it removes (docs/particles.md). Above the critical restitution contacts
+do not collapse, and no factor is taken.
 
 The deviations of the kicks from the mean of their cluster are made stronger, which does not change
 the momentum. If a snapshot splits a kick into two halves, the two together have the law of a whole

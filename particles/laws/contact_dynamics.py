@@ -8,8 +8,8 @@ with b_i = e (v_i - v_{i+1}) for a contact that would close within the step and 
 b_i = -gap_i/dt for every other contact, which then does not overlap. This linear complementarity
 problem is the optimality condition of "u as close to v as the constraints allow". With B_i the sum
 of the b_j left of i, the constraints say that u_i - B_i ascends. The solution is the isotonic
-regression of v_i - B_i. Other programs usually iterate to it. The paper quotes a cost of O(L^2) for
-its program.
+regression of v_i - B_i. Other programs usually iterate to it (M. Jean, Comput. Methods Appl. Mech.
+Engrg. 177, 235, 1999). The paper quotes a cost of O(L^2) for its program.
 
 The law is the position form, in which rods never overlap beyond rounding. Simultaneous contacts
 share an impulse, so Newton's cradle of three rods in contact gives (-1/3, 2/3, 2/3) at e = 1 and

@@ -3,7 +3,8 @@
 Equal masses swap their velocities when they collide elastically, as if they passed through each
 other and swapped names. In the reduced coordinate a drift over dt therefore lets every point fly
 freely, y + dt v, and then sorts the pairs (y, v) by y. The result is exact for any number of
-collisions. Each inversion that the sort removes is one collision.
+collisions (D. W. Jepsen, J. Math. Phys. 6, 405, 1965). Each inversion that the sort removes is one
+collision.
 
 The sort uses the existing order. It sorts short runs by insertion and then merges the runs,
 touching only the parts that overlap. It costs O(L + collisions) if rods collide rarely, and never

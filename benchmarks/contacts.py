@@ -1,0 +1,168 @@
+r"""What happens at the contacts of a chain: simulation and the theory with pair correlations.
+
+    python benchmarks/contacts.py [--duration 12000]
+
+Prints what docs/correlations.md says of contacts, in units of the free rod.
+
+1. At the contacts 1, 4, 10 and in the centre: the force P, the speed before a collision (the root
+   of ``contact_temperature``, for which the theory has F sqrt(Theta)), the covariance of the
+   velocities of rods two apart, and the covariances of the distance at one contact with the
+   relative temperature and with the distance at the next, relative to the means.
+2. <v_i^2> of a rod, and the mean of the temperature T(y) over the places y where the rod is.
+3. ``contact_temperature`` over ``relative_temperature`` in the centre of 20 rods.
+
+The time step is a quarter of the default one. Takes three minutes on one core.
+"""
+
+import argparse
+
+import numpy as np
+import xarray as xr
+
+from crazybilliards.kinetic.correlations.stationary import _agree
+from crazybilliards.model import Chain
+from crazybilliards.particles import simulate
+from crazybilliards.particles.observers import Covariances
+from crazybilliards.particles.scales import default_time_step
+
+CHAINS = (
+    Chain(size=30, restitution=0.9),
+    Chain(size=100, restitution=0.75),
+    Chain(size=30, restitution=0.5),
+)
+SHORT = (Chain(size=20, restitution=0.75), Chain(size=20, restitution=0.3))
+PLACES = Chain(size=30, restitution=0.75)
+RODS = (1, 3, 8, 15)
+CONTACTS = (1, 4, 10)  # and the one in the centre
+FINER = 4  # than the default time step
+TOLERANCE = 2e-3  # of the theory, its default
+BLOCKS = 16  # of time, whose scatter gives the errors of what snapshots give
+BIN = 0.2  # of T(y), in thermal lengths
+Values = np.ndarray
+
+
+def measured(chain: Chain, duration: float) -> xr.Dataset:
+    return simulate(
+        chain,
+        duration=duration,
+        time_step=default_time_step(chain) / FINER,
+        every=0.5,
+        seed=11,
+        observe=("widths", Covariances(separations=2), "impacts", "snapshots"),
+        threads=1,
+        progress=False,
+    )
+
+
+def snapshots(run: xr.Dataset, chain: Chain) -> tuple[Values, Values]:
+    """Return displacements, which are the reduced positions, and velocities: (times, rods)."""
+    x, v = (run[name].values.reshape(-1, chain.size) for name in ("position", "velocity"))
+    return (x - chain.anchors) / chain.thermal_length, v / chain.free_velocity_width
+
+
+def next_contacts(run: xr.Dataset, chain: Chain) -> Values:
+    """Return covariances of the distance at a contact with temperature and distance at the next.
+
+    Shape (blocks, 2, contacts - 1), relative to the means of the whole run.
+    """
+    y, v = snapshots(run, chain)
+    gap, theta = np.diff(y), np.diff(v) ** 2 / 2
+    gap, theta = gap / gap.mean(axis=0) - 1, theta / theta.mean(axis=0) - 1
+    both = (gap[:, :-1] * theta[:, 1:] + gap[:, 1:] * theta[:, :-1]) / 2, gap[:, :-1] * gap[:, 1:]
+    blocks = [np.array_split(each, BLOCKS) for each in both]
+    return np.array([[part.mean(axis=0) for part in of] for of in blocks]).swapaxes(0, 1)
+
+
+def simulated(chain: Chain, duration: float) -> list[tuple[Values, Values]]:
+    """Return values and errors along the chain of the five quantities."""
+    run = measured(chain, duration)
+    force, speed, square = (
+        chain.stiffness * chain.thermal_length,
+        chain.free_velocity_width,
+        chain.free_velocity_width**2,
+    )
+    root = np.sqrt(run.contact_temperature.values)
+    two_apart = run.sel(separation=2).isel(particle=slice(0, -2))
+    blocks = next_contacts(run, chain)
+    values, errors = blocks.mean(axis=0), blocks.std(axis=0, ddof=1) / np.sqrt(BLOCKS)
+    return [
+        (run.contact_force.values / force, run.contact_force_error.values / force),
+        (root / speed, run.contact_temperature_error.values / (2 * root) / speed),
+        (
+            two_apart.velocity_covariance.values / square,
+            two_apart.velocity_covariance_error.values / square,
+        ),
+        *zip(values, errors, strict=True),
+    ]
+
+
+def theoretical(chain: Chain) -> list[Values]:
+    """Return the same of the theory, whose cells are single rods for up to 130 rods."""
+    found = _agree(chain, TOLERANCE)
+    around, pairs = found.background, found.pairs
+    return [
+        around.pressure,
+        np.exp(found.closure.log_clustering) * np.sqrt(around.temperature),
+        np.diag(pairs.velocity, 2),
+        (np.diag(pairs.gap_temperature, 1) + np.diag(pairs.gap_temperature, -1)) / 2,
+        np.diag(pairs.gap, 1),
+    ]
+
+
+def tabulate_contacts(duration: float) -> None:
+    names = "force P", "speed before a collision", "<v_i v_(i+2)>", "h_gTheta", "h_gg"
+    print("simulation / theory\n| rods | e | quantity | 1 | 4 | 10 | centre |\n|" + 7 * "---|")
+    for chain in CHAINS:
+        rows = zip(names, simulated(chain, duration), theoretical(chain), strict=True)
+        for name, (values, errors), theory in rows:
+            even = (values + values[::-1]) / 2  # a place and its mirror image
+            shown = [
+                f"{even[at]:.3f} ± {errors[at] / np.sqrt(2):.1g} / {theory[at]:.3f}"
+                for at in (*(contact - 1 for contact in CONTACTS), (even.size - 1) // 2)
+            ]
+            print(f"| {chain.size} | {chain.restitution:g} | {name} | {' | '.join(shown)} |")
+
+
+def tabulate_places(duration: float) -> None:
+    y, v = snapshots(measured(PLACES, duration), PLACES)
+    place = np.floor(y / BIN).astype(int)
+    place -= place.min()
+    rods = np.bincount(place.ravel())
+    squares = np.bincount(place.ravel(), weights=(v**2).ravel())
+    there = squares / np.maximum(rods, 1)
+    print("\n| rod | <v_i^2> | mean of T(y) over the places of the rod |\n|---|---|---|")
+    for rod in RODS:
+        mirrored = [rod - 1, PLACES.size - rod]
+        own, seen = v[:, mirrored] ** 2, there[place[:, mirrored]]
+        blocks = [part.mean() for part in np.array_split(own, BLOCKS)]
+        error = np.std(blocks, ddof=1) / np.sqrt(BLOCKS)
+        print(f"| {rod} | {own.mean():.3f} ± {error:.1g} | {seen.mean():.3f} |")
+
+
+def tabulate_short(duration: float) -> None:
+    print("\n| rods | e | contact temperature over relative temperature, centre |\n|---|---|---|")
+    for chain in SHORT:
+        centre = measured(chain, duration).sel(contact=slice(9, 11))
+        ratio = (centre.contact_temperature / centre.relative_temperature).mean()
+        # Neighbouring contacts err together.
+        errors = [
+            (centre[f"{name}_temperature_error"] / centre[f"{name}_temperature"]).mean()
+            for name in ("contact", "relative")
+        ]
+        error = float(ratio) * np.hypot(*errors)
+        print(f"| {chain.size} | {chain.restitution:g} | {float(ratio):.2f} ± {error:.2f} |")
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--duration", type=float, default=12_000.0, help="time units of each run")
+    asked = parser.parse_args()
+    tabulate_contacts(asked.duration)
+    tabulate_places(asked.duration)
+    tabulate_short(asked.duration)
+
+
+if __name__ == "__main__":
+    main()
