@@ -86,6 +86,7 @@ def test_page_moves_with_nothing_from_elsewhere(browser, address):
 @pytest.mark.compiled
 def test_a_number_typed_changes_theory_and_address_and_opens_again(browser, address):
     visit(browser, address, LONG)
+    pause(browser)  # a busy browser falls behind the moving rods, and shows the answer ever later
     before = max(until(lambda: column(browser, "exact density", "x")))
     type_number(browser, 2, "10")
     until(lambda: max(column(browser, "exact density", "x"), default=0) > before + 10)
