@@ -12,6 +12,7 @@ from crazybilliards.kinetic import (
     two_clumps,
 )
 from crazybilliards.kinetic.exact.breathing import breathing_cloud
+from crazybilliards.kinetic.fluids.pde_solver import solve
 from crazybilliards.model import Chain
 
 QUIET = {"progress": False}
@@ -154,3 +155,29 @@ def test_more_outputs_than_memory_holds_are_refused_before_any_work():
     chain = Chain(size=10**6)
     with pytest.raises(ValueError, match=r"would take .* GiB of memory"):
         hydrodynamics(chain, displaced(chain, 1.0), 1.0, every=1e-6, **QUIET)
+
+
+@pytest.mark.parametrize("frame", ["label", "eulerian"])
+@pytest.mark.parametrize("duration", [1e-12, 1e-50])
+def test_the_shortest_duration_is_not_taken_for_ctrl_c(frame, duration):
+    """py-pde drops outputs that are close together; a missing output is no sign of Ctrl-C."""
+    chain = Chain(size=5)
+    flow = hydrodynamics(chain, displaced(chain, 2.0), duration, frame=frame, **QUIET)
+    assert flow.attrs["status"] == "completed"
+    assert flow.sizes["time"] == 101
+    assert float(flow.time[-1]) == pytest.approx(duration)
+    # A shifted state at rest begins to move with the acceleration -k/m times its shift.
+    speed = -2.0 * chain.stiffness / chain.mass * duration
+    np.testing.assert_allclose(flow.mean_velocity[-1].mean(), speed, rtol=0.02)
+
+
+def test_an_output_that_py_pde_drops_is_an_error():
+    with pytest.raises(RuntimeError, match="outputs of 11"):
+        solve(
+            lambda values, time: -values,
+            {"field": np.ones(8)},
+            1e-12 * np.arange(11.0),
+            progress=False,
+            solver="scipy",
+            backend="numpy",
+        )
