@@ -1,8 +1,11 @@
 """Calls of the hydrodynamics: equal ones, wrong ones, interrupted ones."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 from pde import MemoryStorage
+from scipy.optimize import elementwise
 
 from crazybilliards.kinetic import (
     compressed,
@@ -125,6 +128,16 @@ def test_ctrl_c_keeps_the_times_before(ctrl_c):
     assert flow.attrs["end_time"] == flow.time[-1]
     assert 5 <= flow.sizes["time"] < 1001
     assert np.isfinite(flow.density).all()
+
+
+def test_a_label_that_is_not_found_is_an_error(monkeypatch):
+    """The middle of a cell is the position only where the cell is empty."""
+    chain = Chain(size=20)
+    start = displaced(chain, 1.0)
+    hasty = partial(elementwise.find_root, maxiter=1)
+    monkeypatch.setattr(elementwise, "find_root", hasty)
+    with pytest.raises(ValueError, match="labels could not be inverted"):
+        hydrodynamics(chain, start, 1, **QUIET)
 
 
 def test_a_plain_density_profile_is_a_start():
