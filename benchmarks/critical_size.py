@@ -8,11 +8,10 @@ Simulated: tau = W^2 L/sum W_v(i)^2, the free energy over the chain's, falls to 
 size; a parabola through five sizes just below finds where. Takes about half an hour on one core.
 """
 
-import math
-
 import numpy as np
 
 from crazybilliards.kinetic import critical_size
+from crazybilliards.kinetic.kinetic_equation.weak_damping import weak_damping_critical_size
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
 
@@ -21,15 +20,9 @@ NEAR = (0.82, 0.855, 0.88, 0.9, 0.92)  # sizes, as shares of the closed form
 DURATION = 100_000.0
 
 
-def closed_form(chain: Chain) -> float:
-    """L_c = pi gamma/((e - 1) sqrt(k m))."""
-    unit = math.sqrt(chain.stiffness * chain.mass)
-    return math.pi * chain.damping / ((chain.restitution - 1) * unit)
-
-
 def simulated(chain: Chain) -> tuple[float, float]:
     """Return the size at which 1/energy, extrapolated, reaches zero, and its error."""
-    sizes = sorted({round(share * closed_form(chain)) for share in NEAR})
+    sizes = sorted({round(share * weak_damping_critical_size(chain)) for share in NEAR})
     shares, errors = [], []
     for size in sizes:
         run = simulate(
@@ -60,7 +53,7 @@ def main() -> None:
         value, error = simulated(chain)
         print(
             f"| {restitution:g} | {damping:g} | {theory.value:.1f} ± {theory.error:.1f} "
-            f"| {closed_form(chain):.1f} | {value:.1f} ± {error:.1f} |",
+            f"| {weak_damping_critical_size(chain):.1f} | {value:.1f} ± {error:.1f} |",
             flush=True,
         )
 

@@ -25,6 +25,7 @@ from crazybilliards.model.vocabulary import require, result
 Array = NDArray[np.float64]
 
 _RODS_TOLERANCE = 1e-3
+_NO_SIGN_CHANGE = -1  # status of a root that scipy did not look for; those below are failures
 
 
 def displaced(chain: Chain, shift: float) -> xr.Dataset:
@@ -96,6 +97,8 @@ class Start(NamedTuple):
         low, high = self.x[cell], self.x[cell + 1]
         find_root: Any = elementwise.find_root  # its stubs know no args
         root = find_root(lambda x, wanted: self.label(x) - wanted, (low, high), args=(labels,))
+        if (root.status < _NO_SIGN_CHANGE).any():
+            raise ValueError("start: its labels could not be inverted")
         # Every x in an empty cell has the same label. A bracket may then have no sign change.
         return np.asarray(np.where(root.success, root.x, (low + high) / 2))
 
@@ -118,10 +121,7 @@ def read_start(chain: Chain, start: xr.Dataset) -> Start:
         label = label - label[0]
     else:
         label = PchipInterpolator(x, density).antiderivative()(x)
-    if abs(label[-1] / chain.size - 1) > _RODS_TOLERANCE:
-        raise ValueError(
-            f"start: the density must add up to the chain's {chain.size} rods, got {label[-1]:.6g}"
-        )
+    require_rods(chain, "density", label[-1])
     scale = chain.size / label[-1]
     profiles = {}
     free = _own_variance(chain, start)
@@ -133,6 +133,14 @@ def read_start(chain: Chain, start: xr.Dataset) -> Start:
     if (profiles["velocity_variance"](x) <= 0).any():
         raise ValueError("start: velocity_variance must be positive")
     return Start(x, CubicHermiteSpline(x, scale * label, scale * density), *profiles.values())
+
+
+def require_rods(chain: Chain, name: str, rods: float) -> None:
+    """Raise unless the variable of a start adds up to the number of rods, to a thousandth."""
+    if abs(rods / chain.size - 1) > _RODS_TOLERANCE:
+        raise ValueError(
+            f"start: the {name} must add up to the chain's {chain.size} rods, got {rods:.6g}"
+        )
 
 
 def _numbers(start: xr.Dataset, name: str) -> Array:

@@ -24,6 +24,10 @@ _STRIDE = 10
 _RELAXATIONS = 12
 _BLOCKS = 64
 _OUTPUTS = 100
+# A short time between snapshots shortens the step. Only in a short run may it become so much
+# shorter than the chain needs.
+_MOST_SHORTENED = 1000
+_MOST_SHORT_STEPS = 1_000_000
 
 Average = Literal["time", "ensemble"]
 
@@ -93,16 +97,19 @@ def make_schedule(
 
     Averages in time get their standard errors from 64 blocks in all. The measured duration is
     rounded up so that the blocks are equally long. ``every``, the time between snapshots, is kept
-    exactly, and the step becomes a whole fraction of it.
+    exactly, and the step becomes a whole fraction of it. An ``every`` that makes it over a thousand
+    times as short and the run over a million steps long is refused.
     """
     ensemble = average == "ensemble"
     duration = check_real("duration", duration, positive=True)
     if every is None and ensemble:
         every = duration / _OUTPUTS
-    step, stride = _step_and_stride(chain, time_step, every, stepper)
+    needed = _needed_step(chain, time_step, stepper)
+    step, stride = _step_and_stride(needed, every)
     if warmup is None:
         warmup = 0.0 if started or ensemble else _RELAXATIONS * relaxation_time(chain)
     warmup = check_real("warmup", warmup)
+    _refuse_short_steps(step, needed, warmup + duration)
     if (warmup + duration) / step > 1e15:
         raise ValueError(f"time_step {step:g} is too small for {warmup + duration:g} time units")
     warmup_steps = math.ceil(warmup / step - 1e-9)
@@ -123,17 +130,19 @@ def make_schedule(
     return Schedule(step, warmup_steps, stride, blocks, math.ceil(snapshots / blocks - 1e-9))
 
 
-def _step_and_stride(
-    chain: Chain, time_step: float | None, every: float | None, stepper: Stepper
-) -> tuple[float, int]:
-    """Return the length of a step, checked or chosen, and the steps from snapshot to snapshot."""
+def _needed_step(chain: Chain, time_step: float | None, stepper: Stepper) -> float:
+    """Return the length of a step without regard to snapshots, checked or chosen."""
     if time_step is None:
-        step = default_time_step(chain)
-    else:
-        step = check_real("time_step", time_step, positive=True)
-        limit = longest_step(chain, stepper)
-        if step >= limit:
-            raise ValueError(f"time_step must be below {limit:.3g} to be stable, got {step:g}")
+        return default_time_step(chain)
+    step = check_real("time_step", time_step, positive=True)
+    limit = longest_step(chain, stepper)
+    if step >= limit:
+        raise ValueError(f"time_step must be below {limit:.3g} to be stable, got {step:g}")
+    return step
+
+
+def _step_and_stride(step: float, every: float | None) -> tuple[float, int]:
+    """Return the length of a step and the number of steps from snapshot to snapshot."""
     if every is None:
         return step, _STRIDE
     every = check_real("every", every, positive=True)
@@ -141,3 +150,13 @@ def _step_and_stride(
         raise ValueError(f"time_step {step:g} is too small for snapshots every {every:g}")
     stride = max(math.ceil(every / step - 1e-9), 1)
     return every / stride, stride
+
+
+def _refuse_short_steps(step: float, needed: float, time: float) -> None:
+    """Refuse a run that would not end because ``every`` has made its step far too short."""
+    if needed > _MOST_SHORTENED * step and time > _MOST_SHORT_STEPS * step:
+        raise ValueError(
+            f"every = {step:g} is too small: the time step would be as short, where {needed:.3g} "
+            f"is enough, and warm-up and duration would take {time / step:.1g} steps; at most "
+            f"{_MOST_SHORT_STEPS} may be shorter than {needed / _MOST_SHORTENED:.3g}"
+        )

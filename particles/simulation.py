@@ -109,7 +109,8 @@ def simulate(
         being the start. Errors are then those of 32 groups of replicas.
     every
         Time between snapshots [T]; None: 10 steps, for an ensemble a hundredth of the duration.
-        The time step is shortened to a whole fraction of it.
+        The time step is shortened to a whole fraction of it. At most a million steps may be
+        shorter than a thousandth of what they would be without it.
     checkpoint
         File for the state of the run, written every ``checkpoint_interval`` seconds and at
         Ctrl-C, SIGTERM or SIGHUP. The same call again continues from there and gives the same

@@ -17,7 +17,10 @@ from crazybilliards.comparison.explore.plots import (
     make_plot,
 )
 from crazybilliards.comparison.fits import fit_growth
-from crazybilliards.comparison.paper.figures.fig15_energy import growth_rate
+from crazybilliards.kinetic.kinetic_equation.weak_damping import (
+    weak_damping_critical_size,
+    weak_damping_growth_rate,
+)
 from crazybilliards.model import Chain
 
 _HEIGHT = 350
@@ -104,13 +107,13 @@ class Times:
             )
         elif found is not None:
             words += f"The energy grew like exp({found:.2g} t). "
-            expected = growth_rate(chain)
-            critical = chain.size / (1 + expected * chain.mass / chain.damping)
+            expected = weak_damping_growth_rate(chain)
+            critical = weak_damping_critical_size(chain)
             if expected > 0:
                 words += (
                     f"Theory, for weak damping and rods much faster than noise makes them: "
                     f"exp({expected:.2g} t). "
-                    f"It is steady for fewer than {critical:.3g} rods. "
+                    f"To first order in e - 1 the critical size is {critical:.3g} rods. "
                 )
         return words + "Lower e or L, raise γ, or press Reset to see it again."
 

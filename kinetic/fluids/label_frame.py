@@ -144,14 +144,16 @@ def solve_on_labels(
     cells = make_cells(state, chain.potential_exponent, number)
     lam, gamma = state.edge.lam, chain.damping * s / (chain.mass * W)
     constants = (cells.labels, cells.shares, cells.kappa, np.diff(cells.eta), lam, gamma)
+    # In the unit of time of `solve`: py-pde drops outputs that are less than 1e-8 units apart.
+    interval = times[1] * W / s
 
-    def rate(values: Array, time: float = 0.0) -> Array:
+    def rate(values: Array) -> Array:
         return np.asarray(label_rate(values, *constants, chain.potential_exponent))
 
     solution = solve(
-        rate,
+        lambda values, time: interval * rate(values),
         _starting_fields(chain, cells, state, start, thermal=thermal),
-        times * W / s,
+        np.arange(float(times.size)),
         progress=progress,
         solver="scipy",
         backend="numpy",  # the rate is compiled already

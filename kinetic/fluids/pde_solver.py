@@ -58,6 +58,8 @@ def solve(
 
     ``fields`` are the initial values by name. The cells have no positions for py-pde, only
     numbers. ``solver`` are the arguments of py-pde: ``solver``, ``backend``, ``dt`` and others.
+    Without ``dt`` the unit of time must be about the time between outputs, because py-pde then
+    takes times that differ by 1e-8 for the same.
     """
     cells = len(next(iter(fields.values())))
     grid = CartesianGrid([(0, cells)], cells)
@@ -66,8 +68,9 @@ def solve(
     trackers: list[Any] = [storage.tracker(list(times))]
     if progress and sys.stderr.isatty():
         trackers.append(ProgressTracker(list(times), leave=False))
+    flow = Flow(rate)
     try:
-        Flow(rate).solve(
+        flow.solve(
             FieldCollection(scalars),
             t_range=(float(times[0]), float(times[-1])),
             tracker=trackers,
@@ -75,6 +78,10 @@ def solve(
         )
     except RuntimeError as error:  # a step that became too small, or not a number
         raise ValueError(f"the hydrodynamic equations could not be solved: {error}") from error
-    if not storage.data:
+    outputs = len(storage.data)
+    # py-pde reports Ctrl-C here only.
+    if flow.diagnostics["controller"]["successful"] and outputs != times.size:
+        raise RuntimeError(f"py-pde made {outputs} outputs of {times.size}")
+    if not outputs:
         raise KeyboardInterrupt("nothing was computed yet")
     return np.array(storage.data)

@@ -14,9 +14,9 @@ the noise:
     L_c = 2 kappa_c(Gamma)/(e - 1).
 
 For weak damping each pair meets once in half a period and gains the energy that damping takes out
-in this time, so kappa_c = (pi/2) Gamma. The numerical solution agrees with this to 3e-6 at
-Gamma = 1e-3. Below, where its matrices are hard to factorise, the closed form is used. For strong
-damping Newton's method finds no critical state beyond Gamma = 3.5.
+in this time, so kappa_c = (pi/2) Gamma (:mod:`.weak_damping`). The numerical solution agrees with
+this to 3e-6 at Gamma = 1e-3. Below, where its matrices are hard to factorise, the closed form is
+used. For strong damping Newton's method finds no critical state beyond Gamma = 3.5.
 """
 
 from __future__ import annotations
@@ -35,6 +35,7 @@ from crazybilliards.kinetic.kinetic_equation.velocity_space import (
     VelocitySpace,
     one_thread,
 )
+from crazybilliards.kinetic.kinetic_equation.weak_damping import weak_damping_drag
 from crazybilliards.kinetic.kinetic_equation.weak_form import (
     Coefficients,
     Equation,
@@ -113,8 +114,8 @@ def critical_damping(chain: Chain) -> CriticalValue:
     def excess(log_damping: float) -> float:
         return math.log(_critical_drag(math.exp(log_damping))[0] / wanted)
 
-    # For weak damping |lambda| L = (pi/2) gamma/sqrt(k m), and about proportional beyond.
-    weak = math.log(2 * wanted / math.pi)
+    # About proportional to the damping for strong damping too.
+    weak = math.log(wanted / weak_damping_drag(1.0))
     found = root_scalar(excess, method="secant", x0=weak, x1=weak - excess(weak), xtol=1e-3)
     if not found.converged:
         raise ValueError(f"no damping found at which {chain.size} rods become critical")
@@ -146,7 +147,8 @@ def _require_drive(chain: Chain) -> float:
 def _critical_drag(damping: float) -> tuple[float, float]:
     """Return kappa_c = |lambda| L, and its error: a fifth of the extrapolated distance."""
     if damping < _WEAK:
-        return math.pi / 2 * damping, _EXTRAPOLATED * _NOISE[-1] * math.pi / 2 * damping
+        drag = weak_damping_drag(damping)
+        return drag, _EXTRAPOLATED * _NOISE[-1] * drag
     if damping > _STRONG:
         raise ValueError(
             f"gamma/sqrt(k m) = {damping:.3g} is too strong a damping: the critical state is known "

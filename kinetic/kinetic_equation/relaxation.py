@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csc_matrix
 from tqdm import tqdm
 
+from crazybilliards.kinetic.kinetic_equation.accuracy import expected_transient_error
 from crazybilliards.kinetic.kinetic_equation.continuation import free_units
 from crazybilliards.kinetic.kinetic_equation.relaxation_result import (
     in_vocabulary,
@@ -114,11 +115,22 @@ def relax_phase_space(
         from f; over time ``rods``, ``centre``, ``cloud_width``, ``kinetic_energy`` and
         ``covariance``. ``attrs["status"]`` is ``diverged`` if the energy grew without bound, or
         ``interrupted`` if Ctrl-C ended it. The result then has the times before.
+        ``attrs["model_error"]`` is the largest relative error of ``kinetic_energy`` at any time
+        that the theory had in simulations of chains like this one, released from equilibrium at
+        e = 1, and from there with y multiplied by 0.4 (NaN where none was measured).
+
+    Notes
+    -----
+    All rods are independent here, the centre of mass included. ``phase_space`` corrects its widths
+    for the centre of mass, on which collisions do not act; widths and energy of this function are
+    not corrected. For e < 1 the energy is therefore too small, in the steady state too: by 5 % for
+    10 and 4 % for 30 rods at e = 0.9.
 
     Raises
     ------
     ValueError
-        For a wrong argument or start, before any work.
+        For a wrong argument or start, before any work; for e <= 1, if rods that cool become more
+        concentrated than the mesh resolves, with the time of the last output before.
 
     Examples
     --------
@@ -155,13 +167,26 @@ def relax_phase_space(
             disable=None if progress else True,
         ):
             flow = flow.advanced(interval / unit_time / steps, steps)
-            if not flow.sound() or flow.energy() > most:
+            sound = flow.sound()
+            if chain.restitution <= 1 and not sound:
+                raise ValueError(_unresolved(times[len(outputs) - 1], cells))
+            if not sound or flow.energy() > most:
                 status = "diverged"
                 break
             outputs.append(snapshot(chain, units, flow.space, flow.f, flow.energy()))
     except KeyboardInterrupt:
         status = "interrupted"
-    return in_vocabulary(chain, units, outputs, times[: len(outputs)], flow.space, status)
+    dataset = in_vocabulary(chain, units, outputs, times[: len(outputs)], flow.space, status)
+    dataset.attrs["model_error"] = expected_transient_error(chain)
+    return dataset
+
+
+def _unresolved(time: float, cells: int) -> str:
+    return (
+        f"the kinetic equation in time could not be solved beyond {time:g}: on cells={cells} the "
+        "distribution became negative, because it is narrower than the mesh resolves; a shorter "
+        "duration or more cells can help"
+    )
 
 
 @dataclass(frozen=True)

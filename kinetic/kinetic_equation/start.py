@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator, RectBivariateSpline
 
 from crazybilliards.kinetic.kinetic_equation.weak_form import Units
-from crazybilliards.kinetic.starts import read_start
+from crazybilliards.kinetic.starts import read_start, require_rods
 from crazybilliards.model import Chain
 from crazybilliards.model.vocabulary import require
 
@@ -45,6 +45,8 @@ def read_phase_space(chain: Chain, units: Units, start: xr.Dataset) -> PhaseSpac
     if not (np.isfinite(values).all() and values.max() > 0):
         raise ValueError("start: phase_space_density must be finite and not zero everywhere")
     spline = RectBivariateSpline(y, v, values / values.max())
+    rods = spline.integral(y[0], y[-1], v[0], v[-1]) * values.max() * length * velocity
+    require_rods(chain, "phase_space_density", rods)
 
     def f(at_y: Array, at_v: Array) -> Array:
         inside = (np.abs(at_y - y.mean()) <= np.ptp(y) / 2)[:, None]

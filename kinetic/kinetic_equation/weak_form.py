@@ -256,6 +256,9 @@ def newton_step(
     """Solve [matrix + variation, columns; rows, 0] step = right.
 
     Unknowns besides f have ``columns``, and the same number of conditions on f have ``rows``.
+
+    Raises NotSolvedError unless GMRES converges: with a wrong step Newton's method may come to rest
+    where there is no solution.
     """
     borders = csc_matrix(columns), csc_matrix(np.array(rows))
     corner = csc_matrix((len(rows), len(rows)))
@@ -268,5 +271,7 @@ def newton_step(
         return np.asarray(factors.solve(image))
 
     operator = LinearOperator(bordered.shape, matvec=apply, dtype=float)
-    step, _ = gmres(operator, factors.solve(right), rtol=1e-5, restart=_GMRES, maxiter=2)
+    step, failed = gmres(operator, factors.solve(right), rtol=1e-5, restart=_GMRES, maxiter=2)
+    if failed:
+        raise NotSolvedError(f"GMRES did not converge in {2 * _GMRES} iterations")
     return np.asarray(step)

@@ -42,9 +42,15 @@ Array = NDArray[np.float64]
 _TAIL = 36.0  # tails are followed down to exp(-36) = 2e-16 of the maximum
 _EDGE_DEPTH = {2: 40.0, 3: 1e4}  # where the plateau is reached, by exponent n
 
-# Thermal length over radius, and the largest error of the smoothed density, relative to close
-# packing: 100 rods, A = 1, 3, 10 and 30, as ``crazybilliards compare`` prints it.
-_MEASURED = (0.70, 0.138), (2.1, 0.099), (7.0, 0.027), (21.0, 0.007)
+# By size: largest error of the smoothed density, relative to close packing, for four thermal
+# lengths over the radius (A = 1, 3, 10, 30). It is the difference from the exact equilibrium.
+_LENGTHS = 0.70, 2.1, 7.0, 21.0
+_ERRORS = {
+    2: (0.162, 0.064, 0.014, 0.002),
+    10: (0.138, 0.079, 0.017, 0.004),
+    100: (0.138, 0.099, 0.027, 0.007),
+    1000: (0.138, 0.116, 0.035, 0.009),
+}
 
 
 def solve_label_closure(chain: Chain) -> xr.Dataset:
@@ -74,11 +80,16 @@ def solve_label_closure(chain: Chain) -> xr.Dataset:
 
 
 def _expected_error(chain: Chain) -> float:
-    """Return the error of the measured chain with the next shorter thermal length, or NaN."""
-    length = chain.thermal_length / chain.radius
-    errors = [error for shortest, error in _MEASURED if shortest <= length]
-    unlike = chain.gap != 0 or chain.spring != "linear" or not errors
-    return float("nan") if unlike else errors[-1]
+    """Return the larger error of the next sizes at the next shorter thermal length, or NaN."""
+    shorter = sum(length <= chain.thermal_length / chain.radius for length in _LENGTHS)
+    measured = min(_ERRORS) <= chain.size <= max(_ERRORS) and shorter > 0
+    if chain.gap != 0 or chain.spring != "linear" or not measured:
+        return float("nan")
+    below, above = (
+        max(n for n in _ERRORS if n <= chain.size),
+        min(n for n in _ERRORS if n >= chain.size),
+    )
+    return max(_ERRORS[size][shorter - 1] for size in (below, above))
 
 
 @dataclass(frozen=True)

@@ -95,7 +95,7 @@ def _integrate(
     # A profile that holds the rods together keeps them within ten times their extent at rest.
     farthest = 10 * float(position_grid(chain)[-1])
     # Stop just inside: an arctanh is infinite at its end, although its integral is finite.
-    return solve_ivp(
+    solution = solve_ivp(
         equations,
         (0.0, min(edge * (1 - 1e-12), farthest) / s),
         [log_pressure, 0.0],
@@ -105,6 +105,9 @@ def _integrate(
         events=[in_the_tail, too_many],
         dense_output=True,
     )
+    if not solution.success:
+        raise ValueError(f"the force balance could not be solved: {solution.message}")
+    return solution
 
 
 def _assemble(chain: Chain, profile: Profile, warmth: Warmth, centre: float) -> xr.Dataset:

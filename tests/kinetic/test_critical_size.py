@@ -3,7 +3,12 @@
 import numpy as np
 import pytest
 
+from crazybilliards.comparison.explore.times import Times
 from crazybilliards.kinetic import critical_damping, critical_restitution, critical_size
+from crazybilliards.kinetic.kinetic_equation.weak_damping import (
+    weak_damping_critical_size,
+    weak_damping_growth_rate,
+)
 from crazybilliards.model import Chain
 
 # gamma/sqrt(k m) = 0.1: weakly damped, where the answer is known.
@@ -19,6 +24,25 @@ def test_closed_form_for_weak_damping():
     value, error = critical_size(WEAK)
     assert value == pytest.approx(np.pi * 0.1 / 0.05, rel=2e-3)
     assert 0 < error < 0.01 * value
+
+
+def test_the_closed_form_is_one_number_everywhere():
+    """The limit of the kinetic equation, the number of the page, and for e -> 1 that of growth."""
+    weak = WEAK.replace(damping=1e-4)
+    assert weak_damping_critical_size(weak) == pytest.approx(critical_size(weak).value, rel=1e-12)
+    driven = Chain(size=150, restitution=1.05, damping=4.0)
+    critical = weak_damping_critical_size(driven)
+    times = Times()
+    times.begin(driven)
+    words = times.explain_divergence([(t, 1e4 * np.exp(0.1 * t)) for t in range(20)])
+    assert f"critical size is {critical:.3g} rods" in words
+    assert f"exp({weak_damping_growth_rate(driven):.2g} t)" in words
+    nearly_elastic = driven.replace(restitution=1 + 1e-6)
+    below, above = (
+        nearly_elastic.replace(size=round(share * weak_damping_critical_size(nearly_elastic)))
+        for share in (1 - 2e-6, 1 + 2e-6)
+    )
+    assert weak_damping_growth_rate(below) < 0 < weak_damping_growth_rate(above)
 
 
 def test_restitution_and_size_are_one_number():

@@ -4,11 +4,13 @@ import math
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
 from scipy.special import wrightomega
 from scipy.stats import gennorm
 
 from crazybilliards.kinetic import equilibrium, force_balance
+from crazybilliards.kinetic.statics import prescribed_closure
 from crazybilliards.model import Chain
 
 
@@ -140,6 +142,20 @@ def test_the_closed_form_is_what_integrating_outward_gives(amplitude):
     # The curvature of the interpolated displacements jumps at every rod.
     np.testing.assert_allclose(closed.density, integrated.density, atol=1e-5)
     np.testing.assert_allclose(closed.label, integrated.label, atol=5e-5)
+
+
+def test_an_integration_that_fails_is_an_error(monkeypatch):
+    """The flag stands in the result only; half of an integral would look like a density."""
+
+    def fails(*arguments, **options):
+        found = solve_ivp(*arguments, **options)
+        found.success, found.message = False, "too many steps"
+        return found
+
+    monkeypatch.setattr(prescribed_closure, "solve_ivp", fails)
+    table = ([-100.0, 100.0], [-100.0, 100.0])
+    with pytest.raises(ValueError, match="could not be solved: too many steps"):
+        force_balance(Chain(size=10), displacement=table, velocity_variance=lambda x: 1.0 + 0 * x)
 
 
 def test_a_result_or_a_table_can_be_prescribed():

@@ -1,8 +1,11 @@
 """Calls of the hydrodynamics: equal ones, wrong ones, interrupted ones."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 from pde import MemoryStorage
+from scipy.optimize import elementwise
 
 from crazybilliards.kinetic import (
     compressed,
@@ -12,6 +15,7 @@ from crazybilliards.kinetic import (
     two_clumps,
 )
 from crazybilliards.kinetic.exact.breathing import breathing_cloud
+from crazybilliards.kinetic.fluids.pde_solver import solve
 from crazybilliards.model import Chain
 
 QUIET = {"progress": False}
@@ -126,6 +130,16 @@ def test_ctrl_c_keeps_the_times_before(ctrl_c):
     assert np.isfinite(flow.density).all()
 
 
+def test_a_label_that_is_not_found_is_an_error(monkeypatch):
+    """The middle of a cell is the position only where the cell is empty."""
+    chain = Chain(size=20)
+    start = displaced(chain, 1.0)
+    hasty = partial(elementwise.find_root, maxiter=1)
+    monkeypatch.setattr(elementwise, "find_root", hasty)
+    with pytest.raises(ValueError, match="labels could not be inverted"):
+        hydrodynamics(chain, start, 1, **QUIET)
+
+
 def test_a_plain_density_profile_is_a_start():
     """Any profile of one's own: no label, no velocity, no provenance."""
     chain = Chain(size=20, amplitude=5)
@@ -154,3 +168,29 @@ def test_more_outputs_than_memory_holds_are_refused_before_any_work():
     chain = Chain(size=10**6)
     with pytest.raises(ValueError, match=r"would take .* GiB of memory"):
         hydrodynamics(chain, displaced(chain, 1.0), 1.0, every=1e-6, **QUIET)
+
+
+@pytest.mark.parametrize("frame", ["label", "eulerian"])
+@pytest.mark.parametrize("duration", [1e-12, 1e-50])
+def test_the_shortest_duration_is_not_taken_for_ctrl_c(frame, duration):
+    """py-pde drops outputs that are close together; a missing output is no sign of Ctrl-C."""
+    chain = Chain(size=5)
+    flow = hydrodynamics(chain, displaced(chain, 2.0), duration, frame=frame, **QUIET)
+    assert flow.attrs["status"] == "completed"
+    assert flow.sizes["time"] == 101
+    assert float(flow.time[-1]) == pytest.approx(duration)
+    # A shifted state at rest begins to move with the acceleration -k/m times its shift.
+    speed = -2.0 * chain.stiffness / chain.mass * duration
+    np.testing.assert_allclose(flow.mean_velocity[-1].mean(), speed, rtol=0.02)
+
+
+def test_an_output_that_py_pde_drops_is_an_error():
+    with pytest.raises(RuntimeError, match="outputs of 11"):
+        solve(
+            lambda values, time: -values,
+            {"field": np.ones(8)},
+            1e-12 * np.arange(11.0),
+            progress=False,
+            solver="scipy",
+            backend="numpy",
+        )

@@ -1,5 +1,7 @@
 """The kinetic equation in time: exact at e = 1, relaxing to the steady state otherwise."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -107,6 +109,19 @@ def test_divergence_is_a_result():
     assert float(flow.kinetic_energy[-1]) > float(flow.kinetic_energy[0])
 
 
+def test_a_cloud_that_contracts_below_the_mesh_has_not_diverged():
+    """Its energy falls: the error names the mesh and the time that can be solved for."""
+    chain = Chain(size=100, restitution=0.8)
+    start = force_balance(chain.replace(restitution=1))
+    arguments = {"every": 0.5, "time_step": 0.2, "cells": 8, "progress": False}
+    with pytest.raises(ValueError, match=r"beyond .*: on cells=8 the distribution") as caught:
+        relax_phase_space(chain, start, 8.0, **arguments)
+    solved_for = float(re.search(r"beyond ([\d.]+):", str(caught.value))[1])
+    flow = relax_phase_space(chain, start, solved_for, **arguments)
+    assert flow.attrs["status"] == "completed"
+    assert float(flow.kinetic_energy[-1]) < float(flow.kinetic_energy[0])
+
+
 def test_interrupt_keeps_what_there_is(monkeypatch):
     seen = []
     original = phase_space_relaxation.snapshot
@@ -148,6 +163,8 @@ def test_bad_starts():
         relax_phase_space(CHAIN, theory[["phase_space_density"]].transpose("velocity", "y"), 5.0)
     with pytest.raises(ValueError, match="finite"):
         relax_phase_space(CHAIN, theory[["phase_space_density"]] * np.nan, 5.0)
+    with pytest.raises(ValueError, match="add up to the chain's 31 rods"):
+        relax_phase_space(CHAIN.replace(size=31), theory, 5.0)
     fast = displaced(CHAIN, 1.0)
     fast = fast.assign(flow_velocity=fast.flow_velocity + 1e100)
     with pytest.raises(ValueError, match="too far apart"):

@@ -171,6 +171,8 @@ def test_only_chosen_particles_are_reported():
             r"would take .* GiB of memory, .* GiB are available",
         ),
         ({"observe": "snapshots", "every": 1e-30}, "too small"),
+        ({"duration": 5.0, "every": 1e-9}, "every = 1e-09 is too small"),
+        ({"duration": 1e-9, "every": None, "warmup": 100.0}, "every = 1e-11 is too small"),
     ],
 )
 def test_what_an_ensemble_cannot_be_is_refused(arguments, message):

@@ -200,6 +200,8 @@ def test_a_chain_that_blows_up_is_marked_diverged():
         ({"duration": float("nan")}, "duration must be"),
         ({"duration": 1}, "duration must be at least"),
         ({"duration": 1e30}, "too small"),
+        ({"duration": 5.0, "warmup": 0.0, "every": 1e-9}, "every = 1e-09 is too small"),
+        ({"duration": 1e-3, "every": 1e-6}, "warm-up and duration would take 1e.08 steps"),
         ({"warmup": -1}, "warmup must be"),
         ({"time_step": 0}, "time_step must be"),
         ({"time_step": 5}, "time_step must be below"),
@@ -218,6 +220,18 @@ def test_wrong_arguments_are_refused_in_one_line(arguments, message):
     with pytest.raises(ValueError, match=message) as caught:
         simulate(Chain(size=3), progress=False, **arguments)
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("average", ["time", "ensemble"])
+def test_a_short_run_may_have_short_steps(average):
+    """A thousand steps of 1e-9 T cost nothing, and a thousand of them show how noise begins."""
+    chain = Chain(size=3)
+    arguments = {"duration": 1e-6, "every": 1e-9, "warmup": 0.0, "observe": "energy"}
+    run = simulate(chain, average=average, replicas=32, **arguments, progress=False)
+    heating = chain.size * chain.amplitude**2 / (2 * chain.mass)
+    last = float(run.kinetic_energy[-1])
+    error = float(run.kinetic_energy_error[-1]) if average == "ensemble" else 0.2 * last
+    assert abs(last - heating * float(run.time[-1])) < 5 * error
 
 
 def test_chains_without_a_scale_need_a_time_step():

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 from matplotlib.figure import Figure
 
 from crazybilliards.comparison.claims.repetition import (
@@ -24,6 +22,7 @@ from crazybilliards.comparison.paper.chains import (
     kinetic_name,
 )
 from crazybilliards.comparison.paper.figures.fig12_widths_damping import bulge
+from crazybilliards.kinetic.kinetic_equation.weak_damping import weak_damping_critical_size
 from crazybilliards.model import Chain, chain_of
 
 _DAMPING, _RESTITUTION = 4.0, 1.05
@@ -46,6 +45,7 @@ def claims(results: Results) -> list[Claim]:
     """Check: concave for short chains, convex for long ones, then no steady state."""
     found = {size: estimate(results, flippers_name(size, _DAMPING), bulge) for size in _SIZES}
     theory = {size: bulge(results[kinetic_name(size, _RESTITUTION, _DAMPING)]) for size in _SIZES}
+    critical = weak_damping_critical_size(Chain(restitution=_RESTITUTION, damping=_DAMPING))
     unsteady = members(results, "unsteady")
     diverged = sum(run.attrs["status"] == "diverged" for run in unsteady)
     short, long = _SIZES[0], _SIZES[-1]
@@ -78,19 +78,9 @@ def claims(results: Results) -> list[Claim]:
             Estimate(diverged / len(unsteady), 0.0),
             source=_SOURCE,
             ours="the size that is too large",
-            theory=f"no steady state beyond L = {_critical_size():.0f} (weak damping)",
+            theory=f"no steady state beyond L = {critical:.0f} (weak damping)",
         ),
     ]
-
-
-def _critical_size() -> float:
-    """L_c = pi gamma/((e - 1) sqrt(k m)), where collisions feed in what the damping takes out.
-
-    The kinetic equation's own value (``critical_size``) agrees within its error at this damping.
-    """
-    chain = Chain(restitution=_RESTITUTION, damping=_DAMPING)
-    scale = math.sqrt(chain.stiffness * chain.mass)
-    return math.pi * chain.damping / ((chain.restitution - 1) * scale)
 
 
 def draw(results: Results) -> Figure:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
@@ -16,6 +14,7 @@ from crazybilliards.comparison.claims.verdicts import Claim, Estimate, positive_
 from crazybilliards.comparison.drawing import COLOURS
 from crazybilliards.comparison.fits import fit_growth, fit_singularity
 from crazybilliards.comparison.layout import panels
+from crazybilliards.kinetic.kinetic_equation.weak_damping import weak_damping_growth_rate
 from crazybilliards.model import Chain
 
 _CHAINS = {
@@ -52,21 +51,10 @@ def _late(run: xr.Dataset, beyond: float) -> tuple[NDArray[np.float64], NDArray[
     return run.time.values[begin:], energy[begin:]
 
 
-def growth_rate(chain: Chain) -> float:
-    """Rate at which collisions feed energy in, less that at which damping takes it out [1/T].
-
-    With linear springs every pair of rods meets once in half a period, whatever the amplitude, and
-    gains (e^2 - 1)/4 m (v - u)^2: the energy grows as exp[(gamma/m)(L/L_c - 1) t], L_c being the
-    size at which the two balance.
-    """
-    scale = math.sqrt(chain.stiffness * chain.mass)
-    critical = 2 * math.pi * chain.damping / ((chain.restitution**2 - 1) * scale)
-    return chain.damping / chain.mass * (chain.size / critical - 1)
-
-
 def claims(results: Results) -> list[Claim]:
     """Check: exponential growth for linear springs, a singularity for quadratic ones."""
     rate = estimate(results, "linear", lambda run: fit_growth(*_late(run, _GROWING)).rate)
+    expected = weak_damping_growth_rate(_CHAINS["linear"])
     bend = estimate(results, "linear", _late_rate).minus(rate)
     exponent = estimate(
         results, "quadratic", lambda run: fit_singularity(*_late(run, _SINGULAR)).exponent
@@ -81,7 +69,7 @@ def claims(results: Results) -> list[Claim]:
             Estimate(bend.value / rate.value, bend.error / rate.value),
             0.1,
             source=_SOURCE,
-            theory=f"(gamma/m)(L/L_c - 1) = {growth_rate(_CHAINS['linear']):.4f} per T",
+            theory=f"(e^2 - 1) L sqrt(k/m)/(2 pi) - gamma/m = {expected:.4f} per T",
         ),
         positive_claim(
             "quadratic springs: divergence in finite time, a power law of t_c - t",
@@ -113,7 +101,7 @@ def draw(results: Results) -> Figure:
                 alpha=0.7,
                 label=f"{spring} springs" if k == 0 else None,
             )
-    rate = growth_rate(_CHAINS["linear"])
+    rate = weak_damping_growth_rate(_CHAINS["linear"])
     t = np.array([40.0, 150.0])
     anchor = np.mean(
         [np.interp(90, run.time, run.kinetic_energy) for run in members(results, "linear")]
