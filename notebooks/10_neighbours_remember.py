@@ -59,7 +59,7 @@ runs = {
     e: simulate(chain, duration=2000, every=0.5, observe=observe, seed=1, progress=False)
     for e, chain in chains.items()
 }
-middle = {"particle": slice(44, 55), "contact": slice(44, 55)}
+middle = {"particle": slice(45, 55), "contact": slice(45, 54)}
 correlation = {}
 for e, run in runs.items():
     centre = run.isel(middle)
