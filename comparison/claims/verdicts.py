@@ -27,8 +27,8 @@ enlarged so that chance exceeds three of them in any of the differences as rarel
 three in one number: by 1.1 for two differences, by 1.6 for a thousand.
 
 **Choices.** ``ours`` lists parameters that the paper does not give, and changes no verdict.
-``variations`` are the same number, measured at other values of such a parameter. The rule is
-applied to each. Only if one of the numbers holds and another one fails, the verdict changes.
+``variations`` are the same number at other values of such a parameter. The rule is applied to
+each. Only if one of the numbers holds and another one fails, the verdict changes.
 
 **Statements to the eye.** That a curve "matches" points, or that they "can be fitted" or
 "described" by it, is a statement about a plot. It gets two numbers: the largest deviation in units
@@ -194,10 +194,7 @@ class About(TypedDict, total=False):
 def number_claim(
     statement: str, paper: float, precision: float, measured: Estimate, **about: Unpack[About]
 ) -> Claim:
-    """Compare a measured number with the one quoted.
-
-    ``precision`` is half a unit of the last digit quoted: 0.005 for -0.46.
-    """
+    """Compare a number with the one quoted; ``precision``: half a unit of its last digit."""
     decisive = Decisive(*measured, expected=paper, limit=precision)
     return _claim(statement, str(measured), decisive, paper=f"{paper:g}", **about)
 
@@ -228,14 +225,17 @@ def same_claim(
 ) -> Claim:
     """Decide whether two things are the same: whether all their differences are below ``limit``."""
     every = list(differences)
-    # As rarely as one number exceeds three of its errors.
     chance = float(norm.isf(norm.sf(_SIGNIFICANT) / len(every))) / _SIGNIFICANT
     each = [Decisive(one.value, one.error * chance, expected=0.0, limit=limit) for one in every]
     worst = max(
         range(len(every)),
         key=lambda k: (each[k].holds is False, each[k].holds is None, abs(each[k].value)),
     )
-    found = f"{quantity}: {every[worst]}, the worst of {len(every)} (limit {limit:g})"
+    largest = max((abs(one.value) / one.error for one in every if one.error > 0), default=math.nan)
+    found = (
+        f"{quantity}: {every[worst]}, the worst of {len(every)} (limit {limit:g}); largest "
+        f"difference {largest:.1f} standard errors"
+    )
     return _claim(statement, found, each[worst], **about)
 
 
@@ -294,6 +294,6 @@ def _claim(
 def _named(holds: bool | None, of_paper: bool) -> Verdict:
     if holds is None:
         return "undecided"
-    if of_paper:
-        return "reproduced" if holds else "not reproduced"
-    return "confirmed" if holds else "refuted"
+    yes: Verdict = "reproduced" if of_paper else "confirmed"
+    no: Verdict = "not reproduced" if of_paper else "refuted"
+    return yes if holds else no

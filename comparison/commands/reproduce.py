@@ -63,7 +63,7 @@ def command(
     ] = False,
     quality: Annotated[
         Quality,
-        typer.Option(help="All figures take 4 minutes (quick) or 23 (full) on two cores."),
+        typer.Option(help="All figures take 5 minutes (quick) or 24 (full) on two cores."),
     ] = Quality.QUICK,
     output: Annotated[
         Path,

@@ -25,7 +25,14 @@ from crazybilliards.comparison.fits import fit_border_power_law
 from crazybilliards.comparison.layout import mosaic
 from crazybilliards.comparison.paper import predictions
 from crazybilliards.comparison.paper.chains import LARGE
-from crazybilliards.comparison.paper.power_laws import fits_in_plot
+from crazybilliards.comparison.paper.power_laws import (
+    fits_in_plot,
+    gained_without_c,
+    lost_with_weights,
+    nu,
+    origin,
+    weighted_nu,
+)
 from crazybilliards.comparison.paper.time_steps import STEPS, at_steps, chain_step, step_name
 from crazybilliards.comparison.paper.vanishing_step import (
     LABEL,
@@ -54,27 +61,7 @@ def cases(quality: Quality) -> Cases:
 
 def exponent(results: Results, size: int, step: float | None = None) -> Estimate:
     """Return nu, from the scatter between independent runs."""
-    return estimate(results, step_name(size, step), _exponent)
-
-
-def _exponent(run: xr.Dataset) -> float:
-    return fit_border_power_law(run).exponent
-
-
-def _origin(run: xr.Dataset) -> float:
-    return fit_border_power_law(run).origin
-
-
-def _gained_without_c(run: xr.Dataset) -> float:
-    return fit_border_power_law(run, shifted=False).exponent - _exponent(run)
-
-
-def _weighted(run: xr.Dataset) -> float:
-    return fit_border_power_law(run, weighted=True).exponent
-
-
-def _lost_with_weights(run: xr.Dataset) -> float:
-    return _exponent(run) - _weighted(run)
+    return estimate(results, step_name(size, step), nu)
 
 
 def claims(results: Results) -> list[Claim]:
@@ -130,7 +117,7 @@ def _differences(found: dict[int, Estimate]) -> list[Estimate]:
 def _variations(results: Results, size: int) -> list[Variation]:
     """Return nu at other time steps, and with weights."""
     at_steps = [Variation(f"dt = {step:g}", exponent(results, size, step)) for step in STEPS]
-    weighted = estimate(results, step_name(size, None), _weighted)
+    weighted = estimate(results, step_name(size, None), weighted_nu)
     return [*at_steps, Variation("rods weighed by their error bars", weighted)]
 
 
@@ -153,17 +140,17 @@ def _own_claims(results: Results) -> list[Claim]:
     largest = STEPS[0]
     coarse, fine = (exponent(results, LARGE, step) for step in (largest, STEPS[-1]))
     middle = 300
-    origins = {size: estimate(results, step_name(size, None), _origin) for size in _SIZES}
+    origins = {size: estimate(results, step_name(size, None), origin) for size in _SIZES}
     return [
         positive_claim(
             f"without c the exponent is flatter, L = {middle}",
             "nu without c less nu with it:",
-            estimate(results, step_name(middle, None), _gained_without_c),
+            estimate(results, step_name(middle, None), gained_without_c),
         ),
         positive_claim(
             f"weighing the rods by their error bars makes it steeper, L = {middle}",
             "nu from ordinary least squares less nu from weighted ones:",
-            estimate(results, step_name(middle, None), _lost_with_weights),
+            estimate(results, step_name(middle, None), lost_with_weights),
         ),
         positive_claim(
             "the longer the chain, the further out the power laws begin",
@@ -180,7 +167,7 @@ def _own_claims(results: Results) -> list[Claim]:
 
 def _limit_claims(results: Results, found: dict[int, Estimate]) -> list[Claim]:
     """Check the same exponents in the limit dt -> 0, and what the default step does to them."""
-    limit = {size: limit_estimate(results, size, _exponent) for size in _SIZES}
+    limit = {size: limit_estimate(results, size, nu) for size in _SIZES}
     shifts = {size: found[size].minus(limit[size]) for size in _SIZES}
     return [
         *(
@@ -277,11 +264,10 @@ def _draw_steps(ax: Axes, results: Results) -> None:
             linewidth=0.8,
         )
         at = first * 1.25 ** (number - 1.5)  # beside one another
-        limit = limit_estimate(results, size, _exponent)
+        limit = limit_estimate(results, size, nu)
         ax.errorbar(at, *limit, fmt=SYMBOLS[number], color=COLOURS[number], linewidth=0.8)
         if size in theories:
-            nu = -predictions.minus_nu(theories[size])
-            ax.plot(at, nu, **_CROSS | {"color": COLOURS[number]})
+            ax.plot(at, nu(theories[size]), **_CROSS | {"color": COLOURS[number]})
     ax.axhline(_PAPER, color="0.4", linestyle="--", label="paper")
     ax.plot([], [], "o", color="0.4", markerfacecolor="none", label="at a time step")
     ax.plot([], [], "o", color="0.4", label=LABEL)
