@@ -30,7 +30,7 @@ _LONGEST, _BETWEEN, _MIDDLE, _SHORTEST = _STEPS = (1e-1, 2.3e-2, 1e-2, 1e-3)
 _DURATION = {"quick": (2, 64.0), "full": (4, 200.0)}
 # The step at which pushes have the paper's exponent, found by trial. The runs are long enough to
 # show that, in quick quality, too.
-_LONGER = {_BETWEEN: (6, 800.0)}
+_LONGER = {_BETWEEN: (8, 1500.0)}
 _ORIGINS = {"centre": slice(451, 550), "quarter": slice(201, 300), "border": slice(51, 150)}
 _PAPER, _PRECISION = -2.2, 0.05  # "around -2.2": half a unit of the last digit
 # By count: its name, its sizes, and those fitted: all of the paper's count that are not rare;

@@ -204,9 +204,10 @@ FIGURE = PaperFigure(
     number=15,
     name="energy",
     title="Kinetic energy of flippers in time",
-    caption="L = 100, e = 1.01, gamma = 0.4, from rest. (a) Every line is a run, cut off at 1e8. "
-    "Dashed: the growth rate of a balance between damping and one collision of every pair in half "
-    "a period. (b) The runs with quadratic springs against the time left until their t_c, fitted.",
+    caption="L = 100, e = 1.01, gamma = 0.4, from rest. (a) Every line is a run, cut off at 1e8 "
+    "and at t = 150. Dashed: the growth rate of a balance between damping and one collision of "
+    "every pair in half a period. (b) The runs with quadratic springs against the time left until "
+    "their t_c, fitted from E = 1e5 on.",
     cases=cases,
     draw=draw,
     claims=claims,
