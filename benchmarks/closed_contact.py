@@ -28,6 +28,8 @@ import sys
 import numpy as np
 from scipy.special import gamma, hyp1f1, hyperu
 
+from crazybilliards.comparison.claims.repetition import error_of_mean
+
 STRENGTHS = np.array([1.0, 1.15, 1.2, 1.25, 1.3])
 STEPS = (8, 16, 32)
 BATCH = 100_000
@@ -83,10 +85,10 @@ def main() -> None:
         for part in (found, *np.array_split(found, 8)):
             curve = np.polyfit(STRENGTHS[1:], part.mean(axis=0)[1:], 2)
             roots.append(min(np.roots(curve).real, key=lambda root: abs(root - 1.2)))
-        error = np.std(roots[1:], ddof=1) / np.sqrt(8)
+        error = error_of_mean(roots[1:])
         plain = found[:, 0]
         print(
-            f"| {steps} | {plain.mean():.4f} ± {plain.std(ddof=1) / np.sqrt(batches):.4f} "
+            f"| {steps} | {plain.mean():.4f} ± {error_of_mean(plain):.4f} "
             f"| {roots[0]:.4f} ± {error:.4f} |",
             flush=True,
         )

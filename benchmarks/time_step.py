@@ -19,6 +19,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from crazybilliards.comparison.claims.repetition import error_of_mean
 from crazybilliards.model import Chain
 from crazybilliards.model.chain import middle_tenth
 from crazybilliards.model.kernels import kernel
@@ -178,7 +179,7 @@ def main() -> None:
         order = 1.5 if corrected or restitution == 1 else 0.75
         rest = 0.0 if asked.strength is not None and corrected else FINER**-order
         deviation = 100 / (1 - rest) * np.array(found)
-        mean, error = deviation.mean(axis=0), deviation.std(axis=0, ddof=1) / math.sqrt(asked.runs)
+        mean, error = deviation.mean(axis=0), error_of_mean(deviation)
         shown = [f"{d:+.2f} ± {s:.2f}" for d, s in zip(mean, error, strict=True)]
         print(f"| {restitution} | {size} | {step:.1e} | {' | '.join(shown)} |", flush=True)
 

@@ -52,32 +52,59 @@ def deviation(result: xr.Dataset, reference: xr.Dataset, floor: float = 1e-3) ->
     ValueError
         If a result has no density, or the grids do not match.
     """
+    difference, error, either = _differences(result, reference, floor)
+    differences = difference[either] if either.any() else np.zeros(1)
+    known = np.isfinite(error)
+    in_errors = difference[known] / error[known]
+    spacing = float(reference.x[1] - reference.x[0])
+    close_packed = chain_of(reference).close_packed_density
+    share = np.abs(difference).sum() * close_packed * spacing / chain_of(reference).size
+    return Deviation(
+        maximum=float(np.abs(differences).max()),
+        rms=float(np.sqrt((differences**2).mean())),
+        integrated=float(share),
+        maximum_in_errors=float(np.abs(in_errors).max()) if in_errors.size else None,
+        rms_in_errors=float(np.sqrt((in_errors**2).mean())) if in_errors.size else None,
+    )
+
+
+def density_differences(
+    result: xr.Dataset, reference: xr.Dataset, floor: float = 1e-3
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return the differences of two densities and their standard errors, bin by bin.
+
+    Both are in units of close packing, and of the bins where both densities exceed ``floor`` and
+    an error is known. Arguments and exceptions as in :func:`deviation`.
+    """
+    difference, error, _ = _differences(result, reference, floor)
+    known = np.isfinite(error)
+    return difference[known], error[known]
+
+
+def _differences(
+    result: xr.Dataset, reference: xr.Dataset, floor: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.bool_]]:
+    """Return differences, their errors, and the bins where either density exceeds the floor.
+
+    In units of close packing, on the common grid. An error is infinite where it is not reliable.
+    """
     for dataset in (result, reference):
         require(dataset, ("density",))
     spacing = float(reference.x[1] - reference.x[0])
     if not np.isclose(float(result.x[1] - result.x[0]), spacing, rtol=1e-9):
         raise ValueError("the two densities lie on grids of different spacing")
-    chain = chain_of(reference)
-    unit = chain.close_packed_density
+    unit = chain_of(reference).close_packed_density
     # Nodes are whole multiples of the spacing, so their numbers align the grids exactly.
     ours, theirs = (
         dataset.assign_coords(x=np.rint(dataset.x / spacing).astype(int))
         for dataset in (result, reference)
     )
     a, b = xr.align(ours.density, theirs.density, join="outer", fill_value=0.0)
-    difference = a - b
-    either = ((a > floor * unit) | (b > floor * unit)).values
-    differences = difference.values[either] / unit if either.any() else np.zeros(1)
-    squared_error = _squared_error(ours, a) + _squared_error(theirs, b)
-    both = ((a > floor * unit) & (b > floor * unit) & (squared_error > 0)).values
-    in_errors = difference.values[both] / np.sqrt(squared_error.values[both])
-    return Deviation(
-        maximum=float(np.abs(differences).max()),
-        rms=float(np.sqrt((differences**2).mean())),
-        integrated=float(np.abs(difference).sum() * spacing / chain.size),
-        maximum_in_errors=float(np.abs(in_errors).max()) if in_errors.size else None,
-        rms_in_errors=float(np.sqrt((in_errors**2).mean())) if in_errors.size else None,
-    )
+    squared_error = (_squared_error(ours, a) + _squared_error(theirs, b)).values
+    high = [(density > floor * unit).values for density in (a, b)]
+    known = high[0] & high[1] & (squared_error > 0)
+    error = np.where(known, np.sqrt(squared_error), np.inf) / unit
+    return (a - b).values / unit, error, high[0] | high[1]
 
 
 def _squared_error(dataset: xr.Dataset, like: xr.DataArray) -> xr.DataArray:

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike, NDArray
 from scipy.stats import norm, t
 
 from crazybilliards.comparison.claims.study import Cases, Results
@@ -65,25 +66,42 @@ def pooled(results: Results, name: str) -> xr.Dataset:
     return run
 
 
-def estimate(results: Results, name: str, quantity: Callable[[xr.Dataset], float]) -> Estimate:
-    """Return the mean of a quantity over the runs of that name, with the error from its scatter.
+def error_of_mean(values: ArrayLike) -> NDArray[np.float64]:
+    """Return the standard error of the mean of independent runs, along the first axis.
 
-    The error is enlarged to mean the same 68 % however few the runs (Student's t).
+    It comes from their scatter, which few runs do not show well. It is therefore enlarged by
+    Student's factor, so that 68 % of all means lie within one error however few the runs: by 1.84
+    for two runs, 1.20 for four, 1.08 for eight.
     """
-    values = [quantity(run) for run in members(results, name)]
+    values = np.asarray(values, dtype=float)
     number = len(values)
-    spread = float(np.std(values, ddof=1)) / number**0.5
-    return Estimate(float(np.mean(values)), spread * float(t.ppf(norm.cdf(1), number - 1)))
+    factor = float(t.ppf(norm.cdf(1), number - 1))
+    return np.asarray(factor * values.std(axis=0, ddof=1) / number**0.5)
 
 
-def normal_deviate(deviation: float, runs: int) -> float:
-    """Return how many standard errors of a normal distribution are as unlikely as a deviation.
+def estimate(results: Results, name: str, quantity: Callable[[xr.Dataset], float]) -> Estimate:
+    """Return the mean of a quantity over the runs of that name, with the error from its scatter."""
+    return estimates(results, name, lambda run: [quantity(run)])[0]
 
-    ``deviation`` is in units of the error of :func:`estimate` from so many runs. That error is
-    itself uncertain: five of those of two runs come about by chance once in thirty times.
+
+def estimates(
+    results: Results, name: str, quantities: Callable[[xr.Dataset], ArrayLike]
+) -> list[Estimate]:
+    """Return :func:`estimate` of each of several quantities."""
+    values = np.array([quantities(run) for run in members(results, name)])
+    return [
+        Estimate(*map(float, each))
+        for each in zip(values.mean(axis=0), error_of_mean(values), strict=True)
+    ]
+
+
+def share_of_runs(of_them: int, number: int) -> Estimate:
+    """Return what share of all runs it is, if it is ``of_them`` of ``number``: Laplace's rule.
+
+    The error is not zero even if all runs are alike: 4 of 4 give 0.83 +- 0.14.
     """
-    scattered = deviation * float(t.ppf(norm.cdf(1), runs - 1))
-    return float(norm.isf(t.sf(scattered, runs - 1)))
+    share = (of_them + 1) / (number + 2)
+    return Estimate(share, (share * (1 - share) / (number + 3)) ** 0.5)
 
 
 def central_width(run: xr.Dataset) -> float:

@@ -180,6 +180,9 @@ def details(claim: Claim) -> dict[str, str]:
         "time step": _LIMIT if claim.in_limit else "",
         "theory": claim.theory,
         "our choice, not given in the paper": claim.ours,
+        "at other choices": "; ".join(
+            f"{other.choice}: {other.measured}, {other.verdict}" for other in claim.variations
+        ),
         "why": claim.reason,
         "and yet, exactly": claim.exactly,
     }

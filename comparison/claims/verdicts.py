@@ -7,38 +7,46 @@ paper comes out as
 * ``reproduced``;
 * ``not reproduced``;
 * ``undecided``, where the statistics do not suffice;
-* ``cannot be decided``, where it fails at a parameter that the paper does not give and that is
-  therefore our choice (``ours`` says which).
+* ``cannot be decided``, where it holds at one value of a parameter that the paper does not give,
+  and fails at another (``variations`` says at which, with both numbers).
 
 A finding of our own is ``confirmed``, ``refuted`` or ``undecided``.
 
-**Rules.** A number p, quoted to a precision d (half a unit of its last digit, or the
-tolerance of "about"), comes out if the measured value lies within d plus three standard errors of
-p. If it does only because the errors are large, three of them more than 2 d, that is undecided: a
-longer simulation could still refute it. That something is positive, or larger than something else,
-is decided at three standard errors. That something vanishes is decided by a stated
-limit, at as many. That two things are the same comes out if no difference exceeds what chance
-explains: five standard errors for the largest of many.
+**The rule.** Every claim comes down to one measured number and the interval in which it has to
+lie. It holds if the number lies inside with three standard errors to spare at either end. It fails
+if the number lies outside with three standard errors to spare. Otherwise it is undecided, and a
+longer simulation may decide it. Large errors can therefore help neither the paper nor us.
+
+The intervals are: up to half a unit of the last digit to either side of a number of the paper;
+everything above zero for something that is positive, or larger than something else; and a stated
+limit to either side of zero for something that vanishes, or is the same as something else.
+
+**Many differences.** That two curves are the same is decided by the worst of all differences. The
+largest of many numbers lies further off by chance than a single one does. The errors are therefore
+enlarged so that chance exceeds three of them in any of the differences as rarely as it exceeds
+three in one number: by 1.1 for two differences, by 1.6 for a thousand.
+
+**Choices.** ``ours`` lists parameters that the paper does not give, and changes no verdict.
+``variations`` are the same number at other values of such a parameter. The rule is applied to
+each. Only if one of the numbers holds and another one fails, the verdict changes.
 
 **Statements to the eye.** That a curve "matches" points, or that they "can be fitted" or
 "described" by it, is a statement about a plot. It gets two numbers: the largest deviation in units
-of the plot, and its significance in standard errors. It is reproduced if an eye could not see the
-deviation in a plot like the paper's, whatever the significance. The tolerance is 2 % of the
-plotted range. The paper's plots are half a page wide: 2 % of an axis of 5 to 7 cm is 1.0 to 1.4 mm,
-the size of a plotted symbol, and a line that touches every symbol looks right. It was fixed before
-any deviation was worked out. A deviation is the distance of a symbol from the line in the plane of
-the plot, each axis in units of its range (``distances_in_plot`` in ``comparison/distances.py``):
-beside a steep line one sees the horizontal distance.
+of the plot, and its significance in standard errors. Only the first one decides. It has to be below
+2 % of the plotted range, which an eye cannot see in a plot like the paper's: of an axis of 5 to
+7 cm these are 1.0 to 1.4 mm, the size of a symbol. This limit was fixed before any deviation was
+worked out. A deviation is the shortest distance of a symbol from the line in the plane of the plot
+(``distances_in_plot`` in ``comparison/distances.py``).
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Literal, NamedTuple, TypedDict, Unpack
 
-import numpy as np
+from scipy.stats import norm
 
 Verdict = Literal[
     "reproduced", "not reproduced", "cannot be decided", "confirmed", "refuted", "undecided"
@@ -46,8 +54,6 @@ Verdict = Literal[
 
 EYE = 0.02  # of the plotted range: what no eye sees
 _SIGNIFICANT = 3.0
-_LARGEST_CHANCE = 2.0  # times the precision of a number
-_LARGEST_OF_MANY = 5.0
 
 
 class Estimate(NamedTuple):
@@ -68,19 +74,14 @@ class Estimate(NamedTuple):
         return Estimate(self.value - other.value, math.hypot(self.error, other.error))
 
 
-def largest_deviate(differences: Iterable[Estimate]) -> float:
-    """Return the magnitude that is largest in standard errors; NaN if one is not determined."""
-    return float(np.max([abs(each.value) / each.error for each in differences]))
-
-
 class Decisive(NamedTuple):
-    """The number that decides a claim, for programs.
+    """The number that decides a claim, and what decides it.
 
     Attributes
     ----------
     value, error
         What was measured, and its standard error. Deviations from a line are shares of the
-        plotted range; largest differences are in standard errors, and their own error is NaN.
+        plotted range. The error of the worst of many differences is the enlarged one.
     expected
         What it is compared with.
     limit
@@ -91,6 +92,40 @@ class Decisive(NamedTuple):
     error: float
     expected: float
     limit: float
+
+    @property
+    def holds(self) -> bool | None:
+        """The rule: whether the number lies inside; None: its error does not allow to say."""
+        positive = math.isnan(self.limit)
+        low, high = (0.0, math.inf) if positive else (-self.limit, self.limit)
+        deviation, chance = self.value - self.expected, _SIGNIFICANT * self.error
+        if low < deviation - chance and deviation + chance < high:
+            return True
+        if deviation + chance < low or deviation - chance > high:
+            return False
+        return None
+
+
+class Variation(NamedTuple):
+    """The number of a claim at another value of a parameter that the paper does not give.
+
+    Attributes
+    ----------
+    choice
+        The other value: ``dt = 0.01``.
+    measured
+        The number there, with its standard error.
+    verdict
+        What the rule says of it; computed with the claim.
+    """
+
+    choice: str
+    measured: Estimate
+    verdict: Verdict = "undecided"
+
+    def __str__(self) -> str:
+        """Return all three."""
+        return f"{self.choice}: {self.measured}, {self.verdict}"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -105,7 +140,9 @@ class Claim:
         Where the paper says so: labels of its source, ``fig. 3, eq:power_law``. Empty: a finding
         of our own.
     ours
-        Parameters that it depends on, that the paper does not give and that we chose (or "").
+        Parameters that the paper does not give and that we chose (or ""). They are listed only.
+    variations
+        The same number at other values of such parameters, each with its verdict.
     paper
         The paper's number (empty for a statement without one).
     measured, theory
@@ -129,6 +166,7 @@ class Claim:
     verdict: Verdict
     source: str = ""
     ours: str = ""
+    variations: Sequence[Variation] = ()
     paper: str = ""
     theory: str = ""
     reason: str = ""
@@ -146,6 +184,7 @@ class About(TypedDict, total=False):
 
     source: str
     ours: str
+    variations: Sequence[Variation]
     theory: str
     reason: str
     exactly: str
@@ -155,24 +194,17 @@ class About(TypedDict, total=False):
 def number_claim(
     statement: str, paper: float, precision: float, measured: Estimate, **about: Unpack[About]
 ) -> Claim:
-    """Compare a measured number with the one quoted."""
-    chance = _SIGNIFICANT * measured.error
-    holds: bool | None = abs(measured.value - paper) <= precision + chance
-    if math.isnan(measured.value + chance) or (holds and chance > _LARGEST_CHANCE * precision):
-        holds = None
+    """Compare a number with the one quoted; ``precision``: half a unit of its last digit."""
     decisive = Decisive(*measured, expected=paper, limit=precision)
-    return _claim(statement, str(measured), decisive, holds, paper=f"{paper:g}", **about)
+    return _claim(statement, str(measured), decisive, paper=f"{paper:g}", **about)
 
 
 def positive_claim(
     statement: str, quantity: str, measured: Estimate, **about: Unpack[About]
 ) -> Claim:
     """Decide whether a number, named ``quantity``, is positive as the statement implies."""
-    holds: bool | None = None
-    if abs(measured.value) > _SIGNIFICANT * measured.error:
-        holds = measured.value > 0
     decisive = Decisive(*measured, expected=0.0, limit=math.nan)
-    return _claim(statement, f"{quantity} {measured}", decisive, holds, **about)
+    return _claim(statement, f"{quantity} {measured}", decisive, **about)
 
 
 def small_claim(
@@ -181,23 +213,34 @@ def small_claim(
     """Decide whether a number that should vanish is below ``limit``."""
     decisive = Decisive(*measured, expected=0.0, limit=limit)
     found = f"{quantity} {measured} (limit {limit:g})"
-    return _claim(statement, found, decisive, _below(measured, limit), **about)
+    return _claim(statement, found, decisive, **about)
 
 
-def same_claim(statement: str, measured: str, deviation: float, **about: Unpack[About]) -> Claim:
-    """Decide whether two things are the same; ``deviation``: the largest, in standard errors."""
-    holds = bool(deviation < _LARGEST_OF_MANY) if math.isfinite(deviation) else None
-    found = f"{measured}; largest difference {deviation:.1f} standard errors"
-    decisive = Decisive(float(deviation), math.nan, expected=0.0, limit=_LARGEST_OF_MANY)
-    return _claim(statement, found, decisive, holds, **about)
+def same_claim(
+    statement: str,
+    quantity: str,
+    differences: Iterable[Estimate],
+    limit: float,
+    **about: Unpack[About],
+) -> Claim:
+    """Decide whether two things are the same: whether all their differences are below ``limit``."""
+    every = list(differences)
+    chance = float(norm.isf(norm.sf(_SIGNIFICANT) / len(every))) / _SIGNIFICANT
+    each = [Decisive(one.value, one.error * chance, expected=0.0, limit=limit) for one in every]
+    worst = max(
+        range(len(every)),
+        key=lambda k: (each[k].holds is False, each[k].holds is None, abs(each[k].value)),
+    )
+    largest = max((abs(one.value) / one.error for one in every if one.error > 0), default=math.nan)
+    found = (
+        f"{quantity}: {every[worst]}, the worst of {len(every)} (limit {limit:g}); largest "
+        f"difference {largest:.1f} standard errors"
+    )
+    return _claim(statement, found, each[worst], **about)
 
 
 def eye_claim(
-    statement: str,
-    quantity: str,
-    deviation: Estimate,
-    significance: float,
-    **about: Unpack[About],
+    statement: str, quantity: str, deviation: Estimate, significance: float, **about: Unpack[About]
 ) -> Claim:
     """Decide whether an eye could see that a curve misses the points.
 
@@ -218,41 +261,39 @@ def eye_claim(
         f"{100 * EYE:g} %), {significance:.1f} standard errors"
     )
     decisive = Decisive(*deviation, expected=0.0, limit=EYE)
-    return _claim(statement, found, decisive, _below(deviation, EYE), **about)
-
-
-def _below(measured: Estimate, limit: float) -> bool | None:
-    """Whether a magnitude is below a limit; None if its error does not allow to say."""
-    if abs(measured.value) + _SIGNIFICANT * measured.error < limit:
-        return True
-    if abs(measured.value) - _SIGNIFICANT * measured.error > limit:
-        return False
-    return None
+    return _claim(statement, found, decisive, **about)
 
 
 def _claim(
-    statement: str,
-    measured: str,
-    decisive: Decisive,
-    holds: bool | None,
-    *,
-    paper: str = "",
-    **about: Unpack[About],
+    statement: str, found: str, decisive: Decisive, *, paper: str = "", **about: Unpack[About]
 ) -> Claim:
-    """Return the claim with its verdict; ``holds`` None: the statistics do not suffice."""
-    verdict: Verdict = "undecided"
-    if holds is not None and about.get("source"):
-        failed: Verdict = "cannot be decided" if about.get("ours") else "not reproduced"
-        verdict = "reproduced" if holds else failed
-    elif holds is not None:
-        verdict = "confirmed" if holds else "refuted"
-    if holds:
+    """Return the claim with its verdict: that of its number, unless a variation contradicts it."""
+    of_paper = bool(about.get("source"))
+    varied = [
+        (other, decisive._replace(value=other.measured.value, error=other.measured.error).holds)
+        for other in about.get("variations", ())
+    ]
+    about["variations"] = [
+        other._replace(verdict=_named(holds, of_paper)) for other, holds in varied
+    ]
+    verdict = _named(decisive.holds, of_paper)
+    if of_paper and {True, False} <= {decisive.holds, *(holds for _, holds in varied)}:
+        verdict = "cannot be decided"
+    elif decisive.holds:
         about["reason"] = ""
     return Claim(
         statement=statement,
-        measured=measured,
+        measured=found,
         decisive=decisive,
         verdict=verdict,
         paper=paper,
         **about,
     )
+
+
+def _named(holds: bool | None, of_paper: bool) -> Verdict:
+    if holds is None:
+        return "undecided"
+    yes: Verdict = "reproduced" if of_paper else "confirmed"
+    no: Verdict = "not reproduced" if of_paper else "refuted"
+    return yes if holds else no

@@ -27,9 +27,11 @@ from crazybilliards.comparison.commands.sweep import (
 if TYPE_CHECKING:
     from crazybilliards.comparison.claims.report import Reproduced
     from crazybilliards.comparison.claims.study import Study
+    from crazybilliards.comparison.claims.verdicts import Variation
 
 
-_PRINTED = ("its number", "found here", "theory", "why")  # of what there is to say about a claim
+# Of what there is to say about a claim.
+_PRINTED = ("its number", "found here", "at other choices", "theory", "why")
 # By what is asked for: names of the page with everything and of the table of claims.
 _REPORTS = {"all": ("report.html", "claims.md"), "studies": ("studies.html", "studies.md")}
 
@@ -61,7 +63,7 @@ def command(
     ] = False,
     quality: Annotated[
         Quality,
-        typer.Option(help="All figures take 4 minutes (quick) or 23 (full) on two cores."),
+        typer.Option(help="All figures take 5 minutes (quick) or 24 (full) on two cores."),
     ] = Quality.QUICK,
     output: Annotated[
         Path,
@@ -178,7 +180,11 @@ def _print_claims(reproduced: list[Reproduced]) -> None:
         for claim in each.claims:
             said = details(claim)
             which = {"figure": each.study.name, "claim": claim.statement}
-            noted.append(which | said | {"decisive": claim.decisive._asdict()})
+            numbers = {
+                "decisive": claim.decisive._asdict(),
+                "variations": [_flat(other) for other in claim.variations],
+            }
+            noted.append(which | said | numbers)
             say(_indented(1, f"{claim.statement}: {claim.verdict}"))
             for name in (name for name in said if name in _PRINTED):
                 say(_indented(2, f"{name}: {said[name]}"))
@@ -187,6 +193,11 @@ def _print_claims(reproduced: list[Reproduced]) -> None:
         say("")
     for line in summary(reproduced):
         say(line)
+
+
+def _flat(other: Variation) -> dict[str, Any]:
+    """Return a variation for programs."""
+    return {"choice": other.choice, **other.measured._asdict(), "verdict": other.verdict}
 
 
 def _indented(levels: int, text: str) -> str:

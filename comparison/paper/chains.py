@@ -18,7 +18,7 @@ RESTITUTIONS = (0.0, 0.5, 0.75, 0.85, 0.92, 0.95)
 
 # Quick and full: number of runs, and the time each is measured.
 _SHORT_CHAINS = {"quick": (4, 1000.0), "full": (8, 6000.0)}
-_LONG_CHAINS = {"quick": (2, 50.0), "full": (5, 400.0)}
+_LONG_CHAINS = {"quick": (4, 50.0), "full": (5, 400.0)}
 _WARMUP = {"quick": 50.0, "full": 100.0}  # of long chains: six and twelve relaxation times
 
 

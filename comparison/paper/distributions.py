@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from numpy.typing import NDArray
 from scipy.optimize import curve_fit
 
+from crazybilliards.comparison.claims.repetition import error_of_mean
 from crazybilliards.comparison.distances import distances_in_plot
 from crazybilliards.comparison.drawing import COLOURS, SYMBOLS
 from crazybilliards.model.vocabulary import require
@@ -72,7 +73,7 @@ def draw_distributions(
     reach = 0.0
     for number, particle in enumerate(particles):
         each = np.array([run.velocity_density.sel(particle=particle) for run in runs]) * unit
-        p, error = each.mean(axis=0), each.std(axis=0, ddof=1) / len(runs) ** 0.5
+        p, error = each.mean(axis=0), error_of_mean(each)
         variance = np.mean([run.velocity_width.sel(particle=particle) ** 2 for run in runs])
         width = float(np.sqrt(variance)) / unit
         drawable = p > _LEAST * p.max()

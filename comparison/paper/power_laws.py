@@ -1,4 +1,4 @@
-"""The paper's fit of two power laws, seen in its plots of velocity widths."""
+"""The paper's fit of two power laws: its parameters, and how it looks in plots of widths."""
 
 from __future__ import annotations
 
@@ -11,6 +11,31 @@ from crazybilliards.comparison.claims.verdicts import Estimate
 from crazybilliards.comparison.distances import distances_in_plot
 from crazybilliards.comparison.fits import fit_border_power_law
 from crazybilliards.model import chain_of
+
+
+def nu(run: xr.Dataset) -> float:
+    """Return the exponent."""
+    return fit_border_power_law(run).exponent
+
+
+def weighted_nu(run: xr.Dataset) -> float:
+    """Return the exponent with rods weighed by their error bars."""
+    return fit_border_power_law(run, weighted=True).exponent
+
+
+def lost_with_weights(run: xr.Dataset) -> float:
+    """Return by how much weights make the exponent steeper."""
+    return nu(run) - weighted_nu(run)
+
+
+def gained_without_c(run: xr.Dataset) -> float:
+    """Return by how much the exponent is flatter if the power laws begin at rod 0."""
+    return fit_border_power_law(run, shifted=False).exponent - nu(run)
+
+
+def origin(run: xr.Dataset) -> float:
+    """Return c, where the power laws begin."""
+    return fit_border_power_law(run).origin
 
 
 def fits_in_plot(runs: Iterable[xr.Dataset]) -> tuple[Estimate, float]:

@@ -10,7 +10,7 @@ from crazybilliards.comparison.paper.chains import SIZES, dissipative, dissipati
 from crazybilliards.model import Chain
 
 STEPS = (1e-2, 3e-3, 1e-3)
-_DURATION = {"quick": (2, 100.0), "full": (6, 1500.0)}
+_DURATION = {"quick": (4, 100.0), "full": (6, 1500.0)}
 
 
 def at_steps(quality: Quality, sizes: tuple[int, ...] = SIZES) -> Cases:

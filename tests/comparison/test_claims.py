@@ -1,4 +1,4 @@
-"""Claims get the verdict that their numbers deserve; independent runs give errors."""
+"""Independent runs of one chain give means with errors; distances in a plot are the shortest."""
 
 import numpy as np
 import pytest
@@ -7,18 +7,12 @@ from scipy.stats import norm, t
 from crazybilliards.comparison.claims.repetition import (
     border_width,
     central_width,
+    error_of_mean,
     estimate,
-    normal_deviate,
     pooled,
+    share_of_runs,
 )
-from crazybilliards.comparison.claims.verdicts import (
-    Estimate,
-    eye_claim,
-    number_claim,
-    positive_claim,
-    same_claim,
-    small_claim,
-)
+from crazybilliards.comparison.claims.verdicts import positive_claim
 from crazybilliards.comparison.distances import distances_in_plot
 from crazybilliards.comparison.explore.sums import Sums
 from crazybilliards.comparison.paper.distributions import mean_shape
@@ -26,119 +20,6 @@ from crazybilliards.comparison.studies.restitutions import width_deviation
 from crazybilliards.model import Chain
 from crazybilliards.model.vocabulary import result
 from crazybilliards.particles import simulate, simulate_limit
-
-# -- claims -----------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(
-    ("value", "error", "holds"),
-    [
-        (-0.46, 0.005, True),
-        (-0.471, 0.002, True),  # within precision and three errors
-        (-0.49, 0.002, False),
-        (-0.475, 0.005, True),
-        (-0.49, 0.01, None),  # within three errors, but these are large
-        (-0.52, 0.01, False),
-        (-0.46, 0.2, None),
-        (np.nan, 0.01, None),
-        (np.nan, np.inf, None),
-        (-0.46, np.nan, None),
-    ],
-)
-def test_numbers(value, error, holds):
-    measured = Estimate(value, error)
-    claim = number_claim("nu", -0.46, 0.01, measured, reason="why")
-    assert claim.verdict == {True: "confirmed", False: "refuted", None: "undecided"}[holds]
-    assert claim.paper == "-0.46"
-    assert claim.reason == ("" if holds else "why")
-    assert not claim.of_paper
-    # The paper is blamed only for what it says, at parameters that it gives.
-    said = number_claim("nu", -0.46, 0.01, measured, source="fig.2")
-    assert said.verdict == {True: "reproduced", False: "not reproduced", None: "undecided"}[holds]
-    assert said.of_paper
-    chosen = number_claim("nu", -0.46, 0.01, measured, source="fig.2", ours="the size")
-    expected = {True: "reproduced", False: "cannot be decided", None: "undecided"}
-    assert chosen.verdict == expected[holds]
-
-
-@pytest.mark.parametrize("truth", [0.0, 0.9, 6.0, 30.0])
-def test_a_short_simulation_decides_like_a_long_one_or_not_at_all(truth):
-    """Of 300 short and long runs with a number off by ``truth`` precisions, errors 9 to 1.
-
-    Numbers that are off by 1 to 5 precisions are left out: they may come out in a short run and not
-    in a long one, because a number holds up to 3, and three of its errors are 2 at most.
-    """
-    rng = np.random.default_rng(5)
-    precision, contradicted = 0.01, 0
-    for error in rng.uniform(0.02, 2.0, 300) * precision:
-        short, long = (
-            number_claim("nu", 1.0, precision, Estimate(rng.normal(1 + truth * precision, e), e))
-            for e in (error, error / 9)
-        )
-        contradicted += {short.verdict, long.verdict} == {"confirmed", "refuted"}
-    assert contradicted == 0
-
-
-@pytest.mark.parametrize(
-    ("value", "error", "positive", "small"),
-    [
-        (0.5, 0.1, "confirmed", "refuted"),
-        (-0.5, 0.1, "refuted", "refuted"),
-        (0.02, 0.02, "undecided", "confirmed"),
-        (0.1, 0.02, "confirmed", "undecided"),
-        (np.nan, 0.1, "undecided", "undecided"),
-    ],
-)
-def test_signs_and_limits(value, error, positive, small):
-    measured = Estimate(value, error)
-    assert positive_claim("grows", "change", measured).verdict == positive
-    assert small_claim("vanishes", "it", measured, 0.1).verdict == small
-
-
-def test_the_number_that_decides_is_there_for_programs():
-    measured = Estimate(0.1, 0.02)
-    assert number_claim("nu", 0.3, 0.01, measured).decisive == (0.1, 0.02, 0.3, 0.01)
-    assert small_claim("vanishes", "it", measured, 0.5).decisive == (0.1, 0.02, 0, 0.5)
-    assert eye_claim("fits", "rods", measured, 3.0).decisive == (0.1, 0.02, 0, 0.02)
-    np.testing.assert_equal(
-        positive_claim("grows", "change", measured).decisive, (0.1, 0.02, 0, np.nan)
-    )
-    np.testing.assert_equal(same_claim("equal", "both", 3.2).decisive, (3.2, np.nan, 0, 5))
-
-
-def test_errors_of_few_runs_are_uncertain_themselves():
-    """Twice the same with 10 000 experiments of two runs each, and the limits of many runs."""
-    assert normal_deviate(1.0, 2) == pytest.approx(1)
-    assert normal_deviate(5.0, 1000) == pytest.approx(5, rel=0.02)
-    runs = np.random.default_rng(1).normal(size=(10_000, 2))
-    error = runs.std(axis=1, ddof=1) / 2**0.5 * t.ppf(norm.cdf(1), 1)
-    beyond = np.mean(np.abs(runs.mean(axis=1)) > 5 * error)
-    assert 2 * norm.sf(normal_deviate(5.0, 2)) == pytest.approx(
-        beyond, abs=5 * (beyond / 1e4) ** 0.5
-    )
-
-
-def test_sameness():
-    assert same_claim("equal", "both", 3.2).verdict == "confirmed"
-    assert same_claim("equal", "both", 7.0, reason="no").reason == "no"
-    assert same_claim("equal", "both", np.nan).verdict == "undecided"
-
-
-@pytest.mark.parametrize(
-    ("deviation", "verdict"),
-    [
-        (Estimate(0.01, 0.003), "reproduced"),
-        (Estimate(0.018, 0.003), "undecided"),
-        (Estimate(0.03, 0.003), "not reproduced"),
-        (Estimate(np.nan, 0.003), "undecided"),
-    ],
-)
-def test_what_the_eye_sees(deviation, verdict):
-    """However significant a deviation is: below 2 % of the plot it is not seen."""
-    claim = eye_claim("fits", "all rods", deviation, 22.4, source="fig.2", exactly="no arctanh")
-    assert claim.verdict == verdict
-    assert claim.exactly == "no arctanh"
-    assert "22.4 standard errors" in claim.measured
 
 
 def test_distances_in_a_plot_are_the_shortest_to_the_line():
@@ -162,15 +43,6 @@ def test_distances_in_a_plot_are_the_shortest_to_the_line():
     assert bare == pytest.approx([0.25, 0.75])
 
 
-def test_estimates_are_written_to_the_second_digit_of_the_error():
-    assert str(Estimate(-0.46123, 0.00234)) == "-0.4612 ± 0.0023"
-    assert str(Estimate(37.512, 1.234)) == "37.5 ± 1.2"
-    assert str(Estimate(5.0, 0.0)) == "5.0000 ± 0.0000"
-    assert str(Estimate(np.nan, 0.1)) == "not determined"
-    difference = Estimate(3.0, 0.3).minus(Estimate(1.0, 0.4))
-    assert difference == pytest.approx((2.0, 0.5))
-
-
 # -- independent runs -------------------------------------------------------------------------
 
 
@@ -183,6 +55,20 @@ def test_errors_of_estimates_cover_the_truth_however_few_the_runs():
         value, error = estimate(results, "a", float)
         hits += abs(value - 1) < error
     assert abs(hits / trials - 0.683) < 5 * (0.683 * 0.317 / trials) ** 0.5
+
+
+def test_two_runs_have_an_error_of_student():
+    """The half-difference times 1.84; several quantities at once have each their own."""
+    factor = t.ppf(norm.cdf(1), 1)
+    assert factor == pytest.approx(1.837, abs=1e-3)
+    np.testing.assert_allclose(error_of_mean([[1.0, 5.0], [2.0, 5.0]]), [0.5 * factor, 0.0])
+
+
+def test_all_of_few_runs_are_not_all_runs():
+    assert positive_claim("they diverge", "share", share_of_runs(4, 4)).verdict == "confirmed"
+    assert positive_claim("they diverge", "share", share_of_runs(1, 4)).verdict == "undecided"
+    value, error = share_of_runs(500, 1000)
+    assert (value, error) == pytest.approx((0.5, 0.5 / 1000**0.5), rel=1e-2)
 
 
 def test_pooling_runs_is_averaging_them():

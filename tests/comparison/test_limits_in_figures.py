@@ -23,13 +23,13 @@ from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.vocabulary import result
 
 NOISE = 1e-3
-BIAS = 2e-3
+BIAS = 1e-3
 WITH_LIMITS = {figure.number: figure for figure in FIGURES if figure.number in (3, 4, 7)}
 
 
 def exponent_at(restitution):
     """Return nu in the paper's form of its dependence on e."""
-    return -(0.4675 + 0.2457 * np.exp(-8.65 * (1 - restitution)))
+    return -(0.46 + 0.2457 * np.exp(-8.65 * (1 - restitution)))
 
 
 def made_up(chain, job, *, seed=0, scale=1.0, steeper=0.0):

@@ -171,6 +171,7 @@ def test_a_figure_its_claims_and_nothing_computed_twice(command, tmp_path, monke
     status, facts, _ = command("16", "--json")
     claim, *_ = json.loads(facts)["claims"]
     assert (claim["figure"], claim["verdict"]) == ("arctanh", "reproduced")
+    assert claim["variations"] == []
     decisive = claim["decisive"]
     assert 0 < decisive["value"] + 3 * decisive["error"] < decisive["limit"] == EYE
     # After an edit of the simulation: with --keep-old the same, otherwise it is computed anew.
@@ -218,7 +219,7 @@ def test_the_report_is_one_page_and_the_table_markdown(tmp_path, monkeypatch):
     assert "* in the paper: section seq:analytics, fig:atan" in text
     assert r"**W\_x of every rod" in text
     assert len(re.findall(rf"^\* {OF_PAPER}: 1 ", text, re.MULTILINE)) == 1
-    assert len(re.findall(rf"^\* {OWN}: 7 confirmed", text, re.MULTILINE)) == 1
+    assert len(re.findall(rf"^\* {OWN}: 7 undecided", text, re.MULTILINE)) == 1
     pictures = re.findall(r"!\[.*\]\((.*)\)", text)
     assert pictures == ["fig01_model.png", "fig16_arctanh.png", "study_elastic-gaps.png"]
     assert pictures == [each.study.file_name for each in reproduced]

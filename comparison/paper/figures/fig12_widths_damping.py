@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from crazybilliards.comparison.claims.repetition import (
     border_width,
@@ -13,10 +16,16 @@ from crazybilliards.comparison.claims.repetition import (
     pooled,
 )
 from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
-from crazybilliards.comparison.claims.verdicts import EYE, Claim, Estimate, positive_claim
+from crazybilliards.comparison.claims.verdicts import (
+    EYE,
+    Claim,
+    Estimate,
+    Variation,
+    positive_claim,
+)
 from crazybilliards.comparison.distances import distances_in_plot
 from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_rods
-from crazybilliards.comparison.fits import fit_border_power_law
+from crazybilliards.comparison.fits import PowerLawFit, fit_border_power_law
 from crazybilliards.comparison.layout import legend_above, panels
 from crazybilliards.comparison.paper.chains import (
     flippers,
@@ -91,37 +100,54 @@ def _crowding(run: xr.Dataset) -> float:
 
 def _power_law_claim(results: Results) -> Claim:
     """Decide whether the best sum of two power laws is visibly off in a plot like the paper's."""
-    damping = _DAMPINGS[0]
+    run = pooled(results, flippers_name(_SIZE, _DAMPINGS[0]))
+    linear = logarithmic = Estimate(1.0 - EYE, 0.0)
+    words = "no such law fits"
     try:
-        off, fit = _distance_from_power_laws(results, damping)
+        fit = fit_border_power_law(run)
     except ValueError:
-        off, fit = Estimate(1.0, 0.0), "no such law fits"
+        pass
+    else:
+        words = f"nu = {fit.exponent:.3f} fits best"
+        linear, logarithmic = (
+            _beyond_the_eye(results, run, fit, axes) for axes in (_unchanged, np.log)
+        )
     return positive_claim(
-        f"the convex profile at gamma = {damping:g} cannot be described by a power law",
-        f"gamma W_v against i for the five dampings, both axes linear: {fit}; by how much the "
+        f"the convex profile at gamma = {_DAMPINGS[0]:g} cannot be described by a power law",
+        f"gamma W_v against i for the five dampings, both axes linear: {words}; by how much the "
         f"largest deviation, as a share of the plotted range, exceeds what an eye sees, {EYE:g}:",
-        Estimate(off.value - EYE, off.error),
+        linear,
         source=_SOURCE,
         ours="whether the axes are linear",
+        variations=[Variation("both axes logarithmic", logarithmic)],
         reason="a sum of two flat power laws fits",
     )
 
 
-def _distance_from_power_laws(results: Results, damping: float) -> tuple[Estimate, str]:
-    """Return the largest distance in the plot as a share of its range, and the fit in words."""
-    runs = {g: pooled(results, flippers_name(_SIZE, g)) for g in _DAMPINGS}
-    plotted = np.concatenate([g * run.velocity_width.values for g, run in runs.items()])
+def _unchanged(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    return values
+
+
+def _beyond_the_eye(
+    results: Results,
+    run: xr.Dataset,
+    fit: PowerLawFit,
+    axes: Callable[[NDArray[np.float64]], NDArray[np.float64]],
+) -> Estimate:
+    """Return the largest distance of a symbol from the fit, as a share of the plot, less EYE."""
+    widths = {g: pooled(results, flippers_name(_SIZE, g)).velocity_width.values for g in _DAMPINGS}
+    plotted = axes(np.concatenate([g * width for g, width in widths.items()]))
     shown = float(plotted.min()), float(plotted.max())
-    run = runs[damping]
-    fit = fit_border_power_law(run)
-    i = run.particle.values
-    fine = np.linspace(1, _SIZE, 2000)
+    damping, i = _DAMPINGS[0], run.particle.values
+    width, error = run.velocity_width.values, run.velocity_width_error.values
+    fine = np.geomspace(1, _SIZE, 2000)
     off = distances_in_plot(
-        i, damping * run.velocity_width, fine, damping * fit(fine), y_range=shown
+        axes(i), axes(damping * width), axes(fine), axes(damping * fit(fine)), y_range=shown
     )
     at = int(off.argmax())
-    error = damping * float(run.velocity_width_error[at]) / (shown[1] - shown[0])
-    return Estimate(float(off[at]), error), f"nu = {fit.exponent:.3f} fits best"
+    # The height of the error bar on these axes.
+    low, high = axes(damping * (width[at] + np.array([-1, 1]) * error[at]))
+    return Estimate(float(off[at]) - EYE, float(high - low) / 2 / (shown[1] - shown[0]))
 
 
 def _crossing(values: np.ndarray) -> float:

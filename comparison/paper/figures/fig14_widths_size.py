@@ -10,6 +10,7 @@ from crazybilliards.comparison.claims.repetition import (
     members,
     pooled,
     repeated,
+    share_of_runs,
 )
 from crazybilliards.comparison.claims.study import Cases, PaperFigure, Quality, Results
 from crazybilliards.comparison.claims.verdicts import Claim, Estimate, positive_claim
@@ -74,8 +75,9 @@ def claims(results: Results) -> list[Claim]:
         ),
         positive_claim(
             f"without a steady state at L = {_UNSTEADY}",
-            f"{diverged} of {len(unsteady)} runs, released from rest, diverged; their share:",
-            Estimate(diverged / len(unsteady), 0.0),
+            f"{diverged} of {len(unsteady)} runs, released from rest, diverged; their share, as "
+            "far as so few runs show it:",
+            share_of_runs(diverged, len(unsteady)),
             source=_SOURCE,
             ours="the size that is too large",
             theory=f"no steady state beyond L = {critical:.0f} (weak damping)",

@@ -76,7 +76,7 @@ def _widening(results: Results, restitution: float) -> Claim:
         f"the larger the gap, the wider the plateau, e = {restitution:g}",
         f"rods at each border where ln W_v^2 is more than {_FLAT:g} above the centre's: {listed}; "
         "what the plateau gains at each border, at least:",
-        min(gains, key=lambda gain: gain.value),
+        min(gains, key=lambda gain: gain.value - 3 * gain.error),
         source=_SOURCE,
         ours=_OURS,
         reason="at the larger gaps the plateau reaches the last rod or two already",
