@@ -626,7 +626,7 @@ assert estimated < 0.005
 # $0.1\,r^3$ for its narrowest rod in `run.attrs["time_step_error"]`, which is 0.3 % here. For
 # Euler's scheme and for Contact Dynamics the estimate is $0.24\,r^{3/2}$. Above $e = 0.163$ rods do
 # not stay in contact in this way, and the default corrects nothing. There the estimate is
-# $0.06\,r^{3/2}$: at $e = 0.2$ and 0.3 the central width of 100 rods is 0.9 % too small at the step
+# $0.1\,(1 - e)\,r^{3/2}$: at $e = 0.2$ the central width of 100 rods is 0.9 % too small at the step
 # that `simulate` chooses. Any result about a dissipative chain needs a study of the time step.
 #
 # **Does your result depend on $dt$?** Such a study by hand is one way to find out. `simulate_limit`
