@@ -82,6 +82,7 @@ ATTRIBUTES = {
     "residual": ("how far the equations are from satisfied", "1"),
     "time_step_error": ("relative error of W_v due to the time step", "1"),
     "correlation": ("correlation of the widths at the last two time steps", "1"),
+    "saving": ("work of a plain run over that of the levels, estimated", "1"),
     "mesh_error": ("largest relative error of W_v due to the mesh", "1"),
     "model_error": ("relative error of the theory itself", "1"),
     "border_error": ("relative error of the theory itself at the border", "1"),

@@ -21,7 +21,7 @@ from crazybilliards.model.memory import require_memory
 from crazybilliards.model.process import announced, cores, interrupts_noted
 from crazybilliards.model.vocabulary import result
 from crazybilliards.particles.level_steps import GROUPS, Steps, plan_steps
-from crazybilliards.particles.level_terms import CENTRAL, Estimate
+from crazybilliards.particles.level_terms import CENTRAL
 from crazybilliards.particles.multilevel import Levels
 from crazybilliards.particles.observers import Observer, find_observers
 from crazybilliards.particles.run import Run
@@ -287,28 +287,12 @@ def _collect(levels: Levels, interrupted: bool, progress: bool) -> xr.Dataset:
     method["levels"] = levels.described(terms)
     limit = collected(variables, coordinates=coordinates, method=method)
     limit.attrs["time_step_error"] = float(bias[CENTRAL] / limit[CENTRAL])
-    _describe_coupling(levels, terms, limit, progress)
+    limit.attrs |= levels.coupling(terms)
+    if progress and limit.attrs.get("coupling") == "weak":
+        long, short = levels.steps.time_steps[levels.used[-1] - 1 : levels.used[-1] + 1]
+        print(
+            f"crazybilliards: runs at the steps {long:.2g} and {short:.2g} are correlated by "
+            f"{limit.attrs['correlation']:.2f} only: plain runs at {short:.2g} were cheaper",
+            file=sys.stderr,
+        )
     return limit
-
-
-def _describe_coupling(
-    levels: Levels, terms: Sequence[Estimate], limit: xr.Dataset, progress: bool
-) -> None:
-    """Say how runs at the last two steps are correlated, and what the levels save."""
-    last = levels.used[-1]
-    if last == 0:  # one step is enough: always at e = 1, elsewhere if little is asked for
-        return
-    if len(terms) > 1:
-        correlation = terms[-1].correlation
-        limit.attrs |= {"coupling": "strong", "saving": levels.saving(terms)}
-    else:
-        correlation = levels.samplers[last][0].correlation
-        limit.attrs["coupling"] = "weak"
-        if progress:
-            long, short = levels.steps.time_steps[last - 1 : last + 1]
-            print(
-                f"crazybilliards: runs at the steps {long:.2g} and {short:.2g} are correlated by "
-                f"{correlation:.2f} only: plain runs at {short:.2g} were cheaper",
-                file=sys.stderr,
-            )
-    limit.attrs["correlation"] = correlation

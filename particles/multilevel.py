@@ -140,14 +140,24 @@ class Levels:
         rest = self.steps.ratios[self.used[-1]] ** order - 1
         return {name: np.abs(value) / rest for name, value in terms[-1].values.items()}
 
-    def saving(self, terms: Sequence[Estimate]) -> float:
-        """Estimate how many times the work of the levels a plain run at the last step would take.
+    def coupling(self, terms: Sequence[Estimate]) -> dict[str, str | float]:
+        """Return how runs at the last two steps are correlated, and what the levels save.
 
-        As in the choice of the base, a single chain's spread is taken to be that of the base.
+        The saving is the work of a plain run at the last step over that of the levels. As in the
+        choice of the base, a single chain's spread is taken to be that of the base.
         """
+        last = self.used[-1]
+        if last == 0:  # one step is enough: always at e = 1, elsewhere if little is asked for
+            return {}
+        if len(terms) == 1:
+            return {"coupling": "weak", "correlation": self.samplers[last][0].correlation}
         costs = [self._cost(level, level > self.used[0]) for level in self.used]
         work = sum(math.sqrt(term.spread * c) for term, c in zip(terms, costs, strict=True))
-        return terms[0].spread * self._cost(self.used[-1], coupled=False) / work**2
+        return {
+            "coupling": "strong",
+            "correlation": terms[-1].correlation,
+            "saving": terms[0].spread * self._cost(last, coupled=False) / work**2,
+        }
 
     def described(self, terms: Sequence[Estimate]) -> list[dict[str, Any]]:
         """Return the levels for the provenance; the shares are those in W_v of the centre."""

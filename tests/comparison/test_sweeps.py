@@ -1,9 +1,6 @@
 """Sweeps: the same case the same file, nothing computed twice, nothing lost."""
 
 import errno
-import io
-import json
-import numbers
 import os
 import signal
 from concurrent.futures import Executor, Future
@@ -12,36 +9,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-import xarray as xr
 from missing_cases import missing_cases
+from small_sweeps import AtOnce, sweep
 
-from crazybilliards.comparison import load_sweep
-from crazybilliards.comparison.sweeps import Case, Sweep, read_sweep, run_cases
-from crazybilliards.comparison.sweeps.case import compute
+from crazybilliards.comparison.sweeps import Case, read_sweep, run_cases
 from crazybilliards.comparison.sweeps.jobs import JOBS
-from crazybilliards.model import Chain, load, save
+from crazybilliards.model import Chain, load
 from crazybilliards.model.locks import locked
-from crazybilliards.model.storage import write_sealed
-from crazybilliards.model.vocabulary import ATTRIBUTES
-
-
-class AtOnce(Executor):
-    """Carries out what is submitted, here and now."""
-
-    def submit(self, function, /, *arguments):
-        future = Future()
-        try:
-            future.set_result(function(*arguments))
-        except BaseException as error:
-            future.set_exception(error)
-        return future
-
-
-def sweep(**changes):
-    given = {"grid": {"size": [3, 5], "restitution": [0.5, 1.0]}, "chain": {"damping": 2.0}}
-    given |= {"job": "simulate", "settings": {"duration": 100, "observe": ["widths", "density"]}}
-    return Sweep(**(given | changes))
-
 
 # -- grids ------------------------------------------------------------------------------------
 
@@ -229,129 +203,3 @@ def test_ctrl_c_does_not_reach_workers_from_their_first_moment_on(tmp_path):
     run_cases(sweep().cases()[:1], tmp_path, Asking(), progress=False)
     assert signal.SIGINT in blocked[0]  # which workers inherit
     assert signal.SIGINT not in signal.pthread_sigmask(signal.SIG_BLOCK, [])
-
-
-# -- loading ----------------------------------------------------------------------------------
-
-
-def test_loading_gives_one_dataset_over_the_grid(tmp_path):
-    cases = sweep().cases()
-    run_cases(cases[:3], tmp_path, AtOnce(), progress=False)  # the last one is missing
-    grid = load_sweep(tmp_path)
-    assert grid.velocity_width.dims == ("size", "restitution", "particle")
-    assert grid.velocity_width.attrs["units"] == "R/T"
-    for case in cases[:3]:
-        own = case.load(tmp_path)
-        here = grid.sel(size=case.chain.size, restitution=case.chain.restitution)
-        widths = here.velocity_width.values
-        np.testing.assert_array_equal(widths[: case.chain.size], own.velocity_width)
-        assert np.isnan(widths[case.chain.size :]).all()
-        places = own.sizes["x"]
-        np.testing.assert_array_equal(here.density.values[:places], own.density)
-        np.testing.assert_array_equal(here.x.values[:places], own.x)
-        assert here.status == "completed"
-    nothing = grid.sel(size=5, restitution=1.0)
-    assert nothing.status == ""
-    assert np.isnan(nothing.velocity_width).all()
-    assert json.loads(grid.attrs["parameters"])["damping"] == 2
-    # A sweep of one case has no grid.
-    assert load_sweep_of_one(tmp_path / "one").velocity_width.dims == ("particle",)
-
-
-def test_numbers_about_a_case_are_variables_over_the_grid(tmp_path):
-    grid = {"size": [3, 5], "restitution": [0.5, 1.0]}
-    cases = sweep(grid=grid).cases()
-    run_cases(cases[:3], tmp_path, AtOnce(), progress=False)
-    loaded = load_sweep(tmp_path)
-    for case in cases[:3]:
-        own = case.load(tmp_path).attrs
-        here = loaded.sel(size=case.chain.size, restitution=case.chain.restitution)
-        for name in ("time_step_error", "end_time", "seconds"):
-            assert float(here[name]) == pytest.approx(own.get(name, np.nan), nan_ok=True)
-    assert np.isfinite(loaded.time_step_error.sel(restitution=0.5)).all()
-    assert np.isnan(loaded.time_step_error.sel(restitution=1.0)).all()  # exact there
-    assert loaded.time_step_error.attrs["units"] == "1"
-    assert loaded.end_time.attrs == {"long_name": "time reached, warm-up included", "units": "T"}
-    assert not {"status", "end_time", "case"} & loaded.attrs.keys()
-    save(loaded, tmp_path / "grid" / "all.nc")
-    xr.testing.assert_identical(
-        load(tmp_path / "grid" / "all.nc").time_step_error, loaded.time_step_error
-    )
-
-
-def test_errors_of_a_theory_are_variables_and_texts_that_differ_too(tmp_path):
-    cases = [
-        Case("phase_space", Chain(size=8, restitution=e), {"cells": 6, "tolerance": 0.1})
-        for e in (0.95, 1.0)
-    ]
-    for number, case in enumerate(cases):
-        result = case_result(case)
-        result.attrs["package_version"] = f"0.{number}"
-        if number:
-            result.attrs["note"] = "by hand"
-        save(result, case.file(tmp_path))
-    loaded = load_sweep(tmp_path)
-    for name in ("model_error", "border_error", "mesh_error", "residual", "iterations", "cells"):
-        own = [case.load(tmp_path).attrs.get(name) for case in cases]
-        if own != [None, None]:
-            np.testing.assert_array_equal(loaded[name], own)
-            assert loaded[name].attrs["units"] == "1"
-    assert loaded.border_error.dims == ("restitution",)
-    assert loaded.package_version.values.tolist() == ["0.0", "0.1"]
-    assert loaded.note.values.tolist() == ["", "by hand"]
-    assert loaded.attrs["source"] == "theory"
-
-
-def case_result(case):
-    return xr.load_dataset(io.BytesIO(compute(case, case.source)))
-
-
-def test_every_number_about_a_result_has_a_meaning_and_a_unit():
-    coarse = {"cells": 6, "tolerance": 0.1}
-    settings = {
-        "simulate": {"duration": 100},
-        "simulate_limit": {"accuracy": 0.05},
-        "phase_space": coarse,
-        "correlated_phase_space": coarse,
-    }
-    for job in JOBS:
-        e = 0.5 if job.startswith("simulate") else 1.0
-        result = case_result(Case(job, Chain(size=10, restitution=e), settings.get(job, {})))
-        found = {name for name, value in result.attrs.items() if isinstance(value, numbers.Real)}
-        assert found <= ATTRIBUTES.keys(), job
-        assert found
-
-
-def load_sweep_of_one(folder):
-    run_cases(sweep().cases()[:1], folder, AtOnce(), progress=False)
-    return load_sweep(folder)
-
-
-def test_folders_that_hold_no_sweep(tmp_path):
-    with pytest.raises(ValueError, match="no case"):
-        load_sweep(tmp_path)
-    case = sweep().cases()[0]
-    run_cases([case, Case("equilibrium", Chain(size=3), {})], tmp_path, AtOnce(), progress=False)
-    with pytest.raises(ValueError, match="different jobs"):
-        load_sweep(tmp_path)
-    result = case.load(tmp_path)
-    del result.attrs["case"]
-    save(result, tmp_path / "stranger.nc")
-    with pytest.raises(ValueError, match="not a case"):
-        load_sweep(tmp_path)
-
-
-def test_a_sweep_of_a_theory_is_read_back(tmp_path):
-    cases = [Case("force_balance", Chain(size=size), {}) for size in (3, 4)]
-    for case in cases:
-        write_sealed(case.file(tmp_path), compute(case, case.source))
-    grid = load_sweep(tmp_path)
-    assert grid.sizes["size"] == 2
-    assert (grid.status == "completed").all()
-
-
-@pytest.mark.parametrize("case", ["{", "[]", "{}", 3, '{"job": "simulate"}'])
-def test_a_file_without_parameters_is_no_case(case, tmp_path):
-    save(xr.Dataset(attrs={"case": case, "status": "", "provenance": ""}), tmp_path / "a.nc")
-    with pytest.raises(ValueError, match=r"a\.nc: not a case of a sweep"):
-        load_sweep(tmp_path)

@@ -4,9 +4,6 @@ import errno
 import io
 import os
 import signal
-import subprocess
-import sys
-from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -15,7 +12,6 @@ from killed import run_and_signal
 
 from crazybilliards.model import Chain, load, save
 from crazybilliards.model.locks import locked
-from crazybilliards.model.process import terminated_like_interrupted
 from crazybilliards.model.storage import read_sealed, write_sealed
 from crazybilliards.particles import simulate
 from crazybilliards.particles.running import checkpoint
@@ -150,155 +146,6 @@ def test_between_two_snapshots_far_apart_a_run_can_be_stopped_and_resumed(tmp_pa
     monkeypatch.undo()
     resumed = simulate(chain, **options, checkpoint=tmp_path / "state")
     xr.testing.assert_identical(resumed, whole)
-
-
-def test_ctrl_c_while_replicas_are_started_stops_the_run(tmp_path, monkeypatch):
-    """It used to wait for the end of the run."""
-    submit = ThreadPoolExecutor.submit
-
-    def interrupting(pool, work, replica):
-        submit(pool, work, replica)
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(ThreadPoolExecutor, "submit", interrupting)
-    with pytest.raises(KeyboardInterrupt, match="nothing was measured"):
-        simulate(Chain(size=10), warmup=1e9, progress=False, checkpoint=tmp_path / "state")
-
-
-EVERY_ENTRY = """
-import signal, threading
-from crazybilliards.model import Chain
-from crazybilliards.particles import simulate
-
-enter, entries = threading.Condition.__enter__, []
-
-def and_interrupted(self):
-    entered = enter(self)
-    if threading.get_ident() == threading.main_thread().ident:
-        entries.append(self)
-        if len(entries) == number:
-            signal.raise_signal(signal.SIGINT)
-    return entered
-
-for number in range(1, 9):
-    entries.clear()
-    threading.Condition.__enter__ = and_interrupted
-    try:
-        run = simulate(Chain(size=10), duration=1e9, replicas=4, threads=2, progress=False)
-        print(run.attrs["status"])
-    except KeyboardInterrupt as error:
-        print(error)
-    threading.Condition.__enter__ = enter
-"""
-
-
-@pytest.mark.compiled
-def test_ctrl_c_may_come_while_the_lock_of_the_threads_is_being_taken():
-    """An error between the taking and the block that frees it would leave it held for ever."""
-    done = subprocess.run(
-        [sys.executable, "-c", EVERY_ENTRY],
-        capture_output=True,
-        text=True,
-        timeout=PATIENCE,
-        check=True,
-    )
-    ends = done.stdout.splitlines()
-    assert len(ends) == 8
-    assert set(ends) <= {"interrupted", "nothing was measured yet"}
-
-
-def test_ctrl_c_during_the_last_writing_keeps_everything(tmp_path, monkeypatch):
-    arguments = {"duration": 500, "progress": False, "checkpoint": tmp_path / "state"}
-    written = []
-    replace = os.replace
-
-    def interrupting(source, target):
-        written.append(target)
-        if len(written) == 2:  # the first shows that it can be written
-            raise KeyboardInterrupt
-        replace(source, target)
-
-    monkeypatch.setattr(os, "replace", interrupting)
-    run = simulate(Chain(size=10), **arguments)
-    assert (run.attrs["status"], len(written)) == ("interrupted", 3)
-    monkeypatch.undo()
-    resumed = simulate(Chain(size=10), **arguments)
-    xr.testing.assert_equal(resumed, run)
-    assert resumed.attrs["status"] == "completed"
-
-
-ENDED = """
-import signal, sys
-from crazybilliards.model import Chain
-from crazybilliards.particles import simulate
-from crazybilliards.particles.observers.widths import Widths
-
-number, handler, checkpoint = int(sys.argv[1]), sys.argv[2], sys.argv[3]
-handlers = {
-    "default": signal.SIG_DFL,
-    "like Ctrl-C": signal.default_int_handler,
-    "exits": lambda number, _: sys.exit(7),
-}
-signal.signal(number, handlers[handler])
-observe, calls = Widths.observe, []
-
-def and_signal(self, *arguments):
-    observe(self, *arguments)
-    calls.append(self)
-    if len(calls) == 20:
-        signal.pthread_kill(threading.main_thread().ident, number)
-
-import threading
-Widths.observe = and_signal
-for attempt in range(2):
-    calls.clear()
-    run = simulate(Chain(size=10), duration=1e9, progress=False, checkpoint=checkpoint,
-                   checkpoint_interval=1e9)
-    print(run.attrs["status"], run.attrs["end_time"], flush=True)
-"""
-
-
-@pytest.mark.compiled
-@pytest.mark.skipif(os.name == "nt", reason="sends a POSIX signal")
-@pytest.mark.parametrize("name", ["SIGTERM", "SIGHUP"])
-@pytest.mark.parametrize(
-    ("handler", "status", "lines"), [("default", None, 0), ("like Ctrl-C", 0, 2), ("exits", 7, 0)]
-)
-def test_a_loop_ends_at_a_signal_after_the_checkpoint_unless_it_asks_for_the_result(
-    name, handler, status, lines, tmp_path
-):
-    number = getattr(signal, name)
-    state = tmp_path / "state"
-    done = subprocess.run(
-        [sys.executable, "-c", ENDED, str(int(number)), handler, state],
-        stdout=subprocess.PIPE,
-        text=True,
-        timeout=PATIENCE,
-        check=False,
-    )
-    assert done.returncode == (-number if status is None else status)
-    assert [line.split()[0] for line in done.stdout.splitlines()] == ["interrupted"] * lines
-    # The first checkpoint, before any work, has measured nothing.
-    assert np.load(io.BytesIO(read_sealed(state)))["0/steps"] > 0
-
-
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_a_signal_in_the_middle_of_an_archive_acts_when_it_is_whole(tmp_path, monkeypatch, number):
-    """The archive would end as another error: it cannot be closed in the middle."""
-    whole, interrupted = [], np.savez
-
-    def savez(*arguments, **arrays):
-        signal.raise_signal(number)
-        interrupted(*arguments, **arrays)
-        whole.append(True)
-
-    monkeypatch.setattr(np, "savez", savez)
-    path = tmp_path / "state"
-    with pytest.raises(KeyboardInterrupt), terminated_like_interrupted():
-        simulate(Chain(size=3), duration=80, progress=False, checkpoint=path)
-    assert whole
-    assert not path.exists()
-    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
 
 
 def test_a_checkpoint_that_cannot_be_written_is_an_error_before_any_work(tmp_path, monkeypatch):
