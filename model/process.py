@@ -24,6 +24,14 @@ def cores() -> int:
     return os.cpu_count() or 1
 
 
+def bar_hidden(progress: bool | str) -> bool | None:
+    """Return tqdm's ``disable``: a bar is shown if asked for, and on a terminal only (None).
+
+    A program without a terminal may have closed its standard error, and tqdm cannot write then.
+    """
+    return None if progress and sys.stderr is not None else True
+
+
 @contextmanager
 def announced(progress: bool) -> Iterator[None]:
     """Print that kernels are being compiled, if a kernel is not in numba's cache."""

@@ -18,6 +18,7 @@ from tqdm import tqdm
 
 from crazybilliards.comparison.sweeps.case import Case, OutdatedError
 from crazybilliards.comparison.sweeps.grid import Sweep
+from crazybilliards.model.process import bar_hidden
 
 _Item = TypeVar("_Item")
 
@@ -155,4 +156,4 @@ def find_missing(
 
 def _bar(items: Iterable[_Item], title: str, progress: bool) -> Iterable[_Item]:
     """Show the progress of a loop that takes longer than a second."""
-    return tqdm(items, desc=title, unit="", delay=1, disable=None if progress else True)
+    return tqdm(items, desc=title, unit="", delay=1, disable=bar_hidden(progress))

@@ -24,7 +24,7 @@ from tqdm import tqdm
 from crazybilliards.comparison.sweeps.case import Case, compute
 from crazybilliards.comparison.sweeps.missing import Missing, check_cases, find_missing
 from crazybilliards.model.locks import locked
-from crazybilliards.model.process import interrupts_held_back
+from crazybilliards.model.process import bar_hidden, interrupts_held_back
 from crazybilliards.model.storage import make_folder, write_sealed
 
 # Cases that are submitted and have not returned: enough for a cluster, few in memory.
@@ -114,7 +114,7 @@ def compute_missing(
         total=missing.work,
         desc=f"0 of {len(missing)} cases",
         bar_format="{l_bar}{bar:10}| {elapsed}<{remaining}{postfix}",
-        disable=None if progress else True,
+        disable=bar_hidden(progress),
     ) as bar:
         under_way = _UnderWay(executor, missing, outcome, bar)
         for case in missing:

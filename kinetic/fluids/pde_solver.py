@@ -66,7 +66,7 @@ def solve(
     scalars = [ScalarField(grid, values, label=name) for name, values in fields.items()]
     storage = MemoryStorage()
     trackers: list[Any] = [storage.tracker(list(times))]
-    if progress and sys.stderr.isatty():
+    if progress and sys.stderr is not None and sys.stderr.isatty():
         trackers.append(ProgressTracker(list(times), leave=False))
     flow = Flow(rate)
     try:

@@ -54,6 +54,7 @@ from crazybilliards.kinetic.times import output_times
 from crazybilliards.model import Chain
 from crazybilliards.model.checks import check_integer, check_real
 from crazybilliards.model.memory import require_memory
+from crazybilliards.model.process import bar_hidden
 
 Array = NDArray[np.float64]
 
@@ -164,7 +165,7 @@ def relax_phase_space(
             range(count),
             desc="kinetic equation",
             unit=" outputs",
-            disable=None if progress else True,
+            disable=bar_hidden(progress),
         ):
             flow = flow.advanced(interval / unit_time / steps, steps)
             sound = flow.sound()

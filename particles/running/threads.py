@@ -9,7 +9,7 @@ from threading import Event, Lock
 
 from tqdm import tqdm
 
-from crazybilliards.model.process import interrupts_noted
+from crazybilliards.model.process import bar_hidden, interrupts_noted
 from crazybilliards.particles.running.checkpoint import Checkpoint
 from crazybilliards.particles.running.replica import Replica
 
@@ -36,7 +36,7 @@ def run_all(
             unit=unit,
             unit_scale=True,
             bar_format="{l_bar}{bar}| {elapsed}<{remaining}, {rate_fmt}",
-            disable=None if progress else True,
+            disable=bar_hidden(progress),
         ) as bar,
         ThreadPoolExecutor(min(threads, len(replicas))) as pool,
     ):

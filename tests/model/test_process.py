@@ -111,3 +111,19 @@ def test_a_command_is_terminated_like_interrupted_and_only_once(number, handle):
         signal.raise_signal(number)
     assert came == [number, number]
     assert signal.getsignal(number) is signal.SIG_DFL
+
+
+CLOSED = """
+from crazybilliards.kinetic import displaced, hydrodynamics
+from crazybilliards.model import Chain
+from crazybilliards.particles import simulate
+simulate(Chain(size=2), duration=70, warmup=0)
+hydrodynamics(Chain(size=5), displaced(Chain(size=5), 1.0), 1.0)
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="closes streams in a shell")
+def test_progress_needs_no_open_standard_error():
+    """A program in the background may have closed its streams; tqdm cannot write then."""
+    command = ["sh", "-c", f"exec {sys.executable} -c '{CLOSED}' >&- 2>&-"]
+    assert subprocess.run(command, check=False).returncode == 0
