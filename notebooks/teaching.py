@@ -6,6 +6,8 @@ The lessons import this file from their own folder.
 import matplotlib.pyplot as plt
 import numpy as np
 
+from crazybilliards.comparison.claims.repetition import error_of_mean
+
 BLUE, ORANGE, GREEN, PINK, RED, SKY = COLOURS = (
     "#0072B2",
     "#E69F00",
@@ -24,9 +26,12 @@ def panels(number=1, width=10, height=3.6, **settings):
 
 
 def mean_and_error(values):
-    """Return the mean over independent runs, along the first axis, and its standard error."""
+    """Return the mean over independent runs, along the first axis, and its standard error.
+
+    With few runs the error is enlarged so that 68 % of all means lie within one.
+    """
     values = np.asarray(values)
-    return values.mean(axis=0), values.std(axis=0, ddof=1) / np.sqrt(len(values))
+    return values.mean(axis=0), error_of_mean(values)
 
 
 def agree(what, measured, expected, error):
