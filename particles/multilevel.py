@@ -23,11 +23,11 @@ the last level, there is no difference, and the run is a plain one at the shorte
 
 **The remaining bias.** The last step is chosen beforehand (``level_steps.py``). Its error is
 estimated from the last difference D, whose other step is M times as long, as D/(M^p - 1) with the
-order p of the scheme in dt. The order is 3/2 below the critical restitution. Above it is 3/4,
-because the error is ~ r^(3/2) and r ~ sqrt(dt). If the bias of W_v in the centre exceeds 0.7 of the
-accuracy, a level with a third of the step is added. Every error bar is the root of the sum of the
-squared standard errors and the squared bias. A plain run has no difference, and its bias is the
-expected relative one.
+order p of the scheme in dt. Below the critical restitution it is 3/2 for velocity widths and 1 for
+displacements. Above it is 3/4, because the stated error is ~ r^(3/2) and r ~ sqrt(dt). If the bias
+of W_v in the centre exceeds 0.7 of the accuracy, a level with a third of the step is added. Every
+error bar is the root of the sum of the squared standard errors and the squared bias. A plain run
+has no difference, and its bias is the expected relative one.
 """
 
 from __future__ import annotations
@@ -136,9 +136,13 @@ class Levels:
             step = self.steps.time_steps[self.used[-1]]
             relative = relative_bias(self.chain, step, float(values[CENTRAL]))
             return {name: relative * np.abs(value) for name, value in values.items()}
-        order = 1.5 if self.chain.restitution < CRITICAL_RESTITUTION else 0.75
-        rest = self.steps.ratios[self.used[-1]] ** order - 1
-        return {name: np.abs(value) / rest for name, value in terms[-1].values.items()}
+        ratio, bias = self.steps.ratios[self.used[-1]], {}
+        for name, value in terms[-1].values.items():
+            order = 0.75
+            if self.chain.restitution < CRITICAL_RESTITUTION:
+                order = 1.5 if name in (CENTRAL, "velocity_width") else 1.0
+            bias[name] = np.abs(value) / (ratio**order - 1)
+        return bias
 
     def coupling(self, terms: Sequence[Estimate]) -> dict[str, str | float]:
         """Return how runs at the last two steps are correlated, and what the levels save.
