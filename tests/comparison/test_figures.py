@@ -15,6 +15,7 @@ from crazybilliards.comparison.paper.figures import FIGURES
 from crazybilliards.comparison.studies.found import STUDIES
 from crazybilliards.comparison.sweeps import Case
 from crazybilliards.comparison.sweeps.jobs import JOBS
+from crazybilliards.particles import level_steps
 
 QUICK = [
     study
@@ -44,6 +45,13 @@ def short_run(case):
     if 0 < chain.restitution < 1:
         chain = chain.replace(size=min(chain.size, 150))
     return result(Case(case.job, chain, settings))
+
+
+@pytest.fixture(autouse=True)
+def _short_limits(monkeypatch):
+    """Shorten the groups of limits by ten: that they are drawn does not depend on their errors."""
+    monkeypatch.setattr(level_steps, "_LEAST", 1.0)
+    monkeypatch.setattr(level_steps, "_PILOT", 0.25)
 
 
 @pytest.mark.compiled
