@@ -8,13 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from concurrent.futures import Executor
+from queue import SimpleQueue
 from threading import Lock
 from time import perf_counter
 from typing import Any
 
 import numpy as np
 import panel as pn
-from tornado.ioloop import IOLoop
 
 from crazybilliards.comparison.coverage import smooth
 from crazybilliards.comparison.explore.address import Address
@@ -51,7 +51,8 @@ class Page:
     """
 
     def __init__(self, threads: Executor, turn: Lock) -> None:
-        self._document, self._closed = pn.state.curdoc, False
+        self._document = pn.state.curdoc
+        self._arrived: SimpleQueue[Callable[[], None]] = SimpleQueue()  # from other threads
         self.setting = Setting()
         self.controls = Controls(self.setting)
         self._address = Address(self.setting, self.controls.say)
@@ -62,7 +63,7 @@ class Page:
         self._last, self._drawn = perf_counter(), (perf_counter(), 0.0)
         self._notes: dict[str, str] = {}
         self._elastic = [
-            Background(threads, job, self._show_theories, self._poster())
+            Background(threads, job, self._show_theories, self._arrived.put)
             for job in (balance_density, exact_density)  # the faster one first
         ]
         self._kinetic = Solver(kinetic_density, turn)
@@ -90,18 +91,7 @@ class Page:
         controls.push.on_click(self._push)
         controls.solve.on_click(self._ask_kinetic)
 
-    def _poster(self) -> Callable[[Callable[[], None]], None]:
-        """Return a function that schedules calls on this page's event loop until it is closed."""
-        loop = IOLoop.current()
-
-        def in_turn(function: Callable[[], None]) -> None:
-            if not self._closed:
-                self._document.add_next_tick_callback(function)
-
-        return lambda function: loop.add_callback(in_turn, function)
-
     def _close(self, context: Any) -> None:
-        self._closed = True
         self._kinetic.cancel()
         self.controls.close()
 
@@ -111,6 +101,8 @@ class Page:
         if self._document.session_context.session.connection_count == 0:
             self._kinetic.cancel()
             return  # the browser has closed the page
+        while not self._arrived.empty():
+            self._arrived.get()()
         now = perf_counter()
         elapsed, self._last = min(now - self._last, _LONGEST), now
         self._frames += 1
