@@ -10,7 +10,7 @@ QUALITY ?= quick
 LESSON ?= [0-9]
 CHECK_PYTHON := $(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
   { echo "Python 3.11 or later is needed; name one with: make PYTHON=python3.12 ..."; exit 1; }
-ROOMS  := model particles kinetic comparison
+ROOMS  := model particles kinetic comparison reproduction apps
 
 .PHONY: help run test test-lowest torture coverage check audit reproduce notebooks render browser docs \
   linkcheck benchmark clean
@@ -46,7 +46,7 @@ test-lowest: $(OLDEST)/installed
 
 # Three processes for two cores: these tests wait a lot for others that they kill.
 torture: $(VENV)/installed-test
-	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n 3 --dist worksteal --timeout=3600 torture
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n 3 --dist worksteal --timeout=3600 tests/torture
 
 # Coverage cannot be measured in compiled kernels. Tests that are quick enough run them as Python.
 coverage: $(VENV)/installed-coverage

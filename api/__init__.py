@@ -1,7 +1,8 @@
 """Noisy rods on springs colliding in one dimension: simulation and gas-kinetic theory.
 
 All public names of the rooms ``model``, ``particles``, ``kinetic`` and ``comparison`` can be
-taken from here. Each name loads its module when it is first used.
+taken from here. Each name loads its module when it is first used. Above these rooms stand
+``reproduction``, the paper's figures and claims, and ``apps``, the command line and the page.
 
 Examples
 --------

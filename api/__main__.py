@@ -1,5 +1,5 @@
 """``python -m crazybilliards`` is the command ``crazybilliards``."""
 
-from crazybilliards.comparison.commands.line import main
+from crazybilliards.apps.commands.line import main
 
 main()

@@ -28,7 +28,7 @@ import sys
 import numpy as np
 from scipy.special import gamma, hyp1f1, hyperu
 
-from crazybilliards.comparison.claims.repetition import error_of_mean
+from crazybilliards.reproduction.claims.repetition import error_of_mean
 
 STRENGTHS = np.array([1.0, 1.15, 1.2, 1.25, 1.3])
 STEPS = (8, 16, 32)

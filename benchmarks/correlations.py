@@ -16,7 +16,7 @@ import numpy as np
 import xarray as xr
 from kept import complete, kept_or_made
 
-from crazybilliards.comparison.studies.restitutions import width_deviation
+from crazybilliards.comparison.widths import width_deviation
 from crazybilliards.kinetic import correlated_phase_space, phase_space
 from crazybilliards.model import Chain
 from crazybilliards.model.chain import middle_tenth

@@ -19,7 +19,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from crazybilliards.comparison.claims.repetition import error_of_mean
 from crazybilliards.model import Chain
 from crazybilliards.model.chain import middle_tenth
 from crazybilliards.model.kernels import kernel
@@ -29,6 +28,7 @@ from crazybilliards.particles.laws.law import Law, Scratch, drift, make_law, mak
 from crazybilliards.particles.noise import fill, make_noise
 from crazybilliards.particles.scales import default_time_step
 from crazybilliards.particles.stepping import Step, make_step
+from crazybilliards.reproduction.claims.repetition import error_of_mean
 
 WARM_UP = 60.0
 FINER = 4

@@ -12,7 +12,7 @@ from pathlib import Path
 import xarray as xr
 from kept import kept_or_made
 
-from crazybilliards.comparison.studies.restitutions import WidthDeviation, width_deviation
+from crazybilliards.comparison.widths import WidthDeviation, width_deviation
 from crazybilliards.kinetic import phase_space
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate

@@ -18,11 +18,11 @@ from .fits import (
     fit_singularity as fit_singularity,
     tail_length as tail_length,
 )
-from .studies.animation_page import standalone_page as standalone_page
-from .studies.elastic_chain import compare_elastic as compare_elastic
-from .studies.relaxation import compare_relaxation as compare_relaxation
-from .studies.relaxation_figures import animate as animate
-from .studies.restitutions import (
+from .side_by_side.animation_page import standalone_page as standalone_page
+from .side_by_side.elastic_chain import compare_elastic as compare_elastic
+from .side_by_side.relaxation import compare_relaxation as compare_relaxation
+from .side_by_side.relaxation_figures import animate as animate
+from .side_by_side.restitutions import (
     compare_restitutions as compare_restitutions,
     width_deviations as width_deviations,
 )

@@ -1,4 +1,4 @@
-"""The running process: its cores, its signals, and a message while kernels are compiled."""
+"""The running process: its cores, its signals, and what it shows on a terminal while it works."""
 
 from __future__ import annotations
 
@@ -30,6 +30,19 @@ def bar_hidden(progress: bool | str) -> bool | None:
     A program without a terminal may have closed its standard error, and tqdm cannot write then.
     """
     return None if progress and sys.stderr is not None else True
+
+
+@contextmanager
+def waiting_for(what: str, progress: bool = True) -> Iterator[None]:
+    """Show ``what`` until it is done; nothing where standard error is no terminal."""
+    if not progress:
+        yield
+        return
+    from rich.console import Console
+    from rich.markup import escape
+
+    with Console(stderr=True).status(escape(what)):
+        yield
 
 
 @contextmanager

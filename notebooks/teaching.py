@@ -6,7 +6,7 @@ The lessons import this file from their own folder.
 import matplotlib.pyplot as plt
 import numpy as np
 
-from crazybilliards.comparison.claims.repetition import error_of_mean
+from crazybilliards.reproduction.claims.repetition import error_of_mean
 
 BLUE, ORANGE, GREEN, PINK, RED, SKY = COLOURS = (
     "#0072B2",

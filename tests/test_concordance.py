@@ -6,15 +6,15 @@ from pathlib import Path
 
 import pytest
 
-from crazybilliards.comparison.paper.reproducible import groups
 from crazybilliards.model.vocabulary import VOCABULARY
+from crazybilliards.reproduction.reproducible import groups
 
 ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "docs" / "paper" / "concordance.md"
 TEXT = PAGE.read_text(encoding="utf-8")
-FIGURES = "crazybilliards.comparison.paper.figures"
+FIGURES = "crazybilliards.reproduction.figures"
 EQUATIONS, FIGURE_COUNT = 52, 19
-ROOMS = ("model", "particles", "kinetic", "comparison")
+ROOMS = ("model", "particles", "kinetic", "comparison", "reproduction", "apps")
 NAMES = sorted(set(re.findall(rf"`((?:{'|'.join(ROOMS)})(?:\.\w+)+)`", TEXT)))
 
 

@@ -16,9 +16,8 @@ import pytest
 import crazybilliards as cb
 
 ROOT = Path(__file__).parent.parent
-FOLDERS = {"api": "", "model": ".model", "particles": ".particles", "kinetic": ".kinetic"}
-FOLDERS["comparison"] = ".comparison"
-ROOMS = [f"crazybilliards{name}" for name in FOLDERS.values() if name]
+FOLDERS = {"api": ""} | {room: f".{room}" for room in (*cb._ROOMS, "reproduction", "apps")}
+ROOMS = [f"crazybilliards.{room}" for room in cb._ROOMS]  # those with public names
 EXPECTED = ["Chain", "simulate", "force_balance", "overlay", "load", "save", "equilibrium"]
 # What a user types, by whatever way the package was installed.
 TRY = f"""

@@ -13,7 +13,7 @@ import jupytext
 import pytest
 
 ROOT = Path(__file__).parents[1]
-ROOMS = ("api", "model", "particles", "kinetic", "comparison")
+ROOMS = ("api", "model", "particles", "kinetic", "comparison", "reproduction", "apps")
 WRITTEN_BY_A_PROGRAM = ROOT / "docs" / "paper" / "claims.md"
 PAGES = [
     ROOT / "README.md",

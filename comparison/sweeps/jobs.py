@@ -18,8 +18,8 @@ from crazybilliards.comparison.theories import THEORIES
 from crazybilliards.model import Chain
 from crazybilliards.model.fingerprint import room_fingerprint
 from crazybilliards.particles import simulate, simulate_limit
-from crazybilliards.particles.limit import make_runs
 from crazybilliards.particles.simulation import make_run
+from crazybilliards.particles.vanishing_step.limit import make_runs
 
 # Arguments that do not change the numbers, and arguments that are not plain values.
 _NO_SETTINGS = {"chain", "start", "threads", "checkpoint", "checkpoint_interval", "progress"}

@@ -18,13 +18,17 @@ ROOT = Path(__file__).parents[2]
 PICTURE = Path(__file__).with_suffix(".svg")
 # name: (left, bottom, width, height, colour)
 ROOMS = {
-    "comparison": (0.0, 12.3, 12.0, 5.2, "#F6DDEB"),
+    "apps": (0.0, 20.5, 12.0, 2.3, "#E4DDF3"),
+    "reproduction": (0.0, 15.7, 12.0, 4.5, "#F9DCD0"),
+    "comparison": (0.0, 12.3, 12.0, 3.1, "#F6DDEB"),
     "particles": (0.0, 4.1, 5.9, 7.8, "#D5E8F5"),
     "kinetic": (6.1, 4.1, 5.9, 7.8, "#FBE8C3"),
     "model": (0.0, 0.0, 12.0, 3.7, "#D4EFE6"),
 }
 # From, to, where along the line.
 BETWEEN_ROOMS = (
+    ("apps", "reproduction", 6.0),
+    ("reproduction", "comparison", 6.0),
     ("comparison", "particles", 3.0),
     ("comparison", "kinetic", 9.0),
     ("particles", "model", 3.0),
@@ -36,7 +40,7 @@ Graph = dict[str, set[str]]
 
 
 def modules() -> dict[str, Path]:
-    """Return every module of the four rooms by its name, without ``crazybilliards.``."""
+    """Return every module of the rooms by its name, without ``crazybilliards.``."""
     names = {}
     for room in ROOMS:
         for path in sorted((ROOT / room).rglob("*.py")):
@@ -104,8 +108,8 @@ def _direct(graph: Graph) -> Graph:
 
 def draw() -> Figure:
     """Return the figure."""
-    figure, ax = plt.subplots(figsize=(8.6, 11.7))
-    ax.set(xlim=(-0.1, 12.1), ylim=(-0.1, 17.6))
+    figure, ax = plt.subplots(figsize=(8.6, 15.2))
+    ax.set(xlim=(-0.1, 12.1), ylim=(-0.1, 22.9))
     ax.axis("off")
     for room, (left, bottom, width, height, colour) in ROOMS.items():
         _box(ax, left, bottom, width, height, colour)
@@ -122,7 +126,7 @@ def _draw_units(ax: Axes, room: str) -> None:
     graph = unit_imports(room)
     level = levels(graph)
     floors = max(level.values()) + 1
-    half_wide, half_high, margin = 0.62, 0.19, 0.3
+    half_wide, half_high, margin = 0.74, 0.19, 0.3
     usable = width - 2 * margin
     places = {}
     for floor in range(floors):
@@ -141,7 +145,7 @@ def _draw_units(ax: Axes, room: str) -> None:
         folder = (ROOT / name.replace(".", "/")).is_dir()
         box = (x - half_wide, y - half_high, 2 * half_wide, 2 * half_high)
         _box(ax, *box, "white", edge="0.35" if folder else "0.75", pad=0.02)
-        text = name.split(".")[1].replace("kinetic_equation", "kinetic eq.")
+        text = name.split(".")[1].replace("kinetic_equation", "kinetic eq.").replace("_", " ")
         ax.text(
             x,
             y,

@@ -16,7 +16,7 @@ FLAGS = (
     "--disable-background-networking --disable-component-update --disable-sync "
     "--window-size=1400,1040 --hide-scrollbars"
 )
-COMMAND = [sys.executable, "-c", "from crazybilliards.comparison.commands.line import main; main()"]
+COMMAND = [sys.executable, "-c", "from crazybilliards.apps.commands.line import main; main()"]
 SOURCE = "Bokeh.documents[0].get_model_by_name(arguments[0])"
 DEEP = """
 const found = [];

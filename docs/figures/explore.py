@@ -16,7 +16,7 @@ from typing import Any
 from browser import chromium, column, elements, press, served, show_as, texts, until, visit
 from selenium.webdriver.support.ui import Select
 
-from crazybilliards.comparison.explore.presets import PRESETS
+from crazybilliards.apps.explore.presets import PRESETS
 
 WIDTHS = {"wide": 1400, "middle": 1024, "phone": 390}
 SOLVED = "?size=100&restitution=0.95&amplitude=1&gap=0"

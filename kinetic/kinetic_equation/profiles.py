@@ -1,4 +1,4 @@
-"""Profiles over the positions x of a steady state f(y, v)."""
+"""Profiles over the rods' positions, x = y + 2 R (N - L/2), of a density of points over y."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
 from crazybilliards.kinetic.kinetic_equation.continuation import State, free_units
-from crazybilliards.kinetic.kinetic_equation.positions import density_and_label
 from crazybilliards.kinetic.kinetic_equation.velocity_moments import moments
+from crazybilliards.model import Chain
 from crazybilliards.model.grid import position_grid
 
 Array = NDArray[np.float64]
@@ -50,6 +50,22 @@ def profiles_over_x(state: State) -> dict[str, Array]:
         / length
         * np.nan_to_num(over_x(profiles.heat_flux, -1)),
     }
+
+
+def density_and_label(
+    chain: Chain, x: Array, y: Array, points: Array, label: Array
+) -> tuple[Array, Array]:
+    """Return the density of the rods [1/R] and their label N at positions ``x`` [R].
+
+    ``points`` is the density of the points [1/R] at ascending ``y`` [R], not negative. ``label`` is
+    the number of points below each y, ascending. There are no rods beyond the first and last y.
+    """
+    places = y + 2 * chain.radius * (label - chain.size / 2)
+    inside = (places[0] <= x) & (x <= places[-1])
+    reduced = np.where(inside, PchipInterpolator(places, points, extrapolate=False)(x), 0.0)
+    number = PchipInterpolator(places, label, extrapolate=False)(x)
+    number = np.where(inside, number, np.where(x < places[0], 0.0, chain.size))
+    return reduced / (1 + 2 * chain.radius * reduced), number
 
 
 def _continued_flat(values: Array) -> Array:

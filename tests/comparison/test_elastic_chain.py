@@ -9,12 +9,12 @@ import pytest
 import xarray as xr
 
 from crazybilliards.comparison import compare_elastic, smooth
-from crazybilliards.comparison.studies.elastic_chain import (
+from crazybilliards.comparison.side_by_side.elastic_chain import (
     deviations,
     elastic_theories,
     largest_width_error,
 )
-from crazybilliards.comparison.studies.elastic_figures import draw_density, draw_displacement
+from crazybilliards.comparison.side_by_side.elastic_figures import draw_density, draw_displacement
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.process import terminated_like_interrupted
 
@@ -114,7 +114,7 @@ def test_sigterm_between_simulations_keeps_what_was_computed(monkeypatch):
         return elastic_theories(chain, run)
 
     monkeypatch.setattr(
-        "crazybilliards.comparison.studies.elastic_chain.elastic_theories", theories
+        "crazybilliards.comparison.side_by_side.elastic_chain.elastic_theories", theories
     )
     with terminated_like_interrupted() as signals:
         tree = compare_elastic(Chain(size=5), (1.0, 2.0), duration=500, progress=False)

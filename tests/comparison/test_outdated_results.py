@@ -98,7 +98,7 @@ def test_a_sweep_of_two_source_codes_is_read_with_a_warning(folder, edited, exec
 
 
 ROOMS = ("model", "particles", "kinetic", "comparison")
-COMMAND = [sys.executable, "-c", "from crazybilliards.comparison.commands.line import main; main()"]
+COMMAND = [sys.executable, "-c", "from crazybilliards.apps.commands.line import main; main()"]
 
 
 def test_after_an_edit_of_a_theory_its_sweep_gives_the_new_number(tmp_path):

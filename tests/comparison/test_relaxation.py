@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from crazybilliards.comparison import animate, compare_relaxation
-from crazybilliards.comparison.studies.relaxation import cloud, condensed, label_distances
-from crazybilliards.comparison.studies.relaxation_figures import (
+from crazybilliards.comparison.side_by_side.relaxation import cloud, condensed, label_distances
+from crazybilliards.comparison.side_by_side.relaxation_figures import (
     draw_cloud,
     draw_profiles,
     draw_spacetime,

@@ -7,13 +7,14 @@ import numpy as np
 import pytest
 
 from crazybilliards.comparison import compare_restitutions, width_deviations
-from crazybilliards.comparison.studies.parameter_series import SIMULATION
-from crazybilliards.comparison.studies.restitution_figures import (
+from crazybilliards.comparison.side_by_side.parameter_series import SIMULATION
+from crazybilliards.comparison.side_by_side.restitution_figures import (
     draw_phase_space,
     draw_profile,
     draw_widths,
 )
-from crazybilliards.comparison.studies.restitutions import THEORY, width_deviation
+from crazybilliards.comparison.side_by_side.restitutions import THEORY
+from crazybilliards.comparison.widths import width_deviation
 from crazybilliards.kinetic import equilibrium, phase_space
 from crazybilliards.model import Chain
 

@@ -13,8 +13,8 @@ from concurrent.futures import Executor
 import pytest
 from missing_cases import missing_cases
 
+from crazybilliards.apps.commands.line import main
 from crazybilliards.comparison import load_sweep
-from crazybilliards.comparison.commands.line import main
 from crazybilliards.comparison.sweeps import (
     Case,
     dask_cluster,
@@ -26,7 +26,7 @@ from crazybilliards.comparison.sweeps.case import compute
 from crazybilliards.model import Chain
 from crazybilliards.model.storage import write_sealed
 
-COMMAND = [sys.executable, "-c", "from crazybilliards.comparison.commands.line import main; main()"]
+COMMAND = [sys.executable, "-c", "from crazybilliards.apps.commands.line import main; main()"]
 SCHEDULER = "distributed.cli.dask_scheduler"
 PATIENCE = 300
 GRID = """

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from crazybilliards.comparison.explore.times import Times
+from crazybilliards.apps.explore.times import Times
 from crazybilliards.kinetic import critical_damping, critical_restitution, critical_size
 from crazybilliards.kinetic.kinetic_equation.weak_damping import (
     weak_damping_critical_size,

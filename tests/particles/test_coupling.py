@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from crazybilliards.model import Chain
-from crazybilliards.particles.coupling import advance_pair, record_pair
 from crazybilliards.particles.laws.avalanche import make_tally
 from crazybilliards.particles.laws.closed_contacts import find_clusters
 from crazybilliards.particles.laws.law import make_scratch
@@ -17,6 +16,7 @@ from crazybilliards.particles.stepping import (
     make_dynamics,
     take_step,
 )
+from crazybilliards.particles.vanishing_step.coupling import advance_pair, record_pair
 
 RATIOS = (3, 9)
 

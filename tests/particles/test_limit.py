@@ -11,10 +11,10 @@ from killed import run_and_signal
 from crazybilliards.kinetic import equilibrium
 from crazybilliards.model import Chain, load
 from crazybilliards.particles import simulate, simulate_limit
-from crazybilliards.particles.level_steps import plan_steps
-from crazybilliards.particles.multilevel import Levels
-from crazybilliards.particles.running.sampler import Sampler
 from crazybilliards.particles.scales import default_time_step, time_step_error
+from crazybilliards.particles.vanishing_step.level_steps import plan_steps
+from crazybilliards.particles.vanishing_step.multilevel import Levels
+from crazybilliards.particles.vanishing_step.sampler import Sampler
 
 WIDTHS = ("velocity_width", "displacement_width", "mean_displacement")
 

@@ -1,0 +1,47 @@
+"""The command ``crazybilliards explore``.
+
+Only the standard library and typer are imported up here, so that ``--help`` answers at once.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from crazybilliards.apps.commands.output import INTERRUPTED
+
+
+def command(
+    port: Annotated[int, typer.Option(help="Port to serve the page at; 0: any free one.")] = 5006,
+    address: Annotated[
+        str, typer.Option(help="Address to serve it at; the default is this machine only.")
+    ] = "127.0.0.1",
+    open_to_network: Annotated[
+        bool,
+        typer.Option("--open-to-network", help="Allow an address that other machines reach."),
+    ] = False,
+    browser: Annotated[
+        bool, typer.Option("--browser/--no-browser", help="Open the page in the browser.")
+    ] = True,
+) -> None:
+    """Watch a chain move in the browser and turn its knobs, theory beside it.
+
+    Sliders for the parameters, rods in motion, density and velocity widths building up over the
+    theories, presets for figures of the paper. The address of the page restores its setting.
+    Runs until Ctrl-C. Needs Panel: python -m pip install 'crazybilliards[explore]'.
+
+    Example: crazybilliards explore --port 5007
+    """
+    try:
+        import panel  # noqa: F401
+    except ImportError as error:
+        raise ValueError(
+            "Panel is not installed: python -m pip install 'crazybilliards[explore]'"
+        ) from error
+    from crazybilliards.apps.explore.server import serve
+
+    try:
+        serve(port, address, open_browser=browser, open_to_network=open_to_network)
+    except KeyboardInterrupt as error:
+        raise typer.Exit(INTERRUPTED) from error

@@ -1,0 +1,112 @@
+"""The command ``crazybilliards``: one subcommand per job.
+
+Only the standard library and typer are imported up here, so that ``--help`` answers at once; a
+job imports what it needs when it runs.
+"""
+
+from __future__ import annotations
+
+import inspect
+import sys
+from typing import Annotated
+
+import typer
+
+from crazybilliards.apps.commands import (
+    compare,
+    explore,
+    relax,
+    reproduce,
+    simulate,
+    sweep,
+    theory,
+)
+from crazybilliards.apps.commands.answers import with_json
+from crazybilliards.apps.commands.output import INTERRUPTED
+from crazybilliards.apps.commands.streams import READER_GONE, plain_streams
+
+_LONGEST = 400  # characters of an error message
+
+app = typer.Typer(
+    add_completion=False,
+    rich_markup_mode=None,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+
+def _show_version(wanted: bool) -> None:
+    if wanted:
+        from importlib.metadata import version
+
+        print(f"crazybilliards {version('crazybilliards')}")
+        raise typer.Exit
+
+
+@app.callback(invoke_without_command=True)
+def crazybilliards(
+    context: typer.Context,
+    version: Annotated[
+        bool,
+        typer.Option("--version", callback=_show_version, is_eager=True, help="Show the version."),
+    ] = False,
+) -> None:
+    """Noisy rods on springs colliding in one dimension: simulation and theory side by side.
+
+    Lengths are in R, masses in M, times in T: by default a rod has the radius 1 R and the mass
+    4 pi/3 M, and a spring the stiffness 1 M/T^2. Results are written as NetCDF files; with --json a
+    command prints its tables for machines.
+
+    Example: crazybilliards compare --output results
+    """
+    if context.invoked_subcommand is None:
+        print(context.get_help())
+
+
+for module in (compare, simulate, theory, relax, reproduce, sweep, explore):
+    app.command(
+        module.__name__.rpartition(".")[2],
+        # Given like this it is not cut to one line.
+        short_help=(inspect.getdoc(module.command) or "").partition("\n")[0],
+    )(module.command if module is explore else with_json(module.command))
+
+
+def main() -> None:
+    """Entry point: a user's mistake is one line on standard error and exit status 2."""
+    from crazybilliards.model.process import terminated_like_interrupted
+
+    with plain_streams() as output, terminated_like_interrupted() as signals:
+        status = _run()
+    if isinstance(output.failed, BrokenPipeError):  # crazybilliards ... | head, say
+        status = status or READER_GONE
+    elif output.failed is not None:
+        status = _complain(f"standard output: {output.failed.strerror}")
+    if status == INTERRUPTED and signals:
+        status = 128 + signals[0]  # as shells say that a signal ended it: 143 for SIGTERM
+    elif status == INTERRUPTED:
+        # Python then ends by the signal itself. After an exit status a loop of a shell goes on.
+        sys.excepthook = lambda *_: None
+        raise KeyboardInterrupt
+    sys.exit(status)
+
+
+def _run() -> int | None:
+    try:
+        status = app(standalone_mode=False)
+        if status == INTERRUPTED:
+            print("crazybilliards: interrupted", file=sys.stderr)
+    except typer.TyperException as error:
+        status = _complain(error.format_message())
+    except ValueError as error:
+        status = _complain(str(error))
+    except OSError as error:
+        status = _complain(f"{error.filename or 'file'}: {error.strerror or error}")
+    return status
+
+
+def _complain(message: str) -> int:
+    message = " ".join(message.split())
+    if len(message) > _LONGEST:  # it quotes an argument without end
+        message = f"{message[:_LONGEST]} ..."
+    print(f"crazybilliards: error: {message}", file=sys.stderr)
+    return 2

@@ -1,0 +1,143 @@
+"""What the commands share: reading lists, folders, figures, and the exit status.
+
+Standard library and typer only up here, so that ``--help`` answers at once.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import TYPE_CHECKING, TypeVar
+
+import typer
+
+from crazybilliards.apps.commands.answers import wrote
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+INTERRUPTED = 130
+
+Number = TypeVar("Number", int, float)
+
+
+def numbers(name: str, text: str, kind: Callable[[str], Number]) -> list[Number]:
+    """Read numbers separated by commas."""
+    try:
+        return [kind(part) for part in text.split(",")]
+    except ValueError as error:
+        from crazybilliards.model.checks import shown
+
+        message = f"{name} takes numbers separated by commas, got {shown(text)}"
+        raise ValueError(message) from error
+
+
+def place(text: str) -> Path:
+    """Read the name of a file or a folder. An empty one would be the current folder."""
+    if not str(text):
+        raise typer.BadParameter("an empty name; the current folder is .")
+    return Path(text)
+
+
+@contextmanager
+def writing_to(output: Path | None, *, file: bool = False) -> Iterator[None]:
+    """Hold what a command writes to, a folder or a file, against other processes meanwhile.
+
+    Raises
+    ------
+    ValueError
+        Before any work, if ``output`` cannot become or is not a folder, or a result's file.
+    OSError
+        If another process holds it, or nothing can be written there.
+    """
+    if output is None:
+        yield
+        return
+    from crazybilliards.model.locks import locked
+    from crazybilliards.model.storage import make_folder
+
+    (check_file if file else check_folder)(output)
+    folder = output.parent if file else output
+    made = [each for each in (folder, *folder.parents) if not each.exists()]
+    make_folder(folder)
+    try:
+        with locked(output):
+            yield
+    finally:
+        for each in made:  # a folder in which nothing was written
+            with suppress(OSError):
+                each.rmdir()
+
+
+def check_folder(path: Path) -> None:
+    """Raise, before any work, if ``path`` cannot become or is not a folder to write to."""
+    found = next(each for each in (path, *path.absolute().parents) if os.path.lexists(each))
+    if not found.exists():
+        raise ValueError(f"output must be a folder, but {found} is a link that leads nowhere")
+    if not found.is_dir():
+        raise ValueError(f"output must be a folder, but {found} is a file")
+    if not os.access(found, os.W_OK | os.X_OK):
+        raise ValueError(f"output: no permission to write to {found}")
+
+
+def check_file(path: Path) -> None:
+    """Raise, before any work, if ``path`` cannot become a result's file."""
+    if path.suffix != ".nc" or path.is_dir():
+        raise ValueError(f"output must be a file whose name ends in .nc, got {path}")
+    check_folder(path.parent)
+
+
+def write_figures(folder: Path, suffix: str, drawings: Mapping[str, Callable[[], Figure]]) -> None:
+    """Draw pictures and write each, none of them half, before the next one is drawn.
+
+    Ctrl-C then costs no picture that was drawn.
+    """
+    for number, (name, draw) in enumerate(drawings.items(), start=1):
+        path = folder / f"{name}{suffix}.png"
+        write_figure(path, draw, f", {number} of {len(drawings)}")
+        wrote(path)
+
+
+def write_figure(path: Path, draw: Callable[[], Figure], which: str = "") -> None:
+    """Draw a picture and write it to a file; ``which`` of them is shown meanwhile."""
+    from io import BytesIO
+
+    import matplotlib
+
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+
+    from crazybilliards.comparison.layout import house_style
+    from crazybilliards.model.process import waiting_for
+    from crazybilliards.model.storage import write_atomically
+
+    with waiting_for(f"drawing {path.name}{which}"), house_style():
+        figure, picture = draw(), BytesIO()
+        figure.savefig(picture, format="png")
+        plt.close(figure)
+    write_atomically(path, picture.getvalue())
+
+
+def complain_of_divergence(run: xr.Dataset) -> None:
+    """Say on standard error that a simulation has no steady state."""
+    from crazybilliards.model import chain_of
+
+    chain, end = chain_of(run), run.attrs["end_time"]
+    when = f"at t = {end:g} T" if end else "before anything was measured"
+    print(
+        f"crazybilliards: L = {chain.size}, e = {chain.restitution:g}: the simulation diverged "
+        f"{when}. Collisions bring in more energy than the damping takes out.",
+        file=sys.stderr,
+    )
+
+
+def exit_unless_completed(status: str) -> None:
+    """End the command with the status that tells a shell what happened."""
+    if status == "interrupted":
+        raise typer.Exit(INTERRUPTED)
+    if status != "completed":
+        raise typer.Exit(1)

@@ -1,0 +1,152 @@
+"""The command ``crazybilliards relax``.
+
+Only the standard library and typer are imported up here, so that ``--help`` answers at once.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from crazybilliards.apps.commands.answers import note, print_table, say, wrote
+from crazybilliards.apps.commands.chain_options import with_chain_options
+from crazybilliards.apps.commands.output import (
+    exit_unless_completed,
+    place,
+    write_figures,
+    writing_to,
+)
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from crazybilliards.model import Chain
+
+
+_WHAT_TO_SEE = (
+    "Density of the rods in time. Watch when and where the lines leave the symbols: a fluid whose "
+    "temperature is held constant swings, rods that collide heat up and do not."
+)
+
+
+@with_chain_options(without=("restitution",), amplitude=30.0)
+def command(
+    chain: Chain,
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            help="Folder for relaxation.nc, spacetime.png, profiles.png, cloud.png, "
+            "relaxation.html and relaxation.gif, made if missing; without it nothing is written. "
+            "The first holds smoothed densities, all that the pictures show.",
+            parser=place,
+            metavar="FOLDER",
+        ),
+    ] = None,
+    release: Annotated[
+        str, typer.Option(help="compressed (or stretched), displaced or quenched.")
+    ] = "compressed",
+    by: Annotated[
+        float | None,
+        typer.Option(
+            help="Factor of y (compressed), thermal lengths (displaced) or factor of the amplitude "
+            "before (quenched); default: 0.3, 2 or 3."
+        ),
+    ] = None,
+    duration: Annotated[float, typer.Option(help="Time to follow.")] = 40.0,
+    every: Annotated[float, typer.Option(help="Time between outputs.")] = 0.5,
+    replicas: Annotated[int, typer.Option(help="Simulated chains to average over.")] = 300,
+    seed: Annotated[int, typer.Option(help="Seed of the random numbers.")] = 0,
+    threads: Annotated[
+        int | None, typer.Option(help="Threads to simulate in; default: one per core.")
+    ] = None,
+) -> None:
+    """Release an elastic chain and follow it: rods, two fluids, and the exact solution.
+
+    An ensemble of simulated chains, hydrodynamics with a constant temperature,
+    hydrodynamics with a temperature equation, and without gap the exact motion start from the same
+    state. Prints how far the rods are from where each theory has them, in thermal lengths.
+
+    Ctrl-C or SIGTERM stops early: what has been computed is written under names with
+    "-interrupted".
+
+    Example: crazybilliards relax --output results --release displaced --by 2 --gap 0.2
+    """
+    from crazybilliards.comparison.side_by_side.relaxation import compare_relaxation
+    from crazybilliards.model.checks import check_choice
+
+    defaults = {"compressed": 0.3, "displaced": 2.0, "quenched": 3.0}
+    check_choice("release", release, tuple(defaults))
+    with writing_to(output):
+        tree = compare_relaxation(
+            chain,
+            release,  # type: ignore[arg-type]
+            defaults[release] if by is None else by,
+            duration=duration,
+            every=every,
+            replicas=replicas,
+            seed=seed,
+            threads=threads,
+        )
+        status = tree.attrs["status"]
+        note(status=status)
+        try:
+            if output is not None:
+                _write_relaxation(tree, output, "" if status == "completed" else f"-{status}")
+        finally:
+            _print_distances(tree)  # where nothing can be written any more, this is all there is
+    if output is None:
+        say("Nothing was written; --output FOLDER keeps the figures and the data.")
+    exit_unless_completed(status)
+
+
+def _write_relaxation(tree: xr.DataTree, folder: Path, suffix: str) -> None:
+    import tempfile
+
+    from crazybilliards.comparison.side_by_side import relaxation_figures as figures
+    from crazybilliards.comparison.side_by_side.animation_page import standalone_page
+    from crazybilliards.comparison.side_by_side.relaxation import condensed
+    from crazybilliards.model import save
+    from crazybilliards.model.process import waiting_for
+    from crazybilliards.model.storage import write_atomically
+
+    tree = condensed(tree)
+    wrote(save(tree, folder / f"relaxation{suffix}.nc"))
+    drawings = {
+        "spacetime": figures.draw_spacetime,
+        "profiles": figures.draw_profiles,
+        "cloud": figures.draw_cloud,
+    }
+    write_figures(folder, suffix, {name: partial(draw, tree) for name, draw in drawings.items()})
+    animation = figures.animate(tree)
+    page, gif = (folder / f"relaxation{suffix}.{kind}" for kind in ("html", "gif"))
+    with waiting_for(f"drawing {page.name}"):
+        text = standalone_page(animation, title=figures.title(tree), text=_WHAT_TO_SEE)
+    write_atomically(page, text.encode())
+    wrote(page)
+    # matplotlib wants a name, not a stream.
+    with waiting_for(f"drawing {gif.name}"), tempfile.TemporaryDirectory() as scratch:
+        drawn = Path(scratch, gif.name)
+        animation.save(drawn, writer="pillow", dpi=100)
+        write_atomically(gif, drawn.read_bytes())
+    wrote(gif)
+
+
+def _print_distances(tree: xr.DataTree) -> None:
+    from rich.table import Table
+
+    from crazybilliards.comparison.side_by_side.relaxation import LEGEND, label_distances
+
+    table = Table(
+        caption="Rms over the rods of their mean position in theory minus simulation, in thermal "
+        "lengths, at the time when it is largest.",
+    )
+    table.add_column("theory")
+    table.add_column("rms distance / s", justify="right")
+    distances = label_distances(tree)
+    note(distances=distances)
+    for key, distance in distances.items():
+        table.add_row(LEGEND[key], f"{distance:.3f}")
+    print_table(table)

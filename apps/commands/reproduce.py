@@ -1,0 +1,207 @@
+"""The command ``crazybilliards reproduce``.
+
+Only the standard library and typer are imported up here, so that ``--help`` answers at once.
+"""
+
+from __future__ import annotations
+
+import shutil
+import textwrap
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from crazybilliards.apps.commands.answers import note, say, wrote
+from crazybilliards.apps.commands.output import place, writing_to
+from crazybilliards.apps.commands.sweep import (
+    Dask,
+    KeepOld,
+    Processes,
+    Scheduler,
+    compute_cases,
+    engine,
+)
+
+if TYPE_CHECKING:
+    from crazybilliards.reproduction.claims.report import Reproduced
+    from crazybilliards.reproduction.claims.study import Study
+    from crazybilliards.reproduction.claims.verdicts import Variation
+
+
+# Of what there is to say about a claim.
+_PRINTED = ("its number", "found here", "at other choices", "theory", "why")
+# By what is asked for: names of the page with everything and of the table of claims.
+_REPORTS = {"all": ("report.html", "claims.md"), "studies": ("studies.html", "studies.md")}
+
+
+class Quality(StrEnum):
+    """How much to compute."""
+
+    QUICK = "quick"
+    FULL = "full"
+
+
+class Vector(StrEnum):
+    """Formats of vector graphics."""
+
+    PDF = "pdf"
+    SVG = "svg"
+
+
+def command(
+    which: Annotated[
+        str,
+        typer.Argument(
+            help="Number or name of a figure of the paper, name of a study beyond the paper, "
+            "all (figures of the paper), or studies (all beyond the paper)."
+        ),
+    ] = "all",
+    show_list: Annotated[
+        bool, typer.Option("--list", help="List the figures and the studies, and stop.")
+    ] = False,
+    quality: Annotated[
+        Quality,
+        typer.Option(help="All figures take 5 minutes (quick) or 24 (full) on two cores."),
+    ] = Quality.QUICK,
+    output: Annotated[
+        Path,
+        typer.Option(
+            help="Folder for pictures, report and results; made if missing.",
+            parser=place,
+            metavar="FOLDER",
+        ),
+    ] = Path("reproduced"),
+    columns: Annotated[
+        int | None,
+        typer.Option(
+            min=1,
+            max=2,
+            help="Width of the pictures in columns of a journal, 1 (3.4 inches) or 2 (7 inches); "
+            "default: as their panels need.",
+        ),
+    ] = None,
+    vector: Annotated[
+        Vector | None, typer.Option(help="Write every picture as a vector graphic, too.")
+    ] = None,
+    processes: Processes = None,
+    dask: Dask = False,
+    scheduler: Scheduler = None,
+    keep_old: KeepOld = False,
+) -> None:
+    """Reproduce the figures of arXiv:1404.7460, and check what the paper claims.
+
+    Writes a picture for each figure and prints what became of the paper's claims. For all figures
+    it also writes report.html, one page with everything in it, and claims.md, the table; for all
+    studies beyond the paper these are studies.html and studies.md. Results are kept in the folder:
+    drawing again is a matter of seconds, and after Ctrl-C or a crash the same command goes on.
+
+    Example: crazybilliards reproduce 17 --output results/paper
+
+    Example: crazybilliards reproduce all --quality full
+
+    Example: crazybilliards reproduce elastic-gaps
+    """
+    from crazybilliards.reproduction.reproducible import find_studies
+
+    if show_list:
+        _print_list()
+        return
+    wanted = find_studies(which)
+    from crazybilliards.reproduction.claims.report import all_cases
+
+    computing = engine(processes, dask, scheduler)
+    with writing_to(output):
+        compute_cases(all_cases(wanted, quality.value), output / "cases", computing, keep_old)
+        drawing = {"columns": columns, "formats": [] if vector is None else [vector.value]}
+        reproduced = _draw(wanted, quality, output, keep_old=keep_old, **drawing)
+        if which in _REPORTS:
+            _write_report(reproduced, quality, output, *_REPORTS[which])
+        _print_claims(reproduced)
+
+
+def _print_list() -> None:
+    from crazybilliards.reproduction.claims.study import PaperFigure
+    from crazybilliards.reproduction.reproducible import groups
+
+    listed = []
+    for group in groups().values():
+        for study in group:
+            number = study.number if isinstance(study, PaperFigure) else None
+            listed.append({"number": number, "name": study.name, "title": study.title})
+            say(f"{number or '':3}  {study.name:28s} {study.title}")
+    note(studies=listed)
+
+
+def _draw(studies: list[Study], quality: Quality, output: Path, **how: Any) -> list[Reproduced]:
+    import matplotlib
+
+    matplotlib.use("Agg")
+    from crazybilliards.model.process import waiting_for
+    from crazybilliards.model.storage import write_atomically
+    from crazybilliards.reproduction.claims.report import reproduce as draw
+
+    reproduced = []
+    drawing = draw(studies, quality.value, output / "cases", **how)
+    for number, study in enumerate(studies, start=1):
+        with waiting_for(f"drawing {study.label}, {number} of {len(studies)}"):
+            each = next(drawing)
+        for kind, picture in each.pictures.items():
+            path = output / f"{each.study.stem}.{kind}"
+            write_atomically(path, picture)
+            wrote(path)
+        reproduced.append(each)
+    return reproduced
+
+
+def _write_report(
+    reproduced: list[Reproduced], quality: Quality, output: Path, page: str, table: str
+) -> None:
+    from crazybilliards.model.storage import write_atomically
+    from crazybilliards.reproduction.claims.report import html, markdown
+
+    for name, text in (
+        (table, markdown(reproduced, quality.value)),
+        (page, html(reproduced, quality.value)),
+    ):
+        write_atomically(output / name, text.encode())
+        wrote(output / name)
+
+
+def _print_claims(reproduced: list[Reproduced]) -> None:
+    """Print the claims of the figures, if there are any, and how many came out how."""
+    from crazybilliards.reproduction.claims.report import details, summary
+
+    noted = []
+    for each in reproduced:
+        if each.claims:
+            say(f"\n{each.study.heading}")
+        for claim in each.claims:
+            said = details(claim)
+            which = {"figure": each.study.name, "claim": claim.statement}
+            numbers = {
+                "decisive": claim.decisive._asdict(),
+                "variations": [_flat(other) for other in claim.variations],
+            }
+            noted.append(which | said | numbers)
+            say(_indented(1, f"{claim.statement}: {claim.verdict}"))
+            for name in (name for name in said if name in _PRINTED):
+                say(_indented(2, f"{name}: {said[name]}"))
+    note(claims=noted, summary=summary(reproduced))
+    if noted:
+        say("")
+    for line in summary(reproduced):
+        say(line)
+
+
+def _flat(other: Variation) -> dict[str, Any]:
+    """Return a variation for programs."""
+    return {"choice": other.choice, **other.measured._asdict(), "verdict": other.verdict}
+
+
+def _indented(levels: int, text: str) -> str:
+    """Wrap a text to the terminal."""
+    width = max(shutil.get_terminal_size().columns, 40)
+    indent = "  " * levels
+    return textwrap.fill(text, width, initial_indent=indent, subsequent_indent=indent + "  ")

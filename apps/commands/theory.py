@@ -1,0 +1,152 @@
+"""The command ``crazybilliards theory``.
+
+Only the standard library and typer are imported up here, so that ``--help`` answers at once.
+"""
+
+from __future__ import annotations
+
+import inspect
+import math
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from crazybilliards.apps.commands.answers import answer_rods, note, say, wrote
+from crazybilliards.apps.commands.chain_options import with_chain_options
+from crazybilliards.apps.commands.output import (
+    place,
+    write_figures,
+    writing_to,
+)
+from crazybilliards.comparison.theories import THEORIES
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+    from crazybilliards.comparison.theories import Theory
+    from crazybilliards.model import Chain
+
+_NAMES = ", ".join(f"{name} ({theory.title})" for name, theory in THEORIES.items())
+
+
+@with_chain_options()
+def command(
+    chain: Chain,
+    name: Annotated[str, typer.Argument(help=f"{_NAMES}.")] = "phase_space",
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            help="Folder for theory.nc, density.png, profile.png and, of the kinetic equation, "
+            "phase_space.png, made if missing; without it nothing is written.",
+            parser=place,
+            metavar="FOLDER",
+        ),
+    ] = None,
+    tolerance: Annotated[
+        float | None,
+        typer.Option(
+            help="Of the kinetic equation: largest relative error of a width due to the mesh.",
+            show_default="2e-3",
+        ),
+    ] = None,
+    cells: Annotated[
+        int | None,
+        typer.Option(help="Of the kinetic equation: cells of the mesh, instead of a tolerance."),
+    ] = None,
+    critical: Annotated[
+        bool, typer.Option(help="For e > 1 also work out the critical size (some 20 s).")
+    ] = False,
+) -> None:
+    """Predict a chain's steady state from a theory, without a simulation.
+
+    Prints velocity widths and displacements of some rods; draws the density and the rods, of the
+    kinetic equation also the phase-space density f(y, v). The kinetic equation phase_space
+    is good for restitutions of 0.9 to 1.05 and about 100 rods; longer chains need one closer to 1.
+    correlated_phase_space takes 0 to 1. Refuses where there is no steady state.
+
+    Example: crazybilliards theory --output results --restitution 1.05 --damping 4 --critical
+
+    Example: crazybilliards theory equilibrium --amplitude 10 --gap 0.2
+    """
+    from crazybilliards.kinetic import critical_size
+    from crazybilliards.model.checks import check_choice
+    from crazybilliards.model.process import waiting_for
+
+    theory = THEORIES[check_choice("name", name, tuple(THEORIES))]
+    given = {"tolerance": tolerance, "cells": cells}
+    settings = {key: value for key, value in given.items() if value is not None}
+    for key in settings:
+        if key not in inspect.signature(theory.solve).parameters:
+            raise ValueError(f"{key}: {name} has no such setting")
+    with writing_to(output):
+        if critical:
+            with waiting_for("working out the critical size"):
+                value, error = critical_size(chain)
+            note(critical_size=value, critical_size_error=error)
+            say(f"critical size: {value:.1f} +- {error:.1f} rods")
+        with waiting_for(f"solving: {theory.title}"):
+            result = theory.solve(chain, **settings)
+        try:
+            if output is not None:
+                _write(theory, result, output)
+        finally:
+            _print(theory, result)  # where nothing can be written any more, this is all there is
+    if output is None:
+        say("Nothing was written; --output FOLDER keeps the figures and the data.")
+
+
+def _print(theory: Theory, result: xr.Dataset) -> None:
+    from crazybilliards.model.vocabulary import chain_of
+
+    chain = chain_of(result)
+    accuracy = {"residual": "Residual", "mesh_error": "Error due to the mesh"}
+    numbers = {name: result.attrs[name] for name in accuracy if name in result.attrs}
+    caption = f"A free rod has W_v = {chain.free_velocity_width:.4g} R/T."
+    caption += "".join(f" {accuracy[name]}: {value:.1e}." for name, value in numbers.items())
+    if "model_error" in result.attrs:
+        numbers["model_error"] = result.attrs["model_error"]
+        caption += "\n" + _caveat(theory, numbers["model_error"])
+    note(theory=theory.name, free_velocity_width=chain.free_velocity_width, **numbers)
+    title = f"{theory.title.capitalize()}, L = {chain.size}, e = {chain.restitution:g}"
+    answer_rods(result, title, caption)
+
+
+def _caveat(theory: Theory, model_error: float) -> str:
+    """Return the error of the theory itself in words."""
+    if model_error == 0:
+        return "The theory is exact for this chain."
+    if math.isnan(model_error):
+        return "The error of the theory was not measured for chains like this one."
+    return (
+        f"The error of the theory, in {theory.judged_by}, is up to {100 * model_error:.2g} % "
+        "(measured on chains like this one)."
+    )
+
+
+def _write(theory: Theory, result: xr.Dataset, folder: Path) -> None:
+    from crazybilliards.comparison.side_by_side.restitution_figures import (
+        draw_phase_space,
+        draw_profile,
+    )
+    from crazybilliards.model import save
+
+    wrote(save(result, folder / "theory.nc"))
+    drawings = {
+        "density": partial(_draw_density, theory, result),
+        "profile": partial(draw_profile, result, theory.title),
+    }
+    if "phase_space_density" in result:
+        drawings["phase_space"] = partial(draw_phase_space, result)
+    write_figures(folder, "", drawings)
+
+
+def _draw_density(theory: Theory, result: xr.Dataset) -> Figure:
+    from crazybilliards.comparison.drawing import overlay
+    from crazybilliards.comparison.layout import panels
+
+    figure, [ax] = panels(1, 1, wanted=1)
+    overlay({theory.title: result}, ax=ax).legend(loc="lower center")
+    return figure

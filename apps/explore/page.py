@@ -1,0 +1,290 @@
+"""The page runs a clock and reacts to the user.
+
+In every frame the session advances by the elapsed time times the chosen speed, within a limit on
+computing time, so that the page stays responsive. The measurements are redrawn every few frames.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import Executor
+from queue import SimpleQueue
+from threading import Lock
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+import panel as pn
+
+from crazybilliards.apps.explore.address import Address
+from crazybilliards.apps.explore.controls import Controls
+from crazybilliards.apps.explore.layout import arrange
+from crazybilliards.apps.explore.pictures import Pictures
+from crazybilliards.apps.explore.session import Session
+from crazybilliards.apps.explore.setting import Setting
+from crazybilliards.apps.explore.theories import (
+    Background,
+    Densities,
+    Solver,
+    balance_density,
+    exact_density,
+    kinetic_density,
+)
+from crazybilliards.comparison.coverage import smooth
+from crazybilliards.model import Chain
+
+_PERIOD = 33  # ms from frame to frame
+_BUDGET = 0.012  # s of computing in a frame
+_STEP_BUDGET = 0.3  # s of computing until the next collision
+_LONGEST = 0.1  # s; a frame advances by no more than this, even after a longer pause
+_FRAMES_PER_DRAWING = 8
+_STEPS_PER_ROW = 3
+_STEPPING_SPEED = 0.1  # at which Step goes on, if the speed is no slow one
+_PUSH = 8.0  # widths of a free rod
+
+
+class Page:
+    """One page in one browser, with its own chain, setting and clock.
+
+    ``threads`` run short computations. Long ones run in separate processes, one at a time for all
+    pages that share ``turn``.
+    """
+
+    def __init__(self, threads: Executor, turn: Lock) -> None:
+        self._document = pn.state.curdoc
+        self._arrived: SimpleQueue[Callable[[], None]] = SimpleQueue()  # from other threads
+        self.setting = Setting()
+        self.controls = Controls(self.setting)
+        self._address = Address(self.setting, self.controls.say)
+        self.session = Session(self.setting.chain())
+        self.pictures = Pictures(self._drag)
+        self._rows: list[tuple[float, float, float]] = []
+        self._frames, self._owed_rows = 0, 0.0
+        self._last, self._drawn = perf_counter(), (perf_counter(), 0.0)
+        self._notes: dict[str, str] = {}
+        self._elastic = [
+            Background(threads, job, self._show_theories, self._arrived.put)
+            for job in (balance_density, exact_density)  # the faster one first
+        ]
+        self._kinetic = Solver(kinetic_density, turn)
+        self._listen()
+        self._set_pace()
+        self._begin()
+        self._address.write()
+        self.controls.say(self._address.refusal)
+        pn.state.add_periodic_callback(self._frame, period=_PERIOD)
+        pn.state.on_session_destroyed(self._close)
+
+    def view(self) -> pn.viewable.Viewable:
+        """Return the layout."""
+        return arrange(self.controls, self.pictures)
+
+    def _listen(self) -> None:
+        controls = self.controls
+        self.setting.param.watch(self._changed, self.setting.parameters())
+        controls.preset.param.watch(self._take_preset, "value")
+        controls.speed.param.watch(self._set_pace, "value")
+        controls.quantity.param.watch(self._set_pace, "value")
+        controls.history.param.watch(self._set_pace, "value")
+        controls.step.on_click(self._step)
+        controls.reset.on_click(self._restart)
+        controls.push.on_click(self._push)
+        controls.solve.on_click(self._ask_kinetic)
+
+    def _close(self, context: Any) -> None:
+        self._kinetic.cancel()
+        self.controls.close()
+
+    # -- the clock --------------------------------------------------------------------------
+
+    def _frame(self) -> None:
+        if self._document.session_context.session.connection_count == 0:
+            self._kinetic.cancel()
+            return  # the browser has closed the page
+        while not self._arrived.empty():
+            self._arrived.get()()
+        now = perf_counter()
+        elapsed, self._last = min(now - self._last, _LONGEST), now
+        self._frames += 1
+        session = self.session
+        if self.controls.play.value and not session.diverged:
+            time, collisions = session.time, session.collisions
+            self._advance(elapsed)
+            if session.time > time:
+                self._keep(time, collisions)
+            self.pictures.rods.show(session)
+            if session.diverged:
+                self._explain_divergence()
+        if self._frames % _FRAMES_PER_DRAWING == 0:
+            self._draw()
+            self._poll_kinetic()
+
+    def _advance(self, elapsed: float) -> None:
+        """Advance the chain; in slow motion, one row of the strip at a time."""
+        if not self.controls.slow:
+            self.session.advance(self.controls.speed.value * elapsed, _BUDGET)
+            return
+        rows, self._owed_rows = divmod(elapsed * 1000 / _PERIOD + self._owed_rows, 1)
+        for _ in range(int(rows)):
+            self.session.advance(self._row_time, _BUDGET)
+            self.pictures.strip.add(self.session, self.session.contacts_met())
+        self.pictures.strip.show()
+
+    @property
+    def _row_time(self) -> float:
+        return float(self.controls.speed.value * _PERIOD / 1000)
+
+    def _keep(self, time: float, collisions: int) -> None:
+        """Record the energy and the collision rate of a frame."""
+        session = self.session
+        contacts = (session.chain.size - 1) * (session.time - time)
+        rate = (session.collisions - collisions) / contacts
+        self._rows.append((session.time, session.kinetic_energy, rate))
+
+    def _explain_divergence(self) -> None:
+        self._draw()
+        self.controls.say(self.pictures.show_divergence(self.session))
+
+    def _draw(self) -> None:
+        """Show what was measured."""
+        session, (then, before) = self.session, self._drawn
+        now = perf_counter()
+        self._drawn = now, session.time
+        speed = max(session.time - before, 0.0) / (now - then)
+        self.pictures.density.follow_zoom()
+        if self._rows:
+            self.pictures.times.show(self._rows)
+            self._rows.clear()
+            measured = session.measured()
+            if measured is not None:
+                self.pictures.density.show(smooth(measured))
+                self.pictures.panels[self.controls.quantity.value].show(session, measured)
+        self.controls.show_progress(session)
+        self.controls.status.object = (
+            f"t = {session.time:.4g} T, {speed:.2g} T per second<br>"
+            f"a free rod's velocity width is W = {session.chain.free_velocity_width:.3g} R/T"
+        )
+
+    # -- what a user does -------------------------------------------------------------------
+
+    def _changed(self, *events: Any) -> None:
+        self.session.change(self.setting.chain())
+        self._begin()
+        self._address.write()
+
+    def _restart(self, event: Any) -> None:
+        self.session.restart()
+        self._begin()
+
+    def _begin(self) -> None:
+        """Show the session's chain without any measurements."""
+        chain = self.session.chain
+        if chain.restitution == 1:
+            for theory in self._elastic:  # at once, because the user waits for the answer
+                theory.ask(chain)
+        self.controls.say("")
+        self.controls.forget_preset()
+        self._notes.clear()
+        self.controls.show_accuracy(self._notes)
+        self._rows.clear()
+        self.pictures.begin(self.session)
+        self.pictures.arrange(self.controls.quantity.value, self.controls.history.value, chain)
+        self.pictures.strip.clear(self._row_time)
+        if self._kinetic.chain != chain:
+            self._kinetic.cancel()
+        self.controls.show_solving(self._kinetic.seconds if self._kinetic.chain else None)
+
+    def _set_pace(self, *events: Any) -> None:
+        """Set the time step for the chosen speed and pictures."""
+        controls, slow = self.controls, self.controls.slow
+        self.session.pace(
+            self._row_time / _STEPS_PER_ROW if slow else np.inf,
+            resolved=slow,
+            avalanches=controls.quantity.value == "avalanches",
+        )
+        self.pictures.arrange(
+            controls.quantity.value, controls.history.value, self.session.chain, strip=slow
+        )
+        self.pictures.strip.clear(self._row_time)
+
+    def _take_preset(self, event: Any) -> None:
+        preset = self.controls.chosen
+        self.controls.show_look()
+        if preset is None:
+            return
+        self.setting.take(preset.chain)
+        self.controls.quantity.value = preset.quantity
+        self.controls.speed.value = 30
+        if not preset.steady:
+            self.controls.history.value = "energy"
+            self._restart(event)
+        if preset.solved and self._kinetic.chain is None:
+            self._ask_kinetic(event)
+
+    def _step(self, event: Any) -> None:
+        """Move on to the next collision; say which rods met, or why the chain diverged."""
+        if self.session.diverged:
+            return
+        self.controls.play.value = False
+        if not self.controls.slow:
+            self.controls.speed.value = _STEPPING_SPEED
+        session, strip = self.session, self.pictures.strip
+        deadline = perf_counter() + _STEP_BUDGET
+        met: list[int] = []
+        while not met and perf_counter() < deadline and not session.diverged:
+            met = session.advance_to_collision(self._row_time)
+            strip.add(session, met)
+        strip.show()
+        self.pictures.rods.show(session)
+        if session.diverged:
+            self._explain_divergence()
+            return
+        pairs = ", ".join(f"{contact + 1} and {contact + 2}" for contact in met)
+        found = f"rods {pairs} met" if met else "no two rods have met yet"
+        self.controls.say(f"t = {session.time:.5g} T: {found}.")
+
+    def _push(self, event: Any) -> None:
+        self.session.push(0, _PUSH * self.session.chain.free_velocity_width)
+        self.pictures.rods.show(self.session)
+
+    def _drag(self, x: float | None) -> None:
+        """Let the rod that the mouse took hold of follow it, or let go of it."""
+        if x is None:
+            self.session.release()
+        else:
+            self.session.hold(x)
+            self.pictures.rods.show(self.session)
+
+    # -- the kinetic equation ---------------------------------------------------------------
+
+    def _ask_kinetic(self, event: Any) -> None:
+        if self._kinetic.chain is None:
+            self._kinetic.ask(self.session.chain)
+            self.controls.show_solving(0.0)
+        else:
+            self._kinetic.cancel()
+            self.controls.show_solving(None)
+
+    def _poll_kinetic(self) -> None:
+        chain = self._kinetic.chain
+        if chain is None:
+            return
+        outcome = self._kinetic.poll()
+        self.controls.show_solving(self._kinetic.seconds if outcome is None else None)
+        if outcome is not None:
+            self._show_theories(chain, outcome)
+
+    def _show_theories(self, chain: Chain, outcome: Densities | BaseException) -> None:
+        """Show what was computed, if it is still of this chain."""
+        if chain != self.session.chain:
+            return
+        if not isinstance(outcome, BaseException):
+            self._notes |= self.pictures.show_theories(outcome)
+            self.controls.show_accuracy(self._notes)
+        elif not self.session.diverged:  # which the page has explained already
+            self.controls.say(f"No theory for this chain: {outcome}")
+
+
+def make_page(threads: Executor, turn: Lock) -> pn.viewable.Viewable:
+    """Return a new page, for one browser."""
+    return Page(threads, turn).view()

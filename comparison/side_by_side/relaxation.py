@@ -1,0 +1,205 @@
+"""Relaxation from one start: simulated rods, two fluids and, without a gap, the exact solution.
+
+An elastic chain is released from a displaced or compressed state, or quenched from another driving
+amplitude. The results are an ensemble of simulated chains, the isothermal fluid (the paper's two
+equations with a constant W^2), the fluid with a temperature equation, and without a gap the exact
+motion.
+"""
+
+from __future__ import annotations
+
+from typing import Literal, get_args
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from crazybilliards.comparison.coverage import smooth
+from crazybilliards.kinetic import (
+    compressed,
+    displaced,
+    equilibrium_states,
+    force_balance,
+    hydrodynamics,
+)
+from crazybilliards.kinetic.exact.breathing import breathing_cloud
+from crazybilliards.model import Chain, chain_of
+from crazybilliards.model.checks import check_choice, check_integer, check_real
+from crazybilliards.model.process import waiting_for
+from crazybilliards.particles import simulate
+
+Array = NDArray[np.float64]
+Release = Literal["compressed", "displaced", "quenched"]
+
+PARTICLES = "particles"
+# The argument velocity_variance of hydrodynamics.
+FLUIDS: dict[str, Literal["evolving"] | None] = {"isothermal": None, "evolving": "evolving"}
+LEGEND = {
+    "isothermal": "isothermal fluid",
+    "evolving": "fluid with temperature",
+    "exact": "exact",
+}
+
+
+def compare_relaxation(
+    chain: Chain,
+    release: Release = "compressed",
+    by: float = 0.3,
+    *,
+    duration: float = 40.0,
+    every: float = 0.5,
+    replicas: int = 300,
+    seed: int = 0,
+    threads: int | None = None,
+    progress: bool = True,
+) -> xr.DataTree:
+    """Follow the release of a chain in all descriptions.
+
+    Parameters
+    ----------
+    chain
+        The chain, with restitution 1.
+    release
+        ``"compressed"``: the equilibrium state with y multiplied by ``by`` (above 1: stretched);
+        ``"displaced"``: moved by ``by`` thermal lengths; ``"quenched"``: the equilibrium state of
+        the chain driven with ``by`` times its amplitude.
+    duration, every
+        Time, and time between outputs [T].
+    replicas, seed, threads
+        Those of the ensemble of simulated chains.
+
+    Returns
+    -------
+    xarray.DataTree
+        ``tree["particles"]``, ``["isothermal"]``, ``["evolving"]`` and, for linear springs without
+        gap, ``["exact"]``: results over time in the common vocabulary. The densities are as they
+        are, not smoothed, those of the simulation in groups of replicas as well.
+
+    Raises
+    ------
+    ValueError
+        For a wrong argument, before any work.
+    """
+    check_choice("release", release, get_args(Release))
+    if chain.restitution != 1:
+        raise ValueError(f"the comparison is of elastic chains, got e={chain.restitution:g}")
+    chain.require_steady_state()
+    by = check_real("by", by, positive=release != "displaced", signed=release == "displaced")
+    replicas = check_integer("replicas", replicas, least=2)
+    start = _states(chain, release, by, replicas, seed)
+    fluid = _fluid(chain, release, by)
+    # The fluids take a second and are computed first, to find a wrong duration before the long run.
+    results = {}
+    for name, variance in FLUIDS.items():
+        with waiting_for(f"solving: {LEGEND[name]}", progress):
+            results[name] = hydrodynamics(
+                chain, fluid, duration, every=every, velocity_variance=variance, progress=False
+            )
+        if results[name].attrs["status"] == "interrupted":
+            raise KeyboardInterrupt("interrupted before the simulation")
+    if chain.gap == 0 and chain.spring == "linear":
+        results["exact"] = _exact(chain, release, by, duration, every)
+    results[PARTICLES] = simulate(
+        chain,
+        start=start,
+        replicas=replicas,
+        average="ensemble",
+        duration=duration,
+        every=every,
+        observe=("widths", "density"),
+        seed=seed,
+        threads=threads,
+        progress=progress and f"{replicas} chains",
+    )
+    tree = xr.DataTree.from_dict(results)
+    tree.attrs |= {
+        "status": results[PARTICLES].attrs["status"],
+        "source": "comparison",
+        "release": release,
+        "by": by,
+    }
+    return tree
+
+
+def condensed(tree: xr.DataTree) -> xr.DataTree:
+    """Return what the pictures of a relaxation show, a tenth of the tree, to be stored.
+
+    The densities are smoothed (:func:`crazybilliards.comparison.smooth`) and in single precision;
+    other fields over x are left out.
+    """
+    results = {}
+    for name, group in tree.children.items():
+        result = group.to_dataset()
+        if "density" in result:
+            density = smooth(result).drop_vars("density_block", errors="ignore")
+            result = result.drop_dims("x").merge(density.astype(np.float32))
+            result.attrs["smoothed"] = density.attrs["smoothed"]
+            for each in density.data_vars:
+                result[each].encoding = {"zlib": True, "shuffle": True}
+        results[str(name)] = result
+    stored = xr.DataTree.from_dict(results)
+    stored.attrs = tree.attrs
+    return stored
+
+
+def label_distances(tree: xr.DataTree) -> dict[str, float]:
+    """Largest rms distance in time of mean positions from those of the ensemble, in s."""
+    rods = tree[PARTICLES].mean_displacement
+    s = chain_of(tree[PARTICLES].to_dataset()).thermal_length
+    return {
+        key: float(np.sqrt(((tree[key].mean_displacement - rods) ** 2).mean("particle")).max() / s)
+        for key in LEGEND
+        if key in tree
+    }
+
+
+def cloud(result: xr.Dataset) -> xr.Dataset:
+    """Centre and width of the cloud in the reduced coordinate, of any of the results [R].
+
+    Of a simulation with upper bounds of their standard errors, ``centre_error`` and
+    ``cloud_width_error``, which they would have if the errors of all rods had the same sign.
+    """
+    if "cloud_width" in result:
+        return result[["centre", "cloud_width"]]
+    place = result.mean_displacement + chain_of(result).reduced_anchors
+    square = (place**2 + result.displacement_width**2).mean("particle")
+    centre = place.mean("particle")
+    width = np.sqrt(square - centre**2)
+    found = xr.Dataset({"centre": centre, "cloud_width": width}, attrs=result.attrs)
+    if "mean_displacement_error" in result:
+        shift = result.mean_displacement_error
+        spread = result.displacement_width_error * result.displacement_width
+        found["centre_error"] = shift.mean("particle")
+        away = np.abs(place - centre)
+        found["cloud_width_error"] = (away * shift + spread).mean("particle") / width
+    return found
+
+
+def _states(chain: Chain, release: Release, by: float, replicas: int, seed: int) -> xr.Dataset:
+    """Return exact equilibrium states with the change of the release, one for each replica."""
+    before = chain.replace(amplitude=by * chain.amplitude) if release == "quenched" else chain
+    # The random numbers differ from those of the noise.
+    states = equilibrium_states(before, replicas, seed=seed + 1)
+    y = before.reduced(states.position.values)
+    if release == "compressed":
+        y = by * y
+    if release == "displaced":
+        y = y + by * chain.thermal_length
+    return states.assign(position=(("replica", "particle"), chain.physical(y)))
+
+
+def _fluid(chain: Chain, release: Release, by: float) -> xr.Dataset:
+    if release == "compressed":
+        return compressed(chain, by)
+    if release == "displaced":
+        return displaced(chain, by * chain.thermal_length)
+    return force_balance(chain.replace(amplitude=by * chain.amplitude))
+
+
+def _exact(chain: Chain, release: Release, by: float, duration: float, every: float) -> xr.Dataset:
+    if release == "compressed":
+        return breathing_cloud(chain, duration, every=every, stretch=by)
+    if release == "displaced":
+        return breathing_cloud(chain, duration, every=every, shift=by * chain.thermal_length)
+    hot = (by * chain.free_velocity_width) ** 2
+    return breathing_cloud(chain, duration, every=every, stretch=by, start_velocity_variance=hot)

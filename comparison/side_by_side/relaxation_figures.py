@@ -1,0 +1,165 @@
+"""Pictures of a relaxation: space and time, profiles, width and centre, and an animation."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import matplotlib.pyplot as plt
+import numpy as np
+import xarray as xr
+from matplotlib.animation import FuncAnimation
+from matplotlib.artist import Artist
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from crazybilliards.comparison.coverage import smooth
+from crazybilliards.comparison.drawing import overlay
+from crazybilliards.comparison.layout import at_the_left, entitle, legend_above, panels
+from crazybilliards.comparison.side_by_side.parameter_series import SIMULATION
+from crazybilliards.comparison.side_by_side.relaxation import LEGEND, PARTICLES, cloud
+from crazybilliards.model import Chain, chain_of
+
+Array = NDArray[np.float64]
+
+_DENSITY = r"density $\rho$ [1/R]"
+_ON_A_SCREEN: Any = {
+    "font.size": 13,
+    "axes.titlesize": 13,
+    "legend.fontsize": 12,
+    "legend.frameon": False,
+}
+_MOMENTS = (0.0, 0.05, 0.1, 1.0)  # of the duration, for the profiles
+_LEAST_DRAWN = 2e-3  # of close packing: pictures end where every density is lower
+
+
+def draw_spacetime(tree: xr.DataTree) -> Figure:
+    """rho(x, t) of the simulation and both fluids, side by side on one colour scale."""
+    densities = _densities(tree)
+    figure, axes = panels(1, len(densities), height=2.9, sharey=True)
+    chain = _chain(tree)
+    for ax, (name, result) in zip(axes, densities.items(), strict=True):
+        image = ax.pcolormesh(
+            result.x,
+            result.time,
+            result.density,
+            vmin=0,
+            vmax=chain.close_packed_density,
+            rasterized=True,
+        )
+        entitle(ax, name)
+        ax.set(xlabel="position $x$ [R]", xlim=_extent(densities))
+        if at_the_left(ax):
+            ax.set_ylabel("time $t$ [T]")
+    figure.colorbar(image, ax=axes, label=_DENSITY)
+    return figure
+
+
+def draw_profiles(tree: xr.DataTree) -> Figure:
+    """rho(x) at a few times: simulation with its standard errors, over the lines of the fluids."""
+    densities = _densities(tree)
+    times = densities[SIMULATION].time.values
+    chosen = np.round(np.array(_MOMENTS) * (times.size - 1)).astype(int)
+    figure, axes = panels(2, 2, height=2.1, sharex=True, sharey=True)
+    extent = _extent(densities)
+    for ax, moment in zip(axes, chosen, strict=True):
+        # Of what is shown, or the symbols would be few there.
+        shown = {
+            name: each.isel(time=moment).sel(x=slice(*extent)) for name, each in densities.items()
+        }
+        overlay(shown, ax=ax)
+        entitle(ax, f"$t = {times[moment]:.3g}$ T")
+        ax.set(xlim=extent, xlabel="position $x$ [R]", ylabel=_DENSITY)
+        ax.label_outer()
+    legend_above(figure, axes[0])
+    return figure
+
+
+def draw_cloud(tree: xr.DataTree) -> Figure:
+    """Width and centre of the cloud in the reduced coordinate against time, in units of s."""
+    figure, axes = panels(1, 2, height=2.4)
+    s = _chain(tree).thermal_length
+    names = {PARTICLES: SIMULATION} | LEGEND
+    for ax, which, label in zip(
+        axes, ("cloud_width", "centre"), ("width of the cloud / $s$", "centre / $s$"), strict=True
+    ):
+        curves = {}
+        for key, name in names.items():
+            if key in tree:
+                found = cloud(tree[key].to_dataset())
+                curves[name] = (found / s).assign_attrs(tree[key].attrs)
+                curves[name][which].attrs = {"long_name": "", "units": "1"}
+        overlay(curves, which, ax=ax)
+        ax.set_ylabel(label)
+        low, high = ax.get_ylim()
+        if high - low < 0.1:  # do not magnify the noise of a centre at rest
+            ax.set_ylim(low - 0.05, high + 0.05)
+    legend_above(figure, axes[0])
+    return figure
+
+
+def animate(tree: xr.DataTree) -> FuncAnimation:
+    """rho(x, t) of the simulation and the fluids as an animation.
+
+    ``standalone_page(animate(tree))`` plays in a notebook or a browser.
+    ``.save("relaxation.gif", writer="pillow")`` makes a file.
+    """
+    densities = _densities(tree)
+    times = densities[SIMULATION].time.values
+    extent = _extent(densities)
+    densities = {name: each[["density"]].sel(x=slice(*extent)) for name, each in densities.items()}
+    rods = densities[SIMULATION]
+    with plt.rc_context(_ON_A_SCREEN):
+        figure, ax = plt.subplots(figsize=(8, 4.5), layout="constrained")
+        # Every bin: symbols that tell the curve at one time may show false waves at another.
+        ax.plot(rods.x, rods.density[0], color="black", linewidth=1, label=SIMULATION, zorder=3)
+        fluids = {name: each for name, each in densities.items() if name != SIMULATION}
+        overlay({name: each.isel(time=0) for name, each in fluids.items()}, ax=ax)
+        high = max(float(each.density.max()) for each in densities.values())
+        ax.set(xlim=extent, ylim=(0, 1.05 * high), xlabel="position $x$ [R]", ylabel=_DENSITY)
+        legend_above(figure, ax)
+        clock = ax.set_title(" ")
+        figure.draw_without_rendering()  # ticks take the size of their letters when they are drawn
+    lines = {str(line.get_label()): line for line in ax.lines}
+
+    def show(frame: int) -> list[Artist]:
+        clock.set_text(f"$t = {times[frame]:.2f}$ T")
+        for name, each in densities.items():
+            lines[name].set_ydata(each.density.values[frame])
+        return []
+
+    animation = FuncAnimation(figure, show, frames=times.size, interval=80)
+    plt.close(figure)  # the animation keeps the figure; notebooks would show it twice
+    return animation
+
+
+def title(tree: xr.DataTree) -> str:
+    """Say in one line what was released, and how."""
+    chain = _chain(tree)
+    return (
+        f"{chain.size} rods, A = {chain.amplitude:g}, g = {chain.gap:g}, "
+        f"{tree.attrs['release']} by {tree.attrs['by']:g} and released at t = 0"
+    )
+
+
+def _densities(tree: xr.DataTree) -> dict[str, xr.Dataset]:
+    """Return the available smoothed densities by the names they are drawn with."""
+    names = {PARTICLES: SIMULATION} | LEGEND
+    return {
+        name: smooth(tree[key].to_dataset())
+        for key, name in names.items()
+        if key in tree and "density" in tree[key]
+    }
+
+
+def _extent(densities: dict[str, xr.Dataset]) -> tuple[float, float]:
+    """Return the interval outside of which every density is small at all times."""
+    ends = []
+    for result in densities.values():
+        threshold = _LEAST_DRAWN * chain_of(result).close_packed_density
+        inside = result.x.values[(result.density.values > threshold).any(axis=0)]
+        ends += [float(inside[0]), float(inside[-1])]
+    return min(ends), max(ends)
+
+
+def _chain(tree: xr.DataTree) -> Chain:
+    return chain_of(tree[PARTICLES].to_dataset())

@@ -1,0 +1,91 @@
+"""Chains of several restitutions: simulation and kinetic equation, without a fit."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Mapping, Sequence
+
+import xarray as xr
+
+from crazybilliards.comparison.side_by_side.parameter_series import (
+    SIMULATION,
+    simulate_beside,
+    varied_chains,
+)
+from crazybilliards.comparison.widths import WidthDeviation, width_deviation
+from crazybilliards.kinetic import phase_space
+from crazybilliards.model import Chain
+
+THEORY = "kinetic_equation"
+
+
+def compare_restitutions(
+    chain: Chain,
+    restitutions: Sequence[float],
+    *,
+    duration: float = 5_000.0,
+    seed: int = 0,
+    threads: int | None = None,
+    progress: bool = True,
+    finished: Callable[[str, Mapping[str, xr.Dataset]], None] | None = None,
+) -> xr.DataTree:
+    """Simulate a chain at several restitutions and solve its kinetic equation.
+
+    Parameters
+    ----------
+    chain
+        The chain; its restitution is replaced by each of ``restitutions``.
+    restitutions
+        Different values of e near 1. The theory is good for 0.9 to 1.05.
+    duration
+        Simulated time of each of two replicas [T].
+    seed, threads, progress
+        As in ``simulate``. Every restitution has its own random numbers.
+    finished
+        A function that is called with the name of each chain, such as ``restitution_0.95``, and
+        with its theories by name, as soon as they are there.
+
+    Returns
+    -------
+    xarray.DataTree
+        ``tree["restitution_0.95/simulation"]`` and ``.../kinetic_equation``. If the theory has
+        no steady state it is left out, with a warning that gives the reason.
+        ``attrs["status"]`` is ``interrupted`` if Ctrl-C ended it early, and ``diverged`` if a
+        simulation diverged. The tree then holds the results so far.
+
+    Raises
+    ------
+    ValueError
+        For a wrong argument, before any work.
+    """
+    return simulate_beside(
+        varied_chains(chain, "restitution", restitutions, duration),
+        _kinetic_equation,
+        duration=duration,
+        seed=seed,
+        threads=threads,
+        progress=progress,
+        finished=finished,
+    )
+
+
+def _kinetic_equation(chain: Chain, run: xr.Dataset) -> dict[str, xr.Dataset]:
+    try:
+        return {THEORY: phase_space(chain)}
+    except ValueError as error:
+        # For example, there is no steady state. The simulation must not be lost.
+        warnings.warn(f"e = {chain.restitution:g} has no theory: {error}", stacklevel=2)
+        return {}
+
+
+def width_deviations(tree: xr.DataTree) -> dict[str, WidthDeviation]:
+    """Compare velocity widths in every group that has simulation and theory.
+
+    Both ends of a chain have the same averages. Simulated widths are therefore averaged over a rod
+    and its mirror image, which lowers their errors by up to the root of two.
+    """
+    return {
+        name: width_deviation(group[SIMULATION].to_dataset(), group[THEORY].to_dataset())
+        for name, group in tree.children.items()
+        if THEORY in group and "velocity_width" in group[SIMULATION].data_vars
+    }

@@ -1,0 +1,56 @@
+"""Velocity widths in the centre and at the border of a chain, and how far a theory is from them."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from crazybilliards.model import chain_of
+from crazybilliards.model.chain import middle_tenth
+
+_LEAST_INNER = 7  # rods from which on the two at each border are left out of the largest deviation
+
+
+class WidthDeviation(NamedTuple):
+    """Relative deviations of velocity widths, theory minus simulation."""
+
+    largest: float  # over the particles 3 to L - 2
+    centre: float  # of the middle tenth of the rods
+    border: float  # of the first and the last rod
+    error: float  # typical standard error of a rod's simulated width
+    border_error: float  # that of the border's
+
+
+def central_width(run: xr.Dataset) -> float:
+    """W_v in the centre: root mean square over the middle tenth of the rods."""
+    middle = middle_tenth(run.sizes["particle"])
+    return float(np.sqrt((run.velocity_width.values[middle] ** 2).mean()))
+
+
+def border_width(run: xr.Dataset) -> float:
+    """W_v of the first and the last rod: root mean square of the two."""
+    return float(np.sqrt((run.velocity_width.values[[0, -1]] ** 2).mean()))
+
+
+def width_deviation(run: xr.Dataset, theory: xr.Dataset) -> WidthDeviation:
+    """Compare the velocity widths of a simulation and a theory of the same chain."""
+    size = chain_of(run).size
+    square = run.velocity_width.values**2
+    square = (square + square[::-1]) / 2
+    expected = theory.velocity_width.values**2
+    inner = slice(2, size - 2) if size >= _LEAST_INNER else slice(None)
+
+    def relative(part: slice | list[int]) -> float:
+        return float(np.sqrt(expected[part].mean() / square[part].mean()) - 1)
+
+    each = np.sqrt(expected / square) - 1
+    relative_error = (run.velocity_width_error / run.velocity_width).values
+    return WidthDeviation(
+        largest=float(np.abs(each[inner]).max()),
+        centre=relative(middle_tenth(size)),
+        border=relative([0, -1]),
+        error=float(np.median(relative_error)),
+        border_error=float(np.hypot(relative_error[0], relative_error[-1]) / 2),
+    )

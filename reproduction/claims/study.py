@@ -1,0 +1,101 @@
+"""What a study is: the cases it needs, its picture, its claims. A figure of the paper is one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+import xarray as xr
+from matplotlib.figure import Figure
+
+from crazybilliards.comparison.sweeps import Case
+from crazybilliards.reproduction.claims.verdicts import Claim
+
+Quality = Literal["quick", "full"]
+Cases = dict[str, Case]
+Results = Mapping[str, xr.Dataset]
+
+
+def no_cases(quality: Quality) -> Cases:
+    """Nothing to compute."""
+    return {}
+
+
+def no_claims(results: Results) -> list[Claim]:
+    """Nothing claimed."""
+    return []
+
+
+@dataclass(frozen=True, kw_only=True)
+class Study:
+    """A question put to simulations and theories, answered by a picture and by checked claims.
+
+    Attributes
+    ----------
+    name
+        A short name for the command line and for files.
+    title, caption
+        What it shows: one line, and what a reader needs to understand the picture.
+    cases
+        ``cases(quality)`` gives the simulations and theories it needs, by names of its own.
+    draw
+        ``draw(results)`` gives the picture, results being those of the cases by the same names.
+    claims
+        ``claims(results)`` sets what is claimed beside what was found.
+    """
+
+    name: str
+    title: str
+    caption: str
+    draw: Callable[[Results], Figure]
+    cases: Callable[[Quality], Cases] = no_cases
+    claims: Callable[[Results], list[Claim]] = no_claims
+
+    @property
+    def label(self) -> str:
+        """What it is called in lists and tables."""
+        return self.name
+
+    @property
+    def heading(self) -> str:
+        """The heading of its part of a report."""
+        return self.title
+
+    @property
+    def file_name(self) -> str:
+        """The name of its picture."""
+        return f"{self.stem}.png"
+
+    @property
+    def stem(self) -> str:
+        """The name of its picture without the ending."""
+        return f"study_{self.name}"
+
+
+@dataclass(frozen=True, kw_only=True)
+class PaperFigure(Study):
+    """A figure of arXiv:1404.7460, computed anew; its claims are the paper's and our own findings.
+
+    Attributes
+    ----------
+    number
+        Its number in the paper.
+    """
+
+    number: int
+
+    @property
+    def label(self) -> str:
+        """Number and name."""
+        return f"{self.number} {self.name}"
+
+    @property
+    def heading(self) -> str:
+        """Number and title."""
+        return f"{self.number}. {self.title}"
+
+    @property
+    def stem(self) -> str:
+        """Number and name as the name of its picture."""
+        return f"fig{self.number:02d}_{self.name}"

@@ -1,0 +1,141 @@
+"""Distributions of velocities and avalanche sizes, as several figures draw them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from numpy.typing import NDArray
+from scipy.optimize import curve_fit
+
+from crazybilliards.comparison.distances import distances_in_plot
+from crazybilliards.comparison.drawing import COLOURS, SYMBOLS
+from crazybilliards.model.vocabulary import require
+from crazybilliards.reproduction.claims.repetition import error_of_mean
+
+_LEAST = 1e-5  # of the largest density: below, counts are too few to draw
+_SYMBOLS_DRAWN = 41
+
+
+def mean_shape(run: xr.Dataset, particles: Sequence[int], name: str) -> float:
+    """Mean over the particles of their ``velocity_skewness`` or excess ``velocity_kurtosis``.
+
+    Raises
+    ------
+    ValueError
+        If the result lacks it, because an old version computed it.
+    """
+    require(run, (name,))
+    return float(run[name].sel(particle=list(particles)).mean())
+
+
+def histogram(
+    run: xr.Dataset, particles: Sequence[int], reach: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return velocities and the mean density of some particles in 41 equal bins to +-``reach``."""
+    v = run.velocity_bin.values
+    weight = np.gradient(v)
+    p = run.velocity_density.sel(particle=list(particles)).mean("particle").values
+    edges = np.linspace(-reach, reach, _SYMBOLS_DRAWN + 1)
+    share, _ = np.histogram(v, edges, weights=p * weight)
+    width, _ = np.histogram(v, edges, weights=weight)
+    middle, _ = np.histogram(v, edges, weights=v * weight)
+    filled = width > 0
+    return middle[filled] / width[filled], share[filled] / width[filled]
+
+
+def off_in_plot(
+    v: NDArray[np.float64],
+    p: NDArray[np.float64],
+    line: Callable[[NDArray[np.float64]], NDArray[np.float64]],
+    reach: float,
+) -> float:
+    """Return how far off a line the symbols are at most, in a plot to +-``reach`` from p = 0 up."""
+    fine = np.linspace(-reach, reach, 4001)
+    height = (0.0, float(p.max()))
+    return float(
+        distances_in_plot(v, p, fine, line(fine), x_range=(-reach, reach), y_range=height).max()
+    )
+
+
+def draw_distributions(
+    ax: Axes, runs: Sequence[xr.Dataset], particles: Sequence[int], unit: float
+) -> None:
+    """Draw p(v) of some particles on a logarithmic scale, v in units of ``unit``, and Gaussians.
+
+    Error bars are standard errors from the scatter between the independent ``runs``. The lines are
+    Gaussians of the same width, and the free rod's.
+    """
+    run = runs[0]
+    v = run.velocity_bin.values / unit
+    reach = 0.0
+    for number, particle in enumerate(particles):
+        each = np.array([run.velocity_density.sel(particle=particle) for run in runs]) * unit
+        p, error = each.mean(axis=0), error_of_mean(each)
+        variance = np.mean([run.velocity_width.sel(particle=particle) ** 2 for run in runs])
+        width = float(np.sqrt(variance)) / unit
+        drawable = p > _LEAST * p.max()
+        reach = max(reach, float(np.abs(v[drawable]).max()))
+        colour = COLOURS[number]
+        # Bins grow with v: draw those nearest to equally spaced velocities.
+        inside = v[drawable]
+        spaced = np.linspace(inside[0], inside[-1], _SYMBOLS_DRAWN)
+        shown = np.unique(np.abs(v[:, None] - spaced).argmin(axis=0))
+        ax.errorbar(
+            v[shown],
+            p[shown],
+            error[shown],
+            fmt=SYMBOLS[number],
+            color=colour,
+            markerfacecolor="none",
+            linewidth=0.6,
+            label=f"$i = {particle}$",
+        )
+        fine = np.linspace(-5 * width, 5 * width, 201)
+        ax.plot(fine, gaussian(fine, width), color=colour, linewidth=0.9)
+    ax.plot([], [], color="0.4", linewidth=0.9, label="Gaussian")
+    fine = np.linspace(-5, 5, 201)
+    ax.plot(fine, gaussian(fine, 1.0), "k:", label="free rod")
+    ax.set_yscale("log")
+    top = ax.get_ylim()[1]
+    ax.set(ylim=(3e-6, top), xlim=(-1.05 * reach, 1.05 * reach))
+    ax.set(xlabel="velocity $v/W$", ylabel="probability density $W p(v)$")
+
+
+def draw_sizes(
+    ax: Axes, sizes: np.ndarray, p: np.ndarray, counts: np.ndarray, *, number: int, label: str
+) -> None:
+    """Draw the probability of avalanche sizes, with error bars of counting statistics."""
+    counted = counts > 0
+    ax.errorbar(
+        sizes[counted],
+        p[counted],
+        p[counted] / np.sqrt(counts[counted]),
+        fmt=SYMBOLS[number],
+        color=COLOURS[number],
+        markerfacecolor="none",
+        linewidth=0.7,
+        label=label,
+    )
+    ax.set(xscale="log", yscale="log", xlabel="avalanche size $N_c$")
+
+
+def gaussian(v: np.ndarray, width: float) -> np.ndarray:
+    """Return the normal density of that width."""
+    return np.asarray(np.exp(-((v / width) ** 2) / 2) / (width * np.sqrt(2 * np.pi)))
+
+
+def fit_gaussian(
+    v: NDArray[np.float64], p: NDArray[np.float64], width: float
+) -> Callable[[NDArray[np.float64]], NDArray[np.float64]]:
+    """Return the Gaussian that fits best by least squares, its height, centre and width free."""
+
+    def model(
+        v: NDArray[np.float64], height: float, centre: float, width: float
+    ) -> NDArray[np.float64]:
+        return np.asarray(height * np.exp(-(((v - centre) / width) ** 2) / 2))
+
+    values, _ = curve_fit(model, v, p, p0=(float(p.max()), 0.0, width))
+    return lambda v: model(v, *values)

@@ -1,0 +1,294 @@
+"""Figure 3: velocity widths along the perfectly inelastic chain, power laws from both borders."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from crazybilliards.comparison.drawing import COLOURS, SYMBOLS, draw_rods
+from crazybilliards.comparison.fits import fit_border_power_law
+from crazybilliards.comparison.layout import mosaic
+from crazybilliards.model import chain_of
+from crazybilliards.reproduction import predictions
+from crazybilliards.reproduction.chains import LARGE
+from crazybilliards.reproduction.claims.repetition import estimate, members, pooled
+from crazybilliards.reproduction.claims.study import Cases, PaperFigure, Quality, Results
+from crazybilliards.reproduction.claims.verdicts import (
+    Claim,
+    Estimate,
+    Variation,
+    eye_claim,
+    number_claim,
+    positive_claim,
+    same_claim,
+)
+from crazybilliards.reproduction.power_laws import (
+    fits_in_plot,
+    gained_without_c,
+    lost_with_weights,
+    nu,
+    origin,
+    weighted_nu,
+)
+from crazybilliards.reproduction.time_steps import STEPS, at_steps, chain_step, step_name
+from crazybilliards.reproduction.vanishing_step import (
+    LABEL,
+    common_bias,
+    limit_estimate,
+    limit_name,
+    limits,
+)
+
+_SIZES = predictions.SIZES
+_CROSS = predictions.CROSSES[predictions.PAIRS]
+_PAPER, _PRECISION = -0.46, 0.005  # "nu ~ -0.46": half a unit of the last digit
+_SAME = 2 * _PRECISION  # two numbers that are both written -0.46 differ by less
+_ERROR = "velocity_width_error"
+_SOURCE = "section seq:e_0, eq:power_law, fig.2"
+
+
+def cases(quality: Quality) -> Cases:
+    """E = 0, four sizes, four time steps and the limit; the theory with pair correlations."""
+    cases = at_steps(quality, _SIZES)
+    for size in _SIZES:
+        cases |= limits(size, 0.0, quality)
+    return cases | predictions.by_size(quality)
+
+
+def exponent(results: Results, size: int, step: float | None = None) -> Estimate:
+    """Return nu, from the scatter between independent runs."""
+    return estimate(results, step_name(size, step), nu)
+
+
+def claims(results: Results) -> list[Claim]:
+    """Check: two power laws fit, nu is -0.46, the same for all L; and what changes nu."""
+    runs = {size: pooled(results, step_name(size, None)) for size in _SIZES}
+    found = {size: exponent(results, size) for size in _SIZES}
+    free = chain_of(runs[_SIZES[0]]).free_velocity_width
+    widest = max(runs.values(), key=lambda run: float(run.velocity_width.max()))
+    at = int(widest.velocity_width.values.argmax())
+    border = Estimate(*(float(widest[n][at]) / free for n in ("velocity_width", _ERROR)))
+    return [
+        positive_claim(
+            "collisions make every velocity distribution narrower than a free rod's",
+            "1 - W_v/W of the fastest rod of all four chains:",
+            Estimate(1 - border.value, border.error),
+            source="section seq:e_0, fig.2",
+            ours="the sizes below 1000 and the time step",
+        ),
+        _fit_claim(runs),
+        *(
+            number_claim(
+                f"nu = -0.46 at L = {size}",
+                _PAPER,
+                _PRECISION,
+                each,
+                source=_SOURCE,
+                ours="the time step, the weights" + (" and the size" if size < LARGE else ""),
+                variations=_variations(results, size),
+            )
+            for size, each in found.items()
+        ),
+        same_claim(
+            "the same exponent for all L",
+            f"{_listed(found)}; difference of two",
+            _differences(found),
+            _SAME,
+            source=_SOURCE,
+            ours="the sizes below 1000 and the time step",
+        ),
+        *_own_claims(results),
+        *_limit_claims(results, found),
+    ]
+
+
+def _listed(found: dict[int, Estimate]) -> str:
+    return ", ".join(f"{size}: {each}" for size, each in found.items())
+
+
+def _differences(found: dict[int, Estimate]) -> list[Estimate]:
+    return [one.minus(other) for one, other in itertools.combinations(found.values(), 2)]
+
+
+def _variations(results: Results, size: int) -> list[Variation]:
+    """Return nu at other time steps, and with weights."""
+    at_steps = [Variation(f"dt = {step:g}", exponent(results, size, step)) for step in STEPS]
+    weighted = estimate(results, step_name(size, None), weighted_nu)
+    return [*at_steps, Variation("rods weighed by their error bars", weighted)]
+
+
+def _fit_claim(runs: dict[int, xr.Dataset]) -> Claim:
+    worst, significance = fits_in_plot(runs.values())
+    return eye_claim(
+        "W_v(i) can be fitted by a sum of two power laws",
+        "four chains and their fits, both axes logarithmic",
+        worst,
+        significance,
+        source=_SOURCE,
+        ours="the sizes below 1000 and the time step",
+        exactly="the profile is no sum of two power laws: the residuals are systematic, so that nu "
+        "depends on how the rods are weighed, and c on the size (see below)",
+    )
+
+
+def _own_claims(results: Results) -> list[Claim]:
+    """Check what the exponent depends on."""
+    largest = STEPS[0]
+    coarse, fine = (exponent(results, LARGE, step) for step in (largest, STEPS[-1]))
+    middle = 300
+    origins = {size: estimate(results, step_name(size, None), origin) for size in _SIZES}
+    return [
+        positive_claim(
+            f"without c the exponent is flatter, L = {middle}",
+            "nu without c less nu with it:",
+            estimate(results, step_name(middle, None), gained_without_c),
+        ),
+        positive_claim(
+            f"weighing the rods by their error bars makes it steeper, L = {middle}",
+            "nu from ordinary least squares less nu from weighted ones:",
+            estimate(results, step_name(middle, None), lost_with_weights),
+        ),
+        positive_claim(
+            "the longer the chain, the further out the power laws begin",
+            f"c by L: {_listed(origins)}; c at 100 less c at {LARGE}:",
+            origins[100].minus(origins[LARGE]),
+        ),
+        positive_claim(
+            f"a long time step makes the exponent of L = {LARGE} flatter",
+            f"nu = {coarse} at dt = {largest:g} and {fine} at dt = {STEPS[-1]:g}, difference",
+            coarse.minus(fine),
+        ),
+    ]
+
+
+def _limit_claims(results: Results, found: dict[int, Estimate]) -> list[Claim]:
+    """Check the same exponents in the limit dt -> 0, and what the default step does to them."""
+    limit = {size: limit_estimate(results, size, nu) for size in _SIZES}
+    shifts = {size: found[size].minus(limit[size]) for size in _SIZES}
+    return [
+        *(
+            number_claim(
+                f"nu = -0.46 in the limit dt -> 0, L = {size}",
+                _PAPER,
+                _PRECISION,
+                each,
+                in_limit=True,
+                reason="the sum of two power laws is no exact law, and its exponent depends on L",
+                theory=predictions.exponent_of_size(results, size),
+            )
+            for size, each in limit.items()
+        ),
+        same_claim(
+            "the same exponent for all L in the limit dt -> 0",
+            f"{_listed(limit)}; difference of two",
+            _differences(limit),
+            _SAME,
+            in_limit=True,
+            reason="the sum of two power laws is no exact law, and its exponent depends on L",
+        ),
+        same_claim(
+            "the default time step leaves the exponents as they are in the limit dt -> 0",
+            f"nu at the default step less that of the limit, by L: {_listed(shifts)}; difference",
+            shifts.values(),
+            _PRECISION,
+        ),
+    ]
+
+
+def draw(results: Results) -> Figure:
+    """Draw W_v(i) with its fits and over that of the limit, and nu against the time step."""
+    figure, axes = mosaic(
+        [["widths", "exponents"], ["ratio", "exponents"]],
+        height=4.0,
+        width_ratios=(1.4, 1),
+        height_ratios=(1.9, 1),
+    )
+    widths, ratio = axes["widths"], axes["ratio"]
+    ratio.sharex(widths)
+    widths.set(xscale="log", yscale="log", ylabel="velocity width $W_v/W$")
+    for number, size in enumerate(_SIZES):
+        run = pooled(results, step_name(size, None))
+        unit = chain_of(run).free_velocity_width
+        draw_rods(
+            widths,
+            run,
+            "velocity_width",
+            number=number,
+            unit=unit,
+            along="particle",
+            label=f"$L = {size}$",
+        )
+        half = np.geomspace(1, size, 200)
+        fit = fit_border_power_law(run)(half) / unit
+        widths.plot(half, fit, color=COLOURS[number])
+        over = _over_limit(results, size)
+        draw_rods(ratio, over, "velocity_width", number=number, along="particle", label="")
+    widths.plot([], [], color="0.4", label="fit of two power laws")
+    predictions.draw_widths_by_size(widths, results)
+    widths.legend(loc="lower left")
+    widths.tick_params(labelbottom=False)
+    ratio.axhline(1, color="0.4", linewidth=0.8)
+    ratio.set(xlabel="particle $i$", ylabel=f"$W_v$ over that of\n{LABEL}")
+    _draw_steps(axes["exponents"], results)
+    return figure
+
+
+def _over_limit(results: Results, size: int) -> xr.Dataset:
+    """Return W_v(i) at the default step over that of the limits, whose bias is common to all."""
+    run, limit = (pooled(results, name) for name in (step_name(size, None), limit_name(size)))
+    ratio = run.velocity_width / limit.velocity_width
+    squares = sum((each[_ERROR] / each.velocity_width) ** 2 for each in (run, limit))
+    bias = common_bias(members(results, limit_name(size)))
+    return run.assign({"velocity_width": ratio, _ERROR: ratio * np.sqrt(squares + bias**2)})
+
+
+def _draw_steps(ax: Axes, results: Results) -> None:
+    """Draw nu against the time step, the limit as full symbols at the left margin."""
+    theories = predictions.predicted_by_size(results)
+    first = 0.3 * min(chain_step(results, size) for size in _SIZES)
+    for number, size in enumerate(_SIZES):
+        steps = [chain_step(results, size), *reversed(STEPS)]
+        each = [exponent(results, size, step) for step in (None, *reversed(STEPS))]
+        order = np.argsort(steps)
+        ax.errorbar(
+            np.array(steps)[order],
+            [each[k].value for k in order],
+            [each[k].error for k in order],
+            fmt=f"-{SYMBOLS[number]}",
+            color=COLOURS[number],
+            markerfacecolor="none",
+            linewidth=0.8,
+        )
+        at = first * 1.25 ** (number - 1.5)  # beside one another
+        limit = limit_estimate(results, size, nu)
+        ax.errorbar(at, *limit, fmt=SYMBOLS[number], color=COLOURS[number], linewidth=0.8)
+        if size in theories:
+            ax.plot(at, nu(theories[size]), **_CROSS | {"color": COLOURS[number]})
+    ax.axhline(_PAPER, color="0.4", linestyle="--", label="paper")
+    ax.plot([], [], "o", color="0.4", markerfacecolor="none", label="at a time step")
+    ax.plot([], [], "o", color="0.4", label=LABEL)
+    ax.plot([], [], **_CROSS | {"color": "0.4"}, label=predictions.PAIRS_ALONE)
+    ax.legend(loc="upper right")
+    ax.set(xscale="log", xlabel="time step $dt$ [T]", ylabel=r"exponent $\nu$")
+    ax.set_xticks([first, 1e-3, 1e-2], [r"$\to 0$", "$10^{-3}$", "$10^{-2}$"])
+    ax.set_xticks([tenth * k for tenth in (1e-3, 1e-2) for k in range(2, 10)], minor=True)
+    ax.set_xlim(0.5 * first, 4e-2)
+
+
+FIGURE = PaperFigure(
+    number=3,
+    name="widths-inelastic",
+    title="Velocity widths at e = 0: power laws from both borders",
+    caption="(a) W_v against the rod's number, e = 0, at the default time step, with the fits "
+    "a [(i - c)^nu + (L + 1 - c - i)^nu] to all rods; dotted, in (b) "
+    "crosses: the kinetic equation with pair correlations. (b) The exponent against the time "
+    "step; the leftmost open symbol of each size is the default step, the full one the limit. (c) "
+    "W_v over its limit dt -> 0.",
+    cases=cases,
+    draw=draw,
+    claims=claims,
+)

@@ -1,0 +1,96 @@
+"""Figure 5: mean displacements, and their widths, of perfectly inelastic chains."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from crazybilliards.comparison.drawing import along_the_chain, draw_rods
+from crazybilliards.comparison.layout import panels
+from crazybilliards.model import chain_of
+from crazybilliards.model.chain import middle_tenth
+from crazybilliards.reproduction.chains import LARGE, dissipative, dissipative_name
+from crazybilliards.reproduction.claims.repetition import estimate, pooled
+from crazybilliards.reproduction.claims.study import Cases, PaperFigure, Quality, Results
+from crazybilliards.reproduction.claims.verdicts import Claim, positive_claim
+
+_SIZES = (30, 100, 300, LARGE)
+
+
+def cases(quality: Quality) -> Cases:
+    """E = 0, four sizes."""
+    cases: Cases = {}
+    for size in _SIZES:
+        cases |= dissipative(size, 0.0, quality)
+    return cases
+
+
+def swelling(run: xr.Dataset) -> float:
+    """Return the slope of <dx> against i_n by least squares: all rods count."""
+    place = run.normalized_particle.values
+    return float(place @ run.mean_displacement.values / (place @ place))
+
+
+def _confined(run: xr.Dataset) -> float:
+    """Return W_x of the middle tenth of the rods."""
+    middle = middle_tenth(run.sizes["particle"])
+    return float(np.sqrt((run.displacement_width.values[middle] ** 2).mean()))
+
+
+def claims(results: Results) -> list[Claim]:
+    """Check: displacements decrease with the size."""
+    found = {size: estimate(results, dissipative_name(size, 0.0), swelling) for size in _SIZES}
+    spread = {size: estimate(results, dissipative_name(size, 0.0), _confined) for size in _SIZES}
+    source, ours = "section seq:e_0, fig.3_2", "the sizes and the time step"
+    return [
+        claim
+        for small, large in itertools.pairwise(_SIZES)
+        for claim in (
+            positive_claim(
+                f"the mean displacement decreases from L = {small} to L = {large}",
+                f"slope of <dx> against i_n: {found[small]} less {found[large]}, difference",
+                found[small].minus(found[large]),
+                source=source,
+                ours=ours,
+            ),
+            positive_claim(
+                f"the interior is confined more strongly at L = {large} than at L = {small}",
+                f"W_x in the centre, middle tenth: {spread[small]} less {spread[large]}, "
+                "difference",
+                spread[small].minus(spread[large]),
+                source=f"{source}, inset",
+                ours=ours,
+            ),
+        )
+    ]
+
+
+def draw(results: Results) -> Figure:
+    """Draw <dx> and W_x against i_n."""
+    figure, axes = panels(1, 2)
+    for number, size in enumerate(_SIZES):
+        run = pooled(results, dissipative_name(size, 0.0))
+        s = chain_of(run).thermal_length
+        for ax, name in zip(axes, ("mean_displacement", "displacement_width"), strict=True):
+            draw_rods(ax, run, name, number=number, unit=s, label=f"$L = {size}$")
+    axes[0].set(ylabel=r"mean displacement $\langle\Delta x\rangle/s$")
+    axes[1].set(ylabel="displacement width $W_x/s$", ylim=(0, None))
+    for ax in axes:
+        along_the_chain(ax)
+    axes[0].legend()
+    return figure
+
+
+FIGURE = PaperFigure(
+    number=5,
+    name="displacements-inelastic",
+    title="Mean displacements at e = 0",
+    caption="(a) Mean displacement and (b) its width (the paper's inset) against the "
+    "normalized particle number, e = 0, in units of the thermal length s.",
+    cases=cases,
+    draw=draw,
+    claims=claims,
+)

@@ -1,0 +1,266 @@
+"""Figure 7: velocity widths for several restitutions, and the exponent against the restitution."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patheffects import withStroke
+
+from crazybilliards.comparison.drawing import COLOURS, SYMBOLS, along_the_chain, draw_rods
+from crazybilliards.comparison.fits import ExponentialFit, fit_exponential
+from crazybilliards.comparison.layout import legend_above, mosaic
+from crazybilliards.comparison.widths import border_width, central_width
+from crazybilliards.model import chain_of
+from crazybilliards.reproduction.chains import (
+    LARGE,
+    RESTITUTIONS,
+    dissipative,
+    dissipative_name,
+    elastic,
+    elastic_name,
+)
+from crazybilliards.reproduction.claims.repetition import estimate, pooled
+from crazybilliards.reproduction.claims.study import Cases, PaperFigure, Quality, Results
+from crazybilliards.reproduction.claims.verdicts import (
+    Claim,
+    Estimate,
+    eye_claim,
+    positive_claim,
+    same_claim,
+)
+from crazybilliards.reproduction.power_laws import fits_in_plot
+from crazybilliards.reproduction.predictions import (
+    CROSSES,
+    LINES,
+    by_restitution,
+    centre_claims,
+    listed,
+    minus_nu,
+    predicted,
+)
+from crazybilliards.reproduction.vanishing_step import (
+    LABEL,
+    central_limit,
+    limit_name,
+    limits,
+    relative_shift,
+)
+
+IN_LIMIT = {"quick": (0.0, 0.95), "full": RESTITUTIONS}
+_ELASTIC_SIZE = 100
+_PRECISION = 0.005  # of exponents: the paper gives them with two decimals
+_SOURCE = "section seq:e_larger, fig.4"
+_OPEN: dict[str, Any] = {"fmt": SYMBOLS[0], "color": "black", "markerfacecolor": "none"}
+_OURS = "the restitutions (those of fig.5, and 0.5) and the time step"
+
+
+def cases(quality: Quality) -> Cases:
+    """L = 1000 at six restitutions, L = 100 at e = 1; limits; theories."""
+    cases: Cases = {}
+    for restitution in RESTITUTIONS:
+        cases |= dissipative(LARGE, restitution, quality)
+    cases |= by_restitution(quality)
+    for restitution in IN_LIMIT[quality]:
+        cases |= limits(LARGE, restitution, quality)
+    return cases | elastic(_ELASTIC_SIZE, quality)
+
+
+def _central_widths(results: Results) -> dict[float, Estimate]:
+    return {e: estimate(results, dissipative_name(LARGE, e), central_width) for e in RESTITUTIONS}
+
+
+def _central_limits(results: Results) -> dict[float, Estimate]:
+    there = [e for e in RESTITUTIONS if f"{limit_name(LARGE, e)}/0" in results]
+    return {e: central_limit(results, LARGE, e) for e in there}
+
+
+def _exponents(results: Results) -> dict[float, Estimate]:
+    return {e: estimate(results, dissipative_name(LARGE, e), minus_nu) for e in RESTITUTIONS}
+
+
+def _fit(found: dict[float, Estimate]) -> ExponentialFit:
+    values, errors = zip(*found.values(), strict=True)
+    return fit_exponential(list(found), values, errors)
+
+
+def _unevenness(run: xr.Dataset) -> float:
+    return float(np.log(border_width(run) / central_width(run)))
+
+
+def claims(results: Results) -> list[Claim]:
+    """Check: flatter for larger e, two power laws, and the exponent's exponential."""
+    low, high = RESTITUTIONS[0], RESTITUTIONS[-1]
+    uneven = {e: estimate(results, dissipative_name(LARGE, e), _unevenness) for e in (low, high)}
+    runs = [pooled(results, dissipative_name(LARGE, e)) for e in RESTITUTIONS]
+    return [
+        positive_claim(
+            "the larger e, the less the width varies along the chain",
+            f"ln of the border's width over the centre's: {uneven[low]} at e = {low:g} and "
+            f"{uneven[high]} at e = {high:g}, difference",
+            uneven[low].minus(uneven[high]),
+            source=_SOURCE,
+            ours=_OURS,
+        ),
+        eye_claim(
+            "W_v(i) is described by a sum of two power laws at every e < 1",
+            "six restitutions and their fits, both axes logarithmic",
+            *fits_in_plot(runs),
+            source=f"{_SOURCE}, eq:power_law",
+            ours=_OURS,
+            reason="the two power laws leave systematic residuals",
+            exactly="the profile is no sum of two power laws: the residuals are systematic",
+        ),
+        *_exponential_claims(results),
+        *centre_claims(results),
+        *_limit_claims(results),
+    ]
+
+
+def _exponential_claims(results: Results) -> list[Claim]:
+    found = _exponents(results)
+    fit = _fit(found)
+    amplitude = Estimate(fit.amplitude, fit.amplitude_error)
+    residuals = [Estimate(each.value - float(fit(e)), each.error) for e, each in found.items()]
+    exponents = ", ".join(f"{e:g}: {each}" for e, each in found.items())
+    return [
+        same_claim(
+            "-nu depends on e like exp(-lambda (1 - e)) + d, lambda unknown",
+            f"with an amplitude a before it lambda = {Estimate(fit.rate, fit.rate_error)}, "
+            f"a = {amplitude}, d = {Estimate(fit.offset, fit.offset_error)}; "
+            f"-nu by e: {exponents}; -nu less the curve",
+            residuals,
+            _PRECISION,
+            source=f"{_SOURCE}, inset",
+            ours=_OURS,
+            theory=listed(predicted(results), minus_nu, *RESTITUTIONS),
+            reason="the exponents scatter about the curve by more than their errors",
+        ),
+        positive_claim(
+            "the exponential has an amplitude below 1; read as an equality, without one, it does "
+            "not fit",
+            f"a = {amplitude}; 1 - a:",
+            Estimate(1 - amplitude.value, amplitude.error),
+        ),
+    ]
+
+
+def _limit_claims(results: Results) -> list[Claim]:
+    """Check the central widths in the limit dt -> 0: their order, and those at the default step."""
+    limit, default = _central_limits(results), _central_widths(results)
+    low, high = min(limit), max(limit)
+    by_e = ", ".join(f"{e:g}: {each}" for e, each in limit.items())
+    shifts = {e: relative_shift(default[e], each) for e, each in limit.items()}
+    listed = ", ".join(f"{e:g}: {each}" for e, each in shifts.items())
+    return [
+        positive_claim(
+            "in the limit dt -> 0, too, the larger e the faster the centre",
+            f"W_v in the centre by e: {by_e}; at {high:g} less at {low:g}:",
+            limit[high].minus(limit[low]),
+            in_limit=True,
+        ),
+        same_claim(
+            "the default time step gives W_v in the centre as in the limit dt -> 0",
+            f"W_v at the default step over that of the limit, less 1, by e: {listed}; difference",
+            shifts.values(),
+            0.01,
+        ),
+    ]
+
+
+def draw(results: Results) -> Figure:
+    """Draw W_v(i) with the kinetic equation, -nu against e with its fit, and the limits."""
+    figure, axes = mosaic(
+        [["widths", "exponents"], ["widths", "centre"]], height=3.9, width_ratios=(1.4, 1)
+    )
+    left = axes["widths"]
+    left.set(ylabel="velocity width $W_v/W$", yscale="log")
+    names = {e: dissipative_name(LARGE, e) for e in RESTITUTIONS}
+    names[1.0] = elastic_name(_ELASTIC_SIZE)
+    for number, (e, name) in enumerate(names.items()):
+        run = pooled(results, name)
+        unit = chain_of(run).free_velocity_width
+        label = f"$e = {e:g}$" + (f", $L = {_ELASTIC_SIZE}$" if e == 1 else "")
+        draw_rods(left, run, "velocity_width", number=number, unit=unit, label=label)
+        _draw_theories(left, results, e, unit, COLOURS[number])
+    along_the_chain(left)
+    for theory, of_theory in predicted(results).items():
+        solved = rf"{theory}, $e \geq {min(of_theory):g}$"
+        left.plot([], [], LINES[theory], color="0.4", label=solved)
+    legend_above(figure, left)
+    axes["exponents"].sharex(axes["centre"])
+    _draw_exponents(axes["exponents"], results)
+    _draw_centre(axes["centre"], results)
+    return figure
+
+
+def _draw_theories(ax: Axes, results: Results, e: float, unit: float, colour: str) -> None:
+    for theory, of_theory in predicted(results).items():
+        if e in of_theory:
+            # Above the symbols: one of them passes over those of another restitution.
+            ax.plot(
+                of_theory[e].normalized_particle,
+                of_theory[e].velocity_width / unit,
+                LINES[theory],
+                color=colour,
+                path_effects=[withStroke(linewidth=1.9, foreground="white")],
+                zorder=4,
+            )
+
+
+def _draw_centre(ax: Axes, results: Results) -> None:
+    unit = chain_of(results[f"{dissipative_name(LARGE, 0.0)}/0"]).free_velocity_width
+    full: dict[str, Any] = {
+        "fmt": SYMBOLS[2],
+        "color": COLOURS[0],
+    }
+    for found, label, style in (
+        (_central_widths(results), "default step", {**_OPEN, "markersize": 5}),
+        (_central_limits(results), LABEL, full),
+    ):
+        values, errors = np.array(list(found.values())).T / unit
+        ax.errorbar(list(found), values, errors, label=label, **style)
+    for theory, of_theory in predicted(results).items():
+        centres = [central_width(each) / unit for each in of_theory.values()]
+        ax.plot(list(of_theory), centres, **CROSSES[theory], label=theory)
+    ax.set(xlabel="restitution $e$", ylabel="central width $W_v^{\\min}/W$")
+    ax.legend()
+
+
+def _draw_exponents(ax: Axes, results: Results) -> None:
+    found = _exponents(results)
+    fit = _fit(found)
+    values, errors = np.array(list(found.values())).T
+    ax.errorbar(
+        list(found),
+        values,
+        errors,
+        label="simulation",
+        **_OPEN,
+    )
+    for theory, of_theory in predicted(results).items():
+        exponents = [minus_nu(each) for each in of_theory.values()]
+        ax.plot(list(of_theory), exponents, **CROSSES[theory], label=theory)
+    fine = np.linspace(0, 1, 101)
+    ax.plot(fine, fit(fine), "0.4", label=rf"fit, $\lambda = {fit.rate:.1f}$")
+    ax.set(ylabel=r"exponent $-\nu$")
+    ax.tick_params(labelbottom=False)
+    ax.legend()
+
+
+FIGURE = PaperFigure(
+    number=7,
+    name="widths-restitution",
+    title="Velocity widths for several restitutions",
+    caption="(a) W_v against the normalized particle number, L = 1000 (e = 1: L = 100). Lines: "
+    "the kinetic equation in the colour of its e, dashed without pair correlations, full with "
+    "them; nothing of the simulation goes into these lines. (b) The exponent of the two "
+    "power laws against the restitution, and a exp(-lambda (1 - e)) + d fitted to it. (c) W_v in "
+    "the centre at the default time step and in the limit of a vanishing one.",
+    cases=cases,
+    draw=draw,
+    claims=claims,
+)

@@ -1,0 +1,161 @@
+"""Figure 8: at e = 1 every rod has the velocity distribution of a free one."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from crazybilliards.comparison.drawing import along_the_chain, draw_rods
+from crazybilliards.comparison.layout import entitle, panels
+from crazybilliards.comparison.widths import central_width
+from crazybilliards.model import Chain, chain_of
+from crazybilliards.reproduction.chains import LARGE, elastic, elastic_name
+from crazybilliards.reproduction.claims.repetition import (
+    estimate,
+    estimates,
+    members,
+    pooled,
+    repeated,
+)
+from crazybilliards.reproduction.claims.study import Cases, PaperFigure, Quality, Results
+from crazybilliards.reproduction.claims.verdicts import (
+    EYE,
+    Claim,
+    Estimate,
+    eye_claim,
+    same_claim,
+    small_claim,
+)
+from crazybilliards.reproduction.distributions import (
+    draw_distributions,
+    gaussian,
+    histogram,
+    mean_shape,
+    off_in_plot,
+)
+
+_SIZE = 100
+_PARTICLES = (1, 50)
+_LONG = {"quick": (2, 200.0), "full": (4, 2000.0)}
+_SHOWN = 4.0  # free widths to either side in the plot of a distribution
+_SOURCE = "section seq:e_larger, fig.4.2"
+_STEPS = (1e-2, 1e-3)  # of Contact Dynamics
+_EXACT = "long chain, event-driven"
+
+
+def cases(quality: Quality) -> Cases:
+    """L = 100; and L = 1000, with the exact operator and with Contact Dynamics."""
+    number, duration = _LONG[quality]
+    chain = Chain(size=LARGE)
+    common = {"duration": duration, "observe": ["widths"]}
+    cases = elastic(_SIZE, quality) | repeated(_EXACT, chain, number, **common)
+    for step in _STEPS:
+        cases |= repeated(
+            _contact(step), chain, number, method="contact-dynamics", time_step=step, **common
+        )
+    return cases
+
+
+def _contact(step: float) -> str:
+    return f"long chain, Contact Dynamics, dt={step:g}"
+
+
+def claims(results: Results) -> list[Claim]:
+    """Check: identical to the free Gaussian; Contact Dynamics at L = 1000 is not."""
+    run = pooled(results, elastic_name(_SIZE))
+    unit = chain_of(run).free_velocity_width
+    shares = (run.velocity_width / unit - 1, run.velocity_width_error / unit)
+    kurtosis = estimate(
+        results,
+        elastic_name(_SIZE),
+        lambda run: mean_shape(run, range(1, _SIZE + 1), "velocity_kurtosis"),
+    )
+    wrong = [estimate(results, _contact(step), central_width).value / unit for step in _STEPS]
+    return [
+        same_claim(
+            "W_v of every rod is that of a free rod",
+            "W_v/W - 1 of a rod",
+            map(Estimate, *(each.values for each in shares)),
+            EYE,
+            source=_SOURCE,
+            theory="exact: 1 for every rod, any gap, any spring",
+        ),
+        eye_claim(
+            "the distributions of rods 1 and 50 are a free rod's Gaussian",
+            f"p(v) and the free rod's, both axes linear, v to {_SHOWN:g} W",
+            Estimate(_off(run), estimate(results, elastic_name(_SIZE), _off).error),
+            abs(kurtosis.value) / kurtosis.error,
+            source=_SOURCE,
+            theory="exact",
+            exactly=f"Gaussian: the excess kurtosis, mean of all rods, is {kurtosis}",
+        ),
+        same_claim(
+            f"W_v all along the chain is that of a free rod at L = {LARGE}, too",
+            "W_v/W - 1 of a tenth of the chain",
+            estimates(results, _EXACT, _tenths),
+            EYE,
+            theory="exact: 1",
+        ),
+        small_claim(
+            f"Contact Dynamics is right at e = 1, L = {LARGE}, dt = {_STEPS[-1]:g}",
+            "1 - W_v/W in the centre",
+            Estimate(1 - wrong[-1], estimate(results, _contact(_STEPS[-1]), central_width).error),
+            0.02,
+            theory="exact: 0",
+            reason="a step sees many collisions of each rod there, and Contact Dynamics "
+            "dissipates in rows of contacts",
+        ),
+    ]
+
+
+def _tenths(run: xr.Dataset) -> list[float]:
+    """Return W_v/W - 1 of ten parts of the chain: root mean squares over their rods."""
+    squares = (run.velocity_width.values / chain_of(run).free_velocity_width) ** 2
+    return [float(part.mean() ** 0.5 - 1) for part in np.array_split(squares, 10)]
+
+
+def _off(run: xr.Dataset) -> float:
+    """Return how far p(v) is off the free rod's, as a share of the plot: the worse of two rods."""
+    unit = chain_of(run).free_velocity_width
+    reach = _SHOWN * unit
+    densities = [histogram(run, [particle], reach) for particle in _PARTICLES]
+    return max(off_in_plot(v, p, lambda v: gaussian(v, unit), reach) for v, p in densities)
+
+
+def draw(results: Results) -> Figure:
+    """Draw p(v) of two rods, and W_v of long chains by three methods."""
+    figure, (left, right) = panels(1, 2, height=2.7)
+    runs = members(results, elastic_name(_SIZE))
+    draw_distributions(left, runs, _PARTICLES, chain_of(runs[0]).free_velocity_width)
+    entitle(left, f"$L = {_SIZE}$")
+    left.legend(loc="lower center")
+    _draw_long_chains(right, results)
+    return figure
+
+
+def _draw_long_chains(ax: Axes, results: Results) -> None:
+    names = {_EXACT: "event-driven", **{_contact(s): f"Contact Dyn., $dt = {s:g}$" for s in _STEPS}}
+    for number, (name, label) in enumerate(names.items()):
+        run = pooled(results, name)
+        unit = chain_of(run).free_velocity_width
+        draw_rods(ax, run, "velocity_width", number=number, unit=unit, label=label)
+    ax.axhline(1, color="black", linestyle=":", label="exact")
+    along_the_chain(ax)
+    ax.set(ylabel="velocity width $W_v/W$", ylim=(0, 1.6))
+    entitle(ax, f"$L = {LARGE}$")
+    ax.legend(loc="upper center", ncols=2)
+
+
+FIGURE = PaperFigure(
+    number=8,
+    name="velocities-elastic",
+    title="Velocity distributions at e = 1",
+    caption="(a) Symbols: simulated rods 1 and 50 of 100, with standard errors. Dotted: the exact "
+    "distribution, that of a free rod. (b) W_v of 1000 rods, exact at any step with event-driven "
+    "collisions, wrong with Contact Dynamics at steps that are affordable.",
+    cases=cases,
+    draw=draw,
+    claims=claims,
+)

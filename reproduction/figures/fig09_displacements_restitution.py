@@ -1,0 +1,126 @@
+"""Figure 9: mean displacements for several restitutions."""
+
+from __future__ import annotations
+
+import functools
+import itertools
+from typing import Any
+
+import xarray as xr
+from matplotlib.figure import Figure
+
+from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_rods, mark_clipped
+from crazybilliards.comparison.layout import legend_above, panels
+from crazybilliards.model import chain_of
+from crazybilliards.model.chain import middle_tenth
+from crazybilliards.reproduction.chains import LARGE, dissipative, dissipative_name
+from crazybilliards.reproduction.claims.repetition import estimate, pooled
+from crazybilliards.reproduction.claims.study import Cases, PaperFigure, Quality, Results
+from crazybilliards.reproduction.claims.verdicts import About, Claim, Estimate, positive_claim
+from crazybilliards.reproduction.figures.fig05_displacements_inelastic import swelling
+from crazybilliards.reproduction.predictions import (
+    LINES,
+    by_restitution,
+    listed,
+    predicted,
+)
+
+_FRAME = 0.7
+_LABEL = r"displacement $\langle\Delta x\rangle/s$"
+_RESTITUTIONS = (0.0, 0.75, 0.85, 0.92, 0.95)
+
+
+def cases(quality: Quality) -> Cases:
+    """L = 1000 at five restitutions, and the kinetic equation without and with pairs."""
+    cases = by_restitution(quality)
+    for restitution in _RESTITUTIONS:
+        cases |= dissipative(LARGE, restitution, quality)
+    return cases
+
+
+def claims(results: Results) -> list[Claim]:
+    """Check: displacements grow with e, and the border has the larger energy at large e."""
+    found = {e: estimate(results, dissipative_name(LARGE, e), swelling) for e in _RESTITUTIONS}
+    growing = [
+        positive_claim(
+            f"the mean displacement grows from e = {low:g} to {high:g}",
+            f"slope of <dx> against i_n: {found[low]} and {found[high]}, difference",
+            found[high].minus(found[low]),
+            source="section seq:e_larger, fig.5",
+            theory=listed(predicted(results), swelling, low, high),
+        )
+        for low, high in itertools.pairwise(_RESTITUTIONS)
+    ]
+    return growing + _energy_claims(results)
+
+
+def _energy_claims(results: Results) -> list[Claim]:
+    e = _RESTITUTIONS[-1]
+    potential, kinetic = (
+        estimate(results, dissipative_name(LARGE, e), functools.partial(_excess, name=name))
+        for name in ("potential", "kinetic")
+    )
+    what = f"border's less centre's, in units of m W^2/2: potential {potential}, kinetic {kinetic}"
+    about: About = {"source": "section seq:e_larger", "ours": "the restitution"}
+    both = Estimate(potential.value + kinetic.value, potential.error + kinetic.error)
+    return [
+        positive_claim(
+            f"the energy is larger at the border, e = {e:g}", f"{what}; their sum", both, **about
+        ),
+        positive_claim(
+            f"because the potential energy is, e = {e:g}",
+            f"{what}; potential less kinetic",
+            Estimate(potential.value - kinetic.value, both.error),
+            **about,
+        ),
+    ]
+
+
+def _excess(run: xr.Dataset, name: str) -> float:
+    """Mean energy of the two border rods less that of the middle tenth, in units of m W^2/2."""
+    chain = chain_of(run)
+    if name == "kinetic":
+        energy = (run.velocity_width.values / chain.free_velocity_width) ** 2
+    else:
+        squares = run.mean_displacement.values**2 + run.displacement_width.values**2
+        energy = squares / chain.thermal_length**2
+    return float(energy[[0, -1]].mean() - energy[middle_tenth(energy.size)].mean())
+
+
+def draw(results: Results) -> Figure:
+    """Draw <dx> against i_n, and of the rods at the left border against i; theory as lines."""
+    figure, (whole, border) = panels(1, 2, height=2.5)
+    border.set(xscale="log", xlabel="particle $i$", ylabel=_LABEL)
+    for number, e in enumerate(_RESTITUTIONS):
+        run = pooled(results, dissipative_name(LARGE, e))
+        s, colour = chain_of(run).thermal_length, COLOURS[number]
+        half = run.isel(particle=slice(0, LARGE // 2))
+        look: Any = {"number": number, "unit": s, "label": f"$e = {e:g}$"}
+        draw_rods(whole, run, "mean_displacement", **look)
+        draw_rods(border, half, "mean_displacement", along="particle", **look)
+        for theory, of_theory in predicted(results).items():
+            if e in of_theory:
+                shift, style = of_theory[e].mean_displacement / s, LINES[theory]
+                whole.plot(of_theory[e].normalized_particle, shift, style, color=colour)
+                border.plot(half.particle, shift[: LARGE // 2], style, color=colour)
+    along_the_chain(whole)
+    whole.set(ylabel=_LABEL, ylim=(-_FRAME, _FRAME))
+    mark_clipped(whole)
+    for theory, style in LINES.items():
+        whole.plot([], [], style, color="0.4", label=theory)
+    legend_above(figure, whole)
+    return figure
+
+
+FIGURE = PaperFigure(
+    number=9,
+    name="displacements-restitution",
+    title="Mean displacements for several restitutions",
+    caption="Mean displacement, L = 1000, in units of the thermal length s, (a) of all rods "
+    "against the normalized particle number, (b) of the left half against the rod's number. "
+    "Lines: the kinetic equation, dashed without pair correlations, full with them. "
+    "Triangles at the frame of (a): rods beyond it, which (b) shows.",
+    cases=cases,
+    draw=draw,
+    claims=claims,
+)

@@ -1,0 +1,193 @@
+"""Figure 12: velocity widths of flippers for several dampings: from convex to concave."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from crazybilliards.comparison.distances import distances_in_plot
+from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_rods
+from crazybilliards.comparison.fits import PowerLawFit, fit_border_power_law
+from crazybilliards.comparison.layout import legend_above, panels
+from crazybilliards.comparison.widths import border_width, central_width
+from crazybilliards.model import chain_of
+from crazybilliards.model.chain import middle_tenth
+from crazybilliards.reproduction.chains import (
+    flippers,
+    flippers_name,
+    kinetic_equation,
+    kinetic_name,
+)
+from crazybilliards.reproduction.claims.repetition import estimate, pooled
+from crazybilliards.reproduction.claims.study import Cases, PaperFigure, Quality, Results
+from crazybilliards.reproduction.claims.verdicts import (
+    EYE,
+    Claim,
+    Estimate,
+    Variation,
+    positive_claim,
+)
+
+_SIZE = 100
+_RESTITUTION = 1.05
+_SOURCE = "section Anti-Dissipation, fig:mom_var_antidiss_diff_gamma_sq"
+_DAMPINGS = (4.0, 5.0, 6.0, 8.0, 10.0)
+
+
+def cases(quality: Quality) -> Cases:
+    """L = 100, e = 1.05, five dampings, each with the kinetic equation."""
+    cases: Cases = {}
+    for damping in _DAMPINGS:
+        cases |= flippers(_SIZE, damping, quality)
+        cases |= kinetic_equation(_SIZE, _RESTITUTION, damping, quality)
+    return cases
+
+
+def bulge(run: xr.Dataset) -> float:
+    """Ln of the border's width over the centre's: positive for a convex profile."""
+    return float(np.log(border_width(run) / central_width(run)))
+
+
+def claims(results: Results) -> list[Claim]:
+    """Check: convex at gamma = 4, concave at gamma = 10; where rods collide; no power law."""
+    found = {g: estimate(results, flippers_name(_SIZE, g), bulge) for g in _DAMPINGS}
+    theory = {g: bulge(results[kinetic_name(_SIZE, _RESTITUTION, g)]) for g in _DAMPINGS}
+    low, high = _DAMPINGS[0], _DAMPINGS[-1]
+    values = np.array([each.value for each in found.values()])
+    change = _crossing(values), _crossing(np.array(list(theory.values())))
+    opposite = Estimate(-found[high].value, found[high].error)
+    return [
+        positive_claim(
+            f"convex at gamma = {low:g}",
+            "ln of the border's width over the centre's:",
+            found[low],
+            source=_SOURCE,
+            theory=f"{theory[low]:+.3f}",
+        ),
+        positive_claim(
+            f"concave at gamma = {high:g}",
+            f"it changes at gamma = {change[0]:.1f}; ln of the centre's width over the border's:",
+            opposite,
+            source=_SOURCE,
+            theory=f"{-theory[high]:+.3f}; changes at gamma = {change[1]:.1f}",
+        ),
+        *(_frequency_claim(results, damping) for damping in (high, low)),
+        _power_law_claim(results),
+    ]
+
+
+def _frequency_claim(results: Results, damping: float) -> Claim:
+    return positive_claim(
+        f"rods collide more often in the bulk than at the border, gamma = {damping:g}",
+        "ln of the collision rate of the middle tenth of the contacts over that of the outermost:",
+        estimate(results, flippers_name(_SIZE, damping), _crowding),
+        source=_SOURCE,
+    )
+
+
+def _crowding(run: xr.Dataset) -> float:
+    rate = run.collision_rate.values[:-1]  # the last rod has no right neighbour
+    return float(np.log(rate[middle_tenth(rate.size)].mean() / rate[[0, -1]].mean()))
+
+
+def _power_law_claim(results: Results) -> Claim:
+    """Decide whether the best sum of two power laws is visibly off in a plot like the paper's."""
+    run = pooled(results, flippers_name(_SIZE, _DAMPINGS[0]))
+    linear = logarithmic = Estimate(1.0 - EYE, 0.0)
+    words = "no such law fits"
+    try:
+        fit = fit_border_power_law(run)
+    except ValueError:
+        pass
+    else:
+        words = f"nu = {fit.exponent:.3f} fits best"
+        linear, logarithmic = (
+            _beyond_the_eye(results, run, fit, axes) for axes in (_unchanged, np.log)
+        )
+    return positive_claim(
+        f"the convex profile at gamma = {_DAMPINGS[0]:g} cannot be described by a power law",
+        f"gamma W_v against i for the five dampings, both axes linear: {words}; by how much the "
+        f"largest deviation, as a share of the plotted range, exceeds what an eye sees, {EYE:g}:",
+        linear,
+        source=_SOURCE,
+        ours="whether the axes are linear",
+        variations=[Variation("both axes logarithmic", logarithmic)],
+        reason="a sum of two flat power laws fits",
+    )
+
+
+def _unchanged(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    return values
+
+
+def _beyond_the_eye(
+    results: Results,
+    run: xr.Dataset,
+    fit: PowerLawFit,
+    axes: Callable[[NDArray[np.float64]], NDArray[np.float64]],
+) -> Estimate:
+    """Return the largest distance of a symbol from the fit, as a share of the plot, less EYE."""
+    widths = {g: pooled(results, flippers_name(_SIZE, g)).velocity_width.values for g in _DAMPINGS}
+    plotted = axes(np.concatenate([g * width for g, width in widths.items()]))
+    shown = float(plotted.min()), float(plotted.max())
+    damping, i = _DAMPINGS[0], run.particle.values
+    width, error = run.velocity_width.values, run.velocity_width_error.values
+    fine = np.geomspace(1, _SIZE, 2000)
+    off = distances_in_plot(
+        axes(i), axes(damping * width), axes(fine), axes(damping * fit(fine)), y_range=shown
+    )
+    at = int(off.argmax())
+    # The height of the error bar on these axes.
+    low, high = axes(damping * (width[at] + np.array([-1, 1]) * error[at]))
+    return Estimate(float(off[at]) - EYE, float(high - low) / 2 / (shown[1] - shown[0]))
+
+
+def _crossing(values: np.ndarray) -> float:
+    """Return the damping where the bulge vanishes, by interpolation."""
+    return float(np.interp(0.0, values[::-1], np.array(_DAMPINGS)[::-1]))
+
+
+def draw(results: Results) -> Figure:
+    """Draw gamma W_v(i) for every damping with the kinetic equation."""
+    figure, [ax] = panels(1, 1, height=3.1, wanted=1)
+    for number, damping in enumerate(_DAMPINGS):
+        run = pooled(results, flippers_name(_SIZE, damping))
+        # gamma W_v over that of a free rod at gamma = 1, A/sqrt(2 m).
+        free = chain_of(run).replace(damping=1.0).free_velocity_width
+        draw_rods(
+            ax,
+            run,
+            "velocity_width",
+            number=number,
+            unit=free / damping,
+            label=rf"$\gamma = {damping:g}$",
+        )
+        theory = results[kinetic_name(_SIZE, _RESTITUTION, damping)]
+        ax.plot(
+            theory.normalized_particle,
+            theory.velocity_width * damping / free,
+            color=COLOURS[number],
+        )
+    along_the_chain(ax)
+    ax.set(
+        ylabel=r"$\gamma W_v/(A/\sqrt{2m})$  [M$^{1/2}$T$^{-1/2}$]",
+    )
+    ax.plot([], [], color="0.4", label="kinetic equation")
+    legend_above(figure, ax)
+    return figure
+
+
+FIGURE = PaperFigure(
+    number=12,
+    name="widths-damping",
+    title="Velocity widths of flippers for several dampings",
+    caption="Damping times velocity width against the normalized particle number, L = 100, "
+    "e = 1.05. Lines: the kinetic equation.",
+    cases=cases,
+    draw=draw,
+    claims=claims,
+)

@@ -1,0 +1,104 @@
+"""Figure 13: avalanche sizes of flippers: system-spanning where the damping is weak."""
+
+from __future__ import annotations
+
+import functools
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from crazybilliards.comparison.layout import at_the_left, entitle, panels
+from crazybilliards.reproduction.chains import flippers, flippers_name
+from crazybilliards.reproduction.claims.repetition import estimate, pooled
+from crazybilliards.reproduction.claims.study import Cases, PaperFigure, Quality, Results
+from crazybilliards.reproduction.claims.verdicts import Claim, positive_claim
+from crazybilliards.reproduction.distributions import draw_sizes
+
+_SIZE = 100
+_DAMPINGS = (4.0, 10.0)
+_ORIGINS = slice(1, 10)
+_SPANNING = 80  # collisions of a wave that began at one of those origins
+_COUNTS = {
+    "triggered_count": ("the paper's count", "triggered_collisions"),
+    "avalanche_count": ("pushes", "avalanche_size"),
+}
+_SOURCE = "section Anti-Dissipation, fig:antidiss_trigger"
+_OURS = "the origins (1 to 10) and what spans the system (80 collisions)"
+
+
+def cases(quality: Quality) -> Cases:
+    """L = 100, e = 1.05, gamma = 4 and 10."""
+    cases: Cases = {}
+    for damping in _DAMPINGS:
+        cases |= flippers(_SIZE, damping, quality)
+    return cases
+
+
+def _counts(run: xr.Dataset, count: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return sizes from 1 on and the numbers of waves."""
+    sizes = run[_COUNTS[count][1]].values
+    counts = run[count].sel(particle=_ORIGINS).sum("particle").values.astype(float)
+    return sizes[sizes >= 1], counts[sizes >= 1]
+
+
+def _spanning(run: xr.Dataset, count: str) -> float:
+    """Return how many of 10^4 waves span the system."""
+    sizes, counts = _counts(run, count)
+    return float(1e4 * counts[sizes >= _SPANNING].sum() / counts.sum())
+
+
+def claims(results: Results) -> list[Claim]:
+    """Check: system-spanning avalanches at gamma = 4, more than at gamma = 10, in both counts."""
+    claims = []
+    for count, (name, _) in _COUNTS.items():
+        weak, strong = (
+            estimate(results, flippers_name(_SIZE, g), functools.partial(_spanning, count=count))
+            for g in _DAMPINGS
+        )
+        what = f"of 10^4 waves with N_c >= 1, those of {_SPANNING} collisions or more:"
+        ours = _OURS
+        if count == "avalanche_count":
+            ours += "; that the first hit must point right is ours"
+        claims.append(
+            positive_claim(
+                f"avalanches span the system more often at gamma = 4 than at 10 ({name})",
+                f"{what} {weak} and {strong}, difference",
+                weak.minus(strong),
+                source=_SOURCE,
+                ours=ours,
+            )
+        )
+    return claims
+
+
+def draw(results: Results) -> Figure:
+    """Draw p(N_c) for both dampings in both counts."""
+    figure, axes = panels(1, 2, height=2.7, sharey=True)
+    for ax, (count, (name, _)) in zip(axes, _COUNTS.items(), strict=True):
+        for number, damping in enumerate(_DAMPINGS):
+            run = pooled(results, flippers_name(_SIZE, damping))
+            sizes, counts = _counts(run, count)
+            label = rf"$\gamma = {damping:g}$"
+            draw_sizes(ax, sizes, counts / counts.sum(), counts, number=number, label=label)
+        ax.axvspan(_SPANNING, _SIZE, color="0.9", zorder=0, label="spans the system")
+        entitle(ax, name)
+        if at_the_left(ax):
+            ax.set_ylabel("probability $p(N_c)$")
+        ax.legend(loc="lower left")
+    return figure
+
+
+FIGURE = PaperFigure(
+    number=13,
+    name="avalanches-flippers",
+    title="Avalanche sizes at e = 1.05",
+    caption="Probability of a rightward wave of N_c >= 1 collisions that began at one of the first "
+    "ten rods, L = 100, e = 1.05. (a) The paper's count, without the first hit. (b) Pushes, with "
+    "it. Grey: waves of 80 to 100 collisions, which span the system. Error bars: counting "
+    "statistics.",
+    cases=cases,
+    draw=draw,
+    claims=claims,
+)

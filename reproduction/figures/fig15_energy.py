@@ -1,0 +1,204 @@
+"""Figure 15: kinetic energy of flippers in time: exponential growth, finite-time singularity."""
+
+from __future__ import annotations
+
+import functools
+import math
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from crazybilliards.comparison.drawing import COLOURS
+from crazybilliards.comparison.fits import fit_growth, fit_singularity
+from crazybilliards.comparison.layout import panels
+from crazybilliards.kinetic.kinetic_equation.weak_damping import weak_damping_growth_rate
+from crazybilliards.model import Chain
+from crazybilliards.reproduction.claims.repetition import (
+    estimate,
+    estimates,
+    members,
+    repeated,
+)
+from crazybilliards.reproduction.claims.study import Cases, PaperFigure, Quality, Results
+from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, positive_claim, small_claim
+
+_CHAINS = {
+    spring: Chain(size=100, restitution=1.01, damping=0.4, spring=spring)
+    for spring in ("linear", "quadratic")
+}
+_SOURCE = "section Anti-Dissipation, non_linear_vs_linear"
+_NUMBER = {"quick": 6, "full": 24}
+# The quadratic spring stiffens as it is stretched: the step is short enough for the last moments.
+_SETTINGS = {
+    "linear": {"duration": 300.0, "time_step": 0.02},
+    "quadratic": {"duration": 100.0, "time_step": 0.002},
+}
+_GROWING = 1e3  # energy beyond which noise no longer matters [M R^2/T^2]
+_HALF_WAY = 150.0  # where the rate of linear springs is measured up to, and again from [T]
+_ENERGY = r"kinetic energy $E$ [M R$^2$/T$^2$]"
+# And beyond which damping matters little: how far beyond, the exponent depends on.
+_SINGULAR = (1e5, 1e6, 1e7, 1e8)
+
+
+def cases(quality: Quality) -> Cases:
+    """L = 100, e = 1.01, gamma = 0.4, both springs, from rest."""
+    cases: Cases = {}
+    for spring, chain in _CHAINS.items():
+        settings = _SETTINGS[spring]
+        cases |= repeated(
+            spring, chain, _NUMBER[quality], warmup=0.0, observe=["energy"], **settings
+        )
+    return cases
+
+
+def _late(run: xr.Dataset, beyond: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return times and energies from the first one above ``beyond``."""
+    energy = run.kinetic_energy.values
+    begin = int(np.argmax(energy > beyond))
+    return run.time.values[begin:], energy[begin:]
+
+
+def claims(results: Results) -> list[Claim]:
+    """Check: exponential growth for linear springs, a singularity for quadratic ones."""
+    return [_growth_claim(results), *_singularity_claims(results)]
+
+
+def _growth_claim(results: Results) -> Claim:
+    early, late = (estimate(results, "linear", rate) for rate in (_early_rate, _late_rate))
+    bend = late.minus(early)
+    share = Estimate(bend.value / early.value, bend.error / early.value)
+    expected = weak_damping_growth_rate(_CHAINS["linear"])
+    return small_claim(
+        "linear springs: exponential growth",
+        f"rate {early} per T from E = {_GROWING:.0e} to t = {_HALF_WAY:g} T, and {late} from there "
+        f"to {_SETTINGS['linear']['duration']:g} T; the second less the first, over the first:",
+        share,
+        0.1,
+        source=_SOURCE,
+        theory=f"(e^2 - 1) L sqrt(k/m)/(2 pi) - gamma/m = {expected:.4f} per T, which the two "
+        f"rates test to {100 * abs(share.value):.1f} % and no better",
+    )
+
+
+def _singularity_claims(results: Results) -> list[Claim]:
+    exponents, times = zip(
+        *(
+            estimates(results, "quadratic", functools.partial(_singularity, beyond=beyond))
+            for beyond in _SINGULAR
+        ),
+        strict=True,
+    )
+    every = ", ".join(
+        f"{beyond:.0e}: {each}" for beyond, each in zip(_SINGULAR, exponents, strict=True)
+    )
+    values = [each.value for each in exponents]
+    # Half the spread is the error of not knowing where the power law begins.
+    ends = Estimate((min(values) + max(values)) / 2, (max(values) - min(values)) / 2)
+    worst = max(each.error for each in exponents)
+    all_of_them = members(results, "quadratic")
+    diverged = sum(run.attrs["status"] == "diverged" for run in all_of_them)
+    return [
+        positive_claim(
+            "quadratic springs: divergence in finite time, a power law of t_c - t",
+            f"{diverged} of {len(all_of_them)} runs diverged, t_c = {times[0]} T; exponent of E "
+            f"by the least energy fitted: {every}; middle and half the spread, with the error",
+            Estimate(ends.value, math.hypot(ends.error, worst)),
+            source=f"{_SOURCE}, inset",
+            theory="6 without damping if the rods share the energy (frequency ~ E^(1/6), so "
+            "dE/dt ~ E^(7/6)); less, as it gathers on ever fewer rods",
+        ),
+        positive_claim(
+            "the later the fit begins, the larger the exponent",
+            f"exponent from E = {_SINGULAR[-1]:.0e} on less that from {_SINGULAR[0]:.0e} on:",
+            estimate(
+                results,
+                "quadratic",
+                lambda run: (
+                    _singularity(run, _SINGULAR[-1])[0] - _singularity(run, _SINGULAR[0])[0]
+                ),
+            ),
+        ),
+    ]
+
+
+def _singularity(run: xr.Dataset, beyond: float) -> tuple[float, float]:
+    """Return exponent and t_c [T] of the fit from an energy on."""
+    fit = fit_singularity(*_late(run, beyond))
+    return fit.exponent, fit.time
+
+
+def _early_rate(run: xr.Dataset) -> float:
+    time, energy = _late(run, _GROWING)
+    return fit_growth(time[time <= _HALF_WAY], energy[time <= _HALF_WAY]).rate
+
+
+def _late_rate(run: xr.Dataset) -> float:
+    late = run.time.values > _HALF_WAY
+    return fit_growth(run.time.values[late], run.kinetic_energy.values[late]).rate
+
+
+def draw(results: Results) -> Figure:
+    """Draw E(t) of all runs, and the quadratic ones against t_c - t."""
+    figure, (left, right) = panels(1, 2, height=2.6)
+    for number, spring in enumerate(_CHAINS):
+        for k, run in enumerate(members(results, spring)):
+            left.semilogy(
+                run.time,
+                run.kinetic_energy,
+                color=COLOURS[number],
+                linewidth=0.6,
+                alpha=0.7,
+                label=f"{spring} springs" if k == 0 else None,
+            )
+    rate = weak_damping_growth_rate(_CHAINS["linear"])
+    t = np.array([40.0, _HALF_WAY])
+    anchor = np.mean(
+        [np.interp(90, run.time, run.kinetic_energy) for run in members(results, "linear")]
+    )
+    left.semilogy(
+        t,
+        anchor * np.exp(rate * (t - 90)),
+        "k--",
+        label=rf"theory: $\exp({rate:.3f}\,t/$T$)$",
+    )
+    left.set(xlabel="time $t$ [T]", ylabel=_ENERGY, xlim=(0, _HALF_WAY), ylim=(1, 1e8))
+    left.legend()
+    _draw_singularity(right, members(results, "quadratic"))
+    return figure
+
+
+def _draw_singularity(ax: Axes, quadratic: list[xr.Dataset]) -> None:
+    for k, run in enumerate(quadratic):
+        fit = fit_singularity(*_late(run, _SINGULAR[0]))
+        left = fit.time - run.time.values
+        before = left > 0
+        ax.loglog(
+            left[before],
+            run.kinetic_energy.values[before],
+            ".",
+            markersize=2,
+            color=COLOURS[1],
+            alpha=0.6,
+            label="quadratic springs" if k == 0 else None,
+        )
+    span = np.array([0.6, 6.0])
+    ax.loglog(span, 3e7 * span**-6.0, "k--", label="slope $-6$")
+    ax.set(xlabel="time left $t_c - t$ [T]", ylabel=_ENERGY, ylim=(1, 1e12))
+    ax.legend()
+
+
+FIGURE = PaperFigure(
+    number=15,
+    name="energy",
+    title="Kinetic energy of flippers in time",
+    caption="L = 100, e = 1.01, gamma = 0.4, from rest. (a) Every line is a run, cut off at 1e8 "
+    "and at t = 150. Dashed: the growth rate of a balance between damping and one collision of "
+    "every pair in half a period. (b) The runs with quadratic springs against the time left until "
+    "their t_c, fitted from E = 1e5 on.",
+    cases=cases,
+    draw=draw,
+    claims=claims,
+)

@@ -1,0 +1,112 @@
+"""Figure 16: the arctanh fit of the mean displacement at e = 1, and the exact curve."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from crazybilliards.comparison.distances import distances_in_plot
+from crazybilliards.comparison.drawing import COLOURS
+from crazybilliards.comparison.fits import fit_arctanh
+from crazybilliards.comparison.layout import panels
+from crazybilliards.kinetic import equilibrium
+from crazybilliards.model import chain_of
+from crazybilliards.reproduction.claims.study import Cases, PaperFigure, Quality, Results
+from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, eye_claim, same_claim
+from crazybilliards.reproduction.figures.fig17_density import simulation
+
+_AMPLITUDE = 10.0
+_EXACT = 0.005  # of s: half of what the arctanh is off at most
+
+
+def cases(quality: Quality) -> Cases:
+    """L = 100, e = 1, A = 10."""
+    return {"run": simulation(_AMPLITUDE, quality)}
+
+
+def claims(results: Results) -> list[Claim]:
+    """Check: the arctanh fits; the exact curve does."""
+    run = results["run"]
+    chain = chain_of(run)
+    fit, s = fit_arctanh(run), chain.thermal_length
+    fitted = fit(run.mean_position)
+    exact = equilibrium(chain).mean_displacement
+
+    x, displacement = run.mean_position.values, run.mean_displacement.values
+    errors = run.mean_displacement_error.values
+    worst = float(np.abs(displacement - fitted).max()) / s
+    fine = np.linspace(x[0], x[-1], 4001)
+    off = distances_in_plot(x, displacement, fine, fit(fine))
+    at = int(off.argmax())
+    error = float(errors[at] / np.ptp(displacement))
+    return [
+        eye_claim(
+            "<dx> is described by B arctanh(C x)",
+            f"B = {fit.scale:.3f} R, C = {fit.steepness:.5f}/R, all rods, both axes linear",
+            Estimate(float(off[at]), error),
+            float((np.abs(displacement - fitted) / errors).max()),
+            source="section seq:analytics, fig:atan",
+            reason="the curve misses the outermost rods",
+            exactly="the displacements are expected order statistics, which no arctanh is; the "
+            f"fit is off by {100 * fit.misfit / s:.1f} % of s (rms), {100 * worst:.0f} % at most",
+        ),
+        same_claim(
+            "<dx> is exactly that of expected order statistics, nothing fitted",
+            "<dx> of a rod less the exact one, in units of s",
+            map(Estimate, (displacement - exact.values) / s, errors / s),
+            _EXACT,
+        ),
+    ]
+
+
+def draw(results: Results) -> Figure:
+    """Draw <dx>(x), the fit and the exact curve, and their differences."""
+    run = results["run"]
+    chain = chain_of(run)
+    s = chain.thermal_length
+    fit = fit_arctanh(run)
+    exact = equilibrium(chain)
+    x = run.mean_position.values
+    figure, (top, bottom) = panels(2, 1, height=1.7, wanted=1, sharex=True, height_ratios=(2, 1))
+    measured = run.mean_displacement.values
+    top.errorbar(
+        x,
+        measured / s,
+        run.mean_displacement_error / s,
+        fmt="o",
+        color="black",
+        markerfacecolor="none",
+        linewidth=0.7,
+        label="simulation",
+    )
+    curves = {
+        "exact": (exact.mean_displacement.values, "-", COLOURS[1]),
+        "arctanh fit": (fit(x), "--", COLOURS[0]),
+    }
+    for label, (curve, style, colour) in curves.items():
+        top.plot(x, curve / s, style, color=colour, label=label)
+        bottom.plot(x, (curve - measured) / s, style, color=colour)
+    bottom.fill_between(
+        x,
+        -run.mean_displacement_error / s,
+        run.mean_displacement_error / s,
+        color="0.8",
+        label="one standard error",
+    )
+    bottom.legend(loc="lower center")
+    top.set(ylabel=r"displacement $\langle\Delta x\rangle/s$")
+    bottom.set(xlabel=r"mean position $\langle x_i\rangle$ [R]", ylabel="curve less\nsimulation")
+    top.legend()
+    return figure
+
+
+FIGURE = PaperFigure(
+    number=16,
+    name="arctanh",
+    title="The mean displacement at e = 1 and its arctanh fit",
+    caption="L = 100, e = 1, A = 10. (b) Curves less simulation; grey: one standard error. "
+    "s is the thermal length.",
+    cases=cases,
+    draw=draw,
+    claims=claims,
+)

@@ -1,0 +1,119 @@
+"""Figure 17: density of the elastic chain, simulation and theory, for several amplitudes."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from crazybilliards.comparison.coverage import smooth
+from crazybilliards.comparison.distances import Deviation, density_differences, distances_in_plot
+from crazybilliards.comparison.side_by_side.elastic_chain import (
+    LEGEND,
+    deviations,
+    elastic_theories,
+)
+from crazybilliards.comparison.side_by_side.elastic_figures import draw_density
+from crazybilliards.comparison.side_by_side.parameter_series import SIMULATION
+from crazybilliards.comparison.sweeps import Case
+from crazybilliards.model import Chain, chain_of
+from crazybilliards.reproduction.claims.study import Cases, PaperFigure, Quality, Results
+from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, eye_claim, same_claim
+
+_AMPLITUDES = (1.0, 3.0, 10.0, 30.0)
+_DURATION = {"quick": 50_000.0, "full": 1_000_000.0}
+_ARCTANH = 10.0  # the amplitude of the paper's arctanh fit, fig:atan
+_VISIBLE = 1e-3  # of close packing: where both densities are lower, nothing is drawn
+_EXACT = 0.01  # of close packing
+_SOURCE = "section seq:analytics, diff_gl, fig:rho_num_sim"
+
+
+def simulation(amplitude: float, quality: Quality) -> Case:
+    """L = 100, e = 1."""
+    settings = {"duration": _DURATION[quality], "observe": ["widths", "density"]}
+    return Case("simulate", Chain(size=100, amplitude=amplitude), settings)
+
+
+def cases(quality: Quality) -> Cases:
+    """Four amplitudes."""
+    return {f"amplitude_{a:g}": simulation(a, quality) for a in _AMPLITUDES}
+
+
+def _tree(results: Results) -> xr.DataTree:
+    every: dict[str, xr.Dataset] = {}
+    for name, run in results.items():
+        every[f"{name}/{SIMULATION}"] = run
+        theories = elastic_theories(chain_of(run), run)
+        every |= {f"{name}/{key}": theory for key, theory in theories.items()}
+    return xr.DataTree.from_dict(every)
+
+
+def claims(results: Results) -> list[Claim]:
+    """Check: simulation and theory agree."""
+    tree = _tree(results)
+    groups = tree.children
+    claims = []
+    for name, by_theory in deviations(tree).items():
+        amplitude = float(name.removeprefix("amplitude_"))
+        claims.append(_match(groups[name], amplitude, by_theory))
+        run, exact = (smooth(groups[name][key].to_dataset()) for key in (SIMULATION, "exact"))
+        claims.append(
+            same_claim(
+                f"the exact density is the simulated one, A = {amplitude:g}",
+                "the difference in a bin, in units of close packing",
+                map(Estimate, *density_differences(run, exact)),
+                _EXACT,
+                theory="exact",
+            )
+        )
+    return claims
+
+
+def _match(group: xr.DataTree, amplitude: float, by_theory: dict[str, Deviation]) -> Claim:
+    """Compare the theory fed with the fitted displacement with the simulated density."""
+    run, theory = (smooth(group[key].to_dataset()) for key in (SIMULATION, "arctanh"))
+    off, error = _off_in_plot(run, theory)
+    arctanh, labels = by_theory["arctanh"], by_theory["labels"]
+    return eye_claim(
+        f"simulated and integrated densities match perfectly, A = {amplitude:g}",
+        "rho(x) of simulation and theory, fed with the fitted displacement, both axes linear",
+        Estimate(off, error),
+        arctanh.maximum_in_errors or 0.0,
+        source=_SOURCE,
+        ours="the amplitude" + (", which is that of fig:atan" if amplitude == _ARCTANH else ""),
+        theory=f"closed by labels, nothing fitted, off by {labels.maximum:.3f} of close packing",
+        reason="the outermost rod or two make a step in the exact density, and a fluid has none",
+        exactly=f"at equal x the largest difference is {arctanh.maximum:.3f} of close packing, at "
+        "the outermost rods",
+    )
+
+
+def _off_in_plot(run: xr.Dataset, theory: xr.Dataset) -> tuple[float, float]:
+    """Return the largest distance in the plot of rho(x), as a share of it, and its error."""
+    x, rho = run.x.values, run.density.values
+    line = np.interp(x, theory.x.values, theory.density.values, left=0.0, right=0.0)
+    least = _VISIBLE * chain_of(run).close_packed_density
+    drawn = (rho > least) | (line > least)
+    height = (0.0, float(rho.max()))
+    off = distances_in_plot(x[drawn], rho[drawn], x[drawn], line[drawn], y_range=height)
+    at = int(off.argmax())
+    return float(off[at]), float(run.density_error.values[drawn][at]) / height[1]
+
+
+def draw(results: Results) -> Figure:
+    """Draw rho(x) and the differences from the exact density."""
+    return draw_density(_tree(results))
+
+
+FIGURE = PaperFigure(
+    number=17,
+    name="density",
+    title="Density at e = 1: simulation and theory",
+    caption="L = 100, e = 1, four driving amplitudes. Circles: simulation, smoothed as in the "
+    "paper; a thin line where circles would hide steps. Other lines: "
+    f"{'; '.join(LEGEND.values())}. Insets: the right edge, every bin. Below each: the difference "
+    "from the exact density in units of close packing.",
+    cases=cases,
+    draw=draw,
+    claims=claims,
+)

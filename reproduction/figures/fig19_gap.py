@@ -1,0 +1,150 @@
+"""Figure 19: velocity variances of chains with gaps: a plateau in the interior."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from crazybilliards.comparison.drawing import along_the_chain, draw_rods
+from crazybilliards.comparison.layout import at_the_left, entitle, legend_above, panels
+from crazybilliards.comparison.widths import central_width
+from crazybilliards.model import Chain, chain_of
+from crazybilliards.reproduction.chains import LARGE, dissipative, dissipative_name
+from crazybilliards.reproduction.claims.repetition import estimate, pooled, repeated
+from crazybilliards.reproduction.claims.study import Cases, PaperFigure, Quality, Results
+from crazybilliards.reproduction.claims.verdicts import Claim, positive_claim, small_claim
+
+_RESTITUTIONS = (0.0, 0.75, 0.95)
+_GAPS = (0.05, 0.2, 1.0)
+_NUMBER = {"quick": (2, 120.0, 50.0), "full": (4, 600.0, 100.0)}  # runs, duration, warm-up
+_SOURCE = "appendix, fig:mom_var_gaps"
+_OURS = "the gaps, the restitutions and the time step"
+_FLAT = 0.1  # change of ln W_v^2 that still counts as a plateau
+
+
+def cases(quality: Quality) -> Cases:
+    """L = 1000, three restitutions, four gaps."""
+    number, duration, warmup = _NUMBER[quality]
+    cases: Cases = {}
+    for restitution in _RESTITUTIONS:
+        cases |= dissipative(LARGE, restitution, quality)
+        for gap in _GAPS:
+            chain = Chain(size=LARGE, restitution=restitution, gap=gap)
+            cases |= repeated(
+                _name(restitution, gap),
+                chain,
+                number,
+                duration=duration,
+                warmup=warmup,
+                observe=["widths"],
+            )
+    return cases
+
+
+def _name(restitution: float, gap: float) -> str:
+    if gap == 0:
+        return dissipative_name(LARGE, restitution)
+    return f"{dissipative_name(LARGE, restitution)} g={gap:g}"
+
+
+def _change(run: xr.Dataset) -> float:
+    """Ln of W_v^2 half-way to the border over that in the centre."""
+    there = np.abs(np.abs(run.normalized_particle.values) - 0.5) < 0.05
+    half_way = float((run.velocity_width.values[there] ** 2).mean())
+    return float(np.log(half_way / central_width(run) ** 2))
+
+
+def _border_layer(run: xr.Dataset) -> float:
+    """Rods at a border, from the outermost one on, whose ln W_v^2 is ``_FLAT`` above the centre's.
+
+    The mean of both borders counts. Single rods count too: with a large gap the layer has few.
+    """
+    variance = run.velocity_width.values**2
+    inward = (variance + variance[::-1])[: run.sizes["particle"] // 2] / 2
+    flat = np.log(inward / central_width(run) ** 2) <= _FLAT
+    return float(flat.argmax()) if flat.any() else float(flat.size)
+
+
+def _widening(results: Results, restitution: float) -> Claim:
+    """Decide whether the plateau widens with every larger gap, by the least of the gains."""
+    layers = [estimate(results, _name(restitution, gap), _border_layer) for gap in _GAPS]
+    gains = [narrow.minus(wide) for narrow, wide in itertools.pairwise(layers)]
+    listed = ", ".join(f"{layer} at g = {gap:g}" for gap, layer in zip(_GAPS, layers, strict=True))
+    return positive_claim(
+        f"the larger the gap, the wider the plateau, e = {restitution:g}",
+        f"rods at each border where ln W_v^2 is more than {_FLAT:g} above the centre's: {listed}; "
+        "what the plateau gains at each border, at least:",
+        min(gains, key=lambda gain: gain.value - 3 * gain.error),
+        source=_SOURCE,
+        ours=_OURS,
+        reason="at the larger gaps the plateau reaches the last rod or two already",
+    )
+
+
+def claims(results: Results) -> list[Claim]:
+    """Check: a plateau with a gap, the wider the larger the gap; none without."""
+    claims = []
+    for restitution in _RESTITUTIONS:
+        what = "ln of W_v^2 half-way to the border over that in the centre:"
+        without = estimate(results, _name(restitution, 0.0), _change)
+        for gap in _GAPS:
+            claims.append(
+                small_claim(
+                    f"plateau in the interior, e = {restitution:g}, g = {gap:g}",
+                    what,
+                    estimate(results, _name(restitution, gap), _change),
+                    _FLAT,
+                    source=_SOURCE,
+                    ours=_OURS,
+                    reason="the gap is too small for the interior to become homogeneous",
+                )
+            )
+        claims.append(
+            positive_claim(
+                f"no plateau without a gap, e = {restitution:g}",
+                what,
+                without,
+                source=_SOURCE,
+                ours=_OURS,
+            )
+        )
+        claims.append(_widening(results, restitution))
+    return claims
+
+
+def draw(results: Results) -> Figure:
+    """Draw W_v^2(i) for every gap, a panel a restitution."""
+    figure, axes = panels(1, len(_RESTITUTIONS), sharey=True)
+    for ax, restitution in zip(axes, _RESTITUTIONS, strict=True):
+        ax.set_yscale("log")
+        for number, gap in enumerate((0.0, *_GAPS)):
+            run = pooled(results, _name(restitution, gap))
+            run = run.assign(
+                velocity_variance=run.velocity_width**2,
+                velocity_variance_error=2 * run.velocity_width * run.velocity_width_error,
+            )
+            unit = chain_of(run).free_velocity_width ** 2
+            draw_rods(
+                ax, run, "velocity_variance", number=number, unit=unit, label=f"$g = {gap:g}$"
+            )
+        along_the_chain(ax)
+        entitle(ax, f"$e = {restitution:g}$")
+        if at_the_left(ax):
+            ax.set_ylabel("velocity variance $W_v^2/W^2$")
+    legend_above(figure, axes[0])
+    return figure
+
+
+FIGURE = PaperFigure(
+    number=19,
+    name="gap",
+    title="Velocity variances of chains with gaps",
+    caption="W_v^2 against the normalized particle number, L = 1000, for several gaps g between "
+    "neighbouring rods at their anchors, in radii.",
+    cases=cases,
+    draw=draw,
+    claims=claims,
+)

@@ -1,0 +1,72 @@
+"""The paper's fit of two power laws: its parameters, and how it looks in plots of widths."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+import xarray as xr
+
+from crazybilliards.comparison.distances import distances_in_plot
+from crazybilliards.comparison.fits import fit_border_power_law
+from crazybilliards.model import chain_of
+from crazybilliards.reproduction.claims.verdicts import Estimate
+
+
+def nu(run: xr.Dataset) -> float:
+    """Return the exponent."""
+    return fit_border_power_law(run).exponent
+
+
+def weighted_nu(run: xr.Dataset) -> float:
+    """Return the exponent with rods weighed by their error bars."""
+    return fit_border_power_law(run, weighted=True).exponent
+
+
+def lost_with_weights(run: xr.Dataset) -> float:
+    """Return by how much weights make the exponent steeper."""
+    return nu(run) - weighted_nu(run)
+
+
+def gained_without_c(run: xr.Dataset) -> float:
+    """Return by how much the exponent is flatter if the power laws begin at rod 0."""
+    return fit_border_power_law(run, shifted=False).exponent - nu(run)
+
+
+def origin(run: xr.Dataset) -> float:
+    """Return c, where the power laws begin."""
+    return fit_border_power_law(run).origin
+
+
+def fits_in_plot(runs: Iterable[xr.Dataset]) -> tuple[Estimate, float]:
+    """Compare the fits with the widths in a plot of all runs, both axes logarithmic.
+
+    Returns the largest deviation as a share of the plotted range, which ends at the free rod's
+    width, and the largest one in standard errors.
+    """
+    runs = list(runs)
+    free = np.log(chain_of(runs[0]).free_velocity_width)
+    lowest = np.log(min(float(run.velocity_width.min()) for run in runs))
+    longest = np.log(max(run.sizes["particle"] for run in runs))
+    worst, significance = Estimate(0.0, 0.0), 0.0
+    for run in runs:
+        fit = fit_border_power_law(run)
+        i, width, error = (
+            run.particle.values,
+            run.velocity_width.values,
+            run.velocity_width_error.values,
+        )
+        fine = np.geomspace(1, i[-1], 2000)
+        off = distances_in_plot(
+            np.log(i),
+            np.log(width),
+            np.log(fine),
+            np.log(fit(fine)),
+            x_range=(0.0, longest),
+            y_range=(lowest, free),
+        )
+        at = int(off.argmax())
+        if off[at] > worst.value:
+            worst = Estimate(float(off[at]), float(error[at] / width[at] / (free - lowest)))
+        significance = max(significance, float(np.abs((fit(i) - width) / error).max()))
+    return worst, significance

@@ -1,0 +1,91 @@
+"""Dissipative chains in the limit of a vanishing time step, beside the runs at a time step.
+
+The error bar of a limit holds its statistics and the remaining error of the step. Independent
+limits of one chain have the second part in common: the mean of many does not make it smaller.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+import xarray as xr
+
+from crazybilliards.comparison.widths import central_width
+from crazybilliards.model import Chain
+from crazybilliards.reproduction.claims.repetition import estimate, members, repeated
+from crazybilliards.reproduction.claims.study import Cases, Quality, Results
+from crazybilliards.reproduction.claims.verdicts import Estimate
+
+LABEL = r"limit $dt \to 0$"
+
+# Number of limits, and the accuracy of each: at e = 0, where exponents have their errors from the
+# scatter between them, and at larger restitutions, where they cost ten times as much.
+_INELASTIC = {"quick": (3, 0.02), "full": (5, 0.005)}
+_DISSIPATIVE = {"quick": (1, 0.05), "full": (1, 0.015)}
+
+
+def limits(size: int, restitution: float, quality: Quality) -> Cases:
+    """Return limits of a dissipative chain, named by its parameters."""
+    number, accuracy = (_DISSIPATIVE if restitution else _INELASTIC)[quality]
+    return repeated(
+        limit_name(size, restitution),
+        Chain(size=size, restitution=restitution),
+        number,
+        "simulate_limit",
+        accuracy=accuracy,
+        observe=["widths"],
+    )
+
+
+def limit_name(size: int, restitution: float = 0.0) -> str:
+    """Return the name under which :func:`limits` go."""
+    return f"limit L={size} e={restitution:g}"
+
+
+def central_limit(results: Results, size: int, restitution: float = 0.0) -> Estimate:
+    """Return W_v in the centre for dt -> 0, with one error for statistics and time step."""
+    runs = members(results, limit_name(size, restitution))
+    value = float(np.mean([central_width(run) for run in runs]))
+    bias = common_bias(runs)
+    squares = [_relative_error(run) ** 2 - float(run.attrs["time_step_error"]) ** 2 for run in runs]
+    statistics = math.sqrt(sum(max(square, 0.0) for square in squares)) / len(runs)
+    return Estimate(value, value * math.hypot(statistics, bias))
+
+
+def _relative_error(run: xr.Dataset) -> float:
+    return float(run.central_velocity_width_error / run.central_velocity_width)
+
+
+def relative_shift(width: Estimate, limit: Estimate) -> Estimate:
+    """Return how much wider a width is than its limit, as a share of it."""
+    ratio = width.value / limit.value
+    error = ratio * math.hypot(width.error / width.value, limit.error / limit.value)
+    return Estimate(ratio - 1, error)
+
+
+def common_bias(runs: list[xr.Dataset]) -> float:
+    """Return the remaining relative error of the step in W_v of the centre, mean of the limits."""
+    return float(np.mean([run.attrs["time_step_error"] for run in runs]))
+
+
+def limit_estimate(
+    results: Results, size: int, quantity: Callable[[xr.Dataset], float]
+) -> Estimate:
+    """Return a number drawn from W_v(i) for dt -> 0 at e = 0, an exponent say.
+
+    Its statistics are the scatter between the limits. Its bias is by how much it moves if W_v is
+    off by the remaining error of the step: in the centre by that share, elsewhere by less, as r^3,
+    r being the velocity kick of a step over W_v.
+    """
+    runs = members(results, limit_name(size))
+    found = estimate(results, limit_name(size), quantity)
+    moved = float(np.mean([quantity(_with_a_step(run)) for run in runs]))
+    return Estimate(found.value, math.hypot(found.error, moved - found.value))
+
+
+def _with_a_step(run: xr.Dataset) -> xr.Dataset:
+    width = run.velocity_width
+    share = float(run.attrs["time_step_error"]) * (central_width(run) / width) ** 3
+    return run.assign(velocity_width=width * (1 + share))

@@ -1,0 +1,190 @@
+"""Where commands write to: a wrong place costs no work, and what is written arrives whole."""
+
+import json
+import os
+import shlex
+import subprocess
+import sys
+import warnings
+from dataclasses import asdict
+
+import pytest
+from rich.table import Table
+
+from crazybilliards.apps.commands.answers import print_table
+from crazybilliards.comparison.side_by_side.elastic_chain import deviations
+from crazybilliards.comparison.side_by_side.relaxation import label_distances
+from crazybilliards.model import load
+from crazybilliards.model.locks import locked
+
+SMALL = {
+    "compare": ["--size", "4", "--duration", "300", "--amplitudes", "10"],
+    "relax": ["--size", "4", "--duration", "1", "--replicas", "2"],
+    "reproduce": ["1"],
+    "simulate": ["--size", "4", "--duration", "100"],
+    "theory": ["equilibrium", "--size", "4"],
+}
+FOLDERS = ["compare", "relax", "reproduce", "theory"]
+THEORY = ["theory", *SMALL["theory"]]
+COMMAND = [sys.executable, "-m", "crazybilliards"]
+
+
+@pytest.fixture
+def arguments(tmp_path):
+    """Give a small job of a command."""
+    grid = tmp_path / "grid.toml"
+    grid.write_text("[grid]\nsize = [3]\n[simulate]\nduration = 100\n")
+    return lambda command: [command, *(SMALL | {"sweep": [grid]})[command]]
+
+
+@pytest.mark.parametrize("command", [*SMALL, "sweep"])
+def test_an_empty_name_is_no_folder(command, arguments, refused, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    refused("an empty name", *arguments(command), "--output", "")
+
+
+@pytest.mark.parametrize("command", [*FOLDERS, "sweep"])
+def test_a_link_that_leads_nowhere_is_no_folder(command, arguments, refused, tmp_path):
+    link = tmp_path / "link"
+    link.symlink_to(tmp_path / "nothing")
+    for place in (link, link / "below"):
+        refused(f"{link} is a link that leads nowhere", *arguments(command), "--output", place)
+
+
+@pytest.mark.parametrize("command", [*FOLDERS, "sweep"])
+def test_a_folder_belongs_to_one_process_at_a_time(command, arguments, run, tmp_path):
+    folder = tmp_path / "results"
+    folder.mkdir()
+    with locked(folder):
+        done = run(*arguments(command), "--output", folder)
+    assert (done.returncode, done.stderr.count("\n")) == (2, 1), done.stderr
+    assert f"{folder}: in use by process {os.getpid()}" in done.stderr
+    assert list(folder.iterdir()) == []
+
+
+def test_a_file_belongs_to_one_process_at_a_time(arguments, refused, run, tmp_path):
+    file = tmp_path / "run.nc"
+    with locked(file):
+        refused(f"{file}: in use by process", *arguments("simulate"), "--output", file)
+    assert run(*arguments("simulate"), "--output", file).returncode == 0
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["grid.toml", "run.nc"]
+
+
+def test_a_mistake_leaves_no_folder(refused, tmp_path):
+    for output in (tmp_path / "new", tmp_path / "new" / "deep"):
+        refused("amplitudes", "compare", "--amplitudes", "x", "--output", output)
+        assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="pipes are other things there")
+def test_a_reader_that_goes_costs_no_work(tmp_path):
+    reading, writing = os.pipe()
+    os.close(reading)
+    done = subprocess.run(
+        [*COMMAND, *THEORY, "--output", tmp_path],
+        env=os.environ | {"PYTHONUNBUFFERED": "1"},
+        stdout=writing,
+        stderr=subprocess.PIPE,
+        check=False,
+    )
+    os.close(writing)
+    assert (done.returncode, done.stderr) == (141, b"")
+    assert {path.name for path in tmp_path.iterdir()} == {"theory.nc", "density.png", "profile.png"}
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="needs a device that is full")
+def test_standard_output_to_a_full_disk_is_one_line():
+    with open("/dev/full", "w") as full:
+        done = subprocess.run(
+            [*COMMAND, *THEORY], stdout=full, stderr=subprocess.PIPE, text=True, check=False
+        )
+    assert done.returncode == 2
+    assert done.stderr == ("crazybilliards: error: standard output: No space left on device\n")
+
+
+@pytest.mark.skipif(os.name == "nt", reason="closes POSIX streams")
+@pytest.mark.parametrize(
+    ("command", "closed"),
+    [
+        *((command, ">&- 2>&- <&-") for command in [*SMALL, "sweep"]),
+        ("theory", ">&-"),
+        ("theory", "2>&-"),
+    ],
+)
+def test_a_closed_stream_costs_no_work(closed, command, arguments, tmp_path):
+    output = tmp_path / ("run.nc" if command == "simulate" else "results")
+    line = [*COMMAND, *map(str, arguments(command)), "--output", str(output)]
+    done = subprocess.run(
+        f"{shlex.join(line)} {closed}", shell=True, capture_output=True, text=True, check=False
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    assert output.exists()
+
+
+def test_numbers_in_tables_are_never_cut(monkeypatch, capsys):
+    monkeypatch.setenv("COLUMNS", "30")
+    table = Table(title="A long title of a table that wraps", caption="A caption that wraps too")
+    numbers = ["0.001234 +- 0.0005", "123456789.0123", "-1.234e-300", "4.17 / 1.58"]
+    for number in numbers:
+        table.add_column(f"a long heading [of {len(number)} words]", justify="right")
+    table.add_row(*numbers)
+    print_table(table)
+    printed = capsys.readouterr().out
+    assert all(number in printed for number in numbers)
+    assert "…" not in printed
+    assert "[of" in printed
+
+
+def test_a_long_title_and_caption_use_the_width_of_the_terminal(monkeypatch, capsys):
+    monkeypatch.setenv("COLUMNS", "80")
+    title = "Density: simulation minus theory, in % of close packing"
+    table = Table("a", title=title, caption="Smoothed as in the paper; [sigma] is a unit.")
+    table.add_row("1")
+    print_table(table)
+    lines = capsys.readouterr().out.splitlines()
+    assert (lines[0], lines[-1]) == (title, "Smoothed as in the paper; [sigma] is a unit.")
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("command", [*SMALL, "sweep"])
+def test_json_is_one_object_with_every_file_written(command, arguments, run, tmp_path):
+    """Numbers in full, as the functions return them; nothing else on standard output."""
+    folder = tmp_path / "results"
+    output = tmp_path / "run.nc" if command == "simulate" else folder
+    done = run(*arguments(command), "--json", "--output", output)
+    assert done.returncode == 0, done.stderr
+    facts = json.loads(done.stdout)
+    if command == "sweep":
+        assert facts == {"cases": 1, "folder": str(folder), "computed": 1, "failed": []}
+        return
+    there = [output] if command == "simulate" else folder.rglob("*.*")
+    assert sorted(facts["written"]) == sorted(map(str, there))
+    if command == "simulate":
+        [first, *_] = facts["rods"]
+        run_file = load(output)
+        assert first["velocity_width"] == float(run_file.velocity_width[0])
+        assert first["velocity_width_error"] == float(run_file.velocity_width_error[0])
+        assert (facts["status"], facts["end_time"]) == ("completed", run_file.attrs["end_time"])
+    if command == "theory":
+        assert facts["model_error"] == 0
+    if command == "compare":
+        tree = load(folder / "comparison.nc")
+        [found] = facts["density_deviations"]
+        assert found["exact"] == asdict(deviations(tree)["amplitude_10"]["exact"])
+    if command == "relax":
+        assert facts["distances"] == label_distances(load(folder / "relaxation.nc"))
+
+
+def test_json_of_a_mistake_is_nothing(run):
+    done = run("theory", "--json", "--size", 0)
+    assert (done.returncode, done.stdout) == (2, "")
+
+
+def test_a_warning_is_one_plain_line(run):
+    with warnings.catch_warnings():
+        warnings.simplefilter("default")
+        done = run("compare", "--size", "3", "--amplitudes", "1", "--duration", "2000")
+    assert done.returncode == 0
+    lines = [line for line in done.stderr.splitlines() if "compiling" not in line]
+    (line,) = lines
+    assert line.startswith("crazybilliards: warning: A = 1 has no arctanh fit: ")

@@ -1,0 +1,135 @@
+"""Independent runs of one chain give means with errors; distances in a plot are the shortest."""
+
+import numpy as np
+import pytest
+from scipy.stats import norm, t
+
+from crazybilliards.apps.explore.sums import Sums
+from crazybilliards.comparison.distances import distances_in_plot
+from crazybilliards.comparison.widths import border_width, central_width, width_deviation
+from crazybilliards.model import Chain
+from crazybilliards.model.vocabulary import result
+from crazybilliards.particles import simulate, simulate_limit
+from crazybilliards.reproduction.claims.repetition import (
+    error_of_mean,
+    estimate,
+    pooled,
+    share_of_runs,
+)
+from crazybilliards.reproduction.claims.verdicts import positive_claim
+from crazybilliards.reproduction.distributions import mean_shape
+
+
+def test_distances_in_a_plot_are_the_shortest_to_the_line():
+    x = np.linspace(-2, 3, 26)
+    # A circle of radius 1 in the units of the plot; the line is the x-axis, then a tilted one.
+    unit = {"x_range": (0.0, 10.0), "y_range": (-5.0, 5.0)}
+    y = np.sqrt(np.maximum(9 - x**2, 0))
+    far = np.array([-100.0, 100.0])
+    np.testing.assert_allclose(distances_in_plot(x, y, far, 0 * far, **unit), y / 10)
+    tilted = distances_in_plot(x, y, far, far, **unit)
+    np.testing.assert_allclose(tilted, np.abs(y - x) / 10 / 2**0.5, atol=1e-12)
+    # Beyond the end of a line the distance is that of its end; a step is seen from aside.
+    end = distances_in_plot([4.0], [3.0], [-9.0, 0.0], [0.0, 0.0], **unit)
+    assert end == pytest.approx([0.5])
+    step = np.array([0.0, 5.0, 5.0, 10.0]), np.array([0.0, 0.0, 4.0, 4.0])
+    assert distances_in_plot([5.1], [1.0], *step, **unit) == pytest.approx([0.01])
+    # Without ranges those of the symbols.
+    bare = distances_in_plot([0.0, 2.0], [0.0, 4.0], [0.0, 2.0], [1.0, 1.0])
+    assert bare == pytest.approx([0.25, 0.75])
+    bare = distances_in_plot([0.0, 2.0], [0.0, 4.0], [0.5, 0.5], [-100.0, 100.0])
+    assert bare == pytest.approx([0.25, 0.75])
+
+
+# -- independent runs -------------------------------------------------------------------------
+
+
+def test_errors_of_estimates_cover_the_truth_however_few_the_runs():
+    """68 % of the estimates from three runs lie within one error, thanks to Student's factor."""
+    generator = np.random.default_rng(5)
+    hits, trials = 0, 300
+    for _ in range(trials):
+        results = {f"a/{k}": generator.normal(1, 0.1) for k in range(3)}  # of runs only the number
+        value, error = estimate(results, "a", float)
+        hits += abs(value - 1) < error
+    assert abs(hits / trials - 0.683) < 5 * (0.683 * 0.317 / trials) ** 0.5
+
+
+def test_two_runs_have_an_error_of_student():
+    """The half-difference times 1.84; several quantities at once have each their own."""
+    factor = t.ppf(norm.cdf(1), 1)
+    assert factor == pytest.approx(1.837, abs=1e-3)
+    np.testing.assert_allclose(error_of_mean([[1.0, 5.0], [2.0, 5.0]]), [0.5 * factor, 0.0])
+
+
+def test_all_of_few_runs_are_not_all_runs():
+    assert positive_claim("they diverge", "share", share_of_runs(4, 4)).verdict == "confirmed"
+    assert positive_claim("they diverge", "share", share_of_runs(1, 4)).verdict == "undecided"
+    value, error = share_of_runs(500, 1000)
+    assert (value, error) == pytest.approx((0.5, 0.5 / 1000**0.5), rel=1e-2)
+
+
+def test_pooling_runs_is_averaging_them():
+    chain = Chain(size=4)
+    observe = ["widths", "avalanches", "velocities"]
+    simulated = {
+        f"a/{seed}": simulate(chain, duration=200, seed=seed, observe=observe, progress=False)
+        for seed in range(3)
+    }
+    other = {"ab/0": simulated["a/0"]}
+    run = pooled(simulated | other, "a")
+    square = np.mean([each.velocity_width.values**2 for each in simulated.values()], axis=0)
+    np.testing.assert_allclose(run.velocity_width**2, square)
+    errors = np.sqrt(sum(each.velocity_width_error.values**2 for each in simulated.values())) / 3
+    np.testing.assert_allclose(run.velocity_width_error, errors)
+    counts = sum(each.avalanche_count.values for each in simulated.values())
+    np.testing.assert_array_equal(run.avalanche_count, counts)
+    middle = np.mean([each.mean_position.values for each in simulated.values()], axis=0)
+    np.testing.assert_allclose(run.mean_position, middle)
+    assert run.velocity_width.attrs["units"] == "R/T"
+
+
+def test_widths_of_centre_and_border():
+    width = np.arange(1.0, 101)
+    chain = Chain(size=100)
+    run = result(chain, {"velocity_width": ("particle", width)}, source="theory", method={})
+    assert border_width(run) == pytest.approx(((1 + 100**2) / 2) ** 0.5)
+    assert central_width(run) == pytest.approx((width[45:55] ** 2).mean() ** 0.5)
+
+
+@pytest.mark.compiled
+def test_moments_of_a_gaussian():
+    """Skewness and excess kurtosis are 0, within 5 errors of 1e5 nearly independent velocities."""
+    run = simulate(
+        Chain(size=2), duration=3e5, every=6.0, observe="velocities", progress=False, seed=3
+    )
+    n = 1e5
+    for name, error in (
+        ("velocity_skewness", (6 / n) ** 0.5),
+        ("velocity_kurtosis", (24 / n) ** 0.5),
+    ):
+        assert abs(mean_shape(run, [1, 2], name)) < 5 * error * 1.5
+        measured = run[f"{name}_error"].values / 2**0.5
+        np.testing.assert_allclose(measured, error, rtol=0.4)  # of the scatter of 64 blocks
+    for name in ("velocity_kurtosis", "velocity_skewness"):
+        with pytest.raises(ValueError, match=f"the result has no '{name}'"):  # an old one
+            mean_shape(run.drop_vars(name), [1, 2], name)
+
+
+def test_the_centre_is_the_same_rods_everywhere():
+    """Four of 30 rods in claims, in comparisons with a theory, and in limits of the step."""
+    chain = Chain(size=30, restitution=0.9)
+    limit = simulate_limit(chain, accuracy=0.05, progress=False)
+    # The sum over levels of roots is not the root of the sum, to second order in the bias.
+    assert central_width(limit) == pytest.approx(float(limit.central_velocity_width), rel=1e-3)
+    middle = (limit.velocity_width.values[13:17] ** 2).mean()
+    assert central_width(limit) == pytest.approx(float(np.sqrt(middle)), rel=1e-12)
+    double = limit.assign(velocity_width=2 * limit.velocity_width)
+    double.velocity_width[:13], double.velocity_width[17:] = 7.0, 7.0
+    assert width_deviation(limit, double).centre == pytest.approx(1.0)
+    sums = Sums(chain)
+    v = np.zeros(30)
+    v[13:17] = 3.0
+    sums.add(chain.anchors, v)
+    found = sums.distributions()
+    assert found.middle[np.abs(found.v) < 1].sum() == 0

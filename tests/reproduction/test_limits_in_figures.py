@@ -1,0 +1,253 @@
+"""Figures give limits dt -> 0: their errors hold the time step, wrong ones are found, all marked.
+
+The runs are made up, so that what has to come out is known: W_v(i) is a sum of two power laws.
+"""
+
+from functools import cache
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+
+from crazybilliards.comparison.fits import fit_border_power_law
+from crazybilliards.comparison.widths import central_width
+from crazybilliards.model import Chain, chain_of
+from crazybilliards.model.vocabulary import result
+from crazybilliards.reproduction.claims.report import Reproduced, html, markdown
+from crazybilliards.reproduction.figures import FIGURES
+from crazybilliards.reproduction.vanishing_step import (
+    central_limit,
+    limit_estimate,
+    limit_name,
+    limits,
+)
+
+NOISE = 1e-3
+BIAS = 1e-3
+WITH_LIMITS = {figure.number: figure for figure in FIGURES if figure.number in (3, 4, 7)}
+
+
+def exponent_at(restitution):
+    """Return nu in the paper's form of its dependence on e."""
+    return -(0.46 + 0.2457 * np.exp(-8.65 * (1 - restitution)))
+
+
+def made_up(chain, job, *, seed=0, scale=1.0, steeper=0.0):
+    """Return a result: two power laws, W_v(centre) = scale L^-0.38, and noise on every rod."""
+    i = np.arange(1.0, chain.size + 1)
+    nu = exponent_at(chain.restitution) + steeper
+    profile = i**nu + i[::-1] ** nu
+    profile *= scale * chain.size**-0.38 / profile.min()
+    name = f"{chain.size} {chain.restitution} {job}".encode()
+    normal = np.random.default_rng([seed, *name]).normal(size=2)
+    tilt = NOISE * normal[0] * np.log(profile / profile.min())  # of each run, so that nu scatters
+    width = profile * (1 + NOISE * normal[1] + tilt)
+    error = np.full(chain.size, NOISE) * width
+    variables = {
+        "velocity_width": ("particle", width),
+        "velocity_width_error": ("particle", error),
+    }
+    if job == "simulate_limit":
+        error = np.hypot(NOISE, BIAS) * width.min()
+        variables["central_velocity_width"] = ((), width.min())
+        variables["central_velocity_width_error"] = ((), error)
+    source = "theory" if job.endswith("phase_space") else "simulation"
+    run = result(chain, variables, source=source, method={"schedule": {"time_step": 5e-4}})
+    if job == "simulate_limit":
+        run.attrs["time_step_error"] = BIAS
+    return run
+
+
+def made_up_results(number, **of_limits):
+    """Return results of all cases of a figure; ``of_limits``: what is different in its limits."""
+    return {
+        name: made_up(
+            case.chain,
+            case.job,
+            seed=case.settings.get("seed", 0),
+            **(of_limits if case.job == "simulate_limit" else {}),
+        )
+        for name, case in WITH_LIMITS[number].cases("quick").items()
+    }
+
+
+def verdicts(claims):
+    """Return the verdicts of those claims that have to do with the limit."""
+    return {
+        claim.statement: claim.verdict
+        for claim in claims
+        if "dt -> 0" in claim.statement + claim.measured
+    }
+
+
+@cache
+def right_claims(number):
+    """Return the claims of a figure whose limits are those of its runs."""
+    return WITH_LIMITS[number].claims(made_up_results(number))
+
+
+def wrong_verdicts(number, **of_limits):
+    """Return the verdicts if its limits are others."""
+    return verdicts(WITH_LIMITS[number].claims(made_up_results(number, **of_limits)))
+
+
+# -- cases ------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("quality", ["quick", "full"])
+def test_a_case_of_a_figure_is_a_limit_like_any_other_job(quality):
+    for figure in WITH_LIMITS.values():
+        cases = figure.cases(quality)
+        found = {name: case for name, case in cases.items() if case.job == "simulate_limit"}
+        assert found
+        assert len({case.key for case in found.values()}) == len(found)
+        assert all(
+            name.startswith(limit_name(case.chain.size, case.chain.restitution))
+            for name, case in found.items()
+        )
+
+
+def test_full_quality_asks_for_more():
+    for restitution in (0.0, 0.95):
+        quick, full = (limits(100, restitution, quality) for quality in ("quick", "full"))
+        assert len(quick) <= len(full)
+        first = f"{limit_name(100, restitution)}/0"
+        assert full[first].settings["accuracy"] < quick[first].settings["accuracy"] / 2
+
+
+# -- errors -----------------------------------------------------------------------------------
+
+
+def test_the_time_step_that_is_left_does_not_average_out():
+    """Five limits: a fifth of the variance, all of the bias."""
+    chain = Chain(size=100, restitution=0.0)
+    runs = [made_up(chain, "simulate_limit", seed=seed) for seed in range(5)]
+    five = {f"{limit_name(100)}/{seed}": run for seed, run in enumerate(runs)}
+    value, error = central_limit(five, 100)
+    assert value == pytest.approx(100**-0.38, rel=5 * NOISE)
+    assert error / value == pytest.approx((NOISE**2 / 5 + BIAS**2) ** 0.5, rel=1e-2)
+    one = {f"{limit_name(100)}/0": runs[0]}
+    alone = float(runs[0].central_velocity_width_error)
+    assert central_limit(one, 100).error == pytest.approx(alone, rel=1e-2)
+
+
+def exponent(run):
+    """Return nu."""
+    return fit_border_power_law(run).exponent
+
+
+def test_an_exponent_is_uncertain_by_scatter_and_by_the_step_that_is_left():
+    """Equal limits do not scatter: what is left is the step, whose share b makes nu flatter.
+
+    A centre wider by b, less outside, lowers ln(W_v(border)/W_v(centre)) = 1.4 by some of b, and
+    nu by about as large a share.
+    """
+    chain = Chain(size=100, restitution=0.0)
+    first = made_up(chain, "simulate_limit")
+    results = {f"{limit_name(100)}/{k}": first for k in range(2)}
+    found = limit_estimate(results, 100, exponent)
+    assert found.value == exponent(first)
+    assert 0.5 * BIAS < found.error / abs(found.value) / 0.7 < 2 * BIAS
+    width = limit_estimate(results, 100, central_width)
+    assert width.error / width.value == pytest.approx(BIAS, rel=1e-2)
+    # And the scatter between limits counts, as it does between runs.
+    results[f"{limit_name(100)}/1"] = made_up(chain, "simulate_limit", steeper=0.02)
+    assert limit_estimate(results, 100, exponent).error > 0.01
+
+
+# -- claims -----------------------------------------------------------------------------------
+
+
+def test_exponents_of_the_limit():
+    right = verdicts(right_claims(3))
+    assert len(right) == 6
+    assert set(right.values()) == {"confirmed"}
+    wrong = wrong_verdicts(3, steeper=-0.1)
+    assert set(wrong) == set(right)
+    kept = "the same exponent for all L in the limit dt -> 0"
+    assert {name for name, verdict in wrong.items() if verdict == "confirmed"} == {kept}
+
+
+def test_central_widths_of_the_limit():
+    statements = list(verdicts(right_claims(4)))
+    assert len(statements) == 3
+    # Of a power law: the slope is the same everywhere.
+    assert list(verdicts(right_claims(4)).values()) == ["confirmed", "undecided", "confirmed"]
+    # The default step is off by 3 %.
+    assert list(wrong_verdicts(4, scale=0.97).values()) == ["confirmed", "undecided", "refuted"]
+
+
+def test_central_widths_of_the_limit_by_restitution():
+    assert list(verdicts(right_claims(7)).values()) == [
+        "undecided",
+        "confirmed",
+    ]  # made up the same for every e
+    assert list(wrong_verdicts(7, scale=0.97).values()) == ["undecided", "refuted"]
+
+
+@pytest.mark.parametrize("number", WITH_LIMITS)
+def test_limits_are_drawn(number):
+    figure = WITH_LIMITS[number].draw(made_up_results(number))
+    figure.canvas.draw()
+    plt.close(figure)
+
+
+def test_the_page_of_claims_says_which_number_is_a_limit():
+    reproduced = [
+        Reproduced(figure, {"png": b""}, right_claims(number), [], 0.0)
+        for number, figure in WITH_LIMITS.items()
+    ]
+    marked = [claim for each in reproduced for claim in each.claims if claim.in_limit]
+    assert {
+        number: sum(c.in_limit for c in each.claims)
+        for number, each in zip(WITH_LIMITS, reproduced, strict=True)
+    } == {3: 5, 4: 2, 7: 1}
+    assert all("in the limit dt -> 0" in claim.statement for claim in marked)
+    page = markdown(reproduced, "quick")
+    assert page.count("\n* time step: the limit dt -&gt; 0") == len(marked)
+    assert f"the numbers of {len(marked)} claims" in page
+    assert html(reproduced, "quick").count("<dt>time step</dt>") == len(marked)
+    without = [
+        Reproduced(figure, {"png": b""}, [c for c in each.claims if not c.in_limit], [], 0.0)
+        for figure, each in zip(WITH_LIMITS.values(), reproduced, strict=True)
+    ]
+    assert "imits of a vanishing" not in markdown(without, "quick").split("##")[0]
+
+
+# -- theories ---------------------------------------------------------------------------------
+
+
+def test_both_theories_are_judged_for_themselves():
+    """The made-up theories have the simulation's widths; then one of them is a fifth too cold."""
+    figure, results = WITH_LIMITS[7], made_up_results(7)
+
+    def found():
+        return {
+            claim.statement: claim.verdict
+            for claim in figure.claims(results)
+            if "kinetic equation" in claim.statement
+        }
+
+    independent, pairs = (
+        f"the kinetic equation{name} gives W_v in the centre, e = 0.95"
+        for name in ("", " with pair correlations")
+    )
+    assert found() == {independent: "confirmed", pairs: "confirmed"}
+    theory = results["theory of pairs L=1000 e=0.95"]
+    results["theory of pairs L=1000 e=0.95"] = theory.assign(
+        velocity_width=0.8 * theory.velocity_width
+    )
+    assert found() == {independent: "confirmed", pairs: "refuted"}
+
+
+@pytest.mark.parametrize("number", [3, 7])
+def test_theories_are_drawn_beside_the_runs(number):
+    results = made_up_results(number)
+    drawn = WITH_LIMITS[number].draw(results)
+    shown = [line.get_ydata() for line in drawn.axes[0].lines]
+    plt.close(drawn)
+    theories = {name: each for name, each in results.items() if name.startswith("theory")}
+    assert len(theories) == {3: 1, 7: 2}[number]
+    for name, theory in theories.items():
+        widths = theory.velocity_width / chain_of(theory).free_velocity_width
+        assert any(np.array_equal(each, widths) for each in shown), name

@@ -1,0 +1,225 @@
+"""Reproducing the paper: verdicts follow from numbers, every figure is there, the page is whole."""
+
+import json
+import re
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+
+import matplotlib.pyplot as plt
+import pytest
+
+from crazybilliards.apps.commands.line import main
+from crazybilliards.comparison.side_by_side import elastic_gaps
+from crazybilliards.comparison.sweeps import Case, run_cases
+from crazybilliards.comparison.sweeps.jobs import JOBS
+from crazybilliards.model import Chain
+from crazybilliards.reproduction.beyond import STUDIES
+from crazybilliards.reproduction.claims.repetition import (
+    repeated,
+)
+from crazybilliards.reproduction.claims.report import (
+    OF_PAPER,
+    OWN,
+    all_cases,
+    describe,
+    html,
+    markdown,
+    reproduce,
+)
+from crazybilliards.reproduction.claims.study import PaperFigure
+from crazybilliards.reproduction.claims.verdicts import EYE
+from crazybilliards.reproduction.figures import FIGURES, fig17_density
+from crazybilliards.reproduction.reproducible import find_studies
+
+# -- figures ----------------------------------------------------------------------------------
+
+
+def test_all_nineteen_figures_are_there_in_order():
+    assert [figure.number for figure in FIGURES] == list(range(1, 20))
+    assert len({figure.name for figure in FIGURES}) == 19
+    assert all(figure.title and figure.caption for figure in FIGURES)
+
+
+def test_figures_and_studies_are_found_by_number_name_or_group():
+    assert find_studies("17") == find_studies("density") == [FIGURES[16]]
+    assert find_studies("all") == list(FIGURES)
+    assert find_studies("studies") == list(STUDIES)
+    assert find_studies("elastic-gaps") == [elastic_gaps.STUDY]
+    for nothing in ("colour", "20", "", "17 density"):
+        with pytest.raises(ValueError, match=f"no figure or study '{nothing}'.* elastic-gaps"):
+            find_studies(nothing)
+
+
+def test_every_study_beyond_the_paper_is_found_and_has_a_name_of_its_own():
+    everything = [*FIGURES, *STUDIES]
+    assert elastic_gaps.STUDY in STUDIES
+    assert not any(isinstance(study, PaperFigure) for study in STUDIES)
+    assert len({study.name for study in everything}) == len(everything)
+    assert len({study.file_name for study in everything}) == len(everything)
+    assert not {"all", "studies"} & {study.name for study in everything}
+    assert all(study.title and study.caption for study in everything)
+
+
+@pytest.mark.compiled
+def test_rods_with_gaps_are_where_the_exact_solution_has_them():
+    """At quick quality every claim holds; if the rods were those of another gap, none would."""
+    [study] = find_studies("elastic-gaps")
+    results = {
+        name: JOBS[case.job].function(case.chain, **case.settings)
+        for name, case in study.cases("quick").items()
+    }
+    assert [claim.verdict for claim in study.claims(results)] == ["confirmed"] * 6
+    drawn = study.draw(results)
+    assert len(drawn.axes) == 2
+    plt.close(drawn)
+    results["rods g=0"], results["rods g=2"] = results["rods g=2"], results["rods g=0"]
+    verdicts = [claim.verdict for claim in study.claims(results)]
+    assert verdicts == ["refuted"] * 2 + ["confirmed"] * 2 + ["refuted"] * 2
+
+
+@pytest.mark.parametrize("quality", ["quick", "full"])
+def test_every_case_can_be_carried_out_and_shared_ones_count_once(quality):
+    cases = all_cases(FIGURES, quality)
+    assert len(cases) == len({case.key for case in cases}) > 100
+    assert len(cases) < sum(len(figure.cases(quality)) for figure in FIGURES)
+
+
+def test_parameters_are_described_by_what_is_not_the_default():
+    cases = repeated("a", Chain(size=30, restitution=0.0), 3, duration=100.0).values()
+    both = [*cases, Case("phase_space", Chain(restitution=0.9), {"cells": 16})]
+    assert describe(both) == [
+        "simulate: size 30, restitution 0, duration 100 (3 runs)",
+        "phase_space: restitution 0.9, cells 16",
+    ]
+
+
+# -- the command ------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def command(tmp_path, monkeypatch, capsys):
+    """Return what calls the command in an empty folder and gives its status and what it printed."""
+    monkeypatch.chdir(tmp_path)
+
+    def call(*arguments):
+        monkeypatch.setattr(sys, "argv", ["crazybilliards", "reproduce", *arguments])
+        with pytest.raises(SystemExit) as done:
+            main()
+        return done.value.code or 0, *capsys.readouterr()
+
+    return call
+
+
+def test_list_needs_no_folder(command, tmp_path):
+    status, lines, _ = command("--list")
+    assert status == 0
+    lines = lines.splitlines()
+    assert len(lines) == 19 + len(STUDIES)
+    assert lines[16].split()[:2] == ["17", "density"]
+    assert "elastic-gaps" in [line.split()[0] for line in lines[19:]]
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_figure_without_claims_prints_no_table(command, tmp_path):
+    status, printed, errors = command("1")
+    assert (status, errors) == (0, "")
+    assert printed.splitlines() == ["wrote reproduced/fig01_model.png"]
+
+
+def test_pictures_come_in_other_widths_and_as_vector_graphics(command, tmp_path):
+    sizes = {}
+    for columns in ("1", "2"):
+        status, printed, errors = command("1", "--columns", columns, "--vector", "svg")
+        assert (status, errors) == (0, "")
+        assert printed.splitlines() == [
+            "wrote reproduced/fig01_model.png",
+            "wrote reproduced/fig01_model.svg",
+        ]
+        svg = (tmp_path / "reproduced" / "fig01_model.svg").read_text()
+        sizes[columns] = float(re.search(r'width="([0-9.]+)pt"', svg)[1]) / 72
+    assert sizes == pytest.approx({"1": 3.4, "2": 7.0})
+    assert command("1", "--columns", "3")[0] == 2
+    # Drawn again, it is the same file.
+    assert command("1", "--columns", "2", "--vector", "svg")[0] == 0
+    assert (tmp_path / "reproduced" / "fig01_model.svg").read_text() == svg
+
+
+def test_an_unknown_figure_is_one_line_and_nothing_written(command, tmp_path):
+    status, _, errors = command("20")
+    assert status == 2
+    assert errors.count("\n") == 1
+    assert "no figure or study '20'" in errors
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.compiled
+def test_a_figure_its_claims_and_nothing_computed_twice(command, tmp_path, monkeypatch):
+    monkeypatch.setitem(fig17_density._DURATION, "quick", 5000.0)
+    status, printed, errors = command("arctanh", "--processes", "1")
+    assert status == 0, errors
+    assert "1 cases, 0 of them" in printed
+    folder = tmp_path / "reproduced"
+    assert {path.name for path in folder.iterdir()} == {"cases", "fig16_arctanh.png"}
+    assert "Statements of the paper: 1 reproduced" in printed
+    # Again: nothing is computed, the same claims come out.
+    status, again, _ = command("16")
+    assert status == 0
+    assert "1 cases, 1 of them" in again
+    assert again.splitlines()[1:] == printed.splitlines()[2:]
+    # The same for programs, with the number that decides.
+    status, facts, _ = command("16", "--json")
+    claim, *_ = json.loads(facts)["claims"]
+    assert (claim["figure"], claim["verdict"]) == ("arctanh", "reproduced")
+    assert claim["variations"] == []
+    decisive = claim["decisive"]
+    assert 0 < decisive["value"] + 3 * decisive["error"] < decisive["limit"] == EYE
+    # After an edit of the simulation: with --keep-old the same, otherwise it is computed anew.
+    other = replace(JOBS["simulate"], source="other source code")
+    monkeypatch.setitem(JOBS, "simulate", other)
+    assert command("16", "--keep-old") == (0, again, "")
+    status, printed, errors = command("16", "--processes", "1")
+    assert status == 1
+    assert "1 cases, 0 of them" in printed
+    assert "other source code of crazybilliards computed 1 cases" in errors
+    assert "the worker runs other source code" in errors  # as it does: this edit is a pretence
+
+
+@pytest.mark.compiled
+def test_the_report_is_one_page_and_the_table_markdown(tmp_path, monkeypatch):
+    monkeypatch.setitem(fig17_density._DURATION, "quick", 5000.0)
+    monkeypatch.setitem(elastic_gaps._DURATION, "quick", 5000.0)
+    studies = [*find_studies("model"), *find_studies("arctanh"), elastic_gaps.STUDY]
+    run_cases(all_cases(studies, "quick"), tmp_path, ThreadPoolExecutor(1), progress=False)
+    reproduced = list(reproduce(studies, "quick", tmp_path))
+    page = html(reproduced, "quick")
+    # Self-contained: the only address in it is the paper's.
+    assert set(re.findall(r'(?:src|href)="(?!data:|#)([^"]*)"', page)) == {
+        "https://arxiv.org/abs/1404.7460"
+    }
+    assert page.count("data:image/png;base64,") == 3
+    assert "amplitude 10" in page
+    assert "&lt;dx&gt; is described by B arctanh(C x)" in page
+    assert re.findall(r'<h2 id="[^"]*">([^.<]*)', page) == [
+        "1",
+        "16",
+        "Displacements of elastic chains with gaps",
+    ]
+    # A figure has both kinds of claims, a study its own; no table is too wide for a telephone.
+    assert re.findall("<h3>(.*)</h3>", page) == [OF_PAPER, OWN, OWN]
+    assert "<table" not in page
+    assert page.count("<article") == 2 + 6
+    assert 'class="verdict"' in page
+    text = markdown(reproduced, "quick")
+    assert re.findall("^## ([^. ]*)", text, re.MULTILINE) == ["1", "16", "Displacements"]
+    assert re.findall("^### (.*)", text, re.MULTILINE) == [OF_PAPER, OWN, OWN]
+    assert "|" not in text
+    assert text.count("* verdict: ") == 2 + 6
+    assert "**&lt;dx&gt; is described by B arctanh(C x)**" in text
+    assert "* in the paper: section seq:analytics, fig:atan" in text
+    assert r"**W\_x of every rod" in text
+    assert len(re.findall(rf"^\* {OF_PAPER}: 1 ", text, re.MULTILINE)) == 1
+    assert len(re.findall(rf"^\* {OWN}: 7 undecided", text, re.MULTILINE)) == 1
+    pictures = re.findall(r"!\[.*\]\((.*)\)", text)
+    assert pictures == ["fig01_model.png", "fig16_arctanh.png", "study_elastic-gaps.png"]
+    assert pictures == [each.study.file_name for each in reproduced]

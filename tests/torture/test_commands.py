@@ -1,0 +1,106 @@
+"""Whatever its options, a command ends with a result or with one line and exit status 2.
+
+Each option of each command gets nasty values, one at a time, the others being those of a small
+job. The command runs in this process, and a Ctrl-C is sent after two seconds to jobs that are
+long. It must end with status 0, with 2 and one line on standard error, or by Ctrl-C; never with a
+traceback, and never with NaN in what it prints.
+"""
+
+from __future__ import annotations
+
+import faulthandler
+import signal
+import sys
+
+import pytest
+from typer.main import get_command
+
+from crazybilliards.apps.commands.line import app, main
+
+PATIENCE, HANG = 2.0, 600.0
+NASTY = [
+    *(
+        "",
+        "x",
+        "nan",
+        "inf",
+        "-inf",
+        "0",
+        "-1",
+        "1.5",
+        "1e300",
+        "-1e300",
+        "1e-300",
+        "1e60",
+        "1e-60",
+    ),
+    *(
+        "1000000000",
+        "9" * 30,
+        "9" * 5000,
+        "true",
+        "None",
+        "1,2",
+        ",",
+        "1,,2",
+        "nan,1",
+        "\x00",
+        "é\n",
+    ),
+]
+SMALL = {
+    "compare": ["--size", "4", "--duration", "300", "--amplitudes", "1", "--threads", "1"],
+    "simulate": ["--size", "4", "--duration", "50", "--threads", "1"],
+    "relax": ["--size", "4", "--duration", "1", "--replicas", "2", "--threads", "1"],
+    "theory": ["--size", "4", "--restitution", "1", "--tolerance", "0.1"],
+}
+# Not tried: paths, and what only switches something on.
+LEFT_OUT = {"output", "checkpoint", "critical", "help"}
+OPTIONS = [
+    (command, option.opts[0])
+    for command in SMALL
+    for option in get_command(app).commands[command].params
+    if option.opts[0].startswith("--") and option.name not in LEFT_OUT
+]
+
+
+def ended(arguments, monkeypatch):
+    """Run a command; return its exit status."""
+
+    def interrupt(*_):
+        signal.raise_signal(signal.SIGINT)
+
+    monkeypatch.setattr("sys.argv", ["crazybilliards", *arguments])
+    before = signal.signal(signal.SIGALRM, interrupt)
+    signal.setitimer(signal.ITIMER_REAL, PATIENCE)
+    faulthandler.dump_traceback_later(PATIENCE + HANG, exit=True, file=sys.__stderr__)
+    try:
+        with pytest.raises(SystemExit) as caught:
+            main()
+    except KeyboardInterrupt:  # between two commands
+        return 130
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        faulthandler.cancel_dump_traceback_later()
+        signal.signal(signal.SIGALRM, before)
+    return caught.value.code
+
+
+def require_clear(status, printed):
+    """Check how a command ended and what it said."""
+    assert "Traceback" not in printed.err
+    assert "nan" not in printed.out
+    if status == 2:
+        lines = [line for line in printed.err.splitlines() if line.strip()]
+        assert len(lines) == 1, lines
+        assert lines[0].startswith("crazybilliards: error: ")
+        assert len(lines[0]) < 600
+    else:
+        assert status in (0, None, 1, 130), (status, printed.err)
+
+
+@pytest.mark.parametrize(("command", "option"), OPTIONS)
+def test_an_option_is_taken_or_refused_in_one_line(command, option, monkeypatch, capsys):
+    for value in NASTY:
+        arguments = [command, *SMALL[command], option, value]
+        require_clear(ended(arguments, monkeypatch), capsys.readouterr())

@@ -1,0 +1,207 @@
+"""Disks that are full, read-only, or no place at all.
+
+What cannot be written is one clear error that names the place: before any work where it shows
+then; in the middle of a simulation a warning, and the run goes on. What was written before stays
+whole and valid, no half file is left, and when there is room again the same call goes on.
+
+A disk that is full or read-only is a small file system in memory, which takes root to mount;
+without, a limit to the size of a file does for a full one.
+"""
+
+import os
+import resource
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from crazybilliards.model import Chain, load, save
+from crazybilliards.particles import simulate
+
+pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="mounts, limits")
+
+COMMAND = [sys.executable, "-c", "from crazybilliards.apps.commands.line import main; main()"]
+PATIENCE = 600.0
+GRID = """
+[grid]
+size = [4, 10, 30]
+restitution = [0.5, 1.0]
+[simulate]
+duration = {duration}
+"""
+RUN = {"duration": 2000.0, "replicas": 2, "progress": False}
+
+
+def run(*arguments):
+    return subprocess.run(
+        [*COMMAND, *map(str, arguments)],
+        capture_output=True,
+        text=True,
+        timeout=PATIENCE,
+        check=False,
+    )
+
+
+def mount(*arguments):
+    done = subprocess.run(["mount", *map(str, arguments)], capture_output=True, check=False)
+    if done.returncode:
+        pytest.skip("needs to mount a file system")
+
+
+@pytest.fixture
+def small(tmp_path):
+    """Give a file system of 1 MB."""
+    folder = tmp_path / "small"
+    folder.mkdir()
+    mount("-t", "tmpfs", "-o", "size=1m", "tmpfs", folder)
+    yield folder
+    subprocess.run(["umount", "--lazy", str(folder)], check=True)
+
+
+@pytest.fixture(scope="module")
+def results():
+    """Two results, the second of some 100 kB."""
+    return [simulate(Chain(size=size), observe="widths", **RUN) for size in (3, 300)]
+
+
+@pytest.fixture(params=["no room", "file too large"])
+def squeeze(request, tmp_path):
+    """Give a folder, and a function that leaves some bytes to write there."""
+    if request.param == "no room":
+        folder = request.getfixturevalue("small")
+        filler = folder / "filler"
+
+        def leave(number):
+            filler.unlink(missing_ok=True)
+            free = os.statvfs(folder).f_bavail * os.statvfs(folder).f_bsize
+            if number is not None:
+                filler.write_bytes(b"x" * max(free - number, 0))
+
+        yield folder, leave
+        return
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+
+    def leave(number):
+        limit = before[0] if number is None else number
+        resource.setrlimit(resource.RLIMIT_FSIZE, (limit, before[1]))
+
+    yield tmp_path, leave
+    leave(None)
+
+
+# -- full -------------------------------------------------------------------------------------
+
+
+def test_wherever_the_room_ends_the_old_file_stays(squeeze, results, tmp_path):
+    folder, leave = squeeze
+    old, new = results
+    most = save(new, folder / "run.nc").stat().st_size
+    path = save(old, folder / "run.nc")
+    failures = []
+    for room in [0, *np.random.default_rng(1).integers(0, 1.2 * most, 99)]:
+        leave(int(room))
+        try:
+            save(new, path)
+            expected = new
+        except OSError as error:
+            failures.append((error.filename, error.strerror))
+            expected = old
+        assert load(path).identical(expected)
+        assert {each.name for each in folder.iterdir()} <= {"run.nc", "filler", "small"}
+        leave(None)
+        save(old, path)
+    print(f"{len(failures)} of 100 writes failed")
+    assert len(failures) > 10
+    reasons = {"No space left on device", "File too large"}
+    assert all(name == str(path) and reason in reasons for name, reason in failures)
+
+
+@pytest.mark.parametrize("e", [0.9, 1.0])
+def test_a_disk_full_in_the_middle_of_a_run(squeeze, e, monkeypatch):
+    """The checkpoint from before the disk was full stays valid, and the run loses nothing."""
+    folder, leave = squeeze
+    chain = Chain(size=20, restitution=e)
+    undisturbed = simulate(chain, **RUN)
+    replace = os.replace
+
+    def then_fill(source, target):
+        replace(source, target)
+        leave(0)
+
+    monkeypatch.setattr(os, "replace", then_fill)
+    arguments = RUN | {"checkpoint": folder / "state", "checkpoint_interval": 0}
+    with pytest.warns(RuntimeWarning, match="state: no checkpoint written: (No space|File too)"):
+        assert simulate(chain, **arguments).identical(undisturbed)
+    monkeypatch.undo()
+    with pytest.raises(OSError, match="state"):  # full from the start: before any work
+        simulate(chain, **arguments)
+    leave(None)
+    assert simulate(chain, **arguments).identical(undisturbed)
+
+
+def test_a_sweep_on_a_full_disk_keeps_what_fits_and_goes_on_with_more_room(small, tmp_path):
+    (small / "filler").write_bytes(b"x" * 500_000)
+    grid = tmp_path / "grid.toml"
+    grid.write_text(GRID.format(duration=300))
+    full = run("sweep", grid, "--output", small)
+    assert (full.returncode, full.stderr.count("\n")) == (2, 1), full.stderr
+    assert f"error: {small}" in full.stderr
+    assert "No space left on device; finished cases are kept" in full.stderr
+    (small / "filler").unlink()
+    kept = {path: path.read_bytes() for path in small.iterdir()}
+    assert 0 < len(kept) < 6
+    mount("-o", "remount,size=10m", small)
+    done = run("sweep", grid, "--output", small)
+    assert f"6 cases, {len(kept)} of them" in done.stdout
+    assert (done.returncode, done.stderr) == (0, "")
+    assert kept.items() <= {path: path.read_bytes() for path in small.iterdir()}.items()
+    assert len(list(small.iterdir())) == 6
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["compare", "--size", "30", "--duration", "2000"],
+        ["theory"],
+        ["reproduce", "1"],
+    ],
+    ids=lambda arguments: arguments[0],
+)
+def test_commands_on_a_full_disk_say_so_and_show_what_they_can(arguments, small):
+    (small / "filler").write_bytes(b"x" * 1_040_000)
+    done = run(*arguments, "--output", small)
+    assert (done.returncode, done.stderr.count("\n")) == (2, 1), done.stderr
+    assert f"error: {small}" in done.stderr
+    assert "No space left on device" in done.stderr
+    assert [path.name for path in small.iterdir() if path.suffix == ".part"] == []
+    if arguments[0] == "compare":
+        assert "close packing" in done.stdout
+
+
+# -- places that cannot be written ------------------------------------------------------------
+
+
+@pytest.mark.parametrize("command", ["sweep", "reproduce", "compare", "theory"])
+def test_a_read_only_disk_is_an_error_before_any_work(command, small, tmp_path):
+    grid = tmp_path / "grid.toml"
+    grid.write_text(GRID.format(duration=1e9))
+    mount("-o", "remount,ro", small)
+    for folder in (small, small / "new"):
+        arguments = [grid] if command == "sweep" else []
+        done = run(command, *arguments, "--output", folder)
+        assert (done.returncode, done.stderr.count("\n")) == (2, 1), done.stderr
+        assert str(small) in done.stderr
+        assert done.stdout == ""
+    with pytest.raises(OSError, match=r"Read-only file system: '.*state"):
+        simulate(Chain(), duration=1e9, checkpoint=small / "state", progress=False)
+
+
+@pytest.mark.parametrize("name", ["file/state", "file/deep/state", "folder", "x" * 300, "a\0b"])
+def test_no_place_for_a_checkpoint_is_an_error_before_any_work(name, tmp_path):
+    (tmp_path / "file").write_text("mine")
+    (tmp_path / "folder").mkdir()
+    with pytest.raises((OSError, ValueError)) as caught:
+        simulate(Chain(), duration=1e9, checkpoint=tmp_path / name, progress=False)
+    assert "\n" not in str(caught.value)
+    assert sorted(path.name for path in tmp_path.rglob("*")) == ["file", "folder"]

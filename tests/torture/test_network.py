@@ -1,0 +1,253 @@
+"""Nothing at run time asks the network for anything, and no page that is written does.
+
+How: a hook in every Python process, workers included, takes down each connection, datagram and
+look-up of a name that goes beyond the loopback address, and refuses it. Where the system allows
+it, the processes have no network at all but a loopback of their own, which holds for compiled
+libraries too. Under both, each command and the Python interface do their work, and the list is
+empty. Pages are searched for everything that a browser loads without being asked.
+"""
+
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+from functools import cache
+from html.parser import HTMLParser
+
+import pytest
+
+# Python imports this by itself at every start. Addresses: a name or (name or address, port, ...).
+GUARD = """
+import ipaddress, os, socket, sys
+
+ASKING = {
+    "socket.connect": 1, "socket.sendto": 1, "socket.sendmsg": 1,
+    "socket.getaddrinfo": 0, "socket.gethostbyname": 0, "socket.gethostbyaddr": 0,
+}
+
+def is_here(host):
+    if host in (None, "", "localhost", b"localhost", socket.gethostname()):
+        return True
+    try:
+        return ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        return False
+
+def guard(event, arguments):
+    if event not in ASKING:
+        return
+    address = arguments[ASKING[event]]
+    if isinstance(address, tuple):
+        address = address[0]
+    elif event in ("socket.connect", "socket.sendto", "socket.sendmsg"):
+        return  # a Unix socket
+    if not is_here(address):
+        with open(os.environ["NETWORK_LOG"], "a") as log:
+            log.write(f"{event} {address} {sys.argv}\\n")
+        raise OSError(f"no network: {event} {address}")
+
+sys.addaudithook(guard)
+"""
+# A network of its own, with nothing in it but loopback, which has to be switched on (IFF_UP).
+ALONE = (
+    "import fcntl, os, socket, struct, sys; "
+    "fcntl.ioctl(socket.socket(), 0x8914, struct.pack('16sh', b'lo', 1)); "
+    "os.execv(sys.executable, [sys.executable, *sys.argv[1:]])"
+)
+MAIN = "from crazybilliards.apps.commands.line import main; main()"
+SWEEP = """
+[grid]
+restitution = [0.9, 1.0]
+[chain]
+size = 10
+[simulate]
+duration = 100
+"""
+PYTHON = """
+import importlib, pkgutil
+for room in ("model", "particles", "kinetic", "comparison"):
+    package = importlib.import_module(f"crazybilliards.{room}")
+    for info in pkgutil.walk_packages(package.__path__, package.__name__ + "."):
+        importlib.import_module(info.name)
+from crazybilliards.kinetic import equilibrium
+from crazybilliards.kinetic import force_balance
+from crazybilliards.kinetic import hydrodynamics
+from crazybilliards.kinetic import phase_space
+from crazybilliards.model import Chain, load, save
+from crazybilliards.particles import simulate
+chain = Chain(size=10)
+save(simulate(chain, duration=100.0), "run.nc")
+load("run.nc")
+for theory in (equilibrium, force_balance):
+    theory(chain)
+phase_space(chain.replace(restitution=0.95), cells=16)
+"""
+
+
+@cache
+def prefix():
+    """Return how to start Python: without a network if the system allows that."""
+    alone = ["unshare", "--net", "--map-root-user", sys.executable, "-c", ALONE]
+    try:
+        works = subprocess.run([*alone, "-c", ""], capture_output=True, check=False).returncode == 0
+    except FileNotFoundError:
+        works = False
+    return alone if works else [sys.executable]
+
+
+@pytest.fixture
+def guarded(tmp_path):
+    """Return a function that runs Python in a folder, and afterwards see that nothing was asked."""
+    site, log, folder = tmp_path / "site", tmp_path / "log", tmp_path / "work"
+    site.mkdir()
+    folder.mkdir()
+    (site / "sitecustomize.py").write_text(GUARD)
+    log.touch()
+    environment = {**os.environ, "PYTHONPATH": str(site), "NETWORK_LOG": str(log)}
+
+    def start(*arguments, **options):
+        return subprocess.Popen(
+            [*prefix(), *arguments], cwd=folder, env=environment, text=True, **options
+        )
+
+    start.log, start.folder = log, folder
+    yield start
+    assert log.read_text() == ""
+
+
+def run(start, *arguments):
+    process = start(*arguments, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    output, errors = process.communicate(timeout=600)
+    assert process.returncode == 0, errors
+    return output
+
+
+# -- the guard itself -----------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("attempt", "event"),
+    [
+        ("socket.create_connection(('192.0.2.1', 80), 5)", "socket.getaddrinfo 192.0.2.1"),
+        ("socket.socket().connect(('192.0.2.1', 80))", "socket.connect 192.0.2.1"),
+        ("socket.gethostbyname('example.org')", "socket.gethostbyname example.org"),
+        (
+            "socket.socket(type=socket.SOCK_DGRAM).sendto(b'', ('192.0.2.1', 53))",
+            "socket.sendto 192.0.2.1",
+        ),
+    ],
+)
+def test_the_guard_sees_what_is_asked_and_refuses_it(guarded, attempt, event):
+    done = guarded("-c", f"import socket; {attempt}", stderr=subprocess.PIPE)
+    assert "OSError: no network" in done.communicate(timeout=600)[1]
+    assert guarded.log.read_text().startswith(event)
+    guarded.log.write_text("")
+
+
+def test_the_guard_lets_this_machine_talk_to_itself(guarded):
+    script = """
+import socket
+with socket.create_server(("127.0.0.1", 0)) as server:
+    socket.create_connection(("localhost", server.getsockname()[1]), 60).close()
+"""
+    run(guarded, "-c", script)
+
+
+# -- everything that computes ---------------------------------------------------------------
+
+
+def test_every_module_and_the_python_interface(guarded):
+    run(guarded, "-c", PYTHON)
+    assert (guarded.folder / "run.nc").exists()
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["compare", "--size", "10", "--duration", "1000", "--amplitudes", "1,5", "--output", "o"],
+        ["theory", "--size", "10", "--restitution", "0.95", "--output", "o"],
+        ["relax", "--size", "10", "--duration", "4", "--replicas", "8", "--output", "o"],
+        ["reproduce", "arctanh", "--processes", "2", "--output", "o"],
+        ["sweep", "grid.toml", "--processes", "2", "--output", "o"],
+        ["sweep", "grid.toml", "--dask", "--output", "o"],
+    ],
+    ids=lambda arguments: "-".join(arguments[:2]),
+)
+def test_every_command(guarded, arguments):
+    (guarded.folder / "grid.toml").write_text(SWEEP)
+    run(guarded, "-c", MAIN, *arguments)
+    written = list((guarded.folder / "o").rglob("*.*"))
+    assert written
+    for page in written:
+        if page.suffix == ".html":
+            assert loaded(page.read_text()) == set()
+
+
+# -- pages ----------------------------------------------------------------------------------
+
+
+class Loads(HTMLParser):
+    """Collects what a browser loads of a page by itself; links to follow are not among it."""
+
+    def __init__(self):
+        super().__init__()
+        self.addresses = []
+
+    def handle_starttag(self, tag, attributes):
+        loading = {"src", "srcset", "poster", "data", *(["href"] if tag != "a" else [])}
+        self.addresses += [value or "" for name, value in attributes if name in loading]
+        self.addresses += [value or "" for name, value in attributes if name == "style"]
+
+    def handle_data(self, data):
+        # Scripts and styles: any address in them at all.
+        if self.cdata_elem:
+            self.addresses += re.findall(r"""\w+://[^\s"'`)]+|["'(]//\w[^\s"'`)]+""", data)
+
+
+def loaded(page):
+    """Return the addresses on other hosts that a page loads."""
+    parser = Loads()
+    parser.feed(page)
+    return {each for each in parser.addresses if re.search(r"""(^|["'(])\s*//|\w://""", each)}
+
+
+def test_loads_are_found():
+    page = """<a href="https://good.org">x</a><img src="data:image/png;base64,AA//AA">
+    <link href="https://a.org/x.css"><script src="//b.org/x.js"></script>
+    <style>@import "https://c.org/x.css"; p { background: url(//d.org/x.png) }</style>
+    <script>import("https://e.org/x.js")</script><p style="background: url(http://f.org)"></p>"""
+    assert sorted(re.findall(r"\b(\w)\.org", " ".join(loaded(page)))) == list("abcdef")
+
+
+def test_the_report_of_all_figures_loads_nothing(guarded):
+    script = """
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from crazybilliards.reproduction.reproducible import find_studies
+from crazybilliards.reproduction.claims.report import all_cases, html, reproduce
+from crazybilliards.comparison.sweeps import run_cases
+figures = [*find_studies("model"), *find_studies("arctanh")]
+run_cases(all_cases(figures, "quick"), Path("."), ThreadPoolExecutor(1), progress=False)
+Path("report.html").write_text(html(list(reproduce(figures, "quick", Path("."))), "quick"))
+"""
+    run(guarded, "-c", script)
+    assert loaded((guarded.folder / "report.html").read_text()) == set()
+
+
+def test_the_page_loads_from_its_own_server(guarded):
+    script = f"import sys; sys.argv[1:] = ['explore', '--no-browser', '--port', '0']; {MAIN}"
+    reader = f"""
+import json, subprocess, sys
+from urllib.request import ProxyHandler, build_opener
+page = subprocess.Popen([sys.executable, "-c", {script!r}], stdout=subprocess.PIPE, text=True)
+address = page.stdout.readline().split()[0]
+answer = build_opener(ProxyHandler({{}})).open(address, timeout=600).read().decode()
+page.send_signal({int(signal.SIGINT)})
+assert page.wait(600) == -{int(signal.SIGINT)}
+print(json.dumps(answer))
+"""
+    answer = json.loads(run(guarded, "-c", reader))
+    assert "static/js/bokeh" in answer
+    assert loaded(answer) == set()
