@@ -37,7 +37,7 @@ from crazybilliards.particles.laws.closed_contacts import (
     strengthen,
 )
 from crazybilliards.particles.laws.law import Law, Method, drift, make_law
-from crazybilliards.particles.noise import fill
+from crazybilliards.particles.noise import Noise, fill, make_noise
 from crazybilliards.particles.scales import spring_rate
 
 MERGING = 0.03  # in velocity kicks of one step: rods that separate more slowly move as one
@@ -125,6 +125,15 @@ def make_step(
     return Step(time_step, *inner, *outer, full_kick / 2, exponent, True, strength, outer_strength)
 
 
+def start_noise(stream: np.random.SeedSequence, dynamics: Dynamics) -> Noise:
+    """Return the noise that drives one copy of the chain, from its own random numbers.
+
+    White noise remembers nothing, so it is the same for every chain. Noise with a memory of each
+    rod would be made here from ``dynamics``, and :func:`draw_kicks` would correlate it.
+    """
+    return make_noise(stream)
+
+
 def longest_step(chain: Chain, stepper: Stepper) -> float:
     """Return the limit of stability: with longer steps the energy of a rod grows without bound.
 
@@ -163,6 +172,17 @@ def kick(y, v, anchors, kicks, step, part):  # type: ignore[no-untyped-def]
         v[i] = decay * (v[i] - before * pull) - after * pull + noise * kicks[i]
 
 
+@kernel
+def draw_kicks(noise, kicks, due):  # type: ignore[no-untyped-def]
+    """Fill rows of ``kicks``, shape (rows, L), for as many of the ``due`` steps as have room.
+
+    Return how many rows are filled. Several are drawn at once, because one by one is slower.
+    """
+    rows = min(kicks.shape[0], due)
+    fill(noise, kicks.ravel()[: rows * kicks.shape[1]])
+    return rows
+
+
 @inlined
 def take_step(y, v, kicks, part, dynamics, scratch, tally):  # type: ignore[no-untyped-def]
     """Kick the rods and, unless it was the LAST half, let them drift; changes ``kicks``, (L,).
@@ -198,9 +218,8 @@ def advance(y, v, noise, dynamics, scratch, tally, steps):  # type: ignore[no-un
     part = FIRST
     due = steps + 1 if step.symmetric else steps
     for taken in range(due):
-        if row == rows:  # noise for several steps at once
-            row, rows = 0, min(kicks.shape[0], due - taken)
-            fill(noise, kicks.ravel()[: rows * y.size])
+        if row == rows:
+            row, rows = 0, draw_kicks(noise, kicks, due - taken)
         if taken == steps:
             part = LAST
         met = take_step(y, v, kicks[row], part, dynamics, scratch, tally)

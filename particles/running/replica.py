@@ -12,10 +12,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from crazybilliards.particles.laws.avalanche import Tally, make_tally
 from crazybilliards.particles.laws.law import EVENTS, make_scratch
-from crazybilliards.particles.noise import STATE, make_noise
+from crazybilliards.particles.noise import STATE
 from crazybilliards.particles.observers import Observer, Snapshots, restore
 from crazybilliards.particles.schedule import Schedule
-from crazybilliards.particles.stepping import Dynamics, advance, bounded, record
+from crazybilliards.particles.stepping import Dynamics, advance, bounded, record, start_noise
 
 Array = NDArray[np.float64]
 
@@ -54,7 +54,7 @@ class Replica:
     def _start(self) -> None:
         """Set the chain to the start of the present copy."""
         self.y, self.v = (np.array(each) for each in self.starts[self.copy])
-        self.noise = make_noise(self.streams[self.copy])
+        self.noise = start_noise(self.streams[self.copy], self.dynamics)
         self.steps, self.snapshots, self.over = 0, 0, False
 
     @property

@@ -25,8 +25,7 @@ from __future__ import annotations
 
 from crazybilliards.model.kernels import kernel
 from crazybilliards.particles.laws.closed_contacts import find_clusters
-from crazybilliards.particles.noise import fill
-from crazybilliards.particles.stepping import FIRST, LAST, WHOLE, bounded, take_step
+from crazybilliards.particles.stepping import FIRST, LAST, WHOLE, bounded, draw_kicks, take_step
 
 REFINEMENT = 3
 
@@ -51,9 +50,8 @@ def advance_pair(  # type: ignore[no-untyped-def]
     row, rows = 0, 0
     last, middle = ratio * steps, ratio // 2
     for taken in range(last + 1):
-        if row == rows:  # noise for several steps at once
-            row, rows = 0, min(kicks.shape[0], last + 1 - taken)
-            fill(noise, kicks.ravel()[: rows * y.shape[1]])
+        if row == rows:
+            row, rows = 0, draw_kicks(noise, kicks, last + 1 - taken)
         xi = kicks[row]
         row += 1
         part = FIRST if taken == 0 else LAST if taken == last else WHOLE
