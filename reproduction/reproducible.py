@@ -6,14 +6,20 @@ from crazybilliards.reproduction import figures
 from crazybilliards.reproduction.beyond import STUDIES
 from crazybilliards.reproduction.claims.study import PaperFigure, Study
 
+# The paper's section "Analytics" and what can be checked at restitution 1, where the chain is
+# exactly solvable: velocities, arctanh fit, density, displacements of chains with gaps.
+_ANALYTICS = ("velocities-elastic", "arctanh", "density", "elastic-gaps")
+
 
 def groups() -> dict[str, tuple[Study, ...]]:
-    """Return ``all`` figures of the paper, and the ``studies`` beyond it."""
-    return {"all": figures.FIGURES, "studies": STUDIES}
+    """Return ``all`` figures of the paper, the ``studies`` beyond it, and the ``analytics``."""
+    everything = (*figures.FIGURES, *STUDIES)
+    analytics = tuple(study for study in everything if study.name in _ANALYTICS)
+    return {"all": figures.FIGURES, "studies": STUDIES, "analytics": analytics}
 
 
 def find_studies(which: str) -> list[Study]:
-    """Return what a number, a name, ``all`` or ``studies`` stands for.
+    """Return what a number, a name, ``all``, ``studies`` or ``analytics`` stands for.
 
     Raises
     ------
@@ -22,7 +28,7 @@ def find_studies(which: str) -> list[Study]:
     """
     if which in groups():
         return list(groups()[which])
-    everything = [study for group in groups().values() for study in group]
+    everything = [*groups()["all"], *groups()["studies"]]
     for study in everything:
         number = str(study.number) if isinstance(study, PaperFigure) else None
         if which in (study.name, number):

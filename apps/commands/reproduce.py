@@ -33,7 +33,11 @@ if TYPE_CHECKING:
 # Of what there is to say about a claim.
 _PRINTED = ("its number", "found here", "at other choices", "theory", "why")
 # By what is asked for: names of the page with everything and of the table of claims.
-_REPORTS = {"all": ("report.html", "claims.md"), "studies": ("studies.html", "studies.md")}
+_REPORTS = {
+    "all": ("report.html", "claims.md"),
+    "analytics": ("analytics.html", "analytics.md"),
+    "studies": ("studies.html", "studies.md"),
+}
 
 
 class Quality(StrEnum):
@@ -55,7 +59,8 @@ def command(
         str,
         typer.Argument(
             help="Number or name of a figure of the paper, name of a study beyond the paper, "
-            "all (figures of the paper), or studies (all beyond the paper)."
+            "all (figures of the paper), analytics (those of the paper's section of that name and "
+            "the checks at restitution 1), or studies (all beyond the paper)."
         ),
     ] = "all",
     show_list: Annotated[
@@ -93,9 +98,11 @@ def command(
     """Reproduce the figures of arXiv:1404.7460, and check what the paper claims.
 
     Writes a picture for each figure and prints what became of the paper's claims. For all figures
-    it also writes report.html, one page with everything in it, and claims.md, the table; for all
-    studies beyond the paper these are studies.html and studies.md. Results are kept in the folder:
+    it also writes report.html, one page with everything in it, and claims.md, the table; for
+    analytics and studies these pages bear their names. Results are kept in the folder:
     drawing again is a matter of seconds, and after Ctrl-C or a crash the same command goes on.
+
+    Example: crazybilliards reproduce analytics
 
     Example: crazybilliards reproduce 17 --output results/paper
 
@@ -126,8 +133,8 @@ def _print_list() -> None:
     from crazybilliards.reproduction.reproducible import groups
 
     listed = []
-    for group in groups().values():
-        for study in group:
+    for group in ("all", "studies"):
+        for study in groups()[group]:
             number = study.number if isinstance(study, PaperFigure) else None
             listed.append({"number": number, "name": study.name, "title": study.title})
             say(f"{number or '':3}  {study.name:28s} {study.title}")

@@ -9,6 +9,7 @@ from dataclasses import replace
 import matplotlib.pyplot as plt
 import pytest
 
+from crazybilliards.apps.commands import reproduce as reproduce_command
 from crazybilliards.apps.commands.line import main
 from crazybilliards.comparison.side_by_side import elastic_gaps
 from crazybilliards.comparison.sweeps import Case, run_cases
@@ -30,7 +31,7 @@ from crazybilliards.reproduction.claims.report import (
 from crazybilliards.reproduction.claims.study import PaperFigure
 from crazybilliards.reproduction.claims.verdicts import EYE
 from crazybilliards.reproduction.figures import FIGURES, fig17_density
-from crazybilliards.reproduction.reproducible import find_studies
+from crazybilliards.reproduction.reproducible import find_studies, groups
 
 # -- figures ----------------------------------------------------------------------------------
 
@@ -46,9 +47,17 @@ def test_figures_and_studies_are_found_by_number_name_or_group():
     assert find_studies("all") == list(FIGURES)
     assert find_studies("studies") == list(STUDIES)
     assert find_studies("elastic-gaps") == [elastic_gaps.STUDY]
+    analytics = find_studies("analytics")
+    assert [study.label.split()[0] for study in analytics] == ["8", "16", "17", "elastic-gaps"]
     for nothing in ("colour", "20", "", "17 density"):
         with pytest.raises(ValueError, match=f"no figure or study '{nothing}'.* elastic-gaps"):
             find_studies(nothing)
+
+
+def test_every_group_has_a_report_of_its_own():
+    assert set(reproduce_command._REPORTS) == set(groups())
+    names = [name for pair in reproduce_command._REPORTS.values() for name in pair]
+    assert len(set(names)) == 2 * len(groups())
 
 
 def test_every_study_beyond_the_paper_is_found_and_has_a_name_of_its_own():
@@ -57,7 +66,7 @@ def test_every_study_beyond_the_paper_is_found_and_has_a_name_of_its_own():
     assert not any(isinstance(study, PaperFigure) for study in STUDIES)
     assert len({study.name for study in everything}) == len(everything)
     assert len({study.file_name for study in everything}) == len(everything)
-    assert not {"all", "studies"} & {study.name for study in everything}
+    assert not {"all", "analytics", "studies"} & {study.name for study in everything}
     assert all(study.title and study.caption for study in everything)
 
 
