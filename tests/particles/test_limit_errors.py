@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from crazybilliards.model import Chain
-from crazybilliards.particles import limit as limit_module
 from crazybilliards.particles import simulate, simulate_limit
+from crazybilliards.particles.vanishing_step import limit as limit_module
 
 
 def levels(limit):

@@ -12,7 +12,7 @@ import pytest
 
 from crazybilliards.comparison.sweeps import Case
 from crazybilliards.comparison.sweeps.jobs import JOBS
-from crazybilliards.particles import level_steps
+from crazybilliards.particles.vanishing_step import level_steps
 from crazybilliards.reproduction.beyond import STUDIES
 from crazybilliards.reproduction.claims.verdicts import Verdict
 from crazybilliards.reproduction.figures import FIGURES

@@ -11,11 +11,10 @@ import pytest
 
 from crazybilliards.apps.commands import reproduce as reproduce_command
 from crazybilliards.apps.commands.line import main
-from crazybilliards.comparison.side_by_side import elastic_gaps
 from crazybilliards.comparison.sweeps import Case, run_cases
 from crazybilliards.comparison.sweeps.jobs import JOBS
 from crazybilliards.model import Chain
-from crazybilliards.reproduction.beyond import STUDIES
+from crazybilliards.reproduction.beyond import STUDIES, elastic_gaps
 from crazybilliards.reproduction.claims.repetition import (
     repeated,
 )
