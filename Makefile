@@ -7,6 +7,7 @@ BIN    := $(VENV)/bin
 OLDEST := .venv-lowest
 OUTPUT ?= results
 QUALITY ?= quick
+WHICH ?= all
 LESSON ?= [0-9]
 CHECK_PYTHON := $(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
   { echo "Python 3.11 or later is needed; name one with: make PYTHON=python3.12 ..."; exit 1; }
@@ -24,7 +25,8 @@ help:
 	@echo "make coverage   show which lines the tests reach, kernels included (12 min)"
 	@echo "make check      check lint, format and types"
 	@echo "make audit      look up known vulnerabilities of every package used (needs the network)"
-	@echo "make reproduce  draw every figure and check every claim of the paper (5 min; QUALITY=full 24 min)"
+	@echo "make reproduce  draw every figure and check every claim of the paper (5 min; QUALITY=full 24 min;"
+	@echo "                WHICH=analytics: only the paper's analytics section, 1 min)"
 	@echo "make notebooks  execute the notebooks, into build/notebooks/"
 	@echo "make render     write the notebooks from their scripts, with outputs (LESSON=03: only that one)"
 	@echo "make docs       build the documentation into build/docs/ and execute its examples"
@@ -68,7 +70,7 @@ audit: $(VENV)/installed-test $(VENV)/installed-docs $(VENV)/installed-audit
 	$(BIN)/pip-audit --strict --no-deps --disable-pip --requirement build/audit.txt
 
 reproduce: $(VENV)/installed
-	$(BIN)/crazybilliards reproduce all --quality $(QUALITY)
+	$(BIN)/crazybilliards reproduce $(WHICH) --quality $(QUALITY)
 
 # Copies of the notebooks are executed, and the documentation shows their outputs.
 notebooks: $(VENV)/installed-notebooks

@@ -67,7 +67,7 @@ duration = 100
 """
 PYTHON = """
 import importlib, pkgutil
-for room in ("model", "particles", "kinetic", "comparison"):
+for room in ("model", "particles", "kinetic", "comparison", "reproduction", "apps"):
     package = importlib.import_module(f"crazybilliards.{room}")
     for info in pkgutil.walk_packages(package.__path__, package.__name__ + "."):
         importlib.import_module(info.name)
