@@ -14,11 +14,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from crazybilliards.apps.commands.answers import note, print_table, say, wrote
+from crazybilliards.apps.commands.answers import note, print_table, wrote
 from crazybilliards.apps.commands.chain_options import with_chain_options
 from crazybilliards.apps.commands.output import (
     complain_of_divergence,
-    exit_unless_completed,
+    conclude,
     numbers,
     place,
     write_figure,
@@ -100,14 +100,7 @@ def command(
             write, show = partial(_write_restitutions, drawn), _print_widths
         status = tree.attrs["status"]
         note(status=status)
-        try:
-            if output is not None:
-                write(tree, output, "" if status == "completed" else f"-{status}")
-        finally:
-            show(tree)  # where nothing can be written any more, this is all there is
-    if output is None:
-        say("Nothing was written; --output FOLDER keeps the figures and the data.")
-    exit_unless_completed(status)
+        conclude(output, status, partial(write, tree), partial(show, tree))
 
 
 def _elastic(chain: Chain, amplitudes: str | None, **settings: Any) -> xr.DataTree:

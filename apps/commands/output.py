@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 import typer
 
-from crazybilliards.apps.commands.answers import wrote
+from crazybilliards.apps.commands.answers import say, wrote
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -135,8 +135,26 @@ def complain_of_divergence(run: xr.Dataset) -> None:
     )
 
 
-def exit_unless_completed(status: str) -> None:
-    """End the command with the status that tells a shell what happened."""
+def conclude(
+    output: Path | None,
+    status: str,
+    write: Callable[[Path, str], None],
+    show: Callable[[], None],
+    kept: str = "FOLDER keeps the figures and the data",
+) -> None:
+    """Write what was computed, show it, and end the command with the status that tells a shell.
+
+    ``write(output, suffix)`` is called if there is an ``output``, which else would be ``kept``; the
+    suffix of names is ``-interrupted`` or ``-diverged`` unless the run was completed. ``show()`` is
+    called even if nothing can be written any more, because it then prints all there is.
+    """
+    try:
+        if output is not None:
+            write(output, "" if status == "completed" else f"-{status}")
+    finally:
+        show()
+    if output is None:
+        say(f"Nothing was written; --output {kept}.")
     if status == "interrupted":
         raise typer.Exit(INTERRUPTED)
     if status != "completed":

@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from crazybilliards.apps.commands.answers import note, print_table, say, wrote
+from crazybilliards.apps.commands.answers import note, print_table, wrote
 from crazybilliards.apps.commands.chain_options import with_chain_options
 from crazybilliards.apps.commands.output import (
-    exit_unless_completed,
+    conclude,
     place,
     write_figures,
     writing_to,
@@ -92,17 +92,10 @@ def command(
         )
         status = tree.attrs["status"]
         note(status=status)
-        try:
-            if output is not None:
-                _write_relaxation(tree, output, "" if status == "completed" else f"-{status}")
-        finally:
-            _print_distances(tree)  # where nothing can be written any more, this is all there is
-    if output is None:
-        say("Nothing was written; --output FOLDER keeps the figures and the data.")
-    exit_unless_completed(status)
+        conclude(output, status, partial(_write, tree), partial(_print, tree))
 
 
-def _write_relaxation(tree: xr.DataTree, folder: Path, suffix: str) -> None:
+def _write(tree: xr.DataTree, folder: Path, suffix: str) -> None:
     import tempfile
 
     from crazybilliards.comparison.side_by_side import relaxation_figures as figures
@@ -134,7 +127,7 @@ def _write_relaxation(tree: xr.DataTree, folder: Path, suffix: str) -> None:
     wrote(gif)
 
 
-def _print_distances(tree: xr.DataTree) -> None:
+def _print(tree: xr.DataTree) -> None:
     from rich.table import Table
 
     from crazybilliards.comparison.side_by_side.relaxation import LEGEND, label_distances

@@ -5,6 +5,7 @@ Only the standard library and typer are imported up here, so that ``--help`` ans
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -14,7 +15,7 @@ from crazybilliards.apps.commands.answers import answer_rods, note, say, wrote
 from crazybilliards.apps.commands.chain_options import with_chain_options
 from crazybilliards.apps.commands.output import (
     complain_of_divergence,
-    exit_unless_completed,
+    conclude,
     numbers,
     place,
     writing_to,
@@ -104,7 +105,6 @@ def command(
 
     Example: crazybilliards simulate --restitution 0 --accuracy 0.005 --output limit.nc
     """
-    from crazybilliards.model import save
     from crazybilliards.particles import simulate, simulate_limit
 
     common: dict[str, Any] = {
@@ -134,15 +134,14 @@ def command(
         else:
             result = simulate_limit(chain, accuracy=accuracy, **common)
         status = result.attrs["status"]
-        try:
-            if output is not None:
-                suffix = "" if status == "completed" else f"-{status}"
-                wrote(save(result, output.with_stem(output.stem + suffix)))
-        finally:
-            _print(result)  # where nothing can be written any more, this is all there is
-    if output is None:
-        say("Nothing was written; --output FILE.nc keeps the result.")
-    exit_unless_completed(status)
+        kept = "FILE.nc keeps the result"
+        conclude(output, status, partial(_write, result), partial(_print, result), kept)
+
+
+def _write(result: xr.Dataset, file: Path, suffix: str) -> None:
+    from crazybilliards.model import save
+
+    wrote(save(result, file.with_stem(file.stem + suffix)))
 
 
 def _refuse(**given: object) -> None:

@@ -16,6 +16,7 @@ import typer
 from crazybilliards.apps.commands.answers import answer_rods, note, say, wrote
 from crazybilliards.apps.commands.chain_options import with_chain_options
 from crazybilliards.apps.commands.output import (
+    conclude,
     place,
     write_figures,
     writing_to,
@@ -89,13 +90,8 @@ def command(
             say(f"critical size: {value:.1f} +- {error:.1f} rods")
         with waiting_for(f"solving: {theory.title}"):
             result = theory.solve(chain, **settings)
-        try:
-            if output is not None:
-                _write(theory, result, output)
-        finally:
-            _print(theory, result)  # where nothing can be written any more, this is all there is
-    if output is None:
-        say("Nothing was written; --output FOLDER keeps the figures and the data.")
+        write, show = partial(_write, theory, result), partial(_print, theory, result)
+        conclude(output, result.attrs["status"], write, show)
 
 
 def _print(theory: Theory, result: xr.Dataset) -> None:
@@ -126,21 +122,21 @@ def _caveat(theory: Theory, model_error: float) -> str:
     )
 
 
-def _write(theory: Theory, result: xr.Dataset, folder: Path) -> None:
+def _write(theory: Theory, result: xr.Dataset, folder: Path, suffix: str) -> None:
     from crazybilliards.comparison.side_by_side.restitution_figures import (
         draw_phase_space,
         draw_profile,
     )
     from crazybilliards.model import save
 
-    wrote(save(result, folder / "theory.nc"))
+    wrote(save(result, folder / f"theory{suffix}.nc"))
     drawings = {
         "density": partial(_draw_density, theory, result),
         "profile": partial(draw_profile, result, theory.title),
     }
     if "phase_space_density" in result:
         drawings["phase_space"] = partial(draw_phase_space, result)
-    write_figures(folder, "", drawings)
+    write_figures(folder, suffix, drawings)
 
 
 def _draw_density(theory: Theory, result: xr.Dataset) -> Figure:
