@@ -28,6 +28,12 @@ _NO_DATE = {"pdf": {"CreationDate": None}, "svg": {"Date": None}}
 _VERSIONS = ("crazybilliards", "numpy", "numba", "scipy", "scikit-fem", "py-pde", "xarray")
 OF_PAPER = "Statements of the paper"
 OWN = "Our own findings"
+_OF_STATEMENTS: tuple[Verdict, ...] = (
+    "reproduced",
+    "not reproduced",
+    "cannot be decided",
+    "undecided",
+)
 _LIMIT = "the limit dt -> 0; the error includes the remaining error of the step"
 
 
@@ -142,7 +148,8 @@ def describe(cases: Iterable[Case]) -> list[str]:
 def markdown(reproduced: list[Reproduced], quality: Quality) -> str:
     """Return a page of Markdown, to lie beside the pictures: a part for each study.
 
-    Everything is in lists, none of it in tables, so that a narrow screen shows all of it.
+    It begins with a table that counts the verdicts of each study and leads to its part. The parts
+    are in lists and not in tables, so that a narrow screen shows all of a claim.
     """
     numbers = _versions()
     rows = [
@@ -152,6 +159,8 @@ def markdown(reproduced: list[Reproduced], quality: Quality) -> str:
         f"{', '.join(f'{name} {number}' for name, number in numbers.items())}.",
         "",
         *(f"* {line}" for line in summary(reproduced)),
+        "",
+        *_verdicts_by_study(reproduced),
     ]
     for each in reproduced:
         study = each.study
@@ -163,6 +172,36 @@ def markdown(reproduced: list[Reproduced], quality: Quality) -> str:
                 rows += ["", f"**{_plain(claim.statement)}**", ""]
                 rows += [f"* {name}: {_plain(text)}" for name, text in details(claim).items()]
     return "\n".join(rows) + "\n"
+
+
+def _verdicts_by_study(reproduced: list[Reproduced]) -> list[str]:
+    """Return a table of Markdown: how many claims of each study have which verdict."""
+    rows = [
+        "The numbers of the table count statements of the paper. Each line leads to the claims.",
+        "",
+        f"| figure or study | {' | '.join(_OF_STATEMENTS)} | {OWN.lower()} |",
+        f"|---{'|---:' * len(_OF_STATEMENTS)}|---|",
+    ]
+    for each in reproduced:
+        paper, own = (
+            Counter(claim.verdict for claim in each.parts.get(title, ()))
+            for title in (OF_PAPER, OWN)
+        )
+        counts = [str(paper[verdict] or "") for verdict in _OF_STATEMENTS]
+        heading = each.study.heading
+        rows.append(f"| [{heading}](#{_anchor(heading)}) | {' | '.join(counts)} | {_listed(own)} |")
+    return rows
+
+
+def _anchor(heading: str) -> str:
+    """Return the name that Markdown gives to a heading, for links to it."""
+    return re.sub(r"[^\w -]", "", heading.lower()).replace(" ", "-")
+
+
+def _listed(counts: Counter[Verdict]) -> str:
+    return ", ".join(
+        f"{counts[verdict]} {verdict}" for verdict in get_args(Verdict) if counts[verdict]
+    )
 
 
 def _plain(text: str) -> str:
@@ -211,11 +250,7 @@ def summary(reproduced: list[Reproduced]) -> list[str]:
     for title in (OF_PAPER, OWN):
         claims = [claim for each in reproduced for claim in each.parts.get(title, ())]
         if claims:
-            counts = Counter(claim.verdict for claim in claims)
-            verdicts = ", ".join(
-                f"{counts[verdict]} {verdict}" for verdict in get_args(Verdict) if counts[verdict]
-            )
-            lines.append(f"{title}: {verdicts}")
+            lines.append(f"{title}: {_listed(Counter(claim.verdict for claim in claims))}")
     limits = sum(claim.in_limit for each in reproduced for claim in each.claims)
     if limits:
         lines.append(

@@ -3,8 +3,10 @@
 import json
 import re
 import sys
+from collections import Counter
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
+from pathlib import Path
 
 import matplotlib.pyplot as plt
 import pytest
@@ -185,6 +187,41 @@ def test_a_figure_its_claims_and_nothing_computed_twice(command, tmp_path, monke
     assert "the worker runs other source code" in errors  # as it does: this edit is a pretence
 
 
+def assert_table_counts_verdicts(page):
+    """Assert that the table of a report has a line for each study, with the counts of its part."""
+    first, *parts = re.split("^## ", page, flags=re.MULTILINE)
+    expected = []
+    for part in parts:
+        heading = part.splitlines()[0]
+        anchor = "".join(c for c in heading.lower() if c.isalnum() or c in " -").replace(" ", "-")
+        _, *kinds = re.split("^### ", part, flags=re.MULTILINE)
+        counts = {
+            kind.splitlines()[0]: Counter(re.findall(r"^\* verdict: (.*)", kind, re.MULTILINE))
+            for kind in kinds
+        }
+        paper, own = (counts.get(title, Counter()) for title in (OF_PAPER, OWN))
+        verdicts = ("reproduced", "not reproduced", "cannot be decided", "undecided")
+        expected.append(
+            (
+                f"[{heading}](#{anchor})",
+                *(str(paper[verdict] or "") for verdict in verdicts),
+                ", ".join(
+                    f"{own[verdict]} {verdict}"
+                    for verdict in ("confirmed", "refuted", "undecided")
+                    if own[verdict]
+                ),
+            )
+        )
+    lines = re.findall(r"^\| (\[.*) \|$", first, re.MULTILINE)
+    assert [tuple(line.split(" | ")) for line in lines] == expected
+    assert "|" not in "".join(parts)
+
+
+def test_the_table_of_the_stored_report_counts_its_verdicts():
+    page = Path(__file__).parents[2].joinpath("docs", "paper", "claims.md")
+    assert_table_counts_verdicts(page.read_text(encoding="utf-8"))
+
+
 @pytest.mark.compiled
 def test_the_report_is_one_page_and_the_table_markdown(tmp_path, monkeypatch):
     monkeypatch.setitem(fig17_density._DURATION, "quick", 5000.0)
@@ -213,7 +250,7 @@ def test_the_report_is_one_page_and_the_table_markdown(tmp_path, monkeypatch):
     text = markdown(reproduced, "quick")
     assert re.findall("^## ([^. ]*)", text, re.MULTILINE) == ["1", "16", "Displacements"]
     assert re.findall("^### (.*)", text, re.MULTILINE) == [OF_PAPER, OWN, OWN]
-    assert "|" not in text
+    assert_table_counts_verdicts(text)
     assert text.count("* verdict: ") == 2 + 6
     assert "**&lt;dx&gt; is described by B arctanh(C x)**" in text
     assert "* in the paper: section seq:analytics, fig:atan" in text
