@@ -28,12 +28,6 @@ _NO_DATE = {"pdf": {"CreationDate": None}, "svg": {"Date": None}}
 _VERSIONS = ("crazybilliards", "numpy", "numba", "scipy", "scikit-fem", "py-pde", "xarray")
 OF_PAPER = "Statements of the paper"
 OWN = "Our own findings"
-_OF_STATEMENTS: tuple[Verdict, ...] = (
-    "reproduced",
-    "not reproduced",
-    "cannot be decided",
-    "undecided",
-)
 _LIMIT = "the limit dt -> 0; the error includes the remaining error of the step"
 
 
@@ -176,20 +170,11 @@ def markdown(reproduced: list[Reproduced], quality: Quality) -> str:
 
 def _verdicts_by_study(reproduced: list[Reproduced]) -> list[str]:
     """Return a table of Markdown: how many claims of each study have which verdict."""
-    rows = [
-        "The numbers of the table count statements of the paper. Each line leads to the claims.",
-        "",
-        f"| figure or study | {' | '.join(_OF_STATEMENTS)} | {OWN.lower()} |",
-        f"|---{'|---:' * len(_OF_STATEMENTS)}|---|",
-    ]
+    rows = [f"| figure or study | {OF_PAPER.lower()} | {OWN.lower()} |", "|---|---|---|"]
     for each in reproduced:
-        paper, own = (
-            Counter(claim.verdict for claim in each.parts.get(title, ()))
-            for title in (OF_PAPER, OWN)
-        )
-        counts = [str(paper[verdict] or "") for verdict in _OF_STATEMENTS]
         heading = each.study.heading
-        rows.append(f"| [{heading}](#{_anchor(heading)}) | {' | '.join(counts)} | {_listed(own)} |")
+        verdicts = (_counted(each.parts.get(title, [])) for title in (OF_PAPER, OWN))
+        rows.append(f"| [{heading}](#{_anchor(heading)}) | {' | '.join(verdicts)} |")
     return rows
 
 
@@ -198,7 +183,8 @@ def _anchor(heading: str) -> str:
     return re.sub(r"[^\w -]", "", heading.lower()).replace(" ", "-")
 
 
-def _listed(counts: Counter[Verdict]) -> str:
+def _counted(claims: Iterable[Claim]) -> str:
+    counts = Counter(claim.verdict for claim in claims)
     return ", ".join(
         f"{counts[verdict]} {verdict}" for verdict in get_args(Verdict) if counts[verdict]
     )
@@ -250,7 +236,7 @@ def summary(reproduced: list[Reproduced]) -> list[str]:
     for title in (OF_PAPER, OWN):
         claims = [claim for each in reproduced for claim in each.parts.get(title, ())]
         if claims:
-            lines.append(f"{title}: {_listed(Counter(claim.verdict for claim in claims))}")
+            lines.append(f"{title}: {_counted(claims)}")
     limits = sum(claim.in_limit for each in reproduced for claim in each.claims)
     if limits:
         lines.append(
