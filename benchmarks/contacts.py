@@ -2,7 +2,8 @@ r"""What happens at the contacts of a chain: simulation and the theory with pair
 
     python benchmarks/contacts.py [--duration 12000]
 
-Prints what docs/correlations.md says of contacts, in units of the free rod.
+Prints what docs/correlations.md says of contacts, in units of the free rod. The first table is
+docs/tables/correlations_ingredients.csv.
 
 1. At the contacts 1, 4, 10 and in the centre: the force P, the speed before a collision (the root
    of ``contact_temperature``, for which the theory has F sqrt(Theta)), the covariance of the
@@ -110,8 +111,8 @@ def theoretical(chain: Chain) -> list[Values]:
 
 
 def tabulate_contacts(duration: float) -> None:
-    names = "force P", "speed before a collision", "<v_i v_(i+2)>", "h_gTheta", "h_gg"
-    print("simulation / theory\n| rods | e | quantity | 1 | 4 | 10 | centre |\n|" + 7 * "---|")
+    names = "P", "speed before a collision", "<v_i v_(i+2)>", "h_gTheta", "h_gg"
+    print("L,e,quantity,contact 1,contact 4,contact 10,centre")
     for chain in CHAINS:
         rows = zip(names, simulated(chain, duration), theoretical(chain), strict=True)
         for name, (values, errors), theory in rows:
@@ -120,7 +121,7 @@ def tabulate_contacts(duration: float) -> None:
                 f"{even[at]:.3f} ± {errors[at] / np.sqrt(2):.1g} / {theory[at]:.3f}"
                 for at in (*(contact - 1 for contact in CONTACTS), (even.size - 1) // 2)
             ]
-            print(f"| {chain.size} | {chain.restitution:g} | {name} | {' | '.join(shown)} |")
+            print(f"{chain.size},{chain.restitution:g},{name},{','.join(shown)}")
 
 
 def tabulate_places(duration: float) -> None:
