@@ -2,8 +2,8 @@ r"""What happens at the contacts of a chain: simulation and the theory with pair
 
     python benchmarks/contacts.py [--duration 12000]
 
-Prints what docs/correlations.md says of contacts, in units of the free rod. The first table is
-docs/tables/correlations_ingredients.csv.
+Prints what docs/correlations.md says of contacts, in units of the free rod. The first two
+tables are correlations_ingredients.csv and neighbourhoods.csv in docs/tables.
 
 1. At the contacts 1, 4, 10 and in the centre: the force P, the speed before a collision (the root
    of ``contact_temperature``, for which the theory has F sqrt(Theta)), the covariance of the
@@ -131,13 +131,13 @@ def tabulate_places(duration: float) -> None:
     rods = np.bincount(place.ravel())
     squares = np.bincount(place.ravel(), weights=(v**2).ravel())
     there = squares / np.maximum(rods, 1)
-    print("\n| rod | <v_i^2> | mean of T(y) over the places of the rod |\n|---|---|---|")
+    print("\nrod,<v_i^2>,mean of T(y) over the places of the rod")
     for rod in RODS:
         mirrored = [rod - 1, PLACES.size - rod]
         own, seen = v[:, mirrored] ** 2, there[place[:, mirrored]]
         blocks = [part.mean() for part in np.array_split(own, BLOCKS)]
         error = np.std(blocks, ddof=1) / np.sqrt(BLOCKS)
-        print(f"| {rod} | {own.mean():.3f} ± {error:.1g} | {seen.mean():.3f} |")
+        print(f"{rod},{own.mean():.3f} ± {error:.1g},{seen.mean():.3f}")
 
 
 def tabulate_short(duration: float) -> None:
