@@ -27,7 +27,7 @@ class Energy(Observer):
     Successive snapshots are averaged so that at most 1000 times are kept. An ensemble keeps all
     times, and so does a run that observes the snapshots too. With two or more replicas
     kinetic_energy_error is the standard error of their mean. Times that not every replica reached
-    are left out, or NaN beside snapshots. It takes 16 bytes per time kept.
+    are left out, or NaN beside snapshots.
     """
 
     name = "energy"

@@ -52,7 +52,7 @@ class Impacts(Averaged):
     of the loss at the default step, 5 and 2 % at a fourth and a sixteenth of it.
 
     Without any collisions the temperatures of a contact are NaN; the rebound temperature is 0
-    where all rods that met merged. The sums take 32 L bytes per block.
+    where all rods that met merged.
     """
 
     name = "impacts"
