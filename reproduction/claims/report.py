@@ -43,6 +43,8 @@ class Reproduced:
         The picture as a file, by format: PNG always, others as asked for.
     claims
         The checked claims.
+    table
+        Its numbers as tables in Markdown, or "".
     parameters
         What was computed, a line for each kind of case.
     seconds
@@ -52,6 +54,7 @@ class Reproduced:
     study: Study
     pictures: dict[str, bytes]
     claims: list[Claim]
+    table: str
     parameters: list[str]
     seconds: float
 
@@ -123,6 +126,7 @@ def _reproduced(
         study=study,
         pictures=pictures,
         claims=study.claims(results),
+        table=study.table(results),
         parameters=describe(cases.values()),
         seconds=sum(run.attrs["seconds"] for run in results.values()),
     )

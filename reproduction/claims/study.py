@@ -27,6 +27,11 @@ def no_claims(results: Results) -> list[Claim]:
     return []
 
 
+def no_table(results: Results) -> str:
+    """No numbers besides those of the picture and the claims."""
+    return ""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Study:
     """A question put to simulations and theories, answered by a picture and by checked claims.
@@ -43,6 +48,8 @@ class Study:
         ``draw(results)`` gives the picture, results being those of the cases by the same names.
     claims
         ``claims(results)`` sets what is claimed beside what was found.
+    table
+        ``table(results)`` gives its numbers as tables in Markdown, "" if it has none.
     """
 
     name: str
@@ -51,6 +58,7 @@ class Study:
     draw: Callable[[Results], Figure]
     cases: Callable[[Quality], Cases] = no_cases
     claims: Callable[[Results], list[Claim]] = no_claims
+    table: Callable[[Results], str] = no_table
 
     @property
     def label(self) -> str:
