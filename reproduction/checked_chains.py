@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import Any
 
 from crazybilliards.comparison.sweeps import Case
 from crazybilliards.model import Chain
@@ -69,7 +70,7 @@ class Checked:
 
     def cases(self, quality: Quality) -> Cases:
         """Return its simulation, and the theories that it checks."""
-        coarse = {"cells": _COARSE} if quality == "quick" else {}
+        coarse: dict[str, Any] = {"cells": _COARSE} if quality == "quick" else {}
         settings = coarse or {"tolerance": _TOLERANCE}
         cases = {self.independent: Case("phase_space", self.chain, settings)}
         if self.group != Group.INDEPENDENT:

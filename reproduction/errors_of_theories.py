@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from matplotlib.axes import Axes
 
-from crazybilliards.comparison.drawing import COLOURS, SYMBOLS
+from crazybilliards.comparison.drawing import COLOURS, draw_points
 from crazybilliards.model import Chain
 
 _LINEAR = 2.0  # per cent; the axis is linear up to there, and logarithmic beyond
@@ -50,19 +50,20 @@ def draw_errors(ax: Axes, errors: Sequence[Error], which: str, sizes: Sequence[i
             (each for each in errors if each.chain.size == size and not each.driven),
             key=lambda each: each.place,
         )
-        look = {"color": COLOURS[number], "marker": SYMBOLS[number]}
         for held_out in (False, True):
             shown = [each for each in of_size if each.held_out == held_out]
             if not shown:
                 continue
-            ax.errorbar(
+            draw_points(
+                ax,
                 [each.place for each in shown],
                 [getattr(each, which) for each in shown],
                 [getattr(each, f"{which}_error") for each in shown],
-                markerfacecolor=look["color"] if held_out else "none",
+                number=number,
                 label=f"$L = {size}$" + (", held out" if held_out else ""),
+                markerfacecolor=COLOURS[number] if held_out else "none",
+                linestyle="-",
                 linewidth=0.8,
-                **look,
             )
     for each in (each for each in errors if each.driven):
         value, error = getattr(each, which), getattr(each, f"{which}_error")

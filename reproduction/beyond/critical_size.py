@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from crazybilliards.comparison.drawing import COLOURS, SYMBOLS
+from crazybilliards.comparison.drawing import COLOURS, draw_points
 from crazybilliards.comparison.layout import panels
 from crazybilliards.comparison.sweeps import Case
 from crazybilliards.kinetic.kinetic_equation.criticality import critical_size
@@ -144,13 +144,7 @@ def draw(results: Results) -> Figure:
     for number, e in enumerate(_LINES):
         found = [(damping, *each) for (one, damping), each in measured.items() if one == e]
         if found:
-            ax.errorbar(
-                *zip(*found, strict=True),
-                fmt=SYMBOLS[number],
-                markerfacecolor="none",
-                color=COLOURS[number],
-                label=f"simulation, $e = {e:g}$",
-            )
+            draw_points(ax, *np.transpose(found), number=number, label=f"simulation, $e = {e:g}$")
     ax.text(0.97, 0.02, "steady states below the lines", ha="right", transform=ax.transAxes)
     ax.set(xlabel=r"damping $\gamma$ [$\sqrt{kM}$]", ylabel="number of rods $L$")
     ax.set(xlim=(0, 5.1), ylim=(0, 420))

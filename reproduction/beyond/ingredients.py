@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from crazybilliards.comparison.drawing import COLOURS, SYMBOLS
+from crazybilliards.comparison.drawing import COLOURS, draw_points
 from crazybilliards.comparison.layout import legend_above, panels
 from crazybilliards.comparison.sweeps import Case
 from crazybilliards.model import Chain, chain_of
@@ -30,7 +30,7 @@ _LIMIT = 0.05  # within which the first chain's ingredients agree
 _MODES = 3  # panel of the spectrum
 _FORCE, _BEFORE = r"force $P\ [k s]$", r"before a collision: $\sqrt{\Theta_c}/W$"
 
-Drawn = tuple[xr.DataArray, np.ndarray, np.ndarray]  # coordinate, values and errors
+Drawn = tuple[np.ndarray, np.ndarray, np.ndarray]  # coordinate, values and errors
 
 
 def cases(quality: Quality) -> Cases:
@@ -81,7 +81,7 @@ def _ingredients(run: xr.Dataset) -> dict[str, Drawn]:
     }
     return {
         label: (
-            places[str(found[name].dims[0])],
+            places[str(found[name].dims[0])].values,
             found[name].values / unit,
             found.get(f"{name}_error", 0 * found[name]).values / unit,
         )
@@ -136,14 +136,9 @@ def draw(results: Results) -> Figure:
             shown = np.linspace(0, last, 30).astype(int)
             if ax is axes[_MODES]:  # mode 0 is exact, and beyond a logarithmic axis
                 shown = np.unique(np.geomspace(1, last, 24).astype(int))
-            ax.errorbar(
-                *(each[shown] for each in found),
-                linestyle="none",
-                marker=SYMBOLS[number],
-                markerfacecolor="none",
-                color=COLOURS[number],
-                label=f"$L = {chain.size}$, $e = {chain.restitution:g}$",
-            )
+            place, values, errors = (each[shown] for each in found)
+            label = f"$L = {chain.size}$, $e = {chain.restitution:g}$"
+            draw_points(ax, place, values, errors, number=number, label=label)
             place, values, _ = lines[name]
             first = int(ax is axes[_MODES])
             ax.plot(place[first:], values[first:], color=COLOURS[number])

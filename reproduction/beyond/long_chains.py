@@ -14,7 +14,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from crazybilliards.comparison.drawing import COLOURS, SYMBOLS
+from crazybilliards.comparison.drawing import COLOURS, draw_points
 from crazybilliards.comparison.fits import fit_border_power_law
 from crazybilliards.comparison.layout import legend_above, panels
 from crazybilliards.model import chain_of
@@ -197,15 +197,8 @@ def _draw(
     number: int,
     label: str,
 ) -> None:
-    ax.errorbar(
-        list(runs),
-        *zip(*(each[name] for each in runs.values()), strict=True),
-        linestyle="none",
-        marker=SYMBOLS[number],
-        markerfacecolor="none",
-        color=COLOURS[number],
-        label=label or None,
-    )
+    values, errors = np.transpose([each[name] for each in runs.values()])
+    draw_points(ax, list(runs), values, errors, number=number, label=label)
     ax.plot(list(theories), [each[name].value for each in theories.values()], color=COLOURS[number])
 
 

@@ -7,7 +7,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from crazybilliards.comparison.drawing import COLOURS, SYMBOLS
+from crazybilliards.comparison.drawing import COLOURS, draw_points
 from crazybilliards.comparison.layout import entitle, legend_above, panels
 from crazybilliards.model import chain_of
 from crazybilliards.model.chain import middle_tenth
@@ -135,18 +135,12 @@ def draw(results: Results) -> Figure:
     """Draw correlation lengths, covariances of neighbours, and covariances against distance."""
     figure, axes = panels(1, 3, height=2.6)
     for number, (e, by_size) in enumerate(_pairs(results).items()):
-        how = {"color": COLOURS[number], "marker": SYMBOLS[number], "markerfacecolor": "none"}
         for ax, value in zip(axes, (correlation_length, _in_the_centre), strict=False):
-            ax.errorbar(
-                list(by_size),
-                *zip(*(value(run) for run, _ in by_size.values()), strict=True),
-                linestyle="none",
-                label=f"$e = {e:g}$",
-                **how,
-            )
+            values, errors = np.transpose([value(run) for run, _ in by_size.values()])
+            draw_points(ax, list(by_size), values, errors, number=number, label=f"$e = {e:g}$")
             lines = [value(theory).value for _, theory in by_size.values()]
             ax.plot(list(by_size), lines, color=COLOURS[number])
-        _draw_covariances(axes[2], by_size[SNAPPED][0], how)
+        _draw_covariances(axes[2], by_size[SNAPPED][0], number)
     for ax in axes[:2]:
         shown = list(next(iter(_pairs(results).values())))
         ax.set(xscale="log", xlabel="rods $L$")
@@ -161,7 +155,7 @@ def draw(results: Results) -> Figure:
     return figure
 
 
-def _draw_covariances(ax: Axes, run: xr.Dataset, how: dict[str, str]) -> None:
+def _draw_covariances(ax: Axes, run: xr.Dataset, number: int) -> None:
     """Draw covariances of rods at equal distances from the centre, over their temperatures."""
     size = run.sizes["particle"]
     v, widths = run.velocity.values.reshape(-1, size), run.velocity_width.values
@@ -173,7 +167,7 @@ def _draw_covariances(ax: Axes, run: xr.Dataset, how: dict[str, str]) -> None:
         products = (v[:, first] * v[:, first + r]).mean(axis=1) / temperature
         values.append(products.mean())
         errors.append(error_of_mean([part.mean() for part in np.array_split(products, _BLOCKS)]))
-    ax.errorbar(separations, values, errors, linestyle="none", **how)
+    draw_points(ax, separations, values, errors, number=number)
 
 
 STUDY = Study(

@@ -72,14 +72,14 @@ def _relative_errors(results: Results, each: Checked, deviation: WidthDeviation)
 def table(results: Results) -> str:
     """Give the errors without correlations, then both theories' for every group of chains."""
     found = _found(results)
-    heads = ("e", "L", "centre, %", "border, %", "largest, 3 to L-2, %", "error of a rod, %")
+    heads = ["e", "L", "centre, %", "border, %", "largest, 3 to L-2, %", "error of a rod, %"]
     rows = [_row(results, each) for each in found if each.group == Group.INDEPENDENT]
     parts = [f"Without pair correlations\n\n{markdown_table(heads, rows)}"]
-    heads = (
+    heads = [
         *("L", "e", "gamma", "W_v, centre, %", "W_v, border, %", "W_v, largest, %"),
         *("error of the centre, a rod, the border, %", "Theta/T, centre", "Theta/T, border"),
         "W_x, tenth, centre, largest, %",
-    )
+    ]
     for group, title in _TITLES.items():
         rows = [_row_of_both(results, each) for each in found if each.group == group]
         if rows:
@@ -209,9 +209,18 @@ def _errors(results: Results, *, with_pairs: bool) -> list[Error]:
         if not usual or chain.size < _LEAST_DRAWN or len(deviations) <= with_pairs:
             continue
         found = deviations[with_pairs]
-        shares = (found.centre, found.border, *_relative_errors(results, each, found))
-        percents = [100 * share for share in shares]
-        drawn.setdefault(place, Error(chain, *percents, each.group == Group.HELD_OUT))
+        centre, border = _relative_errors(results, each, found)
+        drawn.setdefault(
+            place,
+            Error(
+                chain=chain,
+                centre=100 * found.centre,
+                border=100 * found.border,
+                centre_error=100 * centre,
+                border_error=100 * border,
+                held_out=each.group == Group.HELD_OUT,
+            ),
+        )
     return list(drawn.values())
 
 

@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from crazybilliards.comparison.drawing import COLOURS
+from crazybilliards.comparison.drawing import draw_points
 from crazybilliards.comparison.fits import fit_border_power_law
 from crazybilliards.comparison.layout import panels
 from crazybilliards.comparison.sweeps import Case
@@ -109,14 +109,13 @@ def draw(results: Results) -> Figure:
     """Draw W_v in the centre against L, and its slopes."""
     widths = _sizes(results)
     slopes = _slopes(widths)
-    how = {"linestyle": "none", "marker": "o", "markerfacecolor": "none", "color": COLOURS[0]}
     figure, axes = panels(1, 2, height=2.4)
-    axes[0].errorbar(list(widths), *zip(*widths.values(), strict=True), **how)
+    draw_points(axes[0], list(widths), *np.transpose(list(widths.values())), number=0)
     axes[0].set(yscale="log", ylabel="$W_v$, centre [$R$ per unit of time]")
     middles = [math.sqrt(one * other) for one, other in slopes]
     values, errors = np.transpose(list(slopes.values()))
     ends = np.abs(np.transpose(list(slopes)) - np.array(middles))
-    axes[1].errorbar(middles, values, errors, xerr=ends, **how)
+    draw_points(axes[1], middles, values, errors, number=0, xerr=ends)
     axes[1].axhline(-0.38, color="0.6", linewidth=0.8, zorder=0)
     axes[1].set(ylabel=r"slope of $\ln W_v$ over $\ln L$")
     for ax in axes:
