@@ -98,7 +98,7 @@ def command(
     """Reproduce the figures of arXiv:1404.7460, and check what the paper claims.
 
     Writes a picture for each figure and prints what became of the paper's claims. Some studies
-    have a table as well, which is written beside the picture. For all figures it also writes
+    have tables as well, which are written beside the picture. For all figures it also writes
     report.html, one page with everything in it, and claims.md, the table of claims; for analytics
     and studies these pages bear their names. Results are kept in the folder: drawing again is a
     matter of seconds, and after Ctrl-C or a crash the same command goes on.
@@ -159,9 +159,9 @@ def _draw(studies: list[Study], quality: Quality, output: Path, **how: Any) -> l
             path = output / f"{each.study.stem}.{kind}"
             write_atomically(path, picture)
             wrote(path)
-        if each.table:
-            path = output / f"{each.study.stem}.md"
-            write_atomically(path, each.table.encode())
+        for name, table in each.tables.items():
+            path = output / f"{name}.csv"
+            write_atomically(path, table)
             wrote(path)
         reproduced.append(each)
     return reproduced

@@ -19,7 +19,7 @@ from crazybilliards.kinetic.kinetic_equation.criticality import critical_size
 from crazybilliards.kinetic.kinetic_equation.weak_damping import weak_damping_critical_size
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.reproduction.claims.study import Cases, Quality, Results, Study
-from crazybilliards.reproduction.claims.tables import markdown_table
+from crazybilliards.reproduction.claims.tables import Tables
 from crazybilliards.reproduction.claims.verdicts import (
     Claim,
     Estimate,
@@ -96,15 +96,14 @@ def _predicted(restitution: float, damping: float) -> tuple[Estimate, float]:
     return Estimate(*critical_size(chain)), weak_damping_critical_size(chain)
 
 
-def table(results: Results) -> str:
+def tables(results: Results) -> Tables:
     """Give the critical sizes of both theories and of the simulation."""
-    rows = []
+    rows = [["e", "gamma", "kinetic equation", "closed form", "simulation"]]
     for (restitution, damping), found in _simulated(results).items():
         theory, closed = _predicted(restitution, damping)
         both = [f"{each.value:.1f} ± {each.error:.1f}" for each in (theory, found)]
         rows.append([f"{restitution:g}", f"{damping:g}", both[0], f"{closed:.1f}", both[1]])
-    heads = ("e", "gamma", "kinetic equation", "closed form", "simulation")
-    return markdown_table(heads, rows)
+    return {"critical_size": rows}
 
 
 def claims(results: Results) -> list[Claim]:
@@ -161,5 +160,5 @@ STUDY = Study(
     cases=cases,
     draw=draw,
     claims=claims,
-    table=table,
+    tables=tables,
 )

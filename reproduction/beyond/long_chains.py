@@ -17,10 +17,10 @@ from matplotlib.figure import Figure
 from crazybilliards.comparison.drawing import COLOURS, draw_points
 from crazybilliards.comparison.fits import fit_border_power_law
 from crazybilliards.comparison.layout import legend_above, panels
-from crazybilliards.model import chain_of
+from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.chain import middle_tenth
 from crazybilliards.reproduction.claims.study import Cases, Quality, Results, Study
-from crazybilliards.reproduction.claims.tables import markdown_table
+from crazybilliards.reproduction.claims.tables import Table, Tables
 from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, positive_claim
 from crazybilliards.reproduction.correlated_rods import (
     correlation_length,
@@ -28,12 +28,12 @@ from crazybilliards.reproduction.correlated_rods import (
     sizes,
 )
 
-_LABELS = {  # in the picture
+_HEADS = {  # of the tables
     "W_v": "$W_v/W$",
-    "relative": r"$\sqrt{\Theta}/W$",
+    "relative": r"$\sqrt\Theta/W$",
     "common": r"$\sqrt{h_c}/W$",
-    "force": "force $P$ in the centre [$ks$]",
-    "xi": r"correlation length $\xi$ [rods]",
+    "force": "$P/ks$",
+    "xi": r"$\xi$",
 }
 _FIRST = 100  # rods from which on the common part is compared with a power
 _GUESSED = -0.25  # the power that is guessed for it
@@ -110,29 +110,42 @@ def _printed(number: Estimate) -> str:
     return f"{value:.4g} ± {error:.2g}" if error else f"{value:.4g}"
 
 
-def table(results: Results) -> str:
-    """Give the quantities of every length, their slopes, and nu of the theory."""
-    parts = []
-    for kind, found in _both(results).items():
-        rows = [
-            [f"{size}", *(_printed(each[name]) for name in _LABELS)] for size, each in found.items()
-        ]
-        for ends in pairwise(found):
-            slopes = [_slope(found, name, *ends) for name in _LABELS]
-            shown = [_printed(each._replace(value=round(each.value, 3))) for each in slopes]
-            rows.append([f"{ends[0]} to {ends[1]}", *shown])
-        parts.append(f"{kind}\n\n{markdown_table(['L', *_LABELS], rows)}")
+def tables(results: Results) -> Tables:
+    """Give the quantities of every length and their slopes; a guess of xi, and nu of the theory."""
+    theories, runs = _both(results).values()
     fits = {
         chain_of(theory).size: fit_border_power_law(theory)
         for theory in results.values()
         if not _simulated(theory)
     }
-    rows = [
-        [f"{size}", f"{fit.exponent:.3f} ± {fit.exponent_error:.3f}", f"{fit.origin:.2f}"]
-        for size, fit in fits.items()
+    exponents = {
+        size: f"{fit.exponent:.3f} ± {fit.exponent_error:.3f}" for size, fit in fits.items()
+    }
+    guesses = {size: f"{_guess(size, found['force'].value):.1f}" for size, found in runs.items()}
+    return {
+        "long_chains_simulation": _table(runs, r"$\sqrt{2/3}\,P/\Gamma$", guesses),
+        "long_chains_theory": _table(theories, r"$\nu$", exponents),
+    }
+
+
+def _guess(size: int, force: float) -> float:
+    """Return what the correlation length would be if collisions took all energy."""
+    chain = Chain(size=size)
+    return math.sqrt(2 / 3) * force * math.sqrt(chain.stiffness * chain.mass) / chain.damping
+
+
+def _table(found: Mapping[int, Quantities], last: str, values: Mapping[int, str]) -> Table:
+    """Return quantities and one more column, then slopes."""
+    rows = [["L", *_HEADS.values(), last]]
+    rows += [
+        [f"{size}", *(_printed(each[name]) for name in _HEADS), values[size]]
+        for size, each in found.items()
     ]
-    parts.append(f"theory, fit along the chain\n\n{markdown_table(['L', 'nu', 'c'], rows)}")
-    return "\n".join(parts)
+    for one, other in pairwise(found):
+        slopes = [_slope(found, name, one, other) for name in _HEADS]
+        shown = [_printed(each._replace(value=round(each.value, 3))) for each in slopes]
+        rows.append([f"{one} → {other}", *shown, ""])
+    return rows
 
 
 def claims(results: Results) -> list[Claim]:
@@ -175,11 +188,12 @@ def draw(results: Results) -> Figure:
     theories, runs = _both(results).values()
     figure, axes = panels(1, 3, height=2.6)
     for number, name in enumerate(("W_v", "relative", "common")):
-        _draw(axes[0], theories, runs, name, number=number, label=_LABELS[name])
+        _draw(axes[0], theories, runs, name, number=number, label=_HEADS[name])
     for ax, name in zip(axes[1:], ("force", "xi"), strict=True):
         _draw(ax, theories, runs, name, number=0, label="")
-        ax.set_ylabel(_LABELS[name])
     axes[0].set_ylabel("in the centre")
+    axes[1].set_ylabel("force $P$ in the centre [$ks$]")
+    axes[2].set_ylabel(r"correlation length $\xi$ [rods]")
     for ax in axes:
         ax.set(xscale="log", yscale="log", xlabel="rods $L$")
         ax.set_xticks(list(runs), [f"{size}" for size in runs])
@@ -212,5 +226,5 @@ STUDY = Study(
     cases=cases,
     draw=draw,
     claims=claims,
-    table=table,
+    tables=tables,
 )

@@ -13,7 +13,7 @@ from crazybilliards.model import chain_of
 from crazybilliards.model.chain import middle_tenth
 from crazybilliards.reproduction.claims.repetition import error_of_mean
 from crazybilliards.reproduction.claims.study import Cases, Quality, Results, Study
-from crazybilliards.reproduction.claims.tables import markdown_table
+from crazybilliards.reproduction.claims.tables import Tables
 from crazybilliards.reproduction.claims.verdicts import (
     Claim,
     Estimate,
@@ -73,9 +73,11 @@ def _in_the_centre(result: xr.Dataset) -> Estimate:
     return Estimate(share, float(error / temperature))
 
 
-def table(results: Results) -> str:
+def tables(results: Results) -> Tables:
     """Give correlation lengths, covariances of neighbours, and how many rods move together."""
-    rows = []
+    rows = [
+        ["e", "L", *_columns("xi"), *_columns("h_c/T centre"), "W^2/<v^2>, simulation"],
+    ]
     for e, by_size in _pairs(results).items():
         for size, (run, theory) in by_size.items():
             length, shared = correlation_length(run), _in_the_centre(run)
@@ -92,8 +94,11 @@ def table(results: Results) -> str:
                     f"{together:.2f}",
                 ]
             )
-    heads = ("e", "L", "xi, simulation", "theory", "<v v'>/T, simulation", "theory", "W^2/<v^2>")
-    return markdown_table(heads, rows)
+    return {"correlation_lengths": rows}
+
+
+def _columns(quantity: str) -> list[str]:
+    return [f"{quantity}, simulation", f"{quantity}, theory"]
 
 
 def claims(results: Results) -> list[Claim]:
@@ -180,5 +185,5 @@ STUDY = Study(
     cases=cases,
     draw=draw,
     claims=claims,
-    table=table,
+    tables=tables,
 )

@@ -19,7 +19,7 @@ from crazybilliards.comparison.widths import (
 from crazybilliards.reproduction.checked_chains import Checked, Group, checked
 from crazybilliards.reproduction.claims.repetition import estimate, pooled
 from crazybilliards.reproduction.claims.study import Cases, Quality, Results, Study
-from crazybilliards.reproduction.claims.tables import markdown_table, percent
+from crazybilliards.reproduction.claims.tables import Tables, percent
 from crazybilliards.reproduction.claims.verdicts import (
     Claim,
     Estimate,
@@ -28,10 +28,9 @@ from crazybilliards.reproduction.claims.verdicts import (
 )
 from crazybilliards.reproduction.errors_of_theories import Error, draw_errors
 
-_TITLES = {
-    Group.HELD_OUT: "Chains that were held out",
-    Group.DERIVED_WITH: "Chains that the theory was derived with",
-    Group.OF_FIGURES: "Chains of the figures of the paper",
+_TABLES = {
+    "correlations_held_out": (Group.HELD_OUT,),
+    "correlations_derived_with": (Group.DERIVED_WITH, Group.OF_FIGURES),
 }
 _LEAST_DRAWN = 30  # rods: chains of 10 are in the tables only
 _GOALS = {0.75: 0.02, 0.2: 0.05}  # of W_v in the centre, by the least restitution
@@ -69,30 +68,32 @@ def _relative_errors(results: Results, each: Checked, deviation: WidthDeviation)
     return [width.error / width.value for width in widths]
 
 
-def table(results: Results) -> str:
+def tables(results: Results) -> Tables:
     """Give the errors without correlations, then both theories' for every group of chains."""
     found = _found(results)
-    heads = ["e", "L", "centre, %", "border, %", "largest, 3 to L-2, %", "error of a rod, %"]
-    rows = [_row(results, each) for each in found if each.group == Group.INDEPENDENT]
-    parts = [f"Without pair correlations\n\n{markdown_table(heads, rows)}"]
-    heads = [
-        *("L", "e", "gamma", "W_v, centre, %", "W_v, border, %", "W_v, largest, %"),
-        *("error of the centre, a rod, the border, %", "Theta/T, centre", "Theta/T, border"),
-        "W_x, tenth, centre, largest, %",
+    alone = [_row(results, each) for each in found if each.group == Group.INDEPENDENT]
+    heads = ["e", "L", "gamma", "centre, %", "border, %", "largest, %", "error of a rod, %"]
+    tables = {"kinetic_equation": [heads, *alone]}
+    heads = ["L", "e", "gamma"]
+    heads += [
+        f"W_v {place}{which}, %"
+        for place in ("centre", "border", "largest")
+        for which in (" without", "")
     ]
-    for group, title in _TITLES.items():
-        rows = [_row_of_both(results, each) for each in found if each.group == group]
-        if rows:
-            parts.append(f"{title}\n\n{markdown_table(heads, rows)}")
-    return "\n".join(parts)
+    heads += ["error of the centre, a rod, the border, %", "Theta/T centre", "Theta/T border"]
+    heads.append("W_x tenth, centre, largest, %")
+    for name, groups in _TABLES.items():
+        rows = [_row_of_both(results, each) for each in found if each.group in groups]
+        tables[name] = [heads, *rows]
+    return tables
 
 
 def _row(results: Results, each: Checked) -> list[str]:
     chain, [found] = each.chain, _deviations(results, each)
-    damping = f", gamma = {chain.damping:g}" if chain.damping != 1 else ""
     return [
-        f"{chain.restitution:g}{damping}",
+        f"{chain.restitution:g}",
         f"{chain.size}",
+        f"{chain.damping:g}",
         percent(found.centre),
         percent(found.border),
         f"{100 * found.largest:.1f}",
@@ -101,9 +102,9 @@ def _row(results: Results, each: Checked) -> list[str]:
 
 
 def _row_of_both(results: Results, each: Checked) -> list[str]:
-    chain, (before, after) = each.chain, _deviations(results, each)
-    centre, border = _relative_errors(results, each, after)
-    errors = (centre, after.error, border)
+    chain, both = each.chain, _deviations(results, each)
+    centre, border = _relative_errors(results, each, both[-1])
+    errors = (centre, both[-1].error, border)
     theory, run = results[each.with_pairs], pooled(results, each.name)
     width = theory.displacement_width.values / _even(run.displacement_width.values) - 1
     places = width[chain.size // 10], width[chain.size // 2]
@@ -111,9 +112,9 @@ def _row_of_both(results: Results, each: Checked) -> list[str]:
         f"{chain.size}",
         f"{chain.restitution:g}",
         f"{chain.damping:g}",
-        f"{percent(before.centre)} -> {percent(after.centre)}",
-        f"{percent(before.border)} -> {percent(after.border)}",
-        f"{100 * before.largest:.1f} -> {100 * after.largest:.1f}",
+        *(percent(found.centre) for found in both),
+        *(percent(found.border) for found in both),
+        *(f"{100 * found.largest:.1f}" for found in both),
         ", ".join(f"{100 * error:.1f}" for error in errors),
         *_temperatures(theory, run),
         f"{percent(*places)}, {100 * np.abs(width[2:-2]).max():.1f}",
@@ -253,5 +254,5 @@ STUDY = Study(
     cases=cases,
     draw=draw,
     claims=claims,
-    table=table,
+    tables=tables,
 )

@@ -18,7 +18,7 @@ from crazybilliards.comparison.layout import panels
 from crazybilliards.comparison.sweeps import Case
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.reproduction.claims.study import Cases, Quality, Results, Study
-from crazybilliards.reproduction.claims.tables import markdown_table
+from crazybilliards.reproduction.claims.tables import Tables
 from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, positive_claim
 
 _LEAST_RODS, _MOST_RODS = 30, 3000  # of the fits along the chain
@@ -64,32 +64,39 @@ def _slopes(widths: dict[int, Estimate]) -> dict[tuple[int, int], Estimate]:
 
 
 def _row(limit: xr.Dataset) -> list[str]:
-    size, levels = chain_of(limit).size, json.loads(limit.attrs["provenance"])["levels"]
+    levels = json.loads(limit.attrs["provenance"])["levels"]
     width, error = limit.central_velocity_width.item(), limit.central_velocity_width_error.item()
-    fit = ["", ""]
-    if _LEAST_RODS <= size <= _MOST_RODS:
-        found = fit_border_power_law(limit)
-        fit = [f"{found.exponent:.4f} ± {found.exponent_error:.4f}", f"{found.origin:.2f}"]
     return [
-        f"{size}",
+        f"{chain_of(limit).size}",
         f"{width:.6f} ± {error:.6f}",
         f"{error / width:.2%}",
         f"{limit.attrs['time_step_error']:.2%}",
         ", ".join(f"{level['time_step']:.2g}" for level in levels),
         f"{sum(level['rod_steps'] for level in levels):.1e}",
-        *fit,
     ]
 
 
-def table(results: Results) -> str:
-    """Give W_v in the centre, its error and its bias, the steps, and the fit; then slopes."""
-    heads = ("L", "W_v, centre", "error", "of it bias", "steps", "rod-steps", "nu", "c")
+def tables(results: Results) -> Tables:
+    """Give W_v in the centre with the cost of its limit, slopes, and fits along the chain."""
     slopes = [
-        [f"{one} to {other}", f"{slope.value:.4f} ± {slope.error:.4f}"]
+        [f"{one} → {other}", f"{slope.value:.4f} ± {slope.error:.4f}"]
         for (one, other), slope in _slopes(_sizes(results)).items()
     ]
-    rows = markdown_table(heads, map(_row, results.values()))
-    return f"{rows}\n{markdown_table(('L', 'slope'), slopes)}"
+    fits = [
+        (chain_of(limit).size, fit_border_power_law(limit))
+        for limit in results.values()
+        if _LEAST_RODS <= chain_of(limit).size <= _MOST_RODS
+    ]
+    exponents = [
+        [f"{size}", f"{fit.exponent:.4f} ± {fit.exponent_error:.4f}", f"{fit.origin:.2f}"]
+        for size, fit in fits
+    ]
+    heads = ["L", "$W_v$, centre", "error", "bias", "steps", "rod-steps"]
+    return {
+        "central_width": [heads, *map(_row, results.values())],
+        "central_slopes_of_limits": [["L", "slope"], *slopes],
+        "profile_exponent_of_limits": [["L", r"$\nu$", "$c$"], *exponents],
+    }
 
 
 def claims(results: Results) -> list[Claim]:
@@ -133,5 +140,5 @@ STUDY = Study(
     cases=cases,
     draw=draw,
     claims=claims,
-    table=table,
+    tables=tables,
 )

@@ -10,6 +10,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from crazybilliards.comparison.sweeps import Case
+from crazybilliards.reproduction.claims.tables import Tables
 from crazybilliards.reproduction.claims.verdicts import Claim
 
 Quality = Literal["quick", "full"]
@@ -27,9 +28,9 @@ def no_claims(results: Results) -> list[Claim]:
     return []
 
 
-def no_table(results: Results) -> str:
+def no_tables(results: Results) -> Tables:
     """No numbers besides those of the picture and the claims."""
-    return ""
+    return {}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,8 +49,8 @@ class Study:
         ``draw(results)`` gives the picture, results being those of the cases by the same names.
     claims
         ``claims(results)`` sets what is claimed beside what was found.
-    table
-        ``table(results)`` gives its numbers as tables in Markdown, "" if it has none.
+    tables
+        ``tables(results)`` gives tables of its numbers, by the names of their files.
     """
 
     name: str
@@ -58,7 +59,7 @@ class Study:
     draw: Callable[[Results], Figure]
     cases: Callable[[Quality], Cases] = no_cases
     claims: Callable[[Results], list[Claim]] = no_claims
-    table: Callable[[Results], str] = no_table
+    tables: Callable[[Results], Tables] = no_tables
 
     @property
     def label(self) -> str:

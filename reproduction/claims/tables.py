@@ -1,14 +1,23 @@
-"""Tables of numbers in Markdown, and how a number and its error are written in them."""
+"""Tables of a study's numbers, and how a number and its error are written in them."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+import csv
+import io
+from collections.abc import Mapping, Sequence
+
+Table = Sequence[Sequence[str]]
+"""Rows of texts, the first one with the heads of the columns."""
+
+Tables = Mapping[str, Table]
+"""Tables by the names of their files."""
 
 
-def markdown_table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """Return a table of texts, every row as long as the heads."""
-    lines = [heads, ["---"] * len(heads), *rows]
-    return "".join(f"| {' | '.join(line)} |\n" for line in lines)
+def as_csv(table: Table) -> bytes:
+    """Return a table as a file of comma-separated values."""
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerows(table)
+    return text.getvalue().encode()
 
 
 def percent(*shares: float) -> str:

@@ -1,6 +1,8 @@
 """Studies beyond the paper: right numbers give right verdicts, and wrong ones can fail."""
 
+import csv
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,9 +14,11 @@ from crazybilliards.model import Chain
 from crazybilliards.reproduction.beyond import STUDIES
 from crazybilliards.reproduction.checked_chains import Group, checked
 from crazybilliards.reproduction.claims.report import all_cases
-from crazybilliards.reproduction.claims.tables import markdown_table, percent
+from crazybilliards.reproduction.claims.tables import as_csv, percent
 from crazybilliards.reproduction.correlated_rods import correlation_length, neighbours
 from crazybilliards.reproduction.reproducible import find_studies
+
+TABLES = Path(__file__).parents[2] / "docs" / "tables"
 
 
 def described(chain, status="completed", **variables):
@@ -51,9 +55,21 @@ def test_the_chains_that_were_held_out_are_sixteen_and_in_no_other_group():
     assert not held_out & set.union(*groups.values())
 
 
-def test_tables_are_markdown():
-    assert markdown_table(("a", "b"), [["1", "2"]]) == "| a | b |\n| --- | --- |\n| 1 | 2 |\n"
-    assert percent(-0.145, 0.02) == "-14.5, +2.0"
+def test_tables_are_comma_separated_values():
+    assert as_csv([["a", "b, %"], ["1", percent(-0.145, 0.02)]]) == b'a,"b, %"\n1,"-14.5, +2.0"\n'
+
+
+def test_tables_have_the_columns_of_those_in_the_documentation():
+    """Without results they are heads only. The page of the chains derived with has others."""
+    written = {name: table[0] for study in STUDIES for name, table in study.tables({}).items()}
+    compared = 0
+    for name in written.keys() - {"correlations_derived_with"}:
+        stored = TABLES / f"{name}.csv"
+        if stored.exists():
+            heads, *_ = csv.reader(stored.read_text(encoding="utf-8").splitlines())
+            assert [head for head in heads if head != "s"] == written[name]  # seconds: of then
+            compared += 1
+    assert compared == 7
 
 
 # -- the critical size --------------------------------------------------------------------------
@@ -81,7 +97,8 @@ def test_the_simulated_critical_size_is_where_the_energy_is_infinite():
     verdicts = {claim.statement: claim.verdict for claim in study.claims(results)}
     assert len(verdicts) == 4 + 3
     assert set(verdicts.values()) == {"confirmed"}
-    assert "| 1.05 | 1 | 30.7 ± 0.2 | 30.7 | 30.7 ± 0.5 |" in study.table(results)
+    _, row, *_ = study.tables(results)["critical_size"]
+    assert row == ["1.05", "1", "30.7 ± 0.2", "30.7", "30.7 ± 0.5"]
 
 
 def test_the_claims_of_the_critical_size_can_fail():
@@ -96,7 +113,8 @@ def test_chains_that_diverge_leave_the_critical_size_open():
         name: driven(case.chain, 31.0, status="diverged" if case.chain.size > 26 else "completed")
         for name, case in study.cases("quick").items()
     }
-    assert "| nan ± nan |" in study.table(results)
+    [_, row] = study.tables(results)["critical_size"]
+    assert row[-1] == "nan ± nan"
 
 
 # -- neighbours ---------------------------------------------------------------------------------
