@@ -30,7 +30,7 @@ from crazybilliards.reproduction.correlated_rods import (
 
 _HEADS = {  # of the tables
     "W_v": "$W_v/W$",
-    "relative": r"$\sqrt\Theta/W$",
+    "relative": r"$\sqrt{\Theta}/W$",
     "common": r"$\sqrt{h_c}/W$",
     "force": "$P/ks$",
     "xi": r"$\xi$",

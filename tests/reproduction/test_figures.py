@@ -78,4 +78,5 @@ def test_it_is_drawn_and_every_claim_gets_a_verdict(study):
         assert not any("nan" in text for row in table for text in row)
     drawn = study.draw(results)
     assert drawn.axes
+    drawn.canvas.draw()  # formulas are read only here
     plt.close(drawn)
