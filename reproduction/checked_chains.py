@@ -9,8 +9,8 @@ from typing import Any
 from crazybilliards.comparison.sweeps import Case
 from crazybilliards.model import Chain
 from crazybilliards.particles.scales import default_time_step
-from crazybilliards.reproduction.chains import LARGE, RESTITUTIONS, dissipative, dissipative_name
-from crazybilliards.reproduction.claims.repetition import repeated
+from crazybilliards.reproduction.chains import LARGE, RESTITUTIONS, dissipative
+from crazybilliards.reproduction.claims.repetition import Granted, Runs
 from crazybilliards.reproduction.claims.study import Cases, Quality
 
 
@@ -47,11 +47,27 @@ class Checked:
     finer: int = 1
 
     @property
-    def name(self) -> str:
-        """The name under which its runs go."""
+    def runs(self) -> Runs:
+        """Its simulation."""
+        chain = self.chain
         if self.group == Group.OF_FIGURES:
-            return dissipative_name(self.chain.size, self.chain.restitution)
-        return f"{self.group}: {self._parameters}"
+            return dissipative(chain.size, chain.restitution)
+        name = f"{self.group}: {self._parameters}"
+        # Several runs give the error of W_v in the centre, where rods err together.
+        number = 1 if self.group == Group.INDEPENDENT else _RUNS
+        each = self.duration / number
+        settings: dict[str, Any] = {"observe": ["widths"]}
+        if number > 1:
+            settings = {
+                "time_step": default_time_step(chain) / self.finer,
+                "every": _EVERY,
+                "observe": ["widths", "covariances"],
+            }
+        granted: Granted = {
+            "quick": (number, {"duration": _SHARE * each}),
+            "full": (number, {"duration": each}),
+        }
+        return Runs(name, chain, granted, settings)
 
     @property
     def independent(self) -> str:
@@ -75,24 +91,7 @@ class Checked:
         cases = {self.independent: Case("phase_space", self.chain, settings)}
         if self.group != Group.INDEPENDENT:
             cases[self.with_pairs] = Case("correlated_phase_space", self.chain, coarse)
-        return cases | self._runs(quality)
-
-    def _runs(self, quality: Quality) -> Cases:
-        chain, duration = self.chain, self.duration * (_SHARE if quality == "quick" else 1.0)
-        if self.group == Group.OF_FIGURES:
-            return dissipative(chain.size, chain.restitution, quality)
-        if self.group == Group.INDEPENDENT:
-            return repeated(self.name, chain, 1, duration=duration, observe=["widths"])
-        # Several runs give the error of W_v in the centre, where rods err together.
-        return repeated(
-            self.name,
-            chain,
-            _RUNS,
-            duration=duration / _RUNS,
-            time_step=default_time_step(chain) / self.finer,
-            every=_EVERY,
-            observe=["widths", "covariances"],
-        )
+        return cases | self.runs.cases(quality)
 
 
 _RUNS = 8

@@ -44,7 +44,7 @@ FLOORS = {
         {"claims"},
         {"chains", "correlated_rods", "distributions", "errors_of_theories", "power_laws"}
         | {"vanishing_step"},
-        {"checked_chains", "predictions", "time_steps"},
+        {"checked_chains", "predictions"},
         {"beyond", "figures"},
         {"reproducible"},
     ),

@@ -17,7 +17,6 @@ from crazybilliards.comparison.widths import (
     width_deviation,
 )
 from crazybilliards.reproduction.checked_chains import Checked, Group, checked
-from crazybilliards.reproduction.claims.repetition import estimate, pooled
 from crazybilliards.reproduction.claims.study import Cases, Quality, Results, Study
 from crazybilliards.reproduction.claims.tables import Tables, percent
 from crazybilliards.reproduction.claims.verdicts import (
@@ -48,12 +47,12 @@ def cases(quality: Quality) -> Cases:
 
 def _found(results: Results) -> list[Checked]:
     """Return the chains that these are results of."""
-    return [each for each in checked("full") if f"{each.name}/0" in results]
+    return [each for each in checked("full") if f"{each.runs.name}/0" in results]
 
 
 def _deviations(results: Results, each: Checked) -> list[WidthDeviation]:
     """Return those of the theory without correlations, and of that with them if it is checked."""
-    run = pooled(results, each.name)
+    run = each.runs.pooled(results)
     names = [each.independent]
     if each.group != Group.INDEPENDENT:
         names.append(each.with_pairs)
@@ -64,7 +63,7 @@ def _relative_errors(results: Results, each: Checked, deviation: WidthDeviation)
     """Return the standard errors of W_v in the centre and at the border of the simulation."""
     if each.group == Group.INDEPENDENT:  # one run: the error of a rod bounds that of the centre
         return [deviation.error] * 2
-    widths = [estimate(results, each.name, width) for width in (central_width, border_width)]
+    widths = [each.runs.estimate(results, width) for width in (central_width, border_width)]
     return [width.error / width.value for width in widths]
 
 
@@ -105,7 +104,7 @@ def _row_of_both(results: Results, each: Checked) -> list[str]:
     chain, both = each.chain, _deviations(results, each)
     centre, border = _relative_errors(results, each, both[-1])
     errors = (centre, both[-1].error, border)
-    theory, run = results[each.with_pairs], pooled(results, each.name)
+    theory, run = results[each.with_pairs], each.runs.pooled(results)
     width = theory.displacement_width.values / _even(run.displacement_width.values) - 1
     places = width[chain.size // 10], width[chain.size // 2]
     return [
@@ -194,7 +193,7 @@ def _central(results: Results, each: Checked) -> Estimate:
 
 def _displaced(results: Results, each: Checked) -> Estimate:
     """Return the deviation of W_x at a tenth of the chain with correlations."""
-    width = estimate(results, each.name, _tenth)
+    width = each.runs.estimate(results, _tenth)
     ratio = _tenth(results[each.with_pairs]) / width.value
     return Estimate(ratio - 1, ratio * width.error / width.value)
 

@@ -18,9 +18,7 @@ from crazybilliards.comparison.sweeps import Case, run_cases
 from crazybilliards.comparison.sweeps.jobs import JOBS
 from crazybilliards.model import Chain
 from crazybilliards.reproduction.beyond import STUDIES, elastic_gaps
-from crazybilliards.reproduction.claims.repetition import (
-    repeated,
-)
+from crazybilliards.reproduction.claims.repetition import Runs
 from crazybilliards.reproduction.claims.report import (
     OF_PAPER,
     OWN,
@@ -97,8 +95,11 @@ def test_every_case_can_be_carried_out_and_shared_ones_count_once(quality):
 
 
 def test_parameters_are_described_by_what_is_not_the_default():
-    cases = repeated("a", Chain(size=30, restitution=0.0), 3, duration=100.0).values()
-    both = [*cases, Case("phase_space", Chain(restitution=0.9), {"cells": 16})]
+    runs = Runs("a", Chain(size=30, restitution=0.0), {"quick": (3, {})}, {"duration": 100.0})
+    both = [
+        *runs.cases("quick").values(),
+        Case("phase_space", Chain(restitution=0.9), {"cells": 16}),
+    ]
     assert describe(both) == [
         "simulate: size 30, restitution 0, duration 100 (3 runs)",
         "phase_space: restitution 0.9, cells 16",

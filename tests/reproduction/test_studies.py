@@ -168,7 +168,7 @@ def verdicts_of_validity(factor):
     results = {}
     for each in checked("quick"):
         if each.group == Group.HELD_OUT:
-            runs = {name for name in each.cases("quick") if name.startswith(each.name)}
+            runs = {name for name in each.cases("quick") if name.startswith(each.runs.name)}
             results |= {name: rods(each.chain, 1 + 1e-3 * float(name[-1])) for name in runs}
             results[each.independent] = rods(each.chain, 0.9)
             results[each.with_pairs] = rods(each.chain, factor)
