@@ -1,6 +1,6 @@
 """How far the theory is from simulations: the largest errors in its two tables in docs/tables.
 
-    python benchmarks/correlations.py FOLDER [--held-out]
+    crazybilliards reproduce validity --quality full
 
 measures them: velocity widths of chains of 10 to 600 rods, with gamma from 0.4 to 3. Those of 1000
 rods are from the figures of the paper. They are errors of the theory, not of its solution.

@@ -1,6 +1,6 @@
 """How far the theory is from simulations: docs/tables/kinetic_equation.csv, by size and e.
 
-    python benchmarks/validity.py FOLDER
+    crazybilliards reproduce validity --quality full
 
 measures them: velocity widths of chains without gap, linear springs. They are errors of the
 theory, not of its numerical solution.
@@ -65,7 +65,8 @@ _DRIVEN = {
 _LEAST_DRIVEN_DAMPING = 1.95
 
 # By size and restitution: largest relative error of the kinetic energy at any time, after a release
-# from equilibrium at e = 1, as it is and with y times 0.4; python benchmarks/relaxation_error.py.
+# from equilibrium at e = 1, as it is and with y times 0.4; measured by
+# python benchmarks/accuracy/relaxation_error.py
 # With 100 rods at e = 0.8 the mesh does not resolve f.
 _TRANSIENT = {
     10: {0.8: 0.069, 0.9: 0.059, 0.95: 0.046, 1.0: 0.0},
