@@ -30,7 +30,7 @@ FLOORS = {
         {"vanishing_step"},
     ),
     "kinetic": (
-        {"requirements", "times"},
+        {"accuracy", "requirements", "times"},
         {"statics", "exact"},
         {"starts"},
         {"fluids", "kinetic_equation"},
