@@ -55,7 +55,7 @@ from teaching import check, right
 # %%
 chain = cb.Chain(size=100, amplitude=10)
 L, R, k, m = chain.size, chain.radius, chain.stiffness, chain.mass
-W2 = chain.free_velocity_width**2  # W_v^2 = A^2/(2 m gamma), the free value
+W2 = chain.free_velocity_width**2  # W_v^2 = A^2/(2 m gamma), the free value, exact at e = 1
 kept = ("snapshots", "widths", "density")
 run = cb.simulate(chain, duration=5e4, every=10, replicas=2, observe=kept, progress=False)
 positions = run.position.values.reshape(-1, L)
@@ -65,7 +65,7 @@ positions = run.position.values.reshape(-1, L)
 #
 # The paper counts which fraction of each bin is covered by rods, and then takes a running average
 # over $2R$. Both steps are convolutions of the histogram of the rods' centres with a rectangle of
-# length $2R$.
+# length $2R$. (The text of the paper names one rectangle, its recipe has two.)
 
 # %%
 h = 2 * R / 21
@@ -111,7 +111,9 @@ plt.show()
 # %% [markdown]
 # ## 4. The force balance
 #
-# The fit closes the paper's equation (19), `diff_gl`, which for a rod of the mass $m$ reads
+# At rest, $V=0$, the velocity equation of the fluid (`modeleq`) says that the gradient of the
+# pressure balances the springs. With a constant $W_v$ this is the paper's equation (19), `diff_gl`,
+# and the fit closes it. For a rod of the mass $m$ it reads
 #
 # $$\frac{\partial\rho}{\partial x} = -\frac{k}{mW_v^2}\,\langle\Delta x\rangle\,\rho\,(1-2\rho R)^2 .$$
 #
@@ -154,7 +156,8 @@ check(density, density_solution, at=places, hint=hint)
 #
 # We start in the middle of the chain and integrate $\ln\rho_y$ to the right. The density in the
 # middle is not known, but the number of rods is: a root finder chooses $\rho(0)$ such that there
-# are $L$ rods.
+# are $L$ rods. The fit ends at $x=1/C$. The density there is small but not zero, and no rods are
+# beyond.
 
 # %%
 half = x[(x >= 0) & (x < 1 / C)]
@@ -176,7 +179,8 @@ balance = np.interp(abs(x), half, integrate(start), right=0)
 # ## 5. Theory and simulation
 #
 # **Predict.** The paper says that the results of the force balance match the simulated densities
-# perfectly. Where do you expect the largest difference?
+# perfectly. Where do you expect the largest difference? (The theory is smoothed like the simulation,
+# which the paper leaves open.)
 #
 # **Run.**
 
@@ -209,25 +213,32 @@ assert apart[inside].max() < 0.01
 #
 # ## 6. The fluid in time: three strings
 #
-# The appendix derives a continuity equation, `eq9`, and a velocity equation, `modeleq`. The paper
-# uses them at rest only. py-pde solves equations that are given as text, so we can write down what
+# The appendix derives a continuity equation, (31) `eq9`, and a velocity equation, (16) `modeleq`:
+#
+# $$\frac{\partial\rho}{\partial t} + \frac{\partial(\rho V)}{\partial x} = 0, \qquad
+# \frac{\partial V}{\partial t} + V\frac{\partial V}{\partial x} =
+# -\frac1\rho\frac{\partial}{\partial x}\frac{\rho W_v^2}{1-2\rho R}
+# - k\langle\Delta x\rangle - \gamma V .$$
+#
+# For a rod of the mass $m$, divide $k$ and $\gamma$ by $m$. The paper uses these equations at rest
+# only. py-pde solves equations that are given as text, so we can write down what
 # the paper has. One equation must be added, because a moving fluid has no fitted
 # $\langle\Delta x\rangle(x)$. Let $N(x,t)$ be the number of rods to the left of $x$. The rods take it
 # along, $N_t + VN_x=0$, and $\langle\Delta x\rangle = x - 2R\,(N - L/2)$.
 #
 # The last term of the velocity equation is not in the paper. It is a small viscosity, which py-pde's
-# central differences need. Its value 4 $R^2/T$ is small against $sW_v = 221\,R^2/T$.
+# central differences need. Its value 4 $R^2/T$ is small against $sW_v = 220\,R^2/T$.
 
 # %%
 warm = chain.replace(amplitude=30)
-s, gamma, W2 = warm.thermal_length, warm.damping, warm.free_velocity_width**2
+s, gamma = warm.thermal_length, warm.damping
 equations = {
     "rho": "-d_dx(rho * V)",
     "V": "-V * d_dx(V) - W2 / rho * d_dx(rho / (1 - 2 * R * rho))"
     "- k / m * (x - 2 * R * (N - L / 2)) - gamma / m * V + 4 * d2_dx2(V)",
     "N": "-V * d_dx(N)",
 }
-constants = {"W2": W2, "R": R, "L": L, "k": k, "m": m, "gamma": gamma}
+constants = {"W2": warm.free_velocity_width**2, "R": R, "L": L, "k": k, "m": m, "gamma": gamma}
 fluid = pde.PDE(equations, consts=constants, bc={"curvature": 0})
 
 # %% [markdown]
@@ -304,7 +315,7 @@ plt.legend(title="lines: three strings\npoints: hydrodynamics", fontsize=8, titl
 plt.show()
 
 # %% [markdown]
-# The sixty lines are right where they work. The package's functions also work elsewhere.
+# Where the sixty lines work, they are right. The package's functions also work elsewhere.
 #
 # **A strong compression.** Sound has the speed $W_v/(1-2R\rho) = W_v\,(1+2R\rho_y)$, which grows
 # without bound near close packing. A time step of fixed length must be shorter than about three
@@ -374,7 +385,7 @@ assert abs(theirs - L) < 1e-3
 #
 # <details><summary>Solution</summary>
 #
-# Some 14 % of close packing, at the outermost rods. The chain is then nearly a crystal, and a fluid
+# Some 15 % of close packing, at the outermost rods. The chain is then nearly a crystal, and a fluid
 # has no single rods ([lesson 6](06_theory_meets_particles.ipynb), exercise 1).
 # </details>
 #

@@ -311,7 +311,7 @@ assert 0.8 < best_off / deviation(smooth(exact), smooth(paper)).maximum < 1
 #
 # `chain.replace(amplitude=1)` gives $s = 0.7$ R. The rods hardly move, and the chain is nearly a
 # crystal. The exact solution and the simulation still agree. Both force balances are wrong by some
-# 14 % of close packing at the outermost rod, because a fluid has a smooth tail where the chain ends
+# 14 to 15 % of close packing at the outermost rod, because a fluid has a smooth tail where the chain ends
 # with half a rod. Inside the fourth rod from each end, they are right to better than 1 %.
 # </details>
 #
