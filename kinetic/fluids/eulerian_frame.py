@@ -193,10 +193,11 @@ def starting_fields(chain: Chain, start: Start, faces: Array, *, thermal: bool) 
 def _fastest(fields: Array, constants: Constants) -> float:
     """Largest speed of a signal."""
     log_pressure, v, log_variance = primitive(fields, constants).T
-    free = np.exp(log_pressure - log_variance)
+    free = constants.dilute * np.exp(log_pressure - log_variance)
     here = free > 1e-9 * free.max()
     sound = math.sqrt(3) if len(fields) == 3 else 1.0
-    speed = np.abs(v) + sound * np.exp(log_variance / 2) * (1 + constants.rod * free)
+    W = math.sqrt(constants.heat)
+    speed = np.abs(v) + sound * W * np.exp(log_variance / 2) * (1 + constants.rod * free)
     return float(speed[here].max())
 
 
@@ -241,7 +242,7 @@ def _on_grid(
         there = np.clip(count(here, 1), 0.0, (1 - 1e-9) * chain.close_packed_density)
         density[i] = np.where(here == x, there, 0.0)
         velocity[i] = np.interp(here, middle, v)
-        variance[i] = np.interp(here, middle, np.exp(log_variance))
+        variance[i] = np.interp(here, middle, constants.heat * np.exp(log_variance))
         rods[i] = np.interp(chain.rank + L / 2, np.maximum.accumulate(label[i]), x)
         rod_velocities[i] = np.interp(rods[i], x, velocity[i])
     fields = (density, label, velocity, variance, rods, rod_velocities)

@@ -57,10 +57,11 @@ def minmod(a, b):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _hll(left, right, rod, sound):  # type: ignore[no-untyped-def]
-    """Flux of rho, rho V and E between two states (ln p, V, ln W^2)."""
-    p_l, p_r, v_l, v_r = np.exp(left[0]), np.exp(right[0]), left[1], right[1]
-    hot_l, hot_r = np.exp(left[2]), np.exp(right[2])
+def _hll(left, right, constants, sound):  # type: ignore[no-untyped-def]
+    """Flux of rho, rho V and E between two states of ``primitive``."""
+    _, _, _, _, _, rod, _, _, _, _, heat, dilute = constants
+    p_l, p_r = dilute * heat * np.exp(left[0]), dilute * heat * np.exp(right[0])
+    hot_l, hot_r, v_l, v_r = heat * np.exp(left[2]), heat * np.exp(right[2]), left[1], right[1]
     free_l, free_r = p_l / hot_l, p_r / hot_r
     n_l, n_r = free_l / (1 + rod * free_l), free_r / (1 + rod * free_r)
     e_l, e_r = n_l * (v_l**2 + hot_l) / 2, n_r * (v_r**2 + hot_r) / 2
@@ -79,7 +80,9 @@ def _hll(left, right, rod, sound):  # type: ignore[no-untyped-def]
 def primitive(fields, constants):  # type: ignore[no-untyped-def]
     """Return ln p, V and ln W^2, (M, 3); with an energy, W^2 follows from it.
 
-    In a vacuum the quotients would be rounding errors. There V = 0 and W^2 is the given one.
+    p and W^2 are in units of ``dilute * heat`` and ``heat``, so that the bits of the logarithms are
+    the same in all units of length and time. In a vacuum the quotients would be rounding errors.
+    There V = 0 and W^2 is the given one.
     """
     _, _, variance, _, _, rod, _, _, _, _, heat, dilute = constants
     cells = fields.shape[1]
@@ -93,7 +96,8 @@ def primitive(fields, constants):  # type: ignore[no-untyped-def]
             hot += n * weight * (2 * fields[2, i] / n - v**2 - hot)
         hot = max(hot, _COLDEST * heat)
         room = max(1 - rod * n, _LEAST_ROOM)
-        state[i, 0], state[i, 1], state[i, 2] = np.log(n * hot / room), v, np.log(hot)
+        hot /= heat
+        state[i, 0], state[i, 1], state[i, 2] = np.log(n / dilute * hot / room), v, np.log(hot)
     return state
 
 
@@ -101,7 +105,9 @@ def primitive(fields, constants):  # type: ignore[no-untyped-def]
 def eulerian_rate(fields, constants):  # type: ignore[no-untyped-def]
     """Rates of change of (rho, rho V) or (rho, rho V, E), (2 or 3, M); see ``Constants``."""
     number, cells = fields.shape
-    x, spacing, _, frozen, size, rod, lattice, stiffness, damping, exponent, heat, _ = constants
+    x, spacing, _, frozen, size, rod, lattice, stiffness, damping, exponent, heat, dilute = (
+        constants
+    )
     state = primitive(fields, constants)
     sound = np.sqrt(3.0) if number == 3 else 1.0
     rates, rest = np.zeros_like(fields), np.zeros((cells, 3))
@@ -113,9 +119,9 @@ def eulerian_rate(fields, constants):  # type: ignore[no-untyped-def]
         label += 0.5 * n * spacing
         force = stiffness * _pull(u, exponent)
         # The change of ln p over a cell at rest; these pressures balance the force on the cell.
-        change = -force * max(1 - rod * n, _LEAST_ROOM) * spacing / np.exp(state[i, 2])
+        change = -force * max(1 - rod * n, _LEAST_ROOM) * spacing / (heat * np.exp(state[i, 2]))
         rest[i, 0] = min(max(change, -_STEEPEST), _STEEPEST)
-        push = 2 * np.exp(state[i, 0]) * np.sinh(rest[i, 0] / 2) / spacing
+        push = 2 * dilute * heat * np.exp(state[i, 0]) * np.sinh(rest[i, 0] / 2) / spacing
         rates[1, i] += push - damping * momentum
         if number == 3:
             rates[2, i] += state[i, 1] * push - damping * (2 * fields[2, i] - n * heat)
@@ -132,7 +138,7 @@ def eulerian_rate(fields, constants):  # type: ignore[no-untyped-def]
                 following[j] += minmod(before, after)
             left[j] = state[i, j] + slope[j] / 2
             right[j] = state[i + 1, j] - following[j] / 2
-        flux = _hll(left, right, rod, sound)
+        flux = _hll(left, right, constants, sound)
         for j in range(number):
             rates[j, i] -= flux[j] / spacing
             rates[j, i + 1] += flux[j] / spacing
