@@ -242,6 +242,16 @@ def bounded(y, v, fastest):  # type: ignore[no-untyped-def]
     return True
 
 
+@inlined
+def copy(source, target):  # type: ignore[no-untyped-def]
+    """Copy a one-dimensional array: numba compiles ``target[:] = source`` seconds longer.
+
+    It would compile the message of an error, of arrays that do not fit, with all of its strings.
+    """
+    for i in range(source.size):
+        target[i] = source[i]
+
+
 @kernel
 def record(  # type: ignore[no-untyped-def]
     y, v, noise, dynamics, scratch, tally, stride, y_buffer, v_buffer
@@ -256,11 +266,11 @@ def record(  # type: ignore[no-untyped-def]
     for snapshot in range(y_buffer.shape[0]):
         met = advance(y, v, noise, dynamics, scratch, tally, stride)
         if met < 0 or not bounded(y, v, dynamics.fastest):
-            tally.contacts[:] = contacts
-            tally.impacts[:] = impacts
+            copy(contacts, tally.contacts)
+            copy(impacts.ravel(), tally.impacts.ravel())
             return snapshot
-        contacts[:] = tally.contacts
-        impacts[:] = tally.impacts
-        y_buffer[snapshot] = y
-        v_buffer[snapshot] = v
+        copy(tally.contacts, contacts)
+        copy(tally.impacts.ravel(), impacts.ravel())
+        copy(y, y_buffer[snapshot])
+        copy(v, v_buffer[snapshot])
     return y_buffer.shape[0]
