@@ -2,7 +2,7 @@
 
     python benchmarks/asymptotics.py FOLDER
 
-Prints the tables of docs/asymptotics.md: simulations at the default time step, and the correlated
+Prints the tables of docs/reproduction.md: simulations at the default time step, and the correlated
 theory as far as it can be solved. Results are kept in FOLDER, which ``neighbours.py`` shares. Takes
 ten minutes on one core if it is empty.
 """

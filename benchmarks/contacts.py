@@ -2,7 +2,8 @@ r"""What happens at the contacts of a chain: simulation and the theory with pair
 
     python benchmarks/contacts.py [--duration 12000]
 
-Prints what docs/correlations.md says of contacts, in units of the free rod.
+Prints what docs/correlations.md says of contacts, in units of the free rod. The first two
+tables are correlations_ingredients.csv and neighbourhoods.csv in docs/tables.
 
 1. At the contacts 1, 4, 10 and in the centre: the force P, the speed before a collision (the root
    of ``contact_temperature``, for which the theory has F sqrt(Theta)), the covariance of the
@@ -110,8 +111,8 @@ def theoretical(chain: Chain) -> list[Values]:
 
 
 def tabulate_contacts(duration: float) -> None:
-    names = "force P", "speed before a collision", "<v_i v_(i+2)>", "h_gTheta", "h_gg"
-    print("simulation / theory\n| rods | e | quantity | 1 | 4 | 10 | centre |\n|" + 7 * "---|")
+    names = "P", "speed before a collision", "<v_i v_(i+2)>", "h_gTheta", "h_gg"
+    print("L,e,quantity,contact 1,contact 4,contact 10,centre")
     for chain in CHAINS:
         rows = zip(names, simulated(chain, duration), theoretical(chain), strict=True)
         for name, (values, errors), theory in rows:
@@ -120,7 +121,7 @@ def tabulate_contacts(duration: float) -> None:
                 f"{even[at]:.3f} ± {errors[at] / np.sqrt(2):.1g} / {theory[at]:.3f}"
                 for at in (*(contact - 1 for contact in CONTACTS), (even.size - 1) // 2)
             ]
-            print(f"| {chain.size} | {chain.restitution:g} | {name} | {' | '.join(shown)} |")
+            print(f"{chain.size},{chain.restitution:g},{name},{','.join(shown)}")
 
 
 def tabulate_places(duration: float) -> None:
@@ -130,13 +131,13 @@ def tabulate_places(duration: float) -> None:
     rods = np.bincount(place.ravel())
     squares = np.bincount(place.ravel(), weights=(v**2).ravel())
     there = squares / np.maximum(rods, 1)
-    print("\n| rod | <v_i^2> | mean of T(y) over the places of the rod |\n|---|---|---|")
+    print("\nrod,<v_i^2>,mean of T(y) over the places of the rod")
     for rod in RODS:
         mirrored = [rod - 1, PLACES.size - rod]
         own, seen = v[:, mirrored] ** 2, there[place[:, mirrored]]
         blocks = [part.mean() for part in np.array_split(own, BLOCKS)]
         error = np.std(blocks, ddof=1) / np.sqrt(BLOCKS)
-        print(f"| {rod} | {own.mean():.3f} ± {error:.1g} | {seen.mean():.3f} |")
+        print(f"{rod},{own.mean():.3f} ± {error:.1g},{seen.mean():.3f}")
 
 
 def tabulate_short(duration: float) -> None:

@@ -1,4 +1,4 @@
-"""Accuracy and cost of the theory with pair correlations: two tables of docs/correlations.md.
+"""Accuracy and cost of the theory with pair correlations: two tables of the documentation.
 
     python benchmarks/correlated_mesh.py
 

@@ -2,12 +2,15 @@
 
     python benchmarks/correlations.py FOLDER [--held-out]
 
-Prints the tables of docs/correlations.md: of the chains that the theory was derived with, or of
-those that were held out. Simulations are kept in FOLDER. They take half an hour on one core for
-each table, the theory ten minutes.
+With ``--held-out`` it prints docs/tables/correlations_held_out.csv, otherwise the chains that the
+theory was derived with: docs/tables/correlations_derived_with.csv holds these as an earlier version
+printed them, with two numbers less. Simulations are kept in FOLDER. They take half an hour on one
+core for each table, the theory ten minutes.
 """
 
 import argparse
+import csv
+import sys
 import time
 from pathlib import Path
 from typing import NamedTuple
@@ -25,6 +28,22 @@ from crazybilliards.particles.scales import default_time_step
 
 EVERY = 0.5
 BLOCKS = 16
+COLUMNS = (
+    "L",
+    "e",
+    "gamma",
+    "W_v centre without, %",
+    "W_v centre, %",
+    "W_v border without, %",
+    "W_v border, %",
+    "W_v largest without, %",
+    "W_v largest, %",
+    "error of the centre, a rod, the border, %",
+    "Theta/T centre",
+    "Theta/T border",
+    "W_x tenth, centre, largest, %",
+    "s",
+)
 
 
 class Case(NamedTuple):
@@ -105,8 +124,8 @@ def even(values: np.ndarray) -> np.ndarray:
     return (values + values[::-1]) / 2
 
 
-def row(chain: Chain, run: xr.Dataset) -> str:
-    """Return a line of the table."""
+def row(chain: Chain, run: xr.Dataset) -> list[str]:
+    """Return a line of the table, errors in per cent."""
     begin = time.process_time()
     theory = correlated_phase_space(chain)
     seconds = time.process_time() - begin
@@ -117,30 +136,29 @@ def row(chain: Chain, run: xr.Dataset) -> str:
     width = theory.displacement_width.values / even(run.displacement_width.values) - 1
     middle, measured = chain.size // 2 - 1, even(run.relative.values)
     found = relative / (relative + shared)
-    return (
-        f"| {chain.size} | {chain.restitution:g} | {chain.damping:g} "
-        f"| {100 * before.centre:+.1f} -> {100 * after.centre:+.1f} "
-        f"| {100 * before.border:+.1f} -> {100 * after.border:+.1f} "
-        f"| {100 * before.largest:.1f} -> {100 * after.largest:.1f} "
-        f"| {100 * float(run.centre_error):.1f}, {100 * after.error:.1f}, "
-        f"{100 * after.border_error:.1f} "
-        f"| {found[middle]:.3f}, {measured[middle]:.3f} | {found[0]:.3f}, {measured[0]:.3f} "
-        f"| {100 * width[chain.size // 10]:+.1f}, {100 * width[chain.size // 2]:+.1f}, "
-        f"{100 * np.abs(width[2:-2]).max():.1f} "
-        f"| {seconds:.0f} |"
-    )
+    return [
+        f"{chain.size}",
+        f"{chain.restitution:g}",
+        f"{chain.damping:g}",
+        *(f"{100 * each.centre:+.1f}" for each in (before, after)),
+        *(f"{100 * each.border:+.1f}" for each in (before, after)),
+        *(f"{100 * each.largest:.1f}" for each in (before, after)),
+        f"{100 * float(run.centre_error):.1f}, {100 * after.error:.1f}, "
+        f"{100 * after.border_error:.1f}",
+        *(f"{found[at]:.3f}, {measured[at]:.3f}" for at in (middle, 0)),
+        f"{100 * width[chain.size // 10]:+.1f}, {100 * width[chain.size // 2]:+.1f}, "
+        f"{100 * np.abs(width[2:-2]).max():.1f}",
+        f"{seconds:.0f}",
+    ]
 
 
 def main(folder: Path, cases: list[Case]) -> None:
     folder.mkdir(parents=True, exist_ok=True)
-    print(
-        "| L | e | gamma | W_v, centre, % | W_v, border, % | W_v, largest, % | error of the "
-        "centre, a rod, the border, % | Theta/T, centre | Theta/T, border | W_x, tenth, centre, "
-        "largest, % | s |"
-    )
-    print("|" + 11 * "---|")
+    table = csv.writer(sys.stdout, lineterminator="\n")
+    table.writerow(COLUMNS)
     for case in cases:
-        print(row(case.chain, simulated(case, folder)), flush=True)
+        table.writerow(row(case.chain, simulated(case, folder)))
+        sys.stdout.flush()
 
 
 if __name__ == "__main__":

@@ -2,7 +2,7 @@
 
     python benchmarks/critical_size.py
 
-Prints the table of docs/kinetic_equation.md, which docs/figures/critical_size.py draws.
+Prints docs/tables/critical_size.csv, which docs/figures/critical_size.py draws.
 
 Simulated: tau = W^2 L/sum W_v(i)^2, the free energy over the chain's, falls to zero at the critical
 size; a parabola through five sizes just below finds where. Takes about half an hour on one core.
@@ -46,14 +46,14 @@ def simulated(chain: Chain) -> tuple[float, float]:
 
 
 def main() -> None:
-    print("| e | gamma | kinetic equation | closed form | simulation |\n|---|---|---|---|---|")
+    print("e,gamma,kinetic equation,closed form,simulation")
     for restitution, damping in SIMULATED:
         chain = Chain(restitution=restitution, damping=damping)
         theory = critical_size(chain)
         value, error = simulated(chain)
         print(
-            f"| {restitution:g} | {damping:g} | {theory.value:.1f} ± {theory.error:.1f} "
-            f"| {weak_damping_critical_size(chain):.1f} | {value:.1f} ± {error:.1f} |",
+            f"{restitution:g},{damping:g},{theory.value:.1f} ± {theory.error:.1f},"
+            f"{weak_damping_critical_size(chain):.1f},{value:.1f} ± {error:.1f}",
             flush=True,
         )
 

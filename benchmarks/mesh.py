@@ -18,9 +18,7 @@ FINEST = 60
 
 
 def main() -> None:
-    displacement = r"$\langle\Delta x\rangle$, largest error / s"
-    print(f"| e, gamma | cells | W_v, largest error, % | {displacement} | seconds |")
-    print("|---|---|---|---|---|")
+    print('e,gamma,cells,"W_v, largest error, %","displacement, largest error / s",seconds')
     for restitution, damping in CASES:
         chain = Chain(restitution=restitution, damping=damping)
         finest = phase_space(chain, cells=FINEST)
@@ -32,8 +30,8 @@ def main() -> None:
             place = np.abs(theory.mean_displacement - finest.mean_displacement).max()
             name = cells or f"default ({theory.attrs['cells']})"
             print(
-                f"| {restitution:g}, {damping:g} | {name} | {float(width):.3f} "
-                f"| {float(place) / chain.thermal_length:.1e} | {seconds:.1f} |",
+                f"{restitution:g},{damping:g},{name},{float(width):.3f},"
+                f"{float(place) / chain.thermal_length:.1e},{seconds:.1f}",
                 flush=True,
             )
 

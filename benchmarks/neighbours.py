@@ -2,7 +2,7 @@
 
     python benchmarks/neighbours.py FOLDER FIGURES
 
-Prints the table of docs/correlations.md and draws ``neighbours.png`` and ``ingredients.png`` into
+Prints docs/tables/correlation_lengths.csv and draws ``neighbours.png`` and ``ingredients.png`` into
 FIGURES. Results are kept in FOLDER, so that a second run only draws. Takes a quarter of an hour on
 one core.
 """
@@ -133,8 +133,10 @@ def in_the_centre(result: xr.Dataset) -> tuple[float, float]:
 def tabulate(folder: Path) -> dict[tuple[float, int], tuple[xr.Dataset, xr.Dataset]]:
     """Print the table, and return simulation and theory of every chain."""
     found: dict[tuple[float, int], tuple[xr.Dataset, xr.Dataset]] = {}
-    print("| e | L | xi, simulation | theory | <v v'>/T, simulation | theory | W^2/<v^2> |")
-    print("|---|---|---|---|---|---|---|")
+    print(
+        'e,L,"xi, simulation","xi, theory","h_c/T centre, simulation","h_c/T centre, theory",'
+        '"W^2/<v^2>, simulation"'
+    )
     for e in RESTITUTIONS:
         for size in SIZES:
             chain = Chain(size=size, restitution=e)
@@ -144,9 +146,9 @@ def tabulate(folder: Path) -> dict[tuple[float, int], tuple[xr.Dataset, xr.Datas
             shared, error = in_the_centre(run)
             together = chain.free_velocity_width**2 / float((run.velocity_width**2).mean())
             print(
-                f"| {e:g} | {size} | {length_of(run):.1f} ± {spread_of(run):.1f} "
-                f"| {length_of(theory):.1f} | {shared:.3f} ± {error:.3f} "
-                f"| {in_the_centre(theory)[0]:.3f} | {together:.2f} |",
+                f"{e:g},{size},{length_of(run):.1f} ± {spread_of(run):.1f},"
+                f"{length_of(theory):.1f},{shared:.3f} ± {error:.3f},"
+                f"{in_the_centre(theory)[0]:.3f},{together:.2f}",
                 flush=True,
             )
     return found

@@ -2,11 +2,11 @@
 
     python benchmarks/relaxation_error.py FOLDER [--held-out]
 
-Prints the tables of docs/kinetic_equation.md. An ensemble of chains is simulated from exact
-equilibrium states of the elastic chain, released with a restitution other than 1: as they are, or
-with y multiplied by 0.4. Simulations are kept in FOLDER. Takes about half an hour on one core, and
-a quarter with ``--held-out``: chains whose errors were looked at once, after the rule of
-``model_error`` was final.
+Prints docs/tables/kinetic_equation_in_time.csv, or kinetic_equation_in_time_held_out.csv. An
+ensemble of chains is simulated from exact equilibrium states of the elastic chain, released with a
+restitution other than 1: as they are, or with y multiplied by 0.4. Simulations are kept in FOLDER.
+Takes about half an hour on one core, and a quarter with ``--held-out``: chains whose errors were
+looked at once, after the rule of ``model_error`` was final.
 """
 
 import sys
@@ -66,18 +66,15 @@ def row(chain: Chain, factor: float, folder: Path) -> str:
     noise = 100 * run.kinetic_energy_error.values / run.kinetic_energy.values
     worst = int(np.argmax(np.abs(error)))
     return (
-        f"| {chain.restitution:g} | {chain.size} | {chain.damping:g} | {factor:g} "
-        f"| {error[worst]:+.1f} ± {noise[worst]:.1f} | {run.time.values[worst]:g} "
-        f"| {error[-5:].mean():+.1f} | {100 * flow.attrs['model_error']:.1f} |"
+        f"{chain.restitution:g},{chain.size},{chain.damping:g},{factor:g},"
+        f"{error[worst]:+.1f} ± {noise[worst]:.1f},{run.time.values[worst]:g},"
+        f"{error[-5:].mean():+.1f},{100 * flow.attrs['model_error']:.1f}"
     )
 
 
 def main(folder: Path, *, held_out: bool) -> None:
     folder.mkdir(parents=True, exist_ok=True)
-    print(
-        "| e | L | gamma | y times | largest error, % | at t [T] | at the end, % | stated, % |\n"
-        "|---|---|---|---|---|---|---|---|"
-    )
+    print('e,L,gamma,y times,"largest error, %",at t [T],"at the end, %","stated, %"')
     for size, e, damping in HELD_OUT if held_out else MEASURED:
         for factor in FACTORS:
             chain = Chain(size=size, restitution=e, damping=damping)

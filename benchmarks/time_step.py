@@ -1,4 +1,4 @@
-"""How far a time step is from the limit dt -> 0: a table for the documentation.
+"""How far a time step is from the limit dt -> 0: docs/tables/time_step.csv.
 
     python benchmarks/time_step.py [--size 100 ...] [--restitution 0 ...] [--longer 1] [--share 1]
                                    [--runs 8] [--strength 1]
@@ -14,7 +14,9 @@ finer step, which has the default strength, is then given as it is below the cri
 """
 
 import argparse
+import csv
 import math
+import sys
 from typing import NamedTuple
 
 import numpy as np
@@ -166,8 +168,8 @@ def main() -> None:
     parser.add_argument("--runs", type=int, default=8, help="that the duration is shared by")
     parser.add_argument("--strength", type=float, help="of the kicks that open closed contacts")
     asked = parser.parse_args()
-    print(f"| e | L | time step | {' | '.join(QUANTITIES)} |  (in %)")
-    print("|---" * (3 + len(QUANTITIES)) + "|")
+    table = csv.writer(sys.stdout, lineterminator="\n")
+    table.writerow(("e", "L", "gamma", "time step", *(f"{name}, %" for name in QUANTITIES)))
     for restitution, damping, size, duration in CASES:
         if size not in asked.size or (asked.restitution and restitution not in asked.restitution):
             continue
@@ -181,7 +183,8 @@ def main() -> None:
         deviation = 100 / (1 - rest) * np.array(found)
         mean, error = deviation.mean(axis=0), error_of_mean(deviation)
         shown = [f"{d:+.2f} ± {s:.2f}" for d, s in zip(mean, error, strict=True)]
-        print(f"| {restitution} | {size} | {step:.1e} | {' | '.join(shown)} |", flush=True)
+        table.writerow((f"{restitution:g}", size, f"{damping:g}", f"{step:.1e}", *shown))
+        sys.stdout.flush()
 
 
 if __name__ == "__main__":

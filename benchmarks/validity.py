@@ -2,8 +2,8 @@
 
     python benchmarks/validity.py FOLDER
 
-Prints the table of docs/kinetic_equation.md. Simulations are kept in FOLDER. Takes about an hour on
-one core. docs/figures/validity.py draws the table, with that of benchmarks/correlations.py.
+Prints docs/tables/kinetic_equation.csv. Simulations are kept in FOLDER. Takes about an hour on one
+core. docs/figures/validity.py draws the table, with those of benchmarks/correlations.py.
 """
 
 import sys
@@ -39,19 +39,15 @@ def compared(chain: Chain, duration: float, folder: Path) -> WidthDeviation:
 
 def row(chain: Chain, found: WidthDeviation) -> str:
     """Return a line of the table, in per cent."""
-    name = f"{chain.restitution:g}" + (f", gamma = {chain.damping:g}" if chain.damping != 1 else "")
     return (
-        f"| {name} | {chain.size} | {100 * found.centre:+.1f} | {100 * found.border:+.1f} "
-        f"| {100 * found.largest:.1f} | {100 * found.error:.1f} |"
+        f"{chain.restitution:g},{chain.size},{chain.damping:g},{100 * found.centre:+.1f},"
+        f"{100 * found.border:+.1f},{100 * found.largest:.1f},{100 * found.error:.1f}"
     )
 
 
 def main(folder: Path) -> None:
     folder.mkdir(parents=True, exist_ok=True)
-    print(
-        "| e | L | centre, % | border, % | largest, 3 to L-2, % | error of a simulated rod, % |\n"
-        "|---|---|---|---|---|---|"
-    )
+    print('e,L,gamma,"centre, %","border, %","largest, %","error of a rod, %"')
     for size, duration in DURATIONS.items():
         for restitution in RESTITUTIONS:
             chain = Chain(size=size, restitution=restitution)

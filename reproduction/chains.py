@@ -1,102 +1,122 @@
-"""Runs that several figures share, with the durations that each quality grants them.
+"""Runs and theories that several figures share, with what each quality grants them.
 
 The paper's parameters throughout: gamma = k = A = 1, g = 0 unless said.
 """
 
 from __future__ import annotations
 
-from typing import Any
+import json
+from collections.abc import Iterable, Mapping
+from typing import Any, NamedTuple
 
 from crazybilliards.comparison.sweeps import Case
 from crazybilliards.model import Chain
-from crazybilliards.reproduction.claims.repetition import repeated
-from crazybilliards.reproduction.claims.study import Cases, Quality
+from crazybilliards.reproduction.claims.repetition import Granted, Runs
+from crazybilliards.reproduction.claims.study import Cases, Quality, Results
 
 LARGE = 1000  # the paper's longest chains
 SIZES = (10, 30, 100, 300, LARGE)
 RESTITUTIONS = (0.0, 0.5, 0.75, 0.85, 0.92, 0.95)
+STEPS = (1e-2, 3e-3, 1e-3)  # at which the perfectly inelastic chain runs besides the default one
 
-# Quick and full: number of runs, and the time each is measured.
-_SHORT_CHAINS = {"quick": (4, 1000.0), "full": (8, 6000.0)}
-_LONG_CHAINS = {"quick": (4, 50.0), "full": (5, 400.0)}
-_WARMUP = {"quick": 50.0, "full": 100.0}  # of long chains: six and twelve relaxation times
+# By the number of rods from which on it is granted. Warm-ups of the longest chains: six and twelve
+# relaxation times.
+_DISSIPATIVE: dict[int, Granted] = {
+    1: {"quick": (4, {"duration": 1000.0}), "full": (8, {"duration": 6000.0})},
+    101: {"quick": (4, {"duration": 500.0}), "full": (8, {"duration": 3000.0})},
+    LARGE: {
+        "quick": (4, {"duration": 50.0, "warmup": 50.0}),
+        "full": (5, {"duration": 400.0, "warmup": 100.0}),
+    },
+}
+_AT_STEP: dict[int, Granted] = {
+    1: {"quick": (4, {"duration": 400.0}), "full": (6, {"duration": 6000.0})},
+    101: {"quick": (4, {"duration": 100.0}), "full": (6, {"duration": 1500.0})},
+}
+_ELASTIC: Granted = {"quick": (4, {"duration": 5000.0}), "full": (8, {"duration": 50_000.0})}
+_FLIPPERS: Granted = {"quick": (3, {"duration": 1000.0}), "full": (8, {"duration": 8000.0})}
 
 
-def dissipative(size: int, restitution: float, quality: Quality, amplitude: float = 1.0) -> Cases:
-    """Return runs of a dissipative chain at the default time step, named by its parameters."""
-    chain = Chain(size=size, restitution=restitution, amplitude=amplitude)
-    name = dissipative_name(size, restitution, amplitude)
-    observe = ["widths", "velocities"]
-    if size < LARGE:
-        number, duration = _SHORT_CHAINS[quality]
-        duration *= 0.5 if size > 100 else 1.0
-        return repeated(name, chain, number, duration=duration, observe=observe)
-    number, duration = _LONG_CHAINS[quality]
-    return repeated(
-        name, chain, number, duration=duration, warmup=_WARMUP[quality], observe=observe
+def _granted(by_size: Mapping[int, Granted], size: int) -> Granted:
+    return by_size[max(least for least in by_size if least <= size)]
+
+
+def dissipative(size: int, restitution: float, amplitude: float = 1.0) -> Runs:
+    """Return runs of a dissipative chain at the default time step."""
+    return Runs(
+        f"L={size} e={restitution:g} A={amplitude:g}",
+        Chain(size=size, restitution=restitution, amplitude=amplitude),
+        _granted(_DISSIPATIVE, size),
+        {"observe": ["widths", "velocities"]},
     )
 
 
-def dissipative_name(size: int, restitution: float, amplitude: float = 1.0) -> str:
-    """Return the name under which :func:`dissipative` runs go."""
-    return f"L={size} e={restitution:g} A={amplitude:g}"
+def at_step(size: int, step: float | None) -> Runs:
+    """Return runs of the perfectly inelastic chain at a fixed time step; None: the default one."""
+    if step is None:
+        return dissipative(size, 0.0)
+    return Runs(
+        f"L={size} dt={step:g}",
+        Chain(size=size, restitution=0.0),
+        _granted(_AT_STEP, size),
+        {"time_step": step, "observe": ["widths"]},
+    )
 
 
-def flippers(size: int, damping: float, quality: Quality) -> Cases:
+def at_steps(sizes: Iterable[int] = SIZES) -> list[Runs]:
+    """Return :func:`at_step` at the default step and at every fixed one."""
+    return [at_step(size, step) for size in sizes for step in (None, *STEPS)]
+
+
+def chain_step(results: Results, size: int) -> float:
+    """Return the default time step of that size, as the result records it."""
+    run = at_step(size, None).members(results)[0]
+    return float(json.loads(run.attrs["provenance"])["schedule"]["time_step"])
+
+
+def flippers(size: int, damping: float) -> Runs:
     """Return runs at e = 1.05, with collision rates and avalanches."""
-    chain = Chain(size=size, restitution=1.05, damping=damping)
-    number, duration = {"quick": (3, 1000.0), "full": (8, 8000.0)}[quality]
-    return repeated(
-        flippers_name(size, damping),
-        chain,
-        number,
-        duration=duration,
-        observe=["widths", "velocities", "collisions", "avalanches", "triggered-collisions"],
+    return Runs(
+        f"L={size} gamma={damping:g}",
+        Chain(size=size, restitution=1.05, damping=damping),
+        _FLIPPERS,
+        {"observe": ["widths", "velocities", "collisions", "avalanches", "triggered-collisions"]},
     )
 
 
-def flippers_name(size: int, damping: float) -> str:
-    """Return the name under which :func:`flippers` runs go."""
-    return f"L={size} gamma={damping:g}"
-
-
-def elastic(size: int, quality: Quality, **settings: Any) -> Cases:
+def elastic(size: int) -> Runs:
     """Return runs at e = 1 at the default time step."""
-    number, duration = {"quick": (4, 5000.0), "full": (8, 50_000.0)}[quality]
-    observe = ["widths", "velocities"]
-    chain = Chain(size=size)
-    return repeated(
-        elastic_name(size), chain, number, duration=duration, observe=observe, **settings
+    return Runs(f"L={size} e=1", Chain(size=size), _ELASTIC, {"observe": ["widths", "velocities"]})
+
+
+class Theory(NamedTuple):
+    """A theory of one chain, which is solved on a coarser mesh at quick quality."""
+
+    name: str
+    job: str
+    chain: Chain
+    coarse: Mapping[str, Any]  # the settings of quick quality; full quality has the default ones
+
+    def cases(self, quality: Quality) -> Cases:
+        """Return its case."""
+        return {self.name: Case(self.job, self.chain, self.coarse if quality == "quick" else {})}
+
+
+def kinetic_equation(size: int, restitution: float, damping: float = 1.0) -> Theory:
+    """Return the kinetic equation; quick: on a coarser mesh, half a per cent off."""
+    return Theory(
+        f"theory L={size} e={restitution:g} gamma={damping:g}",
+        "phase_space",
+        Chain(size=size, restitution=restitution, damping=damping),
+        {"cells": 16},
     )
 
 
-def elastic_name(size: int) -> str:
-    """Return the name under which :func:`elastic` runs go."""
-    return f"L={size} e=1"
-
-
-def kinetic_equation(size: int, restitution: float, damping: float, quality: Quality) -> Cases:
-    """Return the prediction of the kinetic equation; quick: on a coarser mesh, half a per cent."""
-    chain = Chain(size=size, restitution=restitution, damping=damping)
-    settings = {"cells": 16} if quality == "quick" else {}
-    return {kinetic_name(size, restitution, damping): Case("phase_space", chain, settings)}
-
-
-def correlated_equation(size: int, restitution: float, quality: Quality) -> Cases:
-    """Return the prediction of the kinetic equation with pair correlations.
-
-    Quick: on a coarser mesh.
-    """
-    chain = Chain(size=size, restitution=restitution)
-    settings = {"cells": 22} if quality == "quick" else {}
-    return {correlated_name(size, restitution): Case("correlated_phase_space", chain, settings)}
-
-
-def correlated_name(size: int, restitution: float) -> str:
-    """Return the name of :func:`correlated_equation`."""
-    return f"theory of pairs L={size} e={restitution:g}"
-
-
-def kinetic_name(size: int, restitution: float, damping: float) -> str:
-    """Return the name of :func:`kinetic_equation`."""
-    return f"theory L={size} e={restitution:g} gamma={damping:g}"
+def correlated_equation(size: int, restitution: float) -> Theory:
+    """Return the kinetic equation with pair correlations."""
+    return Theory(
+        f"theory of pairs L={size} e={restitution:g}",
+        "correlated_phase_space",
+        Chain(size=size, restitution=restitution),
+        {"cells": 22},
+    )

@@ -7,11 +7,14 @@ from collections.abc import Callable, Sequence
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from scipy.optimize import curve_fit
 
 from crazybilliards.comparison.distances import distances_in_plot
 from crazybilliards.comparison.drawing import COLOURS, SYMBOLS
+from crazybilliards.comparison.layout import legend_above, panels
+from crazybilliards.model import chain_of
 from crazybilliards.model.vocabulary import require
 from crazybilliards.reproduction.claims.repetition import error_of_mean
 
@@ -60,15 +63,22 @@ def off_in_plot(
     )
 
 
-def draw_distributions(
-    ax: Axes, runs: Sequence[xr.Dataset], particles: Sequence[int], unit: float
-) -> None:
-    """Draw p(v) of some particles on a logarithmic scale, v in units of ``unit``, and Gaussians.
+def figure_of_distributions(runs: Sequence[xr.Dataset], particles: Sequence[int]) -> Figure:
+    """Return :func:`draw_distributions` as a figure of one panel, with a legend."""
+    figure, [ax] = panels(1, 1, height=2.9, wanted=1)
+    draw_distributions(ax, runs, particles)
+    legend_above(figure, ax)
+    return figure
+
+
+def draw_distributions(ax: Axes, runs: Sequence[xr.Dataset], particles: Sequence[int]) -> None:
+    """Draw p(v) of some particles on a logarithmic scale, v in free widths W, and Gaussians.
 
     Error bars are standard errors from the scatter between the independent ``runs``. The lines are
     Gaussians of the same width, and the free rod's.
     """
     run = runs[0]
+    unit = chain_of(run).free_velocity_width
     v = run.velocity_bin.values / unit
     reach = 0.0
     for number, particle in enumerate(particles):

@@ -1,37 +1,44 @@
-"""What the kinetic equation, without and with pair correlations, says of figures 3, 7 and 9."""
+"""What the kinetic equation, without and with pair correlations, says of several figures."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
-from crazybilliards.comparison.drawing import COLOURS
+from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_rods
 from crazybilliards.comparison.fits import fit_border_power_law
+from crazybilliards.comparison.layout import legend_above, panels
 from crazybilliards.comparison.widths import central_width, width_deviation
 from crazybilliards.model import chain_of
 from crazybilliards.reproduction.chains import (
     LARGE,
     RESTITUTIONS,
+    Theory,
     correlated_equation,
-    correlated_name,
-    dissipative_name,
+    dissipative,
     kinetic_equation,
-    kinetic_name,
 )
-from crazybilliards.reproduction.claims.repetition import estimate, pooled
-from crazybilliards.reproduction.claims.study import Cases, Quality, Results
+from crazybilliards.reproduction.claims.repetition import Runs
+from crazybilliards.reproduction.claims.study import Cases, Quality, Results, all_of
 from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, small_claim
 
 SIZES = (30, 100, 300, LARGE)  # of chains at e = 0
-_OF_INDEPENDENT = {"quick": (0.95,), "full": (0.85, 0.92, 0.95)}
-_OF_PAIRS = {"quick": (0.95,), "full": RESTITUTIONS}
 _SIZES_OF_PAIRS = {"quick": (30,), "full": SIZES}
 
 INDEPENDENT, PAIRS = "kinetic equation", "with pair correlations"
 PAIRS_ALONE = "theory with pairs"  # in a figure without the other theory and with less room
+_EQUATIONS: dict[str, Callable[[int, float], Theory]] = {
+    INDEPENDENT: kinetic_equation,
+    PAIRS: correlated_equation,
+}
+_SOLVED = {  # restitutions
+    INDEPENDENT: {"quick": (0.95,), "full": (0.85, 0.92, 0.95)},
+    PAIRS: {"quick": (0.95,), "full": RESTITUTIONS},
+}
 LINES = {INDEPENDENT: "--", PAIRS: "-"}
 CROSSES: dict[str, dict[str, Any]] = {
     INDEPENDENT: {"marker": "x", "linestyle": "none", "color": COLOURS[4]},
@@ -49,38 +56,36 @@ Theories = dict[str, dict[float, xr.Dataset]]  # by name, then by restitution
 
 def by_restitution(quality: Quality) -> Cases:
     """Return the theories of L = 1000."""
-    cases: Cases = {}
-    for restitution in _OF_INDEPENDENT[quality]:
-        cases |= kinetic_equation(LARGE, restitution, 1.0, quality)
-    for restitution in _OF_PAIRS[quality]:
-        cases |= correlated_equation(LARGE, restitution, quality)
-    return cases
+    solved = (
+        equation(LARGE, e) for name, equation in _EQUATIONS.items() for e in _SOLVED[name][quality]
+    )
+    return all_of(solved, quality)
 
 
 def predicted(results: Results) -> Theories:
     """Return the results of :func:`by_restitution`."""
-    names = {
-        INDEPENDENT: {e: kinetic_name(LARGE, e, 1.0) for e in RESTITUTIONS},
-        PAIRS: {e: correlated_name(LARGE, e) for e in RESTITUTIONS},
-    }
     return {
-        theory: {e: results[name] for e, name in of_theory.items() if name in results}
-        for theory, of_theory in names.items()
+        name: {
+            e: results[theory]
+            for e in RESTITUTIONS
+            if (theory := equation(LARGE, e).name) in results
+        }
+        for name, equation in _EQUATIONS.items()
     }
 
 
 def by_size(quality: Quality) -> Cases:
     """Return the theory with pair correlations at e = 0."""
-    cases: Cases = {}
-    for size in _SIZES_OF_PAIRS[quality]:
-        cases |= correlated_equation(size, 0.0, quality)
-    return cases
+    return all_of((correlated_equation(size, 0.0) for size in _SIZES_OF_PAIRS[quality]), quality)
 
 
 def predicted_by_size(results: Results) -> dict[int, xr.Dataset]:
     """Return the results of :func:`by_size`."""
-    names = {size: correlated_name(size, 0.0) for size in SIZES}
-    return {size: results[name] for size, name in names.items() if name in results}
+    return {
+        size: results[theory]
+        for size in SIZES
+        if (theory := correlated_equation(size, 0.0).name) in results
+    }
 
 
 def minus_nu(theory: xr.Dataset) -> float:
@@ -102,6 +107,25 @@ def draw_widths_by_size(ax: Axes, results: Results) -> None:
     ax.plot([], [], ":", color="0.4", label=PAIRS_ALONE)
 
 
+def draw_flippers(
+    results: Results, shown: Mapping[str, tuple[Runs, Theory, float]], ylabel: str
+) -> Figure:
+    """Draw W_v(i) of runs as symbols and of the kinetic equation as lines, in one panel.
+
+    ``shown`` has by label the runs, the theory, and the unit of their widths.
+    """
+    figure, [ax] = panels(1, 1, height=3.1, wanted=1)
+    for number, (label, (runs, theory, unit)) in enumerate(shown.items()):
+        draw_rods(ax, runs.pooled(results), "velocity_width", number=number, unit=unit, label=label)
+        solved = results[theory.name]
+        ax.plot(solved.normalized_particle, solved.velocity_width / unit, color=COLOURS[number])
+    along_the_chain(ax)
+    ax.set_ylabel(ylabel)
+    ax.plot([], [], color="0.4", label="kinetic equation")
+    legend_above(figure, ax)
+    return figure
+
+
 def listed(found: Theories, value: Callable[[xr.Dataset], float], *restitutions: float) -> str:
     """List ``value(theory)`` of every theory at the restitutions, for a claim."""
     texts = []
@@ -118,10 +142,10 @@ def centre_claims(results: Results) -> list[Claim]:
     claims = []
     for name_of_theory, theories in predicted(results).items():
         for e, theory in theories.items():
-            name = dissipative_name(LARGE, e)
-            deviation = width_deviation(pooled(results, name), theory)
+            runs = dissipative(LARGE, e)
+            deviation = width_deviation(runs.pooled(results), theory)
             # Rods of the centre move together: only runs are independent.
-            centre = estimate(results, name, central_width)
+            centre = runs.estimate(results, central_width)
             claims.append(
                 small_claim(
                     f"{_CLAIMED[name_of_theory]} gives W_v in the centre, e = {e:g}",

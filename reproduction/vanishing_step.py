@@ -14,39 +14,32 @@ import xarray as xr
 
 from crazybilliards.comparison.widths import central_width
 from crazybilliards.model import Chain
-from crazybilliards.reproduction.claims.repetition import estimate, members, repeated
-from crazybilliards.reproduction.claims.study import Cases, Quality, Results
+from crazybilliards.reproduction.claims.repetition import Granted, Runs
+from crazybilliards.reproduction.claims.study import Results
 from crazybilliards.reproduction.claims.verdicts import Estimate
 
 LABEL = r"limit $dt \to 0$"
 
 # Number of limits, and the accuracy of each: at e = 0, where exponents have their errors from the
 # scatter between them, and at larger restitutions, where they cost ten times as much.
-_INELASTIC = {"quick": (3, 0.02), "full": (5, 0.005)}
-_DISSIPATIVE = {"quick": (1, 0.05), "full": (1, 0.015)}
+_INELASTIC: Granted = {"quick": (3, {"accuracy": 0.02}), "full": (5, {"accuracy": 0.005})}
+_DISSIPATIVE: Granted = {"quick": (1, {"accuracy": 0.05}), "full": (1, {"accuracy": 0.015})}
 
 
-def limits(size: int, restitution: float, quality: Quality) -> Cases:
-    """Return limits of a dissipative chain, named by its parameters."""
-    number, accuracy = (_DISSIPATIVE if restitution else _INELASTIC)[quality]
-    return repeated(
-        limit_name(size, restitution),
+def limits(size: int, restitution: float = 0.0) -> Runs:
+    """Return limits of a dissipative chain."""
+    return Runs(
+        f"limit L={size} e={restitution:g}",
         Chain(size=size, restitution=restitution),
-        number,
+        _DISSIPATIVE if restitution else _INELASTIC,
+        {"observe": ["widths"]},
         "simulate_limit",
-        accuracy=accuracy,
-        observe=["widths"],
     )
-
-
-def limit_name(size: int, restitution: float = 0.0) -> str:
-    """Return the name under which :func:`limits` go."""
-    return f"limit L={size} e={restitution:g}"
 
 
 def central_limit(results: Results, size: int, restitution: float = 0.0) -> Estimate:
     """Return W_v in the centre for dt -> 0, with one error for statistics and time step."""
-    runs = members(results, limit_name(size, restitution))
+    runs = limits(size, restitution).members(results)
     value = float(np.mean([central_width(run) for run in runs]))
     bias = common_bias(runs)
     squares = [_relative_error(run) ** 2 - float(run.attrs["time_step_error"]) ** 2 for run in runs]
@@ -79,9 +72,8 @@ def limit_estimate(
     off by the remaining error of the step: in the centre by that share, elsewhere by less, as r^3,
     r being the velocity kick of a step over W_v.
     """
-    runs = members(results, limit_name(size))
-    found = estimate(results, limit_name(size), quantity)
-    moved = float(np.mean([quantity(_with_a_step(run)) for run in runs]))
+    found = limits(size).estimate(results, quantity)
+    moved = float(np.mean([quantity(_with_a_step(run)) for run in limits(size).members(results)]))
     return Estimate(found.value, math.hypot(found.error, moved - found.value))
 
 

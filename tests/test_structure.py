@@ -43,7 +43,7 @@ FLOORS = {
     "reproduction": (
         {"claims"},
         {"chains", "distributions", "power_laws", "vanishing_step"},
-        {"predictions", "time_steps"},
+        {"predictions"},
         {"beyond", "figures"},
         {"reproducible"},
     ),

@@ -11,7 +11,7 @@ from crazybilliards.comparison.widths import central_width
 from crazybilliards.model import Chain
 from crazybilliards.particles.scales import relaxation_time
 
-# W_v of the middle tenth [R/T] by L, the limit dt -> 0 of docs/central_width.md.
+# W_v of the middle tenth [R/T] by L, the limit dt -> 0 of docs/tables/central_width.csv.
 _LIMIT = {
     10: 0.17565,
     30: 0.11920,

@@ -1,10 +1,10 @@
 """Draw the phase diagram of driven chains: critical size against damping.
 
-Run it to write critical_size.png beside it. The simulations are those of the table of
-kinetic_equation.md; the lines are computed, which takes half a minute.
+Run it to write critical_size.png beside it. The simulations are those of
+docs/tables/critical_size.csv; the lines are computed, which takes half a minute.
 """
 
-import re
+import csv
 from pathlib import Path
 
 import matplotlib as mpl
@@ -16,18 +16,21 @@ from crazybilliards.comparison.layout import house_style, panels
 from crazybilliards.kinetic import critical_size
 from crazybilliards.model import Chain
 
-PAGE = Path(__file__).parents[1] / "kinetic_equation.md"
-ROW = re.compile(
-    r"^\| ([\d.]+) \| ([\d.]+) \| [\d.]+ ± [\d.]+ \| [\d.]+ \| ([\d.]+) ± ([\d.]+) \|$",
-    re.MULTILINE,
-)
+TABLE = Path(__file__).parents[1] / "tables" / "critical_size.csv"
 RESTITUTIONS = {1.02: "-", 1.05: "--", 1.1: "-."}
 DAMPINGS = (0.2, 0.5, 1.0, 2.0, 3.0, 4.0, 5.0)
 
 
 def simulated() -> dict[float, np.ndarray]:
     """Return damping, critical size and its error of the simulations, by restitution."""
-    rows = np.array(ROW.findall(PAGE.read_text(encoding="utf-8")), dtype=float)
+    with open(TABLE, encoding="utf-8", newline="") as file:
+        rows = np.array(
+            [
+                [row["e"], row["gamma"], *row["simulation"].split(" ± ")]
+                for row in csv.DictReader(file)
+            ],
+            dtype=float,
+        )
     return {e: rows[rows[:, 0] == e, 1:].T for e in np.unique(rows[:, 0])}
 
 

@@ -1,9 +1,9 @@
 """Draw how right the kinetic equation is without and with pair correlations.
 
-Run it to write validity.png beside it, from the tables of kinetic_equation.md and correlations.md.
+Run it to write validity.png beside it, from docs/tables.
 """
 
-import re
+import csv
 from pathlib import Path
 from typing import NamedTuple
 
@@ -15,19 +15,7 @@ from matplotlib.axes import Axes
 from crazybilliards.comparison.drawing import COLOURS, SYMBOLS
 from crazybilliards.comparison.layout import entitle, house_style, legend_above, panels
 
-DOCS = Path(__file__).parents[1]
-HELD_OUT = "## Chains that were held out"
-DERIVED_WITH = "## Chains that it was derived with"
-NUMBER = r"([-+]?[\d.]+)"
-KINETIC_EQUATION = re.compile(
-    rf"^\| {NUMBER}(, gamma = 4)? \| (\d+) \| {NUMBER} \| {NUMBER} \| {NUMBER} \| {NUMBER} \|$",
-    re.MULTILINE,
-)
-BOTH = re.compile(
-    rf"^\| (\d+) \| {NUMBER} \| 1 \| (\S+) -> {NUMBER} \| (\S+) -> {NUMBER} \| [^|]* "
-    r"\| ([^|]*) \|",
-    re.MULTILINE,
-)
+TABLES = Path(__file__).parents[1] / "tables"
 LINEAR = 2.0  # per cent; the axis is linear up to there, and logarithmic beyond
 LABELLED = (-50, -20, -10, -5, -2, 0, 2, 5)
 # Even steps in the linear part, decades beyond: they show where the axis changes.
@@ -52,40 +40,46 @@ class Error(NamedTuple):
     driven: bool = False
 
 
+def table(name: str) -> list[dict[str, str]]:
+    """Return the rows of a table."""
+    with open(TABLES / f"{name}.csv", encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
 def independent() -> list[Error]:
-    """Return the rows of the kinetic equation's page."""
-    text = (DOCS / "kinetic_equation.md").read_text(encoding="utf-8")
+    """Return the errors without correlations that were measured for them."""
     return [
         Error(
-            int(size),
-            float(e),
-            float(centre),
-            float(border),
-            float(rod),
-            float(rod),
+            int(row["L"]),
+            float(row["e"]),
+            float(row["centre, %"]),
+            float(row["border, %"]),
+            float(row["error of a rod, %"]),
+            float(row["error of a rod, %"]),
             False,
-            bool(driven),
+            row["gamma"] == "4",
         )
-        for e, driven, size, centre, border, _, rod in KINETIC_EQUATION.findall(text)
+        for row in table("kinetic_equation")
     ]
 
 
 def of_both() -> tuple[list[Error], list[Error]]:
-    """Return the rows of the correlations' page: without correlations, and with them."""
-    text = (DOCS / "correlations.md").read_text(encoding="utf-8")
+    """Return the errors in the tables of pair correlations, gamma = 1: without them, and with."""
     without, with_them = list[Error](), list[Error]()
-    for heading in (HELD_OUT, DERIVED_WITH):
-        part = text.split(heading + "\n")[1].split("\n## ")[0]
-        for size, e, *errors, simulated in BOTH.findall(part):
-            held_out = heading == HELD_OUT
-            # Of the centre, if it is there, a rod and the border; "-" where none is stated.
-            each = [float(number) for number in simulated.split(",") if number != "-"] or [np.nan]
-            stated = each[0], each[-1], held_out
-            if errors[0] != "-":  # solved without correlations as well
-                values = float(errors[0]), float(errors[2])
-                without.append(Error(int(size), float(e), *values, *stated))
-            values = float(errors[1]), float(errors[3])
-            with_them.append(Error(int(size), float(e), *values, *stated))
+    stated_in = {
+        "correlations_held_out": "error of the centre, a rod, the border, %",
+        "correlations_derived_with": "error of a rod, the border, %",
+    }
+    for name, column in stated_in.items():
+        for row in (each for each in table(name) if each["gamma"] == "1"):
+            # Of the centre, if it is there, a rod and the border; empty where none is stated.
+            each = [float(number) for number in row[column].split(",") if number] or [np.nan]
+            stated = each[0], each[-1], name == "correlations_held_out"
+            for errors, suffix in ((without, " without, %"), (with_them, ", %")):
+                if centre := row[f"W_v centre{suffix}"]:
+                    border = float(row[f"W_v border{suffix}"])
+                    chain = int(row["L"]), float(row["e"])
+                    errors.append(Error(*chain, float(centre), border, *stated))
     return without, with_them
 
 

@@ -1,4 +1,4 @@
-"""How far the theory is from simulations: the largest errors in the tables of its page.
+"""How far the theory is from simulations: the largest errors in its two tables in docs/tables.
 
     python benchmarks/correlations.py FOLDER [--held-out]
 

@@ -1,4 +1,4 @@
-"""How far the theory is from simulations: the errors in the table of its page, by size and e.
+"""How far the theory is from simulations: docs/tables/kinetic_equation.csv, by size and e.
 
     python benchmarks/validity.py FOLDER
 

@@ -7,7 +7,8 @@ error. Runs also share the work among processes.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -17,52 +18,95 @@ from scipy.stats import norm, t
 
 from crazybilliards.comparison.sweeps import Case
 from crazybilliards.model import Chain
-from crazybilliards.reproduction.claims.study import Cases, Results
+from crazybilliards.reproduction.claims.study import Cases, Quality, Results
 from crazybilliards.reproduction.claims.verdicts import Estimate
 
 _SQUARED = ("velocity_width", "displacement_width")
 _COUNTED = ("avalanche_count", "triggered_count")
 
 
-def repeated(
-    name: str, chain: Chain, number: int, job: str = "simulate", /, **settings: Any
-) -> Cases:
-    """Return cases ``NAME/0``, ``NAME/1``, ... that differ in their random numbers only.
+# By quality: the number of runs, and settings that are those of this quality alone.
+Granted = Mapping[Quality, tuple[int, Mapping[str, Any]]]
 
-    ``job`` is ``"simulate"``, or ``"simulate_limit"`` for the limit of a vanishing time step.
+
+@dataclass(frozen=True)
+class Runs:
+    """Independent runs of one chain: their cases, and what their results give together.
+
+    They differ in their random numbers only. Methods that take ``results`` look for their own runs
+    among them.
+
+    Attributes
+    ----------
+    name
+        Their cases go by ``NAME/0``, ``NAME/1``, ...
+    chain
+        The chain.
+    granted
+        By quality: the number of runs and their settings, ``{"quick": (4, {"duration": 500.0}),
+        "full": (8, {"duration": 2e4})}`` say.
+    settings
+        Settings that are the same at both qualities.
+    job
+        ``"simulate"``, or ``"simulate_limit"`` for the limit of a vanishing time step.
     """
-    return {
-        f"{name}/{seed}": Case(job, chain, {**settings, "seed": seed}) for seed in range(number)
-    }
 
+    name: str
+    chain: Chain
+    granted: Granted
+    settings: Mapping[str, Any]
+    job: str = "simulate"
 
-def members(results: Results, name: str) -> list[xr.Dataset]:
-    """Return the runs of that name."""
-    return [run for key, run in results.items() if key.rpartition("/")[0] == name]
+    def cases(self, quality: Quality) -> Cases:
+        """Return the cases ``NAME/0``, ``NAME/1``, ..."""
+        number, own = self.granted[quality]
+        return {
+            f"{self.name}/{seed}": Case(
+                self.job, self.chain, {**own, **self.settings, "seed": seed}
+            )
+            for seed in range(number)
+        }
 
+    def members(self, results: Results) -> list[xr.Dataset]:
+        """Return their results, as many as there are."""
+        return [run for key, run in results.items() if key.rpartition("/")[0] == self.name]
 
-def pooled(results: Results, name: str) -> xr.Dataset:
-    """Average the runs of that name: widths in the mean square, counts summed."""
-    datasets = members(results, name)
-    together = xr.concat(datasets, "run", coords="different", compat="equals", join="exact")
-    values: dict[str, xr.DataArray] = {}
-    for variable in together.data_vars:
-        each = together[variable]
-        key = str(variable)
-        if key.endswith("_error"):
-            joined = (each**2).sum("run") ** 0.5 / len(datasets)
-        elif key in _SQUARED:
-            joined = (each**2).mean("run") ** 0.5
-        elif key in _COUNTED:
-            joined = each.sum("run")
-        else:
-            joined = each.mean("run")
-        values[key] = joined.assign_attrs(each.attrs)
-    run = datasets[0].assign(values)
-    if "mean_position" in together.coords and "run" in together.mean_position.dims:
-        middle = together.mean_position.mean("run").assign_attrs(together.mean_position.attrs)
-        run = run.assign_coords(mean_position=middle)
-    return run
+    def pooled(self, results: Results) -> xr.Dataset:
+        """Average them: widths in the mean square, counts summed."""
+        datasets = self.members(results)
+        together = xr.concat(datasets, "run", coords="different", compat="equals", join="exact")
+        values: dict[str, xr.DataArray] = {}
+        for variable in together.data_vars:
+            each = together[variable]
+            key = str(variable)
+            if key.endswith("_error"):
+                joined = (each**2).sum("run") ** 0.5 / len(datasets)
+            elif key in _SQUARED:
+                joined = (each**2).mean("run") ** 0.5
+            elif key in _COUNTED:
+                joined = each.sum("run")
+            else:
+                joined = each.mean("run")
+            values[key] = joined.assign_attrs(each.attrs)
+        run = datasets[0].assign(values)
+        if "mean_position" in together.coords and "run" in together.mean_position.dims:
+            middle = together.mean_position.mean("run").assign_attrs(together.mean_position.attrs)
+            run = run.assign_coords(mean_position=middle)
+        return run
+
+    def estimate(self, results: Results, quantity: Callable[[xr.Dataset], float]) -> Estimate:
+        """Return the mean of a quantity over them, with the error from its scatter."""
+        return self.estimates(results, lambda run: [quantity(run)])[0]
+
+    def estimates(
+        self, results: Results, quantities: Callable[[xr.Dataset], ArrayLike]
+    ) -> list[Estimate]:
+        """Return :meth:`estimate` of each of several quantities."""
+        values = np.array([quantities(run) for run in self.members(results)])
+        return [
+            Estimate(*map(float, each))
+            for each in zip(values.mean(axis=0), error_of_mean(values), strict=True)
+        ]
 
 
 def error_of_mean(values: ArrayLike) -> NDArray[np.float64]:
@@ -76,22 +120,6 @@ def error_of_mean(values: ArrayLike) -> NDArray[np.float64]:
     number = len(values)
     factor = float(t.ppf(norm.cdf(1), number - 1))
     return np.asarray(factor * values.std(axis=0, ddof=1) / number**0.5)
-
-
-def estimate(results: Results, name: str, quantity: Callable[[xr.Dataset], float]) -> Estimate:
-    """Return the mean of a quantity over the runs of that name, with the error from its scatter."""
-    return estimates(results, name, lambda run: [quantity(run)])[0]
-
-
-def estimates(
-    results: Results, name: str, quantities: Callable[[xr.Dataset], ArrayLike]
-) -> list[Estimate]:
-    """Return :func:`estimate` of each of several quantities."""
-    values = np.array([quantities(run) for run in members(results, name)])
-    return [
-        Estimate(*map(float, each))
-        for each in zip(values.mean(axis=0), error_of_mean(values), strict=True)
-    ]
 
 
 def share_of_runs(of_them: int, number: int) -> Estimate:

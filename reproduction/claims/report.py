@@ -142,7 +142,8 @@ def describe(cases: Iterable[Case]) -> list[str]:
 def markdown(reproduced: list[Reproduced], quality: Quality) -> str:
     """Return a page of Markdown, to lie beside the pictures: a part for each study.
 
-    Everything is in lists, none of it in tables, so that a narrow screen shows all of it.
+    It begins with a table that counts the verdicts of each study and leads to its part. The parts
+    are in lists and not in tables, so that a narrow screen shows all of a claim.
     """
     numbers = _versions()
     rows = [
@@ -152,6 +153,8 @@ def markdown(reproduced: list[Reproduced], quality: Quality) -> str:
         f"{', '.join(f'{name} {number}' for name, number in numbers.items())}.",
         "",
         *(f"* {line}" for line in summary(reproduced)),
+        "",
+        *_verdicts_by_study(reproduced),
     ]
     for each in reproduced:
         study = each.study
@@ -163,6 +166,28 @@ def markdown(reproduced: list[Reproduced], quality: Quality) -> str:
                 rows += ["", f"**{_plain(claim.statement)}**", ""]
                 rows += [f"* {name}: {_plain(text)}" for name, text in details(claim).items()]
     return "\n".join(rows) + "\n"
+
+
+def _verdicts_by_study(reproduced: list[Reproduced]) -> list[str]:
+    """Return a table of Markdown: how many claims of each study have which verdict."""
+    rows = [f"| figure or study | {OF_PAPER.lower()} | {OWN.lower()} |", "|---|---|---|"]
+    for each in reproduced:
+        heading = each.study.heading
+        verdicts = (_counted(each.parts.get(title, [])) for title in (OF_PAPER, OWN))
+        rows.append(f"| [{heading}](#{_anchor(heading)}) | {' | '.join(verdicts)} |")
+    return rows
+
+
+def _anchor(heading: str) -> str:
+    """Return the name that Markdown gives to a heading, for links to it."""
+    return re.sub(r"[^\w -]", "", heading.lower()).replace(" ", "-")
+
+
+def _counted(claims: Iterable[Claim]) -> str:
+    counts = Counter(claim.verdict for claim in claims)
+    return ", ".join(
+        f"{counts[verdict]} {verdict}" for verdict in get_args(Verdict) if counts[verdict]
+    )
 
 
 def _plain(text: str) -> str:
@@ -211,11 +236,7 @@ def summary(reproduced: list[Reproduced]) -> list[str]:
     for title in (OF_PAPER, OWN):
         claims = [claim for each in reproduced for claim in each.parts.get(title, ())]
         if claims:
-            counts = Counter(claim.verdict for claim in claims)
-            verdicts = ", ".join(
-                f"{counts[verdict]} {verdict}" for verdict in get_args(Verdict) if counts[verdict]
-            )
-            lines.append(f"{title}: {verdicts}")
+            lines.append(f"{title}: {_counted(claims)}")
     limits = sum(claim.in_limit for each in reproduced for claim in each.claims)
     if limits:
         lines.append(

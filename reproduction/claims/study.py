@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, Protocol
 
 import xarray as xr
 from matplotlib.figure import Figure
@@ -15,6 +15,18 @@ from crazybilliards.reproduction.claims.verdicts import Claim
 Quality = Literal["quick", "full"]
 Cases = dict[str, Case]
 Results = Mapping[str, xr.Dataset]
+
+
+class Needed(Protocol):
+    """What a study needs and names itself: runs of a chain, a theory."""
+
+    def cases(self, quality: Quality) -> Cases:
+        """Return its cases by their names."""
+
+
+def all_of(needed: Iterable[Needed], quality: Quality) -> Cases:
+    """Return the cases of several things that a study needs."""
+    return {name: case for each in needed for name, case in each.cases(quality).items()}
 
 
 def no_cases(quality: Quality) -> Cases:

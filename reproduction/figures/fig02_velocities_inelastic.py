@@ -5,32 +5,24 @@ from __future__ import annotations
 import xarray as xr
 from matplotlib.figure import Figure
 
-from crazybilliards.comparison.layout import legend_above, panels
 from crazybilliards.comparison.widths import border_width, central_width
-from crazybilliards.model import chain_of
 from crazybilliards.model.chain import middle_tenth
-from crazybilliards.reproduction.chains import LARGE, dissipative, dissipative_name
-from crazybilliards.reproduction.claims.repetition import estimate, members, pooled
-from crazybilliards.reproduction.claims.study import Cases, PaperFigure, Quality, Results
+from crazybilliards.reproduction.chains import LARGE, dissipative
+from crazybilliards.reproduction.claims.study import PaperFigure, Results
 from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, eye_claim, positive_claim
 from crazybilliards.reproduction.distributions import (
-    draw_distributions,
+    figure_of_distributions,
     fit_gaussian,
     histogram,
     mean_shape,
     off_in_plot,
 )
 
-_NAME = dissipative_name(LARGE, 0.0)
+_RUNS = dissipative(LARGE, 0.0)
 _PARTICLES = (1, 10, 100, 500)
 _BULK = range(1, LARGE + 1)[middle_tenth(LARGE)]
 _SHOWN = 5.0  # widths of the rod to either side in the plot of its distribution
 _SOURCE = "section seq:e_0, fig.1"
-
-
-def cases(quality: Quality) -> Cases:
-    """L = 1000, e = 0."""
-    return dissipative(LARGE, 0.0, quality)
 
 
 def claims(results: Results) -> list[Claim]:
@@ -44,15 +36,15 @@ def claims(results: Results) -> list[Claim]:
         )
         return (right_skewness - left_skewness) / 2
 
-    skewness = estimate(results, _NAME, both_ends)
-    kurtosis = estimate(results, _NAME, lambda run: mean_shape(run, _BULK, "velocity_kurtosis"))
-    border = estimate(results, _NAME, border_width)
+    skewness = _RUNS.estimate(results, both_ends)
+    kurtosis = _RUNS.estimate(results, lambda run: mean_shape(run, _BULK, "velocity_kurtosis"))
+    border = _RUNS.estimate(results, border_width)
     return [
         eye_claim(
             "in the bulk the distributions can be fitted by Gaussians",
             "p(v) of the middle hundred rods and the Gaussian of best height, centre and width, "
             f"both axes linear, v to {_SHOWN:g} widths",
-            Estimate(_off(pooled(results, _NAME)), estimate(results, _NAME, _off).error),
+            Estimate(_off(_RUNS.pooled(results)), _RUNS.estimate(results, _off).error),
             abs(kurtosis.value) / kurtosis.error,
             source=_SOURCE,
             ours="the time step, and whether the axes are linear",
@@ -70,7 +62,7 @@ def claims(results: Results) -> list[Claim]:
         positive_claim(
             "narrower inside than at the border",
             "W_v(border) - W_v(centre) =",
-            border.minus(estimate(results, _NAME, central_width)),
+            border.minus(_RUNS.estimate(results, central_width)),
             source=_SOURCE,
         ),
     ]
@@ -85,11 +77,7 @@ def _off(run: xr.Dataset) -> float:
 
 def draw(results: Results) -> Figure:
     """Draw p(v) of four rods beside Gaussians of the same width."""
-    runs = members(results, _NAME)
-    figure, [ax] = panels(1, 1, height=2.9, wanted=1)
-    draw_distributions(ax, runs, _PARTICLES, chain_of(runs[0]).free_velocity_width)
-    legend_above(figure, ax)
-    return figure
+    return figure_of_distributions(_RUNS.members(results), _PARTICLES)
 
 
 FIGURE = PaperFigure(
@@ -99,7 +87,7 @@ FIGURE = PaperFigure(
     caption="L = 1000, e = 0. Symbols: simulation, rods i from the border to the centre. Lines: "
     "Gaussians of the same width. Dotted: a free rod. Error bars: standard errors from independent "
     "runs. Velocities in units of the free width W.",
-    cases=cases,
+    cases=_RUNS.cases,
     draw=draw,
     claims=claims,
 )

@@ -14,9 +14,8 @@ from crazybilliards.comparison.fits import fit_border_power_law
 from crazybilliards.comparison.layout import mosaic
 from crazybilliards.model import chain_of
 from crazybilliards.reproduction import predictions
-from crazybilliards.reproduction.chains import LARGE
-from crazybilliards.reproduction.claims.repetition import estimate, members, pooled
-from crazybilliards.reproduction.claims.study import Cases, PaperFigure, Quality, Results
+from crazybilliards.reproduction.chains import LARGE, STEPS, at_step, at_steps, chain_step
+from crazybilliards.reproduction.claims.study import Cases, PaperFigure, Quality, Results, all_of
 from crazybilliards.reproduction.claims.verdicts import (
     Claim,
     Estimate,
@@ -34,16 +33,15 @@ from crazybilliards.reproduction.power_laws import (
     origin,
     weighted_nu,
 )
-from crazybilliards.reproduction.time_steps import STEPS, at_steps, chain_step, step_name
 from crazybilliards.reproduction.vanishing_step import (
     LABEL,
     common_bias,
     limit_estimate,
-    limit_name,
     limits,
 )
 
 _SIZES = predictions.SIZES
+_RUNS = {size: at_step(size, None) for size in _SIZES}  # at the default step
 _CROSS = predictions.CROSSES[predictions.PAIRS]
 _PAPER, _PRECISION = -0.46, 0.005  # "nu ~ -0.46": half a unit of the last digit
 _SAME = 2 * _PRECISION  # two numbers that are both written -0.46 differ by less
@@ -53,20 +51,18 @@ _SOURCE = "section seq:e_0, eq:power_law, fig.2"
 
 def cases(quality: Quality) -> Cases:
     """E = 0, four sizes, four time steps and the limit; the theory with pair correlations."""
-    cases = at_steps(quality, _SIZES)
-    for size in _SIZES:
-        cases |= limits(size, 0.0, quality)
-    return cases | predictions.by_size(quality)
+    runs = [*at_steps(_SIZES), *map(limits, _SIZES)]
+    return all_of(runs, quality) | predictions.by_size(quality)
 
 
 def exponent(results: Results, size: int, step: float | None = None) -> Estimate:
     """Return nu, from the scatter between independent runs."""
-    return estimate(results, step_name(size, step), nu)
+    return at_step(size, step).estimate(results, nu)
 
 
 def claims(results: Results) -> list[Claim]:
     """Check: two power laws fit, nu is -0.46, the same for all L; and what changes nu."""
-    runs = {size: pooled(results, step_name(size, None)) for size in _SIZES}
+    runs = {size: each.pooled(results) for size, each in _RUNS.items()}
     found = {size: exponent(results, size) for size in _SIZES}
     free = chain_of(runs[_SIZES[0]]).free_velocity_width
     widest = max(runs.values(), key=lambda run: float(run.velocity_width.max()))
@@ -116,9 +112,9 @@ def _differences(found: dict[int, Estimate]) -> list[Estimate]:
 
 def _variations(results: Results, size: int) -> list[Variation]:
     """Return nu at other time steps, and with weights."""
-    at_steps = [Variation(f"dt = {step:g}", exponent(results, size, step)) for step in STEPS]
-    weighted = estimate(results, step_name(size, None), weighted_nu)
-    return [*at_steps, Variation("rods weighed by their error bars", weighted)]
+    stepped = [Variation(f"dt = {step:g}", exponent(results, size, step)) for step in STEPS]
+    weighted = _RUNS[size].estimate(results, weighted_nu)
+    return [*stepped, Variation("rods weighed by their error bars", weighted)]
 
 
 def _fit_claim(runs: dict[int, xr.Dataset]) -> Claim:
@@ -140,17 +136,17 @@ def _own_claims(results: Results) -> list[Claim]:
     largest = STEPS[0]
     coarse, fine = (exponent(results, LARGE, step) for step in (largest, STEPS[-1]))
     middle = 300
-    origins = {size: estimate(results, step_name(size, None), origin) for size in _SIZES}
+    origins = {size: each.estimate(results, origin) for size, each in _RUNS.items()}
     return [
         positive_claim(
             f"without c the exponent is flatter, L = {middle}",
             "nu without c less nu with it:",
-            estimate(results, step_name(middle, None), gained_without_c),
+            _RUNS[middle].estimate(results, gained_without_c),
         ),
         positive_claim(
             f"weighing the rods by their error bars makes it steeper, L = {middle}",
             "nu from ordinary least squares less nu from weighted ones:",
-            estimate(results, step_name(middle, None), lost_with_weights),
+            _RUNS[middle].estimate(results, lost_with_weights),
         ),
         positive_claim(
             "the longer the chain, the further out the power laws begin",
@@ -210,8 +206,8 @@ def draw(results: Results) -> Figure:
     widths, ratio = axes["widths"], axes["ratio"]
     ratio.sharex(widths)
     widths.set(xscale="log", yscale="log", ylabel="velocity width $W_v/W$")
-    for number, size in enumerate(_SIZES):
-        run = pooled(results, step_name(size, None))
+    for number, (size, runs) in enumerate(_RUNS.items()):
+        run = runs.pooled(results)
         unit = chain_of(run).free_velocity_width
         draw_rods(
             widths,
@@ -239,10 +235,10 @@ def draw(results: Results) -> Figure:
 
 def _over_limit(results: Results, size: int) -> xr.Dataset:
     """Return W_v(i) at the default step over that of the limits, whose bias is common to all."""
-    run, limit = (pooled(results, name) for name in (step_name(size, None), limit_name(size)))
+    run, limit = (runs.pooled(results) for runs in (_RUNS[size], limits(size)))
     ratio = run.velocity_width / limit.velocity_width
     squares = sum((each[_ERROR] / each.velocity_width) ** 2 for each in (run, limit))
-    bias = common_bias(members(results, limit_name(size)))
+    bias = common_bias(limits(size).members(results))
     return run.assign({"velocity_width": ratio, _ERROR: ratio * np.sqrt(squares + bias**2)})
 
 

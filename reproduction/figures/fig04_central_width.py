@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -13,9 +13,9 @@ from crazybilliards.comparison.fits import ScalingFit, fit_scaling
 from crazybilliards.comparison.layout import legend_above, panels
 from crazybilliards.comparison.widths import central_width
 from crazybilliards.model import Chain
-from crazybilliards.reproduction.chains import SIZES
-from crazybilliards.reproduction.claims.repetition import estimate, repeated
-from crazybilliards.reproduction.claims.study import Cases, PaperFigure, Quality, Results
+from crazybilliards.reproduction.chains import SIZES, STEPS, at_step, at_steps
+from crazybilliards.reproduction.claims.repetition import Granted, Runs
+from crazybilliards.reproduction.claims.study import Cases, PaperFigure, Quality, Results, all_of
 from crazybilliards.reproduction.claims.verdicts import (
     Claim,
     Estimate,
@@ -24,7 +24,6 @@ from crazybilliards.reproduction.claims.verdicts import (
     positive_claim,
     same_claim,
 )
-from crazybilliards.reproduction.time_steps import STEPS, at_steps, step_name
 from crazybilliards.reproduction.vanishing_step import (
     LABEL,
     central_limit,
@@ -37,47 +36,39 @@ _PAPER, _PRECISION = -0.38, 0.005  # "with exponent -0.38": half a unit of the l
 # widths squared, so that the velocity kick of a step is two thirds of the central width at every
 # size: the error of the step is then the same for all, and leaves the exponent alone.
 _LONG_STEPS = {1000: 6.5e-3, 10_000: 1e-3}
-# By quality and size: runs, time measured, warm-up.
-_LONG = {
-    "quick": {1000: (2, 100.0, 40.0), 10_000: (2, 20.0, 40.0)},
-    "full": {1000: (4, 400.0, 60.0), 10_000: (4, 100.0, 60.0)},
+_GRANTED: dict[int, Granted] = {
+    1000: {
+        "quick": (2, {"duration": 100.0, "warmup": 40.0}),
+        "full": (4, {"duration": 400.0, "warmup": 60.0}),
+    },
+    10_000: {
+        "quick": (2, {"duration": 20.0, "warmup": 40.0}),
+        "full": (4, {"duration": 100.0, "warmup": 60.0}),
+    },
 }
+_LONG = [
+    Runs(
+        f"long L={size}",
+        Chain(size=size, restitution=0.0),
+        granted,
+        {"time_step": _LONG_STEPS[size], "observe": ["widths"]},
+    )
+    for size, granted in _GRANTED.items()
+]
 
 
 def cases(quality: Quality) -> Cases:
     """E = 0, L = 10 to 1000 at four time steps and in the limit; longer chains at own steps."""
-    cases = at_steps(quality)
-    for size in SIZES:
-        cases |= limits(size, 0.0, quality)
-    for size, (number, duration, warmup) in _LONG[quality].items():
-        cases |= repeated(
-            _long_name(size),
-            Chain(size=size, restitution=0.0),
-            number,
-            duration=duration,
-            warmup=warmup,
-            time_step=_LONG_STEPS[size],
-            observe=["widths"],
-        )
-    return cases
+    return all_of([*at_steps(), *map(limits, SIZES), *_LONG], quality)
 
 
-def _long_name(size: int) -> str:
-    return f"long L={size}"
+def _widths(results: Results, every: Iterable[Runs]) -> dict[int, Estimate]:
+    """W_v in the centre by size."""
+    return {runs.chain.size: runs.estimate(results, central_width) for runs in every}
 
 
-def _widths(results: Results, name: Callable[[int], str]) -> dict[int, Estimate]:
-    """W_v in the centre of all sizes that there are runs of under this name."""
-    sizes = sorted({run.sizes["particle"] for run in results.values()})
-    return {
-        size: estimate(results, name(size), central_width)
-        for size in sizes
-        if f"{name(size)}/0" in results
-    }
-
-
-def _at_step(step: float | None) -> Callable[[int], str]:
-    return lambda size: step_name(size, step)
+def _at_step(step: float | None) -> list[Runs]:
+    return [at_step(size, step) for size in SIZES]
 
 
 def _fit(widths: dict[int, Estimate], least: int = 1, most: int = 10**9) -> ScalingFit:
@@ -89,7 +80,7 @@ def _fit(widths: dict[int, Estimate], least: int = 1, most: int = 10**9) -> Scal
 def claims(results: Results) -> list[Claim]:
     """Check: the exponent is -0.38, for all sizes and time steps."""
     default, coarse = (_widths(results, _at_step(step)) for step in (None, STEPS[0]))
-    long = _widths(results, _long_name)
+    long = _widths(results, _LONG)
     fits = {
         "L = 10 to 1000": _fit(default),
         f"L = 10 to 1000 at dt = {STEPS[0]:g}": _fit(coarse),
@@ -174,7 +165,7 @@ def draw(results: Results) -> Figure:
     reference = _fit(_widths(results, _at_step(None)))
     series = {"default step": _widths(results, _at_step(None))}
     series |= {f"$dt = {step:g}$": _widths(results, _at_step(step)) for step in STEPS}
-    series["kick 2/3 of $W_v$"] = _widths(results, _long_name)
+    series["kick 2/3 of $W_v$"] = _widths(results, _LONG)
     series[LABEL] = _limits(results)
     for number, (label, widths) in enumerate(series.items()):
         sizes = np.array(list(widths))

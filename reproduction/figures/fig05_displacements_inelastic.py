@@ -12,20 +12,16 @@ from crazybilliards.comparison.drawing import along_the_chain, draw_rods
 from crazybilliards.comparison.layout import panels
 from crazybilliards.model import chain_of
 from crazybilliards.model.chain import middle_tenth
-from crazybilliards.reproduction.chains import LARGE, dissipative, dissipative_name
-from crazybilliards.reproduction.claims.repetition import estimate, pooled
-from crazybilliards.reproduction.claims.study import Cases, PaperFigure, Quality, Results
+from crazybilliards.reproduction.chains import LARGE, dissipative
+from crazybilliards.reproduction.claims.study import Cases, PaperFigure, Quality, Results, all_of
 from crazybilliards.reproduction.claims.verdicts import Claim, positive_claim
 
-_SIZES = (30, 100, 300, LARGE)
+_RUNS = {size: dissipative(size, 0.0) for size in (30, 100, 300, LARGE)}
 
 
 def cases(quality: Quality) -> Cases:
     """E = 0, four sizes."""
-    cases: Cases = {}
-    for size in _SIZES:
-        cases |= dissipative(size, 0.0, quality)
-    return cases
+    return all_of(_RUNS.values(), quality)
 
 
 def swelling(run: xr.Dataset) -> float:
@@ -42,12 +38,12 @@ def _confined(run: xr.Dataset) -> float:
 
 def claims(results: Results) -> list[Claim]:
     """Check: displacements decrease with the size."""
-    found = {size: estimate(results, dissipative_name(size, 0.0), swelling) for size in _SIZES}
-    spread = {size: estimate(results, dissipative_name(size, 0.0), _confined) for size in _SIZES}
+    found = {size: runs.estimate(results, swelling) for size, runs in _RUNS.items()}
+    spread = {size: runs.estimate(results, _confined) for size, runs in _RUNS.items()}
     source, ours = "section seq:e_0, fig.3_2", "the sizes and the time step"
     return [
         claim
-        for small, large in itertools.pairwise(_SIZES)
+        for small, large in itertools.pairwise(_RUNS)
         for claim in (
             positive_claim(
                 f"the mean displacement decreases from L = {small} to L = {large}",
@@ -71,8 +67,8 @@ def claims(results: Results) -> list[Claim]:
 def draw(results: Results) -> Figure:
     """Draw <dx> and W_x against i_n."""
     figure, axes = panels(1, 2)
-    for number, size in enumerate(_SIZES):
-        run = pooled(results, dissipative_name(size, 0.0))
+    for number, (size, runs) in enumerate(_RUNS.items()):
+        run = runs.pooled(results)
         s = chain_of(run).thermal_length
         for ax, name in zip(axes, ("mean_displacement", "displacement_width"), strict=True):
             draw_rods(ax, run, name, number=number, unit=s, label=f"$L = {size}$")

@@ -14,8 +14,8 @@ from crazybilliards.comparison.fits import fit_avalanches
 from crazybilliards.comparison.layout import at_the_left, entitle, panels
 from crazybilliards.model import Chain
 from crazybilliards.reproduction.chains import LARGE
-from crazybilliards.reproduction.claims.repetition import estimate, pooled, repeated
-from crazybilliards.reproduction.claims.study import Cases, PaperFigure, Quality, Results
+from crazybilliards.reproduction.claims.repetition import Granted, Runs
+from crazybilliards.reproduction.claims.study import Cases, PaperFigure, Quality, Results, all_of
 from crazybilliards.reproduction.claims.verdicts import (
     Claim,
     Estimate,
@@ -27,10 +27,23 @@ from crazybilliards.reproduction.claims.verdicts import (
 from crazybilliards.reproduction.distributions import draw_sizes
 
 _LONGEST, _BETWEEN, _MIDDLE, _SHORTEST = _STEPS = (1e-1, 2.3e-2, 1e-2, 1e-3)
-_DURATION = {"quick": (2, 64.0), "full": (4, 200.0)}
+_GRANTED: Granted = {"quick": (2, {"duration": 64.0}), "full": (4, {"duration": 200.0})}
 # The step at which pushes have the paper's exponent, found by trial. The runs are long enough to
 # show that, in quick quality, too.
-_LONGER = {_BETWEEN: (8, 1500.0)}
+_LONGER: Granted = {"quick": (8, {"duration": 1500.0}), "full": (8, {"duration": 1500.0})}
+_RUNS = {
+    step: Runs(
+        f"dt={step:g}",
+        Chain(size=LARGE, restitution=0.0),
+        _LONGER if step == _BETWEEN else _GRANTED,
+        {
+            "warmup": 60.0,
+            "time_step": step,
+            "observe": ["avalanches", "triggered-collisions"],
+        },
+    )
+    for step in _STEPS
+}
 _ORIGINS = {"centre": slice(451, 550), "quarter": slice(201, 300), "border": slice(51, 150)}
 _PAPER, _PRECISION = -2.2, 0.05  # "around -2.2": half a unit of the last digit
 # By count: its name, its sizes, and those fitted: all of the paper's count that are not rare;
@@ -46,19 +59,7 @@ _OURS = "the time step, the sizes fitted, and what counts as a collision among r
 
 def cases(quality: Quality) -> Cases:
     """L = 1000, e = 0, at four time steps, in both counts."""
-    cases: Cases = {}
-    for step in _STEPS:
-        number, duration = _LONGER.get(step, _DURATION[quality])
-        cases |= repeated(
-            f"dt={step:g}",
-            Chain(size=LARGE, restitution=0.0),
-            number,
-            duration=duration,
-            warmup=60.0,
-            time_step=step,
-            observe=["avalanches", "triggered-collisions"],
-        )
-    return cases
+    return all_of(_RUNS.values(), quality)
 
 
 def _counts(run: xr.Dataset, origin: str, count: str) -> NDArray[np.float64]:
@@ -77,7 +78,7 @@ def _exponent(
         counts = _counts(run, origin, count)
         return -fit_avalanches(counts, smallest=smallest, largest=largest).exponent
 
-    return estimate(results, f"dt={step:g}", fitted)
+    return _RUNS[step].estimate(results, fitted)
 
 
 def _ratio(run: xr.Dataset, smallest: int, largest: int) -> float:
@@ -165,13 +166,13 @@ def _growth(results: Results, count: str) -> Estimate:
         duration = json.loads(run.attrs["provenance"])["duration"]
         return float(np.log(_counts(run, "centre", count).sum() / duration))
 
-    long, short = (estimate(results, f"dt={step:g}", logarithm) for step in (_MIDDLE, _SHORTEST))
+    long, short = (_RUNS[step].estimate(results, logarithm) for step in (_MIDDLE, _SHORTEST))
     growth, ratio = short.minus(long), np.log(_MIDDLE / _SHORTEST)
     return Estimate(growth.value / ratio, growth.error / ratio)
 
 
 def _mean_ratio(results: Results, smallest: int, largest: int) -> Estimate:
-    return estimate(results, f"dt={_MIDDLE:g}", lambda run: _ratio(run, smallest, largest))
+    return _RUNS[_MIDDLE].estimate(results, lambda run: _ratio(run, smallest, largest))
 
 
 def _power_law_claim(
@@ -210,10 +211,10 @@ def draw(results: Results) -> Figure:
     figure, axes = panels(1, 3, height=2.6, sharey=True)
     for ax, (count, (name, *_)) in zip(axes, _COUNTS.items(), strict=False):
         for number, step in enumerate(_STEPS):
-            run = pooled(results, f"dt={step:g}")
+            run = _RUNS[step].pooled(results)
             _draw(ax, run, "centre", count, number=number, label=f"$dt = {step:g}$")
         entitle(ax, f"{name},\norigins 451 to 550")
-    run = pooled(results, f"dt={_MIDDLE:g}")
+    run = _RUNS[_MIDDLE].pooled(results)
     for number, origin in enumerate(_ORIGINS):
         at = _ORIGINS[origin]
         label = f"origins {at.start} to {at.stop}"

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
@@ -13,18 +12,10 @@ from matplotlib.patheffects import withStroke
 from crazybilliards.comparison.drawing import COLOURS, SYMBOLS, along_the_chain, draw_rods
 from crazybilliards.comparison.fits import ExponentialFit, fit_exponential
 from crazybilliards.comparison.layout import legend_above, mosaic
-from crazybilliards.comparison.widths import border_width, central_width
+from crazybilliards.comparison.widths import central_width
 from crazybilliards.model import chain_of
-from crazybilliards.reproduction.chains import (
-    LARGE,
-    RESTITUTIONS,
-    dissipative,
-    dissipative_name,
-    elastic,
-    elastic_name,
-)
-from crazybilliards.reproduction.claims.repetition import estimate, pooled
-from crazybilliards.reproduction.claims.study import Cases, PaperFigure, Quality, Results
+from crazybilliards.reproduction.chains import LARGE, RESTITUTIONS, dissipative, elastic
+from crazybilliards.reproduction.claims.study import Cases, PaperFigure, Quality, Results, all_of
 from crazybilliards.reproduction.claims.verdicts import (
     Claim,
     Estimate,
@@ -32,6 +23,7 @@ from crazybilliards.reproduction.claims.verdicts import (
     positive_claim,
     same_claim,
 )
+from crazybilliards.reproduction.figures.fig12_widths_damping import bulge
 from crazybilliards.reproduction.power_laws import fits_in_plot
 from crazybilliards.reproduction.predictions import (
     CROSSES,
@@ -45,12 +37,12 @@ from crazybilliards.reproduction.predictions import (
 from crazybilliards.reproduction.vanishing_step import (
     LABEL,
     central_limit,
-    limit_name,
     limits,
     relative_shift,
 )
 
 IN_LIMIT = {"quick": (0.0, 0.95), "full": RESTITUTIONS}
+_RUNS = {e: dissipative(LARGE, e) for e in RESTITUTIONS}
 _ELASTIC_SIZE = 100
 _PRECISION = 0.005  # of exponents: the paper gives them with two decimals
 _SOURCE = "section seq:e_larger, fig.4"
@@ -60,26 +52,25 @@ _OURS = "the restitutions (those of fig.5, and 0.5) and the time step"
 
 def cases(quality: Quality) -> Cases:
     """L = 1000 at six restitutions, L = 100 at e = 1; limits; theories."""
-    cases: Cases = {}
-    for restitution in RESTITUTIONS:
-        cases |= dissipative(LARGE, restitution, quality)
-    cases |= by_restitution(quality)
-    for restitution in IN_LIMIT[quality]:
-        cases |= limits(LARGE, restitution, quality)
-    return cases | elastic(_ELASTIC_SIZE, quality)
+    in_limit = [limits(LARGE, e) for e in IN_LIMIT[quality]]
+    return (
+        all_of(_RUNS.values(), quality)
+        | by_restitution(quality)
+        | all_of([*in_limit, elastic(_ELASTIC_SIZE)], quality)
+    )
 
 
 def _central_widths(results: Results) -> dict[float, Estimate]:
-    return {e: estimate(results, dissipative_name(LARGE, e), central_width) for e in RESTITUTIONS}
+    return {e: runs.estimate(results, central_width) for e, runs in _RUNS.items()}
 
 
 def _central_limits(results: Results) -> dict[float, Estimate]:
-    there = [e for e in RESTITUTIONS if f"{limit_name(LARGE, e)}/0" in results]
+    there = [e for e in RESTITUTIONS if limits(LARGE, e).members(results)]
     return {e: central_limit(results, LARGE, e) for e in there}
 
 
 def _exponents(results: Results) -> dict[float, Estimate]:
-    return {e: estimate(results, dissipative_name(LARGE, e), minus_nu) for e in RESTITUTIONS}
+    return {e: runs.estimate(results, minus_nu) for e, runs in _RUNS.items()}
 
 
 def _fit(found: dict[float, Estimate]) -> ExponentialFit:
@@ -87,15 +78,10 @@ def _fit(found: dict[float, Estimate]) -> ExponentialFit:
     return fit_exponential(list(found), values, errors)
 
 
-def _unevenness(run: xr.Dataset) -> float:
-    return float(np.log(border_width(run) / central_width(run)))
-
-
 def claims(results: Results) -> list[Claim]:
     """Check: flatter for larger e, two power laws, and the exponent's exponential."""
     low, high = RESTITUTIONS[0], RESTITUTIONS[-1]
-    uneven = {e: estimate(results, dissipative_name(LARGE, e), _unevenness) for e in (low, high)}
-    runs = [pooled(results, dissipative_name(LARGE, e)) for e in RESTITUTIONS]
+    uneven = {e: _RUNS[e].estimate(results, bulge) for e in (low, high)}
     return [
         positive_claim(
             "the larger e, the less the width varies along the chain",
@@ -108,7 +94,7 @@ def claims(results: Results) -> list[Claim]:
         eye_claim(
             "W_v(i) is described by a sum of two power laws at every e < 1",
             "six restitutions and their fits, both axes logarithmic",
-            *fits_in_plot(runs),
+            *fits_in_plot(runs.pooled(results) for runs in _RUNS.values()),
             source=f"{_SOURCE}, eq:power_law",
             ours=_OURS,
             reason="the two power laws leave systematic residuals",
@@ -178,10 +164,8 @@ def draw(results: Results) -> Figure:
     )
     left = axes["widths"]
     left.set(ylabel="velocity width $W_v/W$", yscale="log")
-    names = {e: dissipative_name(LARGE, e) for e in RESTITUTIONS}
-    names[1.0] = elastic_name(_ELASTIC_SIZE)
-    for number, (e, name) in enumerate(names.items()):
-        run = pooled(results, name)
+    for number, (e, runs) in enumerate((_RUNS | {1.0: elastic(_ELASTIC_SIZE)}).items()):
+        run = runs.pooled(results)
         unit = chain_of(run).free_velocity_width
         label = f"$e = {e:g}$" + (f", $L = {_ELASTIC_SIZE}$" if e == 1 else "")
         draw_rods(left, run, "velocity_width", number=number, unit=unit, label=label)
@@ -212,7 +196,7 @@ def _draw_theories(ax: Axes, results: Results, e: float, unit: float, colour: st
 
 
 def _draw_centre(ax: Axes, results: Results) -> None:
-    unit = chain_of(results[f"{dissipative_name(LARGE, 0.0)}/0"]).free_velocity_width
+    unit = _RUNS[0.0].chain.free_velocity_width
     full: dict[str, Any] = {
         "fmt": SYMBOLS[2],
         "color": COLOURS[0],

@@ -11,15 +11,9 @@ from crazybilliards.comparison.drawing import along_the_chain, draw_rods
 from crazybilliards.comparison.layout import entitle, panels
 from crazybilliards.comparison.widths import central_width
 from crazybilliards.model import Chain, chain_of
-from crazybilliards.reproduction.chains import LARGE, elastic, elastic_name
-from crazybilliards.reproduction.claims.repetition import (
-    estimate,
-    estimates,
-    members,
-    pooled,
-    repeated,
-)
-from crazybilliards.reproduction.claims.study import Cases, PaperFigure, Quality, Results
+from crazybilliards.reproduction.chains import LARGE, elastic
+from crazybilliards.reproduction.claims.repetition import Granted, Runs
+from crazybilliards.reproduction.claims.study import Cases, PaperFigure, Quality, Results, all_of
 from crazybilliards.reproduction.claims.verdicts import (
     EYE,
     Claim,
@@ -37,42 +31,38 @@ from crazybilliards.reproduction.distributions import (
 )
 
 _SIZE = 100
+_RUNS = elastic(_SIZE)
 _PARTICLES = (1, 50)
-_LONG = {"quick": (2, 200.0), "full": (4, 2000.0)}
+_LONG: Granted = {"quick": (2, {"duration": 200.0}), "full": (4, {"duration": 2000.0})}
 _SHOWN = 4.0  # free widths to either side in the plot of a distribution
 _SOURCE = "section seq:e_larger, fig.4.2"
 _STEPS = (1e-2, 1e-3)  # of Contact Dynamics
-_EXACT = "long chain, event-driven"
+_EXACT = Runs("long chain, event-driven", Chain(size=LARGE), _LONG, {"observe": ["widths"]})
+_CONTACT = {
+    step: Runs(
+        f"long chain, Contact Dynamics, dt={step:g}",
+        _EXACT.chain,
+        _LONG,
+        {"method": "contact-dynamics", "time_step": step, **_EXACT.settings},
+    )
+    for step in _STEPS
+}
 
 
 def cases(quality: Quality) -> Cases:
     """L = 100; and L = 1000, with the exact operator and with Contact Dynamics."""
-    number, duration = _LONG[quality]
-    chain = Chain(size=LARGE)
-    common = {"duration": duration, "observe": ["widths"]}
-    cases = elastic(_SIZE, quality) | repeated(_EXACT, chain, number, **common)
-    for step in _STEPS:
-        cases |= repeated(
-            _contact(step), chain, number, method="contact-dynamics", time_step=step, **common
-        )
-    return cases
-
-
-def _contact(step: float) -> str:
-    return f"long chain, Contact Dynamics, dt={step:g}"
+    return all_of([_RUNS, _EXACT, *_CONTACT.values()], quality)
 
 
 def claims(results: Results) -> list[Claim]:
     """Check: identical to the free Gaussian; Contact Dynamics at L = 1000 is not."""
-    run = pooled(results, elastic_name(_SIZE))
+    run = _RUNS.pooled(results)
     unit = chain_of(run).free_velocity_width
     shares = (run.velocity_width / unit - 1, run.velocity_width_error / unit)
-    kurtosis = estimate(
-        results,
-        elastic_name(_SIZE),
-        lambda run: mean_shape(run, range(1, _SIZE + 1), "velocity_kurtosis"),
+    kurtosis = _RUNS.estimate(
+        results, lambda run: mean_shape(run, range(1, _SIZE + 1), "velocity_kurtosis")
     )
-    wrong = [estimate(results, _contact(step), central_width).value / unit for step in _STEPS]
+    wrong = _CONTACT[_STEPS[-1]].estimate(results, central_width)
     return [
         same_claim(
             "W_v of every rod is that of a free rod",
@@ -85,7 +75,7 @@ def claims(results: Results) -> list[Claim]:
         eye_claim(
             "the distributions of rods 1 and 50 are a free rod's Gaussian",
             f"p(v) and the free rod's, both axes linear, v to {_SHOWN:g} W",
-            Estimate(_off(run), estimate(results, elastic_name(_SIZE), _off).error),
+            Estimate(_off(run), _RUNS.estimate(results, _off).error),
             abs(kurtosis.value) / kurtosis.error,
             source=_SOURCE,
             theory="exact",
@@ -94,14 +84,14 @@ def claims(results: Results) -> list[Claim]:
         same_claim(
             f"W_v all along the chain is that of a free rod at L = {LARGE}, too",
             "W_v/W - 1 of a tenth of the chain",
-            estimates(results, _EXACT, _tenths),
+            _EXACT.estimates(results, _tenths),
             EYE,
             theory="exact: 1",
         ),
         small_claim(
             f"Contact Dynamics is right at e = 1, L = {LARGE}, dt = {_STEPS[-1]:g}",
             "1 - W_v/W in the centre",
-            Estimate(1 - wrong[-1], estimate(results, _contact(_STEPS[-1]), central_width).error),
+            Estimate(1 - wrong.value / unit, wrong.error),
             0.02,
             theory="exact: 0",
             reason="a step sees many collisions of each rod there, and Contact Dynamics "
@@ -127,8 +117,7 @@ def _off(run: xr.Dataset) -> float:
 def draw(results: Results) -> Figure:
     """Draw p(v) of two rods, and W_v of long chains by three methods."""
     figure, (left, right) = panels(1, 2, height=2.7)
-    runs = members(results, elastic_name(_SIZE))
-    draw_distributions(left, runs, _PARTICLES, chain_of(runs[0]).free_velocity_width)
+    draw_distributions(left, _RUNS.members(results), _PARTICLES)
     entitle(left, f"$L = {_SIZE}$")
     left.legend(loc="lower center")
     _draw_long_chains(right, results)
@@ -136,9 +125,10 @@ def draw(results: Results) -> Figure:
 
 
 def _draw_long_chains(ax: Axes, results: Results) -> None:
-    names = {_EXACT: "event-driven", **{_contact(s): f"Contact Dyn., $dt = {s:g}$" for s in _STEPS}}
-    for number, (name, label) in enumerate(names.items()):
-        run = pooled(results, name)
+    shown = {"event-driven": _EXACT}
+    shown |= {f"Contact Dyn., $dt = {step:g}$": runs for step, runs in _CONTACT.items()}
+    for number, (label, runs) in enumerate(shown.items()):
+        run = runs.pooled(results)
         unit = chain_of(run).free_velocity_width
         draw_rods(ax, run, "velocity_width", number=number, unit=unit, label=label)
     ax.axhline(1, color="black", linestyle=":", label="exact")

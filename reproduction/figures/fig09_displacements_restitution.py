@@ -13,9 +13,8 @@ from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_rod
 from crazybilliards.comparison.layout import legend_above, panels
 from crazybilliards.model import chain_of
 from crazybilliards.model.chain import middle_tenth
-from crazybilliards.reproduction.chains import LARGE, dissipative, dissipative_name
-from crazybilliards.reproduction.claims.repetition import estimate, pooled
-from crazybilliards.reproduction.claims.study import Cases, PaperFigure, Quality, Results
+from crazybilliards.reproduction.chains import LARGE, dissipative
+from crazybilliards.reproduction.claims.study import Cases, PaperFigure, Quality, Results, all_of
 from crazybilliards.reproduction.claims.verdicts import About, Claim, Estimate, positive_claim
 from crazybilliards.reproduction.figures.fig05_displacements_inelastic import swelling
 from crazybilliards.reproduction.predictions import (
@@ -27,20 +26,17 @@ from crazybilliards.reproduction.predictions import (
 
 _FRAME = 0.7
 _LABEL = r"displacement $\langle\Delta x\rangle/s$"
-_RESTITUTIONS = (0.0, 0.75, 0.85, 0.92, 0.95)
+_RUNS = {e: dissipative(LARGE, e) for e in (0.0, 0.75, 0.85, 0.92, 0.95)}
 
 
 def cases(quality: Quality) -> Cases:
     """L = 1000 at five restitutions, and the kinetic equation without and with pairs."""
-    cases = by_restitution(quality)
-    for restitution in _RESTITUTIONS:
-        cases |= dissipative(LARGE, restitution, quality)
-    return cases
+    return by_restitution(quality) | all_of(_RUNS.values(), quality)
 
 
 def claims(results: Results) -> list[Claim]:
     """Check: displacements grow with e, and the border has the larger energy at large e."""
-    found = {e: estimate(results, dissipative_name(LARGE, e), swelling) for e in _RESTITUTIONS}
+    found = {e: runs.estimate(results, swelling) for e, runs in _RUNS.items()}
     growing = [
         positive_claim(
             f"the mean displacement grows from e = {low:g} to {high:g}",
@@ -49,15 +45,15 @@ def claims(results: Results) -> list[Claim]:
             source="section seq:e_larger, fig.5",
             theory=listed(predicted(results), swelling, low, high),
         )
-        for low, high in itertools.pairwise(_RESTITUTIONS)
+        for low, high in itertools.pairwise(_RUNS)
     ]
     return growing + _energy_claims(results)
 
 
 def _energy_claims(results: Results) -> list[Claim]:
-    e = _RESTITUTIONS[-1]
+    e = max(_RUNS)
     potential, kinetic = (
-        estimate(results, dissipative_name(LARGE, e), functools.partial(_excess, name=name))
+        _RUNS[e].estimate(results, functools.partial(_excess, name=name))
         for name in ("potential", "kinetic")
     )
     what = f"border's less centre's, in units of m W^2/2: potential {potential}, kinetic {kinetic}"
@@ -91,8 +87,8 @@ def draw(results: Results) -> Figure:
     """Draw <dx> against i_n, and of the rods at the left border against i; theory as lines."""
     figure, (whole, border) = panels(1, 2, height=2.5)
     border.set(xscale="log", xlabel="particle $i$", ylabel=_LABEL)
-    for number, e in enumerate(_RESTITUTIONS):
-        run = pooled(results, dissipative_name(LARGE, e))
+    for number, (e, runs) in enumerate(_RUNS.items()):
+        run = runs.pooled(results)
         s, colour = chain_of(run).thermal_length, COLOURS[number]
         half = run.isel(particle=slice(0, LARGE // 2))
         look: Any = {"number": number, "unit": s, "label": f"$e = {e:g}$"}

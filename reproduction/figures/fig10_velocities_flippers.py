@@ -10,30 +10,23 @@ from crazybilliards.comparison.fits import tail_length
 from crazybilliards.comparison.layout import legend_above, panels
 from crazybilliards.comparison.widths import border_width, central_width
 from crazybilliards.model import chain_of
-from crazybilliards.reproduction.chains import flippers, flippers_name
-from crazybilliards.reproduction.claims.repetition import estimate, members, pooled
-from crazybilliards.reproduction.claims.study import Cases, PaperFigure, Quality, Results
+from crazybilliards.reproduction.chains import flippers
+from crazybilliards.reproduction.claims.study import PaperFigure, Results
 from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, positive_claim
 from crazybilliards.reproduction.distributions import draw_distributions, mean_shape
 
 SIZE = 100
 PARTICLES = (1, 10, 50)
-_DAMPING = 4.0
+_RUNS = flippers(SIZE, 4.0)
 _TAIL = 3.0  # widths of the rod, where the tail begins
-
-
-def cases(quality: Quality) -> Cases:
-    """L = 100, e = 1.05, gamma = 4."""
-    return flippers(SIZE, _DAMPING, quality)
 
 
 def claims(results: Results) -> list[Claim]:
     """Check: the border is the widest and has an exponential tail."""
-    name = flippers_name(SIZE, _DAMPING)
-    border = estimate(results, name, border_width)
-    kurtosis = estimate(results, name, lambda run: mean_shape(run, (1, SIZE), "velocity_kurtosis"))
-    ratio = estimate(results, name, _tail_ratio)
-    narrowest = estimate(results, name, _narrowest)
+    border = _RUNS.estimate(results, border_width)
+    kurtosis = _RUNS.estimate(results, lambda run: mean_shape(run, (1, SIZE), "velocity_kurtosis"))
+    ratio = _RUNS.estimate(results, _tail_ratio)
+    narrowest = _RUNS.estimate(results, _narrowest)
     source = "section Anti-Dissipation, fig:mom_hist_antidiss_gamma4"
     return [
         positive_claim(
@@ -45,7 +38,7 @@ def claims(results: Results) -> list[Claim]:
         positive_claim(
             "large velocities are likelier at the border than in the centre",
             "W_v(border) - W_v(centre) =",
-            border.minus(estimate(results, name, central_width)),
+            border.minus(_RUNS.estimate(results, central_width)),
             source=source,
         ),
         positive_claim(
@@ -79,10 +72,10 @@ def _tail_ratio(run: xr.Dataset) -> float:
 
 def draw(results: Results) -> Figure:
     """Draw p(v) of three rods, with an exponential tail at the border."""
-    run = pooled(results, flippers_name(SIZE, _DAMPING))
+    run = _RUNS.pooled(results)
     unit = chain_of(run).free_velocity_width
     figure, [ax] = panels(1, 1, height=2.9, wanted=1)
-    draw_distributions(ax, members(results, flippers_name(SIZE, _DAMPING)), PARTICLES, unit)
+    draw_distributions(ax, _RUNS.members(results), PARTICLES)
     # The leftmost rod is thrown to the left.
     v, p = (each.values[run.velocity_bin.values < 0] for each in (run.velocity_bin, _density(run)))
     begin = _TAIL * border_width(run)
@@ -102,7 +95,7 @@ FIGURE = PaperFigure(
     caption="L = 100, e = 1.05, gamma = 4. Symbols: simulation. Lines: Gaussians of the same "
     "width. Dashed: an exponential of the border's mean excess over three widths. Dotted: a free "
     "rod. Error bars: standard errors from independent runs.",
-    cases=cases,
+    cases=_RUNS.cases,
     draw=draw,
     claims=claims,
 )

@@ -10,20 +10,11 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from crazybilliards.comparison.distances import distances_in_plot
-from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_rods
 from crazybilliards.comparison.fits import PowerLawFit, fit_border_power_law
-from crazybilliards.comparison.layout import legend_above, panels
 from crazybilliards.comparison.widths import border_width, central_width
-from crazybilliards.model import chain_of
 from crazybilliards.model.chain import middle_tenth
-from crazybilliards.reproduction.chains import (
-    flippers,
-    flippers_name,
-    kinetic_equation,
-    kinetic_name,
-)
-from crazybilliards.reproduction.claims.repetition import estimate, pooled
-from crazybilliards.reproduction.claims.study import Cases, PaperFigure, Quality, Results
+from crazybilliards.reproduction.chains import flippers, kinetic_equation
+from crazybilliards.reproduction.claims.study import Cases, PaperFigure, Quality, Results, all_of
 from crazybilliards.reproduction.claims.verdicts import (
     EYE,
     Claim,
@@ -31,20 +22,20 @@ from crazybilliards.reproduction.claims.verdicts import (
     Variation,
     positive_claim,
 )
+from crazybilliards.reproduction.predictions import draw_flippers
 
 _SIZE = 100
 _RESTITUTION = 1.05
 _SOURCE = "section Anti-Dissipation, fig:mom_var_antidiss_diff_gamma_sq"
 _DAMPINGS = (4.0, 5.0, 6.0, 8.0, 10.0)
+_RUNS = {damping: flippers(_SIZE, damping) for damping in _DAMPINGS}
+_THEORIES = {damping: kinetic_equation(_SIZE, _RESTITUTION, damping) for damping in _DAMPINGS}
 
 
 def cases(quality: Quality) -> Cases:
     """L = 100, e = 1.05, five dampings, each with the kinetic equation."""
-    cases: Cases = {}
-    for damping in _DAMPINGS:
-        cases |= flippers(_SIZE, damping, quality)
-        cases |= kinetic_equation(_SIZE, _RESTITUTION, damping, quality)
-    return cases
+    beside = [each for damping in _DAMPINGS for each in (_RUNS[damping], _THEORIES[damping])]
+    return all_of(beside, quality)
 
 
 def bulge(run: xr.Dataset) -> float:
@@ -54,8 +45,8 @@ def bulge(run: xr.Dataset) -> float:
 
 def claims(results: Results) -> list[Claim]:
     """Check: convex at gamma = 4, concave at gamma = 10; where rods collide; no power law."""
-    found = {g: estimate(results, flippers_name(_SIZE, g), bulge) for g in _DAMPINGS}
-    theory = {g: bulge(results[kinetic_name(_SIZE, _RESTITUTION, g)]) for g in _DAMPINGS}
+    found = {g: runs.estimate(results, bulge) for g, runs in _RUNS.items()}
+    theory = {g: bulge(results[each.name]) for g, each in _THEORIES.items()}
     low, high = _DAMPINGS[0], _DAMPINGS[-1]
     values = np.array([each.value for each in found.values()])
     change = _crossing(values), _crossing(np.array(list(theory.values())))
@@ -84,7 +75,7 @@ def _frequency_claim(results: Results, damping: float) -> Claim:
     return positive_claim(
         f"rods collide more often in the bulk than at the border, gamma = {damping:g}",
         "ln of the collision rate of the middle tenth of the contacts over that of the outermost:",
-        estimate(results, flippers_name(_SIZE, damping), _crowding),
+        _RUNS[damping].estimate(results, _crowding),
         source=_SOURCE,
     )
 
@@ -96,7 +87,7 @@ def _crowding(run: xr.Dataset) -> float:
 
 def _power_law_claim(results: Results) -> Claim:
     """Decide whether the best sum of two power laws is visibly off in a plot like the paper's."""
-    run = pooled(results, flippers_name(_SIZE, _DAMPINGS[0]))
+    run = _RUNS[_DAMPINGS[0]].pooled(results)
     linear = logarithmic = Estimate(1.0 - EYE, 0.0)
     words = "no such law fits"
     try:
@@ -131,7 +122,7 @@ def _beyond_the_eye(
     axes: Callable[[NDArray[np.float64]], NDArray[np.float64]],
 ) -> Estimate:
     """Return the largest distance of a symbol from the fit, as a share of the plot, less EYE."""
-    widths = {g: pooled(results, flippers_name(_SIZE, g)).velocity_width.values for g in _DAMPINGS}
+    widths = {g: runs.pooled(results).velocity_width.values for g, runs in _RUNS.items()}
     plotted = axes(np.concatenate([g * width for g, width in widths.items()]))
     shown = float(plotted.min()), float(plotted.max())
     damping, i = _DAMPINGS[0], run.particle.values
@@ -153,32 +144,13 @@ def _crossing(values: np.ndarray) -> float:
 
 def draw(results: Results) -> Figure:
     """Draw gamma W_v(i) for every damping with the kinetic equation."""
-    figure, [ax] = panels(1, 1, height=3.1, wanted=1)
-    for number, damping in enumerate(_DAMPINGS):
-        run = pooled(results, flippers_name(_SIZE, damping))
+    shown = {}
+    for damping, runs in _RUNS.items():
         # gamma W_v over that of a free rod at gamma = 1, A/sqrt(2 m).
-        free = chain_of(run).replace(damping=1.0).free_velocity_width
-        draw_rods(
-            ax,
-            run,
-            "velocity_width",
-            number=number,
-            unit=free / damping,
-            label=rf"$\gamma = {damping:g}$",
-        )
-        theory = results[kinetic_name(_SIZE, _RESTITUTION, damping)]
-        ax.plot(
-            theory.normalized_particle,
-            theory.velocity_width * damping / free,
-            color=COLOURS[number],
-        )
-    along_the_chain(ax)
-    ax.set(
-        ylabel=r"$\gamma W_v/(A/\sqrt{2m})$  [M$^{1/2}$T$^{-1/2}$]",
-    )
-    ax.plot([], [], color="0.4", label="kinetic equation")
-    legend_above(figure, ax)
-    return figure
+        unit = runs.chain.replace(damping=1.0).free_velocity_width / damping
+        shown[rf"$\gamma = {damping:g}$"] = runs, _THEORIES[damping], unit
+    label = r"$\gamma W_v/(A/\sqrt{2m})$  [M$^{1/2}$T$^{-1/2}$]"
+    return draw_flippers(results, shown, label)
 
 
 FIGURE = PaperFigure(

@@ -10,14 +10,13 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from crazybilliards.comparison.layout import at_the_left, entitle, panels
-from crazybilliards.reproduction.chains import flippers, flippers_name
-from crazybilliards.reproduction.claims.repetition import estimate, pooled
-from crazybilliards.reproduction.claims.study import Cases, PaperFigure, Quality, Results
+from crazybilliards.reproduction.chains import flippers
+from crazybilliards.reproduction.claims.study import Cases, PaperFigure, Quality, Results, all_of
 from crazybilliards.reproduction.claims.verdicts import Claim, positive_claim
 from crazybilliards.reproduction.distributions import draw_sizes
 
 _SIZE = 100
-_DAMPINGS = (4.0, 10.0)
+_RUNS = {damping: flippers(_SIZE, damping) for damping in (4.0, 10.0)}
 _ORIGINS = slice(1, 10)
 _SPANNING = 80  # collisions of a wave that began at one of those origins
 _COUNTS = {
@@ -30,10 +29,7 @@ _OURS = "the origins (1 to 10) and what spans the system (80 collisions)"
 
 def cases(quality: Quality) -> Cases:
     """L = 100, e = 1.05, gamma = 4 and 10."""
-    cases: Cases = {}
-    for damping in _DAMPINGS:
-        cases |= flippers(_SIZE, damping, quality)
-    return cases
+    return all_of(_RUNS.values(), quality)
 
 
 def _counts(run: xr.Dataset, count: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -54,8 +50,8 @@ def claims(results: Results) -> list[Claim]:
     claims = []
     for count, (name, _) in _COUNTS.items():
         weak, strong = (
-            estimate(results, flippers_name(_SIZE, g), functools.partial(_spanning, count=count))
-            for g in _DAMPINGS
+            runs.estimate(results, functools.partial(_spanning, count=count))
+            for runs in _RUNS.values()
         )
         what = f"of 10^4 waves with N_c >= 1, those of {_SPANNING} collisions or more:"
         ours = _OURS
@@ -77,9 +73,8 @@ def draw(results: Results) -> Figure:
     """Draw p(N_c) for both dampings in both counts."""
     figure, axes = panels(1, 2, height=2.7, sharey=True)
     for ax, (count, (name, _)) in zip(axes, _COUNTS.items(), strict=True):
-        for number, damping in enumerate(_DAMPINGS):
-            run = pooled(results, flippers_name(_SIZE, damping))
-            sizes, counts = _counts(run, count)
+        for number, (damping, runs) in enumerate(_RUNS.items()):
+            sizes, counts = _counts(runs.pooled(results), count)
             label = rf"$\gamma = {damping:g}$"
             draw_sizes(ax, sizes, counts / counts.sum(), counts, number=number, label=label)
         ax.axvspan(_SPANNING, _SIZE, color="0.9", zorder=0, label="spans the system")

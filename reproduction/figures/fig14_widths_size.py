@@ -4,50 +4,41 @@ from __future__ import annotations
 
 from matplotlib.figure import Figure
 
-from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_rods
-from crazybilliards.comparison.layout import legend_above, panels
 from crazybilliards.comparison.widths import central_width
 from crazybilliards.kinetic.kinetic_equation.weak_damping import weak_damping_critical_size
-from crazybilliards.model import Chain, chain_of
-from crazybilliards.reproduction.chains import (
-    flippers,
-    flippers_name,
-    kinetic_equation,
-    kinetic_name,
-)
-from crazybilliards.reproduction.claims.repetition import (
-    estimate,
-    members,
-    pooled,
-    repeated,
-    share_of_runs,
-)
-from crazybilliards.reproduction.claims.study import Cases, PaperFigure, Quality, Results
+from crazybilliards.model import Chain
+from crazybilliards.reproduction.chains import flippers, kinetic_equation
+from crazybilliards.reproduction.claims.repetition import Runs, share_of_runs
+from crazybilliards.reproduction.claims.study import Cases, PaperFigure, Quality, Results, all_of
 from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, positive_claim
 from crazybilliards.reproduction.figures.fig12_widths_damping import bulge
+from crazybilliards.reproduction.predictions import draw_flippers
 
 _DAMPING, _RESTITUTION = 4.0, 1.05
 _SIZES = (25, 50, 75, 100, 105)
-_UNSTEADY = 150
+_RUNS = {size: flippers(size, _DAMPING) for size in _SIZES}
+_THEORIES = {size: kinetic_equation(size, _RESTITUTION, _DAMPING) for size in _SIZES}
+_UNSTEADY = Runs(
+    "unsteady",
+    Chain(size=150, restitution=_RESTITUTION, damping=_DAMPING),
+    {"quick": (4, {}), "full": (4, {})},
+    {"duration": 1000.0, "warmup": 0.0, "observe": ["energy"]},
+)
 _SOURCE = "section Anti-Dissipation, fig:antidiss_diff_L"
 
 
 def cases(quality: Quality) -> Cases:
     """E = 1.05, gamma = 4, five sizes with the kinetic equation, and one that diverges."""
-    cases: Cases = {}
-    for size in _SIZES:
-        cases |= flippers(size, _DAMPING, quality)
-        cases |= kinetic_equation(size, _RESTITUTION, _DAMPING, quality)
-    chain = Chain(size=_UNSTEADY, restitution=_RESTITUTION, damping=_DAMPING)
-    return cases | repeated("unsteady", chain, 4, duration=1000.0, warmup=0.0, observe=["energy"])
+    beside = [each for size in _SIZES for each in (_RUNS[size], _THEORIES[size])]
+    return all_of([*beside, _UNSTEADY], quality)
 
 
 def claims(results: Results) -> list[Claim]:
     """Check: concave for short chains, convex for long ones, then no steady state."""
-    found = {size: estimate(results, flippers_name(size, _DAMPING), bulge) for size in _SIZES}
-    theory = {size: bulge(results[kinetic_name(size, _RESTITUTION, _DAMPING)]) for size in _SIZES}
+    found = {size: runs.estimate(results, bulge) for size, runs in _RUNS.items()}
+    theory = {size: bulge(results[each.name]) for size, each in _THEORIES.items()}
     critical = weak_damping_critical_size(Chain(restitution=_RESTITUTION, damping=_DAMPING))
-    unsteady = members(results, "unsteady")
+    unsteady = _UNSTEADY.members(results)
     diverged = sum(run.attrs["status"] == "diverged" for run in unsteady)
     short, long = _SIZES[0], _SIZES[-1]
     return [
@@ -68,13 +59,13 @@ def claims(results: Results) -> list[Claim]:
         positive_claim(
             "the longer the chain, the larger W_v",
             f"W_v in the centre at L = {long} less that at L = {short}:",
-            estimate(results, flippers_name(long, _DAMPING), central_width).minus(
-                estimate(results, flippers_name(short, _DAMPING), central_width)
-            ),
+            _RUNS[long]
+            .estimate(results, central_width)
+            .minus(_RUNS[short].estimate(results, central_width)),
             source=_SOURCE,
         ),
         positive_claim(
-            f"without a steady state at L = {_UNSTEADY}",
+            f"without a steady state at L = {_UNSTEADY.chain.size}",
             f"{diverged} of {len(unsteady)} runs, released from rest, diverged; their share, as "
             "far as so few runs show it:",
             share_of_runs(diverged, len(unsteady)),
@@ -87,18 +78,11 @@ def claims(results: Results) -> list[Claim]:
 
 def draw(results: Results) -> Figure:
     """Draw W_v(i) for every size with the kinetic equation."""
-    figure, [ax] = panels(1, 1, height=3.1, wanted=1)
-    for number, size in enumerate(_SIZES):
-        run = pooled(results, flippers_name(size, _DAMPING))
-        unit = chain_of(run).free_velocity_width
-        draw_rods(ax, run, "velocity_width", number=number, unit=unit, label=f"$L = {size}$")
-        theory = results[kinetic_name(size, _RESTITUTION, _DAMPING)]
-        ax.plot(theory.normalized_particle, theory.velocity_width / unit, color=COLOURS[number])
-    along_the_chain(ax)
-    ax.set(ylabel="velocity width $W_v/W$")
-    ax.plot([], [], color="0.4", label="kinetic equation")
-    legend_above(figure, ax)
-    return figure
+    shown = {
+        f"$L = {size}$": (runs, _THEORIES[size], runs.chain.free_velocity_width)
+        for size, runs in _RUNS.items()
+    }
+    return draw_flippers(results, shown, "velocity width $W_v/W$")
 
 
 FIGURE = PaperFigure(

@@ -16,26 +16,27 @@ from crazybilliards.comparison.fits import fit_growth, fit_singularity
 from crazybilliards.comparison.layout import panels
 from crazybilliards.kinetic.kinetic_equation.weak_damping import weak_damping_growth_rate
 from crazybilliards.model import Chain
-from crazybilliards.reproduction.claims.repetition import (
-    estimate,
-    estimates,
-    members,
-    repeated,
-)
-from crazybilliards.reproduction.claims.study import Cases, PaperFigure, Quality, Results
+from crazybilliards.reproduction.claims.repetition import Runs
+from crazybilliards.reproduction.claims.study import Cases, PaperFigure, Quality, Results, all_of
 from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, positive_claim, small_claim
 
-_CHAINS = {
-    spring: Chain(size=100, restitution=1.01, damping=0.4, spring=spring)
-    for spring in ("linear", "quadratic")
-}
 _SOURCE = "section Anti-Dissipation, non_linear_vs_linear"
-_NUMBER = {"quick": 6, "full": 24}
-# The quadratic spring stiffens as it is stretched: the step is short enough for the last moments.
-_SETTINGS = {
-    "linear": {"duration": 300.0, "time_step": 0.02},
-    "quadratic": {"duration": 100.0, "time_step": 0.002},
-}
+
+
+def _from_rest(chain: Chain, duration: float, time_step: float) -> Runs:
+    """Return runs named by their springs."""
+    return Runs(
+        chain.spring,
+        chain,
+        {"quick": (6, {}), "full": (24, {})},
+        {"warmup": 0.0, "observe": ["energy"], "duration": duration, "time_step": time_step},
+    )
+
+
+_LINEAR = _from_rest(Chain(size=100, restitution=1.01, damping=0.4), 300.0, 0.02)
+# This spring stiffens as it is stretched: the step is short enough for the last moments.
+_QUADRATIC = _from_rest(_LINEAR.chain.replace(spring="quadratic"), 100.0, 0.002)
+_RUNS = (_LINEAR, _QUADRATIC)
 _GROWING = 1e3  # energy beyond which noise no longer matters [M R^2/T^2]
 _HALF_WAY = 150.0  # where the rate of linear springs is measured up to, and again from [T]
 _ENERGY = r"kinetic energy $E$ [M R$^2$/T$^2$]"
@@ -45,13 +46,7 @@ _SINGULAR = (1e5, 1e6, 1e7, 1e8)
 
 def cases(quality: Quality) -> Cases:
     """L = 100, e = 1.01, gamma = 0.4, both springs, from rest."""
-    cases: Cases = {}
-    for spring, chain in _CHAINS.items():
-        settings = _SETTINGS[spring]
-        cases |= repeated(
-            spring, chain, _NUMBER[quality], warmup=0.0, observe=["energy"], **settings
-        )
-    return cases
+    return all_of(_RUNS, quality)
 
 
 def _late(run: xr.Dataset, beyond: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -67,14 +62,14 @@ def claims(results: Results) -> list[Claim]:
 
 
 def _growth_claim(results: Results) -> Claim:
-    early, late = (estimate(results, "linear", rate) for rate in (_early_rate, _late_rate))
+    early, late = (_LINEAR.estimate(results, rate) for rate in (_early_rate, _late_rate))
     bend = late.minus(early)
     share = Estimate(bend.value / early.value, bend.error / early.value)
-    expected = weak_damping_growth_rate(_CHAINS["linear"])
+    expected = weak_damping_growth_rate(_LINEAR.chain)
     return small_claim(
         "linear springs: exponential growth",
         f"rate {early} per T from E = {_GROWING:.0e} to t = {_HALF_WAY:g} T, and {late} from there "
-        f"to {_SETTINGS['linear']['duration']:g} T; the second less the first, over the first:",
+        f"to {_LINEAR.settings['duration']:g} T; the second less the first, over the first:",
         share,
         0.1,
         source=_SOURCE,
@@ -86,7 +81,7 @@ def _growth_claim(results: Results) -> Claim:
 def _singularity_claims(results: Results) -> list[Claim]:
     exponents, times = zip(
         *(
-            estimates(results, "quadratic", functools.partial(_singularity, beyond=beyond))
+            _QUADRATIC.estimates(results, functools.partial(_singularity, beyond=beyond))
             for beyond in _SINGULAR
         ),
         strict=True,
@@ -98,12 +93,12 @@ def _singularity_claims(results: Results) -> list[Claim]:
     # Half the spread is the error of not knowing where the power law begins.
     ends = Estimate((min(values) + max(values)) / 2, (max(values) - min(values)) / 2)
     worst = max(each.error for each in exponents)
-    all_of_them = members(results, "quadratic")
-    diverged = sum(run.attrs["status"] == "diverged" for run in all_of_them)
+    runs = _QUADRATIC.members(results)
+    diverged = sum(run.attrs["status"] == "diverged" for run in runs)
     return [
         positive_claim(
             "quadratic springs: divergence in finite time, a power law of t_c - t",
-            f"{diverged} of {len(all_of_them)} runs diverged, t_c = {times[0]} T; exponent of E "
+            f"{diverged} of {len(runs)} runs diverged, t_c = {times[0]} T; exponent of E "
             f"by the least energy fitted: {every}; middle and half the spread, with the error",
             Estimate(ends.value, math.hypot(ends.error, worst)),
             source=f"{_SOURCE}, inset",
@@ -113,9 +108,8 @@ def _singularity_claims(results: Results) -> list[Claim]:
         positive_claim(
             "the later the fit begins, the larger the exponent",
             f"exponent from E = {_SINGULAR[-1]:.0e} on less that from {_SINGULAR[0]:.0e} on:",
-            estimate(
+            _QUADRATIC.estimate(
                 results,
-                "quadratic",
                 lambda run: (
                     _singularity(run, _SINGULAR[-1])[0] - _singularity(run, _SINGULAR[0])[0]
                 ),
@@ -143,20 +137,20 @@ def _late_rate(run: xr.Dataset) -> float:
 def draw(results: Results) -> Figure:
     """Draw E(t) of all runs, and the quadratic ones against t_c - t."""
     figure, (left, right) = panels(1, 2, height=2.6)
-    for number, spring in enumerate(_CHAINS):
-        for k, run in enumerate(members(results, spring)):
+    for number, runs in enumerate(_RUNS):
+        for k, run in enumerate(runs.members(results)):
             left.semilogy(
                 run.time,
                 run.kinetic_energy,
                 color=COLOURS[number],
                 linewidth=0.6,
                 alpha=0.7,
-                label=f"{spring} springs" if k == 0 else None,
+                label=f"{runs.name} springs" if k == 0 else None,
             )
-    rate = weak_damping_growth_rate(_CHAINS["linear"])
+    rate = weak_damping_growth_rate(_LINEAR.chain)
     t = np.array([40.0, _HALF_WAY])
     anchor = np.mean(
-        [np.interp(90, run.time, run.kinetic_energy) for run in members(results, "linear")]
+        [np.interp(90, run.time, run.kinetic_energy) for run in _LINEAR.members(results)]
     )
     left.semilogy(
         t,
@@ -166,7 +160,7 @@ def draw(results: Results) -> Figure:
     )
     left.set(xlabel="time $t$ [T]", ylabel=_ENERGY, xlim=(0, _HALF_WAY), ylim=(1, 1e8))
     left.legend()
-    _draw_singularity(right, members(results, "quadratic"))
+    _draw_singularity(right, _QUADRATIC.members(results))
     return figure
 
 

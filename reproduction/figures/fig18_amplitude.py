@@ -9,9 +9,8 @@ from matplotlib.figure import Figure
 from crazybilliards.comparison.drawing import along_the_chain, draw_rods
 from crazybilliards.comparison.layout import entitle, panels
 from crazybilliards.model import chain_of
-from crazybilliards.reproduction.chains import LARGE, dissipative, dissipative_name
-from crazybilliards.reproduction.claims.repetition import estimates, pooled
-from crazybilliards.reproduction.claims.study import Cases, PaperFigure, Quality, Results
+from crazybilliards.reproduction.chains import LARGE, dissipative
+from crazybilliards.reproduction.claims.study import Cases, PaperFigure, Quality, Results, all_of
 from crazybilliards.reproduction.claims.verdicts import EYE, Claim, Estimate, same_claim
 
 _RESTITUTIONS = (0.0, 0.95)
@@ -27,15 +26,11 @@ _LOGARITHMIC = ("velocity_variance",)  # axes; the others are linear
 
 def cases(quality: Quality) -> Cases:
     """L = 1000, two restitutions, three amplitudes."""
-    cases: Cases = {}
-    for restitution in _RESTITUTIONS:
-        for amplitude in _AMPLITUDES:
-            cases |= dissipative(LARGE, restitution, quality, amplitude)
-    return cases
+    return all_of((dissipative(LARGE, e, a) for e in _RESTITUTIONS for a in _AMPLITUDES), quality)
 
 
 def _scaled(results: Results, restitution: float, amplitude: float) -> xr.Dataset:
-    return _scale(pooled(results, dissipative_name(LARGE, restitution, amplitude)))
+    return _scale(dissipative(LARGE, restitution, amplitude).pooled(results))
 
 
 def _scale(run: xr.Dataset) -> xr.Dataset:
@@ -89,7 +84,7 @@ def _differences(results: Results, restitution: float, name: str) -> list[Estima
         return list(np.log(means) if name in _LOGARITHMIC else means)
 
     reference, *others = (
-        estimates(results, dissipative_name(LARGE, restitution, a), tenths) for a in _AMPLITUDES
+        dissipative(LARGE, restitution, a).estimates(results, tenths) for a in _AMPLITUDES
     )
     plotted = _scaled(results, restitution, _AMPLITUDES[0])[name].values
     span = float(np.ptp(np.log(plotted) if name in _LOGARITHMIC else plotted))

@@ -11,15 +11,18 @@ from matplotlib.figure import Figure
 from crazybilliards.comparison.drawing import along_the_chain, draw_rods
 from crazybilliards.comparison.layout import at_the_left, entitle, legend_above, panels
 from crazybilliards.comparison.widths import central_width
-from crazybilliards.model import Chain, chain_of
-from crazybilliards.reproduction.chains import LARGE, dissipative, dissipative_name
-from crazybilliards.reproduction.claims.repetition import estimate, pooled, repeated
-from crazybilliards.reproduction.claims.study import Cases, PaperFigure, Quality, Results
+from crazybilliards.model import chain_of
+from crazybilliards.reproduction.chains import LARGE, dissipative
+from crazybilliards.reproduction.claims.repetition import Granted, Runs
+from crazybilliards.reproduction.claims.study import Cases, PaperFigure, Quality, Results, all_of
 from crazybilliards.reproduction.claims.verdicts import Claim, positive_claim, small_claim
 
 _RESTITUTIONS = (0.0, 0.75, 0.95)
 _GAPS = (0.05, 0.2, 1.0)
-_NUMBER = {"quick": (2, 120.0, 50.0), "full": (4, 600.0, 100.0)}  # runs, duration, warm-up
+_GRANTED: Granted = {
+    "quick": (2, {"duration": 120.0, "warmup": 50.0}),
+    "full": (4, {"duration": 600.0, "warmup": 100.0}),
+}
 _SOURCE = "appendix, fig:mom_var_gaps"
 _OURS = "the gaps, the restitutions and the time step"
 _FLAT = 0.1  # change of ln W_v^2 that still counts as a plateau
@@ -27,27 +30,15 @@ _FLAT = 0.1  # change of ln W_v^2 that still counts as a plateau
 
 def cases(quality: Quality) -> Cases:
     """L = 1000, three restitutions, four gaps."""
-    number, duration, warmup = _NUMBER[quality]
-    cases: Cases = {}
-    for restitution in _RESTITUTIONS:
-        cases |= dissipative(LARGE, restitution, quality)
-        for gap in _GAPS:
-            chain = Chain(size=LARGE, restitution=restitution, gap=gap)
-            cases |= repeated(
-                _name(restitution, gap),
-                chain,
-                number,
-                duration=duration,
-                warmup=warmup,
-                observe=["widths"],
-            )
-    return cases
+    return all_of((_runs(e, gap) for e in _RESTITUTIONS for gap in (0.0, *_GAPS)), quality)
 
 
-def _name(restitution: float, gap: float) -> str:
+def _runs(restitution: float, gap: float) -> Runs:
+    without = dissipative(LARGE, restitution)
     if gap == 0:
-        return dissipative_name(LARGE, restitution)
-    return f"{dissipative_name(LARGE, restitution)} g={gap:g}"
+        return without
+    chain = without.chain.replace(gap=gap)
+    return Runs(f"{without.name} g={gap:g}", chain, _GRANTED, {"observe": ["widths"]})
 
 
 def _change(run: xr.Dataset) -> float:
@@ -70,7 +61,7 @@ def _border_layer(run: xr.Dataset) -> float:
 
 def _widening(results: Results, restitution: float) -> Claim:
     """Decide whether the plateau widens with every larger gap, by the least of the gains."""
-    layers = [estimate(results, _name(restitution, gap), _border_layer) for gap in _GAPS]
+    layers = [_runs(restitution, gap).estimate(results, _border_layer) for gap in _GAPS]
     gains = [narrow.minus(wide) for narrow, wide in itertools.pairwise(layers)]
     listed = ", ".join(f"{layer} at g = {gap:g}" for gap, layer in zip(_GAPS, layers, strict=True))
     return positive_claim(
@@ -89,13 +80,13 @@ def claims(results: Results) -> list[Claim]:
     claims = []
     for restitution in _RESTITUTIONS:
         what = "ln of W_v^2 half-way to the border over that in the centre:"
-        without = estimate(results, _name(restitution, 0.0), _change)
+        without = _runs(restitution, 0.0).estimate(results, _change)
         for gap in _GAPS:
             claims.append(
                 small_claim(
                     f"plateau in the interior, e = {restitution:g}, g = {gap:g}",
                     what,
-                    estimate(results, _name(restitution, gap), _change),
+                    _runs(restitution, gap).estimate(results, _change),
                     _FLAT,
                     source=_SOURCE,
                     ours=_OURS,
@@ -121,7 +112,7 @@ def draw(results: Results) -> Figure:
     for ax, restitution in zip(axes, _RESTITUTIONS, strict=True):
         ax.set_yscale("log")
         for number, gap in enumerate((0.0, *_GAPS)):
-            run = pooled(results, _name(restitution, gap))
+            run = _runs(restitution, gap).pooled(results)
             run = run.assign(
                 velocity_variance=run.velocity_width**2,
                 velocity_variance_error=2 * run.velocity_width * run.velocity_width_error,

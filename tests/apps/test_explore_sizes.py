@@ -1,6 +1,6 @@
 """The page's panel of central widths against the number of rods."""
 
-import re
+import csv
 from pathlib import Path
 
 import pytest
@@ -13,13 +13,12 @@ from crazybilliards.apps.explore.sizes import Sizes
 from crazybilliards.model import Chain
 from crazybilliards.particles.scales import relaxation_time
 
-TABLE = Path(__file__).parents[2] / "docs" / "central_width.md"
+TABLE = Path(__file__).parents[2] / "docs" / "tables" / "central_width.csv"
 
 
 def test_the_limit_is_that_of_the_table():
-    text = TABLE.read_text(encoding="utf-8").split("## Longer chains")[0]
-    rows = re.findall(r"^\| ([\d ]+) \| ([\d.]+) ± [\d.]+ \| [\d.]+ % \|", text, re.MULTILINE)
-    table = {int(size.replace(" ", "")): float(width) for size, width in rows}
+    _, *rows = csv.reader(TABLE.read_text(encoding="utf-8").splitlines())
+    table = {int(size.replace(" ", "")): float(width.split(" ±")[0]) for size, width, *_ in rows}
     panel = Sizes()
     panel.begin(Chain(size=30, restitution=0.0, amplitude=3.0))
     free = Chain(size=30).free_velocity_width

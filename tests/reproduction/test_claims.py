@@ -10,12 +10,8 @@ from crazybilliards.comparison.widths import border_width, central_width, width_
 from crazybilliards.model import Chain
 from crazybilliards.model.vocabulary import result
 from crazybilliards.particles import simulate, simulate_limit
-from crazybilliards.reproduction.claims.repetition import (
-    error_of_mean,
-    estimate,
-    pooled,
-    share_of_runs,
-)
+from crazybilliards.reproduction.claims.repetition import Runs, error_of_mean, share_of_runs
+from crazybilliards.reproduction.claims.study import all_of
 from crazybilliards.reproduction.claims.verdicts import positive_claim
 from crazybilliards.reproduction.distributions import mean_shape
 
@@ -43,6 +39,23 @@ def test_distances_in_a_plot_are_the_shortest_to_the_line():
 
 # -- independent runs -------------------------------------------------------------------------
 
+RUNS = Runs(
+    "a",
+    Chain(size=4),
+    {"quick": (3, {"duration": 200}), "full": (5, {"duration": 300})},
+    {"every": 2.0},
+)
+
+
+def test_cases_of_runs_differ_in_their_seeds_and_their_qualities_in_what_each_grants():
+    quick, full = (RUNS.cases(quality) for quality in ("quick", "full"))
+    assert list(quick) == ["a/0", "a/1", "a/2"]
+    assert [case.settings["seed"] for case in full.values()] == [0, 1, 2, 3, 4]
+    assert all(case.settings["every"] == 2.0 for case in (quick | full).values())
+    assert {case.settings["duration"] for case in quick.values()} == {200}
+    assert {case.settings["duration"] for case in full.values()} == {300}
+    assert all_of([RUNS], "quick") == quick
+
 
 def test_errors_of_estimates_cover_the_truth_however_few_the_runs():
     """68 % of the estimates from three runs lie within one error, thanks to Student's factor."""
@@ -50,7 +63,7 @@ def test_errors_of_estimates_cover_the_truth_however_few_the_runs():
     hits, trials = 0, 300
     for _ in range(trials):
         results = {f"a/{k}": generator.normal(1, 0.1) for k in range(3)}  # of runs only the number
-        value, error = estimate(results, "a", float)
+        value, error = RUNS.estimate(results, float)
         hits += abs(value - 1) < error
     assert abs(hits / trials - 0.683) < 5 * (0.683 * 0.317 / trials) ** 0.5
 
@@ -70,14 +83,13 @@ def test_all_of_few_runs_are_not_all_runs():
 
 
 def test_pooling_runs_is_averaging_them():
-    chain = Chain(size=4)
     observe = ["widths", "avalanches", "velocities"]
     simulated = {
-        f"a/{seed}": simulate(chain, duration=200, seed=seed, observe=observe, progress=False)
+        f"a/{seed}": simulate(RUNS.chain, duration=200, seed=seed, observe=observe, progress=False)
         for seed in range(3)
     }
     other = {"ab/0": simulated["a/0"]}
-    run = pooled(simulated | other, "a")
+    run = RUNS.pooled(simulated | other)
     square = np.mean([each.velocity_width.values**2 for each in simulated.values()], axis=0)
     np.testing.assert_allclose(run.velocity_width**2, square)
     errors = np.sqrt(sum(each.velocity_width_error.values**2 for each in simulated.values())) / 3

@@ -18,7 +18,6 @@ from crazybilliards.reproduction.figures import FIGURES
 from crazybilliards.reproduction.vanishing_step import (
     central_limit,
     limit_estimate,
-    limit_name,
     limits,
 )
 
@@ -102,16 +101,17 @@ def test_a_case_of_a_figure_is_a_limit_like_any_other_job(quality):
         assert found
         assert len({case.key for case in found.values()}) == len(found)
         assert all(
-            name.startswith(limit_name(case.chain.size, case.chain.restitution))
+            name.startswith(limits(case.chain.size, case.chain.restitution).name)
             for name, case in found.items()
         )
 
 
 def test_full_quality_asks_for_more():
     for restitution in (0.0, 0.95):
-        quick, full = (limits(100, restitution, quality) for quality in ("quick", "full"))
+        runs = limits(100, restitution)
+        quick, full = (runs.cases(quality) for quality in ("quick", "full"))
         assert len(quick) <= len(full)
-        first = f"{limit_name(100, restitution)}/0"
+        first = f"{runs.name}/0"
         assert full[first].settings["accuracy"] < quick[first].settings["accuracy"] / 2
 
 
@@ -122,11 +122,11 @@ def test_the_time_step_that_is_left_does_not_average_out():
     """Five limits: a fifth of the variance, all of the bias."""
     chain = Chain(size=100, restitution=0.0)
     runs = [made_up(chain, "simulate_limit", seed=seed) for seed in range(5)]
-    five = {f"{limit_name(100)}/{seed}": run for seed, run in enumerate(runs)}
+    five = {f"{limits(100).name}/{seed}": run for seed, run in enumerate(runs)}
     value, error = central_limit(five, 100)
     assert value == pytest.approx(100**-0.38, rel=5 * NOISE)
     assert error / value == pytest.approx((NOISE**2 / 5 + BIAS**2) ** 0.5, rel=1e-2)
-    one = {f"{limit_name(100)}/0": runs[0]}
+    one = {f"{limits(100).name}/0": runs[0]}
     alone = float(runs[0].central_velocity_width_error)
     assert central_limit(one, 100).error == pytest.approx(alone, rel=1e-2)
 
@@ -144,14 +144,14 @@ def test_an_exponent_is_uncertain_by_scatter_and_by_the_step_that_is_left():
     """
     chain = Chain(size=100, restitution=0.0)
     first = made_up(chain, "simulate_limit")
-    results = {f"{limit_name(100)}/{k}": first for k in range(2)}
+    results = {f"{limits(100).name}/{k}": first for k in range(2)}
     found = limit_estimate(results, 100, exponent)
     assert found.value == exponent(first)
     assert 0.5 * BIAS < found.error / abs(found.value) / 0.7 < 2 * BIAS
     width = limit_estimate(results, 100, central_width)
     assert width.error / width.value == pytest.approx(BIAS, rel=1e-2)
     # And the scatter between limits counts, as it does between runs.
-    results[f"{limit_name(100)}/1"] = made_up(chain, "simulate_limit", steeper=0.02)
+    results[f"{limits(100).name}/1"] = made_up(chain, "simulate_limit", steeper=0.02)
     assert limit_estimate(results, 100, exponent).error > 0.01
 
 

@@ -3,8 +3,11 @@
 import json
 import re
 import sys
+from collections import Counter
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
+from pathlib import Path
+from typing import get_args
 
 import matplotlib.pyplot as plt
 import pytest
@@ -15,9 +18,7 @@ from crazybilliards.comparison.sweeps import Case, run_cases
 from crazybilliards.comparison.sweeps.jobs import JOBS
 from crazybilliards.model import Chain
 from crazybilliards.reproduction.beyond import STUDIES, elastic_gaps
-from crazybilliards.reproduction.claims.repetition import (
-    repeated,
-)
+from crazybilliards.reproduction.claims.repetition import Runs
 from crazybilliards.reproduction.claims.report import (
     OF_PAPER,
     OWN,
@@ -28,7 +29,7 @@ from crazybilliards.reproduction.claims.report import (
     reproduce,
 )
 from crazybilliards.reproduction.claims.study import PaperFigure
-from crazybilliards.reproduction.claims.verdicts import EYE
+from crazybilliards.reproduction.claims.verdicts import EYE, Verdict
 from crazybilliards.reproduction.figures import FIGURES, fig17_density
 from crazybilliards.reproduction.reproducible import find_studies, groups
 
@@ -94,8 +95,11 @@ def test_every_case_can_be_carried_out_and_shared_ones_count_once(quality):
 
 
 def test_parameters_are_described_by_what_is_not_the_default():
-    cases = repeated("a", Chain(size=30, restitution=0.0), 3, duration=100.0).values()
-    both = [*cases, Case("phase_space", Chain(restitution=0.9), {"cells": 16})]
+    runs = Runs("a", Chain(size=30, restitution=0.0), {"quick": (3, {})}, {"duration": 100.0})
+    both = [
+        *runs.cases("quick").values(),
+        Case("phase_space", Chain(restitution=0.9), {"cells": 16}),
+    ]
     assert describe(both) == [
         "simulate: size 30, restitution 0, duration 100 (3 runs)",
         "phase_space: restitution 0.9, cells 16",
@@ -193,6 +197,35 @@ def test_a_figure_its_claims_and_nothing_computed_twice(command, tmp_path, monke
     assert "the worker runs other source code" in errors  # as it does: this edit is a pretence
 
 
+def assert_table_counts_verdicts(page):
+    """Assert that the table of a report has a line for each study, with the counts of its part."""
+    first, *parts = re.split("^## ", page, flags=re.MULTILINE)
+    expected = []
+    for part in parts:
+        heading = part.splitlines()[0]
+        anchor = "".join(c for c in heading.lower() if c.isalnum() or c in " -").replace(" ", "-")
+        _, *kinds = re.split("^### ", part, flags=re.MULTILINE)
+        found = {
+            kind.splitlines()[0]: Counter(re.findall(r"^\* verdict: (.*)", kind, re.MULTILINE))
+            for kind in kinds
+        }
+        counts = [
+            ", ".join(
+                f"{number} {verdict}" for verdict in get_args(Verdict) if (number := of[verdict])
+            )
+            for of in (found.get(title, Counter()) for title in (OF_PAPER, OWN))
+        ]
+        expected.append([f"[{heading}](#{anchor})", *counts])
+    lines = re.findall(r"^\| (\[.*) \|$", first, re.MULTILINE)
+    assert [line.split(" | ") for line in lines] == expected
+    assert "|" not in "".join(parts)
+
+
+def test_the_table_of_the_stored_report_counts_its_verdicts():
+    page = Path(__file__).parents[2].joinpath("docs", "paper", "claims.md")
+    assert_table_counts_verdicts(page.read_text(encoding="utf-8"))
+
+
 @pytest.mark.compiled
 def test_the_report_is_one_page_and_the_table_markdown(tmp_path, monkeypatch):
     monkeypatch.setitem(fig17_density._DURATION, "quick", 5000.0)
@@ -221,7 +254,7 @@ def test_the_report_is_one_page_and_the_table_markdown(tmp_path, monkeypatch):
     text = markdown(reproduced, "quick")
     assert re.findall("^## ([^. ]*)", text, re.MULTILINE) == ["1", "16", "Displacements"]
     assert re.findall("^### (.*)", text, re.MULTILINE) == [OF_PAPER, OWN, OWN]
-    assert "|" not in text
+    assert_table_counts_verdicts(text)
     assert text.count("* verdict: ") == 2 + 6
     assert "**&lt;dx&gt; is described by B arctanh(C x)**" in text
     assert "* in the paper: section seq:analytics, fig:atan" in text
