@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.container import ErrorbarContainer
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from crazybilliards.model.vocabulary import require
 
@@ -168,6 +168,22 @@ def draw_rods(
     }
     error = run[f"{quantity}_error"] / unit
     _draw_measured(ax, run[along], run[quantity] / unit, error, shown, look)
+
+
+def draw_points(
+    ax: Axes,
+    x: ArrayLike,
+    values: ArrayLike,
+    errors: ArrayLike,
+    *,
+    number: int,
+    label: str = "",
+    **how: Any,
+) -> None:
+    """Draw a few measured numbers as symbols with error bars, in the colour of that number."""
+    look = {"linestyle": "none", "markerfacecolor": "none", **how}
+    colour, marker = COLOURS[number % len(COLOURS)], SYMBOLS[number % len(SYMBOLS)]
+    ax.errorbar(x, values, errors, color=colour, marker=marker, label=label, **look)
 
 
 def _draw_measured(

@@ -2,7 +2,7 @@ r"""Starts of the hydrodynamics: checks given profiles, and makes common ones.
 
 A start is a result with ``density`` over x (one time), and optionally ``label``, ``flow_velocity``
 and ``velocity_variance``. ``force_balance`` of another chain gives a quench. The functions here
-make other common starts from the stationary state.
+make other common starts from the stationary state that the chain has at restitution 1.
 """
 
 from __future__ import annotations
@@ -29,20 +29,21 @@ _NO_SIGN_CHANGE = -1  # status of a root that scipy did not look for; those belo
 
 
 def displaced(chain: Chain, shift: float) -> xr.Dataset:
-    """Return the stationary state, moved by ``shift`` [R] as a whole."""
+    """Return the stationary state at restitution 1, moved by ``shift`` [R] as a whole."""
     return _stationary_image(chain, shift=check_real("shift", shift, signed=True))
 
 
 def compressed(chain: Chain, factor: float) -> xr.Dataset:
-    """Return the stationary state with its reduced coordinate y multiplied by ``factor`` > 0.
+    """Return the stationary state at restitution 1, with y multiplied by ``factor`` > 0.
 
+    y = x - 2 R (N - L/2) is the reduced coordinate.
     Rods never overlap, because only the free room between them shrinks (or grows).
     """
     return _stationary_image(chain, stretch=check_real("factor", factor, positive=True))
 
 
 def two_clumps(chain: Chain, distance: float, speed: float) -> xr.Dataset:
-    """Return the stationary state cut in half: two clumps, ``distance`` [R] apart.
+    """Return the stationary state at restitution 1 cut in half: clumps ``distance`` [R] apart.
 
     Each approaches the other with ``speed`` [R/T].
     """

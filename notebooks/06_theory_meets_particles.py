@@ -32,6 +32,8 @@
 # %% tags=["hide-input"]
 import matplotlib.pyplot as plt
 import numpy as np
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
 from scipy.special import ndtri
 from teaching import GREEN, ORANGE, PINK, agree, check, panels, right
 
@@ -39,6 +41,33 @@ from crazybilliards.comparison import deviation, fit_arctanh, overlay, smooth
 from crazybilliards.kinetic import equilibrium, force_balance
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
+
+# %% [markdown]
+# ## The paper's calculation in one cell
+#
+# [Lesson 0](00_the_analytics_section_in_sixty_lines.ipynb) repeats the paper's section with scipy.
+# Its force balance stands here with the numbers $B$ and $C$ of the fit that it makes to a simulation.
+# Section 3 explains the equation. The function `force_balance` of the package does the same with a
+# solution in closed form, and section 3 compares the two.
+
+# %%
+L, R, k, m = 100, 1.0, 1.0, 4 * np.pi / 3
+W2, B, C = 10**2 / (2 * m), 9.96, 1 / 123.5  # A = 10, gamma = 1
+half = np.linspace(0, 0.9999 / C, 2000)
+
+
+def log_slope(x, log_free):  # of the number of rods per free length, rho/(1 - 2 R rho)
+    return -k / (m * W2) * B * np.arctanh(C * x) / (1 + 2 * R * np.exp(log_free))
+
+
+def integrate(start):
+    free = np.exp(solve_ivp(log_slope, (0, half[-1]), [start], t_eval=half, rtol=1e-8).y[0])
+    return free / (1 + 2 * R * free)
+
+
+start = brentq(lambda start: 2 * np.trapezoid(integrate(start), half) - L, -5, 10)
+in_one_cell = integrate(start)
+print(f"density in the middle: {in_one_cell[0]:.4f} per R")
 
 # %% [markdown]
 # ## 1. The chain
@@ -113,6 +142,7 @@ plt.show()
 #
 # **Task.** Write the right side of this equation as a function.
 
+
 # %% tags=["remove-cell"]
 def slope_solution(density, displacement):
     return -k / (m * W**2) * displacement * density * (1 - 2 * R * density) ** 2
@@ -150,9 +180,12 @@ check(slope, slope_solution, at=places, hint=hint)
 fit = fit_arctanh(run)
 print(f"B = {fit.scale / s:.2f} s, 1/C = {1 / fit.steepness:.1f} R, misfit {fit.misfit:.3f} R")
 paper = force_balance(chain, displacement=fit)
+apart = np.abs(np.interp(half, paper.x, paper.density) - in_one_cell).max()
+print(f"force_balance and the first cell: {2 * R * apart:.1e} of close packing apart")
 
 # %% tags=["remove-cell"]
 assert abs(fit.scale / s - 1.41) < 0.03
+assert 2 * R * apart < 1e-3
 
 # %% [markdown]
 # **A way without any fit.** The $N$-th rod from the left belongs to the $N$-th anchor. At $x$ the
@@ -278,7 +311,7 @@ assert 0.8 < best_off / deviation(smooth(exact), smooth(paper)).maximum < 1
 #
 # `chain.replace(amplitude=1)` gives $s = 0.7$ R. The rods hardly move, and the chain is nearly a
 # crystal. The exact solution and the simulation still agree. Both force balances are wrong by some
-# 14 % of close packing at the outermost rod, because a fluid has a smooth tail where the chain ends
+# 14 to 15 % of close packing at the outermost rod, because a fluid has a smooth tail where the chain ends
 # with half a rod. Inside the fourth rod from each end, they are right to better than 1 %.
 # </details>
 #

@@ -36,6 +36,7 @@
 # %% tags=["hide-input"]
 import matplotlib.pyplot as plt
 import numpy as np
+import pde
 import sympy as sp
 from IPython.display import HTML
 from scipy.integrate import solve_ivp
@@ -44,7 +45,7 @@ from scipy.stats import norm
 from teaching import BLUE, GREEN, ORANGE, PINK, agree, check, panels, right
 
 from crazybilliards.comparison import animate, compare_relaxation, overlay, smooth, standalone_page
-from crazybilliards.kinetic import displaced, equilibrium_states, hydrodynamics
+from crazybilliards.kinetic import compressed, displaced, equilibrium_states, hydrodynamics
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
 
@@ -56,6 +57,46 @@ print(f"thermal length s = {s:.1f} R, velocity width W = {W:.2f} R/T, s/W = {s /
 print(f"one free rod: frequency {omega:.3f} /T, friction gamma/m = {friction:.3f} /T")
 
 # %% [markdown]
+# ## The equations in three strings
+#
+# [Lesson 0](00_the_analytics_section_in_sixty_lines.ipynb), section 6, gives the equations of the
+# paper to py-pde as text. These are its cells. Section 1 explains the equations. The function
+# `hydrodynamics` of the package solves the same equations without the small viscosity, which is the
+# last term of the second string. It also chooses its time steps, and it solves stronger compressions
+# (lesson 0, section 7).
+
+# %%
+R, L = chain.radius, chain.size
+k, m, gamma = chain.stiffness, chain.mass, chain.damping
+equations = {
+    "rho": "-d_dx(rho * V)",
+    "V": "-V * d_dx(V) - W2 / rho * d_dx(rho / (1 - 2 * R * rho))"
+    "- k / m * (x - 2 * R * (N - L / 2)) - gamma / m * V + 4 * d2_dx2(V)",
+    "N": "-V * d_dx(N)",
+}
+constants = {"W2": W**2, "R": R, "L": L, "k": k, "m": m, "gamma": gamma}
+fluid = pde.PDE(equations, consts=constants, bc={"curvature": 0})
+
+# %%
+grid = pde.CartesianGrid([[-L * R - 5 * s, L * R + 5 * s]], 400)
+X, width = grid.axes_coords[0], 0.6 * s  # the chain is squeezed to 0.6 of its width at rest
+y = np.linspace(-30 * s, 30 * s, 100_001)
+y = np.interp(X, y + 2 * R * L * (norm.cdf(y, scale=width) - 0.5), y)
+free = L * norm.pdf(y, scale=width)
+fields = {"rho": free / (1 + 2 * R * free), "V": 0 * X, "N": L * norm.cdf(y, scale=width)}
+start = pde.FieldCollection([pde.ScalarField(grid, fields[f], label=f) for f in fields])
+solver = {"dt": 0.02, "solver": "runge-kutta", "backend": "numpy", "tracker": None}
+end = fluid.solve(start, t_range=8.0, **solver)
+flow = hydrodynamics(chain, compressed(chain, 0.6), 8.0, every=8.0, progress=False)
+apart = np.abs(np.interp(X, flow.x, flow.density[-1]) - end["rho"].data).max()
+print(f"hydrodynamics and three strings: {2 * R * apart:.1e} of close packing apart")
+
+# %% tags=["remove-cell"]
+assert 2 * R * apart < 1e-2
+
+# %% [markdown]
+# ## The release
+#
 # The squeeze acts on the reduced coordinate $y = x - 2R\,(i-\frac{L+1}{2})$. In $y$ the rods are
 # points, and all anchors lie at $y = 0$. The squeeze multiplies every $y$ by 0.3 and leaves the
 # velocities as they are in the steady state. `compare_relaxation` squeezes 200 chains and follows

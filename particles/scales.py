@@ -116,8 +116,8 @@ def time_step_error(
     * the larger of 0.1 |1 - e| r^(3/2) and 0.05 r^4 at higher restitutions, r = 0.06 to 1.3.
 
     The last one is an empirical law, an upper estimate of the paired differences that
-    ``benchmarks/time_step_law.py`` measures: W_v is too small for short steps, and too large for
-    long ones because of the half kick before each snapshot. The relative errors of mean
+    ``benchmarks/accuracy/time_step_law.py`` measures: W_v is too small for short steps, and too
+    large for long ones because of the half kick before each snapshot. The relative errors of mean
     displacements are of the same size, for e = 0.1 up to three times as large.
     """
     if chain.restitution == 1 or velocity_width == 0:

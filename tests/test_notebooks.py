@@ -4,6 +4,7 @@ import re
 from pathlib import Path, PurePosixPath, PureWindowsPath
 
 import jupytext
+import nbformat
 import pytest
 from outputs import HIDDEN, fingerprint
 from teaching import agree, check, right
@@ -99,6 +100,22 @@ def test_what_a_student_sees(path):
     assert 0 < text.count("**Predict") <= text.count("**Run")
     assert "hint=" in "\n".join(lines)
     assert "**Explain" not in text  # it would give the answer away: <details> folds it
+
+
+def test_the_analytics_section_takes_sixty_lines():
+    """Lesson 0 without its task, and only the simulation is from the package."""
+    notebook = jupytext.read(next(FOLDER.glob("00_*.py")))
+    cells = notebook.cells[
+        : [cell.source.startswith("## 7.") for cell in notebook.cells].index(True)
+    ]
+    lines = [
+        line
+        for cell in visible_code(nbformat.v4.new_notebook(cells=cells))
+        if not any("your code here" in line for line in cell)
+        for line in cell
+    ]
+    assert len(lines) <= 60
+    assert set(re.findall(r"\bcb\.(\w+)", "\n".join(lines))) == {"Chain", "simulate"}
 
 
 def wrong(x):

@@ -30,7 +30,7 @@ FLOORS = {
         {"vanishing_step"},
     ),
     "kinetic": (
-        {"requirements", "times"},
+        {"accuracy", "requirements", "times"},
         {"statics", "exact"},
         {"starts"},
         {"fluids", "kinetic_equation"},
@@ -42,8 +42,9 @@ FLOORS = {
     ),
     "reproduction": (
         {"claims"},
-        {"chains", "distributions", "power_laws", "vanishing_step"},
-        {"predictions"},
+        {"chains", "correlated_rods", "distributions", "errors_of_theories", "power_laws"}
+        | {"vanishing_step"},
+        {"checked_chains", "predictions"},
         {"beyond", "figures"},
         {"reproducible"},
     ),

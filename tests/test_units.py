@@ -5,28 +5,15 @@ square roots), must give the same bits after rescaling. All solvers work in the 
 so this holds for iterations and adaptive steps as well.
 """
 
+from functools import cache
+
 import numpy as np
 import pytest
+from every_solver import SOLVERS, Given
 
-from crazybilliards.kinetic import (
-    breathing_cloud,
-    compressed,
-    correlated_phase_space,
-    critical_damping,
-    critical_restitution,
-    critical_size,
-    displaced,
-    equilibrium,
-    equilibrium_states,
-    force_balance,
-    hydrodynamics,
-    phase_space,
-    relax_phase_space,
-    two_clumps,
-)
+from crazybilliards.kinetic import compressed, displaced
 from crazybilliards.kinetic.kinetic_equation import criticality
 from crazybilliards.model import Chain
-from crazybilliards.particles import simulate
 
 
 class Units:
@@ -56,103 +43,32 @@ class Units:
             amplitude=self.of("M R/T") / np.sqrt(self.time) * chain.amplitude,
         )
 
-
-LINEAR = Chain(size=5, gap=0.25, amplitude=1.3, radius=0.8)
-QUADRATIC = LINEAR.replace(spring="quadratic")
-DISSIPATIVE = LINEAR.replace(restitution=0.9)
-GAPLESS = LINEAR.replace(gap=0.0)
-DRIVEN = Chain(size=5, restitution=1.1)
-QUIET = {"progress": False}
-
-
-def flow(start, **settings):
-    def solve(chain, units):
-        begin = start(chain, units)
-        return hydrodynamics(chain, begin, 2 * units.time, every=units.time, **settings, **QUIET)
-
-    return solve
-
-
-def moved(chain, units):
-    return displaced(chain, units.length)
-
-
-def wide(chain, units):
-    return compressed(chain, 1.5)
-
-
-def clumps(chain, units):
-    return two_clumps(chain, units.length, units.of("R/T"))
-
-
-def variance(units):
-    return lambda x: units.of("R^2/T^2") * (0.1 + 0.05 * np.exp(-((x / units.length) ** 2)))
-
-
-def soft(units):
-    return lambda x: 0.3 * np.asarray(x)
-
-
-def particles(**settings):
-    def solve(chain, units):
-        return simulate(
-            chain,
-            duration=200 * units.time,
-            warmup=5 * units.time,
-            observe=("widths", "density", "energy", "velocities"),
-            **settings,
-            **QUIET,
+    def given(self, chain):
+        """Return what the solvers are given, in these units; ``chain`` is written in them."""
+        elastic = chain.replace(restitution=1.0)
+        moved = chain.spring == "linear"
+        return Given(
+            start=displaced(elastic, self.length) if moved else compressed(elastic, 1.5),
+            variance=self.variance,
+            number=0.1 * self.of("R^2/T^2"),
+            length=self.length,
+            velocity=self.of("R/T"),
+            times={"duration": 2 * self.time, "every": self.time},
+            run={"duration": 200 * self.time},
+            warmup=5 * self.time,
         )
 
-    return solve
+    def variance(self, x):
+        return self.of("R^2/T^2") * (0.1 + 0.05 * np.exp(-((x / self.length) ** 2)))
 
 
-# name: (chain, solver of a chain in some units)
-SOLVERS = {
-    "equilibrium": (LINEAR, lambda chain, _: equilibrium(chain)),
-    "equilibrium, quadratic": (QUADRATIC, lambda chain, _: equilibrium(chain)),
-    "equilibrium_states": (LINEAR, lambda chain, _: equilibrium_states(chain, 3)),
-    "displaced": (LINEAR, moved),
-    "compressed": (QUADRATIC, wide),
-    "two_clumps": (LINEAR, clumps),
-    "force_balance": (LINEAR, lambda chain, _: force_balance(chain)),
-    "force_balance, quadratic": (QUADRATIC, lambda chain, _: force_balance(chain)),
-    "force_balance, variance": (
-        LINEAR,
-        lambda chain, units: force_balance(chain, velocity_variance=variance(units)),
-    ),
-    "force_balance, displacement": (
-        LINEAR,
-        lambda chain, units: force_balance(chain, soft(units)),
-    ),
-    "force_balance, both": (
-        LINEAR,
-        lambda chain, units: force_balance(chain, soft(units), variance(units)),
-    ),
-    "label": (LINEAR, flow(moved)),
-    "label, evolving": (QUADRATIC, flow(wide, velocity_variance="evolving")),
-    "eulerian": (LINEAR, flow(moved, frame="eulerian")),
-    "eulerian, evolving": (QUADRATIC, flow(wide, frame="eulerian", velocity_variance="evolving")),
-    "breathing_cloud": (
-        GAPLESS,
-        lambda chain, units: breathing_cloud(chain, 2 * units.time, stretch=0.5),
-    ),
-    "phase_space": (DISSIPATIVE, lambda chain, _: phase_space(chain, cells=8)),
-    "correlated_phase_space": (
-        GAPLESS.replace(size=10, restitution=0.9),
-        lambda chain, _: correlated_phase_space(chain, cells=8),
-    ),
-    "relax_phase_space": (
-        DISSIPATIVE,
-        lambda chain, units: relax_phase_space(
-            chain, moved(chain.replace(restitution=1), units), units.time, cells=8, **QUIET
-        ),
-    ),
-    "simulate": (LINEAR, particles()),
-    "simulate, quadratic": (QUADRATIC, particles()),
-    "simulate, dissipative": (DISSIPATIVE, particles()),
-    "simulate, contact dynamics": (DISSIPATIVE, particles(method="contact-dynamics")),
-    "simulate, euler": (LINEAR, particles(stepper="euler", time_step=None)),
+LINEAR = Chain(size=5, gap=0.25, amplitude=1.3, radius=0.8)
+CHAINS = (LINEAR, LINEAR.replace(spring="quadratic"), LINEAR.replace(restitution=0.9))
+# Each solver with each kind of chain that it takes.
+CASES = {
+    f"{name}, {chain.spring}, e = {chain.restitution:g}": (name, chain)
+    for name, solver in SOLVERS.items()
+    for chain in (each.replace(**solver.needs) for each in CHAINS)
 }
 OTHER = {
     "long": Units(2.0**40, 2.0**-20, 4.0**15),
@@ -160,25 +76,23 @@ OTHER = {
 }
 
 
-@pytest.fixture(scope="module")
-def reference():
-    known = {}
+def solved(case, units):
+    name, chain = CASES[case]
+    chain = units.chain(chain)
+    return SOLVERS[name].solve(chain, units.given(chain))
 
-    def solved(name):
-        if name not in known:
-            chain, solve = SOLVERS[name]
-            known[name] = solve(chain, Units(1.0, 1.0, 1.0))
-        return known[name]
 
-    return solved
+@cache
+def reference(case):
+    return solved(case, Units(1.0, 1.0, 1.0))
 
 
 @pytest.mark.compiled
 @pytest.mark.parametrize("scale", OTHER)
-@pytest.mark.parametrize("name", SOLVERS)
-def test_units_do_not_matter(name, scale, reference):
-    units, (chain, solve) = OTHER[scale], SOLVERS[name]
-    one, other = reference(name), solve(units.chain(chain), units)
+@pytest.mark.parametrize("case", [case for case in CASES if not case.startswith("critical")])
+def test_units_do_not_matter(case, scale):
+    units = OTHER[scale]
+    one, other = reference(case), solved(case, units)
     assert set(one.variables) == set(other.variables)
     for variable, expected in one.variables.items():
         found = other[variable].values / units.of(expected.attrs.get("units", "1"))
@@ -186,12 +100,10 @@ def test_units_do_not_matter(name, scale, reference):
 
 
 @pytest.mark.parametrize("scale", OTHER)
-def test_units_do_not_matter_to_critical_chains(scale, monkeypatch):
+@pytest.mark.parametrize("name", [name for name in SOLVERS if name.startswith("critical")])
+def test_units_do_not_matter_to_critical_chains(name, scale, monkeypatch):
     monkeypatch.setattr(criticality, "_critical_drag", lambda damping: (damping, 0.0))
-    units = OTHER[scale]
-    for solve, unit in (
-        (critical_size, "1"),
-        (critical_restitution, "1"),
-        (critical_damping, "M/T"),
-    ):
-        assert solve(units.chain(DRIVEN)).value / units.of(unit) == solve(DRIVEN).value
+    units, chain = OTHER[scale], LINEAR.replace(**SOLVERS[name].needs)
+    unit = "M/T" if name == "critical_damping" else "1"
+    one, other = (SOLVERS[name].solve(each, None).value for each in (chain, units.chain(chain)))
+    assert other / units.of(unit) == one

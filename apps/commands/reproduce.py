@@ -97,10 +97,11 @@ def command(
 ) -> None:
     """Reproduce the figures of arXiv:1404.7460, and check what the paper claims.
 
-    Writes a picture for each figure and prints what became of the paper's claims. For all figures
-    it also writes report.html, one page with everything in it, and claims.md, the table; for
-    analytics and studies these pages bear their names. Results are kept in the folder:
-    drawing again is a matter of seconds, and after Ctrl-C or a crash the same command goes on.
+    Writes a picture for each figure and prints what became of the paper's claims. Some studies
+    have tables as well, which are written beside the picture. For all figures it also writes
+    report.html, one page with everything in it, and claims.md, the table of claims; for analytics
+    and studies these pages bear their names. Results are kept in the folder: drawing again is a
+    matter of seconds, and after Ctrl-C or a crash the same command goes on.
 
     Example: crazybilliards reproduce analytics
 
@@ -157,6 +158,10 @@ def _draw(studies: list[Study], quality: Quality, output: Path, **how: Any) -> l
         for kind, picture in each.pictures.items():
             path = output / f"{each.study.stem}.{kind}"
             write_atomically(path, picture)
+            wrote(path)
+        for name, table in each.tables.items():
+            path = output / f"{name}.csv"
+            write_atomically(path, table)
             wrote(path)
         reproduced.append(each)
     return reproduced

@@ -27,7 +27,6 @@ from crazybilliards.kinetic.correlations.cells import make_cells
 from crazybilliards.kinetic.correlations.closure import (
     Closure,
     background,
-    collective_variance,
     implied,
 )
 from crazybilliards.kinetic.correlations.collision_moments import moments_of_collisions
@@ -37,32 +36,28 @@ from crazybilliards.kinetic.correlations.pair_covariance import (
     linear_response,
     solve_pairs,
 )
-from crazybilliards.kinetic.correlations.stationary_result import Correlated, assemble
+from crazybilliards.kinetic.correlations.stationary_result import Correlated, assemble, rods
 from crazybilliards.kinetic.kinetic_equation.continuation import (
+    CELLS,
     State,
+    check_mesh,
     continued,
     elastic_state,
     fitted,
     free_units,
+    on_fine_mesh,
     refined,
     solved,
 )
-from crazybilliards.kinetic.kinetic_equation.order_statistics import mirrored, points
-from crazybilliards.kinetic.kinetic_equation.velocity_moments import moments
+from crazybilliards.kinetic.kinetic_equation.order_statistics import Rods
 from crazybilliards.kinetic.kinetic_equation.velocity_space import one_thread
 from crazybilliards.kinetic.kinetic_equation.weak_form import NotSolvedError, coefficients
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain
-from crazybilliards.model.checks import check_integer, check_real
-from crazybilliards.model.memory import require_memory
 
 Array = NDArray[np.float64]
 
-_CELLS = 22  # of the mesh on which one rod and pairs are brought to agreement
-_FINER = 1.5
-_MOST_CELLS = 80
-_LARGEST_MESH = 150
-_BYTES_PER_CELL = 4e4
+_MOST_CELLS = 80  # of a mesh that is not asked for
 _ROUGHLY = 1e-6
 _AGREEMENT = 0.5  # of the tolerance: what ln a may be off; a width changes by less than half of it
 _MOST_ITERATIONS = 40
@@ -119,54 +114,41 @@ def correlated_phase_space(
     """
     check_correlated_phase_space(chain, tolerance=tolerance, cells=cells)
     try:
-        found, mesh_error = _solve(chain, tolerance, cells)
+        return assemble(*_solve(chain, tolerance, cells))
     except (NotSolvedError, NoFixedPointError) as error:
         raise ValueError(
             f"the kinetic equation with pair correlations could not be solved: {error}; "
             "phase_space and simulate take this chain"
         ) from error
-    return assemble(found, mesh_error)
 
 
 def check_correlated_phase_space(chain: Chain, *, tolerance: float, cells: int | None) -> None:
     """Raise for what ``correlated_phase_space`` does not take."""
-    check_real("tolerance", tolerance, positive=True)
-    if cells is not None:
-        check_integer("cells", cells, least=4, most=_LARGEST_MESH)
-    finest = max(_CELLS, cells or round(_FINER * _CELLS))
-    require_memory(f"cells={finest}", _BYTES_PER_CELL * finest**2)
+    check_mesh(tolerance, cells)
     theory = "the kinetic equation with pair correlations"
     require_chain(chain, theory, linear=True, gapless=True)
-    for name, value, (low, high), remedy in (
-        ("restitution", chain.restitution, (0.0, 1.0), "phase_space and simulate"),
-        ("size", chain.size, _SIZES, "phase_space and simulate"),
-        ("damping/sqrt(k m)", _damping(chain), _DAMPINGS, "phase_space and simulate"),
+    for name, value, (low, high) in (
+        ("restitution", chain.restitution, (0.0, 1.0)),
+        ("size", chain.size, _SIZES),
+        ("damping/sqrt(k m)", _damping(chain), _DAMPINGS),
     ):
         if not low <= value <= high:
             raise ValueError(
                 f"{theory} has been solved for {name} from {low:g} to {high:g} only, got "
-                f"{value:.4g}; {remedy} take other values"
+                f"{value:.4g}; phase_space and simulate take other values"
             )
 
 
 @one_thread
-def _solve(chain: Chain, tolerance: float, cells: int | None) -> tuple[Correlated, float]:
+def _solve(chain: Chain, tolerance: float, cells: int | None) -> tuple[Correlated, Rods, float]:
+    """Return the solution on a mesh that is fine enough, its rods, and the error of the mesh."""
     found = _agree(chain, tolerance)
-    if cells is not None:
-        return found._replace(state=refined(found.state, cells)), np.nan
-    while True:
-        more = round(_FINER * found.state.space.cells)
-        require_memory(f"cells={more}", _BYTES_PER_CELL * more**2)
-        finer = found._replace(state=refined(found.state, more))
-        error = float(np.abs(np.sqrt(_variances(found) / _variances(finer)) - 1).max())
-        found = finer
-        if error < tolerance:
-            return found, error
-        if more * _FINER > _MOST_CELLS:
-            raise ValueError(
-                f"the widths are accurate to {error:.1e} only, not to tolerance={tolerance:g}; "
-                f"correlated_phase_space(..., cells={more}) accepts that"
-            )
+
+    def rods_of(state: State) -> Rods:
+        return rods(found._replace(state=state))
+
+    state, of_rods, error = on_fine_mesh(found.state, rods_of, tolerance, cells, _MOST_CELLS)
+    return found._replace(state=state), of_rods, error
 
 
 def _agree(chain: Chain, tolerance: float) -> Correlated:
@@ -177,7 +159,7 @@ def _agree(chain: Chain, tolerance: float) -> Correlated:
     """
     larger = [e for e in _WAY if e > chain.restitution]
     first = chain.replace(restitution=larger[0]) if larger else chain
-    state = refined(continued(first, elastic_state(first, 2, _CELLS)), _CELLS)
+    state = refined(continued(first, elastic_state(first, 2, CELLS)), CELLS)
     closure, iterations = Closure.independent(make_cells(chain.size)), 0
     for restitution in larger:
         on_the_way = chain.replace(restitution=restitution)
@@ -226,10 +208,3 @@ def _checked(found: Correlated) -> Correlated:
 def _damping(chain: Chain) -> float:
     """Return gamma/sqrt(k m)."""
     return coefficients(chain, free_units(chain), 2).damping
-
-
-def _variances(found: Correlated) -> Array:
-    state, size = found.state, found.state.chain.size
-    own = points(size, mirrored(moments(state.space, state.f))).velocity_variance
-    rods: Array = np.arange(0.5, size)
-    return np.asarray(own + collective_variance(make_cells(size), found.pairs, rods))

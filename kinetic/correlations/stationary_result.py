@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from crazybilliards.kinetic.correlations.accuracy import expected_accuracy
+from crazybilliards.kinetic.accuracy import expected_correlated_accuracy
 from crazybilliards.kinetic.correlations.cells import Cells, at_distance, make_cells, of_cells
 from crazybilliards.kinetic.correlations.closure import Closure, collective_variance
 from crazybilliards.kinetic.correlations.collective_motion import as_seen_in_place
@@ -19,10 +19,9 @@ from crazybilliards.kinetic.correlations.pair_covariance import (
     dissipation,
 )
 from crazybilliards.kinetic.kinetic_equation.continuation import State, free_units
-from crazybilliards.kinetic.kinetic_equation.order_statistics import mirrored, points
-from crazybilliards.kinetic.kinetic_equation.profiles import profiles_over_x
+from crazybilliards.kinetic.kinetic_equation.order_statistics import Rods, mirrored, points
+from crazybilliards.kinetic.kinetic_equation.stationary_result import in_vocabulary
 from crazybilliards.kinetic.kinetic_equation.velocity_moments import moments
-from crazybilliards.model.vocabulary import result
 
 Array = NDArray[np.float64]
 
@@ -38,50 +37,41 @@ class Correlated(NamedTuple):
     iterations: int
 
 
-def assemble(found: Correlated, mesh_error: float) -> xr.Dataset:
-    """Return the solution as a result."""
-    state = found.state
-    chain, (length, velocity) = state.chain, free_units(state.chain)
+def rods(found: Correlated) -> Rods:
+    """Return the moments of the rods, in the free rod's thermal length and velocity width.
+
+    A rod moves in its neighbourhood, and with it.
+    """
+    state, collective = found.state, _collective(found)
+    own = points(state.chain.size, mirrored(moments(state.space, state.f)))
+    position, velocity = own.position_variance + collective, own.velocity_variance + collective
+    return Rods(own.position, position, velocity)
+
+
+def assemble(found: Correlated, of_rods: Rods, mesh_error: float) -> xr.Dataset:
+    """Put the solution into the common vocabulary."""
+    chain, (length, velocity) = found.state.chain, free_units(found.state.chain)
     cells = make_cells(chain.size)
-    rods: Array = np.arange(0.5, chain.size)
-    of = points(chain.size, mirrored(moments(state.space, state.f)))
-    collective = collective_variance(cells, found.pairs, rods)
-    velocity_variance = of.velocity_variance + collective
-    seen = as_seen_in_place(state, rods, collective)
-    y, v, f = seen.space.sampled(seen.f)
-    fields = profiles_over_x(seen)
-    dataset = result(
-        chain,
+    return in_vocabulary(
+        as_seen_in_place(found.state, np.arange(0.5, chain.size), _collective(found)),
         {
-            "phase_space_density": (("y", "velocity"), chain.size / (length * velocity) * f),
-            **{name: ("x", values) for name, values in fields.items() if name != "x"},
-            "velocity_width": ("particle", velocity * np.sqrt(velocity_variance)),
-            "mean_displacement": ("particle", length * of.position),
-            "displacement_width": (
-                "particle",
-                length * np.sqrt(of.position_variance + collective),
-            ),
-            **_of_pairs(found, cells, velocity_variance),
+            "velocity_width": ("particle", velocity * np.sqrt(of_rods.velocity_variance)),
+            "mean_displacement": ("particle", length * of_rods.position),
+            "displacement_width": ("particle", length * np.sqrt(of_rods.position_variance)),
+            **_of_pairs(found, cells, of_rods.velocity_variance),
         },
-        coordinates={
-            "x": fields["x"],
-            "y": length * y,
-            "velocity": velocity * v,
-            "mode": np.arange(cells.rods.size),
-        },
-        source="theory",
-        method={"theory": "kinetic equation with pair correlations", "cells": state.space.cells},
+        coordinates={"mode": np.arange(float(cells.rods.size))},
+        method={"theory": "kinetic equation with pair correlations"},
         residual=found.residual,
-    )
-    accuracy = expected_accuracy(chain.restitution, chain.size)
-    dataset.attrs |= {
-        "iterations": found.iterations,
-        "mesh_error": mesh_error,
-        "cells": state.space.cells,
-        "model_error": accuracy.inner,
-        "border_error": accuracy.border,
-    }
-    return dataset
+        mesh_error=mesh_error,
+        expected=expected_correlated_accuracy(chain),
+    ).assign_attrs(iterations=found.iterations)
+
+
+def _collective(found: Correlated) -> Array:
+    """Return the variance of the motion of each rod's neighbourhood."""
+    size = found.state.chain.size
+    return collective_variance(make_cells(size), found.pairs, np.arange(0.5, size))
 
 
 def _of_pairs(

@@ -28,8 +28,9 @@ number, or a profile W^2(x), at all times.
 
 **Boundary conditions.** The density falls to zero outside, and no rods enter or leave.
 
-There are two independent solvers, on labels (:mod:`.label_frame`) and on a grid of positions
-(:mod:`.eulerian_frame`).
+There are two independent solvers, on labels (:mod:`.label_frame`, the default) and on a grid of
+positions (:mod:`.eulerian_frame`). Both give py-pde their rates of change, and its solvers step
+them in time (:mod:`.pde_solver`).
 """
 
 from __future__ import annotations

@@ -1,14 +1,14 @@
 r"""Hydrodynamics on a grid of positions (Eulerian): ``eq9`` and ``modeleq`` of the paper.
 
-With lengths in thermal lengths s, velocities in W, times in s/W, n = rho s/L and B = 2 R L/s, the
-conserved quantities n, n V and, with a temperature, E = n (V^2 + theta)/2 obey
+The conserved quantities rho, rho V and, with a temperature, E = rho (V^2 + W^2)/2 obey
 
-    n_t     + (n V)_x           = 0,
-    (n V)_t + (n V^2 + p)_x     = -n f - Gamma n V,                  p = n theta/(1 - B n),
-    E_t     + (V (E + p))_x     = -n V f - Gamma n (V^2 + theta - 1),
+    rho_t     + (rho V)_x         = 0,
+    (rho V)_t + (rho V^2 + p)_x   = -rho F/m - (gamma/m) rho V,      p = rho W^2/(1 - 2 R rho),
+    E_t       + (V (E + p))_x     = -rho V F/m - (gamma/m) (2 E - rho W_0^2),
 
-where f is the spring's force at the displacement u = x - (B + Lam) nu, nu = int n dx - 1/2, or at a
-frozen profile u(x).
+where W_0^2 = A^2/(2 m gamma) and F is the spring's force at the displacement
+<dx> = x - (2 R + g)(N - L/2), N = int rho dx, or at a frozen profile <dx>(x). py-pde gets the grid
+and these fields in the chain's units, R and T, and with these names.
 
 **Discretisation.** The finite volumes (:mod:`.finite_volumes`) are of second order and well
 balanced, and n always stays positive and below close packing. The walls are far out, where the
@@ -33,7 +33,7 @@ from crazybilliards.kinetic.fluids.finite_volumes import (
     primitive,
 )
 from crazybilliards.kinetic.fluids.flow_fields import FlowFields
-from crazybilliards.kinetic.fluids.pde_solver import solve
+from crazybilliards.kinetic.fluids.pde_solver import make_state, solve
 from crazybilliards.kinetic.starts import Start
 from crazybilliards.kinetic.statics.profiles import Profile
 from crazybilliards.model import Chain
@@ -52,7 +52,7 @@ _POPULATED = 1e-12  # of the largest density; how far thinner places swing does 
 _JUST_INSIDE = 1 - 1e-9  # an arctanh is infinite at its end
 _ROOM = 9.5  # beyond the lattice of anchors, in thermal lengths
 _MARGIN = 3.0  # beyond the farthest swing
-_AT_THE_WALL = 1e-4  # rods per thermal length, as a share of all
+_AT_THE_WALL = 1e-4  # of the density L/s
 _MOST_WORK = 4e10
 _CELL_STEP = 2.6e-7  # seconds that a step of a cell takes
 _MANY_STEPS = 25_000
@@ -77,14 +77,14 @@ def solve_on_positions(
         faces = make_faces(chain, start, number, wider)
         fields = starting_fields(chain, start, faces, thermal=thermal)
         constants = make_constants(chain, faces, variance, displacement)
-        scaled = times * chain.free_velocity_width / chain.thermal_length
-        solution = _integrate(fields, scaled, constants, progress=progress)
-        if max(solution[:, 0, 0].max(), solution[:, 0, -1].max()) < _AT_THE_WALL:
+        solution = _integrate(fields, times, faces, constants, progress=progress)
+        at_the_wall = max(solution[:, 0, 0].max(), solution[:, 0, -1].max())
+        if at_the_wall < _AT_THE_WALL * constants.dilute:
             break
     else:
         raise ValueError("the rods spread without end on the grid of positions")
     unsteadiness = np.array([_unsteadiness(each, constants) for each in solution])
-    return _on_grid(chain, faces, solution, constants.theta, unsteadiness)
+    return _on_grid(chain, faces, solution, constants, unsteadiness)
 
 
 def make_constants(
@@ -93,25 +93,29 @@ def make_constants(
     """Return the quantities that the rates depend on, at the cells between ``faces``."""
     s, W, L = chain.thermal_length, chain.free_velocity_width, chain.size
     x = (faces[1:] + faces[:-1]) / 2
-    theta, frozen = np.ones(x.size), np.empty(0)
+    squares, frozen = np.full(x.size, W**2), np.empty(0)
     if variance is not None:
-        theta = np.asarray(variance.function(s * x), dtype=float) / W**2
+        squares = np.asarray(variance.function(x), dtype=float)
     if displacement is not None:
-        frozen = _frozen(displacement, s * x) / s
+        frozen = _frozen(displacement, x)
     return Constants(
         x,
         float(faces[1] - faces[0]),
-        theta,
+        squares,
         frozen,
-        crowd=2 * chain.radius * L / s,
-        lam=chain.lattice_gap * L / s,
-        gamma=chain.damping * s / (chain.mass * W),
+        size=L,
+        rod=2 * chain.radius,
+        lattice=2 * chain.radius + chain.lattice_gap,
+        stiffness=chain.stiffness / chain.mass,
+        damping=chain.damping / chain.mass,
         exponent=chain.potential_exponent,
+        heat=W**2,
+        dilute=L / s,
     )
 
 
 def _integrate(
-    fields: dict[str, Array], times: Array, constants: Constants, *, progress: bool
+    fields: dict[str, Array], times: Array, faces: Array, constants: Constants, *, progress: bool
 ) -> Array:
     """Take steps that resolve the fastest signal, whose speed is certain only afterwards."""
     rate = make_rate(constants)
@@ -122,7 +126,7 @@ def _integrate(
         _refuse_endless(steps * (times.size - 1) * constants.x.size)
         solution = solve(
             rate,
-            fields,
+            make_state(fields, (faces[0], faces[-1])),
             times,
             progress=progress,
             solver="runge-kutta",
@@ -152,7 +156,7 @@ def _frozen(profile: Profile, x: Array) -> Array:
 
 
 def make_faces(chain: Chain, start: Start, number: int | None, wider: float) -> Array:
-    """Return the scaled positions of the cells' faces, beyond the farthest swing."""
+    """Return the positions [R] of the cells' faces, beyond the farthest swing."""
     s, W, L = chain.thermal_length, chain.free_velocity_width, chain.size
     density = start.label(start.x, 1)
     there = density > _POPULATED * density.max()
@@ -169,32 +173,30 @@ def make_faces(chain: Chain, start: Start, number: int | None, wider: float) -> 
             f"frame='eulerian' with {number} cells: each is {2 * half / number:.3g} thermal "
             f"lengths wide, {_WIDEST_CELL:g} at most resolve the flow; {advice}"
         )
-    return np.linspace(-half, half, number + 1)
+    return s * np.linspace(-half, half, number + 1)
 
 
 def starting_fields(chain: Chain, start: Start, faces: Array, *, thermal: bool) -> dict[str, Array]:
-    """Return the means of n, nV and, if wanted, E over the cells."""
-    s, W, L = chain.thermal_length, chain.free_velocity_width, chain.size
-    at = np.clip(s * faces, start.x[0], start.x[-1])
-    middle = np.clip(s * (faces[1:] + faces[:-1]) / 2, start.x[0], start.x[-1])
+    """Return the means of rho, rho V and, if wanted, E over the cells, by these names."""
+    at = np.clip(faces, start.x[0], start.x[-1])
+    middle = np.clip((faces[1:] + faces[:-1]) / 2, start.x[0], start.x[-1])
     h = faces[1] - faces[0]
-    n = np.maximum(np.diff(start.label(at)) / (L * h), 0.0)
-    n[0] += start.label(at[0]) / (L * h)
-    v = start.velocity(middle) / W
-    fields = {"n": n, "nV": n * v}
+    rho = np.maximum(np.diff(start.label(at)) / h, 0.0)
+    rho[0] += start.label(at[0]) / h
+    v = start.velocity(middle)
+    fields = {"rho": rho, "rho V": rho * v}
     if thermal:
-        fields["E"] = n * (v**2 + start.variance(middle) / W**2) / 2
+        fields["E"] = rho * (v**2 + start.variance(middle)) / 2
     return fields
 
 
 def _fastest(fields: Array, constants: Constants) -> float:
     """Largest speed of a signal."""
-    crowd = constants.crowd
-    log_pressure, v, log_theta = primitive(fields, constants.theta, crowd).T
-    free = np.exp(log_pressure - log_theta)
+    log_pressure, v, log_variance = primitive(fields, constants).T
+    free = np.exp(log_pressure - log_variance)
     here = free > 1e-9 * free.max()
-    stiffness = math.sqrt(3) if len(fields) == 3 else 1.0
-    speed = np.abs(v) + stiffness * np.exp(log_theta / 2) * (1 + crowd * free)
+    sound = math.sqrt(3) if len(fields) == 3 else 1.0
+    speed = np.abs(v) + sound * np.exp(log_variance / 2) * (1 + constants.rod * free)
     return float(speed[here].max())
 
 
@@ -207,37 +209,39 @@ def _refuse_endless(work: float) -> None:
 
 
 def _unsteadiness(fields: Array, constants: Constants) -> float:
-    """Rms of the velocity and of the acceleration over the rods."""
-    n = np.maximum(fields[0], VACUUM)
+    """Rms of the velocity [W] and of the acceleration [W^2/s] over the rods."""
+    n = np.maximum(fields[0], VACUUM * constants.dilute)
     v = fields[1] / n
-    rates = eulerian_rate(fields, *constants)
+    rates = eulerian_rate(fields, constants)
     # d(nV)/dt = n dV/dt + V dn/dt
     acceleration = (rates[1] - v * rates[0]) / n
     here = n > 1e-9 * n.max()
     share = fields[0][here] / fields[0][here].sum()
-    return float(np.sqrt(share @ (v[here] ** 2 + acceleration[here] ** 2)))
+    s = constants.size / constants.dilute
+    square = v[here] ** 2 / constants.heat + (acceleration[here] * s / constants.heat) ** 2
+    return float(np.sqrt(share @ square))
 
 
 def _on_grid(
-    chain: Chain, faces: Array, solution: Array, theta: Array, unsteadiness: Array
+    chain: Chain, faces: Array, solution: Array, constants: Constants, unsteadiness: Array
 ) -> FlowFields:
-    """Put the cells' means onto the position grid and the particles, in the chain's units."""
-    s, W, L = chain.thermal_length, chain.free_velocity_width, chain.size
+    """Put the cells' means onto the position grid and the particles."""
+    L = chain.size
     h, middle = faces[1] - faces[0], (faces[1:] + faces[:-1]) / 2
-    farthest = float(s * faces[-1] - chain.anchors[-1])
+    farthest = float(faces[-1] - chain.anchors[-1])
     x = position_grid(chain, max(farthest, thermal_reach(chain)))
-    here = np.clip(x / s, faces[0], faces[-1])
+    here = np.clip(x, faces[0], faces[-1])
     density, label, velocity, variance = np.empty((4, len(solution), x.size))
     rods, rod_velocities = np.empty((2, len(solution), L))
     for i, fields in enumerate(solution):
-        _, v, log_theta = primitive(fields, theta, 2 * chain.radius * L / s).T
+        _, v, log_variance = primitive(fields, constants).T
         count = CubicSpline(faces, np.concatenate([[0.0], np.cumsum(fields[0]) * h]))
-        label[i] = L * count(here)
+        label[i] = count(here)
         # A spline through a shock may overshoot vacuum and close packing.
-        there = np.clip(count(here, 1) * L / s, 0.0, (1 - 1e-9) * chain.close_packed_density)
-        density[i] = np.where(here == x / s, there, 0.0)
-        velocity[i] = W * np.interp(here, middle, v)
-        variance[i] = W**2 * np.interp(here, middle, np.exp(log_theta))
+        there = np.clip(count(here, 1), 0.0, (1 - 1e-9) * chain.close_packed_density)
+        density[i] = np.where(here == x, there, 0.0)
+        velocity[i] = np.interp(here, middle, v)
+        variance[i] = np.interp(here, middle, np.exp(log_variance))
         rods[i] = np.interp(chain.rank + L / 2, np.maximum.accumulate(label[i]), x)
         rod_velocities[i] = np.interp(rods[i], x, velocity[i])
     fields = (density, label, velocity, variance, rods, rod_velocities)

@@ -1,12 +1,12 @@
 r"""Finite volumes for the eulerian frame: fluxes, reconstruction, rates of change.
 
 The equations are those of :mod:`.eulerian_frame`. Fluxes are those of Harten,
-Lax and van Leer between states that are reconstructed linearly in ln p, V and ln theta with the
-minmod limiter. For every value of p = theta n/(1 - B n) the density n is between vacuum and close
+Lax and van Leer between states that are reconstructed linearly in ln p, V and ln W^2 with the
+minmod limiter. For every value of p = rho W^2/(1 - 2 R rho) the density is between vacuum and close
 packing. The scheme is well balanced. The limiter acts on the deviation of ln p from the state at
-rest, where (ln p)' = -f (1 - B n)/theta, and the springs' force is the difference of the pressures
-that it balances at rest. Fluxes and forces therefore cancel at rest. No flux passes the outermost
-faces.
+rest, where (ln p)' = -(F/m)(1 - 2 R rho)/W^2, and the springs' force is the difference of the
+pressures that it balances at rest. Fluxes and forces therefore cancel at rest. No flux passes the
+outermost faces.
 """
 
 from __future__ import annotations
@@ -16,7 +16,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crazybilliards.kinetic.fluids.limiter import minmod
 from crazybilliards.kinetic.fluids.pde_solver import Rate
 from crazybilliards.model import spring
 from crazybilliards.model.kernels import inlined, kernel
@@ -25,36 +24,48 @@ Array = NDArray[np.float64]
 
 _pull = inlined(spring.force)
 
-VACUUM = 1e-13
+VACUUM = 1e-13  # these two in units of ``Constants.dilute``
 _THIN = 1e-10
-_COLDEST = 1e-6
-_LEAST_ROOM = 1e-12  # 1 - B n, at close packing
+_COLDEST = 1e-6  # in units of the free velocity variance
+_LEAST_ROOM = 1e-12  # 1 - 2 R rho, at close packing
 _STEEPEST = 10.0  # change of ln p over a cell at rest
 
 
 class Constants(NamedTuple):
     """The quantities besides the fields that the rates depend on; see ``eulerian_rate``."""
 
-    x: Array
-    spacing: float
-    theta: Array
-    frozen: Array
-    crowd: float  # B: length of all rods in thermal lengths
-    lam: float
-    gamma: float
-    exponent: int
+    x: Array  # the cells' middles [R]
+    spacing: float  # their width [R]
+    variance: Array  # W^2 at the cells [R^2/T^2], where no equation determines it
+    frozen: Array  # <dx> at the cells [R], or empty: labels are carried along
+    size: int  # number of rods
+    rod: float  # 2 R
+    lattice: float  # 2 R + g, the distance of the anchors [R]
+    stiffness: float  # k/m
+    damping: float  # gamma/m [1/T]
+    exponent: int  # of the springs' potential
+    heat: float  # the free W^2 [R^2/T^2]
+    dilute: float  # L/s, the density of rods without a length [1/R]
 
 
 @kernel
-def _hll(left, right, crowd, stiffness):  # type: ignore[no-untyped-def]
-    """Flux of n, nV and E between two states (ln p, V, ln theta)."""
+def minmod(a, b):  # type: ignore[no-untyped-def]
+    """Return the smaller of two slopes of equal sign, 0 if their signs differ: no new extrema."""
+    if a * b <= 0:
+        return 0.0
+    return a if abs(a) < abs(b) else b
+
+
+@kernel
+def _hll(left, right, rod, sound):  # type: ignore[no-untyped-def]
+    """Flux of rho, rho V and E between two states (ln p, V, ln W^2)."""
     p_l, p_r, v_l, v_r = np.exp(left[0]), np.exp(right[0]), left[1], right[1]
     hot_l, hot_r = np.exp(left[2]), np.exp(right[2])
     free_l, free_r = p_l / hot_l, p_r / hot_r
-    n_l, n_r = free_l / (1 + crowd * free_l), free_r / (1 + crowd * free_r)
+    n_l, n_r = free_l / (1 + rod * free_l), free_r / (1 + rod * free_r)
     e_l, e_r = n_l * (v_l**2 + hot_l) / 2, n_r * (v_r**2 + hot_r) / 2
-    c_l = stiffness * np.sqrt(hot_l) * (1 + crowd * free_l)
-    c_r = stiffness * np.sqrt(hot_r) * (1 + crowd * free_r)
+    c_l = sound * np.sqrt(hot_l) * (1 + rod * free_l)
+    c_r = sound * np.sqrt(hot_r) * (1 + rod * free_r)
     slow, fast = min(v_l - c_l, v_r - c_r, 0.0), max(v_l + c_l, v_r + c_r, 0.0)
     a, b, across = fast / (fast - slow), -slow / (fast - slow), slow * fast / (fast - slow)
     return (
@@ -65,50 +76,49 @@ def _hll(left, right, crowd, stiffness):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def primitive(fields, theta, crowd):  # type: ignore[no-untyped-def]
-    """Return ln p, V and ln theta, (M, 3); with an energy, theta follows from it.
+def primitive(fields, constants):  # type: ignore[no-untyped-def]
+    """Return ln p, V and ln W^2, (M, 3); with an energy, W^2 follows from it.
 
-    In a vacuum the quotients would be rounding errors. There V = 0 and theta is the given one.
+    In a vacuum the quotients would be rounding errors. There V = 0 and W^2 is the given one.
     """
+    _, _, variance, _, _, rod, _, _, _, _, heat, dilute = constants
     cells = fields.shape[1]
     state = np.empty((cells, 3))
     for i in range(cells):
-        n = max(fields[0, i], VACUUM)
-        weight = n / (n**2 + _THIN**2)
+        n = max(fields[0, i], VACUUM * dilute)
+        weight = n / (n**2 + (_THIN * dilute) ** 2)
         v = fields[1, i] * weight
-        hot = theta[i]
+        hot = variance[i]
         if fields.shape[0] == 3:
             hot += n * weight * (2 * fields[2, i] / n - v**2 - hot)
-        hot = max(hot, _COLDEST)
-        room = max(1 - crowd * n, _LEAST_ROOM)
+        hot = max(hot, _COLDEST * heat)
+        room = max(1 - rod * n, _LEAST_ROOM)
         state[i, 0], state[i, 1], state[i, 2] = np.log(n * hot / room), v, np.log(hot)
     return state
 
 
 @kernel
-def eulerian_rate(fields, x, spacing, theta, frozen, crowd, lam, gamma, exponent):  # type: ignore[no-untyped-def]
-    """Rates of change of (n, nV) at the given ``theta`` (M,), or of (n, nV, E).
-
-    ``frozen``: u at the cells, (M,), or empty: carried labels. ``crowd``: B.
-    """
+def eulerian_rate(fields, constants):  # type: ignore[no-untyped-def]
+    """Rates of change of (rho, rho V) or (rho, rho V, E), (2 or 3, M); see ``Constants``."""
     number, cells = fields.shape
-    state = primitive(fields, theta, crowd)
-    stiffness = np.sqrt(3.0) if number == 3 else 1.0
+    x, spacing, _, frozen, size, rod, lattice, stiffness, damping, exponent, heat, _ = constants
+    state = primitive(fields, constants)
+    sound = np.sqrt(3.0) if number == 3 else 1.0
     rates, rest = np.zeros_like(fields), np.zeros((cells, 3))
-    label = -0.5
+    label = -size / 2  # N - L/2
     for i in range(cells):
         n, momentum = fields[0, i], fields[1, i]
         label += 0.5 * n * spacing
-        u = frozen[i] if frozen.size > 0 else x[i] - (crowd + lam) * label
+        u = frozen[i] if frozen.size > 0 else x[i] - lattice * label
         label += 0.5 * n * spacing
-        force = _pull(u, exponent)
+        force = stiffness * _pull(u, exponent)
         # The change of ln p over a cell at rest; these pressures balance the force on the cell.
-        change = -force * max(1 - crowd * n, _LEAST_ROOM) * spacing / np.exp(state[i, 2])
+        change = -force * max(1 - rod * n, _LEAST_ROOM) * spacing / np.exp(state[i, 2])
         rest[i, 0] = min(max(change, -_STEEPEST), _STEEPEST)
         push = 2 * np.exp(state[i, 0]) * np.sinh(rest[i, 0] / 2) / spacing
-        rates[1, i] += push - gamma * momentum
+        rates[1, i] += push - damping * momentum
         if number == 3:
-            rates[2, i] += state[i, 1] * push - gamma * (2 * fields[2, i] - n)
+            rates[2, i] += state[i, 1] * push - damping * (2 * fields[2, i] - n * heat)
     left, right, slope, following = np.zeros((4, 3))
     following[:] = rest[0]
     for i in range(cells - 1):
@@ -122,7 +132,7 @@ def eulerian_rate(fields, x, spacing, theta, frozen, crowd, lam, gamma, exponent
                 following[j] += minmod(before, after)
             left[j] = state[i, j] + slope[j] / 2
             right[j] = state[i + 1, j] - following[j] / 2
-        flux = _hll(left, right, crowd, stiffness)
+        flux = _hll(left, right, rod, sound)
         for j in range(number):
             rates[j, i] -= flux[j] / spacing
             rates[j, i + 1] += flux[j] / spacing
@@ -131,9 +141,8 @@ def eulerian_rate(fields, x, spacing, theta, frozen, crowd, lam, gamma, exponent
 
 def make_rate(constants: Constants) -> Rate:
     """Return the rates of change as a function that py-pde can compile its steps around."""
-    x, spacing, theta, frozen, crowd, lam, gamma, exponent = constants
 
     def rate(values, time=0.0):  # type: ignore[no-untyped-def]
-        return eulerian_rate(values, x, spacing, theta, frozen, crowd, lam, gamma, exponent)
+        return eulerian_rate(values, constants)
 
     return rate

@@ -35,9 +35,9 @@ from numpy.typing import NDArray
 from scipy.integrate import cumulative_trapezoid
 from scipy.interpolate import PchipInterpolator
 
+from crazybilliards.kinetic.fluids.finite_volumes import minmod
 from crazybilliards.kinetic.fluids.flow_fields import FlowFields
-from crazybilliards.kinetic.fluids.limiter import minmod
-from crazybilliards.kinetic.fluids.pde_solver import solve
+from crazybilliards.kinetic.fluids.pde_solver import make_state, solve
 from crazybilliards.kinetic.starts import Start
 from crazybilliards.kinetic.statics.label_closure import Stationary, stationary
 from crazybilliards.model import Chain, spring
@@ -152,7 +152,10 @@ def solve_on_labels(
 
     solution = solve(
         lambda values, time: interval * rate(values),
-        _starting_fields(chain, cells, state, start, thermal=thermal),
+        # The cells are not equally wide. For py-pde they have numbers and not positions.
+        make_state(
+            _starting_fields(chain, cells, state, start, thermal=thermal), (0, cells.labels.size)
+        ),
         np.arange(float(times.size)),
         progress=progress,
         solver="scipy",

@@ -44,9 +44,15 @@ class Flow(PDEBase):
         return result
 
 
+def make_state(fields: Mapping[str, Array], ends: tuple[float, float]) -> FieldCollection:
+    """Return fields, by name, on a uniform grid between two ends, as py-pde knows them."""
+    grid = CartesianGrid([ends], len(next(iter(fields.values()))))
+    return FieldCollection([ScalarField(grid, fields[name], label=name) for name in fields])
+
+
 def solve(
     rate: Rate,
-    fields: Mapping[str, Array],
+    state: FieldCollection,
     times: Array,
     *,
     progress: bool,
@@ -56,14 +62,11 @@ def solve(
 
     py-pde ends a run at Ctrl-C without raising. The result then has the first times only.
 
-    ``fields`` are the initial values by name. The cells have no positions for py-pde, only
-    numbers. ``solver`` are the arguments of py-pde: ``solver``, ``backend``, ``dt`` and others.
+    ``state`` are the initial values. ``solver`` are the arguments of py-pde: ``solver``,
+    ``backend``, ``dt`` and others.
     Without ``dt`` the unit of time must be about the time between outputs, because py-pde then
     takes times that differ by 1e-8 for the same.
     """
-    cells = len(next(iter(fields.values())))
-    grid = CartesianGrid([(0, cells)], cells)
-    scalars = [ScalarField(grid, values, label=name) for name, values in fields.items()]
     storage = MemoryStorage()
     trackers: list[Any] = [storage.tracker(list(times))]
     if progress and sys.stderr is not None and sys.stderr.isatty():
@@ -71,7 +74,7 @@ def solve(
     flow = Flow(rate)
     try:
         flow.solve(
-            FieldCollection(scalars),
+            state,
             t_range=(float(times[0]), float(times[-1])),
             tracker=trackers,
             **solver,

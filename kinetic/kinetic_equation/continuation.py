@@ -3,17 +3,18 @@ r"""Continuation of the steady state of the kinetic equation from e = 1, on an a
 At e = 1 the state is known. Each step changes the drag lambda L by a bounded factor. A step that
 does not converge, or leaves the physical branch, is halved. Above the critical size the energy
 grows without bound as e approaches its critical value. Then no step is small enough, and the error
-states this reason.
+states this reason. At the end the mesh is refined until the widths no longer change.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from crazybilliards.kinetic.kinetic_equation.order_statistics import Rods
 from crazybilliards.kinetic.kinetic_equation.velocity_moments import fitting_box
 from crazybilliards.kinetic.kinetic_equation.velocity_space import Box, VelocitySpace
 from crazybilliards.kinetic.kinetic_equation.weak_form import (
@@ -25,9 +26,15 @@ from crazybilliards.kinetic.kinetic_equation.weak_form import (
 )
 from crazybilliards.kinetic.statics.label_closure import stationary
 from crazybilliards.model import Chain
+from crazybilliards.model.checks import check_integer, check_real
+from crazybilliards.model.memory import require_memory
 
 Array = NDArray[np.float64]
 
+CELLS = 22  # of the mesh on which a state is found
+_FINER = 1.5
+_LARGEST_MESH = 150
+_BYTES_PER_CELL = 4e4
 _ROUGHLY = 1e-4  # tolerance of the intermediate states
 _LARGEST_CHANGE = 2.2  # of the energy, in one step
 _NEGATIVE = 0.03
@@ -48,6 +55,15 @@ class State:
     def energy(self) -> float:
         """Mean of v^2, 1 at restitution 1."""
         return float(self.space.whole_energy @ self.f)
+
+
+def check_mesh(tolerance: float, cells: int | None) -> None:
+    """Raise for a tolerance or a number of cells that the theories do not take."""
+    check_real("tolerance", tolerance, positive=True)
+    if cells is not None:
+        check_integer("cells", cells, least=4, most=_LARGEST_MESH)
+    # Without ``cells`` the mesh is refined at least once, to compare two meshes.
+    _require_mesh(max(CELLS, cells or round(_FINER * CELLS)))
 
 
 def free_units(chain: Chain) -> Units:
@@ -124,6 +140,43 @@ def fitted(state: State) -> State:
 def refined(state: State, cells: int) -> State:
     """Return the state on this number of cells, converged to full accuracy."""
     return solved(_moved(state, VelocitySpace(state.space.box, cells)))
+
+
+def on_fine_mesh(
+    state: State,
+    rods_of: Callable[[State], Rods],
+    tolerance: float,
+    cells: int | None,
+    most_cells: int,
+) -> tuple[State, Rods, float]:
+    """Refine the mesh until no velocity width changes by more than ``tolerance``, relatively.
+
+    Returns the state, its rods, and the largest change in the last refinement; with ``cells`` those
+    on this mesh, and NaN. ValueError if the tolerance needs a mesh of more than ``most_cells``.
+    """
+    if cells is not None:
+        state = refined(state, cells)
+        return state, rods_of(state), np.nan
+    rods = rods_of(state)
+    while True:
+        more = round(_FINER * state.space.cells)
+        _require_mesh(more)
+        state, before = refined(state, more), rods
+        rods = rods_of(state)
+        change = np.sqrt(before.velocity_variance / rods.velocity_variance) - 1
+        error = float(np.abs(change).max())
+        if error < tolerance:
+            return state, rods, error
+        if more * _FINER > most_cells:
+            raise ValueError(
+                f"the kinetic equation's widths are accurate to {error:.1e} only, not to "
+                f"tolerance={tolerance:g}; cells={more} in Python or crazybilliards theory "
+                f"--cells {more} accepts that"
+            )
+
+
+def _require_mesh(cells: int) -> None:
+    require_memory(f"cells={cells}", _BYTES_PER_CELL * cells**2)
 
 
 def _moved(state: State, space: VelocitySpace) -> State:

@@ -50,7 +50,7 @@ class Points(NamedTuple):
 
 
 class Rods(NamedTuple):
-    """Moments of each rod, shape (L,), in the common vocabulary's units."""
+    """Moments of each rod, shape (L,), in units that the function that returns them names."""
 
     position: Array
     position_variance: Array
@@ -105,7 +105,7 @@ def points(size: int, profiles: Moments) -> Points:
 
 
 def rods(chain: Chain, profiles: Moments, length: float, velocity: float) -> Rods:
-    """Return the moments of the rods of a steady state, with the centre of mass corrected."""
+    """Return the moments [R, R/T] of the rods of a steady state, the centre of mass corrected."""
     L = chain.size
     profiles = mirrored(profiles)
     of = points(L, profiles)

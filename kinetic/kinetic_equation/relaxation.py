@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csc_matrix
 from tqdm import tqdm
 
-from crazybilliards.kinetic.kinetic_equation.accuracy import expected_transient_error
+from crazybilliards.kinetic.accuracy import expected_transient_error
 from crazybilliards.kinetic.kinetic_equation.continuation import free_units
 from crazybilliards.kinetic.kinetic_equation.relaxation_result import (
     in_vocabulary,
@@ -143,9 +143,7 @@ def relax_phase_space(
     """
     times = output_times(duration, every, _OUTPUTS)
     count, interval = times.size - 1, times[1]
-    cells = check_integer("cells", cells, least=4)
-    if cells > _LARGEST_MESH:
-        raise ValueError(f"cells must be at most {_LARGEST_MESH}, got {cells}")
+    cells = check_integer("cells", cells, least=4, most=_LARGEST_MESH)
     bytes_per_cell = _BYTES_PER_CELL + _BYTES_PER_OUTPUT * float(count)
     require_memory(f"{count} outputs on cells={cells}", bytes_per_cell * cells**2)
     require_chain(chain, "the kinetic equation in time")

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import RectBivariateSpline
 
 from crazybilliards.kinetic.kinetic_equation.order_statistics import points
-from crazybilliards.kinetic.kinetic_equation.profiles import density_and_label
+from crazybilliards.kinetic.kinetic_equation.stationary_result import density_and_label
 from crazybilliards.kinetic.kinetic_equation.velocity_moments import moments
 from crazybilliards.kinetic.kinetic_equation.velocity_space import VelocitySpace
 from crazybilliards.kinetic.kinetic_equation.weak_form import Units

@@ -20,33 +20,27 @@ from typing import Literal
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
-from crazybilliards.kinetic.kinetic_equation.accuracy import expected_accuracy
+from crazybilliards.kinetic.accuracy import expected_accuracy
 from crazybilliards.kinetic.kinetic_equation.continuation import (
+    CELLS,
     State,
+    check_mesh,
     continued,
     elastic_state,
     free_units,
+    on_fine_mesh,
     refined,
 )
 from crazybilliards.kinetic.kinetic_equation.order_statistics import Rods, rods
-from crazybilliards.kinetic.kinetic_equation.profiles import profiles_over_x
+from crazybilliards.kinetic.kinetic_equation.stationary_result import in_vocabulary
 from crazybilliards.kinetic.kinetic_equation.velocity_moments import moments
 from crazybilliards.kinetic.kinetic_equation.weak_form import NotSolvedError, coefficients
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain
-from crazybilliards.model.checks import check_integer, check_real
-from crazybilliards.model.memory import require_memory
-from crazybilliards.model.vocabulary import result
+from crazybilliards.model.checks import check_integer
 
-Array = NDArray[np.float64]
-
-_CELLS = 22
-_FINER = 1.5
 _MOST_CELLS = 60  # of a mesh that is not asked for: 22, 33 and 50 cells are tried
-_LARGEST_MESH = 150
-_BYTES_PER_CELL = 4e4
 _MOST_RODS = 100_000
 # Where the equation was solved at e = 0.95 and 100 rods; s, W: a free rod's widths.
 _SOLVED_DAMPINGS = 0.01, 25.0
@@ -121,27 +115,10 @@ def _solve(
     chain: Chain, order: Literal[1, 2], tolerance: float, cells: int | None
 ) -> tuple[State, Rods, float]:
     """Return the state on a mesh that is fine enough, its rods, and the error of the mesh."""
-    state = continued(chain, elastic_state(chain, order, _CELLS))
-    state = refined(state, cells or _CELLS)
-    of_rods = _rods(state)
-    if cells is not None:
-        return state, of_rods, np.nan
-    while True:
-        more = round(_FINER * state.space.cells)
-        _require_mesh(more)
-        finer = refined(state, more)
-        before, state, of_rods = of_rods, finer, _rods(finer)
-        error = float(
-            np.abs(np.sqrt(before.velocity_variance / of_rods.velocity_variance) - 1).max()
-        )
-        if error < tolerance:
-            return state, of_rods, error
-        if state.space.cells * _FINER > _MOST_CELLS:
-            raise ValueError(
-                f"the kinetic equation's widths are accurate to {error:.1e} only, not to "
-                f"tolerance={tolerance:g}; phase_space(..., cells={state.space.cells}) or "
-                f"crazybilliards theory --cells {state.space.cells} accepts that"
-            )
+    state = continued(chain, elastic_state(chain, order, CELLS))
+    if cells is None:
+        state = refined(state, CELLS)
+    return on_fine_mesh(state, _rods, tolerance, cells, _MOST_CELLS)
 
 
 def _out_of_range(chain: Chain, order: Literal[1, 2]) -> str:
@@ -163,11 +140,7 @@ def check_phase_space(
     chain: Chain, *, order: Literal[1, 2] | None, tolerance: float, cells: int | None
 ) -> Literal[1, 2]:
     """Raise for arguments that ``phase_space`` does not accept; return the order."""
-    check_real("tolerance", tolerance, positive=True)
-    if cells is not None:
-        check_integer("cells", cells, least=4, most=_LARGEST_MESH)
-    # The state is found on 22 cells and refined at least once, to compare two meshes.
-    _require_mesh(max(_CELLS, cells or round(_FINER * _CELLS)))
+    check_mesh(tolerance, cells)
     if chain.size > _MOST_RODS:
         raise ValueError(f"size must be at most {_MOST_RODS}, got {chain.size}")
     if order is not None:
@@ -176,44 +149,26 @@ def check_phase_space(
     return order or (2 if chain.restitution <= 1 else 1)
 
 
-def _require_mesh(cells: int) -> None:
-    require_memory(f"cells={cells}", _BYTES_PER_CELL * cells**2)
-
-
 def _rods(state: State) -> Rods:
     return rods(state.chain, moments(state.space, state.f), *free_units(state.chain))
 
 
 def _assemble(state: State, of_rods: Rods, mesh_error: float) -> xr.Dataset:
     """Put the solution into the common vocabulary."""
-    chain, (length, velocity) = state.chain, free_units(state.chain)
-    y, v, f = state.space.sampled(state.f)
-    fields = profiles_over_x(state)
-    # With a gap each rod has its own anchor, and rods are not drawn from one distribution.
-    widths = (
-        {"displacement_width": ("particle", np.sqrt(of_rods.position_variance))}
-        if chain.lattice_gap == 0
-        else {}
-    )
-    dataset = result(
-        chain,
-        {
-            "phase_space_density": (("y", "velocity"), chain.size / (length * velocity) * f),
-            **{name: ("x", values) for name, values in fields.items() if name != "x"},
-            "velocity_width": ("particle", np.sqrt(of_rods.velocity_variance)),
-            "mean_displacement": ("particle", of_rods.position - chain.reduced_anchors),
-            **widths,
-        },
-        coordinates={"x": fields["x"], "y": length * y, "velocity": velocity * v},
-        source="theory",
-        method={"theory": "kinetic equation", "order": state.order, "cells": state.space.cells},
-        residual=state.residual,
-    )
-    expected = expected_accuracy(chain)
-    dataset.attrs |= {
-        "mesh_error": mesh_error,
-        "cells": state.space.cells,
-        "model_error": expected.inner,
-        "border_error": expected.border,
+    chain = state.chain
+    variables = {
+        "velocity_width": ("particle", np.sqrt(of_rods.velocity_variance)),
+        "mean_displacement": ("particle", of_rods.position - chain.reduced_anchors),
     }
-    return dataset
+    # With a gap each rod has its own anchor, and rods are not drawn from one distribution.
+    if chain.lattice_gap == 0:
+        variables["displacement_width"] = ("particle", np.sqrt(of_rods.position_variance))
+    return in_vocabulary(
+        state,
+        variables,
+        coordinates={},
+        method={"theory": "kinetic equation", "order": state.order},
+        residual=state.residual,
+        mesh_error=mesh_error,
+        expected=expected_accuracy(chain),
+    )

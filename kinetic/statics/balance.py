@@ -7,26 +7,31 @@ the gradient of the pressure rho W^2/(1 - 2 R rho) of hard rods against the spri
 
 with the velocity variance W^2 = A^2/(2 m gamma) of the elastic chain and the mean displacement
 <dx> from their anchors of the rods at x. For a non-linear spring k <dx> becomes F(<dx>), which
-neglects how much the displacements at one place differ. In the density of the reduced coordinate,
+ignores the spread of the displacements at one place. In the density of the reduced coordinate,
 rho_y = rho/(1 - 2 R rho), it reads
 
     (ln rho_y)' = -(F(<dx>) / (m W^2)) / (1 + 2 R rho_y),                                (**)
 
 which stays accurate where 1 - 2 R rho is too small to be stored.
 
-**Closures.** *Prescribed* displacement, as in the paper: <dx>(x) is measured and fitted (figure
-``fig:atan``); see :mod:`crazybilliards.kinetic.statics.wright_closure`. *By labels*, without an
-input: the N-th rod from the left belongs to the N-th anchor, so <dx> = x - (2R + g)(N - L/2) with
-N' = rho; see :mod:`crazybilliards.kinetic.statics.label_closure`.
+**Closures.** *By labels*, the default, without an input: the N-th rod from the left belongs to the
+N-th anchor, so <dx> = x - (2R + g)(N - L/2) with N' = rho. It is a boundary-value problem for
+``scipy.integrate.solve_bvp`` in :mod:`crazybilliards.kinetic.statics.label_closure`. *Prescribed*
+displacement, as in the paper: <dx>(x) is measured and fitted (figure ``fig:atan``). (**) then has a
+solution with ``scipy.special.wrightomega``, and ``brentq`` finds its constant, which gives L rods;
+see :mod:`crazybilliards.kinetic.statics.wright_closure`.
 
 **Temperature.** With a prescribed W^2(x), for example one measured for e != 1, the balance is
 
     (1/rho) d/dx [rho W^2/(1 - 2 R rho)] = -F(<dx>)/m,                                  (***)
 
 the paper's ``modeleq`` at V = 0. It is closed by labels in
-:mod:`crazybilliards.kinetic.statics.variable_temperature`.
+:mod:`crazybilliards.kinetic.statics.variable_temperature` (scikit-fem), and by a prescribed
+displacement in :mod:`crazybilliards.kinetic.statics.prescribed_closure` (``solve_ivp``).
 
-**Boundary conditions.** rho -> 0 on both sides, with L rods in between: N(-inf) = 0, N(+inf) = L.
+**Boundary conditions.** The paper gives none. By labels there are L rods, and the density falls to
+zero on both sides: N(-inf) = 0, N(+inf) = L. With a prescribed displacement there are L rods in the
+interval of its profile. An arctanh ends at a place where the density is small but not zero.
 """
 
 from __future__ import annotations

@@ -11,7 +11,8 @@ steps between successive closings has the tail P(>n) ~ C n^(-1/4), and
 is the number of steps by which these times are longer than in the limit. There are ~ dt^(-1/4)
 closings per time, so the delay causes an error ~ dt^(3/4) of the velocity widths. D vanishes if the
 relative kick of a closed contact is ``CLOSED_KICK`` times as strong. The number follows from a
-single contact and holds for every chain at e = 0. ``benchmarks/closed_contact.py`` computes it.
+single contact and holds for every chain at e = 0. ``benchmarks/accuracy/closed_contact.py``
+computes it.
 
 The same factor is taken up to the critical restitution exp(-pi/sqrt 3) = 0.163 (Cornell, Swift and
 Bray, Phys. Rev. Lett. 81, 1142, 1998), below which a contact still collapses onto the wall. D was

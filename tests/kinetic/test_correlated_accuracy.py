@@ -5,7 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from crazybilliards.kinetic.correlations.accuracy import expected_accuracy
+from crazybilliards.kinetic.accuracy import expected_correlated_accuracy
+from crazybilliards.model import Chain
 
 TABLES = Path(__file__).parents[2] / "docs" / "tables"
 ROUNDED = 5e-4
@@ -28,10 +29,14 @@ def rows():
     ]
 
 
+def accuracy(e, size):
+    return expected_correlated_accuracy(Chain(size=size, restitution=e))
+
+
 def test_every_chain_of_the_tables_is_within_the_errors():
     assert len(rows()) == 43
     for size, e, inner, border in rows():
-        expected = expected_accuracy(e, size)
+        expected = accuracy(e, size)
         assert inner <= expected.inner + ROUNDED, (size, e)
         assert border <= expected.border + ROUNDED, (size, e)
 
@@ -40,12 +45,12 @@ def test_every_chain_of_the_tables_is_within_the_errors():
 def test_no_error_is_larger_than_that_of_some_chain(long):
     of_size = [row for row in rows() if (row[0] > 300) == long]
     for e in {row[1] for row in of_size}:
-        stated = expected_accuracy(e, of_size[0][0])
+        stated = accuracy(e, of_size[0][0])
         assert stated.inner <= max(row[2] for row in of_size if row[1] == e) + ROUNDED
         assert stated.border <= max(row[3] for row in of_size if row[1] == e) + ROUNDED
 
 
 def test_between_measured_restitutions_the_larger_error_counts():
-    assert expected_accuracy(0.6, 100) == expected_accuracy(0.5, 100)
-    assert expected_accuracy(0.96, 600) == (0.019, 0.011)
-    assert expected_accuracy(0.1, 1000).inner == 0.226
+    assert accuracy(0.6, 100) == accuracy(0.5, 100)
+    assert accuracy(0.96, 600) == (0.019, 0.011)
+    assert accuracy(0.1, 1000).inner == 0.226

@@ -1,6 +1,6 @@
 """No theory ignores a parameter of the chain silently, and no simulation does either.
 
-For every theory and every field of ``Chain``: with that field changed the result changes, or the
+For every solver and every field of ``Chain``: with that field changed the result changes, or the
 call is refused with a ValueError, or the pair stands in ``MEANINGLESS`` with the reason. The fields
 are read from the class, and another value of each follows from its declaration.
 """
@@ -10,115 +10,46 @@ from functools import cache
 
 import numpy as np
 import pytest
+from every_solver import SOLVERS, Given
 from other_values import other_values
 from scipy.interpolate import CubicSpline
 
-from crazybilliards.comparison.theories import THEORIES as STATIONARY
-from crazybilliards.kinetic import (
-    breathing_cloud,
-    critical_damping,
-    critical_restitution,
-    critical_size,
-    displaced,
-    equilibrium_states,
-    force_balance,
-    hydrodynamics,
-    phase_space,
-    relax_phase_space,
-)
+import crazybilliards.kinetic
+from crazybilliards.kinetic import displaced
 from crazybilliards.kinetic.kinetic_equation import criticality
 from crazybilliards.model import Chain
 from crazybilliards.model.checks import check_real
-from crazybilliards.particles import simulate, simulate_limit
 
 CHAIN = Chain(size=4)
-DRIVEN = Chain(size=4, restitution=1.1)
-LONGER = Chain(size=10)
-# A start and profiles that do not depend on the chain, so that they cannot hide what it ignores.
 START = displaced(CHAIN, 0.3)[["density", "label", "flow_velocity", "velocity_variance"]]
-START = START.drop_attrs()
-
-
-def variance(x):
-    return 0.1 + 0.02 * np.exp(-(np.asarray(x) ** 2))
-
-
-def displacement(x):
-    return 0.3 * np.asarray(x)
-
-
+# Nothing that is given depends on the chain, so that it cannot hide what a solver ignores.
+GIVEN = Given(
+    start=START.drop_attrs(),
+    variance=lambda x: 0.1 + 0.02 * np.exp(-(np.asarray(x) ** 2)),
+    number=0.1,
+    times={"duration": 1.0, "every": 1.0},
+    fluid={"cells": 160},
+    run={"duration": 70.0, "time_step": 0.1, "every": 1.0},
+)
 # Of the largest value: what meshes that depend on the chain may change.
 _SAME = 5e-3
 X = np.linspace(-5, 5, 41)
 
-# For every field a value that CHAIN and DRIVEN do not have.
+# For every field a value that no chain here has.
 # Few rods, a restitution that driven chains can take too, an amplitude for which cells of the same
 # number in thermal lengths resolve the same.
 OTHER = other_values(size=5, restitution=1.2, amplitude=1.3)
 
-
-def flow(frame, velocity_variance=None, displacement=None):
-    def solve(chain):
-        return hydrodynamics(
-            chain,
-            START,
-            1.0,
-            every=1.0,
-            frame=frame,
-            velocity_variance=velocity_variance,
-            displacement=displacement,
-            cells=160,
-            progress=False,
-        )
-
-    return solve
-
-
-# Every stationary theory that there is, then other calls.
-THEORIES = {name: theory.solve for name, theory in STATIONARY.items()} | {
-    "equilibrium_states": lambda chain: equilibrium_states(chain, 2),
-    "force_balance, displacement": lambda chain: force_balance(chain, displacement),
-    "force_balance, variance": lambda chain: force_balance(chain, velocity_variance=variance),
-    "force_balance, number": lambda chain: force_balance(chain, velocity_variance=0.1),
-    "force_balance, both": lambda chain: force_balance(chain, displacement, variance),
-    "label isothermal": flow("label"),
-    "label evolving": flow("label", "evolving"),
-    "label number": flow("label", 0.1),
-    "eulerian isothermal": flow("eulerian"),
-    "eulerian evolving": flow("eulerian", "evolving"),
-    "eulerian number": flow("eulerian", 0.1),
-    "eulerian variance": flow("eulerian", variance),
-    "eulerian displacement": flow("eulerian", None, displacement),
-    "breathing_cloud": lambda chain: breathing_cloud(chain, 1.0, every=1.0, stretch=0.5),
-    "phase_space": lambda chain: phase_space(chain, cells=8),
-    "relax_phase_space": lambda chain: relax_phase_space(
-        chain, START, 0.5, every=0.5, cells=6, progress=False
-    ),
-    "critical_size": critical_size,
-    "critical_restitution": critical_restitution,
-    "critical_damping": critical_damping,
-    "simulate": lambda chain: simulate(
-        chain,
-        duration=70.0,
-        warmup=1.0,
-        time_step=0.1,
-        every=1.0,
-        observe=("widths", "density"),
-        progress=False,
-    ),
-    "simulate_limit": lambda chain: simulate_limit(
-        chain, accuracy=0.1, warmup=1.0, observe=("widths", "density"), progress=False
-    ),
-}
 
 _GIVEN = "W^2 is given, and a steady state depends on noise and damping through it alone"
 _GIVEN_NOISE = "W^2 is given, and it is all that the noise does"
 _GIVEN_LOSS = "W^2 is given, and it is all that the restitution does"
 _GIVEN_ANCHORS = "the displacement is given, and with it where the anchors are"
 _SCALE_FREE = "without noise the equation has no scale of its own, see critical_size"
+_STARTS = "it is the state at restitution 1 that is moved"
 _POINTS = "rods are points in the reduced coordinate, and only the displacements are given out"
 
-# (theories, field): why the result cannot depend on the field.
+# (solver, field): why the result cannot depend on the field.
 MEANINGLESS = {
     **{
         (f"force_balance, {kind}", name): reason
@@ -133,19 +64,24 @@ MEANINGLESS = {
     ("force_balance, displacement", "mass"): "the density depends on m W^2 = A^2/(2 gamma) alone",
     ("force_balance, both", "gap"): _GIVEN_ANCHORS,
     **{
-        (theory, name): reason
-        for theory in ("label number", "eulerian number", "eulerian variance")
+        (solver, name): reason
+        for solver in (
+            "hydrodynamics, label, number",
+            "hydrodynamics, eulerian, number",
+            "hydrodynamics, eulerian, variance",
+        )
         for name, reason in {"restitution": _GIVEN_LOSS, "amplitude": _GIVEN_NOISE}.items()
     },
     **{
-        (theory, name): _SCALE_FREE
-        for theory in ("critical_size", "critical_restitution", "critical_damping")
+        (solver, name): _SCALE_FREE
+        for solver in ("critical_size", "critical_restitution", "critical_damping")
         for name in ("amplitude", "gap", "radius")
     },
     ("critical_size", "size"): "it is what is computed",
     ("critical_restitution", "restitution"): "it is what is computed",
     ("critical_damping", "damping"): "it is what is computed",
     ("breathing_cloud", "radius"): _POINTS,
+    **{(start, "restitution"): _STARTS for start in ("displaced", "compressed", "two_clumps")},
 }
 
 
@@ -161,10 +97,10 @@ def drag(damping):
 
 
 @cache
-def solved(theory, chain):
-    """Return the numbers that a theory gives, or None where it refuses the chain."""
+def solved(solver, chain):
+    """Return the numbers that a solver gives, or None where it refuses the chain."""
     try:
-        result = THEORIES[theory](chain)
+        result = SOLVERS[solver].solve(chain, GIVEN)
     except ValueError:
         return None
     if isinstance(result, tuple):
@@ -184,10 +120,8 @@ def on_common_positions(values):
     return np.where(np.abs(X) < values.x.max().item(), spline(X).T, 0.0)
 
 
-def start_chain(theory):
-    if theory.startswith("correlated"):
-        return LONGER
-    return DRIVEN if theory.startswith("critical") else CHAIN
+def start_chain(solver):
+    return CHAIN.replace(**SOLVERS[solver].needs)
 
 
 def differ(one, other):
@@ -198,21 +132,26 @@ def differ(one, other):
     )
 
 
+def test_every_public_solver_is_called():
+    names = {name.split(",")[0] for name in SOLVERS}
+    assert names == {*crazybilliards.kinetic.__all__, "simulate", "simulate_limit"}
+
+
 def test_every_field_has_another_value():
-    for each in fields(Chain):
-        for chain in (CHAIN, DRIVEN, LONGER):
+    for chain in {start_chain(solver) for solver in SOLVERS}:
+        for each in fields(Chain):
             assert getattr(chain, each.name) != OTHER[each.name]
             chain.replace(**{each.name: OTHER[each.name]})
 
 
 @pytest.mark.compiled
 @pytest.mark.parametrize("name", [field.name for field in fields(Chain)])
-@pytest.mark.parametrize("theory", THEORIES)
-def test_a_parameter_changes_the_result_or_is_refused(theory, name):
-    chain = start_chain(theory)
-    before, after = (solved(theory, each) for each in (chain, chain.replace(**{name: OTHER[name]})))
-    assert before is not None, "the theory must take the chain it starts from"
-    if (theory, name) in MEANINGLESS:
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_a_parameter_changes_the_result_or_is_refused(solver, name):
+    chain = start_chain(solver)
+    before, after = (solved(solver, each) for each in (chain, chain.replace(**{name: OTHER[name]})))
+    assert before is not None, "the solver must take the chain it starts from"
+    if (solver, name) in MEANINGLESS:
         assert after is not None
         assert not differ(before, after), "no longer meaningless: take it off the list"
     else:
@@ -226,8 +165,12 @@ class Tilted(Chain):
     tilt: float = field(default=0.0, metadata={"check": check_real})
 
 
-@pytest.mark.parametrize("theory", [theory for theory in THEORIES if theory != "simulate"])
-def test_a_parameter_that_no_theory_knows_is_refused(theory):
-    parameters = start_chain(theory).parameters()
+# A law of collisions or a driving of one's own may know it.
+SIMULATIONS = [name for name in SOLVERS if name.split(",")[0] == "simulate"]
+
+
+@pytest.mark.parametrize("solver", [name for name in SOLVERS if name not in SIMULATIONS])
+def test_a_parameter_that_no_theory_knows_is_refused(solver):
+    parameters = start_chain(solver).parameters()
     with pytest.raises(ValueError, match="does not know the chain's tilt: it must be 0"):
-        THEORIES[theory](Tilted(**parameters, tilt=1.0))
+        SOLVERS[solver].solve(Tilted(**parameters, tilt=1.0), GIVEN)

@@ -15,7 +15,7 @@ from crazybilliards.kinetic import (
     two_clumps,
 )
 from crazybilliards.kinetic.exact.breathing import breathing_cloud
-from crazybilliards.kinetic.fluids.pde_solver import solve
+from crazybilliards.kinetic.fluids.pde_solver import make_state, solve
 from crazybilliards.model import Chain
 
 QUIET = {"progress": False}
@@ -184,11 +184,38 @@ def test_the_shortest_duration_is_not_taken_for_ctrl_c(frame, duration):
     np.testing.assert_allclose(flow.mean_velocity[-1].mean(), speed, rtol=0.02)
 
 
+@pytest.mark.compiled
+@pytest.mark.parametrize("fluid", [None, "evolving"])
+def test_trackers_of_py_pde_see_positions_and_named_fields(fluid, monkeypatch):
+    """In the units of the chain: the fields add up to the rods and to their moments."""
+    chain, seen = Chain(size=20, amplitude=5), []
+    append = MemoryStorage.append
+
+    def watched(storage, field, time):
+        seen.append((time, field.copy()))
+        append(storage, field, time)
+
+    monkeypatch.setattr(MemoryStorage, "append", watched)
+    arguments = {"every": 2.0, "frame": "eulerian", "velocity_variance": fluid} | QUIET
+    flow = hydrodynamics(chain, displaced(chain, 3.0), 4.0, **arguments)
+    np.testing.assert_allclose([time for time, _ in seen], flow.time)
+    for (_, state), width, rods in zip(seen, flow.cloud_width, flow.mean_velocity, strict=True):
+        assert state.labels == ["rho", "rho V", "E"][: 2 if fluid is None else 3]
+        (left, right), *_ = state.grid.axes_bounds
+        assert left == -right
+        assert right > chain.anchors[-1] + 9 * width
+        assert state["rho"].integral == pytest.approx(chain.size)
+        assert state["rho V"].integral == pytest.approx(float(rods.sum()), abs=0.02)
+    x = seen[0][1].grid.axes_coords[0]
+    there = np.interp(x, flow.x, flow.density[0])
+    np.testing.assert_allclose(seen[0][1]["rho"].data, there, atol=2e-3)
+
+
 def test_an_output_that_py_pde_drops_is_an_error():
     with pytest.raises(RuntimeError, match="outputs of 11"):
         solve(
             lambda values, time: -values,
-            {"field": np.ones(8)},
+            make_state({"field": np.ones(8)}, (0, 8)),
             1e-12 * np.arange(11.0),
             progress=False,
             solver="scipy",

@@ -14,10 +14,7 @@ from crazybilliards.kinetic import (
     phase_space,
     relax_phase_space,
 )
-from crazybilliards.kinetic.kinetic_equation.accuracy import (
-    expected_accuracy,
-    expected_transient_error,
-)
+from crazybilliards.kinetic.accuracy import expected_accuracy, expected_transient_error
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
 

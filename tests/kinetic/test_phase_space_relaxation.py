@@ -145,7 +145,7 @@ def test_interrupt_keeps_what_there_is(monkeypatch):
         ({"every": 99.0}, "every"),
         ({"every": 1e-9}, "every"),
         ({"cells": 1}, "cells"),
-        ({"cells": 10**6}, "cells must be at most"),
+        ({"cells": 10**6}, "cells must be an integer from 4 to 80"),
         ({"time_step": -1.0}, "time_step"),
     ],
 )

@@ -194,7 +194,7 @@ def test_limits_are_drawn(number):
 
 def test_the_page_of_claims_says_which_number_is_a_limit():
     reproduced = [
-        Reproduced(figure, {"png": b""}, right_claims(number), [], 0.0)
+        Reproduced(figure, {"png": b""}, right_claims(number), {}, [], 0.0)
         for number, figure in WITH_LIMITS.items()
     ]
     marked = [claim for each in reproduced for claim in each.claims if claim.in_limit]
@@ -208,7 +208,7 @@ def test_the_page_of_claims_says_which_number_is_a_limit():
     assert f"the numbers of {len(marked)} claims" in page
     assert html(reproduced, "quick").count("<dt>time step</dt>") == len(marked)
     without = [
-        Reproduced(figure, {"png": b""}, [c for c in each.claims if not c.in_limit], [], 0.0)
+        Reproduced(figure, {"png": b""}, [c for c in each.claims if not c.in_limit], {}, [], 0.0)
         for figure, each in zip(WITH_LIMITS.values(), reproduced, strict=True)
     ]
     assert "imits of a vanishing" not in markdown(without, "quick").split("##")[0]

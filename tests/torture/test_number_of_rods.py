@@ -3,21 +3,14 @@
 import math
 
 import numpy as np
+import pytest
 from all_rods import require_all_rods
+from every_solver import SOLVERS, Given
 from exploration import explored
 from hypothesis import given
 from hypothesis import strategies as st
 
-from crazybilliards.kinetic import (
-    compressed,
-    displaced,
-    equilibrium,
-    force_balance,
-    hydrodynamics,
-    phase_space,
-    relax_phase_space,
-    two_clumps,
-)
+from crazybilliards.kinetic import compressed
 from crazybilliards.model import Chain
 
 EXAMPLES = 12
@@ -32,7 +25,7 @@ def decades(low, high):
 
 
 @st.composite
-def chains(draw, most=1000, linear=False):
+def chains(draw, most=1000):
     """Chains of any size; their lengths are in units of a thermal length from 0.01 to 100."""
     return Chain(
         size=draw(st.integers(1, most)),
@@ -42,80 +35,12 @@ def chains(draw, most=1000, linear=False):
         stiffness=draw(decades(-2, 2)),
         radius=draw(decades(-1, 1)),
         mass=draw(decades(-1, 1)),
-        spring="linear" if linear else draw(st.sampled_from(["linear", "quadratic"])),
+        spring=draw(st.sampled_from(["linear", "quadratic"])),
     )
-
-
-def warm(chain):
-    """Return a velocity variance that is three times the free one around the ends of the chain."""
-    free, extent = chain.free_velocity_width**2, 1.5 * chain.anchors[-1] + chain.thermal_length
-    return lambda x: free * (1 + 2 * np.minimum(np.abs(x) / extent, 1) ** 2)
-
-
-def soft(chain):
-    """Return a displacement that holds the rods together more weakly than labels do."""
-    return lambda x: 0.3 * np.asarray(x)
-
-
-@explored(EXAMPLES)
-@given(chains())
-def test_force_balance(chain):
-    require_all_rods(force_balance(chain), chain.size)
-
-
-@explored(EXAMPLES)
-@given(chains(most=200, linear=True))
-def test_force_balance_with_a_velocity_variance(chain):
-    require_all_rods(force_balance(chain, velocity_variance=warm(chain)), chain.size)
-    number = 3 * chain.free_velocity_width**2
-    require_all_rods(force_balance(chain, velocity_variance=number), chain.size)
-
-
-@explored(EXAMPLES)
-@given(chains(most=200))
-def test_force_balance_with_a_displacement(chain):
-    require_all_rods(force_balance(chain, soft(chain)), chain.size)
-
-
-@explored(EXAMPLES)
-@given(chains(most=50))
-def test_force_balance_with_both(chain):
-    require_all_rods(force_balance(chain, soft(chain), warm(chain)), chain.size)
-
-
-@explored(EXAMPLES)
-@given(chains(most=100))
-def test_equilibrium(chain):
-    require_all_rods(equilibrium(chain), chain.size)
-
-
-@explored(EXAMPLES)
-@given(chains(), st.floats(0.2, 5.0))
-def test_starts(chain, factor):
-    require_all_rods(compressed(chain, factor), chain.size)
-    require_all_rods(two_clumps(chain, factor * chain.thermal_length, 1.0), chain.size)
-    moved = displaced(chain, factor * chain.thermal_length)
-    np.testing.assert_allclose(moved.label.values[[0, -1]], [0, chain.size], atol=1e-9 * chain.size)
-
-
-@explored(FEW)
-@given(chains(most=100), st.sampled_from([None, "evolving"]), st.floats(0.5, 2.0))
-def test_hydrodynamics_on_labels(chain, fluid, factor):
-    duration = chain.thermal_length / chain.free_velocity_width
-    flow = hydrodynamics(
-        chain,
-        compressed(chain, factor),
-        duration,
-        every=duration,
-        velocity_variance=fluid,
-        progress=False,
-    )
-    require_all_rods(flow, chain.size)
-    np.testing.assert_allclose(flow.rods, chain.size, rtol=1e-9)
 
 
 @st.composite
-def scaled_chains(draw):
+def scaled_chains(draw, restitutions=(1.0,)):
     """Chains whose thermal length and velocity width are 1, small enough for grids and meshes."""
     damping = draw(decades(-1, 1))
     return Chain(
@@ -126,31 +51,66 @@ def scaled_chains(draw):
         amplitude=math.sqrt(2 * damping),
         mass=1.0,
         spring=draw(st.sampled_from(["linear", "quadratic"])),
+        restitution=draw(st.sampled_from(restitutions)),
     )
 
 
-@explored(FEW)
-@given(scaled_chains(), st.sampled_from([None, "evolving"]), st.floats(0.5, 2.0))
-def test_hydrodynamics_on_positions(chain, fluid, factor):
-    start = compressed(chain, factor)
-    options = {"every": 1.0, "velocity_variance": fluid, "frame": "eulerian", "progress": False}
-    flow = hydrodynamics(chain, start, 1.0, **options)
-    require_all_rods(flow, chain.size, ROUGHLY)
-    np.testing.assert_allclose(flow.rods, chain.size, rtol=1e-9)
+NEAR_ONE = scaled_chains(restitutions=[0.9, 1.0, 1.02])
+# solver: chains, stretches of the start, number of examples, how alike both sides must be.
+EXPLORED = {
+    "force_balance": (chains(), st.just(1.0), EXAMPLES, 1e-6),
+    "force_balance, variance": (chains(200), st.just(1.0), EXAMPLES, 1e-6),
+    "force_balance, number": (chains(200), st.just(1.0), EXAMPLES, 1e-6),
+    "force_balance, displacement": (chains(200), st.just(1.0), EXAMPLES, 1e-6),
+    "force_balance, both": (chains(50), st.just(1.0), EXAMPLES, 1e-6),
+    "equilibrium": (chains(100), st.just(1.0), EXAMPLES, 1e-6),
+    "displaced": (chains(), st.floats(0.2, 5.0), EXAMPLES, None),
+    "compressed": (chains(), st.floats(0.2, 5.0), EXAMPLES, 1e-6),
+    "two_clumps": (chains(), st.floats(0.2, 5.0), EXAMPLES, 1e-6),
+    "hydrodynamics, label": (chains(100), st.floats(0.5, 2.0), FEW, 1e-6),
+    "hydrodynamics, label, evolving": (chains(100), st.floats(0.5, 2.0), FEW, 1e-6),
+    "hydrodynamics, label, number": (chains(100), st.floats(0.5, 2.0), FEW, 1e-6),
+    "hydrodynamics, eulerian, number": (scaled_chains(), st.floats(0.5, 2.0), FEW, ROUGHLY),
+    "hydrodynamics, eulerian, variance": (scaled_chains(), st.floats(0.5, 2.0), FEW, ROUGHLY),
+    "hydrodynamics, eulerian, displacement": (scaled_chains(), st.floats(0.5, 2.0), FEW, ROUGHLY),
+    "hydrodynamics, eulerian": (scaled_chains(), st.floats(0.5, 2.0), FEW, ROUGHLY),
+    "hydrodynamics, eulerian, evolving": (scaled_chains(), st.floats(0.5, 2.0), FEW, ROUGHLY),
+    "phase_space": (NEAR_ONE, st.just(1.0), EXAMPLES, 1e-6),
+    "relax_phase_space": (NEAR_ONE, st.floats(0.8, 1.2), FEW, ROUGHLY),
+}
 
 
-@explored(EXAMPLES)
-@given(scaled_chains(), st.sampled_from([0.9, 1.0, 1.02]))
-def test_kinetic_equation(chain, restitution):
-    chain = chain.replace(restitution=restitution)
-    require_all_rods(phase_space(chain, cells=12), chain.size)
+def scaled(chain, stretch):
+    """Return what the solvers are given, at the scales of the chain."""
+    s, W = chain.thermal_length, chain.free_velocity_width
+    extent = 1.5 * chain.anchors[-1] + s
+    return Given(
+        start=compressed(chain.replace(restitution=1.0), stretch),
+        # Three times the free one around the ends of the chain.
+        variance=lambda x: W**2 * (1 + 2 * np.minimum(np.abs(x) / extent, 1) ** 2),
+        number=3 * W**2,
+        length=stretch * s,
+        stretch=stretch,
+        times={"duration": s / W, "every": s / W},
+        cells=12,
+    )
 
 
-@explored(FEW)
-@given(scaled_chains(), st.sampled_from([0.9, 1.0, 1.02]), st.floats(0.8, 1.2))
-def test_kinetic_equation_in_time(chain, restitution, factor):
-    start = compressed(chain, factor)
-    chain = chain.replace(restitution=restitution)
-    flow = relax_phase_space(chain, start, 1.0, every=1.0, cells=8, progress=False)
-    require_all_rods(flow, chain.size, ROUGHLY)
-    np.testing.assert_allclose(flow.rods, chain.size, rtol=1e-9)
+@pytest.mark.parametrize("name", EXPLORED)
+def test_all_rods_are_held(name):
+    drawn, stretches, examples, alike = EXPLORED[name]
+    solver = SOLVERS[name]
+
+    @explored(examples)
+    @given(drawn.map(lambda chain: chain.replace(**solver.needs)), stretches)
+    def require(chain, stretch):
+        theory = solver.solve(chain, scaled(chain, stretch))
+        if alike is None:  # the state is moved to one side
+            ends = theory.label.values[[0, -1]]
+            np.testing.assert_allclose(ends, [0, chain.size], atol=1e-9 * chain.size)
+        else:
+            require_all_rods(theory, chain.size, alike)
+        if "rods" in theory:
+            np.testing.assert_allclose(theory.rods, chain.size, rtol=1e-9)
+
+    require()

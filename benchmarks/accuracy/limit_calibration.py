@@ -1,7 +1,7 @@
 """Do the error bars of a limit dt -> 0 mean what they say? A table for the documentation.
 
-    python benchmarks/limit_calibration.py [--restitution 0 0.5 1] [--damping 1 4 10] [--size 5]
-                                           [--gap 0] [--accuracy 0.1 0.03 0.01] [--seeds 200]
+    python benchmarks/accuracy/limit_calibration.py [--restitution 0 0.5 1] [--damping 1 4 10]
+           [--size 5] [--gap 0] [--accuracy 0.1 0.03 0.01] [--seeds 200]
 
 Limits of one chain that differ in their seeds only. For every quantity: the share of values that
 lie within one of their own errors from the truth, which should be 0.68, and the root mean square of

@@ -1,21 +1,68 @@
-"""Profiles over the rods' positions, x = y + 2 R (N - L/2), of a density of points over y."""
+"""The result of a stationary kinetic equation, with or without correlations, in the vocabulary.
+
+Profiles over the rods' positions x = y + 2 R (N - L/2) follow from the density of points over y.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
+
 import numpy as np
+import xarray as xr
 from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
+from crazybilliards.kinetic.accuracy import Accuracy
 from crazybilliards.kinetic.kinetic_equation.continuation import State, free_units
 from crazybilliards.kinetic.kinetic_equation.velocity_moments import moments
 from crazybilliards.model import Chain
 from crazybilliards.model.grid import position_grid
+from crazybilliards.model.vocabulary import result
 
 Array = NDArray[np.float64]
 
 
-def profiles_over_x(state: State) -> dict[str, Array]:
-    """Return density and velocity moments over the positions x = y + 2 R (N - L/2)."""
+def in_vocabulary(
+    state: State,
+    variables: Mapping[str, tuple[str, Array]],
+    coordinates: dict[str, Array],
+    *,
+    method: Mapping[str, Any],
+    residual: float,
+    mesh_error: float,
+    expected: Accuracy,
+) -> xr.Dataset:
+    """Return f, its profiles over x, and further ``variables`` with their ``coordinates``.
+
+    ``residual`` and ``mesh_error`` are errors of the solution, ``expected`` those of the theory.
+    """
+    chain, (length, velocity) = state.chain, free_units(state.chain)
+    y, v, f = state.space.sampled(state.f)
+    fields = _profiles_over_x(state)
+    dataset = result(
+        chain,
+        {
+            "phase_space_density": (("y", "velocity"), chain.size / (length * velocity) * f),
+            **{name: ("x", values) for name, values in fields.items() if name != "x"},
+            **variables,
+        },
+        coordinates={"x": fields["x"], "y": length * y, "velocity": velocity * v} | coordinates,
+        source="theory",
+        method={**method, "cells": state.space.cells},
+        residual=residual,
+    )
+    dataset.attrs |= {
+        "mesh_error": mesh_error,
+        "cells": state.space.cells,
+        "model_error": expected.inner,
+        "border_error": expected.border,
+    }
+    return dataset
+
+
+def _profiles_over_x(state: State) -> dict[str, Array]:
+    """Return the positions x, and density and velocity moments over them."""
     chain, (length, velocity) = state.chain, free_units(state.chain)
     profiles = moments(state.space, state.f)
     L, R = chain.size, chain.radius

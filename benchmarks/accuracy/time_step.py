@@ -1,7 +1,7 @@
 """How far a time step is from the limit dt -> 0: docs/tables/time_step.csv.
 
-    python benchmarks/time_step.py [--size 100 ...] [--restitution 0 ...] [--longer 1] [--share 1]
-                                   [--runs 8] [--strength 1]
+    python benchmarks/accuracy/time_step.py [--size 100 ...] [--restitution 0 ...] [--longer 1]
+           [--share 1] [--runs 8] [--strength 1]
 
 For restitutions and sizes: widths, displacements and the kurtosis of the velocities at the default
 step (or ``--longer`` times it) and at a quarter of it, from eight runs unless told otherwise. Both

@@ -1,6 +1,6 @@
 """Accuracy against cost of the kinetic equation's mesh: a table for the documentation.
 
-    python benchmarks/mesh.py
+    python benchmarks/accuracy/mesh.py
 
 Errors are differences from the finest mesh. Takes a few minutes on one core.
 """

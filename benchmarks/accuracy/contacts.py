@@ -1,6 +1,6 @@
 r"""What happens at the contacts of a chain: simulation and the theory with pair correlations.
 
-    python benchmarks/contacts.py [--duration 12000]
+    python benchmarks/accuracy/contacts.py [--duration 12000]
 
 Prints what docs/correlations.md says of contacts, in units of the free rod. The first two
 tables are correlations_ingredients.csv and neighbourhoods.csv in docs/tables.

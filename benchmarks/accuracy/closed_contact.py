@@ -1,6 +1,6 @@
 r"""How much stronger the kicks of closed contacts must be: the constant of ``closed_contacts.py``.
 
-    python benchmarks/closed_contact.py [MILLIONS]
+    python benchmarks/accuracy/closed_contact.py [MILLIONS]
 
 The relative motion of two rods with e = 0: a position x >= 0 and a velocity u, a kick of variance 1
 a step, then x + u; whoever would end below 0 is at rest at 0. The continuous counterpart is the

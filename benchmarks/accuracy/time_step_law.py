@@ -1,7 +1,7 @@
 """How the error of a time step depends on its length: the measurements behind the stated error.
 
-    python benchmarks/time_step_law.py RESTITUTION [--size 100] [--longest 0.5] [--levels 3]
-                                       [--duration 60000] [--runs 8]
+    python benchmarks/accuracy/time_step_law.py RESTITUTION [--size 100] [--longest 0.5]
+           [--levels 3] [--duration 60000] [--runs 8]
 
 Chains at several steps, each three times as long as the one before, are driven by the same noise,
 so that much of the statistical error cancels in their ratios. ``--longest`` is the kick of the

@@ -1,6 +1,6 @@
 """Accuracy and cost of the theory with pair correlations: two tables of the documentation.
 
-    python benchmarks/correlated_mesh.py
+    python benchmarks/accuracy/correlated_mesh.py
 
 The first has relative differences of W_v from the result on the finest mesh, for 100 rods at
 e = 0.75. The second has the CPU seconds for 1000 rods, whose mesh is refined until the widths are
