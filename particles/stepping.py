@@ -28,7 +28,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crazybilliards.model import Chain, spring
-from crazybilliards.model.kernels import inlined, kernel
+from crazybilliards.model.kernels import copy, inlined, kernel
 from crazybilliards.particles.laws.closed_contacts import (
     CLOSED_KICK,
     CRITICAL_RESTITUTION,
@@ -240,16 +240,6 @@ def bounded(y, v, fastest):  # type: ignore[no-untyped-def]
         if not (abs(v[i]) <= fastest and abs(y[i]) < np.inf):
             return False
     return True
-
-
-@inlined
-def copy(source, target):  # type: ignore[no-untyped-def]
-    """Copy a one-dimensional array: numba compiles ``target[:] = source`` seconds longer.
-
-    It would compile the message of an error, of arrays that do not fit, with all of its strings.
-    """
-    for i in range(source.size):
-        target[i] = source[i]
 
 
 @kernel

@@ -23,14 +23,13 @@ own contacts are closed
 
 from __future__ import annotations
 
-from crazybilliards.model.kernels import kernel
+from crazybilliards.model.kernels import copy, kernel
 from crazybilliards.particles.laws.closed_contacts import find_clusters
 from crazybilliards.particles.stepping import (
     FIRST,
     LAST,
     WHOLE,
     bounded,
-    copy,
     draw_kicks,
     take_step,
 )
