@@ -119,19 +119,21 @@ build/types: Makefile
 	for room in $(ROOMS); do ln -sfn ../../../$$room $@/crazybilliards/$$room; done
 	touch $@
 
+# Without --no-compile pip would compile every module of every package, used or not.
 # Python 3.11 comes with a setuptools of 2022, which has a known vulnerability.
+INSTALL := $(BIN)/python -m pip install -qq --no-compile --upgrade pip setuptools --editable
+
 $(VENV)/created:
 	@$(CHECK_PYTHON)
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --upgrade pip setuptools
 	touch $@
 
 $(VENV)/installed: pyproject.toml $(VENV)/created
-	$(BIN)/python -m pip install -qq --editable .
+	$(INSTALL) .
 	touch $@
 
 $(VENV)/installed-%: pyproject.toml $(VENV)/created
-	$(BIN)/python -m pip install -qq --editable ".[$*]"
+	$(INSTALL) ".[$*]"
 	touch $@
 
 $(OLDEST)/installed: pyproject.toml

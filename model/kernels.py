@@ -113,6 +113,16 @@ def inlined(function: Callable[..., Any] | None = None, *, fused: bool = False) 
     return njit(nogil=True, error_model="numpy", forceinline=True, fastmath=fast)(function)
 
 
+@inlined
+def copy(source, target):  # type: ignore[no-untyped-def]
+    """Copy a one-dimensional array: numba compiles ``target[:] = source`` for seconds.
+
+    It would compile the message of an error, of arrays that do not fit, with all of its strings.
+    """
+    for i in range(source.size):
+        target[i] = source[i]
+
+
 def _fingerprint(function: Callable[..., Any]) -> str:
     """Return the fingerprint of all source code that the compiled ``function`` depends on."""
     files: set[Path] = set()

@@ -28,7 +28,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crazybilliards.model import Chain, spring
-from crazybilliards.model.kernels import inlined, kernel
+from crazybilliards.model.kernels import copy, inlined, kernel
 from crazybilliards.particles.laws.closed_contacts import (
     CLOSED_KICK,
     CRITICAL_RESTITUTION,
@@ -256,11 +256,11 @@ def record(  # type: ignore[no-untyped-def]
     for snapshot in range(y_buffer.shape[0]):
         met = advance(y, v, noise, dynamics, scratch, tally, stride)
         if met < 0 or not bounded(y, v, dynamics.fastest):
-            tally.contacts[:] = contacts
-            tally.impacts[:] = impacts
+            copy(contacts, tally.contacts)
+            copy(impacts.ravel(), tally.impacts.ravel())
             return snapshot
-        contacts[:] = tally.contacts
-        impacts[:] = tally.impacts
-        y_buffer[snapshot] = y
-        v_buffer[snapshot] = v
+        copy(tally.contacts, contacts)
+        copy(tally.impacts.ravel(), impacts.ravel())
+        copy(y, y_buffer[snapshot])
+        copy(v, v_buffer[snapshot])
     return y_buffer.shape[0]

@@ -75,29 +75,44 @@ def text_of(page):
     return re.sub(r"</?(details|summary)>", "\n\n", text)
 
 
-@pytest.mark.parametrize("page", PAGES + LESSONS, ids=named)
-def test_a_page_is_plain(page):
-    text = plain(text_of(page))
-    assert not found(text)
-    long = [each for each in sentences(text) if len(re.findall("[A-Za-z]{2,}", each)) > MOST_WORDS]
-    assert not long
+def offenders(files, complaints):
+    """Return what there is to complain of in every file that is not as it should be."""
+    return {named(file): said for file in files if (said := complaints(file))}
 
 
-@pytest.mark.parametrize("page", PAGES + LESSONS, ids=named)
-def test_markdown_shows_all_of_a_page(page):
+def test_pages_are_plain():
+    assert not offenders(PAGES + LESSONS, lambda page: found(plain(text_of(page))))
+
+
+def test_sentences_are_short():
+    def too_long(page):
+        every = sentences(plain(text_of(page)))
+        return [each for each in every if len(re.findall("[A-Za-z]{2,}", each)) > MOST_WORDS]
+
+    assert not offenders(PAGES + LESSONS, too_long)
+
+
+def test_markdown_shows_all_of_a_page():
     """A line that begins with a per cent sign would be a comment, and <dx> a tag."""
-    text = re.sub(r"```.*?```|\$\$.*?\$\$", "", text_of(page), flags=re.DOTALL)
-    text = re.sub(r"`[^`]*`|\$[^$]*\$", "X", text)
-    assert not re.findall(r"^ *%.*", text, re.MULTILINE)
-    assert not re.findall(r"<(?!br>)[A-Za-z]\w*>", text)
+
+    def hidden(page):
+        text = re.sub(r"```.*?```|\$\$.*?\$\$", "", text_of(page), flags=re.DOTALL)
+        text = re.sub(r"`[^`]*`|\$[^$]*\$", "X", text)
+        comments = re.findall(r"^ *%.*", text, re.MULTILINE)
+        return comments + re.findall(r"<(?!br>)[A-Za-z]\w*>", text)
+
+    assert not offenders(PAGES + LESSONS, hidden)
 
 
-@pytest.mark.parametrize("module", MODULES, ids=named)
-def test_docstrings_are_plain(module):
-    tree = ast.parse(module.read_text(encoding="utf-8"))
+def test_docstrings_are_plain():
     kinds = (ast.Module, ast.ClassDef, ast.FunctionDef)
-    docstrings = [ast.get_docstring(node) for node in ast.walk(tree) if isinstance(node, kinds)]
-    assert not found("\n".join(filter(None, docstrings)))
+
+    def complaints(module):
+        nodes = ast.walk(ast.parse(module.read_text(encoding="utf-8")))
+        docstrings = [ast.get_docstring(node) for node in nodes if isinstance(node, kinds)]
+        return found("\n".join(filter(None, docstrings)))
+
+    assert not offenders(MODULES, complaints)
 
 
 @pytest.mark.parametrize("page", ["README.md", "CONTRIBUTING.md"])

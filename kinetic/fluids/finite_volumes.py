@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from crazybilliards.kinetic.fluids.pde_solver import Rate
 from crazybilliards.model import spring
-from crazybilliards.model.kernels import inlined, kernel
+from crazybilliards.model.kernels import copy, inlined, kernel
 
 Array = NDArray[np.float64]
 
@@ -126,9 +126,9 @@ def eulerian_rate(fields, constants):  # type: ignore[no-untyped-def]
         if number == 3:
             rates[2, i] += state[i, 1] * push - damping * (2 * fields[2, i] - n * heat)
     left, right, slope, following = np.zeros((4, 3))
-    following[:] = rest[0]
+    copy(rest[0], following)
     for i in range(cells - 1):
-        slope[:] = following
+        copy(following, slope)
         for j in range(3):
             following[j] = rest[i + 1, j]
             if i + 2 < cells:

@@ -23,9 +23,16 @@ own contacts are closed
 
 from __future__ import annotations
 
-from crazybilliards.model.kernels import kernel
+from crazybilliards.model.kernels import copy, kernel
 from crazybilliards.particles.laws.closed_contacts import find_clusters
-from crazybilliards.particles.stepping import FIRST, LAST, WHOLE, bounded, draw_kicks, take_step
+from crazybilliards.particles.stepping import (
+    FIRST,
+    LAST,
+    WHOLE,
+    bounded,
+    draw_kicks,
+    take_step,
+)
 
 REFINEMENT = 3
 
@@ -89,6 +96,6 @@ def record_pair(  # type: ignore[no-untyped-def]
         for chain in range(2):
             if met < 0 or not bounded(y[chain], v[chain], dynamics[chain].fastest):
                 return snapshot
-            y_buffer[chain, snapshot] = y[chain]
-            v_buffer[chain, snapshot] = v[chain]
+            copy(y[chain], y_buffer[chain, snapshot])
+            copy(v[chain], v_buffer[chain, snapshot])
     return snapshots

@@ -159,3 +159,39 @@ except KeyboardInterrupt:
 def test_ctrl_c_while_a_kernel_is_compiled_leaves_it_usable(tmp_path):
     """Without its functions, which are registered once, numba would not know ``sum`` any more."""
     assert run_two(tmp_path, INTERRUPTED, NUMBA_CACHE_DIR=str(tmp_path / "cache")) == []
+
+
+TEXTS = """
+import numba.core.event as events
+
+class Names(events.Listener):
+    def on_start(self, event):
+        function = event.data["dispatcher"].py_func
+        print(function.__module__, function.__qualname__)
+
+    def on_end(self, event):
+        pass
+
+events.register("numba:compile", Names())
+from crazybilliards.particles.simulation import compile_kernels
+from crazybilliards.particles.vanishing_step.sampler import compile_pair
+compile_kernels()
+compile_pair()
+"""
+
+
+@pytest.mark.compiled
+def test_kernels_compile_no_texts(tmp_path):
+    """A slice that is assigned to a slice brings in the message of an error: a third more time."""
+    environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path)}
+    done = subprocess.run(
+        [sys.executable, "-c", TEXTS],
+        env=environment,
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=True,
+    )
+    compiled = done.stdout.splitlines()
+    assert any("particles.stepping record" in each for each in compiled)
+    assert not [each for each in compiled if each.startswith("numba.cpython.unicode")]
