@@ -76,7 +76,7 @@ def test_newtons_cradle():
     np.testing.assert_array_equal(y, [0, 0, 0, 1])
 
 
-@pytest.mark.parametrize("size", [63, 64, 65, 128, 200, 1000])
+@pytest.mark.parametrize("size", [29, 30, 31, 63, 64, 65, 128, 200, 1000])
 @pytest.mark.parametrize("dt", [0.0, 1e-3, 0.1, 10.0])
 def test_long_chains_are_sorted_and_every_inversion_is_counted(size, dt):
     """Beyond 64 rods runs are merged: the same as sorting, inversions counted by brute force."""
@@ -89,3 +89,14 @@ def test_long_chains_are_sorted_and_every_inversion_is_counted(size, dt):
     assert drift(y, v, dt) == inversions
     np.testing.assert_array_equal(y, free[order])
     np.testing.assert_array_equal(v, velocities[order])
+
+
+@pytest.mark.parametrize("size", [12, 30, 31, 100, 1000])
+def test_rods_at_the_same_place_keep_their_order(size):
+    generator = np.random.default_rng(size)
+    free = generator.integers(0, size // 3, size).astype(float)  # many rods end at the same place
+    names = np.arange(1.0, size + 1)
+    y, v = free - names, names.copy()
+    inversions = np.triu(free[:, np.newaxis] > free[np.newaxis, :]).sum()
+    assert drift(y, v, 1.0) == inversions
+    np.testing.assert_array_equal(v, names[np.argsort(free, kind="stable")])
