@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.fft import dct
 
 from crazybilliards.particles.observers.base import (
     Array,
@@ -32,6 +31,8 @@ class Modes(Averaged):
 
     def observe(self, snapshots: Snapshots) -> None:
         """Add the squares of the modes of snapshots to their block."""
+        from scipy.fft import dct  # takes half a second, and few runs observe modes
+
         waves = dct(snapshots.v, axis=1, norm="ortho")
         self.sums[snapshots.block] += np.einsum("sq,sq->q", waves, waves)
 
