@@ -13,13 +13,14 @@ CHECK_PYTHON := $(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' 
   { echo "Python 3.11 or later is needed; name one with: make PYTHON=python3.12 ..."; exit 1; }
 ROOMS  := model particles kinetic comparison reproduction apps
 
-.PHONY: help run test test-lowest torture coverage check audit reproduce notebooks render browser docs \
+.PHONY: help run test validate test-lowest torture coverage check audit reproduce notebooks render browser docs \
   linkcheck benchmark clean
 .DEFAULT_GOAL := help
 
 help:
 	@echo "make run        compare simulation and theory at e = 1; figures into $(OUTPUT)/"
-	@echo "make test       run the tests"
+	@echo "make test       run the tests that are quick (5 min)"
+	@echo "make validate   run the others: statistics, long runs, kills, the page in a browser (4 min)"
 	@echo "make test-lowest  run the tests with the oldest allowed version of every package"
 	@echo "make torture    test kills, full disks, bad input and long runs (12 min; docs/reliability.md)"
 	@echo "make coverage   show which lines the tests reach, kernels included (12 min)"
@@ -39,7 +40,10 @@ run: $(VENV)/installed
 
 # Two processes use two cores. Threads of the linear algebra would only make them wait.
 test: $(VENV)/installed-test
-	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n 2
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 -m "not validate"
+
+validate: $(VENV)/installed-test
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 -m validate
 
 # numba's cache belongs to one version, so each environment needs a cache of its own.
 test-lowest: $(OLDEST)/installed

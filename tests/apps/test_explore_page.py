@@ -18,6 +18,8 @@ from browser import (
 from crazybilliards.apps.explore.presets import PRESETS
 from crazybilliards.model import Chain
 
+pytestmark = pytest.mark.validate
+
 
 def type_number(browser, index, text):
     """Type into the number beside the slider of this index and press Enter."""

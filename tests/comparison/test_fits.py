@@ -172,6 +172,7 @@ def test_two_power_laws_are_found_exactly(size, unit, nu, c):
     np.testing.assert_allclose(fit(np.arange(1, size + 1)), width, rtol=1e-3)
 
 
+@pytest.mark.validate
 def test_the_errors_of_two_power_laws_are_those_of_the_scatter():
     """Ordinary least squares for equal noise, weighted for noise in proportion to the width."""
     generator = np.random.default_rng(6)

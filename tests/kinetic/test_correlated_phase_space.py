@@ -108,6 +108,7 @@ def test_simulation(restitution, theory):
 
 
 @pytest.mark.compiled
+@pytest.mark.validate
 def test_correlations_warm_a_long_chain():
     """What the theory is for: strangers make 100 rods at e = 0.75 nine per cent too cold."""
     chain = Chain(size=100, restitution=0.75)
@@ -216,6 +217,7 @@ def test_no_agreement_is_an_error_with_a_reason(monkeypatch):
         correlated_phase_space(CHAIN)
 
 
+@pytest.mark.validate
 def test_the_way_to_small_restitutions_does_not_matter(monkeypatch):
     """From e = 0.5 and 0.2, or from independent points: the fixed point is the same."""
     chain = Chain(size=12, restitution=0)

@@ -90,6 +90,7 @@ def test_the_error_of_a_longer_or_single_chain_is_unknown():
         assert np.isnan(force_balance(Chain(size=size)).attrs["model_error"])
 
 
+@pytest.mark.validate
 def test_the_equation_in_time_states_its_error():
     def stated(**changes):
         chain = Chain(**({"size": 20, "restitution": 0.92} | changes))
@@ -124,6 +125,7 @@ def test_the_errors_in_time_are_those_of_the_tables():
 
 
 @pytest.mark.compiled
+@pytest.mark.validate
 def test_the_energy_in_time_is_as_wrong_as_stated():
     """An ensemble of chains that are released from equilibrium at e = 1."""
     chain = Chain(size=10, restitution=0.9)

@@ -75,6 +75,7 @@ def test_mass_momentum_and_energy_balance(restitution, damping, order):
 # ones (the docstring of phase_space). Without the centre of mass the first case fails (5 % off),
 # with shot noise for e > 1 the last (7 to 28 %), with nine tenths of the drag all of them.
 @pytest.mark.compiled
+@pytest.mark.validate
 @pytest.mark.parametrize(
     ("restitution", "damping", "duration", "within"),
     [(0.9, 1.0, 6000.0, 0.012), (0.95, 1.0, 8000.0, 0.01), (1.05, 4.0, 20000.0, 0.025)],

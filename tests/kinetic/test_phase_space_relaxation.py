@@ -74,6 +74,7 @@ def test_error_is_of_second_order_in_the_time_step():
 
 
 @pytest.mark.compiled
+@pytest.mark.validate
 @pytest.mark.parametrize(("restitution", "damping"), [(0.9, 1.0), (1.05, 6.0)])
 def test_it_relaxes_to_the_steady_state(restitution, damping):
     chain = Chain(size=40, restitution=restitution, damping=damping)

@@ -181,6 +181,7 @@ compile_pair()
 
 
 @pytest.mark.compiled
+@pytest.mark.validate
 def test_kernels_compile_no_texts(tmp_path):
     """A slice that is assigned to a slice brings in the message of an error: a third more time."""
     environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path)}

@@ -34,7 +34,7 @@ save(run, output)
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("e", [1.0, 0.7])
+@pytest.mark.parametrize("e", [1.0, pytest.param(0.7, marks=pytest.mark.validate)])
 def test_killed_at_random_moments_and_resumed_it_is_the_undisturbed_run(e, tmp_path):
     script = SCRIPT.format(e=e, duration=150_000 if e == 1 else 40_000)
     undisturbed, output = tmp_path / "undisturbed.nc", tmp_path / "run.nc"

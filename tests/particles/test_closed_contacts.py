@@ -174,6 +174,7 @@ def test_what_the_paper_describes_is_left_alone(e, settings):
 
 
 @pytest.mark.compiled
+@pytest.mark.validate
 @pytest.mark.parametrize("strength", [CLOSED_KICK, 1.0])
 def test_a_long_step_is_right_to_a_percent_and_only_so_with_the_correction(strength, monkeypatch):
     """Ten rods at e = 0; a kick of 0.4 widths, against one of 0.2 under the same noise."""

@@ -30,6 +30,7 @@ def off(one, other, name):
 
 
 @pytest.mark.compiled
+@pytest.mark.validate
 @pytest.mark.parametrize("restitution", [0.0, 0.2])
 def test_it_agrees_with_runs_at_a_far_shorter_step(restitution):
     chain = Chain(size=10, restitution=restitution)
@@ -203,7 +204,7 @@ save(limit, output)
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("e", [0.0, 0.95])
+@pytest.mark.parametrize("e", [0.0, pytest.param(0.95, marks=pytest.mark.validate)])
 def test_killed_at_random_moments_and_resumed_it_is_the_undisturbed_run(e, tmp_path):
     script = SCRIPT.format(e=e)
     undisturbed, output = tmp_path / "undisturbed.nc", tmp_path / "run.nc"

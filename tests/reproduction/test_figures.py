@@ -67,6 +67,7 @@ def _short_lines(monkeypatch):
 
 
 @pytest.mark.compiled
+@pytest.mark.validate
 @pytest.mark.parametrize("study", QUICK, ids=lambda study: study.name)
 def test_it_is_drawn_and_every_claim_gets_a_verdict(study):
     results = {name: short_run(case) for name, case in study.cases("quick").items()}

@@ -21,6 +21,8 @@ from crazybilliards.reproduction.vanishing_step import (
     limits,
 )
 
+pytestmark = pytest.mark.validate
+
 NOISE = 1e-3
 BIAS = 1e-3
 WITH_LIMITS = {figure.number: figure for figure in FIGURES if figure.number in (3, 4, 7)}
