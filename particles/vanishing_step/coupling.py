@@ -34,8 +34,6 @@ from crazybilliards.particles.stepping import (
     take_step,
 )
 
-REFINEMENT = 3
-
 
 @kernel
 def advance_pair(  # type: ignore[no-untyped-def]

@@ -7,6 +7,7 @@ size; a parabola through five sizes just below finds where.
 from __future__ import annotations
 
 import math
+from functools import cache
 
 import numpy as np
 import xarray as xr
@@ -90,6 +91,7 @@ def _critical(runs: list[xr.Dataset]) -> Estimate:
     return Estimate(float(parabola), max(float(abs(line - parabola)), _LEAST_ERROR))
 
 
+@cache  # tables, claims and picture take the same numbers
 def _predicted(restitution: float, damping: float) -> tuple[Estimate, float]:
     """Return the critical size of the kinetic equation, and that of the closed form."""
     chain = Chain(restitution=restitution, damping=damping)
