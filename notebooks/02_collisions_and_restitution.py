@@ -624,7 +624,7 @@ assert np.isclose(waits[-1] / waits[-2], small / large)
 # </details>
 #
 # **How `simulate` avoids the collapse.** After a collapse the rods move together. `simulate`
-# therefore joins a pair that would separate more slowly than `merging` (0.03) times the velocity
+# therefore joins a pair that would separate more slowly than `merging` (here 0.1) times the velocity
 # kick of one step's noise. Such a pair is a *cluster*, which moves as one body until the end of the
 # step. The next kick may separate it. Each collision that does not merge costs at least a fixed
 # amount of energy, so there are finitely many. (Without noise the limit is a billionth of the
@@ -648,7 +648,7 @@ for merging in (1e-6, 0.003, 0.03, 0.1, 1):
     print(f"{merging:7g}   {rate:25.1f}   {centres[merging][1]:.4f} ± {centres[merging][2]:.4f}")
 
 # %% tags=["remove-cell"]
-_, default, default_error = centres[0.03]
+_, default, default_error = centres[0.1]
 for merging, (_, centre, error) in centres.items():
     agree(f"merging {merging}", centre, default, np.hypot(error, default_error))
 assert centres[1e-6][0] > 3 * centres[0.03][0] > 5 * centres[1][0]

@@ -24,7 +24,7 @@ from crazybilliards.particles.laws.law import Method
 from crazybilliards.particles.scales import start_swing, typical_speed
 from crazybilliards.particles.schedule import Average, Schedule, make_schedule
 from crazybilliards.particles.start import replica_starts
-from crazybilliards.particles.stepping import Dynamics, Stepper, make_dynamics
+from crazybilliards.particles.stepping import Dynamics, Stepper, default_merging, make_dynamics
 
 Array = NDArray[np.float64]
 
@@ -74,7 +74,7 @@ class Run:
     time_step: float | None
     method: Method
     stepper: Stepper
-    merging: float
+    merging: float | None
     seed: int
     observers: tuple[Measurement, ...]
     start: xr.Dataset | None
@@ -86,7 +86,8 @@ class Run:
     def __post_init__(self) -> None:
         for name, kinds in (("method", Method), ("stepper", Stepper), ("average", Average)):
             check_choice(name, getattr(self, name), get_args(kinds))
-        object.__setattr__(self, "merging", check_real("merging", self.merging))
+        merging = default_merging(self.chain) if self.merging is None else self.merging
+        object.__setattr__(self, "merging", check_real("merging", merging))
         object.__setattr__(self, "seed", check_integer("seed", self.seed, least=0))
         object.__setattr__(self, "replicas", check_integer("replicas", self.replicas, least=1))
         # Each of these properties checks its own arguments and raises if they are wrong.

@@ -40,7 +40,9 @@ from crazybilliards.particles.laws.law import Law, Method, drift, make_law
 from crazybilliards.particles.noise import Noise, fill, make_noise
 from crazybilliards.particles.scales import spring_rate
 
-MERGING = 0.03  # in velocity kicks of one step: rods that separate more slowly move as one
+# In velocity kicks of one step: rods that separate more slowly move as one. Below the critical
+# restitution a larger threshold adds energy, because the noise of closed contacts is stronger.
+_MERGING, _MERGING_OF_CLOSED = 0.1, 0.03
 
 Stepper = Literal["splitting", "euler"]
 
@@ -80,7 +82,7 @@ def make_dynamics(
     speed: float,
     method: Method = "event-driven",
     stepper: Stepper = "splitting",
-    merging: float = MERGING,
+    merging: float | None = None,
     counted: bool = False,
     diverged: float = 1e6,
 ) -> Dynamics:
@@ -101,9 +103,21 @@ def make_dynamics(
     return Dynamics(
         chain.reduced_anchors,
         make_step(chain, time_step, stepper, method),
-        make_law(chain, time_step, method, merging, speed, counted=counted),
+        make_law(
+            chain,
+            time_step,
+            method,
+            default_merging(chain) if merging is None else merging,
+            speed,
+            counted=counted,
+        ),
         diverged * speed if speed > 0 else math.inf,
     )
+
+
+def default_merging(chain: Chain) -> float:
+    """Return the threshold of merging at this restitution, in velocity kicks of one step."""
+    return _MERGING_OF_CLOSED if chain.restitution < CRITICAL_RESTITUTION else _MERGING
 
 
 def make_step(

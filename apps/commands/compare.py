@@ -57,7 +57,7 @@ def command(
     duration: Annotated[
         float | None,
         typer.Option(
-            help="Simulated time of each of two replicas; default: 200000, with --restitution 5000."
+            help="Simulated time of each of two replicas; default: 100000, with --restitution 5000."
         ),
     ] = None,
     seed: Annotated[int, typer.Option(help="Seed of the random numbers.")] = 0,

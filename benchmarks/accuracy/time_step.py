@@ -29,7 +29,7 @@ from crazybilliards.particles.laws.closed_contacts import CRITICAL_RESTITUTION, 
 from crazybilliards.particles.laws.law import Law, Scratch, drift, make_law, make_scratch
 from crazybilliards.particles.noise import fill, make_noise
 from crazybilliards.particles.scales import default_time_step
-from crazybilliards.particles.stepping import Step, make_step
+from crazybilliards.particles.stepping import Step, default_merging, make_step
 from crazybilliards.reproduction.claims.repetition import error_of_mean
 
 WARM_UP = 60.0
@@ -72,7 +72,9 @@ class Copy(NamedTuple):
 
 def make_copy(chain: Chain, time_step: float) -> Copy:
     y = chain.reduced_anchors.copy()
-    law = make_law(chain, time_step, "event-driven", 0.03, chain.free_velocity_width)
+    law = make_law(
+        chain, time_step, "event-driven", default_merging(chain), chain.free_velocity_width
+    )
     step = make_step(chain, time_step, "splitting")
     scratch = make_scratch(chain.size)
     zeros = np.zeros((2, chain.size))

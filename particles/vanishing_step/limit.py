@@ -27,7 +27,6 @@ from crazybilliards.particles.running.collecting import only_chosen
 from crazybilliards.particles.running.threads import run_all
 from crazybilliards.particles.schedule import Schedule
 from crazybilliards.particles.simulation import compile_kernels
-from crazybilliards.particles.stepping import MERGING
 from crazybilliards.particles.vanishing_step.level_steps import GROUPS, Steps, plan_steps
 from crazybilliards.particles.vanishing_step.level_terms import CENTRAL
 from crazybilliards.particles.vanishing_step.multilevel import Levels
@@ -61,7 +60,7 @@ def simulate_limit(
     *,
     accuracy: float = 0.01,
     warmup: float | None = None,
-    merging: float = MERGING,
+    merging: float | None = None,
     seed: int = 0,
     observe: str | Observer | Sequence[str | Observer] = ("widths", "density"),
     particles: Sequence[int] | None = None,
@@ -173,7 +172,7 @@ def make_runs(
     *,
     accuracy: float,
     warmup: float | None,
-    merging: float,
+    merging: float | None,
     seed: int,
     observe: Any,
     particles: Sequence[int] | None,
