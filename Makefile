@@ -43,10 +43,10 @@ run: $(VENV)/installed
 
 # Two processes use two cores. Threads of the linear algebra would only make them wait.
 test: $(VENV)/installed-test
-	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 -m "not validate"
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile -m "not validate"
 
 validate: $(VENV)/installed-test
-	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 -m validate
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile -m validate
 
 # numba's cache belongs to one version, so each environment needs a cache of its own.
 test-lowest: $(OLDEST)/installed
