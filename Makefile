@@ -41,7 +41,8 @@ help:
 run: $(VENV)/installed
 	$(BIN)/crazybilliards compare --output $(OUTPUT)
 
-# Two processes use two cores. Threads of the linear algebra would only make them wait.
+# Two processes use two cores. Threads of the linear algebra would only make them wait. All tests of
+# a file run in one of them, and compute only once what they share.
 test: $(VENV)/installed-test
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile -m "not validate"
 
@@ -84,7 +85,8 @@ notebooks: $(VENV)/installed-notebooks
 	mkdir -p build/notebooks
 	rm -f build/notebooks/$(LESSON)*.ipynb
 	cp notebooks/$(LESSON)*.ipynb notebooks/teaching.py build/notebooks
-	$(BIN)/python -m pytest -n 2 --nbmake --nbmake-timeout=300 --timeout=1800 --overwrite build/notebooks/$(LESSON)*.ipynb
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --nbmake --nbmake-timeout=300 --timeout=1800 --overwrite \
+	  build/notebooks/$(LESSON)*.ipynb
 	test "$(LESSON)" != "[0-9]" || touch build/notebooks/executed
 
 build/notebooks/executed: $(wildcard notebooks/*.ipynb) notebooks/teaching.py
