@@ -93,7 +93,7 @@ def claims(results: Results) -> list[Claim]:
         small_claim(
             f"Contact Dynamics is right at e = 1, L = {LARGE}, dt = {_STEPS[-1]:g}",
             "1 - W_v/W in the centre",
-            Estimate(1 - wrong.value / unit, wrong.error),
+            Estimate(1 - wrong.value / unit, wrong.error / unit),
             0.02,
             theory="exact: 0",
             reason="a step sees many collisions of each rod there, and Contact Dynamics "
