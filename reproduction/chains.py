@@ -36,7 +36,8 @@ _SCALED: Granted = {
     "full": (5, {"duration": 200.0, "warmup": 50.0}),
 }
 _AT_STEP: dict[int, Granted] = {
-    1: {"quick": (4, {"duration": 400.0}), "full": (6, {"duration": 3000.0})},
+    1: {"quick": (4, {"duration": 400.0}), "full": (6, {"duration": 6000.0})},
+    100: {"quick": (4, {"duration": 400.0}), "full": (6, {"duration": 3000.0})},
     101: {"quick": (4, {"duration": 100.0}), "full": (6, {"duration": 1500.0})},
     LARGE: {
         "quick": (4, {"duration": 40.0, "warmup": 20.0}),
