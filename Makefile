@@ -29,7 +29,7 @@ help:
 	@echo "make coverage   show which lines the tests reach, kernels included (12 min)"
 	@echo "make check      check lint, format and types"
 	@echo "make audit      look up known vulnerabilities of every package used (needs the network)"
-	@echo "make reproduce  draw every figure and check every claim of the paper (5 min; QUALITY=full 24 min;"
+	@echo "make reproduce  draw every figure and check every claim of the paper (3 min; QUALITY=full 12 min;"
 	@echo "                WHICH=analytics: only the paper's analytics section, 1 min)"
 	@echo "make notebooks  execute the notebooks, into build/notebooks/"
 	@echo "make render     write the notebooks from their scripts, with outputs (LESSON=03: only that one)"
