@@ -39,7 +39,7 @@ from crazybilliards.kinetic.kinetic_equation.weak_damping import weak_damping_dr
 from crazybilliards.kinetic.kinetic_equation.weak_form import (
     Coefficients,
     Equation,
-    newton_step,
+    Jacobian,
 )
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain
@@ -202,7 +202,7 @@ def _fitted(state: _State, damping: float, tau: float) -> _State:
 def _state_of_unit_energy(state: _State, damping: float, tau: float) -> _State:
     """Solve for f with <v^2> = 1, and for the drag, by Newton's method."""
     space, f, drag = state
-    conditions = [space.whole_mass, space.whole_energy]
+    conditions, jacobian = [space.whole_mass, space.whole_energy], Jacobian()
     for _ in range(_MOST_STEPS):
         numbers = Coefficients(1.0, 2, 0.0, damping, tau * damping, drag, 0.0)
         equation = Equation(space, numbers)
@@ -212,7 +212,7 @@ def _state_of_unit_energy(state: _State, damping: float, tau: float) -> _State:
         by_drag = -space.against_slopes(space.field(table * mean.I1))
         residual = np.concatenate([-(matrix @ f), [1 - row @ f for row in conditions]])
         columns = np.column_stack([space.whole_mass, by_drag])
-        step = newton_step(matrix, columns, conditions, equation.variation(f), residual)
+        step = jacobian.solve(matrix, columns, conditions, equation.variation(f), residual)
         f, drag = f + step[: f.size], drag + float(step[-1])
         if np.abs(step[: f.size]).max() < _TOLERANCE * np.abs(f).max():
             return _State(space, f, drag)
