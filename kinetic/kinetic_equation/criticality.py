@@ -114,13 +114,15 @@ def critical_damping(chain: Chain) -> CriticalValue:
     def excess(log_damping: float) -> float:
         return math.log(_critical_drag(math.exp(log_damping))[0] / wanted)
 
-    # About proportional to the damping for strong damping too.
-    weak = math.log(wanted / weak_damping_drag(1.0))
-    found = root_scalar(excess, method="secant", x0=weak, x1=weak - excess(weak), xtol=1e-3)
-    if not found.converged:
-        raise ValueError(f"no damping found at which {chain.size} rods become critical")
-    unit = math.sqrt(chain.stiffness * chain.mass)
-    damping = unit * math.exp(found.root)
+    damping = wanted / weak_damping_drag(1.0)
+    if damping >= _WEAK:
+        # About proportional to the damping for strong damping too.
+        weak = math.log(damping)
+        found = root_scalar(excess, method="secant", x0=weak, x1=weak - excess(weak), xtol=1e-3)
+        if not found.converged:
+            raise ValueError(f"no damping found at which {chain.size} rods become critical")
+        damping = math.exp(found.root)
+    damping *= math.sqrt(chain.stiffness * chain.mass)
     return CriticalValue(damping, 2e-3 * damping)
 
 
