@@ -29,15 +29,14 @@
 # Units as in all lessons: the rod radius $R$, $T = \sqrt{M/k}$ for times. $W$ is the velocity width
 # of a rod without collisions.
 #
-# *Level: fourth year. You need: lesson 8, sections 1 and 2. Time: 45 minutes.*
+# *Level: fourth year. You need: lesson 8, sections 1 and 2. Time: 45 minutes. To predict before you
+# see the results, type `make lessons` in the folder of the project, and open the copy of this
+# lesson without outputs in `build/lessons/`.*
 
 # %% tags=["hide-input"]
 import numpy as np
 from teaching import BLUE, ORANGE, PINK, check, panels
 
-from crazybilliards.kinetic import correlated_phase_space, phase_space
-from crazybilliards.model import Chain
-from crazybilliards.particles import simulate
 from crazybilliards.particles.observers import Covariances
 
 # %% [markdown]
@@ -53,10 +52,12 @@ from crazybilliards.particles.observers import Covariances
 # **Run.**
 
 # %%
-chains = {e: Chain(size=100, restitution=e) for e in (1, 0.75)}
+import crazybilliards as cb
+
+chains = {e: cb.Chain(size=100, restitution=e) for e in (1, 0.75)}
 observe = ["widths", Covariances(separations=99), "impacts"]
 runs = {
-    e: simulate(chain, duration=2000, every=0.5, observe=observe, seed=1, progress=False)
+    e: cb.simulate(chain, duration=2000, every=0.5, observe=observe, seed=1, progress=False)
     for e, chain in chains.items()
 }
 middle = {"particle": slice(45, 55), "contact": slice(45, 54)}
@@ -259,8 +260,8 @@ for e in runs:
 
 # %%
 chain = chains[0.75]
-strangers = phase_space(chain, cells=16)
-neighbours = correlated_phase_space(chain, cells=16)
+strangers = cb.phase_space(chain, cells=16)
+neighbours = cb.correlated_phase_space(chain, cells=16)
 simulated = runs[0.75].velocity_width[44:56].mean().item()
 for name, theory in (("phase_space", strangers), ("correlated_phase_space", neighbours)):
     centre = theory.velocity_width[44:56].mean().item()
