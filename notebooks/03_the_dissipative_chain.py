@@ -118,8 +118,8 @@ check(my_share, share_of_collisions, at=[(W,), (0.1,)], hint="A free rod loses n
 # </details>
 #
 # **How small can the width become?** Suppose that $n$ rods move as one block. The block is one free
-# oscillator. Its mass is the mass of all its rods together. All their dampings slow it down, and
-# all their noises push it. The noises of different rods are independent.
+# oscillator. Its mass is the mass of all its rods together. The damping and the noise of every rod
+# act on it. The noises of different rods are independent.
 #
 # **Your turn.** Which velocity width does a block of `n` rods have? Compute its mass, its damping
 # and the amplitude of its noise from those of one rod. Then use the width of a free rod,
@@ -132,7 +132,8 @@ def width_of_block(n):
 
 
 assert right(width_of_block, lambda n: W / np.sqrt(n), at=[(1,), (2,), (100,)])
-assert right(width_of_block(4), sticky.replace(size=4).free_velocity_width / 2)
+heavy = {"mass": 4 * sticky.mass, "damping": 4 * sticky.damping, "amplitude": 2 * sticky.amplitude}
+assert right(width_of_block(4), sticky.replace(**heavy).free_velocity_width)
 
 
 # %%
