@@ -189,7 +189,7 @@ check(
     my_energy_taken,
     energy_taken,
     at=meetings,
-    hint="Before the collision the velocities are +closing/2 and -closing/2, and after it e times as "
+    hint="Before the collision the velocities are +closing/2 and -closing/2, afterwards e times as "
     "large. For e < 1 the answer is positive: with a wrong sign the rods would gain energy.",
 )
 

@@ -692,7 +692,7 @@ assert isothermal.cloud_width.values.max() > 1.5 * s
 # print(float(lossy.mean_displacement[-1] / s), float(exact.mean_displacement[-1] / s))
 # ```
 #
-# It does not: the simulation gives $1.285 \pm 0.005\;s$, the order statistic $1.867\;s$. Inelastic
+# It does not: the simulation gives $1.283 \pm 0.006\;s$, the order statistic $1.867\;s$. Inelastic
 # rods do not only swap their velocities. They cool each other, and a colder chain is shorter.
 #
 # </details>

@@ -23,7 +23,7 @@
 #
 # In this lesson two rods are called *strangers* if their velocities are independent. Lesson 8 solved
 # a kinetic equation which assumes that rods that meet are strangers. For $e = 0.75$ and 100 rods its
-# velocity width in the centre is wrong by 9 %. Here you measure the reason, and see a theory that
+# velocity width in the centre is wrong by 8 %. Here you measure the reason, and see a theory that
 # corrects it.
 #
 # Units as in all lessons: the rod radius $R$, $T = \sqrt{M/k}$ for times. $W$ is the velocity width
@@ -179,7 +179,7 @@ assert np.allclose(run.contact_loss / run.contact_force, by_force, rtol=0.01)
 # %% [markdown]
 # <details><summary>Explain</summary>
 #
-# At $e = 1$ all four are $T$. At $e = 0.75$ neighbours have a relative temperature of 0.585 $T$,
+# At $e = 1$ all four are $T$. At $e = 0.75$ neighbours have a relative temperature of 0.59 $T$,
 # because their covariance is the rest of $T$. Rods that are about to collide have a lower one, 0.44 $T$.
 # The reason is that rods which happen to be close collide often, and are cold. After the collision
 # $e^2 = 0.56$ of the 0.44 $T$ remains. Then noise and other neighbours make the two velocities
