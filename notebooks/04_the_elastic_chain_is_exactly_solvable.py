@@ -278,7 +278,8 @@ plt.show()
 # ## 4. One rod
 #
 # The distribution of one order statistic is known in closed form. Let $\Phi$ be the distribution
-# function of the unit Gaussian and $u = \Phi(y/s)$. The $L$ numbers $u$ are uniform in $(0, 1)$.
+# function of the unit Gaussian and $u = \Phi(y/s)$. Before they are sorted, the $L$ numbers $u$ are
+# independent, and each is uniform in $(0, 1)$.
 #
 # **Your turn.** Which probability density does the $i$-th smallest of $L$ such numbers have at $u$?
 # One number lies at $u$, $i - 1$ of the others lie below it, and $L - i$ above it. Each of the
