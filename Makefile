@@ -9,6 +9,7 @@ OUTPUT ?= results
 QUALITY ?= quick
 WHICH ?= all
 LESSON ?= [0-9]
+LESSONS := build/lessons
 CHECK_PYTHON := $(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
   { echo "Python 3.11 or later is needed; name one with: make PYTHON=python3.12 ..."; exit 1; }
 ROOMS  := model particles kinetic comparison reproduction apps
@@ -16,7 +17,7 @@ ROOMS  := model particles kinetic comparison reproduction apps
 # imports, for 3 s more; tests, notebooks and pages start a few hundred processes.
 export PYTHONDONTWRITEBYTECODE :=
 
-.PHONY: help run test validate test-lowest torture coverage check audit reproduce notebooks render browser docs \
+.PHONY: help run test validate test-lowest torture coverage check audit reproduce lessons notebooks render browser docs \
   linkcheck benchmark clean
 .DEFAULT_GOAL := help
 
@@ -31,6 +32,7 @@ help:
 	@echo "make audit      look up known vulnerabilities of every package used (needs the network)"
 	@echo "make reproduce  draw every figure and check every claim of the paper (3 min; QUALITY=full 12 min;"
 	@echo "                WHICH=analytics: only the paper's analytics section, 1 min)"
+	@echo "make lessons    write the lessons without outputs, for learners, into $(LESSONS)/"
 	@echo "make notebooks  execute the notebooks, into build/notebooks/"
 	@echo "make render     write the notebooks from their scripts, with outputs (LESSON=03: only that one)"
 	@echo "make docs       build the documentation into build/docs/ and execute its examples"
@@ -79,6 +81,11 @@ audit: $(VENV)/installed-test $(VENV)/installed-docs $(VENV)/installed-audit
 
 reproduce: $(VENV)/installed
 	$(BIN)/crazybilliards reproduce $(WHICH) --quality $(QUALITY)
+
+# A lesson that exists stays, because it holds somebody's answers.
+lessons: $(VENV)/installed-notebooks
+	@$(BIN)/python notebooks/without_outputs.py $(LESSONS)
+	@echo "open the lessons with: $(BIN)/jupyter lab $(LESSONS)"
 
 # Copies of the notebooks are executed, and the documentation shows their outputs.
 notebooks: $(VENV)/installed-notebooks

@@ -5,6 +5,7 @@ import shutil
 from html import escape
 from importlib.metadata import version as version_of
 from pathlib import Path
+from runpy import run_path
 
 from docutils.nodes import SkipNode, Text, entry, image, math
 from docutils.utils.math import MathError
@@ -91,6 +92,14 @@ def copy_notebooks() -> None:
         copy = there / name
         if not copy.exists() or copy.read_text(encoding="utf-8") != text:
             copy.write_text(text, encoding="utf-8")
+
+
+def pack_lessons() -> None:
+    """Offer the lessons without outputs as one archive, with the module that they share."""
+    there = HERE / "notebooks" / "lessons"
+    run_path(str(ROOT / "notebooks" / "without_outputs.py"))["write_copies"](there)
+    shutil.make_archive(str(there), "zip", there)
+    shutil.rmtree(there)  # Sphinx would take them for pages
 
 
 def point_to_copies(app, page, source) -> None:
@@ -252,6 +261,7 @@ def write_formula(translator, node) -> None:
 def setup(app) -> None:
     """Let Sphinx know of the above."""
     copy_notebooks()
+    pack_lessons()
     app.connect("source-read", point_to_copies)
     app.add_html_math_renderer("mathml", (write_inline_formula, None), (write_formula, None))
     app.connect("doctree-resolved", mark_pictures)

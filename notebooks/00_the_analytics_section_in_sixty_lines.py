@@ -30,7 +30,9 @@
 # $m = \frac{4\pi}{3}M$.
 #
 # *Level: for readers of the paper. You need: numpy and scipy. Time: 30 minutes. The lessons 1 to 11
-# explain everything that is only used here.*
+# explain everything that is only used here. To predict before you see the results, type
+# `make lessons` in the folder of the project, and open the copy of this lesson without outputs in
+# `build/lessons/`.*
 
 # %%
 import matplotlib.pyplot as plt

@@ -27,7 +27,9 @@
 # the equation of motion, its Fokker-Planck equation, and the time-stepping scheme that all other
 # lessons use.
 #
-# *Level: second year. You need: Newton's equation, a matrix exponential, numpy. Time: 90 minutes.*
+# *Level: second year. You need: Newton's equation, a matrix exponential, numpy. Time: 90 minutes.
+# To predict before you see the results, type `make lessons` in the folder of the project, and open
+# the copy of this lesson without outputs in `build/lessons/`.*
 
 # %% tags=["hide-input"]
 import matplotlib.pyplot as plt
@@ -36,11 +38,10 @@ from scipy.linalg import expm, solve_continuous_lyapunov, solve_discrete_lyapuno
 from teaching import BLUE, GREEN, ORANGE, PINK, RED, agree, check, mean_and_error, panels, right
 
 # %%
-from crazybilliards.model import Chain
-from crazybilliards.particles import given_start, simulate
+import crazybilliards as cb
 
-chain = Chain(size=1)
-path = simulate(chain, duration=200, every=0.1, observe="snapshots", seed=7, progress=False)
+chain = cb.Chain(size=1)
+path = cb.simulate(chain, duration=200, every=0.1, observe="snapshots", seed=7, progress=False)
 x, v = path.position.values[0, :, 0], path.velocity.values[0, :, 0]
 t = path.time.values - path.time.values[0]
 
@@ -106,7 +107,7 @@ variants = {
 }
 runs = {}
 for name, one in variants.items():
-    run = simulate(one, duration=100_000, observe="widths", seed=1, progress=False)
+    run = cb.simulate(one, duration=100_000, observe="widths", seed=1, progress=False)
     print(f"{name:17s} W = {run.velocity_width.item():.4f} R/T,", end=" ")
     print(f"s = {run.displacement_width.item():.4f} R")
     runs[name] = run
@@ -152,7 +153,7 @@ for name, one in variants.items():
 # **Run.**
 
 # %%
-long = simulate(chain, duration=200_000, every=1, observe="snapshots", seed=2, progress=False)
+long = cb.simulate(chain, duration=200_000, every=1, observe="snapshots", seed=2, progress=False)
 x, v = long.position.values[0, :, 0], long.velocity.values[0, :, 0]
 W, s = chain.free_velocity_width, chain.thermal_length
 
@@ -246,8 +247,8 @@ assert np.allclose(C_infinity, np.diag([s**2, W**2]))
 
 # %%
 copies = 1000
-start = given_start(chain, [4 * s], replicas=copies)
-cloud = simulate(
+start = cb.given_start(chain, [4 * s], replicas=copies)
+cloud = cb.simulate(
     chain,
     start=start,
     replicas=copies,
@@ -449,16 +450,63 @@ assert np.isclose(C[0, 1], 0.1 / 2 * C[1, 1])
 #
 # ## 5. Splitting: solve exactly what can be solved
 #
-# Take friction and noise alone, $m\dot v=-\gamma v+A\xi$. Ornstein and Uhlenbeck found the exact
-# result after $\Delta t$:
+# Take friction and noise alone, $m\dot v=-\gamma v+A\xi$. During $\Delta t$ friction multiplies the
+# velocity by $c=e^{-\gamma\Delta t/m}$. The kicks of the noise add up to a Gaussian number of mean
+# 0. Its width $\sigma$ does not depend on $v$, so the velocity after the step is
 #
-# $$v' = c\,v + W\sqrt{1-c^2}\;\xi,\qquad c=e^{-\gamma\Delta t/m}.$$
+# $$v' = c\,v + \sigma\,\xi .$$
 #
-# If $\langle v^2\rangle=W^2$ before the step, then it is $c^2W^2+(1-c^2)W^2=W^2$ after the step,
-# *however long the step is*. Euler's scheme has $1-\gamma\Delta t/m$ in place of $c$. Spring and
-# flight alone are a problem of mechanics. Half a kick, flight, half a kick is Verlet's scheme,
-# which neither heats nor cools in the long run. The **splitting scheme** puts the two together
-# symmetrically:
+# **Your turn.** Write this step so that it is exact, however long $\Delta t$ is. To find $\sigma$,
+# use that friction and noise alone have a steady state too: velocities that have the width $W$
+# before the step have this width after it.
+
+
+# %% tags=["remove-cell"]
+def friction_and_noise(v, dt, xi):
+    c = np.exp(-gamma * dt / m)
+    return c * v + W * np.sqrt(1 - c**2) * xi
+
+
+pushes = [(1.0, 0.5, 0.0), (0.0, 0.5, 1.0), (-0.4, 8.0, 0.7)]
+# A short step gives the kick of section 1. Two steps give what one step of twice the length gives.
+assert np.isclose(friction_and_noise(0, 1e-9, 1), A / m * np.sqrt(1e-9))
+c, kick = friction_and_noise(1, 0.3, 0), friction_and_noise(0, 0.3, 1)
+assert right(friction_and_noise(1, 0.6, 0), c**2)
+assert right(friction_and_noise(0, 0.6, 1), kick * np.sqrt(1 + c**2))
+assert not right(lambda v, dt, xi: v - gamma * dt / m * v, friction_and_noise, at=pushes)
+
+
+# %%
+def my_exact_step(v, dt, xi):
+    return ...  # your code here: the new v
+
+
+check(
+    my_exact_step,
+    friction_and_noise,
+    at=pushes,
+    hint="The variances of c v and of sigma xi add up to W**2: c**2 W**2 + sigma**2 = W**2.",
+)
+
+# %% [markdown]
+# <details><summary>Solution</summary>
+#
+# Before the step $\langle v^2\rangle=W^2$, and after it $\langle v'^2\rangle=c^2W^2+\sigma^2$. The
+# two are equal if $\sigma=W\sqrt{1-c^2}$. Ornstein and Uhlenbeck found this result.
+#
+# ```python
+# def my_exact_step(v, dt, xi):
+#     c = np.exp(-gamma * dt / m)
+#     return c * v + W * np.sqrt(1 - c**2) * xi
+# ```
+#
+# </details>
+#
+# With this step the width stays right, however long the step is. Euler's scheme has
+# $1-\gamma\Delta t/m$ in place of $c$. (In the code below `friction_and_noise` is this exact step.)
+# Spring and flight alone are a problem of mechanics. Half a kick, flight, half a kick is Verlet's
+# scheme, which neither heats nor cools in the long run. The **splitting scheme** puts the two
+# together symmetrically:
 #
 # 1. friction and noise over $\Delta t/2$, exactly;
 # 2. half a spring kick, $v\to v-\frac{\Delta t}{2m}kx$;
@@ -472,16 +520,14 @@ assert np.isclose(C[0, 1], 0.1 / 2 * C[1, 1])
 
 
 # %%
-def splitting(chain, dt, duration, copies, rng):
-    k, m, gamma, W = chain.stiffness, chain.mass, chain.damping, chain.free_velocity_width
-    c = np.exp(-gamma * dt / (2 * m))
+def splitting(dt, duration, copies, rng):
     x, v = np.zeros((2, copies))
     for _ in range(round(duration / dt)):
-        v = c * v + W * np.sqrt(1 - c**2) * rng.standard_normal(copies)
+        v = friction_and_noise(v, dt / 2, rng.standard_normal(copies))
         v = v - dt / (2 * m) * k * x
         x = x + dt * v
         v = v - dt / (2 * m) * k * x
-        v = c * v + W * np.sqrt(1 - c**2) * rng.standard_normal(copies)
+        v = friction_and_noise(v, dt / 2, rng.standard_normal(copies))
     return x, v
 
 
@@ -499,7 +545,7 @@ exact = errors(splitting_map, 1.0)
 print(f"splitting at dt = 1: error of <x^2> {exact[0]:+.4f}, of <v^2> {exact[1]:+.0e}")
 
 # %% tags=["remove-cell"]
-x, v = splitting(chain, 1.0, 60, copies, rng)
+x, v = splitting(1.0, 60, copies, rng)
 for values, width, error in ((x, s, exact[0]), (v, W, exact[1])):
     agree("splitting", np.mean(values**2) / width**2 / (1 + error), 1, np.sqrt(2 / copies))
 omega = np.sqrt(k / m)
@@ -531,7 +577,7 @@ measured = {}
 for stepper in maps:
     for dt in (0.3, 0.6, 1.2, 2.4):
         long = {"duration": 1_000_000, "observe": "widths", "seed": 5, "progress": False}
-        run = simulate(chain, time_step=dt, stepper=stepper, **long)
+        run = cb.simulate(chain, time_step=dt, stepper=stepper, **long)
         ratio = np.array([run.displacement_width.item() / s, run.velocity_width.item() / W])
         error = [run.displacement_width_error.item() / s, run.velocity_width_error.item() / W]
         measured[stepper, dt] = ratio**2 - 1, 2 * ratio * np.array(error)
@@ -611,10 +657,10 @@ assert abs(np.sqrt(1 + errors(euler_map, 0.1)[1]) - 1.006) < 5e-4
 #
 # ## Exercises
 #
-# **1. A spring that is not linear.** With `Chain(size=1, spring="quadratic")` the force is
-# $F=kx|x|$. What are the stationary distributions of $x$ and $v$? Compute $\langle
-# x^4\rangle/\langle x^2\rangle^2$ and $\langle v^4\rangle/\langle v^2\rangle^2$, which are both 3
-# for a Gaussian, and compare with a simulation.
+# **1. A spring that is not linear.** With `cb.Chain(size=1, spring="quadratic")` the force is
+# $F=kx|x|$. What are the stationary distributions of $x$ and $v$? Compute
+# $\langle x^4\rangle/\langle x^2\rangle^2$ and $\langle v^4\rangle/\langle v^2\rangle^2$, which are
+# both 3 for a Gaussian, and compare with a simulation.
 #
 # <details><summary>Solution</summary>
 #
@@ -626,8 +672,8 @@ assert abs(np.sqrt(1 + errors(euler_map, 0.1)[1]) - 1.006) < 5e-4
 # is $\Gamma(\frac53)\,\Gamma(\frac13)=2.418$.
 #
 # ```python
-# soft = Chain(size=1, spring="quadratic")
-# run = simulate(soft, duration=200_000, every=1, observe="snapshots", seed=6, progress=False)
+# soft = cb.Chain(size=1, spring="quadratic")
+# run = cb.simulate(soft, duration=200_000, every=1, observe="snapshots", seed=6, progress=False)
 # for values in (run.position.values, run.velocity.values):
 #     print(np.mean(values**4) / np.mean(values**2) ** 2)
 # ```
@@ -673,8 +719,9 @@ assert abs(np.sqrt(1 + errors(euler_map, 0.1)[1]) - 1.006) < 5e-4
 # The entry for velocities is 0: the rod is tied to its anchor and does not diffuse. The negative
 # parts of the curve in section 3 cancel the positive ones. (Without a spring the same calculation
 # gives $m/\gamma$, and with it Einstein's $W^2m/\gamma=T/\gamma$.) The entry for positions is
-# $\tau=\gamma/k=1$. `simulate(chain, duration=200_000, observe="widths",
-# seed=2).autocorrelation_time` is 0.70. This estimate uses 64 blocks and is therefore accurate to
-# about a sixth only: the seeds from 0 to 7 give 0.70 to 1.13.
+# $\tau=\gamma/k=1$.
+# `cb.simulate(chain, duration=200_000, observe="widths", seed=2).autocorrelation_time` is 0.70.
+# This estimate uses 64 blocks and is therefore accurate to about a sixth only: the seeds from 0 to
+# 7 give 0.70 to 1.13.
 #
 # </details>

@@ -25,8 +25,10 @@
 # ([Mani, Böttcher, Herrmann and Helbing](https://arxiv.org/abs/1404.7460)). It then explains what
 # happens when collisions lose energy.
 #
-# *Level: second year. You need: momentum and energy, numpy; no other lesson. Time: 120 minutes
-# (sections 1 to 4: 70 minutes).*
+# *Level: second year. You need: momentum and energy, numpy; no other lesson. Time: 75 minutes, and
+# 50 minutes more for sections 5 and 6, which are optional. To predict before you see the results,
+# type `make lessons` in the folder of the project, and open the copy of this lesson without outputs
+# in `build/lessons/`.*
 
 # %% tags=["hide-input"]
 import matplotlib.pyplot as plt
@@ -37,16 +39,12 @@ from matplotlib.patches import Rectangle
 from scipy.optimize import isotonic_regression
 from teaching import COLOURS, RED, agree, check, panels, right
 
-from crazybilliards.comparison import standalone_page
-from crazybilliards.model import Chain
-from crazybilliards.particles import given_start, simulate
-
 
 def film(chain, x, v, *, duration, every, time_step=None, **settings):
     """Simulate from positions x and velocities v; return times, positions, velocities."""
-    run = simulate(
+    run = cb.simulate(
         chain,
-        start=given_start(chain, x, v),
+        start=cb.given_start(chain, x, v),
         duration=duration,
         every=every,
         time_step=time_step or every,  # without springs any step will do
@@ -75,8 +73,10 @@ def spacetime(ax, t, x):
 # **Run.** In the pictures time runs upwards, and a band is a rod, 2 R wide.
 
 # %%
+import crazybilliards as cb
+
 free = {"amplitude": 0, "damping": 0, "stiffness": 0}  # no noise, no friction, no springs
-cradle = Chain(size=3, **free)
+cradle = cb.Chain(size=3, **free)
 x, v = cradle.anchors - [3.02, 0, 0], np.array([1.0, 0, 0])
 methods = ("event-driven", "contact-dynamics")
 films = {method: film(cradle, x, v, duration=7, every=0.05, method=method) for method in methods}
@@ -134,7 +134,13 @@ def my_collision(v1, v2, e):
     return ...  # your code here: the two velocities after the collision
 
 
-check(my_collision, collide, at=pairs, hint="Add both equations; then subtract them.")
+check(
+    my_collision,
+    collide,
+    at=pairs,
+    hint="Add both equations; then subtract them. At e = 1 the velocities (1, 0) become (0, 1). "
+    "With a wrong sign of e they stay (1, 0), as if the rods had passed through each other.",
+)
 
 # %% [markdown]
 # <details><summary>Solution</summary>
@@ -150,13 +156,61 @@ check(my_collision, collide, at=pairs, hint="Add both equations; then subtract t
 #
 # </details>
 #
-# The energy in the relative motion is $\frac m4\Delta v^2$ with the closing speed $\Delta
-# v=v_1-v_2$, so a collision takes
+# At $e=1$ the rods swap their velocities. At $e=0$ they move on together.
+#
+# **How much energy does a collision take?** At $e<1$ it turns a part of the kinetic energy into
+# heat. Look at the two rods from their centre of mass, which moves with the velocity
+# $\frac{v_1+v_2}2$. The collision does not change this velocity, so it can only take energy from
+# the motion that you see from there.
+#
+# **Your turn.** Compute the energy that a collision takes from two rods of mass $m$ that meet with
+# the closing speed $\Delta v=v_1-v_2$. First write down their two velocities as seen from the
+# centre of mass.
+
+
+# %% tags=["remove-cell"]
+def energy_taken(closing, e, m):
+    return (1 - e**2) / 4 * m * closing**2
+
+
+meetings = [(1.0, 0.0, 1.0), (3.0, 0.5, 2.0), (2.0, 1.0, 1.0), (1.5, 0.9, 4.0)]
+for closing, e, m in meetings:
+    before, after = np.array([0.7 + closing, 0.7]), np.array(collide(0.7 + closing, 0.7, e))
+    assert np.isclose(m / 2 * np.sum(before**2 - after**2), energy_taken(closing, e, m))
+assert not right(lambda closing, e, m: -energy_taken(closing, e, m), energy_taken, at=meetings)
+
+
+# %%
+def my_energy_taken(closing, e, m):
+    return ...  # your code here: the kinetic energy before, minus that after the collision
+
+
+check(
+    my_energy_taken,
+    energy_taken,
+    at=meetings,
+    hint="Before the collision the velocities are +closing/2 and -closing/2, afterwards e times as "
+    "large. For e < 1 the answer is positive: with a wrong sign the rods would gain energy.",
+)
+
+# %% [markdown]
+# <details><summary>Solution</summary>
+#
+# Seen from the centre of mass, the rods have the velocities $\pm\frac12\Delta v$ before the
+# collision and $\mp\frac e2\Delta v$ after it. Each of them has lost
+# $\frac m2\big(\frac{\Delta v}2\big)^2(1-e^2)$, so the collision takes
 #
 # $$\Delta E = \frac{1-e^2}{4}\,m\,\Delta v^2 .$$
 #
-# At $e=1$ it takes nothing, and the rods swap their velocities. At $e=0$ the two rods move on
-# together.
+# ```python
+# def my_energy_taken(closing, e, m):
+#     before = 2 * m / 2 * (closing / 2) ** 2
+#     after = 2 * m / 2 * (e * closing / 2) ** 2
+#     return before - after
+# ```
+#
+# </details>
+#
 #
 # ## 2. Take the rods' own length out
 #
@@ -205,7 +259,7 @@ def billiard(y, v, e, duration):
 # **Run.**
 
 # %%
-rods = Chain(size=12, gap=1, **free)
+rods = cb.Chain(size=12, gap=1, **free)
 y = rods.reduced_anchors
 v = np.random.default_rng(5).standard_normal(rods.size) - 0.25 * y
 duration = 8.0
@@ -393,7 +447,7 @@ def show(frame):
 
 animation = FuncAnimation(fig, show, frames=len(films[0][0]), interval=100)
 plt.close(fig)
-HTML(standalone_page(animation))
+HTML(cb.standalone_page(animation))
 
 # %% [markdown]
 # <details><summary>Explain</summary>
@@ -427,7 +481,10 @@ for e in (0.7, 0.9, 1, 1.1):
 # %% [markdown]
 # For $e>1$ collisions *add* energy. The paper calls such rods "flippers".
 #
-# ## 5. Newton's cradle, and what Contact Dynamics does
+# ## 5. Newton's cradle, and what Contact Dynamics does (optional)
+#
+# *Sections 5 and 6 are optional, because no other lesson needs them. To skip both, go on with
+# exercise 4.*
 #
 # We return to the first question. With event-driven collisions the first rod swaps velocities with
 # the second, and the second with the third. All these collisions of two rods happen at the same
@@ -465,14 +522,14 @@ check(
 
 # %%
 for size in (3, 5):
-    hit, chain = np.eye(size)[0], Chain(size=size, **free)
+    hit, chain = np.eye(size)[0], cb.Chain(size=size, **free)
     for method in methods:
         _, _, velocities = film(chain, chain.anchors, hit, duration=1, every=1, method=method)
         print(f"{size} rods, {method:16s}: {np.round(velocities[-1], 4)}")
 
 # %% tags=["remove-cell"]
 for size in (3, 5):
-    hit, chain = np.eye(size)[0], Chain(size=size, **free)
+    hit, chain = np.eye(size)[0], cb.Chain(size=size, **free)
     ends = {
         method: film(chain, chain.anchors, hit, duration=1, every=1, method=method)[2][-1]
         for method in methods
@@ -500,7 +557,7 @@ assert right([-0.6, 0.4, 0.4, 0.4, 0.4], contact_dynamics(np.eye(5)[0], 1))
 # time step:
 
 # %%
-chain = Chain(size=3, gap=0.1, **free)
+chain = cb.Chain(size=3, gap=0.1, **free)
 start = chain.anchors, np.array([1.0, 0, 0])
 ends = {}
 print("time step [T]   velocities after Contact Dynamics, energy [m/2]")
@@ -523,7 +580,9 @@ assert max(np.sum(ends[dt] ** 2) for dt in (1, 0.5, 0.2)) < 0.95
 # order by default, and keeps Contact Dynamics for the comparison with the paper. At $e=0$, the main
 # case of the paper, the two laws agree.
 #
-# ## 6. Inelastic collapse
+# ## 6. Inelastic collapse (optional)
+#
+# *This section is optional too. To skip it, go on with exercise 4.*
 #
 # For $0<e<1$ infinitely many collisions can happen in a finite time. A bouncing ball shows it. Each
 # bounce takes $e$ times as long as the one before, the sum $1+e+e^2+\dots=1/(1-e)$ is finite, and
@@ -636,12 +695,12 @@ assert np.isclose(waits[-1] / waits[-2], small / large)
 # **Run.**
 
 # %%
-noisy = Chain(size=50, restitution=0.2)
+noisy = cb.Chain(size=50, restitution=0.2)
 settings = {"duration": 800, "observe": ["widths", "collisions"], "seed": 8, "progress": False}
 centres = {}
 print("merging   collisions per rod and T   velocity width in the centre [R/T]")
 for merging in (1e-6, 0.003, 0.03, 0.1, 1):
-    run = simulate(noisy, merging=merging, **settings)
+    run = cb.simulate(noisy, merging=merging, **settings)
     rate = run.collision_rate.sum().item() / noisy.size
     centre = run.sel(particle=[25, 26]).mean()
     centres[merging] = rate, centre.velocity_width.item(), centre.velocity_width_error.item()

@@ -30,7 +30,9 @@
 # $T = \sqrt{M/k}$, where $k$ is the stiffness of the springs.
 #
 # *Level: third year. You need: lesson 1 (sections 1 to 3), lesson 2 (sections 1 and 2), the Gibbs
-# distribution. Time: 120 minutes (sections 1 to 4: 60 minutes).*
+# distribution. Time: 120 minutes (sections 1 to 4: 60 minutes). To predict before you see the
+# results, type `make lessons` in the folder of the project, and open the copy of this lesson
+# without outputs in `build/lessons/`.*
 
 # %% tags=["hide-input"]
 import ipywidgets
@@ -38,15 +40,12 @@ import matplotlib.pyplot as plt
 import numpy as np
 from scipy.integrate import trapezoid
 from scipy.linalg import expm
-from scipy.special import ndtr, ndtri
+from scipy.special import comb, ndtr, ndtri
 from scipy.stats import beta, norm
 from teaching import BLUE, GREEN, ORANGE, PINK, agree, check, panels, right
 
 # %%
-from crazybilliards.comparison import deviation, fit_arctanh, smooth
-from crazybilliards.kinetic import breathing_cloud, equilibrium, equilibrium_states
-from crazybilliards.model import Chain
-from crazybilliards.particles import given_start, simulate
+import crazybilliards as cb
 
 # %% [markdown]
 # Between collisions rod $i$ obeys
@@ -71,7 +70,7 @@ def independent_oscillators(chain, steps, dt, seed):
     return path
 
 
-chain = Chain(size=20)  # restitution 1, no gap between the anchors, linear springs
+chain = cb.Chain(size=20)  # restitution 1, no gap between the anchors, linear springs
 s, W = chain.thermal_length, chain.free_velocity_width
 path = independent_oscillators(chain, steps=2400, dt=0.05, seed=4)[1200:]
 
@@ -138,13 +137,13 @@ plt.show()
 
 # %%
 kinds = {
-    "no gap": Chain(size=30),
-    "gap 0.3 R": Chain(size=30, gap=0.3),
-    "gap 0.3 R, quadratic springs": Chain(size=30, gap=0.3, spring="quadratic"),
+    "no gap": cb.Chain(size=30),
+    "gap 0.3 R": cb.Chain(size=30, gap=0.3),
+    "gap 0.3 R, quadratic springs": cb.Chain(size=30, gap=0.3, spring="quadratic"),
 }
 runs = {}
 for name, each in kinds.items():
-    runs[name] = simulate(each, duration=30_000, observe="widths", seed=5, progress=False)
+    runs[name] = cb.simulate(each, duration=30_000, observe="widths", seed=5, progress=False)
 
 # %% tags=["hide-input"]
 ax = panels(width=7, height=3.2)
@@ -224,8 +223,8 @@ check(my_rods, rods_from, at=[(some,)], hint="Scale by s, sort along axis 1, add
 draws = 50_000
 x = rods_from(np.random.default_rng(1).standard_normal((draws, chain.size)))
 y = chain.reduced(x)
-run = simulate(chain, duration=100_000, seed=2, progress=False)
-exact = equilibrium(chain)
+run = cb.simulate(chain, duration=100_000, seed=2, progress=False)
+exact = cb.equilibrium(chain)
 
 # %% tags=["hide-input"]
 mean, width = y.mean(axis=0), y.std(axis=0)
@@ -257,7 +256,7 @@ chance = np.diff(exact.label.values[::2])  # label N(x): the mean number of rods
 likely = chance > 100 / draws
 coin = np.sqrt(draws * (chance * (1 - chance))[likely])
 agree(f"sorting, {likely.sum()} bins", count[likely], draws * chance[likely], coin)
-pulls = deviation(smooth(run), smooth(exact)).maximum_in_errors
+pulls = cb.deviation(cb.smooth(run), cb.smooth(exact)).maximum_in_errors
 agree("simulation, smoothed", pulls, 0, 1)
 ax = panels(width=9, height=3.4)
 heights = count / draws / np.diff(edges)
@@ -279,10 +278,54 @@ plt.show()
 # ## 4. One rod
 #
 # The distribution of one order statistic is known in closed form. Let $\Phi$ be the distribution
-# function of the unit Gaussian and $u = \Phi(y/s)$. The $L$ numbers $u$ are uniform in $(0, 1)$. The
-# $i$-th smallest has $i - 1$ numbers below it and $L - i$ above it, so its density is proportional
-# to $u^{i-1}(1-u)^{L-i}$. This is a Beta distribution with the parameters $i$ and $L + 1 - i$. For
-# the rod it says
+# function of the unit Gaussian and $u = \Phi(y/s)$. Before they are sorted, the $L$ numbers $u$ are
+# independent, and each is uniform in $(0, 1)$.
+#
+# **Your turn.** Which probability density does the $i$-th smallest of $L$ such numbers have at $u$?
+# One number lies at $u$, $i - 1$ of the others lie below it, and $L - i$ above it. Each of the
+# others lies below $u$ with the probability $u$. Multiply by the number of ways to choose which
+# number is which. `comb(n, k)` is the number of ways to choose $k$ of $n$ things.
+
+
+# %% tags=["remove-cell"]
+def ordered_density(u, i, L):
+    return L * comb(L - 1, i - 1) * u ** (i - 1) * (1 - u) ** (L - i)
+
+
+ranks = [(0.3, 1, 1), (0.3, 2, 5), (0.6, 10, 20), (0.9, 20, 20)]
+assert right(ordered_density, lambda u, i, L: beta(i, L + 1 - i).pdf(u), at=ranks)
+assert not right(lambda u, i, L: ordered_density(u, i, L) / L, ordered_density, at=ranks)
+
+
+# %%
+def my_ordered_density(u, i, L):
+    return ...  # your code here
+
+
+check(
+    my_ordered_density,
+    ordered_density,
+    at=ranks,
+    hint="Any of the L numbers may be the one at u. Then choose i - 1 of the other L - 1 numbers. "
+    "A single number, i = L = 1, has the density 1.",
+)
+
+# %% [markdown]
+# <details><summary>Solution</summary>
+#
+# Each of the $L$ numbers may be the one at $u$. Of the other $L - 1$ numbers, $i - 1$ lie below it.
+# There are $\binom{L-1}{i-1}$ ways to choose these, and each way has the probability
+# $u^{i-1}(1-u)^{L-i}$.
+#
+# ```python
+# def my_ordered_density(u, i, L):
+#     ways = L * comb(L - 1, i - 1)
+#     return ways * u ** (i - 1) * (1 - u) ** (L - i)
+# ```
+#
+# </details>
+#
+# This density is a Beta distribution with the parameters $i$ and $L + 1 - i$. For the rod it says
 #
 # $$p_i(y) = \frac1s\,\varphi(y/s)\;\mathrm{Beta}_{i,\,L+1-i}\big(\Phi(y/s)\big),
 # \qquad \varphi = \Phi' .$$
@@ -352,8 +395,8 @@ assert abs(whole - exact.density).max() * 2 < 1e-3
 # %%
 fits = {}
 for amplitude in (1, 10, 100):
-    theory = equilibrium(Chain(size=100, amplitude=amplitude))
-    fit, unit = fit_arctanh(theory), s * amplitude  # the thermal length of this chain
+    theory = cb.equilibrium(cb.Chain(size=100, amplitude=amplitude))
+    fit, unit = cb.fit_arctanh(theory), s * amplitude  # the thermal length of this chain
     off = (fit(theory.mean_position.values) - theory.mean_displacement.values) / unit
     print(f"A = {amplitude}: the arctanh is wrong by at most {abs(off).max():.4f} s")
     fits[amplitude] = off
@@ -373,7 +416,7 @@ ax.legend(ncols=2, loc="lower center", fontsize=9)
 plt.show()
 
 # %% tags=["remove-cell"]
-assert np.isclose(unit, Chain(amplitude=100).thermal_length)
+assert np.isclose(unit, cb.Chain(amplitude=100).thermal_length)
 assert abs(blom).max() < 0.01
 worst = {amplitude: abs(off).max() for amplitude, off in fits.items()}
 assert worst[10] < 0.02 < 0.04 < min(worst[1], worst[100])
@@ -435,10 +478,10 @@ assert np.isclose(springs, plasma, rtol=1e-12)
 # %%
 results = {}
 for g in (0.0, 0.1, 0.5):
-    loose = Chain(size=50, gap=g)
-    run = simulate(loose, duration=20_000, observe="widths", seed=8, progress=False)
-    states = equilibrium_states(loose, 20_000, seed=7)
-    results[g] = equilibrium(loose), run, states.position.values - loose.anchors
+    loose = cb.Chain(size=50, gap=g)
+    run = cb.simulate(loose, duration=20_000, observe="widths", seed=8, progress=False)
+    states = cb.equilibrium_states(loose, 20_000, seed=7)
+    results[g] = cb.equilibrium(loose), run, states.position.values - loose.anchors
 
 # %% tags=["hide-input"]
 ax = panels(width=8, height=3.8)
@@ -470,7 +513,7 @@ plt.show()
 # %% tags=["hide-input"]
 def displacements(gap):
     """Draw <dx>(i) for a gap, exactly."""
-    theory = equilibrium(Chain(size=50, gap=gap))
+    theory = cb.equilibrium(cb.Chain(size=50, gap=gap))
     ax = panels(width=7, height=3)
     ax.plot(theory.particle, theory.mean_displacement / s, "o-", color=BLUE, ms=3)
     ax.axhline(0, color="0.6", linewidth=1)
@@ -511,12 +554,12 @@ def moments(chain, times, start):
 # state, and average over the ensemble at equal times.
 
 # %%
-fifty, replicas, squeeze = Chain(size=50), 1000, 0.3
-states = equilibrium_states(fifty, replicas, seed=11)
+fifty, replicas, squeeze = cb.Chain(size=50), 1000, 0.3
+states = cb.equilibrium_states(fifty, replicas, seed=11)
 squeezed = fifty.physical(squeeze * fifty.reduced(states.position.values))
-start = given_start(fifty, squeezed, states.velocity.values, replicas=replicas)
+start = cb.given_start(fifty, squeezed, states.velocity.values, replicas=replicas)
 settings = {"duration": 30, "every": 0.5, "observe": "widths", "seed": 12, "progress": False}
-run = simulate(fifty, start=start, replicas=replicas, average="ensemble", **settings)
+run = cb.simulate(fifty, start=start, replicas=replicas, average="ensemble", **settings)
 times = run.time.values
 exact_y2, _, exact_v2 = moments(fifty, times, np.array([(squeeze * s) ** 2, 0, W**2])).T
 print(f"largest width {np.sqrt(exact_y2.max()) / s:.4f} s, smallest <v^2> ", end="")
@@ -526,7 +569,7 @@ print(f"{exact_v2.min() / W**2:.3f} W^2")
 measured = run.mean_displacement**2 + run.displacement_width**2  # <y_i^2>
 sigma = np.sqrt(measured.mean("particle")).values
 heat = (run.velocity_width**2).mean("particle").values
-cloud = breathing_cloud(fifty, 30, every=0.5, stretch=squeeze)
+cloud = cb.breathing_cloud(fifty, 30, every=0.5, stretch=squeeze)
 left, middle, other = panels(3, width=11, height=3.5)
 left.plot(times, np.sqrt(exact_y2) / s, color=ORANGE, linewidth=2.2, label="exact")
 left.plot(times[::2], sigma[::2] / s, "o", color="k", mfc="none", ms=4, label="1000 chains")
@@ -552,7 +595,7 @@ agree("mean displacement of every rod", run.mean_displacement, cloud.mean_displa
 assert abs(cloud.cloud_width.values - np.sqrt(exact_y2)).max() < 1e-6 * s
 assert np.sqrt(exact_y2.max()) < 1.001 * s
 assert abs(exact_v2.min() / W**2 - 0.54) < 0.01
-isothermal = breathing_cloud(fifty, 30, every=0.5, stretch=squeeze, evolving=False)
+isothermal = cb.breathing_cloud(fifty, 30, every=0.5, stretch=squeeze, evolving=False)
 assert isothermal.cloud_width.values.max() > 1.5 * s
 
 # %% [markdown]
@@ -579,7 +622,7 @@ assert isothermal.cloud_width.values.max() > 1.5 * s
 #
 # **1.** Take two rods with a gap. Their distance $z = y_2 - y_1$ is a Gaussian number with mean $g$
 # and variance $2s^2$, cut off at 0. Derive $\langle\Delta x_2\rangle$, and compare with
-# `equilibrium(Chain(size=2, gap=0.5))`.
+# `cb.equilibrium(cb.Chain(size=2, gap=0.5))`.
 #
 # <details><summary>Solution</summary>
 #
@@ -593,7 +636,7 @@ assert isothermal.cloud_width.values.max() > 1.5 * s
 # ```python
 # a = 0.5 / (np.sqrt(2) * s)
 # print(s / np.sqrt(2) * norm.pdf(a) / ndtr(a))
-# print(float(equilibrium(Chain(size=2, gap=0.5)).mean_displacement[1]))
+# print(float(cb.equilibrium(cb.Chain(size=2, gap=0.5)).mean_displacement[1]))
 # ```
 #
 # Both give 0.254580 R.
@@ -608,7 +651,7 @@ assert isothermal.cloud_width.values.max() > 1.5 * s
 #
 # ```python
 # for L in (11, 101, 1001):
-#     width = float(equilibrium(Chain(size=L)).displacement_width[L // 2])
+#     width = float(cb.equilibrium(cb.Chain(size=L)).displacement_width[L // 2])
 #     print(L, width / (np.sqrt(np.pi / 2) * s / np.sqrt(L)))
 # ```
 #
@@ -628,12 +671,12 @@ assert isothermal.cloud_width.values.max() > 1.5 * s
 # ```python
 # from scipy.stats import gennorm
 #
-# soft = Chain(size=20, spring="quadratic")
+# soft = cb.Chain(size=20, spring="quadratic")
 # scale = (3 * soft.temperature / soft.stiffness) ** (1 / 3)
 # draws = gennorm(3, scale=scale).rvs((50_000, 20), random_state=1)
 # last = np.sort(draws, axis=1)[:, -1]
 # print(last.mean(), "+-", last.std() / np.sqrt(50_000))
-# print(float(equilibrium(soft).mean_displacement[-1]))
+# print(float(cb.equilibrium(soft).mean_displacement[-1]))
 # ```
 #
 # The sorted numbers give 1.2403 $\pm$ 0.0012 R, `equilibrium` 1.2397 R.
@@ -646,11 +689,11 @@ assert isothermal.cloud_width.values.max() > 1.5 * s
 # <details><summary>Solution</summary>
 #
 # ```python
-# lossy = simulate(Chain(size=20, restitution=0.9), duration=20_000, seed=1, progress=False)
+# lossy = cb.simulate(cb.Chain(size=20, restitution=0.9), duration=20_000, seed=1, progress=False)
 # print(float(lossy.mean_displacement[-1] / s), float(exact.mean_displacement[-1] / s))
 # ```
 #
-# It does not: the simulation gives $1.285 \pm 0.005\;s$, the order statistic $1.867\;s$. Inelastic
+# It does not: the simulation gives $1.283 \pm 0.006\;s$, the order statistic $1.867\;s$. Inelastic
 # rods do not only swap their velocities. They cool each other, and a colder chain is shorter.
 #
 # </details>

@@ -33,8 +33,9 @@
 # Lengths are in rod radii $R$, masses in $M$ (a rod has $m = \frac{4\pi}{3}M$), times in
 # $\sqrt{M/k}$. The restitution is 1 until section 6.
 #
-# *Level: fourth year. You need: lessons 1, 2 and 4, the pressure of a gas as a flux of momentum. Time:
-# 120 minutes.*
+# *Level: fourth year. You need: lessons 1, 2 and 4, the pressure of a gas as a flux of momentum.
+# Time: 120 minutes. To predict before you see the results, type `make lessons` in the folder of the
+# project, and open the copy of this lesson without outputs in `build/lessons/`.*
 
 # %% tags=["hide-input"]
 import matplotlib.pyplot as plt
@@ -46,12 +47,9 @@ from scipy.stats import norm
 from teaching import BLUE, GREEN, ORANGE, PINK, check, mean_and_error, panels, right
 
 # %%
-from crazybilliards.comparison import smooth
-from crazybilliards.kinetic import equilibrium, force_balance
-from crazybilliards.model import Chain
-from crazybilliards.particles import simulate
+import crazybilliards as cb
 
-chain = Chain(size=100, amplitude=30)
+chain = cb.Chain(size=100, amplitude=30)
 W, s, d = chain.free_velocity_width, chain.thermal_length, 2 * chain.radius  # d: length of a rod
 print(f"free velocity width W = {W:.2f} R/T, thermal length s = {s:.1f} R")
 
@@ -70,8 +68,8 @@ print(f"free velocity width W = {W:.2f} R/T, thermal length s = {s:.1f} R")
 # %%
 lengths = {}
 for radius in (1, 0.1):
-    one = Chain(size=20, amplitude=30, radius=radius)
-    run = simulate(one, duration=2000, observe=["widths", "collisions"], seed=1, progress=False)
+    one = cb.Chain(size=20, amplitude=30, radius=radius)
+    run = cb.simulate(one, duration=2000, observe=["widths", "collisions"], seed=1, progress=False)
     lengths[radius] = run.mean_position.values[-1] - run.mean_position.values[0]
     print(f"radius {radius}: {run.collision_rate.sum().item():.3f} collisions per time,", end=" ")
     print(f"length {lengths[radius]:.2f} R, of which rods {19 * 2 * radius:.2f} R")
@@ -103,7 +101,7 @@ assert np.isclose(lengths[1] - lengths[0.1], 19 * 1.8)
 # %% tags=["hide-input"]
 def density_of_pressure(chain, slope):
     """Density rho(x), x >= 0, of a chain without gap whose pressure is W^2 q, slope = dq/drho."""
-    guess = force_balance(chain).sel(x=slice(0, None))
+    guess = cb.force_balance(chain).sel(x=slice(0, None))
     guess = guess.sel(x=guess.density > 1e-8)
 
     def equations(x, state):
@@ -122,7 +120,7 @@ def density_of_pressure(chain, slope):
 
 
 # %%
-exact = equilibrium(chain)
+exact = cb.equilibrium(chain)
 x_points, points = density_of_pressure(chain, lambda packing: 1.0 + 0 * packing)
 x_rods, rods = density_of_pressure(chain, lambda packing: 1 / (1 - packing) ** 2)
 
@@ -408,14 +406,16 @@ check(
 # **Run.**
 
 # %%
-theory = force_balance(chain).sel(x=slice(-300, 300))
+theory = cb.force_balance(chain).sel(x=slice(-300, 300))
 closed = CubicSpline(*closed_form(np.linspace(-7, 7, 20_001) * s))
 print(f"package and formula differ by {abs(theory.density - closed(theory.x)).max().item():.0e} /R")
 errors = {}
 for amplitude in (1, 3, 10, 30):
     case = chain.replace(amplitude=amplitude)
-    off = d * abs(smooth(force_balance(case)).density - smooth(equilibrium(case)).density)
-    third_last = equilibrium(case).mean_position.values[-3]
+    off = d * abs(
+        cb.smooth(cb.force_balance(case)).density - cb.smooth(cb.equilibrium(case)).density
+    )
+    third_last = cb.equilibrium(case).mean_position.values[-3]
     errors[amplitude] = off, off.max().item(), off.where(abs(off.x) < third_last).max().item()
     print(f"A = {amplitude:2}: error {errors[amplitude][1]:.4f} of close packing,", end=" ")
     print(f"{errors[amplitude][2]:.4f} inside the mean positions of the third rods from each end")
@@ -471,7 +471,7 @@ slopes = {
     "first order in 2R rho": lambda q: 1 + 2 * q,
 }
 profiles = {name: density_of_pressure(dense, slope) for name, slope in slopes.items()}
-true_centre = smooth(equilibrium(dense)).density.sel(x=0, method="nearest").item()
+true_centre = cb.smooth(cb.equilibrium(dense)).density.sel(x=0, method="nearest").item()
 print(f"density in the centre, exact: {true_centre:.4f} /R")
 for name, (_, rho) in profiles.items():
     print(f"    {name}: {rho[0]:.4f} /R")
@@ -479,7 +479,7 @@ for name, (_, rho) in profiles.items():
 # %% tags=["hide-input"]
 packing = np.linspace(1e-3, 0.99, 400)
 left, right_panel = panels(2, height=3.4)
-truth = smooth(equilibrium(dense))
+truth = cb.smooth(cb.equilibrium(dense))
 right_panel.plot(truth.x, truth.density, color=ORANGE, linewidth=3, label="exact")
 pressures = (1 / (1 - packing), -1 - 2 * np.log1p(-packing) / packing, 1 + packing)
 for (name, (x_here, rho)), values, colour, style in zip(
@@ -526,10 +526,10 @@ assert profiles["chi at the rod"][1][0] - true_centre > 0.01
 # **Run.**
 
 # %%
-cold = Chain(size=30, restitution=0.5)
+cold = cb.Chain(size=30, restitution=0.5)
 ratios, with_factor = [], []
 for seed in range(8):
-    run = simulate(cold, duration=600, seed=seed, observe=("widths",), progress=False)
+    run = cb.simulate(cold, duration=600, seed=seed, observe=("widths",), progress=False)
     y2 = (run.displacement_width**2 + run.mean_displacement**2).values
     v2 = (run.velocity_width**2).values
     ratios.append(cold.stiffness * y2.sum() / (cold.mass * v2.sum()))
@@ -581,9 +581,9 @@ assert ratio - np.mean(with_factor) > 0.1
 #
 # ```python
 # from math import gamma
-# soft = Chain(size=100, amplitude=30, spring="quadratic")
+# soft = cb.Chain(size=100, amplitude=30, spring="quadratic")
 # top = soft.size / (2 * gamma(4 / 3) * (3 * soft.temperature / soft.stiffness) ** (1 / 3))
-# top / (1 + d * top), force_balance(soft).density.max().item()
+# top / (1 + d * top), cb.force_balance(soft).density.max().item()
 # ```
 #
 # Both are 0.4551.

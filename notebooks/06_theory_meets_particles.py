@@ -26,8 +26,9 @@
 # calculation. It compares the result with a force balance that needs no fit, and with the exact
 # solution. At the end you know which of the three is right, where, and why.
 #
-# *Level: third year. You need: lesson 4, sections 1 to 5; the pressure of a gas. Time: 60
-# minutes.*
+# *Level: third year. You need: lesson 4, sections 1 to 5; the pressure of a gas. Time: 60 minutes.
+# To predict before you see the results, type `make lessons` in the folder of the project, and open
+# the copy of this lesson without outputs in `build/lessons/`.*
 
 # %% tags=["hide-input"]
 import matplotlib.pyplot as plt
@@ -36,11 +37,6 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 from scipy.special import ndtri
 from teaching import GREEN, ORANGE, PINK, agree, check, panels, right
-
-from crazybilliards.comparison import deviation, fit_arctanh, overlay, smooth
-from crazybilliards.kinetic import equilibrium, force_balance
-from crazybilliards.model import Chain
-from crazybilliards.particles import simulate
 
 # %% [markdown]
 # ## The paper's calculation in one cell
@@ -51,6 +47,8 @@ from crazybilliards.particles import simulate
 # solution in closed form, and section 3 compares the two.
 
 # %%
+import crazybilliards as cb
+
 L, R, k, m = 100, 1.0, 1.0, 4 * np.pi / 3
 W2, B, C = 10**2 / (2 * m), 9.96, 1 / 123.5  # A = 10, gamma = 1
 half = np.linspace(0, 0.9999 / C, 2000)
@@ -78,7 +76,7 @@ print(f"density in the middle: {in_one_cell[0]:.4f} per R")
 # with the width $s = W\sqrt{m/k}$.
 
 # %%
-chain = Chain(size=100, amplitude=10)
+chain = cb.Chain(size=100, amplitude=10)
 W, s = chain.free_velocity_width, chain.thermal_length
 k, m, R = chain.stiffness, chain.mass, chain.radius
 print(f"velocity width W = {W:.3f} R/T, thermal length s = {s:.2f} R")
@@ -91,7 +89,7 @@ print(f"velocity width W = {W:.3f} R/T, thermal length s = {s:.2f} R")
 # **Run.**
 
 # %%
-run = simulate(chain, duration=100_000, replicas=2, seed=1, progress=False)
+run = cb.simulate(chain, duration=100_000, replicas=2, seed=1, progress=False)
 outermost = run.mean_displacement.values[-1] / s
 print(f"mean displacement of the outermost rod: {outermost:.3f} s")
 agree("velocity widths and W", run.velocity_width, W, run.velocity_width_error)
@@ -101,8 +99,8 @@ assert 2.4 < outermost < 2.6
 
 # %% tags=["hide-input"]
 left, right_panel = panels(2)
-overlay({"simulation": run}, "mean_displacement", ax=left)
-overlay({"simulation": run}, "velocity_width", ax=right_panel)
+cb.overlay({"simulation": run}, "mean_displacement", ax=left)
+cb.overlay({"simulation": run}, "velocity_width", ax=right_panel)
 left.axhline(s, color="0.6", label="s")
 right_panel.axhline(W, color=ORANGE, label="W, free rods")
 right_panel.set_ylim(0.98 * W, 1.02 * W)
@@ -125,7 +123,7 @@ plt.show()
 # `smooth` does both. Two densities can be compared only after the same smoothing.
 
 # %%
-ax = overlay({"simulation": smooth(run)}, ax=panels(width=6))
+ax = cb.overlay({"simulation": cb.smooth(run)}, ax=panels(width=6))
 ax.axhline(chain.close_packed_density, color="0.6", linewidth=1)
 ax.text(0, 0.505, "close packing", ha="center", color="0.4")
 ax.set_ylim(0, 0.55)
@@ -177,9 +175,9 @@ check(slope, slope_solution, at=places, hint=hint)
 # it, and integrate the equation.
 
 # %%
-fit = fit_arctanh(run)
+fit = cb.fit_arctanh(run)
 print(f"B = {fit.scale / s:.2f} s, 1/C = {1 / fit.steepness:.1f} R, misfit {fit.misfit:.3f} R")
-paper = force_balance(chain, displacement=fit)
+paper = cb.force_balance(chain, displacement=fit)
 apart = np.abs(np.interp(half, paper.x, paper.density) - in_one_cell).max()
 print(f"force_balance and the first cell: {2 * R * apart:.1e} of close packing apart")
 
@@ -198,8 +196,8 @@ assert 2 * R * apart < 1e-3
 # rods are the **order statistics** of 100 independent Gaussian numbers.
 
 # %%
-labels = force_balance(chain)
-exact = equilibrium(chain)
+labels = cb.force_balance(chain)
+exact = cb.equilibrium(chain)
 print(f"error of the numerical solution: {exact.attrs['residual']:.1e}")
 
 # %% tags=["remove-cell"]
@@ -217,38 +215,38 @@ assert abs(np.gradient(given[0], labels.x.values) - slope_solution(*given)).max(
 
 # %%
 results = {
-    "simulation": smooth(run),
-    "exact": smooth(exact),
-    "force balance, without any fit": smooth(labels),
-    "force balance, arctanh fit": smooth(paper),
+    "simulation": cb.smooth(run),
+    "exact": cb.smooth(exact),
+    "force balance, without any fit": cb.smooth(labels),
+    "force balance, arctanh fit": cb.smooth(paper),
 }
 for name in list(results)[1:]:
-    d = deviation(results["simulation"], results[name])
+    d = cb.deviation(results["simulation"], results[name])
     print(f"{name:30s} largest difference {100 * d.maximum:.1f} % of close packing")
 
 # %% tags=["hide-input"]
 fig, (above, below) = plt.subplots(
     2, 1, figsize=(7, 5), sharex=True, height_ratios=(3, 1.4), layout="constrained"
 )
-overlay(results, ax=above)
+cb.overlay(results, ax=above)
 above.legend()
-reference = smooth(exact).density
+reference = cb.smooth(exact).density
 differences = {}
 for name, result in results.items():
     difference = ((result.density - reference) * 2).assign_attrs(reference.attrs)
     differences[name] = result.assign(density=difference)
     if "density_error" in result:
         differences[name]["density_error"] = result.density_error * 2
-overlay(differences, ax=below)
+cb.overlay(differences, ax=below)
 above.set_xlabel("")
 below.set_xlim(-150, 150)
 below.set_ylabel(r"minus exact, $\times 2R$")
 plt.show()
 
 # %% tags=["remove-cell"]
-exact_off = deviation(results["simulation"], results["exact"])
-labels_off = deviation(results["simulation"], results["force balance, without any fit"])
-paper_off = deviation(results["simulation"], results["force balance, arctanh fit"])
+exact_off = cb.deviation(results["simulation"], results["exact"])
+labels_off = cb.deviation(results["simulation"], results["force balance, without any fit"])
+paper_off = cb.deviation(results["simulation"], results["force balance, arctanh fit"])
 assert exact_off.maximum < 0.01
 assert exact_off.maximum_in_errors < 5
 assert labels_off.maximum < paper_off.maximum < 0.04
@@ -273,9 +271,9 @@ assert labels_off.maximum < paper_off.maximum < 0.04
 # **Run.**
 
 # %%
-best = force_balance(chain, displacement=exact)
+best = cb.force_balance(chain, displacement=exact)
 for name, result in (("exact displacement", best), ("arctanh fit", paper)):
-    error = deviation(smooth(exact), smooth(result)).maximum
+    error = cb.deviation(cb.smooth(exact), cb.smooth(result)).maximum
     print(f"force balance with the {name}: wrong by {100 * error:.1f} % of close packing")
 
 # %% tags=["hide-input"]
@@ -292,8 +290,8 @@ plt.show()
 # %% tags=["remove-cell"]
 assert np.abs(blom - exact.mean_displacement).max() < 0.01 * s
 assert np.abs(fit(position) - exact.mean_displacement).max() < 0.05 * s
-best_off = deviation(smooth(exact), smooth(best)).maximum
-assert 0.8 < best_off / deviation(smooth(exact), smooth(paper)).maximum < 1
+best_off = cb.deviation(cb.smooth(exact), cb.smooth(best)).maximum
+assert 0.8 < best_off / cb.deviation(cb.smooth(exact), cb.smooth(paper)).maximum < 1
 
 # %% [markdown]
 # <details><summary>Explain</summary>
@@ -331,7 +329,7 @@ assert 0.8 < best_off / deviation(smooth(exact), smooth(paper)).maximum < 1
 # <details><summary>Solution</summary>
 #
 # ```python
-# soft = Chain(amplitude=10, spring="quadratic")
-# deviation(smooth(force_balance(soft)), smooth(equilibrium(soft)))
+# soft = cb.Chain(amplitude=10, spring="quadratic")
+# cb.deviation(cb.smooth(cb.force_balance(soft)), cb.smooth(cb.equilibrium(soft)))
 # ```
 # </details>

@@ -30,8 +30,9 @@
 # \frac{4\pi}{3}M$). The unit of time is $\sqrt{M/k}$, written $T$ on the axes. The restitution is
 # 1, and there is no gap between the anchors.
 #
-# *Level: fourth year. You need: lesson 4, section 7, and lesson 6; partial differential equations. Time:
-# 100 minutes.*
+# *Level: fourth year. You need: lesson 4, section 7, and lesson 6; partial differential equations.
+# Time: 100 minutes. To predict before you see the results, type `make lessons` in the folder of the
+# project, and open the copy of this lesson without outputs in `build/lessons/`.*
 
 # %% tags=["hide-input"]
 import matplotlib.pyplot as plt
@@ -44,13 +45,10 @@ from scipy.linalg import expm
 from scipy.stats import norm
 from teaching import BLUE, GREEN, ORANGE, PINK, agree, check, panels, right
 
-from crazybilliards.comparison import animate, compare_relaxation, overlay, smooth, standalone_page
-from crazybilliards.kinetic import compressed, displaced, equilibrium_states, hydrodynamics
-from crazybilliards.model import Chain
-from crazybilliards.particles import simulate
-
 # %%
-chain = Chain(size=100, amplitude=30)
+import crazybilliards as cb
+
+chain = cb.Chain(size=100, amplitude=30)
 s, W = chain.thermal_length, chain.free_velocity_width
 omega, friction = np.sqrt(chain.stiffness / chain.mass), chain.damping / chain.mass
 print(f"thermal length s = {s:.1f} R, velocity width W = {W:.2f} R/T, s/W = {s / W:.2f} T")
@@ -87,7 +85,7 @@ fields = {"rho": free / (1 + 2 * R * free), "V": 0 * X, "N": L * norm.cdf(y, sca
 start = pde.FieldCollection([pde.ScalarField(grid, fields[f], label=f) for f in fields])
 solver = {"dt": 0.02, "solver": "runge-kutta", "backend": "numpy", "tracker": None}
 end = fluid.solve(start, t_range=8.0, **solver)
-flow = hydrodynamics(chain, compressed(chain, 0.6), 8.0, every=8.0, progress=False)
+flow = cb.hydrodynamics(chain, cb.compressed(chain, 0.6), 8.0, every=8.0, progress=False)
 apart = np.abs(np.interp(X, flow.x, flow.density[-1]) - end["rho"].data).max()
 print(f"hydrodynamics and three strings: {2 * R * apart:.1e} of close packing apart")
 
@@ -104,7 +102,7 @@ assert 2 * R * apart < 1e-2
 
 # %%
 SQUEEZE = 0.3
-tree = compare_relaxation(
+tree = cb.compare_relaxation(
     chain, "compressed", SQUEEZE, duration=16, every=0.4, replicas=200, seed=1, progress=False
 )
 rods, isothermal, warm, exact = (
@@ -115,7 +113,7 @@ time = rods.time.values
 # %% tags=["hide-input"]
 ax = panels(width=7, height=3)
 for moment, name in ((0, "squeezed, t = 0"), (-1, f"t = {time[-1]:.0f} T")):
-    seen = smooth(rods.isel(time=moment))
+    seen = cb.smooth(rods.isel(time=moment))
     style = {"color": (BLUE, ORANGE)[moment], "linestyle": ("-", "--")[moment]}
     ax.plot(seen.x, seen.density, label=name, **style)
 ax.axhline(chain.close_packed_density, color="0.6", linewidth=1)
@@ -164,7 +162,7 @@ plt.show()
 fig, axes = plt.subplots(1, 3, figsize=(10, 3.6), sharey=True)
 shown = {"rods (200 chains)": rods, "isothermal fluid": isothermal, "fluid with temperature": warm}
 for ax, (name, result) in zip(axes, shown.items(), strict=True):
-    picture = smooth(result)
+    picture = cb.smooth(result)
     image = ax.pcolormesh(
         picture.x, time, picture.density, cmap="cividis", vmin=0, vmax=0.5, rasterized=True
     )
@@ -282,7 +280,7 @@ every_second = tree.map_over_datasets(
     lambda data: data.isel(time=slice(None, None, 2)) if "time" in data.dims else data
 )
 with plt.rc_context({"figure.dpi": 64}):
-    page = standalone_page(animate(every_second), fps=6)
+    page = cb.standalone_page(cb.animate(every_second), fps=6)
 HTML(page)
 
 # %% tags=["remove-cell"]
@@ -298,9 +296,9 @@ assert len(page) < 1e6
 
 # %%
 fluids = {"isothermal fluid": None, "fluid with temperature": "evolving"}
-pushed = displaced(chain, 2 * s)
+pushed = cb.displaced(chain, 2 * s)
 swings = {
-    name: hydrodynamics(chain, pushed, 16, every=0.4, velocity_variance=variance, progress=False)
+    name: cb.hydrodynamics(chain, pushed, 16, every=0.4, velocity_variance=variance, progress=False)
     for name, variance in fluids.items()
 }
 
@@ -309,7 +307,7 @@ ringing = np.sqrt(omega**2 - friction**2 / 4)
 oscillator = np.exp(-friction * time / 2) * (
     np.cos(ringing * time) + friction / (2 * ringing) * np.sin(ringing * time)
 )
-ax = overlay(swings, "centre", ax=panels(width=6, height=2.8))
+ax = cb.overlay(swings, "centre", ax=panels(width=6, height=2.8))
 ax.plot(time[::2], 2 * s * oscillator[::2], "o", color="k", fillstyle="none", label="one free rod")
 ax.set_ylabel("centre of the chain [R]")
 ax.legend()
@@ -402,14 +400,14 @@ assert np.isclose(float(squares["isothermal"].subs(numbers)), sound_speed_soluti
 
 # %%
 WIDTH, PUSH, END = 0.08 * s, 0.02 * W, 0.8 * s / W
-rest = displaced(chain, 0.0)
+rest = cb.displaced(chain, 0.0)
 rest_y = rest.x - 2 * chain.radius * (rest.label - chain.size / 2)
 near = np.abs(rest_y) < 6 * WIDTH
 bump = np.where(near, np.exp(-((rest_y / WIDTH) ** 2) / 2), 0.0)
 start = rest.assign(flow_velocity=("x", PUSH * bump))
 settings = {"every": END / 40, "cells": 1000, "progress": False}
 pulses = {
-    name: hydrodynamics(chain, start, END, velocity_variance=variance, **settings)
+    name: cb.hydrodynamics(chain, start, END, velocity_variance=variance, **settings)
     for name, variance in fluids.items()
 }
 
@@ -503,13 +501,13 @@ def mean_velocity(y, t, push, spread):
 
 # %%
 push, spread, moment, copies = 0.3 * W, 0.1 * s, 0.5 * s / W, 10_000
-states = equilibrium_states(chain, copies, seed=2)
+states = cb.equilibrium_states(chain, copies, seed=2)
 state_y = chain.reduced(states.position.values)
 pushed_velocity = states.velocity + push * np.exp(-((state_y / spread) ** 2) / 2)
 start = states.assign(velocity=pushed_velocity)
 settings = {"replicas": copies, "average": "ensemble", "seed": 3, "progress": False}
 watch = {"observe": ("snapshots",), "duration": moment, "every": moment}
-last = simulate(chain, start=start, **watch, **settings).isel(time=-1)
+last = cb.simulate(chain, start=start, **watch, **settings).isel(time=-1)
 
 # %% tags=["hide-input"]
 edges = np.linspace(-2, 2, 41) * s
@@ -528,7 +526,7 @@ strong = rest.assign(
 )
 settings = {"every": moment, "cells": 1000, "progress": False}
 for (name, variance), style, colour in zip(fluids.items(), ("--", "-."), (BLUE, PINK), strict=True):
-    flow = hydrodynamics(chain, strong, moment, velocity_variance=variance, **settings)
+    flow = cb.hydrodynamics(chain, strong, moment, velocity_variance=variance, **settings)
     flow = flow.isel(time=-1)
     flow_y = flow.x - 2 * chain.radius * (flow.label - chain.size / 2)
     ax.plot(flow_y / s, flow.flow_velocity / W, style, color=colour, label=name)
@@ -596,8 +594,7 @@ assert abs(hump_soon / (W * early) - np.sqrt(2)) < 0.05
 # <details><summary>Solution</summary>
 #
 # ```python
-# from crazybilliards.kinetic import compressed
-# other = hydrodynamics(chain, compressed(chain, SQUEEZE), 16, every=0.4, frame="eulerian",
+# other = cb.hydrodynamics(chain, cb.compressed(chain, SQUEEZE), 16, every=0.4, frame="eulerian",
 #                       velocity_variance="evolving", progress=False)
 # np.abs(other.cloud_width / s - width).max().item()
 # ```

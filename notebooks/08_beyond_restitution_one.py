@@ -32,19 +32,15 @@
 # collision gives $v_1' - v_2' = -e(v_1 - v_2)$. A single rod would have the velocity width $W =
 # A/\sqrt{2m\gamma}$ and the displacement width $s = W\sqrt{m/k}$.
 #
-# *Level: fourth year. You need: lesson 4, sections 1 and 2; the Fokker-Planck equation (lesson 1). Time:
-# 120 minutes.*
+# *Level: fourth year. You need: lesson 4, sections 1 and 2; the Fokker-Planck equation (lesson 1).
+# Time: 120 minutes. To predict before you see the results, type `make lessons` in the folder of the
+# project, and open the copy of this lesson without outputs in `build/lessons/`.*
 
 # %% tags=["hide-input"]
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.colors import LogNorm
 from teaching import BLUE, GREEN, ORANGE, PINK, check, mean_and_error, panels, right
-
-from crazybilliards.comparison import fit_growth
-from crazybilliards.kinetic import phase_space
-from crazybilliards.model import Chain
-from crazybilliards.particles import given_start, simulate
 
 # %% [markdown]
 # ## 1. A collision, seen differently
@@ -59,6 +55,8 @@ from crazybilliards.particles import given_start, simulate
 # **Run.**
 
 # %%
+import crazybilliards as cb
+
 e = 0.95
 v, u = np.random.default_rng(1).normal(size=(2, 1000))
 bounced = (v + u) / 2 - e * (v - u) / 2, (v + u) / 2 + e * (v - u) / 2
@@ -154,17 +152,19 @@ check(gain, gain_solution, at=cases, hint=hint)
 # **Run.** The mesh of `cells=16` is good to half a per cent or better. The default is finer.
 
 # %%
-losing = {e: Chain(size=100, restitution=e) for e in (0.95, 0.9)}
-gaining = {L: Chain(size=L, restitution=1.05, damping=4) for L in (50, 100)}
+losing = {e: cb.Chain(size=100, restitution=e) for e in (0.95, 0.9)}
+gaining = {L: cb.Chain(size=L, restitution=1.05, damping=4) for L in (50, 100)}
 settings = {"replicas": 2, "seed": 1, "progress": False}
 snapshots = {"every": 0.3, "observe": ["widths", "snapshots"]}
-cold = {e: simulate(chain, duration=1500, **snapshots, **settings) for e, chain in losing.items()}
+cold = {
+    e: cb.simulate(chain, duration=1500, **snapshots, **settings) for e, chain in losing.items()
+}
 hot = {
-    L: simulate(chain, duration=3000, observe=["widths"], **settings)
+    L: cb.simulate(chain, duration=3000, observe=["widths"], **settings)
     for L, chain in gaining.items()
 }
-theory = {e: phase_space(chain, cells=16) for e, chain in losing.items()}
-driven = {L: phase_space(chain, cells=16) for L, chain in gaining.items()}
+theory = {e: cb.phase_space(chain, cells=16) for e, chain in losing.items()}
+driven = {L: cb.phase_space(chain, cells=16) for L, chain in gaining.items()}
 
 
 # %% tags=["hide-input"]
@@ -298,8 +298,8 @@ assert abs(flow) < 0.03  # in the steady state as many points move outwards as i
 # number.
 
 # %%
-hard = Chain(size=100, restitution=0.5)
-hard_run = simulate(hard, duration=500, **snapshots, **settings)
+hard = cb.Chain(size=100, restitution=0.5)
+hard_run = cb.simulate(hard, duration=500, **snapshots, **settings)
 in_theory = 0.0623  # phase_space(hard, cells=16).velocity_width[45:55].mean(), minutes
 middle = float(hard_run.velocity_width[45:55].mean())
 middle_error = float(hard_run.velocity_width_error[45:55].mean())  # neighbours err together
@@ -338,7 +338,7 @@ def correlation(run, distance):
 
 
 elastic = {"duration": 1500, "every": 0.5, "seed": 1, "observe": ["widths", "snapshots"]}
-elastic_run = simulate(Chain(size=100), progress=False, **elastic)
+elastic_run = cb.simulate(cb.Chain(size=100), progress=False, **elastic)
 distances = np.arange(1, 21, 2)
 neighbours = {}
 ax = panels(width=6.2)
@@ -352,7 +352,9 @@ for run, e, colour, symbol in (
     look = {"fmt": symbol, "color": colour, "markerfacecolor": "none", "label": f"e = {e}"}
     ax.errorbar(distances, c, c_error, **look)
     neighbours[e] = c[0], c_error[0]
-    whole = Chain().free_velocity_width ** 2 / 100 / (run.velocity_width.values[33:67] ** 2).mean()
+    whole = (
+        cb.Chain().free_velocity_width ** 2 / 100 / (run.velocity_width.values[33:67] ** 2).mean()
+    )
     ax.axhline(whole, color=colour, linestyle=":", linewidth=1)
     print(f"e = {e}: neighbours {c[0]:.3f} +- {c_error[0]:.3f}, centre of mass alone {whole:.3f}")
 ax.plot([], [], "k:", linewidth=1, label="centre of mass alone")
@@ -397,11 +399,11 @@ assert neighbours[0.5][0] - 5 * neighbours[0.5][1] > 0.5
 
 # %%
 size, rng = 20, np.random.default_rng(2)
-free = Chain(size=size, amplitude=0, damping=0)
+free = cb.Chain(size=size, amplitude=0, damping=0)
 half_period = np.pi * np.sqrt(free.mass / free.stiffness)
-start = given_start(free, free.physical(np.sort(rng.normal(size=size))), rng.normal(size=size))
+start = cb.given_start(free, free.physical(np.sort(rng.normal(size=size))), rng.normal(size=size))
 counting = {"every": half_period / 64, "observe": ["collisions"], "progress": False}
-run = simulate(free, duration=half_period, start=start, **counting)
+run = cb.simulate(free, duration=half_period, start=start, **counting)
 encounters = float(run.collision_rate.sum()) * half_period
 print(f"encounters in half a period: {encounters:.3f}, pairs: {size * (size - 1) // 2}")
 
@@ -437,7 +439,7 @@ assert np.isclose(pairs, size / 2 * (v**2).sum() / 2)  # the same holds for the 
 def inverse_heat(chain):
     """Return W^2/<v^2> of a steady chain, and its error."""
     sampling = {"duration": 10_000, "replicas": 2, "observe": ["widths"], "progress": False}
-    run = simulate(chain, seed=chain.size, **sampling)
+    run = cb.simulate(chain, seed=chain.size, **sampling)
     assert run.attrs["status"] == "completed"
     square = run.velocity_width.values**2
     error = 2 * (run.velocity_width_error * run.velocity_width).values
@@ -451,17 +453,17 @@ def minus_growth(chain):
     rates = []
     from_rest = {"duration": 400, "time_step": 0.02, "warmup": 0, "progress": False}
     for seed in range(4):
-        run = simulate(chain, seed=seed, observe=["energy"], **from_rest)
+        run = cb.simulate(chain, seed=seed, observe=["energy"], **from_rest)
         t, E = run.time.values, run.kinetic_energy.values
         late = E / chain.size > 1e3  # the noise no longer matters
         assert E[-1] > 1e5 * chain.size
-        rates.append(fit_growth(t[late], E[late]).rate)
+        rates.append(cb.fit_growth(t[late], E[late]).rate)
     rate, error = mean_and_error(rates)
     return -chain.mass / chain.damping * rate, chain.mass / chain.damping * error
 
 
 # %%
-small = Chain(restitution=1.05, damping=1)
+small = cb.Chain(restitution=1.05, damping=1)
 critical = np.pi * small.damping / (0.05 * np.sqrt(small.stiffness * small.mass))
 print(f"L_c = {critical:.1f} rods at e = 1.05, gamma = 1")
 below = {L: inverse_heat(small.replace(size=L)) for L in (6, 12, 18, 22, 26)}
@@ -543,8 +545,8 @@ for L, (value, error) in above.items():
 # only these two statements.
 # </details>
 #
-# **3.** Compute `critical_size(Chain(restitution=1.05, damping=1))` (from
-# `crazybilliards.kinetic`) and compare it with the formula.
+# **3.** Compute `cb.critical_size(cb.Chain(restitution=1.05, damping=1))` and compare it with the
+# formula.
 #
 # <details><summary>Solution</summary>
 #

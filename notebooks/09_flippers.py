@@ -30,8 +30,9 @@
 # \sqrt{M/k}$ for times. Between collisions rod $i$ obeys $m\ddot x = -\gamma\dot x - F(x - x_i^0) +
 # A\,\xi(t)$ with white noise $\xi$. Linear springs have $F(d) = k d$, quadratic ones $F(d) = k d|d|$.
 #
-# *Level: fourth year. You need: lesson 8, sections 1 and 5; a separable differential equation. Time:
-# 100 minutes.*
+# *Level: fourth year. You need: lesson 8, sections 1 and 5; a separable differential equation.
+# Time: 100 minutes. To predict before you see the results, type `make lessons` in the folder of the
+# project, and open the copy of this lesson without outputs in `build/lessons/`.*
 
 # %% tags=["hide-input"]
 import matplotlib.pyplot as plt
@@ -41,10 +42,6 @@ from matplotlib.animation import FuncAnimation
 from scipy.integrate import quad
 from scipy.optimize import linear_sum_assignment
 from teaching import BLUE, GREEN, ORANGE, agree, check, mean_and_error, panels, right
-
-from crazybilliards.comparison import fit_growth, fit_singularity, standalone_page, tail_length
-from crazybilliards.model import Chain
-from crazybilliards.particles import simulate
 
 # %% [markdown]
 # ## 1. Two springs
@@ -58,13 +55,15 @@ from crazybilliards.particles import simulate
 # **Run.** We simulate twelve runs for each kind of spring.
 
 # %%
-linear = Chain(size=100, restitution=1.01, damping=0.4)
+import crazybilliards as cb
+
+linear = cb.Chain(size=100, restitution=1.01, damping=0.4)
 quadratic = linear.replace(spring="quadratic")
 
 
 def release(chain, seed, **settings):
     """Let a chain go from rest and watch its kinetic energy from the beginning."""
-    return simulate(chain, warmup=0, observe=["energy"], seed=seed, progress=False, **settings)
+    return cb.simulate(chain, warmup=0, observe=["energy"], seed=seed, progress=False, **settings)
 
 
 seeds = range(12)
@@ -175,7 +174,7 @@ def beyond(time, energy, threshold):
     return time[first:], energy[first:]
 
 
-fits = [fit_growth(*beyond(run.time.values, run.kinetic_energy.values, 1e3)) for run in slow]
+fits = [cb.fit_growth(*beyond(run.time.values, run.kinetic_energy.values, 1e3)) for run in slow]
 rate, rate_error = mean_and_error([fit.rate for fit in fits])
 print(f"measured rate: {rate:.4f} +- {rate_error:.4f} per T, from twelve runs")
 print(f"error that one fit gives: {fits[0].rate_error:.5f} per T")
@@ -213,7 +212,7 @@ assert abs(rate - first_order) > 5 * rate_error
 # %%
 every, frames, frequency = 0.6, 60, np.sqrt(k / m)
 watch = {"every": every, "observe": ["snapshots"], "progress": False}
-film = simulate(linear, warmup=60, duration=64 * every, time_step=0.02, seed=0, **watch)
+film = cb.simulate(linear, warmup=60, duration=64 * every, time_step=0.02, seed=0, **watch)
 y = linear.reduced(film.position.values[0])[:frames]
 cloud = y + 1j * film.velocity.values[0][:frames] / frequency  # a turn is now a phase
 
@@ -241,7 +240,7 @@ def draw(number):
 
 
 animation = FuncAnimation(picture, draw, frames=range(0, frames, 2), interval=200)
-film_of_the_cloud = standalone_page(animation)
+film_of_the_cloud = cb.standalone_page(animation)
 plt.close(picture)
 HTML(film_of_the_cloud)
 
@@ -344,7 +343,7 @@ class Run:
     """Energies of the rods of one chain, from release to the end."""
 
     def __init__(self, chain, seed, **settings):
-        run = simulate(
+        run = cb.simulate(
             chain, warmup=0, observe=["snapshots"], seed=seed, progress=False, **settings
         )
         y, v = chain.reduced(run.position.values[0]), run.velocity.values[0]
@@ -365,7 +364,7 @@ def exponents(run, threshold):
     t, E = beyond(run.time, run.kinetic, threshold)
     theta = 6 / beta * (1 - np.exp(-beta * (t - t[0]) / 6))
     G = E * np.exp(beta * (t - t[0]))
-    return fit_singularity(t, E).exponent, fit_singularity(theta, G).exponent
+    return cb.fit_singularity(t, E).exponent, cb.fit_singularity(theta, G).exponent
 
 
 fitted = {
@@ -583,7 +582,9 @@ settings = {
 }
 weak, strong = (
     [
-        simulate(Chain(size=100, restitution=1.05, damping=g), duration=2500, seed=s, **settings)
+        cb.simulate(
+            cb.Chain(size=100, restitution=1.05, damping=g), duration=2500, seed=s, **settings
+        )
         for s in range(4)
     ]
     for g in (4.0, 10.0)
@@ -617,7 +618,7 @@ axes[0].set_ylabel(r"probability density $W_v\,p(v)$")
 v, p = border_density(weak)
 w = border_width(weak)
 out = v < 0
-length = tail_length(v[out], p[out], 3 * w)
+length = cb.tail_length(v[out], p[out], 3 * w)
 share = (p * np.gradient(v))[v < -3 * w].sum()
 x = np.linspace(-11, -3, 50)
 tail = share * w / length * np.exp((x + 3) * w / length)
@@ -630,7 +631,7 @@ tails = []
 for run in weak:
     v, p = border_density([run])
     v, p, w = v[v < 0], p[v < 0], border_width([run])
-    tails.append(tail_length(v, p, 5 * w) / tail_length(v, p, 3 * w))
+    tails.append(cb.tail_length(v, p, 5 * w) / cb.tail_length(v, p, 3 * w))
 ratio, ratio_error = mean_and_error(tails)
 print(f"length of the tail beyond 5 widths over that beyond 3: {ratio:.2f} +- {ratio_error:.2f}")
 print("(an exponential has 1, a Gaussian 0.65)")

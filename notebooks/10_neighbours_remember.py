@@ -23,21 +23,20 @@
 #
 # In this lesson two rods are called *strangers* if their velocities are independent. Lesson 8 solved
 # a kinetic equation which assumes that rods that meet are strangers. For $e = 0.75$ and 100 rods its
-# velocity width in the centre is wrong by 9 %. Here you measure the reason, and see a theory that
+# velocity width in the centre is wrong by 8 %. Here you measure the reason, and see a theory that
 # corrects it.
 #
 # Units as in all lessons: the rod radius $R$, $T = \sqrt{M/k}$ for times. $W$ is the velocity width
 # of a rod without collisions.
 #
-# *Level: fourth year. You need: lesson 8, sections 1 and 2. Time: 45 minutes.*
+# *Level: fourth year. You need: lesson 8, sections 1 and 2. Time: 45 minutes. To predict before you
+# see the results, type `make lessons` in the folder of the project, and open the copy of this
+# lesson without outputs in `build/lessons/`.*
 
 # %% tags=["hide-input"]
 import numpy as np
 from teaching import BLUE, ORANGE, PINK, check, panels
 
-from crazybilliards.kinetic import correlated_phase_space, phase_space
-from crazybilliards.model import Chain
-from crazybilliards.particles import simulate
 from crazybilliards.particles.observers import Covariances
 
 # %% [markdown]
@@ -53,10 +52,12 @@ from crazybilliards.particles.observers import Covariances
 # **Run.**
 
 # %%
-chains = {e: Chain(size=100, restitution=e) for e in (1, 0.75)}
+import crazybilliards as cb
+
+chains = {e: cb.Chain(size=100, restitution=e) for e in (1, 0.75)}
 observe = ["widths", Covariances(separations=99), "impacts"]
 runs = {
-    e: simulate(chain, duration=2000, every=0.5, observe=observe, seed=1, progress=False)
+    e: cb.simulate(chain, duration=2000, every=0.5, observe=observe, seed=1, progress=False)
     for e, chain in chains.items()
 }
 middle = {"particle": slice(45, 55), "contact": slice(45, 54)}
@@ -178,7 +179,7 @@ assert np.allclose(run.contact_loss / run.contact_force, by_force, rtol=0.01)
 # %% [markdown]
 # <details><summary>Explain</summary>
 #
-# At $e = 1$ all four are $T$. At $e = 0.75$ neighbours have a relative temperature of 0.585 $T$,
+# At $e = 1$ all four are $T$. At $e = 0.75$ neighbours have a relative temperature of 0.59 $T$,
 # because their covariance is the rest of $T$. Rods that are about to collide have a lower one, 0.44 $T$.
 # The reason is that rods which happen to be close collide often, and are cold. After the collision
 # $e^2 = 0.56$ of the 0.44 $T$ remains. Then noise and other neighbours make the two velocities
@@ -259,8 +260,8 @@ for e in runs:
 
 # %%
 chain = chains[0.75]
-strangers = phase_space(chain, cells=16)
-neighbours = correlated_phase_space(chain, cells=16)
+strangers = cb.phase_space(chain, cells=16)
+neighbours = cb.correlated_phase_space(chain, cells=16)
 simulated = runs[0.75].velocity_width[44:56].mean().item()
 for name, theory in (("phase_space", strangers), ("correlated_phase_space", neighbours)):
     centre = theory.velocity_width[44:56].mean().item()

@@ -31,7 +31,8 @@
 # from the beginning of the paper. The restitution is 1, except in section 3.
 #
 # *Level: fourth year, for readers of the paper. You need: lesson 5, SymPy. Time: 120 minutes. No
-# other lesson needs this one.*
+# other lesson needs this one. To predict before you see the results, type `make lessons` in the
+# folder of the project, and open the copy of this lesson without outputs in `build/lessons/`.*
 
 # %% tags=["hide-input"]
 import matplotlib.pyplot as plt
@@ -42,11 +43,9 @@ from scipy.stats import beta, norm
 from teaching import BLUE, GREEN, ORANGE, check, panels, right
 
 # %%
-from crazybilliards.comparison import deviation, fit_arctanh, smooth
-from crazybilliards.kinetic import equilibrium, force_balance
-from crazybilliards.model import Chain
+import crazybilliards as cb
 
-chain = Chain(size=100, amplitude=30)
+chain = cb.Chain(size=100, amplitude=30)
 
 # %% [markdown]
 # ## 1. The transport equation: `eq1`, `eq2`, `eq3`, and the identities
@@ -640,7 +639,7 @@ def found_at(chain, x):
 # %%
 for amplitude in (10, 30):
     case = chain.replace(amplitude=amplitude)
-    rods_of = equilibrium(case)
+    rods_of = cb.equilibrium(case)
     i = np.arange(1, case.size + 1)
     by_rod = (2 * i - (case.size + 1)) * case.radius + rods_of.mean_displacement.values  # (20)
     apart = abs(found_at(case, by_rod)[1] - rods_of.mean_displacement.values)
@@ -650,7 +649,7 @@ for amplitude in (10, 30):
 # %% tags=["remove-cell"]
 for amplitude in (10, 30):
     case = chain.replace(amplitude=amplitude)
-    rods_of = equilibrium(case)
+    rods_of = cb.equilibrium(case)
     by_rod = (2 * i - (case.size + 1)) * case.radius + rods_of.mean_displacement.values
     assert np.abs(by_rod - rods_of.mean_position.values).max() < 1e-9
     apart = abs(found_at(case, by_rod)[1] - rods_of.mean_displacement.values)
@@ -664,11 +663,11 @@ x, displacement = x[density > 1e-6], displacement[density > 1e-6]
 closures = {
     "by place": (x, displacement),
     "by rod": rods_of,
-    "by rod, arctanh fitted": fit_arctanh(rods_of),
+    "by rod, arctanh fitted": cb.fit_arctanh(rods_of),
 }
 for name, known in closures.items():
-    theory = force_balance(case, displacement=known)
-    error = deviation(smooth(theory), smooth(rods_of)).maximum
+    theory = cb.force_balance(case, displacement=known)
+    error = cb.deviation(cb.smooth(theory), cb.smooth(rods_of)).maximum
     print(f"density from the displacement {name}: wrong by {error:.4f} of close packing")
 
 # %% tags=["hide-input"]
@@ -677,7 +676,7 @@ shown = x > 0
 ax.plot(x[shown], displacement[shown], color=ORANGE, linewidth=3, label="rods found at x, exact")
 outer = rods_of.particle.values > case.size / 2
 ax.plot(by_rod[outer], rods_of.mean_displacement[outer], "o", color=BLUE, ms=3, label="rod i")
-fitted = fit_arctanh(rods_of)(by_rod[outer])
+fitted = cb.fit_arctanh(rods_of)(by_rod[outer])
 ax.plot(by_rod[outer], fitted, ":", color=GREEN, label="arctanh fit")
 ax.set(xlabel="position x [R]", ylabel=r"$\langle\Delta x\rangle$ [R]")
 ax.legend()

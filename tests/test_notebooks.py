@@ -8,6 +8,7 @@ import nbformat
 import pytest
 from outputs import HIDDEN, fingerprint
 from teaching import agree, check, right
+from without_outputs import write_copies
 
 FOLDER = Path(__file__).parents[1] / "notebooks"
 NOTEBOOKS = sorted(FOLDER.glob("*.ipynb"))
@@ -94,12 +95,34 @@ def test_what_a_student_sees(path):
     lines = [line for cell in cells for line in cell]
     assert not any(line.lstrip().startswith("assert ") for line in lines)
     assert any("your code here" in line for line in lines)
+    assert "import crazybilliards as cb" in lines
     assert any(line.startswith("check(") for line in lines)
     text = "\n".join(cell.source for cell in notebook.cells if cell.cell_type == "markdown")
     assert 0 < text.count("<details>") == text.count("</details>")
     assert 0 < text.count("**Predict") <= text.count("**Run")
     assert "hint=" in "\n".join(lines)
     assert "**Explain" not in text  # it would give the answer away: <details> folds it
+    assert text.split("\n## ")[0].count("`make lessons`") == 1  # which has no outputs
+
+
+def test_copies_have_no_outputs_and_keep_answers(tmp_path, capsys):
+    write_copies(tmp_path)
+    assert (tmp_path / "teaching.py").exists()
+    assert [path.name for path in sorted(tmp_path.glob("*.ipynb"))] == [p.name for p in NOTEBOOKS]
+    for path in NOTEBOOKS:
+        copy, original = (nbformat.read(file, 4) for file in (tmp_path / path.name, path))
+        assert [cell.source for cell in copy.cells] == [cell.source for cell in original.cells]
+        assert [cell.metadata for cell in copy.cells] == [cell.metadata for cell in original.cells]
+        code = [cell for cell in copy.cells if cell.cell_type == "code"]
+        assert not any(cell.outputs or cell.execution_count for cell in code)
+        nbformat.validate(copy)
+    answered = tmp_path / NOTEBOOKS[0].name
+    answered.write_text("answers")
+    (tmp_path / NOTEBOOKS[1].name).unlink()
+    write_copies(tmp_path)
+    assert answered.read_text() == "answers"
+    assert (tmp_path / NOTEBOOKS[1].name).exists()
+    assert f"{len(NOTEBOOKS) - 1} lessons were there" in capsys.readouterr().out
 
 
 def test_the_analytics_section_takes_sixty_lines():

@@ -12,6 +12,8 @@ from pathlib import Path
 import jupytext
 import pytest
 
+import crazybilliards as cb
+
 ROOT = Path(__file__).parents[1]
 ROOMS = ("api", "model", "particles", "kinetic", "comparison", "reproduction", "apps")
 WRITTEN_BY_A_PROGRAM = ROOT / "docs" / "paper" / "claims.md"
@@ -102,6 +104,20 @@ def test_markdown_shows_all_of_a_page():
         return comments + re.findall(r"<(?!br>)[A-Za-z]\w*>", text)
 
     assert not offenders(PAGES + LESSONS, hidden)
+
+
+def test_newcomers_see_one_way_to_import():
+    """``import crazybilliards as cb`` and ``cb.simulate``; a room only for what cb has not."""
+
+    def taken_from_rooms(page):
+        found = re.findall(
+            r"^\W*from crazybilliards[\w.]* import (\([^)]*\)|.*)",
+            page.read_text(encoding="utf-8"),
+            re.MULTILINE,
+        )
+        return set(cb.__all__).intersection(re.findall(r"\w+", " ".join(found)))
+
+    assert not offenders(PAGES + LESSONS, taken_from_rooms)
 
 
 def test_docstrings_are_plain():
