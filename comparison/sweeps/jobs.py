@@ -1,7 +1,7 @@
 """The jobs of a sweep, by name: the simulation, its limit, and every stationary theory.
 
 A job is one entry of ``JOBS``. Every theory in ``THEORIES`` of
-:mod:`crazybilliards.comparison.theories` is a job without further work.
+:mod:`crazybilliards.comparison.stationary_theories` is a job without further work.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import Any
 
 import xarray as xr
 
-from crazybilliards.comparison.theories import THEORIES
+from crazybilliards.comparison.stationary_theories import THEORIES
 from crazybilliards.model import Chain
 from crazybilliards.model.fingerprint import room_fingerprint
 from crazybilliards.particles import simulate, simulate_limit

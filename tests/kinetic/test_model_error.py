@@ -14,7 +14,7 @@ from crazybilliards.kinetic import (
     phase_space,
     relax_phase_space,
 )
-from crazybilliards.kinetic.accuracy import expected_accuracy, expected_transient_error
+from crazybilliards.kinetic.accuracy import expected_phase_space, expected_relax_phase_space
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
 
@@ -38,12 +38,12 @@ def test_the_errors_are_those_of_the_table():
         errors = float(row["largest, %"]) / 100, abs(float(row["border, %"])) / 100
         # Exact at e = 1, where the table has the errors of the simulation.
         expected = (0, 0) if chain.restitution == 1 else errors
-        assert expected_accuracy(chain) == pytest.approx(expected)
+        assert expected_phase_space(chain) == pytest.approx(expected)
 
 
 def test_between_the_measured_chains_the_larger_error_counts():
     """L = 200, e = 0.8: of 100 and 300 rods at 0.75 and 0.9."""
-    assert expected_accuracy(Chain(size=200, restitution=0.8)) == pytest.approx((0.184, 0.05))
+    assert expected_phase_space(Chain(size=200, restitution=0.8)) == pytest.approx((0.184, 0.05))
 
 
 @pytest.mark.parametrize(
@@ -59,7 +59,7 @@ def test_between_the_measured_chains_the_larger_error_counts():
     ],
 )
 def test_what_was_not_measured_is_unknown(chain):
-    assert np.isnan(expected_accuracy(chain)).all()
+    assert np.isnan(expected_phase_space(chain)).all()
 
 
 def test_every_theory_has_it():
@@ -120,7 +120,7 @@ def test_the_errors_in_time_are_those_of_the_tables():
     assert len(rows) == 30
     for chain, row in rows:
         stated, largest = float(row["stated, %"]), row["largest error, %"].split(" ± ")[0]
-        assert expected_transient_error(chain) == pytest.approx(stated / 100)
+        assert expected_relax_phase_space(chain) == pytest.approx(stated / 100)
         assert abs(float(largest)) <= stated
 
 

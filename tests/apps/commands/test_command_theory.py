@@ -4,7 +4,7 @@ import functools
 
 import pytest
 
-from crazybilliards.comparison.theories import THEORIES
+from crazybilliards.comparison.stationary_theories import THEORIES
 from crazybilliards.model import Chain, load
 
 HOME = "crazybilliards.kinetic"
