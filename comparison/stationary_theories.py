@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import inspect
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
@@ -60,10 +60,13 @@ class Theory:
         found: Accuracy = getattr(accuracy, f"expected_{self.name}")(chain)
         return found
 
-    def refusal(self, chain: Chain) -> str:
-        """Return why the theory does not take the chain, or nothing."""
+    def refusal(self, chain: Chain, settings: Mapping[str, Any] | None = None) -> str:
+        """Return why the theory does not take the chain and these settings, or nothing."""
+        defaults, given = self._defaults, dict(settings or {})
+        if unknown := sorted(set(given) - set(defaults)):
+            return f"{unknown[0]}: {self.name} has no such setting"
         try:
-            self.check(chain, **self._defaults)
+            self.check(chain, **(defaults | given))
         except ValueError as error:
             return str(error)
         return ""
@@ -163,13 +166,13 @@ def theories(chain: Chain) -> xr.Dataset:
     return xr.Dataset(variables, {"theory": list(THEORIES)}, {"best": best.name if best else ""})
 
 
-def best_theory(chain: Chain) -> Theory:
+def best_theory(chain: Chain, settings: Mapping[str, Any] | None = None) -> Theory:
     """Return the theory with the smallest expected error among those that take the chain.
 
     An error that was not measured counts as larger than any other. Raises ValueError, with all
-    reasons, if no theory takes the chain.
+    reasons, if no theory takes the chain and the ``settings``.
     """
-    refusals = {theory.name: theory.refusal(chain) for theory in THEORIES.values()}
+    refusals = {theory.name: theory.refusal(chain, settings) for theory in THEORIES.values()}
     taking = [theory for theory in THEORIES.values() if not refusals[theory.name]]
     if not taking:
         reasons = "; ".join(f"{name}: {reason}" for name, reason in refusals.items())

@@ -5,7 +5,6 @@ Only the standard library and typer are imported up here, so that ``--help`` ans
 
 from __future__ import annotations
 
-import inspect
 import math
 from functools import partial
 from pathlib import Path
@@ -21,7 +20,7 @@ from crazybilliards.apps.commands.output import (
     write_figures,
     writing_to,
 )
-from crazybilliards.comparison.stationary_theories import THEORIES
+from crazybilliards.comparison.stationary_theories import THEORIES, best_theory
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -86,17 +85,20 @@ def command(
     Example: crazybilliards theory equilibrium --amplitude 10 --gap 0.2
     """
     from crazybilliards.kinetic import critical_size
+    from crazybilliards.model.checks import check_choice
     from crazybilliards.model.process import waiting_for
 
     if listed:
         _list(chain)
         return
-    theory = _chosen(chain, name)
     given = {"tolerance": tolerance, "cells": cells}
     settings = {key: value for key, value in given.items() if value is not None}
-    for key in settings:
-        if key not in inspect.signature(theory.solve).parameters:
-            raise ValueError(f"{key}: {theory.name} has no such setting")
+    if name is None:
+        theory = best_theory(chain, settings)
+    else:
+        theory = THEORIES[check_choice("name", name, tuple(THEORIES))]
+        if reason := theory.refusal(chain, settings):
+            raise ValueError(reason)
     with writing_to(output):
         if critical:
             with waiting_for("working out the critical size"):
@@ -105,6 +107,8 @@ def command(
             say(f"critical size: {value:.1f} +- {error:.1f} rods")
         with waiting_for(f"solving: {theory.title}"):
             result = theory.solve(chain, **settings)
+        if name is None:
+            say(f"{theory.name} has the smallest expected error for this chain (see --list).")
         write, show = partial(_write, theory, result), partial(_print, theory, result)
         conclude(output, result.attrs["status"], write, show)
 
@@ -138,18 +142,6 @@ def _list(chain: Chain) -> None:
 
 def _percent(error: float) -> str:
     return "not measured" if math.isnan(error) else f"{100 * error:.2g} %"
-
-
-def _chosen(chain: Chain, name: str | None) -> Theory:
-    """Return the theory of this name, or without one the best, and say which and why."""
-    from crazybilliards.comparison.stationary_theories import best_theory
-    from crazybilliards.model.checks import check_choice
-
-    if name is not None:
-        return THEORIES[check_choice("name", name, tuple(THEORIES))]
-    theory = best_theory(chain)
-    say(f"theory: {theory.name}, which has the smallest expected error for this chain (see --list)")
-    return theory
 
 
 def _print(theory: Theory, result: xr.Dataset) -> None:

@@ -51,7 +51,8 @@ def test_between_the_measured_chains_the_larger_error_counts():
     [
         Chain(size=20, restitution=0.9),
         Chain(size=2000, restitution=0.9),
-        Chain(restitution=0.9, gap=0.1),
+        Chain(restitution=0.9, gap=0.5),
+        Chain(restitution=0.4, gap=0.1),
         Chain(restitution=0.9, spring="quadratic"),
         Chain(restitution=0.9, damping=10),
         Chain(restitution=1.05, damping=1, size=30),
@@ -71,14 +72,17 @@ def test_every_theory_has_it():
     ]
     assert errors[1:] == [0.138, 0.138, 0.099, 0.027, 0.007, 0.007]
     assert np.isnan(errors[0])
-    assert np.isnan(force_balance(Chain(gap=0.5)).attrs["model_error"])
+    assert force_balance(Chain(gap=0.5)).attrs["model_error"] == 0.185
+    assert np.isnan(force_balance(Chain(gap=8.0)).attrs["model_error"])
     assert np.isnan(force_balance(Chain(), velocity_variance=2.0).attrs["model_error"])
 
 
 @pytest.mark.parametrize("size", [3, 30, 300])
-def test_the_error_of_the_force_balance_is_that_from_the_exact_density(size):
+@pytest.mark.parametrize("gap", [0.0, 0.2, 2.0])
+def test_the_error_of_the_force_balance_is_that_from_the_exact_density(size, gap):
     for amplitude in (1.0, 4.0, 10.0, 40.0):
         chain = Chain(size=size, amplitude=amplitude)
+        chain = chain.replace(gap=gap * chain.thermal_length)
         found, exact = (smooth(theory(chain)).density for theory in (force_balance, equilibrium))
         off = np.abs(found.interp(x=exact.x, kwargs={"fill_value": 0.0}) - exact)
         stated = force_balance(chain).attrs["model_error"]
