@@ -74,7 +74,7 @@ class Theory:
     @property
     def _defaults(self) -> dict[str, Any]:
         arguments = inspect.signature(self.solve).parameters.values()
-        return {each.name: each.default for each in arguments if each.name != "chain"}
+        return {each.name: each.default for each in arguments if each.default is not each.empty}
 
     def _find(self, name: str) -> Any:
         return getattr(import_module(f"crazybilliards.kinetic.{self.module}"), name)
