@@ -80,6 +80,11 @@ class Theory:
         return getattr(import_module(f"crazybilliards.kinetic.{self.module}"), name)
 
 
+def _steps(chain: Chain) -> float:
+    """Return about how many steps lead from e = 1 to the chain, each with 2.5 times the drag."""
+    return 1 + math.log1p(abs(1 - chain.restitution) * chain.size) / math.log(2.5)
+
+
 THEORIES = {
     theory.name: theory
     for theory in (
@@ -87,26 +92,26 @@ THEORIES = {
             "equilibrium",
             "exact equilibrium",
             "exact.gibbs_measure",
-            lambda chain: 1.0,
+            lambda chain: 1e-3 * chain.size,
         ),
         Theory(
             "force_balance",
             "force balance",
             "statics.balance",
-            lambda chain: 1.0,
+            lambda chain: 0.03,
             "the smoothed density, of close packing",
         ),
         Theory(
             "phase_space",
             "kinetic equation",
             "kinetic_equation.stationary",
-            lambda chain: 1.0,
+            lambda chain: 0.4 * _steps(chain),
         ),
         Theory(
             "correlated_phase_space",
             "kinetic equation with pair correlations",
             "correlations.stationary",
-            lambda chain: 1.0,
+            lambda chain: 1.0 * _steps(chain),
         ),
     )
 }
