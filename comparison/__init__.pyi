@@ -26,4 +26,5 @@ from .side_by_side.restitutions import (
     compare_restitutions as compare_restitutions,
     width_deviations as width_deviations,
 )
+from .stationary_theories import theories as theories
 from .sweeps import load_sweep as load_sweep

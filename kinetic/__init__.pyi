@@ -1,3 +1,4 @@
+from .accuracy import UnmeasuredWarning as UnmeasuredWarning
 from .correlations.stationary import correlated_phase_space as correlated_phase_space
 from .exact.breathing import breathing_cloud as breathing_cloud
 from .exact.gibbs_measure import (

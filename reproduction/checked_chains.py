@@ -82,7 +82,8 @@ class Checked:
     @property
     def _parameters(self) -> str:
         chain = self.chain
-        return f"L={chain.size} e={chain.restitution:g} gamma={chain.damping:g}"
+        gap = f" gap={chain.gap:g}" if chain.gap else ""
+        return f"L={chain.size} e={chain.restitution:g} gamma={chain.damping:g}{gap}"
 
     def cases(self, quality: Quality) -> Cases:
         """Return its simulation, and the theories that it checks."""
@@ -102,6 +103,8 @@ _SHARE, _COARSE = 0.2, 16  # of the durations, and cells of theories, at quick q
 _INDEPENDENT = {30: 40_000.0, 100: 20_000.0, 300: 2_000.0, 1000: 300.0}
 _LONGER = 4.0  # times these for L >= 300 and e >= 0.9, where a step is longer
 _DRIVEN = ((30, 20_000.0), (60, 20_000.0), (100, 50_000.0))  # e = 1.05, gamma = 4
+# With gaps: widths of the lattice of anchors, in thermal lengths, and the longest chain at each.
+_LATTICES = {4.0: 300, 14.0: 300, 42.0: 100}
 _DERIVED_WITH = {10: 40_000.0, 30: 40_000.0, 100: 20_000.0, 300: 8_000.0}
 
 
@@ -127,6 +130,12 @@ def _independent() -> list[Checked]:
     for size, duration in _DRIVEN:
         chain = Chain(size=size, restitution=1.05, damping=4.0)
         found.append(Checked(chain, Group.INDEPENDENT, duration))
+    for lattice, longest in _LATTICES.items():
+        for size in (size for size in _INDEPENDENT if size <= longest):
+            for e in (0.5, 0.75, 0.9, 0.95):
+                chain = Chain(size=size, restitution=e)
+                gap = lattice * chain.thermal_length / size
+                found.append(Checked(chain.replace(gap=gap), Group.INDEPENDENT, _INDEPENDENT[size]))
     return found
 
 

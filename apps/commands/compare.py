@@ -51,7 +51,7 @@ def command(
     restitution: Annotated[
         str | None,
         typer.Option(
-            help="Restitutions e, separated by commas: compare with the kinetic equation instead."
+            help="Restitutions e, separated by commas: compare with the kinetic equations instead."
         ),
     ] = None,
     duration: Annotated[
@@ -69,9 +69,8 @@ def command(
 
     Without --restitution: the elastic chain at several driving amplitudes, with its exact
     equilibrium, the force balance closed by labels and the paper's force balance with a fitted
-    displacement. With it: chains of other restitutions, with the kinetic equation, into
-    which nothing from the simulation goes (good for 0.9 to 1.05 and about 100 rods; longer chains
-    need a restitution closer to 1).
+    displacement. With it: chains of other restitutions, with the kinetic equation and, where it
+    takes the chain, that with pair correlations, into which nothing from the simulation goes.
 
     Draws everything over one another and prints how far apart it is.
 
@@ -218,28 +217,38 @@ def _write_restitutions(
 def _print_widths(tree: xr.DataTree) -> None:
     from rich.table import Table
 
-    from crazybilliards.comparison.side_by_side.restitutions import width_deviations
+    from crazybilliards.comparison.side_by_side.restitutions import LEGEND, width_deviations
 
     table = Table(
-        title="Velocity widths W_v: kinetic equation minus simulation, in %",
+        title="Velocity widths W_v: theory minus simulation, in %",
         caption="Largest: of the particles 3 to L-2. Border: the first and the last. Errors: one "
-        "standard error of the simulation.",
+        "standard error of the simulation. Expected: the largest that the theory states (-: not "
+        "measured for chains like this one).",
     )
-    headings = ("largest", "centre", "border", "error of\na rod", "error of\nthe border")
+    headings = (
+        "largest",
+        "expected",
+        "centre",
+        "border",
+        "error of\na rod",
+        "error of\nthe border",
+    )
     table.add_column("e", justify="right")
+    table.add_column("theory")
     for heading in headings:
         table.add_column(heading, justify="right")
-    deviations, noted = width_deviations(tree), []
-    for name, group in tree.children.items():
-        values = (
-            [f"{100 * value:.2f}" for value in deviations[name]]
-            if name in deviations
-            else ["-"] * 5
-        )
-        run, restitution = group["simulation"], name.removeprefix("restitution_")
+    noted = []
+    for name, by_theory in width_deviations(tree).items():
+        run, restitution = tree[name]["simulation"], name.removeprefix("restitution_")
         status = run.attrs["status"]
-        table.add_row(restitution + ("" if status == "completed" else f" ({status})"), *values)
-        here = deviations[name]._asdict() if name in deviations else {}
+        shown = restitution + ("" if status == "completed" else f" ({status})")
+        for key, found in by_theory.items():
+            stated = tree[name][key].attrs["model_error"]
+            values = (f"{100 * value:.2f}" for value in (found[0], stated, *found[1:]))
+            table.add_row(shown, LEGEND[key].title, *(each.replace("nan", "-") for each in values))
+        if not by_theory:
+            table.add_row(shown, *["-"] * 7)
+        here = {key: found._asdict() for key, found in by_theory.items()}
         noted.append({"restitution": float(restitution), "status": status} | here)
         if status == "diverged":
             complain_of_divergence(run.to_dataset())

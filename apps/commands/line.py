@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import inspect
 import sys
+import warnings
 from typing import Annotated
 
 import typer
@@ -75,6 +76,8 @@ def main() -> None:
     """Entry point: a user's mistake is one line on standard error and exit status 2."""
     from crazybilliards.model.process import terminated_like_interrupted
 
+    # Commands state the expected errors of theories, unknown ones too.
+    warnings.filterwarnings("ignore", "the error of .* was not measured")
     with plain_streams() as output, terminated_like_interrupted() as signals:
         status = _run()
     if isinstance(output.failed, BrokenPipeError):  # crazybilliards ... | head, say

@@ -5,7 +5,6 @@ Only the standard library and typer are imported up here, so that ``--help`` ans
 
 from __future__ import annotations
 
-import inspect
 import math
 from functools import partial
 from pathlib import Path
@@ -13,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from crazybilliards.apps.commands.answers import answer_rods, note, say, wrote
+from crazybilliards.apps.commands.answers import answer_rods, note, print_table, say, wrote
 from crazybilliards.apps.commands.chain_options import with_chain_options
 from crazybilliards.apps.commands.output import (
     conclude,
@@ -21,13 +20,13 @@ from crazybilliards.apps.commands.output import (
     write_figures,
     writing_to,
 )
-from crazybilliards.comparison.theories import THEORIES
+from crazybilliards.comparison.stationary_theories import THEORIES, best_theory
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
-    from crazybilliards.comparison.theories import Theory
+    from crazybilliards.comparison.stationary_theories import Theory
     from crazybilliards.model import Chain
 
 _NAMES = ", ".join(f"{name} ({theory.title})" for name, theory in THEORIES.items())
@@ -36,7 +35,19 @@ _NAMES = ", ".join(f"{name} ({theory.title})" for name, theory in THEORIES.items
 @with_chain_options()
 def command(
     chain: Chain,
-    name: Annotated[str, typer.Argument(help=f"{_NAMES}.")] = "phase_space",
+    name: Annotated[
+        str | None,
+        typer.Argument(
+            help=f"{_NAMES}; default: the one with the smallest expected error for the chain.",
+            show_default=False,
+        ),
+    ] = None,
+    listed: Annotated[
+        bool,
+        typer.Option(
+            "--list", help="Only list the theories: which take the chain, their errors and times."
+        ),
+    ] = False,
     output: Annotated[
         Path | None,
         typer.Option(
@@ -64,9 +75,10 @@ def command(
     """Predict a chain's steady state from a theory, without a simulation.
 
     Prints velocity widths and displacements of some rods; draws the density and the rods, of the
-    kinetic equation also the phase-space density f(y, v). The kinetic equation phase_space
-    is good for restitutions of 0.9 to 1.05 and about 100 rods; longer chains need one closer to 1.
-    correlated_phase_space takes 0 to 1. Refuses where there is no steady state.
+    kinetic equations also the phase-space density f(y, v). Without a name it takes the theory with
+    the smallest expected error, and says which. Refuses where there is no steady state.
+
+    Example: crazybilliards theory --list --restitution 0.5
 
     Example: crazybilliards theory --output results --restitution 1.05 --damping 4 --critical
 
@@ -76,12 +88,17 @@ def command(
     from crazybilliards.model.checks import check_choice
     from crazybilliards.model.process import waiting_for
 
-    theory = THEORIES[check_choice("name", name, tuple(THEORIES))]
+    if listed:
+        _list(chain)
+        return
     given = {"tolerance": tolerance, "cells": cells}
     settings = {key: value for key, value in given.items() if value is not None}
-    for key in settings:
-        if key not in inspect.signature(theory.solve).parameters:
-            raise ValueError(f"{key}: {name} has no such setting")
+    if name is None:
+        theory = best_theory(chain, settings)
+    else:
+        theory = THEORIES[check_choice("name", name, tuple(THEORIES))]
+        if reason := theory.refusal(chain, settings):
+            raise ValueError(reason)
     with writing_to(output):
         if critical:
             with waiting_for("working out the critical size"):
@@ -90,8 +107,41 @@ def command(
             say(f"critical size: {value:.1f} +- {error:.1f} rods")
         with waiting_for(f"solving: {theory.title}"):
             result = theory.solve(chain, **settings)
+        if name is None:
+            say(f"{theory.name} has the smallest expected error for this chain (see --list).")
         write, show = partial(_write, theory, result), partial(_print, theory, result)
         conclude(output, result.attrs["status"], write, show)
+
+
+def _list(chain: Chain) -> None:
+    """Print the table of theories for a chain."""
+    from rich.table import Table
+
+    from crazybilliards.comparison import theories
+
+    found = theories(chain)
+    table = Table(
+        title=f"Theories for L = {chain.size}, e = {chain.restitution:g}",
+        caption="Expected relative errors of the theory itself, measured on chains like this one: "
+        "of W_v of the particles 3 to L-2 and of the two at the ends; of the force balance those "
+        "of the smoothed density, of close packing. Times on one core, within a factor of three.",
+    )
+    for heading in ("theory", "error", "border", "time"):
+        table.add_column(heading, justify="left" if heading == "theory" else "right")
+    for name, row in found.to_dataframe().iterrows():
+        marked = f"{name} (best)" if name == found.attrs["best"] else str(name)
+        if row.takes:
+            errors = (_percent(row.expected_error), _percent(row.border_error))
+            table.add_row(marked, *errors, f"{row.expected_seconds:.2g} s")
+        else:
+            table.add_row(f"{name}: {row.reason}", "-", "-", "-")
+    columns = found.to_dataframe().reset_index().to_dict("records")
+    note(best=found.attrs["best"], theories=columns)
+    print_table(table)
+
+
+def _percent(error: float) -> str:
+    return "not measured" if math.isnan(error) else f"{100 * error:.2g} %"
 
 
 def _print(theory: Theory, result: xr.Dataset) -> None:

@@ -10,15 +10,16 @@ from matplotlib.figure import Figure
 from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_rods
 from crazybilliards.comparison.layout import legend_above, panels
 from crazybilliards.comparison.side_by_side.parameter_series import SIMULATION
-from crazybilliards.comparison.side_by_side.restitutions import THEORY
+from crazybilliards.comparison.side_by_side.restitutions import LEGEND
 from crazybilliards.model import chain_of
 from crazybilliards.model.vocabulary import require
 
 _DECADES = 5  # of f in the image
+_STYLES = dict(zip(LEGEND, ("--", "-"), strict=True))
 
 
 def draw_widths(tree: xr.DataTree) -> Figure:
-    """W_v(i) and <dx_i> for every restitution, in units of the free rod; lines are theory."""
+    """W_v(i) and <dx_i> for every restitution, in units of the free rod; lines are theories."""
     figure, axes = panels(1, 2, height=2.5)
     for number, group in enumerate(tree.children.values()):
         run = group[SIMULATION].to_dataset()
@@ -29,15 +30,19 @@ def draw_widths(tree: xr.DataTree) -> Figure:
             axes, ("velocity_width", "mean_displacement"), units, strict=True
         ):
             draw_rods(ax, run, name, number=number, unit=unit, label=f"$e = {chain.restitution:g}$")
-            if THEORY in group:
-                theory = group[THEORY].to_dataset()
-                ax.plot(theory.normalized_particle, theory[name] / unit, color=colour, zorder=3)
+            for key, style in _STYLES.items():
+                if key in group:
+                    theory = group[key].to_dataset()
+                    values = theory[name] / unit
+                    ax.plot(theory.normalized_particle, values, style, color=colour, zorder=3)
     along_the_chain(axes[0])
     axes[0].set(ylabel="velocity width $W_v/W$")
     axes[0].set_ylim(bottom=0)
     along_the_chain(axes[1])
     axes[1].set(ylabel=r"displacement $\langle\Delta x\rangle/s$")
-    axes[0].plot([], [], color="0.4", label="kinetic equation")
+    for key, style in _STYLES.items():
+        if any(key in group for group in tree.children.values()):
+            axes[0].plot([], [], style, color="0.4", label=LEGEND[key].title)
     legend_above(figure, axes[0])
     return figure
 

@@ -1,4 +1,4 @@
-"""Chains of several restitutions: simulation and kinetic equation, without a fit."""
+"""Chains of several restitutions: simulation and kinetic equations, without a fit."""
 
 from __future__ import annotations
 
@@ -12,11 +12,16 @@ from crazybilliards.comparison.side_by_side.parameter_series import (
     simulate_beside,
     varied_chains,
 )
+from crazybilliards.comparison.stationary_theories import THEORIES
 from crazybilliards.comparison.widths import WidthDeviation, width_deviation
-from crazybilliards.kinetic import phase_space
 from crazybilliards.model import Chain
 
 THEORY = "kinetic_equation"
+# The theories by their names in the results.
+LEGEND = {
+    THEORY: THEORIES["phase_space"],
+    "pair_correlations": THEORIES["correlated_phase_space"],
+}
 
 
 def compare_restitutions(
@@ -29,14 +34,14 @@ def compare_restitutions(
     progress: bool = True,
     finished: Callable[[str, Mapping[str, xr.Dataset]], None] | None = None,
 ) -> xr.DataTree:
-    """Simulate a chain at several restitutions and solve its kinetic equation.
+    """Simulate a chain at several restitutions and solve its kinetic equations.
 
     Parameters
     ----------
     chain
         The chain; its restitution is replaced by each of ``restitutions``.
     restitutions
-        Different values of e near 1. The theory is good for 0.9 to 1.05.
+        Different values of e. ``theories`` tells how good the kinetic equations are there.
     duration
         Simulated time of each of two replicas [T].
     seed, threads, progress
@@ -48,8 +53,9 @@ def compare_restitutions(
     Returns
     -------
     xarray.DataTree
-        ``tree["restitution_0.95/simulation"]`` and ``.../kinetic_equation``. If the theory has
-        no steady state it is left out, with a warning that gives the reason.
+        ``tree["restitution_0.95/simulation"]``, ``.../kinetic_equation``, and
+        ``.../pair_correlations`` where ``correlated_phase_space`` takes the chain. A theory that
+        has no steady state is left out, with a warning that gives the reason.
         ``attrs["status"]`` is ``interrupted`` if Ctrl-C ended it early, and ``diverged`` if a
         simulation diverged. The tree then holds the results so far.
 
@@ -60,7 +66,7 @@ def compare_restitutions(
     """
     return simulate_beside(
         varied_chains(chain, "restitution", restitutions, duration),
-        _kinetic_equation,
+        _kinetic_equations,
         duration=duration,
         seed=seed,
         threads=threads,
@@ -69,23 +75,30 @@ def compare_restitutions(
     )
 
 
-def _kinetic_equation(chain: Chain, run: xr.Dataset) -> dict[str, xr.Dataset]:
-    try:
-        return {THEORY: phase_space(chain)}
-    except ValueError as error:
-        # For example, there is no steady state. The simulation must not be lost.
-        warnings.warn(f"e = {chain.restitution:g} has no theory: {error}", stacklevel=2)
-        return {}
+def _kinetic_equations(chain: Chain, run: xr.Dataset) -> dict[str, xr.Dataset]:
+    found = {}
+    for key, theory in LEGEND.items():
+        if key != THEORY and theory.refusal(chain):
+            continue
+        try:
+            found[key] = theory.solve(chain)
+        except ValueError as error:
+            # For example, there is no steady state. The simulation must not be lost.
+            warnings.warn(f"e = {chain.restitution:g} has no {theory.title}: {error}", stacklevel=2)
+    return found
 
 
-def width_deviations(tree: xr.DataTree) -> dict[str, WidthDeviation]:
-    """Compare velocity widths in every group that has simulation and theory.
+def width_deviations(tree: xr.DataTree) -> dict[str, dict[str, WidthDeviation]]:
+    """Compare velocity widths of simulation and theories, by group and theory.
 
     Both ends of a chain have the same averages. Simulated widths are therefore averaged over a rod
     and its mirror image, which lowers their errors by up to the root of two.
     """
     return {
-        name: width_deviation(group[SIMULATION].to_dataset(), group[THEORY].to_dataset())
+        name: {
+            key: width_deviation(group[SIMULATION].to_dataset(), group[key].to_dataset())
+            for key in LEGEND
+            if key in group and "velocity_width" in group[SIMULATION].data_vars
+        }
         for name, group in tree.children.items()
-        if THEORY in group and "velocity_width" in group[SIMULATION].data_vars
     }

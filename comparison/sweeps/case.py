@@ -14,6 +14,7 @@ import hashlib
 import json
 import sys
 import time
+import warnings
 from collections.abc import Mapping
 from contextlib import nullcontext
 from dataclasses import dataclass, field
@@ -27,6 +28,7 @@ import xarray as xr
 from threadpoolctl import ThreadpoolController
 
 from crazybilliards.comparison.sweeps.jobs import JOBS
+from crazybilliards.kinetic.accuracy import UnmeasuredWarning
 from crazybilliards.model import Chain, load
 from crazybilliards.model.storage import load_attributes, small_netcdf
 
@@ -43,7 +45,7 @@ class Case:
     ----------
     job
         ``"simulate"``, ``"simulate_limit"`` or the name of a theory in
-        :mod:`crazybilliards.comparison.theories`.
+        :mod:`crazybilliards.comparison.stationary_theories`.
     chain
         The chain.
     settings
@@ -189,7 +191,9 @@ def compute(case: Case, source: str) -> bytes:
     begin = time.perf_counter()
     own = {"seed": case.own_seed} if "seed" in case.settings else {}
     # Linear algebra in threads sums in another order, and it would make other workers wait.
-    with _libraries(len(sys.modules)).limit(limits=1):
+    with _libraries(len(sys.modules)).limit(limits=1), warnings.catch_warnings():
+        # The result states that its error is unknown; a line per process would not say of which.
+        warnings.simplefilter("ignore", UnmeasuredWarning)
         result = JOBS[case.job].function(case.chain, **{**case.settings, **own})
     if result.attrs["status"] == "interrupted":
         raise KeyboardInterrupt

@@ -1,7 +1,7 @@
 """The jobs of a sweep, by name: the simulation, its limit, and every stationary theory.
 
 A job is one entry of ``JOBS``. Every theory in ``THEORIES`` of
-:mod:`crazybilliards.comparison.theories` is a job without further work.
+:mod:`crazybilliards.comparison.stationary_theories` is a job without further work.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import Any
 
 import xarray as xr
 
-from crazybilliards.comparison.theories import THEORIES
+from crazybilliards.comparison.stationary_theories import THEORIES, Theory
 from crazybilliards.model import Chain
 from crazybilliards.model.fingerprint import room_fingerprint
 from crazybilliards.particles import simulate, simulate_limit
@@ -25,7 +25,7 @@ from crazybilliards.particles.vanishing_step.limit import make_runs
 # Arguments that do not change the numbers, and arguments that are not plain values.
 _NO_SETTINGS = {"chain", "start", "threads", "checkpoint", "checkpoint_interval", "progress"}
 
-_THEORY_WORK = 3e9  # particle steps that take about as long as a theory
+_STEPS_A_SECOND = 1e8  # particle steps, to compare the work of theories with that of simulations
 
 
 @dataclass(frozen=True)
@@ -77,9 +77,9 @@ def _limit_steps(chain: Chain, **settings: Any) -> float:
     return chain.size * (warm_up + max(measured, float(GROUPS * pilot)))
 
 
-def _theory_work(check: Callable[..., Any], chain: Chain, **settings: Any) -> float:
-    check(chain, **settings)
-    return _THEORY_WORK
+def _theory_work(theory: Theory, chain: Chain, **settings: Any) -> float:
+    theory.check(chain, **settings)
+    return _STEPS_A_SECOND * theory.seconds(chain)
 
 
 JOBS: dict[str, Job] = {
@@ -98,7 +98,7 @@ JOBS: dict[str, Job] = {
 } | {
     name: Job(
         function=theory.solve,
-        work=partial(_theory_work, theory.check),
+        work=partial(_theory_work, theory),
         settings=_settings(theory.solve),
         source=room_fingerprint("model", "kinetic"),
     )

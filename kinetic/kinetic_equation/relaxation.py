@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csc_matrix
 from tqdm import tqdm
 
-from crazybilliards.kinetic.accuracy import expected_transient_error
+from crazybilliards.kinetic.accuracy import expected_relax_phase_space, warn_if_unmeasured
 from crazybilliards.kinetic.kinetic_equation.continuation import free_units
 from crazybilliards.kinetic.kinetic_equation.relaxation_result import (
     in_vocabulary,
@@ -118,7 +118,8 @@ def relax_phase_space(
         ``interrupted`` if Ctrl-C ended it. The result then has the times before.
         ``attrs["model_error"]`` is the largest relative error of ``kinetic_energy`` at any time
         that the theory had in simulations of chains like this one, released from equilibrium at
-        e = 1, and from there with y multiplied by 0.4 (NaN where none was measured).
+        e = 1, and from there with y multiplied by 0.4 (NaN, with an ``UnmeasuredWarning``, where
+        none was measured).
 
     Notes
     -----
@@ -176,7 +177,8 @@ def relax_phase_space(
     except KeyboardInterrupt:
         status = "interrupted"
     dataset = in_vocabulary(chain, units, outputs, times[: len(outputs)], flow.space, status)
-    dataset.attrs["model_error"] = expected_transient_error(chain)
+    error = dataset.attrs["model_error"] = expected_relax_phase_space(chain)
+    warn_if_unmeasured("the kinetic equation in time", error)
     return dataset
 
 

@@ -21,7 +21,7 @@ from typing import Literal
 import numpy as np
 import xarray as xr
 
-from crazybilliards.kinetic.accuracy import expected_accuracy
+from crazybilliards.kinetic.accuracy import expected_phase_space, warn_if_unmeasured
 from crazybilliards.kinetic.kinetic_equation.continuation import (
     CELLS,
     State,
@@ -80,7 +80,7 @@ def phase_space(
         largest relative change of a velocity width in the last refinement (NaN if ``cells`` was
         given); ``cells``; ``model_error`` and ``border_error``, the relative error of W_v that
         the theory had in simulations of chains like this one, over particles 3 to L - 2 and of
-        the first and the last (NaN where none was measured).
+        the first and the last (NaN, with an ``UnmeasuredWarning``, where none was measured).
         The flow velocity should vanish, and is below 1e-9 W wherever there are rods.
 
     Notes
@@ -106,9 +106,11 @@ def phase_space(
     """
     order = check_phase_space(chain, order=order, tolerance=tolerance, cells=cells)
     try:
-        return _assemble(*_solve(chain, order, tolerance, cells))
+        found = _assemble(*_solve(chain, order, tolerance, cells))
     except NotSolvedError as error:
         raise ValueError(f"{error}: {_out_of_range(chain, order)}") from error
+    warn_if_unmeasured("the kinetic equation", found.attrs["model_error"])
+    return found
 
 
 def _solve(
@@ -170,5 +172,5 @@ def _assemble(state: State, of_rods: Rods, mesh_error: float) -> xr.Dataset:
         method={"theory": "kinetic equation", "order": state.order},
         residual=state.residual,
         mesh_error=mesh_error,
-        expected=expected_accuracy(chain),
+        expected=expected_phase_space(chain),
     )

@@ -40,6 +40,7 @@ import math
 
 import xarray as xr
 
+from crazybilliards.kinetic.accuracy import warn_if_unmeasured
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.kinetic.statics.label_closure import solve_label_closure
 from crazybilliards.kinetic.statics.prescribed_closure import solve_prescribed_closure
@@ -81,8 +82,8 @@ def force_balance(
         the conserved quantity of the equations (an error of ln rho), and with a prescribed
         displacement the relative error of the number of rods. ``attrs["model_error"]``, by
         labels, is the largest error of the smoothed density, relative to close packing, of the
-        theory for chains like this one, of 2 to 1000 rods, linear springs and no gap: its distance
-        from the exact equilibrium (NaN for others).
+        theory for chains like this one, of 2 to 1000 rods, linear springs and gaps up to 10 s: its
+        distance from the exact equilibrium. For others it is NaN, with an ``UnmeasuredWarning``.
 
     Raises
     ------
@@ -107,6 +108,7 @@ def force_balance(
         found = solve_label_closure(chain)
     if velocity_variance is not None:
         found.attrs["model_error"] = math.nan  # measured for the free variance only
+    warn_if_unmeasured("the force balance", found.attrs["model_error"])
     return found
 
 

@@ -33,6 +33,7 @@ from scipy.integrate import solve_bvp
 from scipy.special import gamma, gammaincc
 from scipy.stats import gennorm
 
+from crazybilliards.kinetic.accuracy import expected_force_balance
 from crazybilliards.model import Chain, spring
 from crazybilliards.model.grid import position_grid, thermal_reach
 from crazybilliards.model.vocabulary import result
@@ -41,16 +42,6 @@ Array = NDArray[np.float64]
 
 _TAIL = 36.0  # tails are followed down to exp(-36) = 2e-16 of the maximum
 _EDGE_DEPTH = {2: 40.0, 3: 1e4}  # where the plateau is reached, by exponent n
-
-# By size: largest error of the smoothed density, relative to close packing, for four thermal
-# lengths over the radius (A = 1, 3, 10, 30). It is the difference from the exact equilibrium.
-_LENGTHS = 0.70, 2.1, 7.0, 21.0
-_ERRORS = {
-    2: (0.162, 0.064, 0.014, 0.002),
-    10: (0.138, 0.079, 0.017, 0.004),
-    100: (0.138, 0.099, 0.027, 0.007),
-    1000: (0.138, 0.116, 0.035, 0.009),
-}
 
 
 def solve_label_closure(chain: Chain) -> xr.Dataset:
@@ -75,21 +66,8 @@ def solve_label_closure(chain: Chain) -> xr.Dataset:
         method={"theory": "force balance, by labels"},
         residual=state.edge.residual,
     )
-    dataset.attrs["model_error"] = _expected_error(chain)
+    dataset.attrs["model_error"] = expected_force_balance(chain).inner
     return dataset
-
-
-def _expected_error(chain: Chain) -> float:
-    """Return the larger error of the next sizes at the next shorter thermal length, or NaN."""
-    shorter = sum(length <= chain.thermal_length / chain.radius for length in _LENGTHS)
-    measured = min(_ERRORS) <= chain.size <= max(_ERRORS) and shorter > 0
-    if chain.gap != 0 or chain.spring != "linear" or not measured:
-        return float("nan")
-    below, above = (
-        max(n for n in _ERRORS if n <= chain.size),
-        min(n for n in _ERRORS if n >= chain.size),
-    )
-    return max(_ERRORS[size][shorter - 1] for size in (below, above))
 
 
 @dataclass(frozen=True)
@@ -138,9 +116,10 @@ def solve_edge(n: int, lam: float) -> Edge:
     def boundary(at_left: Array, at_right: Array) -> Array:
         return np.array([at_left[1] / scale - share_left, at_right[1]])
 
-    # The mesh is fine near the edge and geometrically coarser into the plateau.
-    inner = -np.geomspace(5, -left, 200)[:0:-1] if left < -5 else np.empty(0)
-    mesh = np.concatenate([inner, np.linspace(max(left, -5.0), right, 300)])
+    # The mesh is fine near the edge and geometrically coarser into the plateau, if there is any.
+    fine = -5.0 if left < -6 else left
+    inner = -np.geomspace(-fine, -left, 200)[:0:-1] if left < fine else np.empty(0)
+    mesh = np.concatenate([inner, np.linspace(fine, right, 300)])
     guess_density, guess_share = _free_lattice(n, lam, mesh)
     guess = np.array([np.log(guess_density), scale * guess_share])
     solution = solve_bvp(equations, boundary, mesh, guess, tol=1e-9, max_nodes=100_000)

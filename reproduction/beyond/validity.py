@@ -70,9 +70,12 @@ def _relative_errors(results: Results, each: Checked, deviation: WidthDeviation)
 def tables(results: Results) -> Tables:
     """Give the errors without correlations, then both theories' for every group of chains."""
     found = _found(results)
-    alone = [_row(results, each) for each in found if each.group == Group.INDEPENDENT]
-    heads = ["e", "L", "gamma", "centre, %", "border, %", "largest, %", "error of a rod, %"]
-    tables = {"kinetic_equation": [heads, *alone]}
+    errors = ["centre, %", "border, %", "largest, %", "error of a rod, %"]
+    alone = [each for each in found if each.group == Group.INDEPENDENT]
+    rows = [_row(results, each) for each in alone if each.chain.gap == 0]
+    tables = {"kinetic_equation": [["e", "L", "gamma", *errors], *rows]}
+    rows = [_row(results, each) for each in alone if each.chain.gap > 0]
+    tables["kinetic_equation_gaps"] = [["e", "L", "g L/s", "gamma", *errors], *rows]
     heads = ["L", "e", "gamma"]
     heads += [
         f"W_v {place}{which}, %"
@@ -92,6 +95,7 @@ def _row(results: Results, each: Checked) -> list[str]:
     return [
         f"{chain.restitution:g}",
         f"{chain.size}",
+        *([f"{chain.gap * chain.size / chain.thermal_length:.0f}"] if chain.gap else []),
         f"{chain.damping:g}",
         percent(found.centre),
         percent(found.border),
@@ -206,7 +210,7 @@ def _errors(results: Results, *, with_pairs: bool) -> list[Error]:
         usual = chain.damping == 1 or chain.restitution > 1
         place = chain.size, chain.restitution
         deviations = _deviations(results, each)
-        if not usual or chain.size < _LEAST_DRAWN or len(deviations) <= with_pairs:
+        if not usual or chain.gap or chain.size < _LEAST_DRAWN or len(deviations) <= with_pairs:
             continue
         found = deviations[with_pairs]
         centre, border = _relative_errors(results, each, found)

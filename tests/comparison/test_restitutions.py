@@ -13,7 +13,7 @@ from crazybilliards.comparison.side_by_side.restitution_figures import (
     draw_profile,
     draw_widths,
 )
-from crazybilliards.comparison.side_by_side.restitutions import THEORY
+from crazybilliards.comparison.side_by_side.restitutions import LEGEND, THEORY
 from crazybilliards.comparison.widths import width_deviation
 from crazybilliards.kinetic import equilibrium, phase_space
 from crazybilliards.model import Chain
@@ -34,11 +34,13 @@ def test_tree_holds_both(tree):
     assert list(tree.children) == ["restitution_0.9", "restitution_1"]
     assert tree.attrs["status"] == "completed"
     for group in tree.children.values():
-        assert set(group.children) == {SIMULATION, THEORY}
+        assert set(group.children) == {SIMULATION, *LEGEND}
 
 
 def test_deviations(tree):
-    for found in width_deviations(tree).values():
+    every = [found for each in width_deviations(tree).values() for found in each.values()]
+    assert len(every) == 4
+    for found in every:
         assert abs(found.centre) < 0.02 + 5 * found.error
         assert abs(found.largest) < 0.02 + 5 * found.error
 
@@ -63,7 +65,7 @@ def test_without_a_steady_state_there_is_a_warning_and_no_theory():
         tree = compare_restitutions(chain, [1.1], duration=40, **QUIET)
     assert any("no steady state" in str(each.message) for each in caught)
     assert set(tree["restitution_1.1"].children) == {SIMULATION}
-    assert width_deviations(tree) == {}
+    assert width_deviations(tree) == {"restitution_1.1": {}}
 
 
 def test_pictures(tree):

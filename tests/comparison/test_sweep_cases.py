@@ -5,10 +5,10 @@ import json
 import numpy as np
 import pytest
 
+from crazybilliards.comparison.stationary_theories import THEORIES
 from crazybilliards.comparison.sweeps import Case
 from crazybilliards.comparison.sweeps.case import compute
 from crazybilliards.comparison.sweeps.jobs import JOBS
-from crazybilliards.comparison.theories import THEORIES
 from crazybilliards.model import Chain
 from crazybilliards.model.fingerprint import room_fingerprint
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from crazybilliards.kinetic.accuracy import expected_correlated_accuracy
+from crazybilliards.kinetic.accuracy import expected_correlated_phase_space
 from crazybilliards.model import Chain
 
 TABLES = Path(__file__).parents[2] / "docs" / "tables"
@@ -30,7 +30,7 @@ def rows():
 
 
 def accuracy(e, size):
-    return expected_correlated_accuracy(Chain(size=size, restitution=e))
+    return expected_correlated_phase_space(Chain(size=size, restitution=e))
 
 
 def test_every_chain_of_the_tables_is_within_the_errors():

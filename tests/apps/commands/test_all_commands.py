@@ -1,7 +1,9 @@
 """All commands: help at once, one line for a mistake, the parameters of a chain as options."""
 
 import dataclasses
+import functools
 import inspect
+import pkgutil
 import subprocess
 import sys
 from typing import get_args
@@ -77,6 +79,7 @@ def test_every_parameter_of_a_chain_is_an_option_that_reaches_the_chain(
     asked = {name: value for name, value in OTHER.items() if name not in CHOSEN[command]}
     chains = []
 
+    @functools.wraps(pkgutil.resolve_name(TAKES_IT[command]))
     def stop(chain, *arguments, **settings):
         chains.append(chain)
         raise ValueError("far enough")

@@ -97,7 +97,7 @@ def test_compare_restitutions(run, tmp_path):
         "widths.png",
     ]
     assert set(load(tmp_path / "comparison.nc").children) == {"restitution_0.9", "restitution_1"}
-    assert "kinetic equation minus simulation" in " ".join(done.stdout.split())
+    assert "theory minus simulation" in " ".join(done.stdout.split())
 
 
 @pytest.mark.compiled
@@ -111,7 +111,7 @@ def test_ctrl_c_while_a_picture_is_drawn_keeps_those_before(run, tmp_path, monke
     assert done.returncode == 130
     names = sorted(path.name for path in tmp_path.iterdir())
     assert names == ["comparison-interrupted.nc", "widths-interrupted.png"]
-    assert "kinetic equation minus simulation" in " ".join(done.stdout.split())
+    assert "theory minus simulation" in " ".join(done.stdout.split())
 
 
 @pytest.mark.compiled

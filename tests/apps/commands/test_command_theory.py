@@ -1,10 +1,11 @@
 """The command ``theory``: every theory by its name."""
 
 import functools
+import json
 
 import pytest
 
-from crazybilliards.comparison.theories import THEORIES
+from crazybilliards.comparison.stationary_theories import THEORIES
 from crazybilliards.model import Chain, load
 
 HOME = "crazybilliards.kinetic"
@@ -44,9 +45,9 @@ def test_every_theory_by_its_name(name, run, solved, tmp_path):
 
 
 def test_the_settings_of_a_theory_reach_it(refused, monkeypatch):
-    """The kinetic equation is the theory that is taken if none is named."""
+    """At e = 1 the kinetic equation is the best theory that has these settings."""
 
-    def solve(chain, tolerance, cells):
+    def solve(chain, order=None, tolerance=2e-3, cells=None):
         raise ValueError(f"asked for {tolerance=} {cells=}")
 
     monkeypatch.setattr(f"{HOME}.kinetic_equation.stationary.phase_space", solve)
@@ -73,3 +74,22 @@ def test_theory_refuses_in_one_line(refused, arguments, message, tmp_path):
     folder = tmp_path / "results"
     refused(message, "theory", *arguments, "--output", str(folder))
     assert not folder.exists()
+
+
+def test_without_a_name_it_is_the_best_theory_and_says_so(run, solved):
+    done = run("theory", "--size", 30, "--restitution", 0.5)
+    assert done.returncode == 0
+    assert done.stdout.startswith("correlated_phase_space has the smallest expected error")
+    [(_, _, result)] = solved
+    assert f"{result.velocity_width[0]:.4g}" in done.stdout
+
+
+def test_the_list_tells_who_takes_the_chain(run, solved):
+    done = run("theory", "--list", "--restitution", 0.5)
+    text = " ".join(done.stdout.split())
+    assert "correlated_phase_space (best)" in text
+    assert "restitution must be 1, got 0.5" in text
+    assert solved == []
+    facts = json.loads(run("theory", "--list", "--restitution", 0.5, "--json").stdout)
+    assert facts["best"] == "correlated_phase_space"
+    assert [row["theory"] for row in facts["theories"]] == list(THEORIES)
