@@ -22,7 +22,9 @@ from crazybilliards.particles.simulation import make_run
 from crazybilliards.particles.vanishing_step.limit import make_runs
 
 # Arguments that do not change the numbers, and arguments that are not plain values.
-_NO_SETTINGS = {"chain", "start", "threads", "checkpoint", "checkpoint_interval", "progress"}
+_NO_SETTINGS = {"chain", "rng", "start", "threads", "checkpoint", "checkpoint_interval"} | {
+    "progress"
+}
 
 _THEORY_WORK = 3e9  # particle steps that take about as long as a theory
 

@@ -167,7 +167,7 @@ def test_two_simulations_differ_and_keywords_are_passed_through():
     assert (second.get_marker(), second.get_color(), second.get_alpha()) == ("*", "red", 0.5)
     line = overlay({"a": equilibrium(chain)}, style={"a": {"linewidth": 5}}).lines[0]
     assert line.get_linewidth() == 5
-    with pytest.raises(ValueError, match="style: no result is called 'seed 3'"):
+    with pytest.raises(ValueError, match=r"style: .*, got 'seed 3'; did you mean 'seed [12]'"):
         overlay(runs, "velocity_width", style={"seed 3": {}})
 
 
