@@ -80,8 +80,8 @@ def find_curve(label: str, dataset: xr.Dataset, quantity: str, along: str) -> Cu
     require(dataset, (abscissae[str(values.dims[0])],))
     if values.dims == ("velocity_bin",):  # the outer bins are empty
         visited = np.flatnonzero(values > 0)
-        first, last = visited.min(initial=0), visited.max(initial=0)
-        dataset = dataset.isel(velocity_bin=slice(first, last + 1))
+        if visited.size:
+            dataset = dataset.isel(velocity_bin=slice(visited[0], visited[-1] + 1))
     abscissa = dataset[abscissae[str(values.dims[0])]]
     return Curve(abscissa, dataset[quantity], dataset.get(f"{quantity}_error"))
 

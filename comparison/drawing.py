@@ -102,7 +102,8 @@ def overlay(
 
 def _curves(results: Mapping[str, xr.Dataset], quantity: str, along: str) -> dict[str, Curve]:
     """Return what is drawn of every result, or raise before anything is drawn."""
-    if not isinstance(results, Mapping):
+    # A Dataset and a tree of them are mappings, too.
+    if not isinstance(results, Mapping) or isinstance(results, xr.Dataset | xr.DataTree):
         raise ValueError(
             "overlay takes results by their labels, e.g. {'simulation': run, 'theory': theory}, "
             f"got a {type(results).__name__}"
