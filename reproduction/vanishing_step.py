@@ -22,8 +22,14 @@ LABEL = r"limit $dt \to 0$"
 
 # Number of limits, and the accuracy of each: at e = 0, where exponents have their errors from the
 # scatter between them, and at larger restitutions, where they cost ten times as much.
-_INELASTIC: Granted = {"quick": (3, {"accuracy": 0.02}), "full": (5, {"accuracy": 0.005})}
-_DISSIPATIVE: Granted = {"quick": (1, {"accuracy": 0.05}), "full": (1, {"accuracy": 0.015})}
+_INELASTIC: Granted = {
+    "quick": (3, {"accuracy": 0.05, "warmup": 30.0}),
+    "full": (5, {"accuracy": 0.005}),
+}
+_DISSIPATIVE: Granted = {
+    "quick": (1, {"accuracy": 0.1, "warmup": 30.0}),
+    "full": (1, {"accuracy": 0.024}),
+}
 
 
 def limits(size: int, restitution: float = 0.0) -> Runs:

@@ -131,8 +131,9 @@ MYPY = """
 [mypy]
 warn_unused_ignores = True
 disable_error_code = import-untyped, import-not-found
-[mypy-numpy.*,xarray.*,scipy.*,pandas.*,matplotlib.*,numba.*,h5py.*,dask.*,distributed.*,pde.*,skfem.*]
+[mypy-numpy.*,xarray.*,scipy.*,pandas.*,matplotlib.*,numba.*,h5py.*,dask.*,distributed.*,pde.*,skfem.*,tqdm.*]
 follow_imports = skip
+follow_imports_for_stubs = True
 """
 TYPED = """
 import crazybilliards as cb

@@ -19,6 +19,7 @@ from crazybilliards.model import Chain
 from crazybilliards.model.fingerprint import room_fingerprint
 from crazybilliards.particles import simulate, simulate_limit
 from crazybilliards.particles.simulation import make_run
+from crazybilliards.particles.vanishing_step.level_steps import GROUPS
 from crazybilliards.particles.vanishing_step.limit import make_runs
 
 # Arguments that do not change the numbers, and arguments that are not plain values.
@@ -67,12 +68,15 @@ def _steps(chain: Chain, **settings: Any) -> float:
 
 
 def _limit_steps(chain: Chain, **settings: Any) -> float:
-    """Return the steps before the measurement plus an estimate of those of the base."""
+    """Return the steps before the measurement plus an estimate of those that are measured."""
     steps, runs = make_runs(chain, **settings)
-    warm_up = float(sum(run.warmup_steps for run in runs[:-1] or runs)) * settings["replicas"]
+    begun = runs[:-1] or runs
+    warm_up = float(sum(run.warmup_steps for run in begun)) * settings["replicas"]
     # W_v in the centre fluctuates by a half per time unit, to a factor of 2 for 10 to 1000 rods.
-    measured = (0.5 / settings["accuracy"]) ** 2 / steps.time_steps[0]
-    return chain.size * (warm_up + 2 * measured)
+    measured = 2 * (0.5 / settings["accuracy"]) ** 2 / steps.time_steps[0]
+    # That is less than the pilot round if little is asked for.
+    pilot = steps.least * begun[0].stride + sum(steps.pilot * run.stride for run in begun[1:])
+    return chain.size * (warm_up + max(measured, float(GROUPS * pilot)))
 
 
 def _theory_work(check: Callable[..., Any], chain: Chain, **settings: Any) -> float:

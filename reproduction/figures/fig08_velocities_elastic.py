@@ -34,6 +34,8 @@ _SIZE = 100
 _RUNS = elastic(_SIZE)
 _PARTICLES = (1, 50)
 _LONG: Granted = {"quick": (2, {"duration": 200.0}), "full": (4, {"duration": 2000.0})}
+# Contact Dynamics is off by far more, and its steps are short.
+_SHORT: Granted = {"quick": (2, {"duration": 50.0}), "full": (4, {"duration": 200.0})}
 _SHOWN = 4.0  # free widths to either side in the plot of a distribution
 _SOURCE = "section seq:e_larger, fig.4.2"
 _STEPS = (1e-2, 1e-3)  # of Contact Dynamics
@@ -42,7 +44,7 @@ _CONTACT = {
     step: Runs(
         f"long chain, Contact Dynamics, dt={step:g}",
         _EXACT.chain,
-        _LONG,
+        _SHORT,
         {"method": "contact-dynamics", "time_step": step, **_EXACT.settings},
     )
     for step in _STEPS
@@ -91,7 +93,7 @@ def claims(results: Results) -> list[Claim]:
         small_claim(
             f"Contact Dynamics is right at e = 1, L = {LARGE}, dt = {_STEPS[-1]:g}",
             "1 - W_v/W in the centre",
-            Estimate(1 - wrong.value / unit, wrong.error),
+            Estimate(1 - wrong.value / unit, wrong.error / unit),
             0.02,
             theory="exact: 0",
             reason="a step sees many collisions of each rod there, and Contact Dynamics "

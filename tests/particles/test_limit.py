@@ -211,7 +211,7 @@ def test_killed_at_random_moments_and_resumed_it_is_the_undisturbed_run(e, tmp_p
     checkpoint = tmp_path / "state"
     assert run_and_signal(script, "", undisturbed) == 0
     generator = np.random.default_rng(int(10 * e))
-    for how in (signal.SIGKILL, signal.SIGTERM, signal.SIGKILL):
+    for how in (signal.SIGKILL, signal.SIGTERM):
         run_and_signal(script, checkpoint, output, how, after=generator.random())
     assert run_and_signal(script, checkpoint, output) == 0
     resumed = load(output)

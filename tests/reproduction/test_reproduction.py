@@ -71,6 +71,7 @@ def test_every_study_beyond_the_paper_is_found_and_has_a_name_of_its_own():
 
 
 @pytest.mark.compiled
+@pytest.mark.validate
 def test_rods_with_gaps_are_where_the_exact_solution_has_them():
     """At quick quality every claim holds; if the rods were those of another gap, none would."""
     [study] = find_studies("elastic-gaps")
