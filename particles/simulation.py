@@ -98,8 +98,8 @@ def simulate(
         (collision_rate), ``"impacts"`` (contact_force, contact_loss, contact_temperature,
         rebound_temperature), ``"avalanches"`` (avalanche_count),
         ``"triggered-collisions"`` (triggered_count) and ``"snapshots"``
-        (position and velocity as they are). Observers can also be given as objects, of the
-        package, e.g. ``Velocities(bins=801)``, or your own.
+        (position and velocity as they are). Observers can also be given as objects,
+        ``cb.Velocities(bins=801)`` or your own.
     start
         A result with ``position`` and ``velocity`` over (replica, particle), such as
         ``equilibrium_states(chain, replicas)`` or ``given_start(chain, position)``; None: every
