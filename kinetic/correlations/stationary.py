@@ -58,7 +58,7 @@ from crazybilliards.model import Chain
 Array = NDArray[np.float64]
 
 _MOST_CELLS = 80  # of a mesh that is not asked for
-_ROUGHLY = 1e-6
+_ROUGHLY = 1e-3
 _AGREEMENT = 0.5  # of the tolerance: what ln a may be off; a width changes by less than half of it
 _MOST_ITERATIONS = 40
 _WAY = 0.5, 0.2  # restitutions that smaller ones are reached from

@@ -39,7 +39,7 @@ from crazybilliards.kinetic.kinetic_equation.weak_damping import weak_damping_dr
 from crazybilliards.kinetic.kinetic_equation.weak_form import (
     Coefficients,
     Equation,
-    newton_step,
+    Jacobian,
 )
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain
@@ -114,13 +114,15 @@ def critical_damping(chain: Chain) -> CriticalValue:
     def excess(log_damping: float) -> float:
         return math.log(_critical_drag(math.exp(log_damping))[0] / wanted)
 
-    # About proportional to the damping for strong damping too.
-    weak = math.log(wanted / weak_damping_drag(1.0))
-    found = root_scalar(excess, method="secant", x0=weak, x1=weak - excess(weak), xtol=1e-3)
-    if not found.converged:
-        raise ValueError(f"no damping found at which {chain.size} rods become critical")
-    unit = math.sqrt(chain.stiffness * chain.mass)
-    damping = unit * math.exp(found.root)
+    damping = wanted / weak_damping_drag(1.0)
+    if damping >= _WEAK:
+        # About proportional to the damping for strong damping too.
+        weak = math.log(damping)
+        found = root_scalar(excess, method="secant", x0=weak, x1=weak - excess(weak), xtol=1e-3)
+        if not found.converged:
+            raise ValueError(f"no damping found at which {chain.size} rods become critical")
+        damping = math.exp(found.root)
+    damping *= math.sqrt(chain.stiffness * chain.mass)
     return CriticalValue(damping, 2e-3 * damping)
 
 
@@ -202,7 +204,7 @@ def _fitted(state: _State, damping: float, tau: float) -> _State:
 def _state_of_unit_energy(state: _State, damping: float, tau: float) -> _State:
     """Solve for f with <v^2> = 1, and for the drag, by Newton's method."""
     space, f, drag = state
-    conditions = [space.whole_mass, space.whole_energy]
+    conditions, jacobian = [space.whole_mass, space.whole_energy], Jacobian()
     for _ in range(_MOST_STEPS):
         numbers = Coefficients(1.0, 2, 0.0, damping, tau * damping, drag, 0.0)
         equation = Equation(space, numbers)
@@ -212,7 +214,7 @@ def _state_of_unit_energy(state: _State, damping: float, tau: float) -> _State:
         by_drag = -space.against_slopes(space.field(table * mean.I1))
         residual = np.concatenate([-(matrix @ f), [1 - row @ f for row in conditions]])
         columns = np.column_stack([space.whole_mass, by_drag])
-        step = newton_step(matrix, columns, conditions, equation.variation(f), residual)
+        step = jacobian.solve(matrix, columns, conditions, equation.variation(f), residual)
         f, drag = f + step[: f.size], drag + float(step[-1])
         if np.abs(step[: f.size]).max() < _TOLERANCE * np.abs(f).max():
             return _State(space, f, drag)

@@ -43,7 +43,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 from scipy.sparse import csc_matrix, hstack, vstack
-from scipy.sparse.linalg import LinearOperator, gmres
+from scipy.sparse.linalg import LinearOperator, SuperLU, gmres
 from skfem import BilinearForm
 from skfem.helpers import grad
 
@@ -58,6 +58,8 @@ Array = NDArray[np.float64]
 
 _MOST_STEPS = 12
 _GMRES = 40  # Krylov vectors; 5 to 15 are needed
+_SOLVED = 2e-2  # relative residual of a Newton step: closer ones cost more than they save
+_KEPT = 3  # Newton steps with the same factors, as long as GMRES converges in one cycle
 
 
 class Units(NamedTuple):
@@ -226,15 +228,14 @@ def stationary_state(
 ) -> Solution:
     """Solve the stationary equation with int f = 1 by Newton's method.
 
-    The sparse part of the Jacobian (with frozen integrals) is factorised. It preconditions GMRES
-    for the whole Jacobian, which the integrals make dense. ``tolerance`` is that of the last step,
-    relative to max f. ``factors`` are those of the terms, see ``Equation``.
+    ``tolerance`` is that of the last step, relative to max f. ``factors`` are those of the terms,
+    see ``Equation``.
     """
-    f, equation = guess, Equation(space, numbers, factors)
+    f, equation, jacobian = guess, Equation(space, numbers, factors), Jacobian()
     for _ in range(_MOST_STEPS):
         matrix = equation.matrix(equation.mean(f))
         residual = np.append(-(matrix @ f), 1 - space.whole_mass @ f)
-        step = newton_step(
+        step = jacobian.solve(
             matrix, space.whole_mass[:, None], [space.whole_mass], equation.variation(f), residual
         )
         f = f + step[: f.size]
@@ -246,32 +247,57 @@ def stationary_state(
     raise NotSolvedError(f"the kinetic equation did not converge in {_MOST_STEPS} Newton steps")
 
 
-def newton_step(
-    matrix: csc_matrix,
-    columns: Array,
-    rows: list[Array],
-    variation: Callable[[Array], Array],
-    right: Array,
-) -> Array:
-    """Solve [matrix + variation, columns; rows, 0] step = right.
+class Jacobian:
+    """The linear equations of Newton's steps on one mesh.
 
-    Unknowns besides f have ``columns``, and the same number of conditions on f have ``rows``.
-
-    Raises NotSolvedError unless GMRES converges: with a wrong step Newton's method may come to rest
-    where there is no solution.
+    The sparse part of the Jacobian (with frozen integrals) is factorised. It preconditions GMRES
+    for the whole Jacobian, which the integrals make dense. The factors of one step are good for
+    the next ones as well.
     """
-    borders = csc_matrix(columns), csc_matrix(np.array(rows))
-    corner = csc_matrix((len(rows), len(rows)))
-    bordered = vstack([hstack([matrix, borders[0]]), hstack([borders[1], corner])]).tocsc()
-    factors, size = factorised(bordered), matrix.shape[0]
 
-    def apply(x: Array) -> Array:
-        image = bordered @ x
-        image[:size] += variation(x[:size])
-        return np.asarray(factors.solve(image))
+    def __init__(self) -> None:
+        self._factors: SuperLU | None = None
+        self._uses = 0
 
-    operator = LinearOperator(bordered.shape, matvec=apply, dtype=float)
-    step, failed = gmres(operator, factors.solve(right), rtol=1e-5, restart=_GMRES, maxiter=2)
-    if failed:
-        raise NotSolvedError(f"GMRES did not converge in {2 * _GMRES} iterations")
-    return np.asarray(step)
+    def solve(
+        self,
+        matrix: csc_matrix,
+        columns: Array,
+        rows: list[Array],
+        variation: Callable[[Array], Array],
+        right: Array,
+    ) -> Array:
+        """Solve [matrix + variation, columns; rows, 0] step = right.
+
+        Unknowns besides f have ``columns``, and the same number of conditions on f have ``rows``.
+
+        Raises NotSolvedError unless GMRES converges: with a wrong step Newton's method may come to
+        rest where there is no solution.
+        """
+        borders = csc_matrix(columns), csc_matrix(np.array(rows))
+        corner = csc_matrix((len(rows), len(rows)))
+        bordered = vstack([hstack([matrix, borders[0]]), hstack([borders[1], corner])]).tocsc()
+        size = matrix.shape[0]
+
+        def step_with(factors: SuperLU, cycles: int) -> tuple[Array, int]:
+            def apply(x: Array) -> Array:
+                image = bordered @ x
+                image[:size] += variation(x[:size])
+                return np.asarray(factors.solve(image))
+
+            operator = LinearOperator(bordered.shape, matvec=apply, dtype=float)
+            found: tuple[Array, int] = gmres(
+                operator, factors.solve(right), rtol=_SOLVED, restart=_GMRES, maxiter=cycles
+            )
+            return found
+
+        if self._factors is not None and self._uses < _KEPT:
+            self._uses += 1
+            step, failed = step_with(self._factors, 1)
+            if not failed:
+                return step
+        self._factors, self._uses = factorised(bordered), 1
+        step, failed = step_with(self._factors, 2)
+        if failed:
+            raise NotSolvedError(f"GMRES did not converge in {2 * _GMRES} iterations")
+        return step

@@ -75,9 +75,10 @@ def test_the_closed_form_takes_over_from_the_equation():
     assert weak.value / 1.001 == pytest.approx(weaker.value / 0.999, rel=1e-5)
     assert weak.error == pytest.approx(weaker.error, rel=0.01)
     # Small, weakly driven chains lie there; no equation is solved.
-    few = WEAK.replace(size=2, restitution=1.001)
-    unit = np.sqrt(few.mass)
-    assert critical_damping(few).value == pytest.approx(0.002 / np.pi * unit, rel=1e-6)
+    for size, restitution in ((2, 1.001), (30, 1.0001)):
+        few = WEAK.replace(size=size, restitution=restitution)
+        expected = size * (restitution - 1) / np.pi * np.sqrt(few.mass)
+        assert critical_damping(few).value == pytest.approx(expected, rel=1e-6)
 
 
 def test_stronger_damping_than_is_known_is_refused_at_once():

@@ -22,10 +22,10 @@ CHAIN = Chain(size=100, restitution=0.9)
 
 @pytest.fixture(scope="module")
 def state():
-    return continued(CHAIN, elastic_state(CHAIN, 2, 12))
+    return solved(continued(CHAIN, elastic_state(CHAIN, 2, 12)))
 
 
-@pytest.mark.parametrize(("of", "converges"), [(0.97, True), (1.0, False)])
+@pytest.mark.parametrize(("of", "converges"), [(0.97, True), (1.05, False)])
 def test_the_factors_of_another_matrix_give_the_same_solution_or_none(
     state, monkeypatch, of, converges
 ):

@@ -151,6 +151,7 @@ def test_too_many_flippers_have_no_steady_state():
         ({"size": 10**6}, {}, "size must be at most"),
         ({}, {"order": 3}, "order"),
         ({"restitution": 0.95}, {"tolerance": 1e-9}, "accurate to .* theory --cells 50 accepts"),
+        ({"damping": 1e-4, "restitution": 0.95}, {}, "multiple of m W/s, is 4.89e-05 .*0.01 to 25"),
         ({"damping": 1000.0}, {}, "multiple of m W/s, is 489 .*0.01 to 25.*; simulate takes any"),
     ],
 )
