@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from itertools import cycle, pairwise
-from typing import Any, Literal
+from itertools import cycle
+from typing import Any, Literal, get_args
 
 import matplotlib.pyplot as plt
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.container import ErrorbarContainer
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from crazybilliards.model.vocabulary import require
+from crazybilliards.comparison.curves import Curve, axis_label, find_curve, is_of_one_rod
+from crazybilliards.comparison.symbols import draw_measured
+from crazybilliards.model.checks import check_choice, got
 
-Array = NDArray[np.float64]
+Along = Literal["normalized_particle", "mean_position"]
 
 # Okabe and Ito's colours, distinct for any colour vision; symbols and line styles differ too.
 COLOURS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#D55E00", "#56B4E9", "#000000")
@@ -32,34 +34,13 @@ _LINES: tuple[dict[str, Any], ...] = (
     {"color": "#CC79A7", "linestyle": ":", "linewidth": 1.8},
     {"color": "#009E73", "linestyle": "-.", "linewidth": 1.4},
 )
-_MOST_SYMBOLS = 60
-_SEEN = 0.01  # of the height of the picture, between a curve and a line
-# Standard errors between a curve and lines from node to node that noise makes: at most, of hundreds
-# of nodes whose errors are themselves uncertain, and their root mean square, 1.2 to 1.3.
-_LARGEST, _TYPICAL = 6.0, 2.0
-# How axes are labelled; other variables by their long names.
-_LABELS = {
-    "density": r"density $\rho$",
-    "label": "rods to the left $N$",
-    "displacement": r"displacement $\langle\Delta x\rangle$",
-    "mean_displacement": r"displacement $\langle\Delta x\rangle$",
-    "displacement_width": "displacement width $W_x$",
-    "velocity_width": "velocity width $W_v$",
-    "velocity_variance": "velocity variance $W^2$",
-    "flow_velocity": "flow velocity $V$",
-    "kinetic_energy": "kinetic energy $E$",
-    "x": "position $x$",
-    "time": "time $t$",
-    "mean_position": r"mean position $\langle x_i\rangle$",
-    "normalized_particle": "normalized particle $i_n$",
-}
 
 
 def overlay(
     results: Mapping[str, xr.Dataset],
     quantity: str = "density",
     *,
-    along: Literal["normalized_particle", "mean_position"] = "normalized_particle",
+    along: Along = "normalized_particle",
     ax: Axes | None = None,
     style: Mapping[str, Mapping[str, Any]] | None = None,
 ) -> Axes:
@@ -73,9 +54,13 @@ def overlay(
         simulation would hide waves between them, all its values are drawn instead, as a thin line
         in a band of one standard error.
     quantity
-        A variable over x, time or particle. Smooth all densities in the same way first.
+        A variable over x, time, particle, contact, mode, separation, velocity or velocity_bin.
+        Smooth all densities in the same way first. ``velocity_density`` is that of a rod picked at
+        random, unless one particle was chosen: the mean over all rods of a simulation, the
+        integral over y of a ``phase_space_density``.
     along
-        Abscissa of a quantity over particle: i_n in -1..1, or the mean position of the rods.
+        Abscissa of a quantity over particle: i_n in -1..1, or the mean position of the rods. A
+        contact lies at the i_n half way between its rods.
     ax
         Axes to draw into; None: those of a new figure.
     style
@@ -85,52 +70,53 @@ def overlay(
     Raises
     ------
     ValueError
-        If a result lacks the quantity, or has it over other dimensions than one of x, time and
-        particle. For example, one time of a density over time and x must be chosen first. If
-        ``style`` names no result.
+        If ``results`` are not given by labels, if one lacks the quantity, or has it over several
+        dimensions: one time of a density over time and x must be chosen first. If ``style`` names
+        no result.
 
     Returns
     -------
     matplotlib.axes.Axes
         The axes without a legend; call its ``legend()``.
     """
-    for label, dataset in results.items():
-        require(dataset, (quantity,))
-        _require_curve(label, dataset[quantity])
-    if unknown := set(style or {}) - set(results):
-        raise ValueError(f"style: no result is called {min(unknown)!r}")
+    curves = _curves(results, quantity, along)
+    for label in style or {}:
+        if label not in results:
+            raise ValueError(f"style: the results are {got(label, list(results))}")
     if ax is None:
         _, ax = plt.subplots(layout="constrained")
     lines, symbols = cycle(_LINES), cycle(_SIMULATIONS)
-    for label, dataset in results.items():
-        values, own = dataset[quantity], dict((style or {}).get(label, {}))
-        axes = [name for name in ("x", "time") if name in values.dims]
-        abscissa = dataset[axes[0] if axes else along]
-        look: dict[str, Any]
-        if dataset.attrs.get("source") == "simulation":
-            # The first and last rods are always drawn, because theories differ most at the border.
-            count = min(abscissa.size, _MOST_SYMBOLS)
-            shown = np.linspace(0, abscissa.size - 1, count).round().astype(int)
-            error = dataset.get(f"{quantity}_error")
-            look = {"markersize": 3.5, "label": label, "zorder": 3} | next(symbols) | own
-            _draw_measured(ax, abscissa, values, error, shown, look)
+    for label, (abscissa, values, error) in curves.items():
+        own, look = dict((style or {}).get(label, {})), dict[str, Any](label=label)
+        if results[label].attrs.get("source") == "simulation":
+            look |= {"markersize": 3.5, "zorder": 3} | next(symbols) | own
+            spread = None if error is None else error.values
+            draw_measured(ax, abscissa.values, values.values, spread, look)
         else:
-            look = {"label": label, "zorder": 2}
-            look |= next(lines) | own
+            look |= {"zorder": 2} | next(lines) | own
             ax.plot(abscissa, values, **look)
-        ax.set_xlabel(_axis_label(abscissa))
-        ax.set_ylabel(_axis_label(values))
+        ax.set_xlabel(axis_label(abscissa))
+        ax.set_ylabel(axis_label(values))
     return ax
 
 
-def _require_curve(label: str, values: xr.DataArray) -> None:
-    """Raise unless these are values over one dimension, that of an abscissa."""
-    if values.dims in (("x",), ("time",), ("particle",)):
-        return
-    message = f"{label}: {values.name} is over ({', '.join(map(str, values.dims))})"
-    if "time" in values.dims:
-        raise ValueError(f"{message}; choose a time: .isel(time=...)")
-    raise ValueError(f"{message}; overlay draws what is over x, time or particle")
+def _curves(results: Mapping[str, xr.Dataset], quantity: str, along: str) -> dict[str, Curve]:
+    """Return what is drawn of every result, or raise before anything is drawn."""
+    # A Dataset and a tree of them are mappings, too.
+    if not isinstance(results, Mapping) or isinstance(results, xr.Dataset | xr.DataTree):
+        raise ValueError(
+            "overlay takes results by their labels, e.g. {'simulation': run, 'theory': theory}, "
+            f"got a {type(results).__name__}"
+        )
+    check_choice("along", along, get_args(Along))
+    curves = {
+        label: find_curve(label, dataset, quantity, along) for label, dataset in results.items()
+    }
+    single = [label for label, dataset in results.items() if is_of_one_rod(dataset, quantity)]
+    of_all = [label for label, dataset in results.items() if quantity not in dataset]
+    if single and of_all:
+        raise ValueError(f"{quantity}: {single[0]} is of one rod, {of_all[0]} of all rods")
+    return curves
 
 
 def draw_rods(
@@ -157,17 +143,15 @@ def draw_rods(
     along
         Abscissa. ``particle`` is meant for a logarithmic axis and spaces the symbols for it.
     """
-    spaced = np.geomspace if along == "particle" else np.linspace
-    last = run.particle.size
-    shown = np.unique(np.round(spaced(1, last, min(last, _MOST_SYMBOLS))).astype(int)) - 1
     look = {
         "color": COLOURS[number % len(COLOURS)],
         "marker": SYMBOLS[number % len(SYMBOLS)],
         "linewidth": 0.7,
         "label": label,
     }
-    error = run[f"{quantity}_error"] / unit
-    _draw_measured(ax, run[along], run[quantity] / unit, error, shown, look)
+    values, error = (run[name].values / unit for name in (quantity, f"{quantity}_error"))
+    spaced = np.geomspace if along == "particle" else np.linspace
+    draw_measured(ax, run[along].values, values, error, look, spaced=spaced)
 
 
 def draw_points(
@@ -184,67 +168,6 @@ def draw_points(
     look = {"linestyle": "none", "markerfacecolor": "none", **how}
     colour, marker = COLOURS[number % len(COLOURS)], SYMBOLS[number % len(SYMBOLS)]
     ax.errorbar(x, values, errors, color=colour, marker=marker, label=label, **look)
-
-
-def _draw_measured(
-    ax: Axes,
-    x: xr.DataArray,
-    values: xr.DataArray,
-    error: xr.DataArray | None,
-    shown: NDArray[np.int64],
-    look: Mapping[str, Any],
-) -> None:
-    """Draw the nodes ``shown`` as symbols with error bars, and the stretches they hide as a line.
-
-    ``look``: color, label and other keywords of ``errorbar``.
-    """
-    at, y = x.values, values.values
-    spread = np.zeros(y.size) if error is None else error.values
-    kept = shown[_tell_the_curve(ax, at, y, spread, shown)]
-    look = {"linestyle": "none", "linewidth": 0.8, "markerfacecolor": "none", **look}
-    if kept.size:
-        ax.errorbar(at[kept], y[kept], None if error is None else spread[kept], **look)
-    lined = np.zeros(y.size, dtype=bool)
-    for first, last in pairwise(shown):
-        lined[first : last + 1] |= not {first, last} <= set(kept)
-    if lined.any():
-        same: dict[str, Any] = {
-            name: look[name] for name in ("color", "alpha", "zorder") if name in look
-        }
-        curve = np.where(lined, y, np.nan)
-        ax.plot(at, curve, linewidth=0.8, label="" if kept.size else look["label"], **same)
-        band = same | {"alpha": 0.3 * same.get("alpha", 1.0), "linewidth": 0}
-        ax.fill_between(at, curve - spread, curve + spread, **band)
-
-
-def _tell_the_curve(
-    ax: Axes, x: Array, values: Array, error: Array, shown: NDArray[np.int64]
-) -> NDArray[np.bool_]:
-    """Return which of the nodes ``shown`` can be symbols because they tell the curve around them.
-
-    Symbols further apart than the waves of a curve would show waves that do not exist. Straight
-    lines from a symbol to its neighbours must therefore follow all nodes between, to a hundredth
-    of the picture or to what noise makes. If most symbols fail, or if the other nodes together are
-    further off than noise makes them, none is left.
-    """
-    if ax.get_xscale() == "log":
-        x = np.log(x)
-    if ax.get_yscale() == "log":
-        with np.errstate(divide="ignore", invalid="ignore"):
-            values, error = np.log(values), error / values
-    across, high = (float(np.nanmax(each) - np.nanmin(each)) or 1.0 for each in (x, values))
-    stretch = np.searchsorted(shown[1:-1], np.arange(x.size), side="right")
-    slopes = np.diff(values[shown]) / high / (np.diff(x[shown]) / across)
-    seen = _SEEN * high * np.hypot(1.0, slopes)[stretch]  # a steep line is nearer than it is below
-    missed = np.abs(values - np.interp(x, x[shown], values[shown]))
-    missed[missed <= seen] = 0.0
-    noise = np.where(np.isfinite(error), error, 0.0)
-    hidden = stretch[~(missed <= _LARGEST * noise)]
-    tells = np.ones(shown.size, dtype=bool)
-    tells[hidden] = tells[hidden + 1] = False
-    rest = ~np.isin(stretch, hidden) & (noise > 0)
-    together = np.sum((missed[rest] / noise[rest]) ** 2) > _TYPICAL**2 * rest.sum()
-    return tells & (tells.mean() > 0.5) & ~together
 
 
 def mark_clipped(ax: Axes) -> None:
@@ -269,9 +192,3 @@ def mark_clipped(ax: Axes) -> None:
 def along_the_chain(ax: Axes) -> None:
     """Label the abscissa i_n, the normalized particle number."""
     ax.set(xlabel="normalized particle $i_n$", xticks=(-1, -0.5, 0, 0.5, 1))
-
-
-def _axis_label(variable: xr.DataArray) -> str:
-    unit = variable.attrs["units"]
-    name = _LABELS.get(str(variable.name), variable.attrs["long_name"])
-    return name + (f" [{unit}]" if unit != "1" else "")

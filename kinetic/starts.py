@@ -18,7 +18,7 @@ from scipy.optimize import elementwise
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.kinetic.statics.label_closure import fluid_reach, stationary
 from crazybilliards.model import Chain, chain_of
-from crazybilliards.model.checks import check_real
+from crazybilliards.model.checks import check_real, shown
 from crazybilliards.model.grid import position_grid, thermal_reach
 from crazybilliards.model.vocabulary import require, result
 
@@ -80,6 +80,18 @@ def _start(chain: Chain, x: Array, density: Array, label: Array, velocity: Array
         source="start",
         method={"start": "hydrodynamics"},
         coordinates={"x": x},
+    )
+
+
+def check_start(start: xr.Dataset | None, more: str = "") -> xr.Dataset:
+    """Return a start, or raise a ValueError that says what one is and which functions make one."""
+    if isinstance(start, xr.Dataset):
+        return start
+    came = "none" if start is None else shown(start)
+    raise ValueError(
+        "start must be a result with density over x: displaced(chain, shift), compressed(chain, "
+        "factor) or two_clumps(chain, distance, speed) make one of this chain, force_balance one "
+        f"of another{more}; got {came}"
     )
 
 

@@ -30,7 +30,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from crazybilliards.model import spring
-from crazybilliards.model.checks import shown
+from crazybilliards.model.checks import got, shown
 from crazybilliards.model.parameters import Parameters
 
 
@@ -76,7 +76,7 @@ class Chain(Parameters):
         known = {field.name for field in fields(self)}
         for name in changes:
             if name not in known:
-                raise ValueError(f"Chain has no parameter {name!r}; it has {sorted(known)}")
+                raise ValueError(f"Chain takes any of {got(name, sorted(known))}")
         return replace(self, **changes)
 
     def parameters(self) -> dict[str, int | float | str]:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 import reprlib
+from collections.abc import Iterable
+from difflib import get_close_matches
 from numbers import Integral, Real
 
 # Squares and ratios of parameters must neither overflow nor underflow.
@@ -53,8 +55,21 @@ def check_integer(name: str, value: object, *, least: int, most: int | None = No
     return int(value)
 
 
-def check_choice(name: str, value: object, choices: tuple[str, ...]) -> str:
+def check_choice(name: str, value: object, choices: Iterable[str]) -> str:
     """Return ``value``, or raise a ValueError if ``name`` does not accept this word."""
+    choices = tuple(choices)
     if not isinstance(value, str) or value not in choices:
-        raise ValueError(f"{name} must be one of {choices}, got {shown(value)}")
+        raise ValueError(f"{name} must be one of {got(value, choices)}")
     return value
+
+
+def got(value: object, choices: Iterable[str]) -> str:
+    """Return the end of a message about a wrong name: what is accepted, what came, what is near."""
+    choices = tuple(choices)
+    return f"{choices}, got {shown(value)}{meant(value, choices)}"
+
+
+def meant(value: object, choices: Iterable[str]) -> str:
+    """Return a question whether the nearest accepted name was meant, or nothing."""
+    near = get_close_matches(value, choices, 1) if isinstance(value, str) else []
+    return f"; did you mean {near[0]!r}?" if near else ""

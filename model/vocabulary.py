@@ -18,6 +18,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from crazybilliards.model.chain import Chain
+from crazybilliards.model.checks import meant
 
 # name: (meaning, unit). R length, M mass, T = sqrt(M/k) time.
 VOCABULARY = {
@@ -69,6 +70,7 @@ VOCABULARY = {
     "y": ("reduced position y", "R"),
     "particle": ("particle i", "1"),
     "contact": ("contact of particle i with i + 1", "1"),
+    "normalized_contact": ("normalized particle i_n half way between i and i + 1", "1"),
     "mode": ("mode q", "1"),
     "separation": ("separation r of two particles or contacts", "1"),
     "mean_position": ("mean position <x_i>", "R"),
@@ -141,7 +143,10 @@ def result(
     }
     shown = np.arange(chain.size) if particles is None else np.asarray(particles) - 1
     if any("contact" in dims for dims, _ in variables.values()):
-        along["contact"] = ("contact", shown[shown < chain.size - 1] + 1)
+        left = shown[shown < chain.size - 1]
+        along["contact"] = ("contact", left + 1)
+        between = 2 * chain.rank[left] + 1
+        along["normalized_contact"] = ("contact", between / max(chain.size - 1, 1))
     if any("particle" in dims for dims, _ in variables.values()):
         ends = max(chain.size - 1, 1)
         along["particle"] = ("particle", shown + 1)
@@ -155,6 +160,9 @@ def result(
         if str(name).endswith("_error"):
             meaning = f"standard error of {meaning}"
         dataset[name].attrs.update(long_name=meaning, units=unit)
+    if "separation" in dataset.coords and (reach := int(dataset.separation[-1])) < chain.size - 1:
+        cut = f"cut at {reach} of {chain.size - 1}; Covariances(separations=...) sets where"
+        dataset["separation"].attrs["comment"] = cut
     dataset.attrs["source"] = source
     dataset.attrs["status"] = status
     for name, value in {"end_time": end_time, "residual": residual}.items():
@@ -192,8 +200,9 @@ def require(dataset: xr.Dataset, names: Iterable[str]) -> None:
         raise ValueError(f"not a crazybilliards result: {type(dataset).__name__}")
     for name in names:
         if name not in dataset:
-            has = ", ".join(map(str, dataset.data_vars)) or "nothing"
-            raise ValueError(f"the result has no {name!r}; it has {has}")
+            known = list(map(str, dataset.data_vars))
+            has = ", ".join(known) or "nothing"
+            raise ValueError(f"the result has no {name!r}; it has {has}{meant(name, known)}")
 
 
 @cache

@@ -37,12 +37,11 @@
 import numpy as np
 from teaching import BLUE, ORANGE, PINK, check, panels
 
-from crazybilliards.particles.observers import Covariances
 
 # %% [markdown]
 # ## 1. Do neighbours move together?
 #
-# The observer `Covariances` measures $\langle v_iv_{i+r}\rangle$ for all rods $i$ and separations
+# The observer `cb.Covariances` measures $\langle v_iv_{i+r}\rangle$ for all rods $i$ and separations
 # $r$. We need all separations later, so we ask for 99 of them. The observer `impacts` watches every
 # single collision.
 #
@@ -55,7 +54,7 @@ from crazybilliards.particles.observers import Covariances
 import crazybilliards as cb
 
 chains = {e: cb.Chain(size=100, restitution=e) for e in (1, 0.75)}
-observe = ["widths", Covariances(separations=99), "impacts"]
+observe = ["widths", cb.Covariances(separations=99), "impacts"]
 runs = {
     e: cb.simulate(chain, duration=2000, every=0.5, observe=observe, seed=1, progress=False)
     for e, chain in chains.items()
@@ -220,17 +219,16 @@ for e, run in runs.items():
     print(f"e = {e}: <v_i^2> = {own / W**2:.3f} W^2, sum over all j: {total[e] / W**2:.2f} W^2")
 
 # %% tags=["hide-input"]
-ax = panels(width=6.5)
-for (e, run), colour in zip(runs.items(), (PINK, BLUE), strict=True):
-    separations = np.arange(0, 61, 2)
-    pairs_around = [
-        run.velocity_covariance.values[50 - r // 2 - 5 : 50 - r // 2 + 5, r].mean()
-        for r in separations
-    ]
-    ax.plot(separations, np.array(pairs_around) / W**2, "o-", color=colour, label=f"e = {e}")
+mean_over_rods = {
+    f"e = {e}": run[["velocity_covariance"]]
+    .mean("particle", keep_attrs=True)
+    .sel(separation=slice(0, 60, 2))
+    for e, run in runs.items()
+}
+colours = {"e = 1": {"color": PINK}, "e = 0.75": {"color": BLUE}}
+ax = cb.overlay(mean_over_rods, "velocity_covariance", ax=panels(width=6.5), style=colours)
 ax.axhline(0, color="0.6", linewidth=0.8)
-ax.set(xlabel="separation r, pairs around the centre", ylabel=r"$\langle v_iv_{i+r}\rangle/W^2$")
-ax.set_ylim(-0.02, 0.08)
+ax.set_ylim(-0.01 * W**2, 0.05 * W**2)
 _ = ax.legend(frameon=False)
 
 # %% tags=["remove-cell"]
@@ -241,8 +239,8 @@ for e in runs:
 # <details><summary>Explain</summary>
 #
 # The sum is $W^2$ at both restitutions, within its error of 10 to 20 %. Collisions do not change it.
-# They only turn squares of one rod into products with other rods. (The pink point at $r = 0$ lies
-# outside of the picture, at 1.) So the ratio $W^2/\langle v^2\rangle$ says how many rods move
+# They only turn squares of one rod into products with other rods. (The symbols at $r = 0$ lie
+# outside of the picture, that of $e = 1$ at $W^2 = 0.12$.) So the ratio $W^2/\langle v^2\rangle$ says how many rods move
 # together, in the mean over the chain. The colder the chain is, the more of its rods move together.
 #
 # </details>
@@ -268,33 +266,17 @@ for name, theory in (("phase_space", strangers), ("correlated_phase_space", neig
     print(f"{name}: W_v in the centre {100 * (centre / simulated - 1):+.0f} %")
 
 # %% tags=["hide-input"]
-left, right = panels(2)
-run = runs[0.75]
-left.errorbar(
-    run.particle[::3],
-    run.velocity_width[::3] / W,
-    run.velocity_width_error[::3] / W,
-    fmt="o",
-    color="black",
-    markerfacecolor="none",
-    label="simulation",
-)
-left.plot(strangers.particle, strangers.velocity_width / W, color=ORANGE, label="phase_space")
-left.plot(
-    neighbours.particle, neighbours.velocity_width / W, color=BLUE, label="correlated_phase_space"
-)
-left.set(xlabel="rod i", ylabel="$W_v/W$")
+left, middle_panel, right = panels(3, width=13)
+both = {"simulation": runs[0.75], "correlated_phase_space": neighbours}
+blue = {"correlated_phase_space": {"color": BLUE, "linestyle": "--"}}
+cb.overlay({"phase_space": strangers} | both, "velocity_width", ax=left, style=blue)
 left.legend(frameon=False)
-right.plot(
-    run.contact[::3],
-    run.neighbour_covariance[::3] / W**2,
-    "o",
-    color="black",
-    markerfacecolor="none",
-)
-right.plot(neighbours.contact, neighbours.neighbour_covariance / W**2, color=BLUE)
-right.axhline(1 / 100, color=ORANGE)  # the centre of mass
-_ = right.set(xlabel="contact of i with i + 1", ylabel=r"$\langle v_iv_{i+1}\rangle/W^2$", ylim=0)
+cb.overlay(both, "neighbour_covariance", ax=middle_panel, style=blue)
+middle_panel.axhline(W**2 / 100, color=ORANGE)  # the centre of mass
+middle_panel.set_ylim(bottom=0)
+of_one = {label: result.sel(particle=30) for label, result in both.items()}
+cb.overlay(of_one, "velocity_covariance", ax=right, style=blue)
+_ = right.set(title="rods 30 and $30 + r$", ylim=(-0.01 * W**2, 0.08 * W**2))
 
 # %% tags=["remove-cell"]
 of_strangers, of_neighbours = (
@@ -307,8 +289,8 @@ assert abs(of_neighbours) < 0.04
 # <details><summary>Explain</summary>
 #
 # The width is too small, because strangers lose more energy. The left picture shows the widths, the
-# right one the covariance of neighbours. In the first theory this covariance is only that of the
-# centre of mass, $W^2/L$. The second theory was derived while simulations of this chain were looked
+# middle one the covariance of neighbours. In the first theory this covariance is only that of the
+# centre of mass, $W^2/L$. The right picture shows how one rod moves together with those beyond. The second theory was derived while simulations of this chain were looked
 # at, so the agreement alone proves little. The page on pair correlations in the documentation
 # compares it with other chains, and says where it fails.
 #

@@ -15,6 +15,7 @@ from crazybilliards.model import Chain
 from crazybilliards.model.checks import check_integer, check_real
 from crazybilliards.model.grid import deposit
 from crazybilliards.model.process import announced, cores
+from crazybilliards.model.randomness import Randomness, seed_of
 from crazybilliards.particles.laws.avalanche import make_tally
 from crazybilliards.particles.laws.law import Method, make_scratch
 from crazybilliards.particles.noise import make_noise
@@ -44,6 +45,7 @@ def simulate(
     stepper: Stepper = "splitting",
     merging: float | None = None,
     seed: int = 0,
+    rng: Randomness | None = None,
     observe: str | Observer | Sequence[str | Observer] = ("widths", "density"),
     start: xr.Dataset | None = None,
     particles: Sequence[int] | None = None,
@@ -82,6 +84,10 @@ def simulate(
         restitution 0.163, where 0.1 would make W_v 0.2 % larger.
     seed
         Integer >= 0. The same seed gives the same result to the last bit for all ``threads``.
+    rng
+        Instead of ``seed``: a seed, a ``SeedSequence`` or a numpy ``Generator``. A seed is drawn
+        from a Generator and stands in the provenance: a resumed run must have the same bits, and
+        a Generator's state cannot be split among replicas reproducibly.
     observe
         Any of ``"widths"`` (velocity_width, mean_velocity, mean_displacement, displacement_width
         and the autocorrelation_time that tells whether warm-up and duration were long enough),
@@ -92,8 +98,8 @@ def simulate(
         (collision_rate), ``"impacts"`` (contact_force, contact_loss, contact_temperature,
         rebound_temperature), ``"avalanches"`` (avalanche_count),
         ``"triggered-collisions"`` (triggered_count) and ``"snapshots"``
-        (position and velocity as they are). Observers can also be given as objects, of the
-        package, e.g. ``Velocities(bins=801)``, or your own.
+        (position and velocity as they are). Observers can also be given as objects,
+        ``cb.Velocities(bins=801)`` or your own.
     start
         A result with ``position`` and ``velocity`` over (replica, particle), such as
         ``equilibrium_states(chain, replicas)`` or ``given_start(chain, position)``; None: every
@@ -153,6 +159,7 @@ def simulate(
     asked = dict(locals())  # the arguments
     for name in ("threads", "checkpoint", "checkpoint_interval", "progress"):
         del asked[name]  # no number depends on these
+    asked["seed"] = seed_of(seed, asked.pop("rng"))
     checkpoint_interval = check_real("checkpoint_interval", checkpoint_interval)
     threads = check_integer("threads", cores() if threads is None else threads, least=1)
     run = make_run(**asked)

@@ -37,7 +37,8 @@ FLOORS = {
         {"correlations"},
     ),
     "comparison": (
-        {"coverage", "distances", "drawing", "fits", "layout", "theories", "widths"},
+        {"coverage", "distances", "drawing", "fits", "layout", "theories", "widths"}
+        | {"curves", "symbols"},
         {"side_by_side", "sweeps"},
     ),
     "reproduction": (

@@ -23,6 +23,7 @@ from crazybilliards.comparison.side_by_side.parameter_series import (
 )
 from crazybilliards.kinetic import equilibrium, force_balance
 from crazybilliards.model import Chain, chain_of
+from crazybilliards.model.randomness import Randomness, seed_of
 
 LEGEND = {
     "exact": "exact",
@@ -37,6 +38,7 @@ def compare_elastic(
     *,
     duration: float = 100_000.0,
     seed: int = 0,
+    rng: Randomness | None = None,
     threads: int | None = None,
     progress: bool = True,
 ) -> xr.DataTree:
@@ -48,7 +50,7 @@ def compare_elastic(
         The chain, with restitution 1; its amplitude is replaced by each of ``amplitudes``.
     duration
         Simulated time of each of two replicas [T]; 100 000 takes 2 s for 100 rods.
-    seed, threads, progress
+    seed, rng, threads, progress
         As in ``simulate``. Every amplitude has its own random numbers.
 
     Returns
@@ -69,7 +71,7 @@ def compare_elastic(
         varied_chains(chain, "amplitude", amplitudes, duration),
         elastic_theories,
         duration=duration,
-        seed=seed,
+        seed=seed_of(seed, rng),
         threads=threads,
         progress=progress,
     )

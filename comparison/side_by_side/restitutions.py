@@ -15,6 +15,7 @@ from crazybilliards.comparison.side_by_side.parameter_series import (
 from crazybilliards.comparison.stationary_theories import THEORIES
 from crazybilliards.comparison.widths import WidthDeviation, width_deviation
 from crazybilliards.model import Chain
+from crazybilliards.model.randomness import Randomness, seed_of
 
 THEORY = "kinetic_equation"
 # The theories by their names in the results.
@@ -30,6 +31,7 @@ def compare_restitutions(
     *,
     duration: float = 5_000.0,
     seed: int = 0,
+    rng: Randomness | None = None,
     threads: int | None = None,
     progress: bool = True,
     finished: Callable[[str, Mapping[str, xr.Dataset]], None] | None = None,
@@ -44,7 +46,7 @@ def compare_restitutions(
         Different values of e. ``theories`` tells how good the kinetic equations are there.
     duration
         Simulated time of each of two replicas [T].
-    seed, threads, progress
+    seed, rng, threads, progress
         As in ``simulate``. Every restitution has its own random numbers.
     finished
         A function that is called with the name of each chain, such as ``restitution_0.95``, and
@@ -68,7 +70,7 @@ def compare_restitutions(
         varied_chains(chain, "restitution", restitutions, duration),
         _kinetic_equations,
         duration=duration,
-        seed=seed,
+        seed=seed_of(seed, rng),
         threads=threads,
         progress=progress,
         finished=finished,

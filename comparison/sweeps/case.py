@@ -30,6 +30,7 @@ from threadpoolctl import ThreadpoolController
 from crazybilliards.comparison.sweeps.jobs import JOBS
 from crazybilliards.kinetic.accuracy import UnmeasuredWarning
 from crazybilliards.model import Chain, load
+from crazybilliards.model.checks import check_choice, got
 from crazybilliards.model.storage import load_attributes, small_netcdf
 
 
@@ -74,12 +75,10 @@ class Case:
     work: float = field(init=False)
 
     def __post_init__(self) -> None:
-        if self.job not in JOBS:
-            raise ValueError(f"job must be one of {sorted(JOBS)}, got {self.job!r}")
-        job = JOBS[self.job]
+        job = JOBS[check_choice("job", self.job, sorted(JOBS))]
         for name in self.settings:
             if name not in job.settings:
-                raise ValueError(f"{self.job} takes any of {sorted(job.settings)}, got {name!r}")
+                raise ValueError(f"{self.job} takes any of {got(name, sorted(job.settings))}")
         settings = {name: plain(name, value) for name, value in self.settings.items()}
         object.__setattr__(self, "settings", {**_default_settings(self.job), **settings})
         object.__setattr__(self, "work", job.work(self.chain, **self.settings))

@@ -34,7 +34,7 @@ import xarray as xr
 from crazybilliards.comparison.sweeps.case import Case, plain, stored_parameters
 from crazybilliards.comparison.sweeps.jobs import JOBS
 from crazybilliards.model import Chain, load
-from crazybilliards.model.checks import shown
+from crazybilliards.model.checks import check_choice, got, shown
 from crazybilliards.model.vocabulary import ATTRIBUTES
 
 _MOST_CASES = 1_000_000
@@ -58,7 +58,7 @@ class Sweep:
     Raises
     ------
     ValueError
-        For repeated values, for an empty grid, for more than a million cases.
+        For an unknown name, for repeated values, for an empty grid, for more than a million cases.
     """
 
     grid: Mapping[str, Sequence[Any]]
@@ -70,6 +70,9 @@ class Sweep:
     )  # the common parameters of the cases
 
     def __post_init__(self) -> None:
+        settings = list(JOBS[check_choice("job", self.job, sorted(JOBS))].settings)
+        _check_names("grid", self.grid, [*_CHAIN, *settings])
+        _check_names(self.job, self.settings, settings)
         for name, values in self.grid.items():
             if not isinstance(values, list | tuple) or not values:
                 raise ValueError(f"grid: {name} must be a list of values, got {shown(values)}")
@@ -123,8 +126,8 @@ def read_sweep(path: Path) -> Sweep:
     except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
         raise ValueError(f"{path}: not a TOML file: {error}") from error
     for name, table in tables.items():
-        if name not in {"grid", "chain", *JOBS}:
-            raise ValueError(f"{path}: has tables [grid], [chain] and a job's, got {name!r}")
+        if name not in (known := ("grid", "chain", *JOBS)):
+            raise ValueError(f"{path}: the tables can be any of {got(name, known)}")
         if not isinstance(table, dict):
             raise ValueError(f"{path}: {name} must be a table, got {table!r}")
     jobs = sorted(set(tables) & set(JOBS))
@@ -132,6 +135,12 @@ def read_sweep(path: Path) -> Sweep:
         raise ValueError(f"{path}: one job a sweep, got {' and '.join(jobs)}")
     job = jobs[0] if jobs else "simulate"
     return Sweep(tables.get("grid", {}), job, tables.get("chain", {}), tables.get(job, {}))
+
+
+def _check_names(table: str, given: Mapping[str, Any], known: Sequence[str]) -> None:
+    for name in given:
+        if name not in known:
+            raise ValueError(f"[{table}] takes any of {got(name, known)}")
 
 
 def load_sweep(folder: Path) -> xr.Dataset:

@@ -126,9 +126,9 @@ def _draw_units(ax: Axes, room: str) -> None:
     graph = unit_imports(room)
     level = levels(graph)
     floors = max(level.values()) + 1
-    half_wide, half_high, margin = 0.74, 0.19, 0.3
+    widest, half_high, margin = 0.74, 0.19, 0.3
     usable = width - 2 * margin
-    places = {}
+    places, half_wide = {}, {}
     for floor in range(floors):
         names = sorted(name for name in graph if level[name] == floor)
         y = bottom + 0.45 + floor * (height - 1.35) / max(floors - 1, 1)
@@ -136,6 +136,7 @@ def _draw_units(ax: Axes, room: str) -> None:
             # Rows stand against each other, for arrows to pass between boxes.
             shift = 0.22 * (-1) ** floor
             places[name] = left + margin + (number + 0.5) * usable / len(names) + shift, y
+            half_wide[name] = min(widest, 0.46 * usable / len(names))
     for name, targets in _direct(graph).items():
         x, y = places[name]
         for target in sorted(targets):
@@ -143,7 +144,7 @@ def _draw_units(ax: Axes, room: str) -> None:
             ax.annotate("", (end_x, end_y + half_high), (x, y - half_high), arrowprops=ARROW)
     for name, (x, y) in places.items():
         folder = (ROOT / name.replace(".", "/")).is_dir()
-        box = (x - half_wide, y - half_high, 2 * half_wide, 2 * half_high)
+        box = (x - half_wide[name], y - half_high, 2 * half_wide[name], 2 * half_high)
         _box(ax, *box, "white", edge="0.35" if folder else "0.75", pad=0.02)
         text = name.split(".")[1].replace("kinetic_equation", "kinetic eq.").replace("_", " ")
         ax.text(

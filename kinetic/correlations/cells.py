@@ -62,6 +62,32 @@ def at_distance(
     return np.asarray(np.interp(wanted, near_middle, near + slope * (near_apart - distance)))
 
 
+def of_rods(covariance: Array, cells: Cells) -> Array:
+    """Return the covariances of the rods i and i + r, shape (L, L), over i and r from 0.
+
+    Along a line across the diagonal they are linear between those of different cells, and continued
+    to r = 0 as :func:`at_distance` does. If every cell is one rod, they are the given ones from
+    r = 1 on. Where i + r lies beyond the chain there is NaN.
+
+    Parameters
+    ----------
+    covariance
+        Of the fields of cells, symmetric, shape (M, M).
+    """
+    size, symmetric = round(cells.rods.sum()), (covariance + covariance.T) / 2
+    middles = np.arange(1, 2 * size) / 2
+    apart, values = np.zeros((2, cells.rods.size, middles.size))
+    values[0] = at_distance(symmetric, cells.centres, middles, 0.0)
+    for k in range(1, cells.rods.size):
+        places, *profiles = _side_diagonal(symmetric, cells.centres, k)
+        apart[k], values[k] = (np.interp(middles, places, each) for each in profiles)
+    found = np.full((size, size), np.nan)
+    for line in range(middles.size):
+        r = np.arange(line % 2, min(line, 2 * size - 2 - line) + 1, 2)
+        found[(line - r) // 2, r] = np.interp(r, apart[:, line], values[:, line])
+    return found
+
+
 def _side_diagonal(covariance: Array, places: Array, apart: int) -> tuple[Array, Array, Array]:
     """Return middle, distance and covariance of all pairs that many cells apart."""
     first, second = places[:-apart], places[apart:]

@@ -91,8 +91,11 @@ def correlated_phase_space(
         What ``phase_space`` returns, and over ``contact`` (i with i + 1):
         ``neighbour_covariance`` <v_i v_{i+1}>, ``relative_temperature`` <(v_i - v_{i+1})^2>/2,
         ``contact_force``, the mean force between the two, and ``contact_loss``, the power that
-        collisions take; over ``mode`` the ``mode_velocity_variance`` <|v_q|^2> of the waves
-        cos(pi q (i - 1/2)/L), q = 0 being the centre of mass.
+        collisions take; over (particle, separation) the ``velocity_covariance`` <v_i v_{i+r}>, NaN
+        beyond the chain; over ``mode`` the ``mode_velocity_variance`` <|v_q|^2> of the waves
+        cos(pi q (i - 1/2)/L), q = 0 being the centre of mass. Those of the covariance
+        differ from it by up to 12 % in short waves of 30 rods at e = 0.9, and by 15 % in those of
+        middle length of 100 rods at e = 0.3.
         ``attrs``: ``residual``, the largest disagreement of one rod and pairs, relative;
         ``iterations``; ``mesh_error``, the largest relative change of a velocity width in the
         last refinement (NaN if ``cells`` was given); ``cells``; ``model_error`` and

@@ -9,7 +9,13 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from crazybilliards.kinetic.accuracy import expected_correlated_phase_space
-from crazybilliards.kinetic.correlations.cells import Cells, at_distance, make_cells, of_cells
+from crazybilliards.kinetic.correlations.cells import (
+    Cells,
+    at_distance,
+    make_cells,
+    of_cells,
+    of_rods,
+)
 from crazybilliards.kinetic.correlations.closure import Closure, collective_variance
 from crazybilliards.kinetic.correlations.collective_motion import as_seen_in_place
 from crazybilliards.kinetic.correlations.collision_moments import moments_of_collisions
@@ -60,7 +66,10 @@ def assemble(found: Correlated, of_rods: Rods, mesh_error: float) -> xr.Dataset:
             "displacement_width": ("particle", length * np.sqrt(of_rods.position_variance)),
             **_of_pairs(found, cells, of_rods.velocity_variance),
         },
-        coordinates={"mode": np.arange(float(cells.rods.size))},
+        coordinates={
+            "mode": np.arange(float(cells.rods.size)),
+            "separation": np.arange(float(chain.size)),
+        },
         method={"theory": "kinetic equation with pair correlations"},
         residual=found.residual,
         mesh_error=mesh_error,
@@ -76,7 +85,7 @@ def _collective(found: Correlated) -> Array:
 
 def _of_pairs(
     found: Correlated, cells: Cells, velocity_variance: Array
-) -> dict[str, tuple[str, Array]]:
+) -> dict[str, tuple[str | tuple[str, ...], Array]]:
     chain, (length, velocity) = found.state.chain, free_units(found.state.chain)
     around, contacts = found.background, np.arange(1.0, chain.size)
     lost = dissipation(around, moments_of_collisions(chain.restitution))
@@ -93,12 +102,30 @@ def _of_pairs(
         "contact_force": chain.mass * velocity**2 / length * pressure,
         "contact_loss": chain.mass / 2 * velocity**3 / length * loss,
     }
-    return {name: ("contact", values) for name, values in along.items()} | {
-        "mode_velocity_variance": (
-            "mode",
-            velocity**2 * _mode_variances(found, cells, velocity_variance),
-        )
+    modes = _mode_variances(found, cells, velocity_variance)
+    covariance = _velocity_covariance(found, cells, velocity_variance, shared)
+    return {
+        **{name: ("contact", values) for name, values in along.items()},
+        "mode_velocity_variance": ("mode", velocity**2 * modes),
+        "velocity_covariance": (("particle", "separation"), velocity**2 * covariance),
     }
+
+
+def _velocity_covariance(
+    found: Correlated, cells: Cells, velocity_variance: Array, shared: Array
+) -> Array:
+    """Return <v_i v_{i+r}> over i and r, in free units.
+
+    The covariance of all rods is a local part, that of independent rods, plus h. Two different rods
+    have h alone. A rod with itself has W_v^2, in which the local part is, and neighbours have
+    ``shared``: half of them approach each other, without what their last collision left in h. The
+    sums over waves, sum_ij c_q(i) c_q(j) <v_i v_j>, are therefore close to ``_mode_variances`` for
+    long waves, and differ from it in short ones, where these two separations count.
+    """
+    covariance = of_rods(found.pairs.velocity, cells)
+    covariance[:, 0] = velocity_variance
+    covariance[:-1, 1] = shared
+    return covariance
 
 
 def _mode_variances(found: Correlated, cells: Cells, velocity_variance: Array) -> Array:

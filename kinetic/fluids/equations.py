@@ -46,7 +46,7 @@ from crazybilliards.kinetic.fluids.eulerian_frame import MOST_CELLS, solve_on_po
 from crazybilliards.kinetic.fluids.flow_fields import FlowFields
 from crazybilliards.kinetic.fluids.label_frame import solve_on_labels
 from crazybilliards.kinetic.requirements import require_chain
-from crazybilliards.kinetic.starts import read_start
+from crazybilliards.kinetic.starts import check_start, read_start
 from crazybilliards.kinetic.statics.profiles import (
     Prescribed,
     Profile,
@@ -71,8 +71,8 @@ _BYTES_PER_NODE = 100  # and output: the fields while they are computed, and in 
 
 def hydrodynamics(
     chain: Chain,
-    start: xr.Dataset,
-    duration: float,
+    start: xr.Dataset | None = None,
+    duration: float | None = None,
     *,
     displacement: Prescribed | None = None,
     velocity_variance: Evolving | float | Prescribed | None = None,
@@ -127,8 +127,8 @@ def hydrodynamics(
     Raises
     ------
     ValueError
-        For a wrong argument or start, before any work; if the equations could not be solved,
-        with the reason.
+        For a missing or wrong argument or start, before any work; if the equations could not be
+        solved, with the reason.
 
     Examples
     --------
@@ -138,6 +138,7 @@ def hydrodynamics(
     >>> flow.centre.values[[0, -1]].round(3) + 0.0
     array([3., 0.])
     """
+    start = check_start(start)
     check_choice("frame", frame, get_args(Frame))
     closure = _read_closure(chain, displacement, velocity_variance)
     chain = closure.chain

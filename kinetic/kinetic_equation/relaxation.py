@@ -50,6 +50,7 @@ from crazybilliards.kinetic.kinetic_equation.weak_form import (
     mass,
 )
 from crazybilliards.kinetic.requirements import require_chain
+from crazybilliards.kinetic.starts import check_start
 from crazybilliards.kinetic.times import output_times
 from crazybilliards.model import Chain
 from crazybilliards.model.checks import check_integer, check_real
@@ -75,8 +76,8 @@ _ENLARGED = 1.4
 @one_thread
 def relax_phase_space(
     chain: Chain,
-    start: xr.Dataset,
-    duration: float,
+    start: xr.Dataset | None = None,
+    duration: float | None = None,
     *,
     every: float | None = None,
     time_step: float | None = None,
@@ -131,8 +132,8 @@ def relax_phase_space(
     Raises
     ------
     ValueError
-        For a wrong argument or start, before any work; for e <= 1, if rods that cool become more
-        concentrated than the mesh resolves, with the time of the last output before.
+        For a missing or wrong argument or start, before any work; for e <= 1, if rods that cool
+        become more concentrated than the mesh resolves, with the time of the last output before.
 
     Examples
     --------
@@ -142,6 +143,7 @@ def relax_phase_space(
     >>> flow.centre.values[[0, -1]].round(2) + 0.0
     array([ 1.  , -0.09])
     """
+    start = check_start(start, ", and phase_space of another one with f itself")
     times = output_times(duration, every, _OUTPUTS)
     count, interval = times.size - 1, times[1]
     cells = check_integer("cells", cells, least=4, most=_LARGEST_MESH)

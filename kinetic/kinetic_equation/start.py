@@ -13,7 +13,6 @@ from scipy.interpolate import PchipInterpolator, RectBivariateSpline
 from crazybilliards.kinetic.kinetic_equation.weak_form import Units
 from crazybilliards.kinetic.starts import read_start, require_rods
 from crazybilliards.model import Chain
-from crazybilliards.model.vocabulary import require
 
 Array = NDArray[np.float64]
 
@@ -32,7 +31,6 @@ class PhaseSpaceStart:
 def read_phase_space(chain: Chain, units: Units, start: xr.Dataset) -> PhaseSpaceStart:
     """Check a start, f(y, v) itself or a density over x, and make a function of it."""
     length, velocity = units
-    require(start, ())  # it is a result at all
     if "phase_space_density" not in start:
         return _maxwellian(chain, units, start)
     density = start.phase_space_density

@@ -25,7 +25,7 @@ Array = NDArray[np.float64]
 
 def in_vocabulary(
     state: State,
-    variables: Mapping[str, tuple[str, Array]],
+    variables: Mapping[str, tuple[str | tuple[str, ...], Array]],
     coordinates: dict[str, Array],
     *,
     method: Mapping[str, Any],

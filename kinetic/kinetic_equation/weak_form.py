@@ -251,8 +251,7 @@ class Jacobian:
     """The linear equations of Newton's steps on one mesh.
 
     The sparse part of the Jacobian (with frozen integrals) is factorised. It preconditions GMRES
-    for the whole Jacobian, which the integrals make dense. The factors of one step are good for
-    the next ones as well.
+    for the whole Jacobian, which the integrals make dense, in the next steps as well.
     """
 
     def __init__(self) -> None:
@@ -269,10 +268,9 @@ class Jacobian:
     ) -> Array:
         """Solve [matrix + variation, columns; rows, 0] step = right.
 
-        Unknowns besides f have ``columns``, and the same number of conditions on f have ``rows``.
-
-        Raises NotSolvedError unless GMRES converges: with a wrong step Newton's method may come to
-        rest where there is no solution.
+        Unknowns besides f have ``columns``, as many conditions on f have ``rows``. Raises
+        NotSolvedError unless GMRES converges: with a wrong step Newton's method may come to rest
+        where there is no solution.
         """
         borders = csc_matrix(columns), csc_matrix(np.array(rows))
         corner = csc_matrix((len(rows), len(rows)))

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Collection
 
-from crazybilliards.model.checks import shown
+from crazybilliards.model.checks import got, shown
 from crazybilliards.particles.observers.avalanches import Avalanches, TriggeredCollisions
 from crazybilliards.particles.observers.base import (
     Averaged,
@@ -46,13 +46,22 @@ OBSERVERS: dict[str, type[Observer]] = {
 
 __all__ = [
     "OBSERVERS",
+    "Avalanches",
     "Averaged",
+    "Collisions",
     "Covariances",
+    "Density",
+    "Energy",
+    "Impacts",
     "Integers",
+    "Modes",
     "Observer",
+    "Raw",
     "Snapshots",
+    "TriggeredCollisions",
     "Variables",
     "Velocities",
+    "Widths",
     "find_observers",
     "restore",
 ]
@@ -66,14 +75,15 @@ def find_observers(observe: str | Observer | Collection[str | Observer]) -> tupl
     ValueError
         If there are none, or one of them is not known.
     """
-    names = f"any of {sorted(OBSERVERS)}, or observers"
     if isinstance(observe, str | Observer):
         observe = [observe]
     elif not isinstance(observe, Collection):
-        raise ValueError(f"observe takes a list of {names}, got {shown(observe)}")
+        raise ValueError(f"observe takes a list of names or observers, got {shown(observe)}")
     for each in observe:
-        if not isinstance(each, Observer) and (not isinstance(each, str) or each not in OBSERVERS):
-            raise ValueError(f"observe takes {names}, got {shown(each)}")
+        if not isinstance(each, str | Observer):
+            raise ValueError(f"observe takes names and observers, got {shown(each)}")
+        if isinstance(each, str) and each not in OBSERVERS:
+            raise ValueError(f"observe takes any of {got(each, sorted(OBSERVERS))}")
     if not observe:
         raise ValueError(f"observe must name at least one of {sorted(OBSERVERS)}")
     return tuple(

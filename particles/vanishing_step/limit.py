@@ -19,6 +19,7 @@ from crazybilliards.model import Chain
 from crazybilliards.model.checks import check_integer, check_real
 from crazybilliards.model.memory import require_memory
 from crazybilliards.model.process import announced, cores, interrupts_noted
+from crazybilliards.model.randomness import Randomness, seed_of
 from crazybilliards.model.vocabulary import result
 from crazybilliards.particles.observers import Observer, find_observers
 from crazybilliards.particles.run import Run
@@ -62,6 +63,7 @@ def simulate_limit(
     warmup: float | None = None,
     merging: float | None = None,
     seed: int = 0,
+    rng: Randomness | None = None,
     observe: str | Observer | Sequence[str | Observer] = ("widths", "density"),
     particles: Sequence[int] | None = None,
     replicas: int = 1,
@@ -86,12 +88,11 @@ def simulate_limit(
         a little faster than 1/accuracy^2.
     warmup
         Time before measuring [T], at every level; None: 12 relaxation times.
-    merging, seed, particles
+    merging, seed, rng, particles
         As in :func:`simulate`.
     observe
-        As in :func:`simulate`; must include ``"widths"``. ``"snapshots"`` are refused because
-        they are not averages, collisions and avalanches because they have no limit for small e,
-        and impacts because single collisions are not recorded here.
+        As in :func:`simulate`, with ``"widths"``. Refused are ``"snapshots"``, which are no
+        averages, collisions and avalanches, which have no limit, and impacts, which it cannot see.
     replicas
         Independent trajectories at every level, each with a warm-up. ``threads`` of them (None:
         one per core) run at a time.
@@ -133,6 +134,7 @@ def simulate_limit(
     """
     threads = check_integer("threads", cores() if threads is None else threads, least=1)
     checkpoint_interval = check_real("checkpoint_interval", checkpoint_interval)
+    seed = seed_of(seed, rng)
     steps, runs = make_runs(
         chain,
         accuracy=accuracy,

@@ -4,6 +4,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 import xarray as xr
+from drawn_pictures import WAVES, X, drawn, simulated
 
 from crazybilliards.comparison import compare_elastic, overlay, smooth
 from crazybilliards.comparison.drawing import draw_rods, mark_clipped
@@ -51,38 +52,6 @@ def test_overlay_draws_the_rods_at_both_ends_of_a_long_chain():
     assert len(symbols.get_xdata()) == 60
     assert symbols.get_xdata()[[0, -1]].tolist() == [-1, 1]
     assert symbols.get_ydata()[-1] == run.velocity_width[-1]
-
-
-def simulated(x, density, error=1e-4):
-    """Return a density over x as a simulation would report it."""
-    units = {"units": "1/R", "long_name": "density"}
-    return xr.Dataset(
-        {
-            "density": ("x", density, units),
-            "density_error": ("x", np.full(x.size, error), units),
-        },
-        coords={"x": ("x", x, {"units": "R", "long_name": "position x"})},
-        attrs={"source": "simulation"},
-    )
-
-
-def drawn(ax):
-    """Return the symbols' places, the lined nodes' places, and how far the picture is off."""
-    symbols = [each.lines[0].get_xydata() for each in ax.containers]
-    lines = [line.get_xydata() for line in ax.lines if line.get_linestyle() != "None"]
-    lines = [line[np.isfinite(line[:, 1])] for line in lines]
-    empty = np.empty((0, 2))
-    points = np.concatenate([empty, *symbols, *lines])
-    points = points[points[:, 0].argsort()]
-    return (
-        np.concatenate([empty, *symbols])[:, 0],
-        np.concatenate([empty, *lines])[:, 0],
-        lambda x: np.interp(x, *points.T),
-    )
-
-
-X = np.arange(-1400, 1401) * 0.1
-WAVES = 0.4 + 0.03 * np.cos(2 * np.pi * X / 2.5)
 
 
 def test_overlay_draws_every_node_of_a_density_with_waves_between_the_symbols():
@@ -167,7 +136,7 @@ def test_two_simulations_differ_and_keywords_are_passed_through():
     assert (second.get_marker(), second.get_color(), second.get_alpha()) == ("*", "red", 0.5)
     line = overlay({"a": equilibrium(chain)}, style={"a": {"linewidth": 5}}).lines[0]
     assert line.get_linewidth() == 5
-    with pytest.raises(ValueError, match="style: no result is called 'seed 3'"):
+    with pytest.raises(ValueError, match=r"style: .*, got 'seed 3'; did you mean 'seed [12]'"):
         overlay(runs, "velocity_width", style={"seed 3": {}})
 
 

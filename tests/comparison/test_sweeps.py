@@ -27,11 +27,17 @@ from crazybilliards.model.locks import locked
         ({"grid": {"size": 3}}, "size must be a list"),
         ({"grid": {"gap": [3, 3.0]}}, "twice"),
         ({"grid": {"damping": [1.0, 2.0]}}, "given twice"),
-        ({"grid": {"length": [1, 2]}}, "simulate takes any of"),
+        (
+            {"grid": {"length": [1, 2]}},
+            r"^\[grid\] takes .*'gap', .*'duration', .*got 'length'",
+        ),
         ({"grid": {"size": [3, -1]}}, "size must be an integer"),
         ({"grid": {"seed": range(2000), "gap": range(2000)}}, "must be a list"),
         ({"grid": {"seed": [*range(2000)], "gap": [*range(2000)]}}, "4000000 cases"),
-        ({"chain": {"colour": 1}}, "no parameter 'colour'"),
+        ({"chain": {"colour": 1}}, "Chain takes any of .*'size', .* got 'colour'"),
+        ({"chain": {"restituton": 1}}, "got 'restituton'; did you mean 'restitution'"),
+        ({"grid": {"restituton": [1]}}, "'size', .* got 'restituton'; did you mean 'restitution'"),
+        ({"settings": {"durations": 1}}, "simulate. takes any of .* did you mean 'duration'"),
     ],
 )
 def test_wrong_grids(changes, message):

@@ -12,6 +12,7 @@ from crazybilliards.kinetic import (
     displaced,
     force_balance,
     hydrodynamics,
+    relax_phase_space,
     two_clumps,
 )
 from crazybilliards.kinetic.exact.breathing import breathing_cloud
@@ -80,6 +81,18 @@ def test_the_number_of_cells_that_is_called_enough_is():
     rough = hydrodynamics(chain, start, cells=cells, **arguments)
     fine = hydrodynamics(chain, start, **arguments)
     np.testing.assert_allclose(rough.centre, fine.centre, atol=0.01 * chain.thermal_length)
+
+
+@pytest.mark.parametrize("theory", [hydrodynamics, relax_phase_space])
+@pytest.mark.parametrize("call", [(), (100.0,), (None, 100.0)])
+def test_a_missing_start_is_explained(theory, call):
+    """A duration in its place is the usual mistake."""
+    with pytest.raises(ValueError, match="start must be a result with density over x") as caught:
+        theory(Chain(size=5), *call, **QUIET)
+    for name in ("displaced(", "compressed(", "two_clumps(", "force_balance"):
+        assert name in str(caught.value)
+    with pytest.raises(ValueError, match="duration must be a finite positive number"):
+        theory(Chain(size=5), displaced(Chain(size=5), 1.0), **QUIET)
 
 
 def test_wrong_starts_are_refused():

@@ -1,6 +1,7 @@
 """What is measured, against what is known exactly at e = 1."""
 
 import json
+import pydoc
 
 import numpy as np
 import pytest
@@ -9,12 +10,22 @@ from described_runs import a_run
 from scipy.integrate import quad
 from scipy.stats import kurtosis, norm, skew
 
+import crazybilliards as cb
+from crazybilliards import particles
 from crazybilliards.model import Chain, load, save
 from crazybilliards.model.vocabulary import VOCABULARY
 from crazybilliards.particles import simulate
 from crazybilliards.particles.observers import OBSERVERS, Observer, Velocities
 from crazybilliards.particles.observers.base import Snapshots
 from crazybilliards.particles.observers.energy import Energy
+
+
+def test_every_observer_is_a_public_name():
+    for name, observer in OBSERVERS.items():
+        public = getattr(cb, observer.__name__)
+        assert public is observer
+        assert name in pydoc.render_doc(cb.simulate, renderer=pydoc.plaintext)
+    assert {observer.__name__ for observer in OBSERVERS.values()} < set(particles.__all__)
 
 
 @pytest.mark.compiled
@@ -151,7 +162,7 @@ def test_an_observer_gives_what_it_declares(observer):
     result = simulate(Chain(size=4), duration=300, observe=observer(), progress=False)
     variables = {str(name).removesuffix("_error") for name in result.data_vars}
     assert variables == set(observer.gives)
-    common = {"particle", "normalized_particle", "mean_position", "contact"}
+    common = {"particle", "normalized_particle", "mean_position", "contact", "normalized_contact"}
     assert {str(name) for name in result.coords} - common == set(observer.along)
     assert set(observer.gives) <= VOCABULARY.keys()
 

@@ -1,0 +1,120 @@
+"""What is drawn of a result: one quantity over one abscissa, and the names of both axes."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from crazybilliards.model.vocabulary import VOCABULARY, chain_of, require
+
+# Dimension: abscissa. A quantity over the particle has the one that is asked for.
+_ABSCISSAE = {
+    "x": "x",
+    "time": "time",
+    "contact": "normalized_contact",
+    "mode": "mode",
+    "separation": "separation",
+    "velocity": "velocity",
+    "velocity_bin": "velocity_bin",
+}
+_OVER = ", ".join([*_ABSCISSAE, "or particle"])
+# Variables by their symbols; others by their long names.
+_LABELS = {
+    "density": r"density $\rho$",
+    "label": "rods to the left $N$",
+    "displacement": r"displacement $\langle\Delta x\rangle$",
+    "mean_displacement": r"displacement $\langle\Delta x\rangle$",
+    "displacement_width": "displacement width $W_x$",
+    "velocity_width": "velocity width $W_v$",
+    "velocity_variance": "velocity variance $W^2$",
+    "flow_velocity": "flow velocity $V$",
+    "kinetic_energy": "kinetic energy $E$",
+    "velocity_density": "probability density of $v$",
+    "velocity_covariance": r"covariance $\langle v_iv_{i+r}\rangle$",
+    "neighbour_covariance": r"covariance $\langle v_iv_{i+1}\rangle$",
+    "relative_temperature": r"relative temperature $\langle(v_i-v_{i+1})^2\rangle/2$",
+    "mode_velocity_variance": r"mode variance $\langle|v_q|^2\rangle$",
+    "x": "position $x$",
+    "time": "time $t$",
+    "velocity": "velocity $v$",
+    "velocity_bin": "velocity $v$",
+    "mode": "mode $q$",
+    "separation": "separation $r$",
+    "mean_position": r"mean position $\langle x_i\rangle$",
+    "normalized_particle": "normalized particle $i_n$",
+    "normalized_contact": "normalized particle $i_n$",
+}
+
+
+class Curve(NamedTuple):
+    """Values over an abscissa, all of one dimension."""
+
+    abscissa: xr.DataArray
+    values: xr.DataArray
+    error: xr.DataArray | None  # one standard error
+
+
+def find_curve(label: str, dataset: xr.Dataset, quantity: str, along: str) -> Curve:
+    """Return a quantity of a result as a curve; ``along`` is the abscissa of the particles.
+
+    Raises
+    ------
+    ValueError
+        If the result, which the message calls ``label``, lacks the quantity, or has it over
+        another dimension or several.
+    """
+    if quantity == "velocity_density":
+        dataset = _of_any_rod(dataset)
+    require(dataset, (quantity,))
+    values = dataset[quantity]
+    abscissae = _ABSCISSAE | {"particle": along}
+    if len(values.dims) != 1 or values.dims[0] not in abscissae:
+        message = f"{label}: {quantity} is over ({', '.join(map(str, values.dims))})"
+        for name in ("time", "particle"):
+            rest = set(values.dims) - {name}
+            if len(rest) == 1 < len(values.dims) and rest <= abscissae.keys():
+                raise ValueError(f"{message}; choose a {name}: .isel({name}=...)")
+        raise ValueError(f"{message}; overlay draws what is over {_OVER}")
+    require(dataset, (abscissae[str(values.dims[0])],))
+    if values.dims == ("velocity_bin",):  # the outer bins are empty
+        visited = np.flatnonzero(values > 0)
+        if visited.size:
+            dataset = dataset.isel(velocity_bin=slice(visited[0], visited[-1] + 1))
+    abscissa = dataset[abscissae[str(values.dims[0])]]
+    return Curve(abscissa, dataset[quantity], dataset.get(f"{quantity}_error"))
+
+
+def is_of_one_rod(dataset: xr.Dataset, quantity: str) -> bool:
+    """Return whether one particle was chosen of a quantity that all particles have."""
+    particle = dataset[quantity].coords.get("particle") if quantity in dataset else None
+    return particle is not None and particle.ndim == 0
+
+
+def axis_label(variable: xr.DataArray) -> str:
+    """Return the name and the unit of a variable."""
+    unit = variable.attrs["units"]
+    name = _LABELS.get(str(variable.name), variable.attrs["long_name"])
+    return name + (f" [{unit}]" if unit != "1" else "")
+
+
+def _of_any_rod(dataset: xr.Dataset) -> xr.Dataset:
+    """Return the result with the velocity density of a rod that is picked at random.
+
+    A simulation that has all rods has their mean, a kinetic equation int f dy/L.
+    """
+    meaning, unit = VOCABULARY["velocity_density"]
+    described = {"long_name": meaning, "units": unit}
+    if "velocity_density" in dataset:
+        density = dataset.velocity_density
+        if density.sizes.get("particle", 0) != chain_of(dataset).size:
+            return dataset
+        mean = density.mean("particle").assign_attrs(described)
+        names = [name for name in dataset.data_vars if str(name).startswith("velocity_density")]
+        return dataset.drop_vars(names).assign(velocity_density=mean)
+    if "phase_space_density" not in dataset:
+        return dataset
+    marginal = dataset.phase_space_density.integrate("y")
+    density = marginal / marginal.integrate("velocity")
+    return dataset.assign(velocity_density=density.assign_attrs(described))
