@@ -140,6 +140,7 @@ def theories(chain: Chain) -> xr.Dataset:
 
     Examples
     --------
+    >>> from crazybilliards import Chain
     >>> table = theories(Chain(size=100, restitution=0.5))
     >>> table.attrs["best"]
     'correlated_phase_space'

@@ -30,15 +30,16 @@ FLOORS = {
         {"vanishing_step"},
     ),
     "kinetic": (
-        {"accuracy", "requirements", "times"},
+        {"measured_errors", "requirements", "times"},
+        {"accuracy"},
         {"statics", "exact"},
         {"starts"},
         {"fluids", "kinetic_equation"},
         {"correlations"},
     ),
     "comparison": (
-        {"coverage", "distances", "drawing", "fits", "layout", "theories", "widths"}
-        | {"curves", "symbols"},
+        {"coverage", "distances", "drawing", "fits", "layout", "widths"}
+        | {"curves", "stationary_theories", "symbols"},
         {"side_by_side", "sweeps"},
     ),
     "reproduction": (

@@ -58,8 +58,7 @@ Array = NDArray[np.float64]
 
 _MOST_STEPS = 12
 _GMRES = 40  # Krylov vectors; 5 to 15 are needed
-_SOLVED = 2e-2  # relative residual of a Newton step: closer ones cost more than they save
-_KEPT = 3  # Newton steps with the same factors, as long as GMRES converges in one cycle
+_SOLVED, _KEPT = 2e-2, 3  # relative residual of a Newton step, and steps with the same factors
 
 
 class Units(NamedTuple):
