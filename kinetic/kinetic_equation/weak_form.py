@@ -267,9 +267,8 @@ class Jacobian:
     ) -> Array:
         """Solve [matrix + variation, columns; rows, 0] step = right.
 
-        Unknowns besides f have ``columns``, as many conditions on f have ``rows``. Raises
-        NotSolvedError unless GMRES converges: with a wrong step Newton's method may come to rest
-        where there is no solution.
+        Unknowns besides f have ``columns``, as many conditions on f have ``rows``. If GMRES fails,
+        it raises NotSolvedError: with a wrong step Newton's method may end where no solution is.
         """
         borders = csc_matrix(columns), csc_matrix(np.array(rows))
         corner = csc_matrix((len(rows), len(rows)))
