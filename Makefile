@@ -137,7 +137,7 @@ build/types: Makefile
 
 # uv installs in seconds what pip installs in a minute, and compiles no module that nobody imports.
 # Python 3.11 comes with a setuptools of 2022, which has a known vulnerability.
-INSTALL := $(BIN)/uv pip install --quiet --python $(BIN)/python --upgrade-package pip \
+INSTALL := $(BIN)/uv --system-certs pip install --quiet --python $(BIN)/python --upgrade-package pip \
   --upgrade-package setuptools pip setuptools --editable
 
 $(BIN)/uv:
@@ -157,7 +157,7 @@ $(OLDEST)/installed: pyproject.toml
 	@$(CHECK_PYTHON)
 	$(PYTHON) -m venv $(OLDEST)
 	$(OLDEST)/bin/python -m pip install --quiet --upgrade pip uv
-	$(OLDEST)/bin/uv pip install --quiet --python $(OLDEST)/bin/python --resolution lowest-direct \
+	$(OLDEST)/bin/uv --system-certs pip install --quiet --python $(OLDEST)/bin/python --resolution lowest-direct \
 	  --editable ".[test]"
 	touch $@
 
