@@ -82,6 +82,13 @@ def test_it_just_works(size, gap, amplitude, spring):
     assert abs(theory.mean_displacement.mean().item()) < 1e-9 * size
 
 
+def test_a_lattice_that_ends_where_the_mesh_changes_is_solved():
+    """Ten thermal lengths: the plateau begins where the fine part of the mesh ends, to rounding."""
+    for amplitude in (1.0, 3.0, 10.0, 30.0):
+        chain = Chain(size=100, amplitude=amplitude)
+        assert force_balance(chain.replace(gap=0.1 * chain.thermal_length)).residual < 1e-6
+
+
 def test_a_wide_gap_has_a_plateau_of_one_rod_per_lattice_cell():
     chain = Chain(size=1000, gap=1.0, amplitude=0.3)
     theory = force_balance(chain)
