@@ -245,7 +245,7 @@ def _print_widths(tree: xr.DataTree) -> None:
         for key, found in by_theory.items():
             stated = tree[name][key].attrs["model_error"]
             values = (f"{100 * value:.2f}" for value in (found[0], stated, *found[1:]))
-            table.add_row(shown, LEGEND[key].title, *(each.replace("nan", "-") for each in values))
+            table.add_row(shown, LEGEND[key].name, *(each.replace("nan", "-") for each in values))
         if not by_theory:
             table.add_row(shown, *["-"] * 7)
         here = {key: found._asdict() for key, found in by_theory.items()}
