@@ -17,7 +17,7 @@ ROOMS  := model particles kinetic comparison reproduction apps
 # imports, for 3 s more; tests, notebooks and pages start a few hundred processes.
 export PYTHONDONTWRITEBYTECODE :=
 
-.PHONY: help run test validate test-lowest torture coverage check audit reproduce lessons notebooks render browser docs \
+.PHONY: help run kernels test validate test-lowest torture coverage check audit reproduce lessons notebooks render browser docs \
   linkcheck benchmark clean
 .DEFAULT_GOAL := help
 
@@ -32,6 +32,7 @@ help:
 	@echo "make audit      look up known vulnerabilities of every package used (needs the network)"
 	@echo "make reproduce  draw every figure and check every claim of the paper (3 min; QUALITY=full 12 min;"
 	@echo "                WHICH=analytics: only the paper's analytics section, 1 min)"
+	@echo "make kernels    compile the kernels, which the first simulation does otherwise (30 s)"
 	@echo "make lessons    write the lessons without outputs, for learners, into $(LESSONS)/"
 	@echo "make notebooks  execute the notebooks, into build/notebooks/"
 	@echo "make render     write the notebooks from their scripts, with outputs (LESSON=03: only that one)"
@@ -43,13 +44,20 @@ help:
 run: $(VENV)/installed
 	$(BIN)/crazybilliards compare --output $(OUTPUT)
 
+# Done before two processes start, which would both compile them.
+kernels: $(VENV)/installed-test
+	$(BIN)/python -c "from crazybilliards.particles.simulation import compile_kernels; compile_kernels()"
+
 # Two processes use two cores. Threads of the linear algebra would only make them wait. All tests of
-# a file run in one of them, and compute only once what they share.
+# a file run in one of them, and compute only once what they share. The files come in their order:
+# the last ones take seconds, so that both processes end together.
+IN_TWO := OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder
+
 test: $(VENV)/installed-test
-	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile -m "not validate"
+	$(IN_TWO) -m "not validate"
 
 validate: $(VENV)/installed-test
-	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile -m validate
+	$(IN_TWO) -m validate
 
 # numba's cache belongs to one version, so each environment needs a cache of its own.
 test-lowest: $(OLDEST)/installed
