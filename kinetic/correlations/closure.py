@@ -16,16 +16,13 @@ of f that is P = n_f T_f, without a closure.
 (1 + e) w/2 and takes (1 - e^2) w^2/2 from the sum of v^2. So with the means over the collisions of
 a contact
 
-    Lambda = (1 - e) P <w^2>/<w> = (4/sqrt(pi)) (1 - e) P F sqrt(Theta),
+    Lambda = (1 - e) P <w^2>/<w> = (4/sqrt(pi)) (1 - e) P K F sqrt(Theta),
 
-the density being gone. <w^2>/<w> is that of Gaussian velocities with the relative temperature
-before a collision,
+the density being gone. Theta = T - h_c is the relative temperature of all neighbours, h_c being
+their covariance. K(e) of :mod:`.contact_speeds` says how much slower they are when they meet.
 
-    Theta = T - h_c,
-
-where h_c is the covariance of neighbours, continued to their contact from pairs of rods further
-apart. That leaves out what their own last collision left: it is gone when they meet again. In
-the limit e -> 1 this is exact, as points meet only once.
+h_c is the mean of two values: with what the last collision of the two left, and without it, which
+is continued from pairs of rods further apart. Half of all neighbours leave one another.
 
 **Clustering.** P goes like Theta/g and Lambda like Theta^(3/2)/g, with g and Theta of the
 neighbourhood, which fluctuate. To second order in the relative deviations their ratio has the mean
@@ -49,6 +46,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
 from crazybilliards.kinetic.correlations.cells import Cells, at_distance
+from crazybilliards.kinetic.correlations.contact_speeds import contact_speed
 from crazybilliards.kinetic.correlations.one_rod import OneRod
 from crazybilliards.kinetic.correlations.pair_covariance import Background, PairCovariance
 from crazybilliards.kinetic.kinetic_equation.weak_form import Factors
@@ -104,7 +102,10 @@ def background(rod: OneRod, closure: Closure, restitution: float) -> Background:
         gap=rod.gap,
         temperature=temperature,
         pressure=rod.force,
-        strength=2 / (1 + restitution) * np.exp(closure.log_clustering),
+        strength=2
+        / (1 + restitution)
+        * contact_speed(restitution)
+        * np.exp(closure.log_clustering),
         shared=variance - temperature,
     )
 
@@ -118,7 +119,11 @@ def implied(
     size: int, cells: Cells, rod: OneRod, around: Background, pairs: PairCovariance
 ) -> Closure:
     """Return the unknowns that follow from the distributions."""
-    shared = at_distance(pairs.velocity, cells.centres, cells.contacts, _NEIGHBOUR, _BEYOND)
+    leaving, approaching = (
+        at_distance(pairs.velocity, cells.centres, cells.contacts, _NEIGHBOUR, nearest)
+        for nearest in (1, _BEYOND)
+    )
+    shared = (leaving + approaching) / 2
     mixed, temperature = (
         at_distance(each, cells.contacts, cells.contacts, _NEIGHBOUR)
         for each in (pairs.gap_temperature, pairs.temperature)

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from crazybilliards.kinetic.accuracy import expected_correlated_phase_space
 from crazybilliards.kinetic.correlations.cells import (
     Cells,
-    at_distance,
     make_cells,
     of_cells,
     of_rods,
@@ -89,11 +88,9 @@ def _of_pairs(
     chain, (length, velocity) = found.state.chain, free_units(found.state.chain)
     around, contacts = found.background, np.arange(1.0, chain.size)
     lost = dissipation(around, moments_of_collisions(chain.restitution))
-    # Half of the neighbours leave one another, and have their last collision's share as well.
-    near = at_distance(found.pairs.velocity, cells.centres, cells.contacts, 1.0)
     shared, pressure, loss = (
         np.interp(contacts, cells.contacts, values)
-        for values in ((around.shared + near) / 2, around.pressure, lost)
+        for values in (around.shared, around.pressure, lost)
     )
     own = (velocity_variance[1:] + velocity_variance[:-1]) / 2
     along = {
@@ -118,7 +115,7 @@ def _velocity_covariance(
 
     The covariance of all rods is a local part, that of independent rods, plus h. Two different rods
     have h alone. A rod with itself has W_v^2, in which the local part is, and neighbours have
-    ``shared``: half of them approach each other, without what their last collision left in h. The
+    ``shared``, which holds half of what their last collision left in h. The
     sums over waves, sum_ij c_q(i) c_q(j) <v_i v_j>, are therefore close to ``_mode_variances`` for
     long waves, and differ from it in short ones, where these two separations count.
     """

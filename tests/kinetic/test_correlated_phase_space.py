@@ -110,12 +110,12 @@ def test_simulation(restitution, theory):
 @pytest.mark.compiled
 @pytest.mark.validate
 def test_correlations_warm_a_long_chain():
-    """What the theory is for: strangers make 100 rods at e = 0.75 nine per cent too cold."""
+    """What the theory is for: strangers make 100 rods at e = 0.75 nine per cent too slow."""
     chain = Chain(size=100, restitution=0.75)
     middle = slice(45, 55)
     strangers = phase_space(chain, cells=22).velocity_width[middle].mean()
     found = correlated_phase_space(chain, cells=22).velocity_width[middle].mean()
-    assert float(found / strangers) == pytest.approx(1.09, abs=0.02)
+    assert float(found / strangers) == pytest.approx(1.10, abs=0.02)
 
 
 def along(collisions, noise):
@@ -179,8 +179,10 @@ def test_the_coldest_place_is_warmer_than_the_coldest_rods(theory):
     found, free = theory(0.75), CHAIN.free_velocity_width**2
     rod = float(found.velocity_width[CHAIN.size // 2]) ** 2 / free
     place = float(found.velocity_variance.interp(x=0)) / free
-    assert rod == pytest.approx(0.162, abs=0.008)
-    assert place == pytest.approx(0.182, abs=0.008)
+    stated = 2 * found.attrs["model_error"]  # of squares
+    assert rod == pytest.approx(0.162, rel=stated + 0.01)
+    assert place == pytest.approx(0.182, rel=stated + 0.01)
+    assert place > 1.05 * rod
 
 
 @pytest.mark.parametrize(
@@ -221,8 +223,8 @@ def test_no_agreement_is_an_error_with_a_reason(monkeypatch):
 def test_the_way_to_small_restitutions_does_not_matter(monkeypatch):
     """From e = 0.5 and 0.2, or from independent points: the fixed point is the same."""
     chain = Chain(size=12, restitution=0)
-    by_way = correlated_phase_space(chain, cells=16)
+    by_way = correlated_phase_space(chain, cells=32)
     monkeypatch.setattr(stationary, "_WAY", ())
-    direct = correlated_phase_space(chain, cells=16)
+    direct = correlated_phase_space(chain, cells=32)
     assert by_way.attrs["iterations"] > direct.attrs["iterations"]
     np.testing.assert_allclose(by_way.velocity_width, direct.velocity_width, rtol=2e-3)

@@ -1,0 +1,37 @@
+"""How fast neighbours are when they meet: the package's table against the solver it comes from."""
+
+import numpy as np
+import pytest
+from contact_speeds import contact_square, make_mesh, solve
+
+from crazybilliards.kinetic.correlations.contact_speeds import SQUARES, contact_speed
+
+COARSE = (75, 120), (100, 160)
+
+
+@pytest.mark.parametrize("restitution", [0.3, 0.75])
+def test_the_table_is_what_the_solver_finds(restitution):
+    """On these meshes 0.003 above the converged value, whatever the restitution."""
+    found = contact_square(restitution, COARSE)
+    assert found == pytest.approx(SQUARES[restitution] + 0.003, abs=2e-3)
+
+
+def test_elastic_neighbours_meet_as_gaussians():
+    assert contact_speed(1.0) == 1
+    assert contact_square(1.0, COARSE) == pytest.approx(1, abs=0.006)
+
+
+@pytest.mark.parametrize("restitution", [0.0, 0.5, 1.0])
+def test_balances_of_the_solver(restitution):
+    """Collisions give the momentum that the force takes, and with damping the energy of the noise.
+
+    On meshes of one proportion the error falls like the size of the cells.
+    """
+    a, off = 0.8, []
+    for cells in COARSE:
+        found = solve(make_mesh(*cells), restitution, a)
+        momentum = (1 + restitution) * found.impulse
+        energy = a * found.square + (1 - restitution**2) / 2 * found.energy
+        off.append([momentum - 1, energy - 1])
+    coarse, fine = np.array(off)
+    np.testing.assert_allclose(fine + (fine - coarse) / (4 / 3 - 1), 0, atol=6e-3)
