@@ -94,8 +94,8 @@ def correlated_phase_space(
         collisions take; over (particle, separation) the ``velocity_covariance`` <v_i v_{i+r}>, NaN
         beyond the chain; over ``mode`` the ``mode_velocity_variance`` <|v_q|^2> of the waves
         cos(pi q (i - 1/2)/L), q = 0 being the centre of mass. Those of the covariance
-        differ from it by up to 18 % in short waves of 30 and 100 rods at e = 0.5 to 0.9, and by 10 %
-        in those of 100 rods at e = 0.3.
+        differ from it by up to 18 % in the shortest waves of 30 and 100 rods at e = 0.5 to 0.9, and
+        by 10 % at e = 0.3.
         ``attrs``: ``residual``, the largest disagreement of one rod and pairs, relative;
         ``iterations``; ``mesh_error``, the largest relative change of a velocity width in the
         last refinement (NaN if ``cells`` was given); ``cells``; ``model_error`` and

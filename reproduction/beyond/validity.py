@@ -29,7 +29,7 @@ from crazybilliards.reproduction.errors_of_theories import Error, draw_errors
 
 _TABLES = {
     "correlations_held_out": (Group.HELD_OUT,),
-    "correlations_derived_with": (Group.DERIVED_WITH, Group.OF_FIGURES),
+    "correlations_derived_with": (Group.DERIVED_WITH, Group.OF_FIGURES, Group.HELD_OUT_EARLIER),
 }
 _LEAST_DRAWN = 30  # rods: chains of 10 are in the tables only
 _GOALS = {0.75: 0.02, 0.2: 0.05}  # of W_v in the centre, by the least restitution
