@@ -89,9 +89,18 @@ def expected_phase_space(chain: Chain) -> Accuracy:
 
 
 def expected_correlated_phase_space(chain: Chain) -> Accuracy:
-    """Return the larger errors of ``correlated_phase_space`` at the two restitutions around it."""
+    """Return the largest errors of ``correlated_phase_space`` on chains of no smaller e."""
+    return Accuracy(*_of_correlated(chain)[:2])
+
+
+def expected_correlated_displacement(chain: Chain) -> float:
+    """Return the largest relative error of its W_x, of any particle, on these chains."""
+    return _of_correlated(chain)[2]
+
+
+def _of_correlated(chain: Chain) -> tuple[float, float, float]:
     measured = errors.OF_SHORT if chain.size <= errors.SHORT else errors.OF_LONG
-    return _largest([measured[e] for e in _neighbours(chain.restitution, list(measured))])
+    return measured[max(e for e in measured if e <= chain.restitution)]
 
 
 def expected_relax_phase_space(chain: Chain) -> float:

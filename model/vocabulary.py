@@ -88,6 +88,7 @@ ATTRIBUTES = {
     "mesh_error": ("largest relative error of W_v due to the mesh", "1"),
     "model_error": ("relative error of the theory itself", "1"),
     "border_error": ("relative error of the theory itself at the border", "1"),
+    "displacement_error": ("relative error of W_x of the theory itself", "1"),
     "cells": ("cells of the mesh along y", "1"),
     "iterations": ("iterations until the equations were satisfied", "1"),
 }

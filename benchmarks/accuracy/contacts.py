@@ -6,7 +6,7 @@ Prints what docs/correlations.md says of contacts, in units of the free rod. The
 tables are correlations_ingredients.csv and neighbourhoods.csv in docs/tables.
 
 1. At the contacts 1, 4, 10 and in the centre: the force P, the speed before a collision (the root
-   of ``contact_temperature``, for which the theory has F sqrt(Theta)), the covariance of the
+   of ``contact_temperature``, for which the theory has K F sqrt(Theta)), the covariance of the
    velocities of rods two apart, and the covariances of the distance at one contact with the
    relative temperature and with the distance at the next, relative to the means.
 2. <v_i^2> of a rod, and the mean of the temperature T(y) over the places y where the rod is.
@@ -20,6 +20,7 @@ import argparse
 import numpy as np
 import xarray as xr
 
+from crazybilliards.kinetic.correlations.contact_speeds import contact_speed
 from crazybilliards.kinetic.correlations.stationary import _agree
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
@@ -103,7 +104,9 @@ def theoretical(chain: Chain) -> list[Values]:
     around, pairs = found.background, found.pairs
     return [
         around.pressure,
-        np.exp(found.closure.log_clustering) * np.sqrt(around.temperature),
+        contact_speed(chain.restitution)
+        * np.exp(found.closure.log_clustering)
+        * np.sqrt(around.temperature),
         np.diag(pairs.velocity, 2),
         (np.diag(pairs.gap_temperature, 1) + np.diag(pairs.gap_temperature, -1)) / 2,
         np.diag(pairs.gap, 1),

@@ -101,7 +101,7 @@ def correlated_phase_space(
         last refinement (NaN if ``cells`` was given); ``cells``; ``model_error`` and
         ``border_error``, the largest relative errors of W_v, of particles 3 to L - 2 and of the
         two at the ends, that simulations show at restitutions like this one (the table of the
-        page on correlations).
+        page on correlations); ``displacement_error``, that of W_x of any particle.
 
     Raises
     ------

@@ -8,7 +8,10 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from crazybilliards.kinetic.accuracy import expected_correlated_phase_space
+from crazybilliards.kinetic.accuracy import (
+    expected_correlated_displacement,
+    expected_correlated_phase_space,
+)
 from crazybilliards.kinetic.correlations.cells import (
     Cells,
     make_cells,
@@ -73,7 +76,10 @@ def assemble(found: Correlated, of_rods: Rods, mesh_error: float) -> xr.Dataset:
         residual=found.residual,
         mesh_error=mesh_error,
         expected=expected_correlated_phase_space(chain),
-    ).assign_attrs(iterations=found.iterations)
+    ).assign_attrs(
+        iterations=found.iterations,
+        displacement_error=expected_correlated_displacement(chain),
+    )
 
 
 def _collective(found: Correlated) -> Array:

@@ -53,7 +53,7 @@ def cases(quality: Quality) -> Cases:
 def _ingredients(run: xr.Dataset) -> dict[str, Drawn]:
     """Return what is drawn of a result, in free units.
 
-    The last is the square root of ``contact_temperature``, for which the theory has F sqrt(Theta).
+    The last is the root of ``contact_temperature``, for which the theory has K F sqrt(Theta).
     """
     chain = chain_of(run)
     square = chain.free_velocity_width**2
