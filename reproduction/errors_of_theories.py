@@ -44,27 +44,34 @@ class Error(NamedTuple):
 
 
 def draw_errors(ax: Axes, errors: Sequence[Error], which: str, sizes: Sequence[int]) -> None:
-    """Draw the errors in the ``"centre"`` or at the ``"border"``, every size in its colour."""
-    for number, size in enumerate(sizes):
-        of_size = sorted(
-            (each for each in errors if each.chain.size == size and not each.driven),
-            key=lambda each: each.place,
+    """Draw the errors in the ``"centre"`` or at the ``"border"``.
+
+    A line for each of the sizes, and one symbol for chains held out, whatever their size.
+    """
+    of_sizes = {
+        f"$L = {size}$": [
+            each
+            for each in errors
+            if each.chain.size == size and not each.driven and not each.held_out
+        ]
+        for size in sizes
+    }
+    held_out = [each for each in errors if each.held_out]
+    for number, (label, found) in enumerate([*of_sizes.items(), ("held out", held_out)]):
+        shown = sorted(found, key=lambda each: each.place)
+        if not shown:
+            continue
+        draw_points(
+            ax,
+            [each.place for each in shown],
+            [getattr(each, which) for each in shown],
+            [getattr(each, f"{which}_error") for each in shown],
+            number=number,
+            label=label,
+            markerfacecolor=COLOURS[number] if found is held_out else "none",
+            linestyle="none" if found is held_out else "-",
+            linewidth=0.8,
         )
-        for held_out in (False, True):
-            shown = [each for each in of_size if each.held_out == held_out]
-            if not shown:
-                continue
-            draw_points(
-                ax,
-                [each.place for each in shown],
-                [getattr(each, which) for each in shown],
-                [getattr(each, f"{which}_error") for each in shown],
-                number=number,
-                label=f"$L = {size}$" + (", held out" if held_out else ""),
-                markerfacecolor=COLOURS[number] if held_out else "none",
-                linestyle="-",
-                linewidth=0.8,
-            )
     for each in (each for each in errors if each.driven):
         value, error = getattr(each, which), getattr(each, f"{which}_error")
         chain = each.chain

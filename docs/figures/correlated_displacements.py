@@ -3,24 +3,31 @@
 Run it to write correlated_displacements.png beside it, from docs/tables.
 """
 
+import csv
 from pathlib import Path
 
 import matplotlib as mpl
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
-from validity import table
 
 from crazybilliards.comparison.drawing import COLOURS, SYMBOLS
 from crazybilliards.comparison.layout import entitle, house_style, panels
 
+TABLES = Path(__file__).parents[1] / "tables"
 PLACES = "contact 1", "contact 4", "contact 10", "centre"
 QUANTITIES = {
     "h_gg": "$h_{gg}$, two distances",
     "h_gTheta": r"$h_{g\Theta}$, distance and temperature",
 }
-SIZES = 30, 45, 100, 180, 300, 600, 1000
+SIZES = 30, 100, 300, 1000
 TICKS = (0, 0.5, 0.75, 0.9, 1)
+
+
+def table(name: str) -> list[dict[str, str]]:
+    """Return the rows of a table of the documentation."""
+    with open(TABLES / f"{name}.csv", encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
 
 
 def draw_ingredient(ax: Axes, quantity: str) -> None:
@@ -44,14 +51,12 @@ def draw_ingredient(ax: Axes, quantity: str) -> None:
 
 
 def draw_widths(ax: Axes) -> None:
-    """Draw the error of the displacement width at a tenth of the chain against the restitution."""
+    """Draw the mean error of the displacement widths against the restitution."""
     found: dict[int, list[tuple[float, float]]] = {size: [] for size in SIZES}
-    columns = {"held_out": "W_x tenth, centre, largest, %", "derived_with": "W_x tenth, centre, %"}
-    for name, column in columns.items():
-        for row in table(f"correlations_{name}"):
-            if row["gamma"] == "1" and row[column] and int(row["L"]) in found:
-                width = float(row[column].split(",")[0])
-                found[int(row["L"])].append((-np.sqrt(1 - float(row["e"])), width))
+    for row in table("correlations_derived_with"):
+        if row["gamma"] == "1" and int(row["L"]) in found:
+            place = -np.sqrt(1 - float(row["e"]))
+            found[int(row["L"])].append((place, float(row["W_x rods 2 to L/2, %"])))
     for number, (size, points) in enumerate(found.items()):
         ax.plot(
             *np.array(sorted(points)).T,
@@ -76,7 +81,7 @@ def main() -> None:
             draw_ingredient(ax, quantity)
             entitle(ax, title)
         draw_widths(axes[2])
-        entitle(axes[2], "$W_x$ at a tenth of the chain")
+        entitle(axes[2], "$W_x$, mean of the rods 2 to $L/2$")
         figure.savefig(Path(__file__).with_suffix(".png"))
         plt.close(figure)
 

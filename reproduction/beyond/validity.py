@@ -31,10 +31,10 @@ _TABLES = {
     "correlations_held_out": (Group.HELD_OUT,),
     "correlations_derived_with": (Group.DERIVED_WITH, Group.OF_FIGURES, Group.HELD_OUT_EARLIER),
 }
-_LEAST_DRAWN = 30  # rods: chains of 10 are in the tables only
+_LEAST_DRAWN = 30  # rods, if not held out: chains of 10 are in the tables only
 _GOALS = {"in the centre": 0.025, "of the border": 0.05}  # of W_v, up to 300 rods
 _LONGEST = 300
-_SLOW = 70  # rods from which on W_v without correlations is too small
+_SLOW = 20  # L (1 - e) from which on W_v without correlations is too small
 
 
 def cases(quality: Quality) -> Cases:
@@ -154,7 +154,7 @@ def claims(results: Results) -> list[Claim]:
     claims = []
     for each in held_out:
         [before, _], chain = _deviations(results, each), each.chain
-        if chain.size >= _SLOW:
+        if chain.size * (1 - chain.restitution) >= _SLOW:
             error, _ = _relative_errors(results, each, before)
             claims.append(
                 positive_claim(
@@ -192,7 +192,10 @@ def _errors(results: Results, *, with_pairs: bool) -> list[Error]:
         usual = chain.damping == 1 or chain.restitution > 1
         place = chain.size, chain.restitution
         deviations = _deviations(results, each)
-        if not usual or chain.gap or chain.size < _LEAST_DRAWN or len(deviations) <= with_pairs:
+        held_out = each.group == Group.HELD_OUT
+        if not usual or chain.gap or len(deviations) <= with_pairs:
+            continue
+        if each.group == Group.HELD_OUT_EARLIER or not (held_out or chain.size >= _LEAST_DRAWN):
             continue
         found = deviations[with_pairs]
         centre, border = _relative_errors(results, each, found)
@@ -204,7 +207,7 @@ def _errors(results: Results, *, with_pairs: bool) -> list[Error]:
                 border=100 * found.border,
                 centre_error=100 * centre,
                 border_error=100 * border,
-                held_out=each.group == Group.HELD_OUT,
+                held_out=held_out,
             ),
         )
     return list(drawn.values())
@@ -213,7 +216,8 @@ def _errors(results: Results, *, with_pairs: bool) -> list[Error]:
 def draw(results: Results) -> Figure:
     """Draw the errors of both theories in the centre and at the border."""
     both = [_errors(results, with_pairs=with_pairs) for with_pairs in (False, True)]
-    sizes = sorted({each.chain.size for errors in both for each in errors if not each.driven})
+    drawn = [each for errors in both for each in errors if not (each.driven or each.held_out)]
+    sizes = sorted({each.chain.size for each in drawn})
     figure, axes = panels(2, 2, height=2.6, sharex=True, sharey=True)
     for number, ax in enumerate(axes):
         which = ("centre", "border")[number % 2]

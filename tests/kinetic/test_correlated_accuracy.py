@@ -51,6 +51,6 @@ def test_no_error_is_larger_than_that_of_some_chain(long):
 
 
 def test_between_measured_restitutions_the_larger_error_counts():
-    assert stated(0.6, 100) == stated(0.5, 100)
+    assert stated(0.52, 100) == stated(0.5, 100)
     assert stated(0.96, 600) == stated(0.95, 600)
     assert stated(0.05, 100) == stated(0.0, 100)

@@ -176,6 +176,6 @@ def verdicts_of_validity(factor):
 
 
 def test_what_is_claimed_of_the_kinetic_equation_can_fail():
-    assert verdicts_of_validity(1.0) == ["confirmed", "confirmed"]
-    assert verdicts_of_validity(1.04) == ["refuted", "confirmed"]
-    assert verdicts_of_validity(1.1) == ["refuted", "refuted"]
+    assert verdicts_of_validity(1.0) == ["confirmed"] * 3
+    assert verdicts_of_validity(1.04) == ["confirmed", "refuted", "confirmed"]
+    assert verdicts_of_validity(1.1) == ["confirmed", "refuted", "refuted"]
