@@ -42,13 +42,13 @@ const ChainChallenges = (() => {
         const all = this.pushes[e], arrived = all.filter((fastest) => fastest >= ARRIVED).length;
         if (!all.length) return `e = ${e}: not yet pushed.`;
         return `e = ${e}: ${arrived} of ${all.length} arrived; the last rod reached ` +
-          `${all[all.length - 1].toFixed(1)} W.`;
+          `${all[all.length - 1].toFixed(1)}\u00a0W.`;
       };
       const ends = this.pushes[1].some((fastest) => fastest >= ARRIVED) &&
         this.pushes[0.9].some((fastest) => fastest < ARRIVED);
       return {
         done: ends,
-        said: `${say(1)} ${say(0.9)} A push has arrived if the last rod reaches ${ARRIVED} W.` +
+        said: `${say(1)} ${say(0.9)} A push has arrived if the last rod reaches ${ARRIVED}\u00a0W.` +
           (ends ? " Elastic rods hand on all of a push. At e = 0.9 each collision keeps a part back." : ""),
       };
     },

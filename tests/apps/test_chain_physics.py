@@ -11,10 +11,16 @@ from crazybilliards.comparison.coverage import coverage_density
 from crazybilliards.particles.laws.avalanche import make_tally
 from crazybilliards.particles.laws.law import drift, make_law, make_scratch
 from crazybilliards.particles.scales import default_time_step
-from crazybilliards.particles.stepping import advance, make_dynamics, start_noise
+from crazybilliards.particles.stepping import (
+    advance,
+    default_merging,
+    make_dynamics,
+    make_step,
+    start_noise,
+)
 
 RESTITUTIONS = [0.0, 0.5, 1.0, 1.05]
-BLOCKS = 64
+BLOCKS, RUNS = 64, 32  # of the page, of the package
 pytestmark = [pytest.mark.validate, pytest.mark.compiled]
 
 STATE = """
@@ -57,17 +63,20 @@ def plain(chain):
     return {name: getattr(chain, name) for name in names}
 
 
-def measure(page, chain, *, seed=1, step, duration):
-    """Return W_v^2 and coverage of the page's chain with their standard errors, and its places."""
+def measure(page, chain, *, step, duration):
+    """Return W_v^2 and coverage of the page's chain in blocks of time, and the places of these."""
     every, warm = max(1, round(0.5 / step)), round(100 / step)
     samples = round(duration / BLOCKS / (every * step))
     blocks, places = page.execute_script(
-        MEASURE, plain(chain), seed, step, warm, every, samples, BLOCKS
+        MEASURE, plain(chain), 1, step, warm, every, samples, BLOCKS
     )
-    squares = np.array([block[0] for block in blocks]) / samples
-    coverage = np.array([block[1] for block in blocks])
-    found = [(each.mean(0), each.std(0, ddof=1) / BLOCKS**0.5) for each in (squares, coverage)]
-    return *found, np.array(places)
+    squares, shares = (np.array(each) for each in zip(*blocks, strict=True))
+    return squares / samples, shares, places
+
+
+def averaged(blocks):
+    """Return the mean of independent blocks and its standard error."""
+    return blocks.mean(0), blocks.std(0, ddof=1) / len(blocks) ** 0.5
 
 
 @pytest.mark.parametrize("e", RESTITUTIONS)
@@ -185,27 +194,52 @@ def test_the_exact_density_is_that_of_equilibrium(page, size, gap):
     assert np.abs(np.array(found) - 2 * chain.radius * expected.density.values).max() < 1e-3
 
 
+@pytest.mark.parametrize("e", [0.0, 0.1, 0.5, 1.0, 1.05])
+def test_a_step_has_the_numbers_of_the_package(page, e):
+    chain = cb.Chain(size=20, restitution=e, damping=2.0, amplitude=3.0)
+    step = make_step(chain, 0.04, "splitting")
+    law = make_law(chain, 0.04, "event-driven", default_merging(chain), 1.0)
+    found = page.execute_script("return ChainPhysics.makeStep(...arguments)", plain(chain), 0.04)
+    numbers = {
+        "duration": step.time_step,
+        "whole": {"decay": step.decay, "noise": step.noise},
+        "half": {"decay": step.outer_decay, "noise": step.outer_noise},
+        "closed": step.closed,
+        "closedHalf": step.closed_outer,
+        "pull": step.kick,
+        "mergeSpeed": law.merge_speed if e < 1 else -1,
+    }
+    for name in ("whole", "half"):
+        assert found.pop(name) == pytest.approx(numbers.pop(name), rel=1e-12)
+    assert found == pytest.approx(numbers, rel=1e-12)
+
+
 @pytest.mark.parametrize(("size", "gap"), [(20, 0.5), (10, 0.0)])
 def test_widths_and_density_are_exact_at_restitution_one(page, size, gap):
     chain = cb.Chain(size=size, damping=0.5, gap=gap)
     step = default_time_step(chain) / 4  # whose error of the displacements, 0.004 %, is too small
-    (squares, error), (shares, share_error), places = measure(
-        page, chain, step=step, duration=20_000
-    )
-    assert (np.abs(squares - chain.free_velocity_width**2) < 5 * error).all()
+    squares, shares, places = measure(page, chain, step=step, duration=20_000)
+    mean, error = averaged(squares)
+    assert (np.abs(mean - chain.free_velocity_width**2) < 5 * error).all()
+    mean, error = averaged(squares.mean(1))
+    assert abs(mean - chain.free_velocity_width**2) < 5 * error
     script = "return ChainMeasuring.exactCoverage(arguments[0], arguments[1]);"
-    exact = np.array(page.execute_script(script, plain(chain), places.tolist()))
+    exact = np.array(page.execute_script(script, plain(chain), places))
+    mean, error = averaged(shares)
     seen = (exact > 0.01) & (exact < 0.99)
     assert seen.sum() > 150
-    assert (np.abs(shares - exact) < 5 * share_error)[seen].all()
+    assert (np.abs(mean - exact) < 5 * error)[seen].all()
 
 
 @pytest.mark.parametrize("e", [0.0, 0.5, 1.05])
 def test_widths_are_those_of_simulate(page, e):
+    """Those of each rod, and of all rods together, which are known ten times better."""
     chain = cb.Chain(size=20, restitution=e, gap=0.1)
     step = default_time_step(chain)
-    (squares, error), *_ = measure(page, chain, step=step, duration=20_000)
-    run = cb.simulate(chain, duration=40_000, time_step=step, seed=1, threads=1)
-    widths = np.sqrt(squares)
-    off = (widths - run.velocity_width) / np.hypot(error / (2 * widths), run.velocity_width_error)
-    assert np.abs(off).max() < 5
+    squares, *_ = measure(page, chain, step=step, duration=60_000)
+    settings = {"duration": 60_000 / RUNS, "time_step": step, "threads": 1}
+    runs = [cb.simulate(chain, seed=seed, **settings) for seed in range(RUNS)]
+    theirs = np.array([run.velocity_width.values**2 for run in runs])
+    for here, there in ((squares, theirs), (squares.mean(1), theirs.mean(1))):
+        (mean, error), (expected, expected_error) = averaged(here), averaged(there)
+        assert np.abs((mean - expected) / np.hypot(error, expected_error)).max() < 5
