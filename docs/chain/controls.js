@@ -136,7 +136,7 @@ const ChainControls = (() => {
     }
     if (owed >= 1) owed = 0; // what a slow machine cannot compute is left out
     picture.drawStage(world.state, unit(), (ChainDrawing.ROWS * speed) / ROWS_A_SECOND);
-    if (now - plotted > 250) drawPlots(now);
+    if (!running || now - plotted > 250) drawPlots(now); // also when it has just run away
   }
 
   function draw() {

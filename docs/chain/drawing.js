@@ -123,19 +123,19 @@ const ChainDrawing = (() => {
 
     /* Draw the share of time that rods cover a place, and the exact one if there is one. */
     drawDensity(coverage, exact, settled) {
-      const plot = makePlot(this.canvases.density, [-this.half, this.half], [0, 1.05], this.colour);
+      const plot = new Plot(this.canvases.density, [-this.half, this.half], [0, 1.05], this.colour);
       plot.frame([0, 0.5, 1], "position x [R]");
       plot.area(coverage.filter(([x]) => Math.abs(x) <= this.half), settled ? 1 : 0.5);
-      if (exact) plot.line(exact.filter(([x]) => Math.abs(x) <= this.half), 1.5);
+      if (exact) plot.line(exact.filter(([x]) => Math.abs(x) <= this.half));
     }
 
     /* Draw the velocity width of each rod in free widths, and that of the theory if there is one. */
     drawWidths(widths, theory, settled) {
       const size = widths.length, most = 1.15 * Math.max(1, ...widths, ...(theory || []));
-      const plot = makePlot(this.canvases.widths, [0, size + 1], [0, most], this.colour);
-      plot.frame([0, 1, ...(most > 2 ? [Math.floor(most)] : [])], "rod i");
+      const plot = new Plot(this.canvases.widths, [0, size + 1], [0, most], this.colour);
+      plot.frame([0, ...(most < 8 ? [1] : []), ...(most > 2 ? [Math.floor(most)] : [])], "rod i");
       plot.dots(widths.map((width, i) => [i + 1, width]), settled ? 1 : 0.5);
-      if (theory) plot.line(theory.map((width, i) => [i + 1, width]), 1.5);
+      if (theory) plot.line(theory.map((width, i) => [i + 1, width]));
     }
   }
 
@@ -162,53 +162,68 @@ const ChainDrawing = (() => {
     pen.fillText(text, x, y);
   }
 
-  /* A plot of points (x, y) within two ranges, with what draws into it. */
-  function makePlot(canvas, [xFrom, xTo], [yFrom, yTo], colour) {
-    const { pen, width, height } = fit(canvas);
-    const across = (x) => AXIS + ((x - xFrom) / (xTo - xFrom)) * (width - AXIS);
-    const up = (y) => (height - AXIS) * (1 - (y - yFrom) / (yTo - yFrom));
-    const path = (points) => {
-      pen.beginPath();
-      for (const [x, y] of points) pen.lineTo(across(x), up(y));
-    };
-    pen.clearRect(0, 0, width, height);
-    return {
-      frame(ticks, title) {
-        pen.font = `12px ${colour.sans}`;
-        pen.fillStyle = colour.ink;
-        pen.strokeStyle = colour.grey;
-        pen.lineWidth = 1;
-        pen.textAlign = "right";
-        for (const y of ticks) {
-          pen.fillText(String(y), AXIS - 6, up(y) + 4);
-          path([[xFrom, y], [xTo, y]]);
-          pen.globalAlpha = y === 0 ? 1 : 0.35;
-          pen.stroke();
-          pen.globalAlpha = 1;
-        }
-        pen.textAlign = "center";
-        pen.fillText(title, (width + AXIS) / 2, height - 7);
-      },
-      area(points, strength) {
-        path([[points[0][0], 0], ...points, [points[points.length - 1][0], 0]]);
-        pen.fillStyle = colour.grey;
-        pen.globalAlpha = 0.6 * strength;
-        pen.fill();
-        pen.globalAlpha = 1;
-      },
-      line(points, thickness) {
-        path(points);
-        pen.strokeStyle = colour.exact;
-        pen.lineWidth = thickness;
+  /* A plot of points (x, y) within two ranges, on a canvas. */
+  class Plot {
+    constructor(canvas, xRange, yRange, colour) {
+      Object.assign(this, fit(canvas), { xRange, yRange, colour });
+      this.pen.clearRect(0, 0, this.width, this.height);
+    }
+
+    across(x) {
+      const [from, to] = this.xRange;
+      return AXIS + ((x - from) / (to - from)) * (this.width - AXIS);
+    }
+
+    up(y) {
+      const [from, to] = this.yRange;
+      return (this.height - AXIS) * (1 - (y - from) / (to - from));
+    }
+
+    path(points) {
+      this.pen.beginPath();
+      for (const [x, y] of points) this.pen.lineTo(this.across(x), this.up(y));
+    }
+
+    /* Lines across at the numbers of the vertical axis, and the title of the other one. */
+    frame(ticks, title) {
+      const { pen, colour } = this;
+      pen.font = `12px ${colour.sans}`;
+      pen.fillStyle = colour.ink;
+      pen.strokeStyle = colour.grey;
+      pen.lineWidth = 1;
+      pen.textAlign = "right";
+      for (const y of ticks) {
+        pen.fillText(String(y), AXIS - 6, this.up(y) + 4);
+        this.path(this.xRange.map((x) => [x, y]));
+        pen.globalAlpha = y === 0 ? 1 : 0.35;
         pen.stroke();
-      },
-      dots(points, strength) {
-        pen.fillStyle = colour.grey;
-        pen.globalAlpha = strength;
-        for (const [x, y] of points) pen.fillRect(across(x) - 2.5, up(y) - 2.5, 5, 5);
         pen.globalAlpha = 1;
-      },
-    };
+      }
+      pen.textAlign = "center";
+      pen.fillText(title, (this.width + AXIS) / 2, this.height - 7);
+    }
+
+    area(points, strength) {
+      this.path([[points[0][0], 0], ...points, [points[points.length - 1][0], 0]]);
+      this.pen.fillStyle = this.colour.grey;
+      this.pen.globalAlpha = 0.6 * strength;
+      this.pen.fill();
+      this.pen.globalAlpha = 1;
+    }
+
+    line(points) {
+      this.path(points);
+      this.pen.strokeStyle = this.colour.exact;
+      this.pen.lineWidth = 1.5;
+      this.pen.stroke();
+    }
+
+    dots(points, strength) {
+      this.pen.fillStyle = this.colour.grey;
+      this.pen.globalAlpha = strength;
+      for (const [x, y] of points) this.pen.fillRect(this.across(x) - 2.5, this.up(y) - 2.5, 5, 5);
+      this.pen.globalAlpha = 1;
+    }
   }
 
   return { Picture, reach, BAND, ROWS };
