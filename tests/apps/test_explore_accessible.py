@@ -5,25 +5,12 @@ from contextlib import contextmanager
 from itertools import pairwise
 
 import pytest
+from accessibility import audit, tabbed
 from browser import SOURCE, elements, press, show_as, texts, until, visit
 
 from crazybilliards.apps.explore.controls import HISTORIES, SPEEDS
 from crazybilliards.apps.explore.setting import Setting
 
-AUDIT = """
-const done = arguments[arguments.length - 1];
-axe.run(document, {resultTypes: ['violations', 'passes']}).then(
-  found => done([found.violations, found.passes.filter(each => each.id === 'color-contrast')]),
-  error => done([String(error), []]));
-"""
-FOCUSED = """
-let focused = document.activeElement;
-while (focused?.shadowRoot?.activeElement) focused = focused.shadowRoot.activeElement;
-if (!focused || focused === document.body) return null;
-const style = getComputedStyle(focused), box = focused.getBoundingClientRect();
-const outlined = style.outlineStyle === 'solid' ? parseFloat(style.outlineWidth) : 0;
-return [focused, outlined, box.left + scrollX, box.top + scrollY, box.bottom + scrollY];
-"""
 FILTER = "return getComputedStyle(document.documentElement).filter"
 WIDE, NARROW = (1400, 1260), (390, 844)
 TAKES_LONG = "?size=300&restitution=0.5&amplitude=1&gap=0"
@@ -60,25 +47,6 @@ def standing_still(server):
         yield
     finally:
         server.process.send_signal(signal.SIGCONT)
-
-
-def audit(browser):
-    """Return the serious findings of axe-core, and the colours of all text that it could judge."""
-    from axe_core_python.base import AXE_SCRIPT
-
-    browser.set_script_timeout(300)
-    browser.execute_script(AXE_SCRIPT)
-    violations, contrasts = browser.execute_async_script(AUDIT)
-    assert isinstance(violations, list), violations
-    serious = [
-        (found["id"], node["target"], node["failureSummary"])
-        for found in violations
-        if found["impact"] in ("serious", "critical")
-        for node in found["nodes"]
-    ]
-    colours = [node["any"][0]["data"] for found in contrasts for node in found["nodes"]]
-    assert len(colours) > 20
-    return serious, colours
 
 
 def in_the_dark(colour):
@@ -152,21 +120,6 @@ def test_no_serious_finding_of_axe_in_messages(browser, address):
         serious, colours = audit(browser)
     assert serious == []
     assert too_faint(colours) == []
-
-
-def tabbed(browser):
-    """Press Tab from the top to the end; return name, outline and place of all that it reaches."""
-    from selenium.webdriver import ActionChains
-    from selenium.webdriver.common.keys import Keys
-
-    reached = []
-    while len(reached) < 100:
-        ActionChains(browser).send_keys(Keys.TAB).perform()
-        found = browser.execute_script(FOCUSED)
-        if found is None or (reached and found[0] == reached[0][0]):
-            return reached
-        reached.append(found)
-    raise AssertionError("Tab goes on for ever")
 
 
 @pytest.mark.compiled

@@ -1,0 +1,61 @@
+"""Compute the theory's velocity widths that the page docs/chain.md draws over its chain.
+
+Run it to write docs/chain/curves.js. It solves the best theory for the chains of the page's
+challenges, and finds the damping at which the profile of the last one turns. It takes a minute.
+"""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from crazybilliards.comparison.stationary_theories import best_theory
+from crazybilliards.comparison.widths import border_width, central_width
+from crazybilliards.model import Chain
+
+CURVES = Path(__file__).parent.parent / "chain" / "curves.js"
+SHOWN = ("size", "restitution", "amplitude", "damping", "gap")
+TURNING = Chain(size=60, restitution=1.05)  # at which damping is it as hot outside as inside?
+DAMPINGS = (2.5, 3.0, 3.5, 4.0, 4.5, 5.0)
+PUSHED = Chain(size=20, restitution=0.9, damping=0.3, gap=0.5)
+DISSIPATIVE = tuple(
+    Chain(size=size, restitution=e) for size in (20, 40, 60) for e in (0.0, 0.5, 0.8, 0.9)
+)
+
+
+def solve(chain: Chain) -> xr.Dataset:
+    """Solve the best theory for a chain."""
+    return best_theory(chain).solve(chain)
+
+
+def stored(chain: Chain, theory: xr.Dataset) -> dict[str, object]:
+    """Return a chain and the widths of the rods of its left half, in free widths."""
+    widths = theory.velocity_width.values / chain.free_velocity_width
+    half = widths[: (chain.size + 1) // 2]
+    return {name: getattr(chain, name) for name in SHOWN} | {"half": [round(w, 3) for w in half]}
+
+
+def turning(theories: dict[float, xr.Dataset]) -> float:
+    """Interpolate where the border is as hot as the centre."""
+    bulge = [np.log(border_width(each) / central_width(each)) for each in theories.values()]
+    return float(np.interp(0.0, bulge[::-1], list(theories)[::-1]))
+
+
+def main() -> None:
+    """Write the curves."""
+    theories = {damping: solve(TURNING.replace(damping=damping)) for damping in DAMPINGS}
+    curves = [stored(TURNING.replace(damping=g), each) for g, each in theories.items()]
+    curves += [stored(chain, solve(chain)) for chain in (PUSHED, *DISSIPATIVE)]
+    lines = ",\n".join(f"    {json.dumps(each)}" for each in curves)
+    CURVES.write_text(
+        "/* Velocity widths by the best theory, of the rods of the left half, in free widths.\n"
+        "   Written by docs/figures/chain_curves.py. */\n"
+        f'"use strict";\n\nconst ChainCurves = {{\n  widths: [\n{lines},\n  ],\n'
+        f"  turning: {{ damping: {turning(theories):.1f} }},\n}};\n",
+        encoding="utf-8",
+    )
+
+
+if __name__ == "__main__":
+    main()

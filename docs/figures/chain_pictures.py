@@ -1,0 +1,98 @@
+"""Take pictures of the page docs/chain.md in a headless Chromium.
+
+    python docs/figures/chain_pictures.py FOLDER
+
+writes the page at two widths, light and dark, in its first second and after ten, and the push,
+which is ``chain.png`` of this folder. No built pages are needed: the page is made of the block of
+HTML in docs/chain.md and the files of docs/chain/.
+"""
+
+import argparse
+import base64
+import re
+import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from browser import chromium, show_as
+
+DOCS = Path(__file__).parent.parent
+SCREENS = {"desktop": (1280, 900), "phone": (390, 844)}
+AROUND = """<!doctype html><html lang="en"><head>
+<meta charset="utf-8"><title>A chain to push</title>
+<meta name="viewport" content="width=device-width"><style>
+body {{ max-width: 736px; margin: 8px auto; }}
+body[data-theme=dark] {{ background: #131416; }}
+@media (prefers-color-scheme: dark) {{ body:not([data-theme=light]) {{ background: #131416; }} }}
+</style></head><body><main><h1 hidden>A chain to push</h1>{}</main></body></html>"""
+
+
+def page() -> str:
+    """Return the chain's page, without the documentation around it."""
+    text = (DOCS / "chain.md").read_text(encoding="utf-8")
+    [block] = re.findall(r"```\{raw\} html\n(.*?)```", text, re.DOTALL)
+    return AROUND.format(block.replace("_static/", f"{(DOCS / 'chain').as_uri()}/"))
+
+
+@contextmanager
+def written() -> Iterator[str]:
+    """Write the page; yield its address."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "page.html"
+        file.write_text(page(), encoding="utf-8")
+        yield file.as_uri()
+
+
+def keep(browser: Any, file: Path, clip: dict[str, float] | None = None) -> None:
+    """Take a picture of the screen, or of a part of it at twice the resolution."""
+    if clip is None:
+        browser.get_screenshot_as_file(str(file))
+    else:
+        shot = browser.execute_cdp_cmd("Page.captureScreenshot", {"clip": clip | {"scale": 1}})
+        file.write_bytes(base64.b64decode(shot["data"]))
+    print(file, flush=True)
+
+
+def push(browser: Any, file: Path) -> None:
+    """Take the picture of a push that has arrived at the last rod."""
+    metrics = {"width": 736, "height": 900, "deviceScaleFactor": 2, "mobile": False}
+    browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", metrics)
+    browser.refresh()
+    # Time runs here and not in the page, so that every picture is the same.
+    browser.execute_script(
+        "const chain = ChainControls; chain.pause(); chain.choose(ChainChallenges.list[0]);"
+        "for (let row = 0; row < 60; row++) chain.goOn(); chain.push(0);"
+        "for (let row = 0; row < 95; row++) chain.goOn(); chain.draw();"
+    )
+    box = "const box = document.querySelector('.stage').getBoundingClientRect();"
+    x, y, width, height = browser.execute_script(
+        f"{box} return [box.x, box.y, box.width, box.height]"
+    )
+    keep(browser, file, {"x": x, "y": y, "width": width, "height": height})
+
+
+def main(folder: Path) -> None:
+    """Take the pictures."""
+    folder.mkdir(parents=True, exist_ok=True)
+    with written() as address, chromium() as browser:
+        for name, screen in SCREENS.items():
+            for dark in (False, True):
+                show_as(browser, *screen, dark=dark)
+                browser.get(address)
+                time.sleep(1)
+                shade = "dark" if dark else "light"
+                keep(browser, folder / f"{name}-{shade}-1s.png")
+                browser.execute_script("ChainControls.push(0)")
+                time.sleep(9)
+                keep(browser, folder / f"{name}-{shade}-10s.png")
+        show_as(browser, *SCREENS["desktop"])
+        push(browser, folder / "chain.png")
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=main.__doc__)
+    parser.add_argument("folder", type=Path)
+    main(parser.parse_args().folder)
