@@ -123,7 +123,7 @@ def _exponential_claims(results: Results) -> list[Claim]:
             source=f"{_SOURCE}, inset",
             ours=_OURS,
             theory=listed(predicted(results), minus_nu, *RESTITUTIONS),
-            reason="the exponents scatter about the curve by more than their errors",
+            reason="the errors of the exponents are about as large as the limit",
         ),
         positive_claim(
             "the exponential has an amplitude below 1; read as an equality, without one, it does "
