@@ -18,7 +18,7 @@ ROOMS  := model particles kinetic comparison reproduction apps
 export PYTHONDONTWRITEBYTECODE :=
 
 .PHONY: help run kernels test validate test-lowest torture coverage check audit reproduce lessons notebooks render browser docs \
-  linkcheck benchmark clean
+  linkcheck benchmark package clean
 .DEFAULT_GOAL := help
 
 help:
@@ -39,6 +39,7 @@ help:
 	@echo "make docs       build the documentation into build/docs/ and execute its examples"
 	@echo "make linkcheck  look up every address the pages point to (needs the network)"
 	@echo "make benchmark  measure the speed"
+	@echo "make package    build what the package index gets, into build/package/"
 	@echo "make clean      remove the environment and everything built"
 
 run: $(VENV)/installed
@@ -134,6 +135,12 @@ benchmark: $(VENV)/installed-benchmark
 	$(BIN)/python -m pytest benchmarks -o python_files="*.py" --timeout=1800 --benchmark-columns=median,iqr,rounds \
 	  --benchmark-max-time=0.3 --benchmark-min-rounds=3 --benchmark-json=$(OUTPUT)/benchmark.json
 	$(BIN)/python benchmarks/report.py $(OUTPUT)/benchmark.json $(OUTPUT)/cost.png
+
+# twine finds what the package index would refuse.
+package: $(VENV)/installed-package
+	rm -rf build/package
+	$(BIN)/python -m build --outdir build/package
+	$(BIN)/python -m twine check --strict build/package/*
 
 # mypy cannot read an editable install. It reads the rooms through these links.
 build/types: Makefile

@@ -9,7 +9,6 @@ raises a ValueError if the estimate is too large.
 from __future__ import annotations
 
 import math
-import os
 import time
 from contextlib import suppress
 from functools import lru_cache
@@ -43,7 +42,7 @@ def _available_lately(moment: int) -> float:
 
 
 def available_memory() -> float:
-    """Return the bytes that can be allocated without swapping; infinity if this is not known.
+    """Return the bytes that can be allocated without swapping, on Linux, macOS and Windows.
 
     A container or a batch job may have less memory than the machine: Linux kills a process that
     exceeds the limit of its control group or of an enclosing group. The smallest number counts.
@@ -52,17 +51,9 @@ def available_memory() -> float:
 
 
 def _of_the_machine() -> float:
-    try:
-        for line in Path("/proc/meminfo").read_text().splitlines():
-            name, amount = line.split()[:2]
-            if name == "MemAvailable:":
-                return 1024.0 * int(amount)
-    except OSError:
-        pass  # not Linux
-    try:
-        return float(os.sysconf("SC_PHYS_PAGES")) * os.sysconf("SC_PAGE_SIZE")
-    except (AttributeError, ValueError, OSError):
-        return math.inf
+    import psutil  # here, because most commands allocate little and start sooner without it
+
+    return float(psutil.virtual_memory().available)
 
 
 def _of_the_groups(root: Path) -> float:

@@ -1,5 +1,6 @@
 """Shared by all tests."""
 
+import os
 import signal
 import threading
 
@@ -16,6 +17,14 @@ settings.load_profile("crazybilliards")
 
 # Started in the background of a script, a process ignores Ctrl-C, and so do those that it starts.
 signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+def pytest_collection_modifyitems(items):
+    """Skip what Windows cannot do."""
+    if os.name == "nt":
+        for item in items:
+            if item.get_closest_marker("posix"):
+                item.add_marker(pytest.mark.skip(reason="needs signals, streams, links of POSIX"))
 
 
 @pytest.fixture

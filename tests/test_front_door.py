@@ -2,16 +2,19 @@
 
 import os
 import pydoc
+import re
 import subprocess
 import sys
 import tomllib
 import zipfile
+from email import message_from_bytes
 from importlib import import_module
 from importlib.metadata import version
 from pathlib import Path
 from shutil import copy, copytree, ignore_patterns
 
 import pytest
+from readme_renderer import markdown
 
 import crazybilliards as cb
 
@@ -84,7 +87,7 @@ def installed(tmp_path_factory):
     source, there = tmp_path_factory.mktemp("source"), tmp_path_factory.mktemp("there")
     for folder in FOLDERS:
         copytree(ROOT / folder, source / folder, ignore=ignore_patterns("__pycache__"))
-    for file in ("pyproject.toml", "README.md", "LICENSE"):
+    for file in ("pyproject.toml", "setup.py", "README.md", "LICENSE"):
         copy(ROOT / file, source)
     quiet = ("--quiet", "--no-deps", "--disable-pip-version-check")
     pip = (sys.executable, "-m", "pip")
@@ -114,6 +117,25 @@ def test_the_wheel_holds_every_module_and_stub(installed):
         for path in (ROOT / folder).rglob(pattern)
     }
     assert shipped == {path.as_posix() for path in wanted}
+
+
+def test_the_page_of_the_package_index_has_no_relative_link(installed):
+    """The index shows the README, and nothing beside it."""
+    with zipfile.ZipFile(installed[0]) as archive:
+        [name] = [name for name in archive.namelist() if name.endswith("/METADATA")]
+        page = markdown.render(message_from_bytes(archive.read(name)).get_payload())
+    links = re.findall(r'(?:href|src)="([^#][^"]*)"', page)
+    assert len(links) > 30
+    own = re.compile(rf"https://github\.com/[^/]+/crazybilliards/(blob|raw)/v{cb.__version__}/")
+    for link in links:
+        assert link.startswith("https://"), link
+        if own.match(link):
+            assert (ROOT / own.sub("", link).split("#")[0]).exists(), link
+    assert sum(bool(own.match(link)) for link in links) > 20
+
+
+def test_the_version_to_cite_is_that_of_the_package():
+    assert f"\nversion: {cb.__version__}\n" in (ROOT / "CITATION.cff").read_text(encoding="utf-8")
 
 
 def test_the_wheel_installed(installed, tmp_path):

@@ -10,6 +10,7 @@ import threading
 import time
 from concurrent.futures import Executor
 
+import psutil
 import pytest
 from missing_cases import missing_cases
 
@@ -107,7 +108,7 @@ def test_a_dask_worker_killed_in_the_middle_costs_nothing(cluster, tmp_path):
         until(lambda: list(tmp_path.glob("*.nc")))
         with Client(address, set_as_default=False) as client:
             victim = next(iter(client.run(os.getpid).values()))
-        os.kill(victim, signal.SIGKILL)
+        psutil.Process(victim).kill()
         killed.append(victim)
 
     killer = threading.Thread(target=kill_one)
@@ -226,18 +227,17 @@ def test_a_missing_file_and_a_wrong_grid_are_one_line(command, tmp_path):
 
 
 def workers_of(parent):
-    """Return the processes whose parent it is, on Linux."""
-    found = subprocess.run(
-        ["ps", "-o", "pid=", "--ppid", str(parent)], capture_output=True, text=True, check=False
-    )
-    return [int(pid) for pid in found.stdout.split()]
+    """Return the processes that it started."""
+    return [worker.pid for worker in psutil.Process(parent).children()]
 
 
+@pytest.mark.posix
 @pytest.mark.compiled
-@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGKILL"])
 def test_a_sweep_that_is_killed_keeps_what_is_finished_and_leaves_no_workers(
-    how, long_grid, tmp_path
+    name, long_grid, tmp_path
 ):
+    how = getattr(signal, name)
     folder = tmp_path / "results"
     process = subprocess.Popen(
         [*COMMAND, "sweep", str(long_grid), "--output", str(folder), "--processes", "2"],
@@ -262,5 +262,5 @@ def test_a_sweep_that_is_killed_keeps_what_is_finished_and_leaves_no_workers(
     cases = read_sweep(long_grid).cases()
     missing = missing_cases(cases, folder)
     assert 0 < len(missing) < len(cases)
-    until(lambda: not any(os.path.exists(f"/proc/{pid}") for pid in workers))
+    until(lambda: not any(psutil.pid_exists(pid) for pid in workers))
     assert load_sweep(folder).status.size >= 1

@@ -119,7 +119,7 @@ def test_without_a_folder_for_the_cache_kernels_are_compiled_all_the_same(tmp_pa
 
 
 @pytest.mark.compiled
-@pytest.mark.skipif(sys.platform == "win32", reason="limits the size of a file")
+@pytest.mark.posix
 def test_a_cache_that_cannot_be_written_or_read_costs_no_run(tmp_path):
     cache = tmp_path / "cache"
     (warning,) = run_two(tmp_path, FULL + TWO, NUMBA_CACHE_DIR=str(cache))

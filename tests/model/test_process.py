@@ -122,7 +122,7 @@ hydrodynamics(Chain(size=5), displaced(Chain(size=5), 1.0), 1.0)
 """
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="closes streams in a shell")
+@pytest.mark.posix
 def test_progress_needs_no_open_standard_error():
     """A program in the background may have closed its streams; tqdm cannot write then."""
     command = ["sh", "-c", f"exec {sys.executable} -c '{CLOSED}' >&- 2>&-"]

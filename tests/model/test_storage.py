@@ -1,7 +1,6 @@
 """Files: what is saved comes back, what is damaged is refused in one line."""
 
 import os
-import sys
 
 import numpy as np
 import pytest
@@ -72,7 +71,7 @@ def test_what_a_kill_left_of_a_file_is_taken_over(dataset, tmp_path):
     assert list(tmp_path.iterdir()) == [path]
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="has no such locks")
+@pytest.mark.posix
 def test_two_writers_of_one_file_do_not_meet(dataset, tmp_path):
     unfinished = tmp_path / ".run.nc.part"
     other = open_locked(unfinished)

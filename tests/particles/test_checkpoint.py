@@ -33,6 +33,7 @@ save(run, output)
 """
 
 
+@pytest.mark.posix
 @pytest.mark.compiled
 @pytest.mark.parametrize("e", [1.0, pytest.param(0.7, marks=pytest.mark.validate)])
 def test_killed_at_random_moments_and_resumed_it_is_the_undisturbed_run(e, tmp_path):

@@ -203,6 +203,7 @@ save(limit, output)
 """
 
 
+@pytest.mark.posix
 @pytest.mark.compiled
 @pytest.mark.parametrize("e", [0.0, pytest.param(0.95, marks=pytest.mark.validate)])
 def test_killed_at_random_moments_and_resumed_it_is_the_undisturbed_run(e, tmp_path):

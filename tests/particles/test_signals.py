@@ -126,7 +126,7 @@ for attempt in range(2):
 
 
 @pytest.mark.compiled
-@pytest.mark.skipif(os.name == "nt", reason="sends a POSIX signal")
+@pytest.mark.posix
 @pytest.mark.parametrize("name", ["SIGTERM", "SIGHUP"])
 @pytest.mark.parametrize(
     ("handler", "status", "lines"), [("default", None, 0), ("like Ctrl-C", 0, 2), ("exits", 7, 0)]

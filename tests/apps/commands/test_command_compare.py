@@ -1,6 +1,5 @@
 """The command ``compare``: writes all or nothing, refuses in one line, keeps on Ctrl-C."""
 
-import os
 import signal
 from pathlib import Path
 
@@ -144,7 +143,7 @@ def test_a_picture_of_one_chain_is_there_while_the_next_is_computed(
 
 
 @pytest.mark.compiled
-@pytest.mark.skipif(os.name == "nt", reason="sends a POSIX signal")
+@pytest.mark.posix
 def test_ctrl_c_saves_what_was_computed_beside_a_finished_result(interrupted, tmp_path):
     (tmp_path / "comparison.nc").write_text("finished")
     done = interrupted(*QUICK[:3], "--duration", "1e9", "--output", tmp_path)

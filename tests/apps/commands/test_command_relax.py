@@ -1,6 +1,5 @@
 """The command ``relax``: pictures, animations, data, and what Ctrl-C leaves of them."""
 
-import os
 import re
 import signal
 
@@ -59,7 +58,7 @@ def test_relax_refuses_bad_input_in_one_line(refused, arguments, message, tmp_pa
 
 
 @pytest.mark.compiled
-@pytest.mark.skipif(os.name == "nt", reason="sends a POSIX signal")
+@pytest.mark.posix
 def test_ctrl_c_keeps_what_relaxed(interrupted, tmp_path):
     long = ["--size", "100", "--replicas", "10000", "--duration", "40", "--every", "10"]
     done = interrupted("relax", *long, "--output", tmp_path)

@@ -1,6 +1,5 @@
 """The command ``simulate``: what the function returns, in a file."""
 
-import os
 import signal
 
 import pytest
@@ -100,7 +99,7 @@ def test_a_chain_that_diverges_ends_with_status_1(run, tmp_path):
 
 
 @pytest.mark.compiled
-@pytest.mark.skipif(os.name == "nt", reason="sends a POSIX signal")
+@pytest.mark.posix
 @pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])
 def test_ctrl_c_saves_what_was_measured(name, interrupted, tmp_path):
     """So do what batch systems send before they kill, and a lost connection."""

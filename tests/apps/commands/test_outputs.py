@@ -43,6 +43,7 @@ def test_an_empty_name_is_no_folder(command, arguments, refused, tmp_path, monke
     refused("an empty name", *arguments(command), "--output", "")
 
 
+@pytest.mark.posix
 @pytest.mark.parametrize("command", [*FOLDERS, "sweep"])
 def test_a_link_that_leads_nowhere_is_no_folder(command, arguments, refused, tmp_path):
     link = tmp_path / "link"
@@ -76,7 +77,7 @@ def test_a_mistake_leaves_no_folder(refused, tmp_path):
         assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="pipes are other things there")
+@pytest.mark.posix
 def test_a_reader_that_goes_costs_no_work(tmp_path):
     reading, writing = os.pipe()
     os.close(reading)
@@ -102,7 +103,7 @@ def test_standard_output_to_a_full_disk_is_one_line():
     assert done.stderr == ("crazybilliards: error: standard output: No space left on device\n")
 
 
-@pytest.mark.skipif(os.name == "nt", reason="closes POSIX streams")
+@pytest.mark.posix
 @pytest.mark.parametrize(
     ("command", "closed"),
     [
