@@ -14,6 +14,7 @@ from pathlib import Path
 from shutil import copy, copytree, ignore_patterns
 
 import pytest
+import yaml
 from readme_renderer import markdown
 
 import crazybilliards as cb
@@ -134,8 +135,17 @@ def test_the_page_of_the_package_index_has_no_relative_link(installed):
     assert sum(bool(own.match(link)) for link in links) > 20
 
 
-def test_the_version_to_cite_is_that_of_the_package():
-    assert f"\nversion: {cb.__version__}\n" in (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+def test_citation_and_recipe_follow_the_project():
+    """The version is defined in pyproject.toml, and so is what the package needs."""
+    files = (ROOT / "CITATION.cff", ROOT / ".conda" / "recipe.yaml")
+    citation, recipe = (yaml.safe_load(file.read_text(encoding="utf-8")) for file in files)
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    assert citation["version"] == recipe["context"]["version"] == project["version"]
+    needed = [each.replace(" ", "") for each in recipe["requirements"]["run"]]
+    needed = {
+        each.replace("matplotlib-base", "matplotlib") for each in needed if each[:6] != "python"
+    }
+    assert needed == set(project["dependencies"])
 
 
 def test_the_wheel_installed(installed, tmp_path):
