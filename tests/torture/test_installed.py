@@ -18,7 +18,7 @@ import pytest
 
 pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="users, mounts")
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 # `make run`, smaller. Kernels, a theory, pictures and a file.
 RUN = ["compare", "--size", "4", "--duration", "300", "--amplitudes", "10", "--output", "results"]
 WRITTEN = {"comparison.nc", "density.png", "displacement.png"}
