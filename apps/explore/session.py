@@ -217,6 +217,10 @@ class Session:
         """Return the velocity distributions measured; :meth:`measured` must not be None."""
         return self._sums.distributions()
 
+    def squares(self) -> tuple[int, Array]:
+        """Return how many snapshots were measured, and the sums of v_i^2 over them, shape (L,)."""
+        return self._sums.snapshots, self._sums.squares.copy()
+
     def avalanche_sizes(self) -> NDArray[np.int64]:
         """Return how many hits triggered 0, 1, 2, ... collisions while measured, shape (L,)."""
         return np.asarray(self._tally.triggered.sizes.sum(axis=0))

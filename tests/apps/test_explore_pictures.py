@@ -30,10 +30,10 @@ def page():
 def test_why_a_chain_ran_away_is_not_replaced_by_a_refusal_of_the_theory(page):
     page.session.diverged = True
     page.controls.say("The chain runs away.")
-    page._show_theories(page.session.chain, ValueError("no steady state"))
+    page._solving.show(page.session.chain, ValueError("no steady state"))
     assert "The chain runs away." in page.controls.message.object
     page.session.diverged = False
-    page._show_theories(page.session.chain, ValueError("no steady state"))
+    page._solving.show(page.session.chain, ValueError("no steady state"))
     assert "No theory for this chain: no steady state" in page.controls.message.object
 
 
