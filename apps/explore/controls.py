@@ -125,7 +125,8 @@ class Controls:
         elif waiting <= 0:
             words = f"measured for {session.measured_duration:.3g} T"
         else:
-            words = f"equilibrating, {waiting / self.speed.value:.0f} s at this speed"
+            seconds = f"{waiting / self.speed.value:.0f} s"
+            words = f"settling, shown in grey; measured in {seconds} at this speed"
         self.progress.object = words
 
     def show_solving(self, seconds: float | None) -> None:

@@ -142,10 +142,10 @@ class Page:
         if self._rows:
             self.pictures.times.show(self._rows)
             self._rows.clear()
-            measured = session.measured()
-            if measured is not None:
-                self.pictures.density.show(smooth(measured))
-                self.pictures.panels[self.controls.quantity.value].show(session, measured)
+            observed = session.observed()
+            if observed is not None:
+                self.pictures.density.show(smooth(observed), session.settled)
+                self.pictures.panels[self.controls.quantity.value].show(session, observed)
         self._judging.show(session)
         self.controls.show_progress(session)
         self.controls.status.object = (

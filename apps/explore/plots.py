@@ -72,6 +72,21 @@ def make_plot(
     return plot
 
 
+class Symbols:
+    """Symbols of the simulation, grey as long as the chain settles, and their place in a legend."""
+
+    def __init__(self, circles: Any, label: str = "simulation") -> None:
+        self._circles, self._label = circles, label
+        self._colour = circles.glyph.line_color
+        circles.name = "simulation"
+        self.item = LegendItem(label=label, renderers=[circles])
+
+    def show(self, settled: bool) -> None:
+        """Give the symbols their own colour, or grey."""
+        self._circles.glyph.line_color = self._colour if settled else GREY
+        self.item.label = {"value": self._label if settled else f"{self._label}, settling"}
+
+
 def add_legend(plot: Any, *items: LegendItem) -> None:
     """Put a legend above the picture."""
     legend = Legend(

@@ -37,7 +37,7 @@ class EnergyRatio:
             self._begin(session.chain, session.measured_from)
         if session.measured_duration < self._ends + self._stretch:
             return
-        snapshots, squares = session.squares()
+        snapshots, squares = session.sums.snapshots, session.sums.squares.copy()
         of_stretch = (squares - self._squares) / max(snapshots - self._snapshots, 1)
         self._snapshots, self._squares = snapshots, squares
         self._ends = session.measured_duration

@@ -10,6 +10,7 @@ from panel.links import Callback
 from crazybilliards.apps.explore.density import Density
 from crazybilliards.apps.explore.motion import Rods
 from crazybilliards.apps.explore.page import Page
+from crazybilliards.apps.explore.plots import BLACK, GREY
 from crazybilliards.apps.explore.presets import PRESETS
 from crazybilliards.comparison.coverage import smooth
 from crazybilliards.kinetic import force_balance
@@ -88,3 +89,33 @@ def test_panel_keeps_nothing_of_a_page_that_is_closed(page):
     assert fields & set(Callback.registry)
     page._close(None)
     assert not fields & set(Callback.registry)
+
+
+@pytest.mark.parametrize("quantity", ["widths", "velocities"])
+def test_what_is_seen_before_a_chain_has_settled_is_grey(page, quantity):
+    page.setting.restitution = 0.5
+    page.controls.quantity.value = quantity
+    pictures, panel = page.pictures, page.pictures.panels[quantity]
+
+    def shown(plot):
+        simulated = [each for each in plot.renderers if each.name == "simulation"]
+        labels = [each.label.value for each in plot.legend.items]
+        return {each.glyph.line_color for each in simulated}, labels
+
+    page._advance(10.0)
+    page._keep(0.0, 0)
+    page._draw()
+    assert not page.session.settled
+    for picture in (pictures.density, panel):
+        assert all(len(values) for values in picture.measured.data.values())
+        colours, labels = shown(picture.plot)
+        assert colours == {GREY}
+        assert labels[0].endswith(", settling")
+    page.session.advance(page.session.measured_from - page.session.time + 50.0)
+    page._keep(0.0, 0)
+    page._draw()
+    for picture in (pictures.density, panel):
+        colours, labels = shown(picture.plot)
+        assert BLACK in colours
+        assert GREY not in colours
+        assert not labels[0].endswith(", settling")
