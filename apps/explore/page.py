@@ -219,8 +219,11 @@ class Page:
         while not met and perf_counter() < deadline and not session.diverged:
             met = session.advance_to_collision(self._row_time)
             strip.add(session, met)
-        strip.show()
-        self.pictures.rods.show(session)
+        # Panel sends words at once and Bokeh pictures later: the words would come before the rods
+        # of which they tell.
+        with pn.io.unlocked():
+            strip.show()
+            self.pictures.rods.show(session)
         if session.diverged:
             self._explain_divergence()
             return

@@ -223,9 +223,18 @@ def test_no_anchor_remains_where_it_was_on_a_former_axis(browser, address):
 @pytest.mark.compiled
 def test_step_goes_on_to_a_collision_and_says_which(browser, address):
     visit(browser, address)
+    # Where the rods are shown in the very moment in which the words arrive.
+    note = """
+    const shown = Bokeh.documents[0].get_model_by_name('rods');
+    for (const each of Bokeh.documents[0]._all_models.values())
+      each.properties.text?.change.connect(() => {
+        if (each.text.includes(' met')) window.then = Array.from(shown.data.x);
+      });
+    """
+    browser.execute_script(note)
     words = step(browser)
     contact = int(words.split("rods ")[1].split(" and ")[0]) - 1
-    x = positions(browser)
+    x = browser.execute_script("return window.then")
     # In contact, but for what they moved since, within one five-hundredth of a time step.
     assert x[contact + 1] - x[contact] == pytest.approx(2.0, abs=0.01)
     assert step(browser) != words
