@@ -121,7 +121,7 @@ class RunawayJudge(Judge):
         if self._fewest < math.inf:
             words.append(f"Fewest so far: {self._fewest}.")
         done = self._fewest <= _FEW
-        if done and chain.restitution > 1 and chain.spring == "linear":
+        if done and chain.restitution > 1 and chain.spring == "linear" and chain.gap == 0:
             critical = weak_damping_critical_size(chain)
             words.append(
                 "Theory, for weak damping: more than π γ/((e − 1)√(km)) = "
