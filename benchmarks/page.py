@@ -48,7 +48,7 @@ def reaction(browser, amplitude: str) -> list[float]:
       const source = {SOURCE.replace("arguments[0]", "name")};
       source.properties.data.change.connect(() => {{
         if (source.data.x.length) drawn[name] ??= performance.now(); }}); }}"""
-    field = elements(browser, "input.bk-input")[2]
+    field = elements(browser, "input[aria-label^='noise']")[0]
     browser.execute_script(note, THEORIES)
     browser.execute_script(
         "arguments[0].addEventListener('change', () => { window.typed = performance.now(); })",
@@ -85,7 +85,7 @@ def memory(server: Server) -> float:
 
 def main() -> None:
     with served() as address, chromium() as browser:
-        visit(browser, address, "?size=100&amplitude=1&gap=0")
+        visit(browser, address, "?size=100&amplitude=1&gap=0&damping=1")
         until(lambda: column(browser, "exact density", "x"))
         for speed in ("30", "3"):
             press(browser, speed)

@@ -8,6 +8,7 @@ from typing import Any
 import panel as pn
 from panel.links import Callback
 
+from crazybilliards.apps.explore.challenges import CHALLENGES, SENTENCE, Verdict
 from crazybilliards.apps.explore.presets import PRESETS, Preset
 from crazybilliards.apps.explore.session import Session
 from crazybilliards.apps.explore.setting import Setting
@@ -16,6 +17,7 @@ SPEEDS = (0.02, 0.1, 0.5, 3, 30, 300)  # T per second
 SLOW = 3  # up to here single collisions can be followed
 NO_PRESET = "(choose)"
 SOLVE = "Solve the kinetic equation"
+MORE = "More: figures, noise, gap, spring, theory"
 QUANTITIES = {
     "velocity width of each rod": "widths",
     "velocity distribution": "velocities",
@@ -24,6 +26,7 @@ QUANTITIES = {
 }
 HISTORIES = {"kinetic energy": "energy", "collisions per contact": "rate"}
 _BY_LABEL = {preset.label: preset for preset in PRESETS}
+_ALWAYS_SHOWN = 3  # of the sliders, on a narrow screen: the challenges need these
 
 
 class Controls:
@@ -33,26 +36,43 @@ class Controls:
         self.setting = setting
         self.setting_widgets = setting.widgets()
         self.play = pn.widgets.Toggle(name="Pause", value=True, button_type="primary")
-        self.step = pn.widgets.Button(name="Step", description="Move on to the next collision")
-        self.reset = pn.widgets.Button(
-            name="Reset", description="All rods at rest at their anchors"
-        )
-        self.push = pn.widgets.Button(
-            name="Push the left end", description="Kick the leftmost rod to the right"
+        self.step, self.reset, self.push = (
+            pn.widgets.Button(name=name, description=description)
+            for name, description in (
+                ("Step", "Move on to the next collision"),
+                ("Reset", "All rods at rest at their anchors"),
+                ("Push the left end", "Kick the leftmost rod to the right"),
+            )
         )
         self.speed = pn.widgets.RadioButtonGroup(
             name="speed", options={f"{speed:g}": speed for speed in SPEEDS}, value=SLOW
         )
-        self.preset = pn.widgets.Select(name="figure of the paper", options=[NO_PRESET, *_BY_LABEL])
+        self.challenges = [
+            pn.widgets.Button(name=f"{number} {challenge.title}")
+            for number, challenge in enumerate(CHALLENGES, 1)
+        ]
+        self.preset = pn.widgets.Select(
+            name="what the paper's figures show", options=[NO_PRESET, *_BY_LABEL]
+        )
         self.solve = pn.widgets.Button(name=SOLVE)
         self.quantity = pn.widgets.Select(name="measured", options=QUANTITIES)
         self.history = pn.widgets.Select(name="in time", options=HISTORIES)
         self.status = pn.pane.HTML(css_classes=["status"])
         self.progress = pn.pane.HTML(css_classes=["progress"])
-        self.look = pn.pane.HTML(css_classes=["look"], visible=False)
+        self.look = pn.pane.HTML(css_classes=["look"], sizing_mode="stretch_width", visible=False)
         self.accuracy = pn.pane.HTML(css_classes=["status"])
+        self.more = pn.widgets.Toggle(name=MORE, css_classes=["more"])
+        self.rest = pn.Column(
+            self.preset,
+            *self.setting_widgets[_ALWAYS_SHOWN:],
+            self.solve,
+            self.accuracy,
+            margin=0,
+            css_classes=["folded"],
+        )
         self.message = pn.pane.Alert(alert_type="warning", visible=False)
         self.play.param.watch(self._name_toggle, "value")
+        self.more.param.watch(self._fold, "value")
 
     @property
     def slow(self) -> bool:
@@ -73,9 +93,23 @@ class Controls:
     def show_look(self) -> None:
         """Say what to look for in the preset chosen."""
         preset = self.chosen
-        self.look.visible = preset is not None
-        if preset is not None:
-            self.look.object = f"<b>{preset.label}.</b> {preset.look}"
+        self._tell(f"<b>{preset.label}.</b> {preset.look}" if preset is not None else "")
+
+    def show_challenge(self, number: int, verdict: Verdict) -> None:
+        """Say what the challenge of this number asks for, and what was found so far."""
+        challenge, button = CHALLENGES[number], self.challenges[number]
+        self._tell(f"<b>{challenge.title}.</b> {challenge.ask}<br>{verdict.said}")
+        if verdict.done and not button.name.endswith("✓"):
+            button.name += " ✓"
+            self.say(f"Challenge done: {challenge.title}.")
+
+    def mark_challenge(self, number: int | None) -> None:
+        """Mark the button of the challenge chosen, if any."""
+        for place, button in enumerate(self.challenges):
+            button.button_type = "primary" if place == number else "default"
+
+    def _tell(self, words: str) -> None:
+        self.look.object, self.look.visible = words, bool(words)
 
     def show_accuracy(self, notes: dict[str, str]) -> None:
         """Show the error of each theory."""
@@ -91,7 +125,8 @@ class Controls:
         elif waiting <= 0:
             words = f"measured for {session.measured_duration:.3g} T"
         else:
-            words = f"equilibrating, {waiting / self.speed.value:.0f} s at this speed"
+            seconds = f"{waiting / self.speed.value:.0f} s"
+            words = f"settling, shown in grey; measured in {seconds} at this speed"
         self.progress.object = words
 
     def show_solving(self, seconds: float | None) -> None:
@@ -115,21 +150,36 @@ class Controls:
         if self.chosen is not None and self.chosen.chain != self.setting.chain():
             self.preset.value = NO_PRESET
 
+    def head(self) -> list[Any]:
+        """Return what stands above everything else, from top to bottom."""
+        return [
+            pn.pane.HTML(f"<h1>Crazy billiards</h1><p>{SENTENCE}</p>", sizing_mode="stretch_width"),
+            _row(*self.challenges),
+            self.look,
+        ]
+
     def panel(self) -> list[Any]:
         """Return what stands beside the pictures, from top to bottom."""
         return [
-            pn.pane.HTML("<h1>Crazy billiards</h1>"),
             self.message,
-            pn.FlexBox(self.play, self.step, self.reset, self.push),
+            _row(self.play, self.step, self.reset, self.push),
             pn.pane.HTML("speed [T per second]", css_classes=["status"]),
             self.speed,
+            *self.setting_widgets[:_ALWAYS_SHOWN],
             self.status,
-            self.preset,
-            self.look,
-            *self.setting_widgets,
-            self.solve,
-            self.accuracy,
+            self.more,
+            self.rest,
         ]
+
+    def _fold(self, event: Any) -> None:
+        self.rest.css_classes = [] if event.new else ["folded"]
 
     def _name_toggle(self, event: Any) -> None:
         self.play.name = "Pause" if event.new else "Play"
+
+
+def _row(*buttons: Any) -> pn.FlexBox:
+    """Return buttons close to one another, in as few rows as the screen allows."""
+    for button in buttons:
+        button.margin = (3, 4)
+    return pn.FlexBox(*buttons, margin=(0, 6))

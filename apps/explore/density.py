@@ -12,6 +12,7 @@ from crazybilliards.apps.explore.plots import (
     LABELS,
     THEORIES,
     Array,
+    Symbols,
     add_legend,
     make_plot,
     thinned,
@@ -39,7 +40,7 @@ class Density:
         circles = plot.scatter(
             "x", "density", source=self.measured, size=4, color=BLACK, fill_alpha=0
         )
-        items = [LegendItem(label="simulation", renderers=[circles])]
+        self._symbols = Symbols(circles)
         # Of the rods at their anchors: it is not drawn, but gives axes to an empty picture.
         self._anchored = ColumnDataSource({"x": [], "density": []})
         plot.line("x", "density", source=self._anchored, line_alpha=0)
@@ -52,7 +53,7 @@ class Density:
             line = plot.line("x", "density", source=source, **style)
             item = LegendItem(label=LABELS[name], renderers=[line], visible=False)
             self.theories[name], self._items[name] = source, item
-        add_legend(plot, *items, *self._items.values())
+        add_legend(plot, self._symbols.item, *self._items.values())
         self.plot = plot
 
     def begin(self, chain: Chain) -> None:
@@ -66,8 +67,9 @@ class Density:
             self._items[name].visible = False
         self._known.clear()
 
-    def show(self, smoothed: xr.Dataset) -> None:
-        """Show the measured density."""
+    def show(self, smoothed: xr.Dataset, settled: bool = True) -> None:
+        """Show the measured density, in grey if the chain has not settled."""
+        self._symbols.show(settled)
         self._anchored.data = {"x": [], "density": []}
         self.measured.data = self._seen(smoothed, _MOST_POINTS)
 

@@ -16,7 +16,8 @@ from crazybilliards.apps.explore.session import Session
 from crazybilliards.model import Chain
 from crazybilliards.particles.scales import centre_width
 
-_BLUE, _PALE, _ORANGE = (0, 114, 178), (235, 235, 235), (213, 94, 0)  # Okabe and Ito's
+# Moving left, at rest, moving right: as on the page without installation, docs/chain.
+COLOURS = (0, 114, 178), (225, 225, 225), (230, 120, 0)
 _SHADES = 254
 _EMPTY, _MET = 0, 255  # of the strip's 256 colours: between rods, and where two of them met
 _COLUMNS, ROWS = 720, 150
@@ -24,8 +25,8 @@ _MARK = 2  # columns to either side of a collision
 
 
 def _palette() -> list[str]:
-    """Blue for rods moving left, nearly white at rest, orange for rods moving right."""
-    anchors = np.array([_BLUE, _PALE, _ORANGE], dtype=float)
+    """Blue for rods moving left, grey at rest, orange for rods moving right."""
+    anchors = np.array(COLOURS, dtype=float)
     shades = np.linspace(-1, 1, _SHADES)
     rgb = [np.interp(shades, (-1, 0, 1), anchors[:, channel]) for channel in range(3)]
     return ["#{:02x}{:02x}{:02x}".format(*map(round, colour)) for colour in zip(*rgb, strict=True)]
@@ -50,6 +51,7 @@ class Rods:
         plot = make_plot(
             "rods where they are, coloured by velocity",
             150,
+            low=84,
             tools="",
             x_range=self.range,
             y_range=Range1d(-1.2, 0.8),
@@ -103,6 +105,14 @@ class Rods:
             self.range.update(start=-self.half, end=self.half)
         self.source.data = {"x": x, "v": session.v.copy()}
 
+    def drawn(self, session: Session) -> list[tuple[float, float, str]]:
+        """Return place, anchor and colour of each rod, for a drawing without Bokeh."""
+        palette = self._colours.palette
+        shades = np.clip(0.5 + 0.5 * session.v / self.fastest, 0, 1) * (len(palette) - 1)
+        colours = [palette[round(shade)] for shade in shades]
+        places = session.positions.tolist(), session.chain.anchors.tolist()
+        return list(zip(*places, colours, strict=True))
+
 
 class Strip:
     """Space and time: one row per moment, newest on top. A bar marks a collision."""
@@ -117,6 +127,7 @@ class Strip:
         plot = make_plot(
             "space and time: where the rods were, and where they met",
             260,
+            low=132,
             tools="save",
             x_range=rods.range,
             y_range=self._ages,

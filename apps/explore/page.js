@@ -15,6 +15,10 @@ const name = () => {
   give(all('select'), lists);
   // Tab passes by what has no use without a mouse: arrow keys change the numbers, too.
   all('.bk-spin-btn, .bk-events').forEach(each => { each.tabIndex = -1; });
+  // A finger that moves to the side drags a rod or a picture, one that moves up or down the page.
+  all('.bk-events').forEach(each => { each.style.touchAction = 'pan-y pinch-zoom'; });
+  const fold = all('button').find(each => each.textContent.trim() === more);
+  fold.setAttribute('aria-expanded', fold.classList.contains('bk-active'));
   all('button').forEach(each => {
     const speed = /^[0-9.]+$/.test(each.textContent.trim());
     if (!speed) return;
@@ -22,12 +26,6 @@ const name = () => {
     each.setAttribute('aria-pressed', each.classList.contains('bk-active'));
   });
 };
-document.documentElement.lang = 'en';
-if (!document.querySelector('meta[name=viewport]')) {
-  const viewport = document.createElement('meta');
-  viewport.name = 'viewport';
-  viewport.content = 'width=device-width, initial-scale=1';
-  document.head.append(viewport);
-}
 name();
+document.getElementById('first')?.remove();  // what stood here while the libraries were loading
 setInterval(name, 1000);  // widgets are made anew when what they offer changes

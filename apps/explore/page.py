@@ -6,9 +6,7 @@ computing time, so that the page stays responsive. The measurements are redrawn 
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from concurrent.futures import Executor
-from queue import SimpleQueue
 from threading import Lock
 from time import perf_counter
 from typing import Any
@@ -17,21 +15,15 @@ import numpy as np
 import panel as pn
 
 from crazybilliards.apps.explore.address import Address
-from crazybilliards.apps.explore.controls import Controls
-from crazybilliards.apps.explore.layout import arrange
+from crazybilliards.apps.explore.challenges import KICK
+from crazybilliards.apps.explore.controls import SLOW, Controls
+from crazybilliards.apps.explore.judging import Judging
+from crazybilliards.apps.explore.layout import arrange, draw_first
 from crazybilliards.apps.explore.pictures import Pictures
 from crazybilliards.apps.explore.session import Session
 from crazybilliards.apps.explore.setting import Setting
-from crazybilliards.apps.explore.theories import (
-    Background,
-    Densities,
-    Solver,
-    balance_density,
-    exact_density,
-    kinetic_density,
-)
+from crazybilliards.apps.explore.solving import Solving
 from crazybilliards.comparison.coverage import smooth
-from crazybilliards.model import Chain
 
 _PERIOD = 33  # ms from frame to frame
 _BUDGET = 0.012  # s of computing in a frame
@@ -40,19 +32,16 @@ _LONGEST = 0.1  # s; a frame advances by no more than this, even after a longer 
 _FRAMES_PER_DRAWING = 8
 _STEPS_PER_ROW = 3
 _STEPPING_SPEED = 0.1  # at which Step goes on, if the speed is no slow one
-_PUSH = 8.0  # widths of a free rod
 
 
 class Page:
     """One page in one browser, with its own chain, setting and clock.
 
-    ``threads`` run short computations. Long ones run in separate processes, one at a time for all
-    pages that share ``turn``.
+    See :class:`~crazybilliards.apps.explore.solving.Solving` for ``threads`` and ``turn``.
     """
 
     def __init__(self, threads: Executor, turn: Lock) -> None:
         self._document = pn.state.curdoc
-        self._arrived: SimpleQueue[Callable[[], None]] = SimpleQueue()  # from other threads
         self.setting = Setting()
         self.controls = Controls(self.setting)
         self._address = Address(self.setting, self.controls.say)
@@ -61,15 +50,12 @@ class Page:
         self._rows: list[tuple[float, float, float]] = []
         self._frames, self._owed_rows = 0, 0.0
         self._last, self._drawn = perf_counter(), (perf_counter(), 0.0)
-        self._notes: dict[str, str] = {}
-        self._elastic = [
-            Background(threads, job, self._show_theories, self._arrived.put)
-            for job in (balance_density, exact_density)  # the faster one first
-        ]
-        self._kinetic = Solver(kinetic_density, turn)
+        self._solving = Solving(self.controls, self.pictures, self.session, threads, turn)
         self._listen()
+        self._judging = Judging(self.controls, self._start_anew)
         self._set_pace()
         self._begin()
+        self._judging.show(self.session)
         self._address.write()
         self.controls.say(self._address.refusal)
         pn.state.add_periodic_callback(self._frame, period=_PERIOD)
@@ -77,6 +63,7 @@ class Page:
 
     def view(self) -> pn.viewable.Viewable:
         """Return the layout."""
+        draw_first(self.session, self.pictures.rods)
         return arrange(self.controls, self.pictures)
 
     def _listen(self) -> None:
@@ -89,20 +76,19 @@ class Page:
         controls.step.on_click(self._step)
         controls.reset.on_click(self._restart)
         controls.push.on_click(self._push)
-        controls.solve.on_click(self._ask_kinetic)
+        controls.solve.on_click(self._solving.ask)
 
     def _close(self, context: Any) -> None:
-        self._kinetic.cancel()
+        self._solving.cancel()
         self.controls.close()
 
     # -- the clock --------------------------------------------------------------------------
 
     def _frame(self) -> None:
         if self._document.session_context.session.connection_count == 0:
-            self._kinetic.cancel()
+            self._solving.cancel()
             return  # the browser has closed the page
-        while not self._arrived.empty():
-            self._arrived.get()()
+        self._solving.take_arrived()
         now = perf_counter()
         elapsed, self._last = min(now - self._last, _LONGEST), now
         self._frames += 1
@@ -113,11 +99,12 @@ class Page:
             if session.time > time:
                 self._keep(time, collisions)
             self.pictures.rods.show(session)
+            self._judging.follow(session)
             if session.diverged:
                 self._explain_divergence()
         if self._frames % _FRAMES_PER_DRAWING == 0:
             self._draw()
-            self._poll_kinetic()
+            self._solving.poll()
 
     def _advance(self, elapsed: float) -> None:
         """Advance the chain; in slow motion, one row of the strip at a time."""
@@ -155,14 +142,15 @@ class Page:
         if self._rows:
             self.pictures.times.show(self._rows)
             self._rows.clear()
-            measured = session.measured()
-            if measured is not None:
-                self.pictures.density.show(smooth(measured))
-                self.pictures.panels[self.controls.quantity.value].show(session, measured)
+            observed = session.observed()
+            if observed is not None:
+                self.pictures.density.show(smooth(observed), session.settled)
+                self.pictures.panels[self.controls.quantity.value].show(session, observed)
+        self._judging.show(session)
         self.controls.show_progress(session)
         self.controls.status.object = (
             f"t = {session.time:.4g} T, {speed:.2g} T per second<br>"
-            f"a free rod's velocity width is W = {session.chain.free_velocity_width:.3g} R/T"
+            f"free rod's velocity width W = {session.chain.free_velocity_width:.3g} R/T"
         )
 
     # -- what a user does -------------------------------------------------------------------
@@ -176,23 +164,20 @@ class Page:
         self.session.restart()
         self._begin()
 
+    def _start_anew(self) -> None:
+        if self.session.diverged:
+            self._restart(None)
+
     def _begin(self) -> None:
         """Show the session's chain without any measurements."""
         chain = self.session.chain
-        if chain.restitution == 1:
-            for theory in self._elastic:  # at once, because the user waits for the answer
-                theory.ask(chain)
+        self._solving.begin()
         self.controls.say("")
         self.controls.forget_preset()
-        self._notes.clear()
-        self.controls.show_accuracy(self._notes)
         self._rows.clear()
         self.pictures.begin(self.session)
         self.pictures.arrange(self.controls.quantity.value, self.controls.history.value, chain)
         self.pictures.strip.clear(self._row_time)
-        if self._kinetic.chain != chain:
-            self._kinetic.cancel()
-        self.controls.show_solving(self._kinetic.seconds if self._kinetic.chain else None)
 
     def _set_pace(self, *events: Any) -> None:
         """Set the time step for the chosen speed and pictures."""
@@ -218,8 +203,8 @@ class Page:
         if not preset.steady:
             self.controls.history.value = "energy"
             self._restart(event)
-        if preset.solved and self._kinetic.chain is None:
-            self._ask_kinetic(event)
+        if preset.solved and not self._solving.busy:
+            self._solving.ask(event)
 
     def _step(self, event: Any) -> None:
         """Move on to the next collision; say which rods met, or why the chain diverged."""
@@ -234,8 +219,11 @@ class Page:
         while not met and perf_counter() < deadline and not session.diverged:
             met = session.advance_to_collision(self._row_time)
             strip.add(session, met)
-        strip.show()
-        self.pictures.rods.show(session)
+        # Panel sends words at once and Bokeh pictures later: the words would come before the rods
+        # of which they tell.
+        with pn.io.unlocked():
+            strip.show()
+            self.pictures.rods.show(session)
         if session.diverged:
             self._explain_divergence()
             return
@@ -244,7 +232,10 @@ class Page:
         self.controls.say(f"t = {session.time:.5g} T: {found}.")
 
     def _push(self, event: Any) -> None:
-        self.session.push(0, _PUSH * self.session.chain.free_velocity_width)
+        if not self.controls.slow:
+            self.controls.speed.value = SLOW
+        self.session.push(0, KICK * self.session.chain.free_velocity_width)
+        self._judging.pushed(self.session)
         self.pictures.rods.show(self.session)
 
     def _drag(self, x: float | None) -> None:
@@ -254,35 +245,6 @@ class Page:
         else:
             self.session.hold(x)
             self.pictures.rods.show(self.session)
-
-    # -- the kinetic equation ---------------------------------------------------------------
-
-    def _ask_kinetic(self, event: Any) -> None:
-        if self._kinetic.chain is None:
-            self._kinetic.ask(self.session.chain)
-            self.controls.show_solving(0.0)
-        else:
-            self._kinetic.cancel()
-            self.controls.show_solving(None)
-
-    def _poll_kinetic(self) -> None:
-        chain = self._kinetic.chain
-        if chain is None:
-            return
-        outcome = self._kinetic.poll()
-        self.controls.show_solving(self._kinetic.seconds if outcome is None else None)
-        if outcome is not None:
-            self._show_theories(chain, outcome)
-
-    def _show_theories(self, chain: Chain, outcome: Densities | BaseException) -> None:
-        """Show what was computed, if it is still of this chain."""
-        if chain != self.session.chain:
-            return
-        if not isinstance(outcome, BaseException):
-            self._notes |= self.pictures.show_theories(outcome)
-            self.controls.show_accuracy(self._notes)
-        elif not self.session.diverged:  # which the page has explained already
-            self.controls.say(f"No theory for this chain: {outcome}")
 
 
 def make_page(threads: Executor, turn: Lock) -> pn.viewable.Viewable:

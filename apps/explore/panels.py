@@ -12,6 +12,7 @@ from crazybilliards.apps.explore.plots import (
     LABELS,
     THEORIES,
     Array,
+    Symbols,
     add_legend,
     make_plot,
 )
@@ -48,8 +49,8 @@ class Widths:
         kinetic = plot.line(**columns_of, source=self.kinetic, **THEORIES["kinetic"])
         self._item = LegendItem(label=LABELS["kinetic"], renderers=[kinetic], visible=False)
         self._reference = LegendItem(renderers=[free])
-        simulation = LegendItem(label="simulation", renderers=[circles])
-        add_legend(plot, simulation, self._reference, self._item)
+        self._symbols = Symbols(circles)
+        add_legend(plot, self._symbols.item, self._reference, self._item)
         self.plot = plot
 
     def begin(self, chain: Chain) -> None:
@@ -62,6 +63,7 @@ class Widths:
 
     def show(self, session: Session, measured: xr.Dataset) -> None:
         """Show what was measured so far."""
+        self._symbols.show(session.settled)
         self.measured.data = self._columns(measured)
 
     def show_theory(self, theory: xr.Dataset) -> None:
@@ -104,10 +106,10 @@ class Velocities:
             fill_alpha=0,
         )
         line = plot.line("v", "p", source=self.free, **THEORIES["exact"])
+        self._symbols = Symbols(circles, "middle rods"), Symbols(squares, "outermost rods")
         add_legend(
             plot,
-            LegendItem(label="middle rods", renderers=[circles]),
-            LegendItem(label="outermost rods", renderers=[squares]),
+            *(each.item for each in self._symbols),
             LegendItem(label="free rod: a Gaussian", renderers=[line]),
         )
         self.plot = plot
@@ -122,7 +124,9 @@ class Velocities:
     def show(self, session: Session, measured: xr.Dataset) -> None:
         """Show what was measured so far, in units of the free rod's width W."""
         width = session.chain.free_velocity_width
-        found = session.distributions()
+        for symbols in self._symbols:
+            symbols.show(session.settled)
+        found = session.sums.distributions()
         seen = (found.border > 0) | (found.middle > 0)
         # A logarithm has no place for zero.
         border, middle = (

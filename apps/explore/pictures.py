@@ -45,7 +45,7 @@ class Pictures:
         }
         self.legend = pn.pane.HTML(
             "Where the rods were, with the present at the top. A short bar marks a collision.",
-            css_classes=["progress"],
+            css_classes=["progress", "legend"],
         )
         self.measured = {
             name: pn.pane.Bokeh(panel.plot, sizing_mode="stretch_width")

@@ -30,11 +30,22 @@ LABELS = {
 # Pictures that stand one above the other have frames of the same width.
 _LEFT, _RIGHT = 84, 16
 _TYPE = "14px"
+_LOW = """
+@media (max-width: 800px) {{
+  :host {{ height: {0}px !important; flex: 0 0 {0}px !important; }}
+}}
+"""
 _TOOLS = "pan,box_zoom,wheel_zoom,reset,save"
 
 
-def make_plot(description: str, height: int, *, tools: str = _TOOLS, **settings: Any) -> Any:
-    """Return an empty picture; screen readers say its description. ``settings`` are Bokeh's."""
+def make_plot(
+    description: str, height: int, *, low: int | None = None, tools: str = _TOOLS, **settings: Any
+) -> Any:
+    """Return an empty picture.
+
+    Screen readers say its description. ``low`` is its height on a narrow screen, if it has another
+    one there. ``settings`` are Bokeh's.
+    """
     plot = figure(
         html_attributes={"role": "img", "aria-label": description},
         tools=tools,
@@ -48,6 +59,8 @@ def make_plot(description: str, height: int, *, tools: str = _TOOLS, **settings:
         active_scroll=None,
         **settings,
     )
+    if low is not None:
+        plot.stylesheets = [_LOW.format(low)]
     plot.toolbar.autohide = True
     plot.toolbar.logo = None
     plot.toolbar_inner = True
@@ -57,6 +70,21 @@ def make_plot(description: str, height: int, *, tools: str = _TOOLS, **settings:
     plot.axis.axis_label_text_font_style = "normal"
     plot.axis.major_label_text_font_size = _TYPE
     return plot
+
+
+class Symbols:
+    """Symbols of the simulation, grey as long as the chain settles, and their place in a legend."""
+
+    def __init__(self, circles: Any, label: str = "simulation") -> None:
+        self._circles, self._label = circles, label
+        self._colour = circles.glyph.line_color
+        circles.name = "simulation"
+        self.item = LegendItem(label=label, renderers=[circles])
+
+    def show(self, settled: bool) -> None:
+        """Give the symbols their own colour, or grey."""
+        self._circles.glyph.line_color = self._colour if settled else GREY
+        self.item.label = {"value": self._label if settled else f"{self._label}, settling"}
 
 
 def add_legend(plot: Any, *items: LegendItem) -> None:

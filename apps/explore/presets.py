@@ -21,32 +21,31 @@ class Preset:
     Attributes
     ----------
     figure
-        Its name.
+        The figure's name.
+    seen
+        What is seen, in a few words.
     look
         What to look for.
     chain
         The chain. See ``solved`` for the kinetic equation.
     quantity
         What is drawn beside the density.
-    remark
-        Distinguishes two presets of the same figure.
     steady
         Whether the chain has a steady state. One without is shown from its start, with its energy.
     """
 
     figure: str
+    seen: str
     look: str
     chain: Chain
     quantity: Quantity
-    remark: str = ""
     steady: bool = True
 
     @property
     def label(self) -> str:
-        """What a user chooses: number and title of the figure, and the remark."""
+        """What a user chooses: what is seen, and the number of the figure."""
         [figure] = find_studies(self.figure)
-        title = figure.heading.replace("gamma", "γ")
-        return f"{title}, {self.remark}" if self.remark else title
+        return f"{self.seen} (figure {figure.heading.partition('.')[0]})"
 
     @property
     def solved(self) -> bool:
@@ -57,18 +56,19 @@ class Preset:
 
 def _preset(
     figure: str,
+    seen: str,
     look: str,
     quantity: Quantity = "widths",
-    remark: str = "",
     steady: bool = True,
     **parameters: Any,
 ) -> Preset:
-    return Preset(figure, look, Chain(**parameters), quantity, remark, steady)
+    return Preset(figure, seen, look, Chain(**parameters), quantity, steady)
 
 
 PRESETS = (
     _preset(
         "velocities-inelastic",
+        "The middle rods are slower",
         "The middle rods have a narrower distribution than the outermost ones, and both are "
         "narrower than a free rod's.",
         "velocities",
@@ -77,6 +77,7 @@ PRESETS = (
     ),
     _preset(
         "widths-inelastic",
+        "Collisions cool the middle",
         "Collisions cool the chain: the velocity width is largest at the ends and falls off "
         "towards the middle.",
         size=300,
@@ -84,6 +85,7 @@ PRESETS = (
     ),
     _preset(
         "central-width",
+        "Longer chains are colder",
         "Change L: the point of every chain that you measure stays. The longer the chain, the "
         "colder its middle. In long chains the width falls a little faster than the paper's power "
         "law.",
@@ -93,6 +95,7 @@ PRESETS = (
     ),
     _preset(
         "avalanches-inelastic",
+        "Avalanches at e = 0",
         "The paper sees a power law, a straight line here; the simulation falls off faster: it "
         "bends down from the line.",
         "avalanches",
@@ -101,6 +104,7 @@ PRESETS = (
     ),
     _preset(
         "widths-restitution",
+        "A small loss cools a lot",
         "Lower e from 0.95 and the velocity widths in the middle fall: each collision then takes "
         "more energy.",
         size=100,
@@ -108,6 +112,7 @@ PRESETS = (
     ),
     _preset(
         "velocities-elastic",
+        "A Gaussian at e = 1",
         "Elastic collisions leave no trace in the velocities: all symbols lie on the Gaussian of "
         "a free rod.",
         "velocities",
@@ -115,6 +120,7 @@ PRESETS = (
     ),
     _preset(
         "velocities-flippers",
+        "The ends have heavy tails",
         "Every collision adds energy: all rods are faster than a free rod, and the tail of the "
         "outermost ones is a straight line, an exponential.",
         "velocities",
@@ -124,6 +130,7 @@ PRESETS = (
     ),
     _preset(
         "velocities-flippers-damped",
+        "The middle is faster",
         "With strong damping the large velocities are likelier in the middle, where more "
         "collisions feed the rods.",
         "velocities",
@@ -133,6 +140,7 @@ PRESETS = (
     ),
     _preset(
         "avalanches-flippers",
+        "Avalanches reach the far end",
         "Compare γ = 4 with γ = 10: the weaker the damping, the more hits trigger collisions "
         "through the whole chain.",
         "avalanches",
@@ -142,6 +150,7 @@ PRESETS = (
     ),
     _preset(
         "widths-size",
+        "A short chain: hot middle",
         "In this short chain the middle is fastest; raise L to 100 and the ends are.",
         size=25,
         restitution=1.05,
@@ -149,9 +158,9 @@ PRESETS = (
     ),
     _preset(
         "energy",
+        "Energy grows exponentially",
         "The energy grows exponentially, a straight line on its logarithmic axis, until the chain "
         "has run away.",
-        remark="linear springs",
         steady=False,
         size=100,
         restitution=1.01,
@@ -159,9 +168,9 @@ PRESETS = (
     ),
     _preset(
         "energy",
+        "Energy becomes infinite",
         "The energy curves upwards on its logarithmic axis: it becomes infinite after a finite "
         "time.",
-        remark="quadratic springs",
         steady=False,
         size=100,
         restitution=1.01,
@@ -170,6 +179,7 @@ PRESETS = (
     ),
     _preset(
         "density",
+        "Theory meets simulation",
         "The simulation lies on the exact density, and the force balance misses it at the edges "
         "only.",
         size=100,
@@ -177,6 +187,7 @@ PRESETS = (
     ),
     _preset(
         "amplitude",
+        "Noise only sets the scale",
         "Change A: velocities and displacements grow like A, and the velocity widths keep their "
         "shape.",
         size=100,
@@ -185,6 +196,7 @@ PRESETS = (
     ),
     _preset(
         "gap",
+        "A gap makes a plateau",
         "With a gap the velocity widths have a plateau in the middle; the wider the gap, the wider "
         "the plateau.",
         size=300,

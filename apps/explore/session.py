@@ -1,9 +1,9 @@
 """A chain that moves while its parameters are changed: state, stepping in chunks, running sums.
 
 The kernels are those of :func:`crazybilliards.particles.simulate`, as are the default time step
-and the collision law. The duration is not known in advance. The sums are therefore kept without
-blocks and have no error bars. They start again when a parameter changes, after six relaxation
-times. In slow motion the steps are shorter and collisions are resolved one by one.
+and the collision law. The duration is not known in advance, so the sums have no blocks and no
+error bars. They start again when a parameter changes, and six relaxation times later. In slow
+motion the steps are shorter and collisions are resolved one by one.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from crazybilliards.apps.explore.sums import Distributions, Sums
+from crazybilliards.apps.explore.sums import Sums
 from crazybilliards.kinetic import equilibrium_states
 from crazybilliards.model import Chain
 from crazybilliards.model.vocabulary import result
@@ -40,8 +40,8 @@ _SINGLE = 1 / 500  # of the usual time step: two collisions hardly ever fall int
 class Session:
     """A chain in motion, and what was measured of it.
 
-    At e = 1 it starts with a state drawn from the exact equilibrium, and is measured at once. Any
-    other chain starts from rest at its anchors.
+    At e = 1 it starts in a state of the exact equilibrium, and is measured at once. Any other chain
+    starts from rest at its anchors.
 
     Parameters
     ----------
@@ -62,8 +62,12 @@ class Session:
         Reduced positions [R] and velocities [R/T], shape (L,).
     diverged
         Whether the chain diverged. It then keeps its last finite state.
+    settled
+        Whether the time ``measured_from`` has come.
+    sums
+        What was measured; before the chain has settled, what was seen since the last change.
     energies
-        The latest times [T] with the kinetic energy, of the chain as it is now.
+        The latest times [T] with the kinetic energy.
 
     Raises
     ------
@@ -76,8 +80,7 @@ class Session:
     >>> session.advance(100.0)
     >>> session.change(Chain(size=10, restitution=0.5))  # the rods stay where they are
     >>> session.advance(100.0)
-    >>> measured = session.measured()
-    >>> measured.velocity_width.dims
+    >>> session.observed().velocity_width.dims
     ('particle',)
     """
 
@@ -134,10 +137,7 @@ class Session:
                 return
 
     def advance_to_collision(self, duration: float) -> list[int]:
-        """Move on until rods collide; return the contacts, from 0, that did.
-
-        Empty if none did within ``duration`` [T], or the chain diverged.
-        """
+        """Move on until rods collide or ``duration`` [T] is over; return the contacts, from 0."""
         end = self.time + duration
         self.contacts_met()
         while self.time < end and not self.diverged:
@@ -196,26 +196,22 @@ class Session:
         """How long the chain has been measured with its present parameters [T]."""
         return max(self.time - self.measured_from, 0.0)
 
-    def measured(self) -> xr.Dataset | None:
+    def observed(self) -> xr.Dataset | None:
         """Return ``velocity_width`` over particle and ``density`` over x; None before any."""
-        if self._sums.snapshots == 0:
+        if self.sums.snapshots == 0:
             return None
         return result(
             self.chain,
             {
-                "velocity_width": ("particle", self._sums.velocity_widths()),
-                "density": ("x", self._sums.density()),
+                "velocity_width": ("particle", self.sums.velocity_widths()),
+                "density": ("x", self.sums.density()),
             },
             source="simulation",
             method={"method": "event-driven", "time_step": self._dynamics.step.time_step},
-            coordinates={"x": self._sums.x},
+            coordinates={"x": self.sums.x},
             status="diverged" if self.diverged else "completed",
             end_time=self.time,
         )
-
-    def distributions(self) -> Distributions:
-        """Return the velocity distributions measured; :meth:`measured` must not be None."""
-        return self._sums.distributions()
 
     def avalanche_sizes(self) -> NDArray[np.int64]:
         """Return how many hits triggered 0, 1, 2, ... collisions while measured, shape (L,)."""
@@ -249,8 +245,8 @@ class Session:
             self.restart()
             return
         drawn = equilibrium_states(self.chain, 1, self._seed)
-        offsets = self._offsets
-        self._begin(drawn.position.values[0] - offsets, drawn.velocity.values[0].copy())
+        y = drawn.position.values[0] - self._offsets
+        self._begin(y, drawn.velocity.values[0].copy())
 
     def _begin(self, y: Array, v: Array) -> None:
         self.time, self.collisions, self.diverged = 0.0, 0, False
@@ -265,7 +261,7 @@ class Session:
         self._held = None
         self.measured_from = self._relaxed()
         self._tally.triggered.sizes[:] = 0
-        self._sums = Sums(self.chain)
+        self.settled, self.sums = False, Sums(self.chain)
         self.energies: deque[tuple[float, float]] = deque(maxlen=_MOST_ENERGIES)
 
     def _keep_hold(self) -> None:
@@ -293,7 +289,9 @@ class Session:
         self.collisions += met
         self._keep_hold()
         self.energies.append((self.time, self.kinetic_energy))
-        if self.time > self.measured_from:
-            self._sums.add(self.positions, self.v)
-        else:
+        if not self.settled:
             self._tally.triggered.sizes[:] = 0
+            if self.time > self.measured_from:
+                self.settled, self.sums = True, Sums(self.chain)
+        if not self.holds:
+            self.sums.add(self.positions, self.v)

@@ -17,12 +17,12 @@ _LONGEST = 20  # letters of a wrong value that are shown
 class Setting(param.Parameterized):
     """The parameters of the chain, named as those of :class:`crazybilliards.model.Chain`."""
 
-    # The default rods have room, so that collisions are visible.
+    # The defaults are the chain of the first challenge, whose collisions are visible.
     size = param.Integer(20, bounds=(2, 300))
     restitution = param.Number(1.0, bounds=(0.0, 1.1))
-    amplitude = param.Number(10.0, bounds=(0.1, 30.0))
-    damping = param.Number(1.0, bounds=(0.1, 20.0))
-    gap = param.Number(1.0, bounds=(0.0, 5.0))
+    amplitude = param.Number(1.0, bounds=(0.1, 30.0))
+    damping = param.Number(0.3, bounds=(0.1, 20.0))
+    gap = param.Number(0.5, bounds=(0.0, 5.0))
     spring = param.Selector(default="linear", objects=["linear", "quadratic"])
 
     @classmethod
@@ -100,19 +100,18 @@ class Setting(param.Parameterized):
         )
 
     def widgets(self) -> list[Widget]:
-        """Return a widget for each parameter."""
-        sliders = [
-            EditableFloatSlider.from_param(self.param[name], name=label, step=step)
-            for name, label, step in (
-                ("restitution", "restitution e", 0.01),
-                ("amplitude", "noise amplitude A [M R/√T³]", 0.1),
-                ("damping", "damping γ [M/T]", 0.1),
-                ("gap", "gap g at the anchors [R]", 0.05),
-            )
-        ]
+        """Return a widget for each parameter, those that matter most first."""
         return [
+            EditableFloatSlider.from_param(self.param.restitution, name="restitution e", step=0.01),
             EditableIntSlider.from_param(self.param.size, name="number of rods L"),
-            *sliders,
+            *(
+                EditableFloatSlider.from_param(self.param[name], name=label, step=step)
+                for name, label, step in (
+                    ("damping", "damping γ [M/T]", 0.1),
+                    ("amplitude", "noise amplitude A [M R/√T³]", 0.1),
+                    ("gap", "gap g at the anchors [R]", 0.05),
+                )
+            ),
             Select.from_param(self.param.spring, name="spring"),
         ]
 

@@ -36,6 +36,8 @@ class Sums:
         How many were added.
     x
         Nodes of the density [R]. The grid grows when a rod leaves it.
+    squares
+        Sums of v_i^2 [R^2/T^2], shape (L,).
     """
 
     def __init__(self, chain: Chain) -> None:
@@ -46,7 +48,7 @@ class Sums:
         self.x = position_grid(chain, thermal_reach(chain) * (5 if driven else 1))
         self._spacing = float(self.x[1] - self.x[0])
         self._weights = np.zeros(self.x.size)
-        self._squares = np.zeros(chain.size)
+        self.squares = np.zeros(chain.size)
         fastest = (_REACH_OF_FLIPPERS if driven else _REACH) * chain.free_velocity_width
         self._v = np.linspace(-fastest, fastest, _BINS)
         self._border, self._middle = np.zeros(_BINS), np.zeros(_BINS)
@@ -56,7 +58,7 @@ class Sums:
         """Add a snapshot."""
         self._make_room(float(np.abs(positions[[0, -1]]).max()))
         deposit(positions, self.x[0], self._spacing, self._weights)
-        self._squares += v * v
+        self.squares += v * v
         first, spacing = self._v[0], self._v[1] - self._v[0]
         deposit(np.array([-v[0], v[-1]]), first, spacing, self._border)
         deposit(v[self._centre], first, spacing, self._middle)
@@ -68,7 +70,7 @@ class Sums:
 
     def velocity_widths(self) -> Array:
         """Root mean square velocity of each rod [R/T]."""
-        return np.asarray(np.sqrt(self._squares / self.snapshots))
+        return np.asarray(np.sqrt(self.squares / self.snapshots))
 
     def distributions(self) -> Distributions:
         """Return the distributions of the velocities."""

@@ -19,6 +19,7 @@ from crazybilliards.apps.explore.plots import (
 from crazybilliards.comparison.fits import fit_growth
 from crazybilliards.kinetic.kinetic_equation.weak_damping import (
     weak_damping_critical_size,
+    weak_damping_growth_holds,
     weak_damping_growth_rate,
 )
 from crazybilliards.model import Chain
@@ -107,14 +108,7 @@ class Times:
             )
         elif found is not None:
             words += f"The energy grew like exp({found:.2g} t). "
-            expected = weak_damping_growth_rate(chain)
-            critical = weak_damping_critical_size(chain)
-            if expected > 0:
-                words += (
-                    f"Theory, for weak damping and rods much faster than noise makes them: "
-                    f"exp({expected:.2g} t). "
-                    f"To first order in e - 1 the critical size is {critical:.3g} rods. "
-                )
+            words += _theory_of_growth(chain)
         return words + "Lower e or L, raise γ, or press Reset to see it again."
 
     def _growth(self, kept: Array) -> float | None:
@@ -132,3 +126,18 @@ class Times:
         self.fitted.data = data
         for plot in (self.energy, self.log_energy):
             plot.legend.items[-1].visible = bool(data["time"])
+
+
+def _theory_of_growth(chain: Chain) -> str:
+    """Return the rate of growth that theory gives, or for which chains there is one."""
+    if not weak_damping_growth_holds(chain):
+        return (
+            "The theory of this growth is not meant for this chain: it needs weak damping, linear "
+            "springs, no gap, at least 30 rods, and e close to 1. "
+        )
+    return (
+        "Theory, for weak damping and rods much faster than noise makes them: "
+        f"exp({weak_damping_growth_rate(chain):.2g} t), which is right to 5 %. "
+        "To first order in e - 1 the critical size is "
+        f"{weak_damping_critical_size(chain):.3g} rods. "
+    )

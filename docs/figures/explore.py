@@ -19,7 +19,7 @@ from selenium.webdriver.support.ui import Select
 from crazybilliards.apps.explore.presets import PRESETS
 
 WIDTHS = {"wide": 1400, "middle": 1024, "phone": 390}
-SOLVED = "?size=100&restitution=0.95&amplitude=1&gap=0"
+SOLVED = "?size=100&restitution=0.95&amplitude=1&gap=0&damping=1"
 RUNS_AWAY = "?size=100&restitution=1.01&damping=0.4&amplitude=1&gap=0"
 INTERACTIVE = {
     "button",

@@ -10,6 +10,8 @@ from accessibility import audit, tabbed
 from browser import errors, show_as, until
 from chain_pictures import DOCS, page, written
 
+from crazybilliards.apps.explore.challenges import CHALLENGES, KICK, SENTENCE, TURNS_AT
+from crazybilliards.apps.explore.motion import COLOURS
 from crazybilliards.model import Chain
 
 FILES = sorted((DOCS / "chain").iterdir())
@@ -270,3 +272,19 @@ def test_the_profile_turns_between_two_dampings(browser, address):
     said = rows(browser, 1500)
     assert re.search(r"convex at \S+ = 2.5, concave at \S+ = 3.5", said)
     assert done(browser) == ["4 Convex or concave ✓"]
+
+
+def test_explore_has_the_same_sentence_challenges_and_colours(browser, address):
+    visit(browser, address, quiet=True)
+    told = browser.execute_script(
+        "return ChainChallenges.list.map(({title, ask, chain}) => [title, ask, chain])"
+    )
+    assert [each[:2] for each in told] == [[each.title, each.ask] for each in CHALLENGES]
+    assert [Chain(**each[2]) for each in told] == [each.chain for each in CHALLENGES]
+    assert browser.execute_script("return ChainCurves.turning.damping") == TURNS_AT
+    texts = [file.read_text(encoding="utf-8") for file in (DOCS / "chain.md", *FILES)]
+    assert SENTENCE in " ".join(texts[0].split())
+    everything = "".join(texts)
+    assert f"const KICK = {KICK:g};" in everything
+    for name, colour in zip(("left", "rest", "right"), COLOURS, strict=True):
+        assert f"--{name}: {' '.join(map(str, colour))};" in everything

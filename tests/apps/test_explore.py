@@ -40,7 +40,7 @@ def test_elastic_widths_are_those_of_a_free_rod():
     for seed in range(25):
         session = Session(chain, seed)
         session.advance(300.0)
-        measured = session.measured()
+        measured = session.observed()
         shares.append(float((measured.velocity_width**2).mean()) / chain.free_velocity_width**2)
         spacing = float(measured.x[1] - measured.x[0])
         assert float(measured.density.sum()) * spacing == pytest.approx(chain.size)
@@ -53,19 +53,25 @@ def test_parameters_change_while_the_rods_stay_where_they_are():
     chain = Chain(size=10)
     session = Session(chain)
     session.advance(100.0)
-    assert session.measured() is not None
+    assert session.settled
     positions, velocities, now = session.positions.copy(), session.v.copy(), session.time
     session.change(chain.replace(restitution=0.5, amplitude=2.0, gap=1.0))
     assert np.array_equal(session.positions, positions)
     assert np.array_equal(session.v, velocities)
     assert session.time == now
-    # The chain forgets what it was before it is measured.
-    assert session.measured() is None
+    # The chain forgets what it was before it is measured. What is seen until then is shown, too.
+    assert not session.settled
+    assert session.observed() is None
     session.advance(session.measured_from - session.time - 1.0)
-    assert session.measured() is None
+    assert not session.settled
+    assert session.observed() is not None
+    seen = session.sums
     session.advance(10.0)
+    # Nothing of that is measured.
+    assert session.sums is not seen
+    assert session.sums.snapshots < seen.snapshots
     assert 8.0 < session.measured_duration < 10.0
-    assert session.measured() is not None
+    assert session.settled
 
 
 def test_another_number_of_rods_starts_from_rest_off_restitution_one():
@@ -179,11 +185,11 @@ def test_a_rod_that_is_held_pushes_others_aside_and_nothing_is_measured():
         assert session.positions[3] == pytest.approx(10.0)
         assert (np.diff(session.positions) >= 2 - 1e-12).all()
     session.release()
-    assert session.measured() is None
+    assert not session.settled
     session.advance(0.5)
     assert session.positions[3] < 10.0
     session.advance(session.measured_from - session.time + 1.0)
-    assert session.measured() is not None
+    assert session.settled
 
 
 def test_a_rod_that_is_held_is_let_go_when_the_chain_changes_or_is_pushed():

@@ -8,12 +8,13 @@ import pytest
 from accessibility import audit, tabbed
 from browser import SOURCE, elements, press, show_as, texts, until, visit
 
-from crazybilliards.apps.explore.controls import HISTORIES, SPEEDS
+from crazybilliards.apps.explore.challenges import CHALLENGES
+from crazybilliards.apps.explore.controls import HISTORIES, MORE, SPEEDS
 from crazybilliards.apps.explore.setting import Setting
 
 FILTER = "return getComputedStyle(document.documentElement).filter"
 WIDE, NARROW = (1400, 1260), (390, 844)
-TAKES_LONG = "?size=300&restitution=0.5&amplitude=1&gap=0"
+TAKES_LONG = "?size=300&restitution=0.5&amplitude=1&gap=0&damping=1"
 RUNS_AWAY = "?size=100&restitution=1.01&damping=0.4&amplitude=1&gap=0"
 SAME_LINE = 5.0  # pixels by which boxes in lines one below the other may overlap
 # Panel announces other names of arguments, which the oldest version that we allow does not know.
@@ -83,7 +84,7 @@ def too_faint(colours):
 
 @pytest.mark.compiled
 @pytest.mark.parametrize("screen", [WIDE, NARROW], ids=["wide", "narrow"])
-@pytest.mark.parametrize("helped", [False, True], ids=["plain", "help"])
+@pytest.mark.parametrize("helped", [False, True], ids=["plain", "unfolded"])
 def test_no_serious_finding_of_axe(browser, address, screen, helped):
     """Axe knows of no filter: what it finds of colours in light mode is turned over for dark.
 
@@ -93,6 +94,9 @@ def test_no_serious_finding_of_axe(browser, address, screen, helped):
     visit(browser, address)
     details = settled(browser)
     browser.execute_script("arguments[0].open = arguments[1]", details, helped)
+    if helped and screen == NARROW:
+        press(browser, MORE)
+        until(lambda: elements(browser, "[aria-expanded=true]"))
     serious, colours = audit(browser)
     assert serious == []
     assert too_faint(colours) == []
@@ -129,14 +133,18 @@ def test_every_control_is_reached_by_tab_named_and_seen(browser, address):
     details = settled(browser)
     press(browser, "Pause")  # what moves may change the lines that texts take
     until(lambda: "Play" in texts(browser, "button"))
+    press(browser, MORE)
+    until(lambda: elements(browser, "[aria-expanded=true]"))
     browser.execute_script("arguments[0].open = true; scrollTo(0, 0)", details)
     reached = tabbed(browser)
     names = [each.accessible_name for each, *_ in reached]
     fields = [name for each in sliders() for name in (f"{each}, as a number", each)]
-    expected = ["Play", "Step", "Reset", "Push the left end"]
+    expected = [f"{number} {each.title}" for number, each in enumerate(CHALLENGES, 1)]
+    expected += ["Play", "Step", "Reset", "Push the left end"]
     expected += [f"speed {speed:g} T per second" for speed in SPEEDS]
-    expected += ["figure of the paper", *fields, "spring", "Solve the kinetic equation"]
-    expected += ["measured", "in time", "Help: the model, the controls, further reading"]
+    expected += [*fields[:6], MORE, "what the paper's figures show", *fields[6:], "spring"]
+    expected += ["Solve the kinetic equation", "measured", "in time"]
+    expected += ["Help: the model, the controls, further reading"]
     assert names[: len(expected)] == expected
     links = reached[len(expected) :]
     assert all(each.tag_name == "a" and each.accessible_name for each, *_ in links)
@@ -154,9 +162,9 @@ def test_keys_alone_change_numbers_lists_and_speed(browser, address):
     show_as(browser, *WIDE)
     visit(browser, address)
     settled(browser)
-    elements(browser, "input.bk-input")[0].send_keys(Keys.ARROW_UP)
+    elements(browser, "input.bk-input")[1].send_keys(Keys.ARROW_UP)
     until(lambda: "size=21" in browser.current_url)
-    elements(browser, ".noUi-handle")[1].send_keys(Keys.ARROW_LEFT)
+    elements(browser, ".noUi-handle")[0].send_keys(Keys.ARROW_LEFT)
     until(lambda: "restitution=0.99" in browser.current_url)
     [button] = [each for each in elements(browser, "button") if each.text == "0.02"]
     button.send_keys(Keys.SPACE)

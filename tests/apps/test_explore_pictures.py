@@ -10,6 +10,7 @@ from panel.links import Callback
 from crazybilliards.apps.explore.density import Density
 from crazybilliards.apps.explore.motion import Rods
 from crazybilliards.apps.explore.page import Page
+from crazybilliards.apps.explore.plots import BLACK, GREY
 from crazybilliards.apps.explore.presets import PRESETS
 from crazybilliards.comparison.coverage import smooth
 from crazybilliards.kinetic import force_balance
@@ -30,10 +31,10 @@ def page():
 def test_why_a_chain_ran_away_is_not_replaced_by_a_refusal_of_the_theory(page):
     page.session.diverged = True
     page.controls.say("The chain runs away.")
-    page._show_theories(page.session.chain, ValueError("no steady state"))
+    page._solving.show(page.session.chain, ValueError("no steady state"))
     assert "The chain runs away." in page.controls.message.object
     page.session.diverged = False
-    page._show_theories(page.session.chain, ValueError("no steady state"))
+    page._solving.show(page.session.chain, ValueError("no steady state"))
     assert "No theory for this chain: no steady state" in page.controls.message.object
 
 
@@ -88,3 +89,33 @@ def test_panel_keeps_nothing_of_a_page_that_is_closed(page):
     assert fields & set(Callback.registry)
     page._close(None)
     assert not fields & set(Callback.registry)
+
+
+@pytest.mark.parametrize("quantity", ["widths", "velocities"])
+def test_what_is_seen_before_a_chain_has_settled_is_grey(page, quantity):
+    page.setting.restitution = 0.5
+    page.controls.quantity.value = quantity
+    pictures, panel = page.pictures, page.pictures.panels[quantity]
+
+    def shown(plot):
+        simulated = [each for each in plot.renderers if each.name == "simulation"]
+        labels = [each.label.value for each in plot.legend.items]
+        return {each.glyph.line_color for each in simulated}, labels
+
+    page._advance(10.0)
+    page._keep(0.0, 0)
+    page._draw()
+    assert not page.session.settled
+    for picture in (pictures.density, panel):
+        assert all(len(values) for values in picture.measured.data.values())
+        colours, labels = shown(picture.plot)
+        assert colours == {GREY}
+        assert labels[0].endswith(", settling")
+    page.session.advance(page.session.measured_from - page.session.time + 50.0)
+    page._keep(0.0, 0)
+    page._draw()
+    for picture in (pictures.density, panel):
+        colours, labels = shown(picture.plot)
+        assert BLACK in colours
+        assert GREY not in colours
+        assert not labels[0].endswith(", settling")

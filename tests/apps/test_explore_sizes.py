@@ -34,7 +34,7 @@ def test_points_stay_while_only_the_number_of_rods_changes():
         session = Session(chain)
         panel.begin(chain)
         session.advance(200.0)
-        panel.show(session, session.measured())
+        panel.show(session, session.observed())
     assert panel.measured.data["size"] == [5, 10]
     assert all(0 < width < 1 for width in panel.measured.data["width"])
     assert panel.limit.data["size"] == []  # of e = 0 only
@@ -55,7 +55,7 @@ def measured(panel, session, relaxations):
     already = session.measured_duration / relaxation_time(session.chain)
     begins = max(session.measured_from - session.time, 0.0)
     session.advance(begins + (relaxations - already) * relaxation_time(session.chain))
-    panel.show(session, session.measured())
+    panel.show(session, session.observed())
     return panel.measured.data
 
 
@@ -85,7 +85,7 @@ def test_a_chain_that_has_run_away_has_no_point():
     session.advance(1e4)
     assert session.diverged
     pictures.show_divergence(session)
-    pictures.sizes.show(session, session.measured())
+    pictures.sizes.show(session, session.observed())
     assert pictures.sizes.measured.data["size"] == []
 
 
