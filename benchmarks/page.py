@@ -2,7 +2,7 @@
 
     PYTHONPATH=docs/figures python benchmarks/page.py
 
-Frames a second at L = 100, and how long it takes from a number typed to the new theory, are
+Frames a second, and how long it takes from a number typed to the new theory, are
 counted in a headless Chromium. Memory is that of the server: after a first round of pages, which
 loads what is loaded once, by how much it grows when as many are opened and closed again. The
 allocator of the C library makes it vary by 30 MB from round to round, hence several rounds.
@@ -11,6 +11,7 @@ allocator of the C library makes it vary by 30 MB from round to round, hence sev
 import asyncio
 import re
 import time
+from itertools import product
 from pathlib import Path
 from urllib.request import urlopen
 
@@ -20,6 +21,7 @@ from selenium.webdriver.common.keys import Keys
 from tornado.httpclient import HTTPRequest
 from tornado.websocket import websocket_connect
 
+SIZES = (100, 300, 1000)
 PAGES, ROUNDS = 50, 5
 THEORIES = ["balance density", "exact density"]  # in the order in which they arrive
 AMPLITUDES = ("3", "5", "8", "10", "12", "7", "9")
@@ -85,12 +87,13 @@ def memory(server: Server) -> float:
 
 def main() -> None:
     with served() as address, chromium() as browser:
-        visit(browser, address, "?size=100&amplitude=1&gap=0&damping=1")
-        until(lambda: column(browser, "exact density", "x"))
-        for speed in ("30", "3"):
+        for size, speed in product(SIZES, ("30", "3")):
+            visit(browser, address, f"?size={size}&amplitude=1&gap=0&damping=1")
+            until(lambda: column(browser, "exact density", "x"))
             press(browser, speed)
             time.sleep(3)
-            print(f"{speed} T per second: {frames(browser):.1f} frames a second", flush=True)
+            shown = frames(browser)
+            print(f"{size} rods, {speed} T per second: {shown:.1f} frames a second", flush=True)
             found = [reaction(browser, amplitude) for amplitude in AMPLITUDES]
             balance, exact = np.median(found, axis=0)
             print(

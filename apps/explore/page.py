@@ -2,11 +2,15 @@
 
 In every frame the session advances by the elapsed time times the chosen speed, within a limit on
 computing time, so that the page stays responsive. The measurements are redrawn every few frames.
+A frame begins with what the user did and what other threads found since the last one.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from concurrent.futures import Executor
+from functools import partial
+from queue import SimpleQueue
 from threading import Lock
 from time import perf_counter
 from typing import Any
@@ -50,9 +54,13 @@ class Page:
         self._rows: list[tuple[float, float, float]] = []
         self._frames, self._owed_rows = 0, 0.0
         self._last, self._drawn = perf_counter(), (perf_counter(), 0.0)
-        self._solving = Solving(self.controls, self.pictures, self.session, threads, turn)
+        self._due: SimpleQueue[Callable[[], None]] = SimpleQueue()
+        self._reacting = False
+        self._solving = Solving(
+            self.controls, self.pictures, self.session, threads, turn, self._due.put
+        )
         self._listen()
-        self._judging = Judging(self.controls, self._start_anew)
+        self._judging = Judging(self.controls, self._in_a_frame(self._start_anew))
         self._set_pace()
         self._begin()
         self._judging.show(self.session)
@@ -66,17 +74,40 @@ class Page:
         draw_first(self.session, self.pictures.rods)
         return arrange(self.controls, self.pictures)
 
+    def react(self) -> None:
+        """Do what was asked for since the last frame, by the user and by other threads."""
+        self._reacting = True
+        try:
+            while not self._due.empty():
+                self._due.get()()
+        finally:
+            self._reacting = False
+
+    def _in_a_frame(self, do: Callable[..., None]) -> Callable[..., None]:
+        """Return what does this in the next frame, or at once if a frame asks for it.
+
+        Pictures can only be changed with the lock of Bokeh's document. A frame has it. Panel calls
+        without it if a user does two things at nearly the same time.
+        """
+
+        def asked(*events: Any) -> None:
+            if self._reacting:
+                do(*events)
+            else:
+                self._due.put(partial(do, *events))
+
+        return asked
+
     def _listen(self) -> None:
-        controls = self.controls
-        self.setting.param.watch(self._changed, self.setting.parameters())
-        controls.preset.param.watch(self._take_preset, "value")
-        controls.speed.param.watch(self._set_pace, "value")
-        controls.quantity.param.watch(self._set_pace, "value")
-        controls.history.param.watch(self._set_pace, "value")
-        controls.step.on_click(self._step)
-        controls.reset.on_click(self._restart)
-        controls.push.on_click(self._push)
-        controls.solve.on_click(self._solving.ask)
+        controls, locked = self.controls, self._in_a_frame
+        self.setting.param.watch(locked(self._changed), self.setting.parameters())
+        controls.preset.param.watch(locked(self._take_preset), "value")
+        for widget in (controls.speed, controls.quantity, controls.history):
+            widget.param.watch(locked(self._set_pace), "value")
+        controls.step.on_click(locked(self._step))
+        controls.reset.on_click(locked(self._restart))
+        controls.push.on_click(locked(self._push))
+        controls.solve.on_click(locked(self._solving.ask))
 
     def _close(self, context: Any) -> None:
         self._solving.cancel()
@@ -88,7 +119,7 @@ class Page:
         if self._document.session_context.session.connection_count == 0:
             self._solving.cancel()
             return  # the browser has closed the page
-        self._solving.take_arrived()
+        self.react()
         now = perf_counter()
         elapsed, self._last = min(now - self._last, _LONGEST), now
         self._frames += 1

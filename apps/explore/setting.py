@@ -18,7 +18,7 @@ class Setting(param.Parameterized):
     """The parameters of the chain, named as those of :class:`crazybilliards.model.Chain`."""
 
     # The defaults are the chain of the first challenge, whose collisions are visible.
-    size = param.Integer(20, bounds=(2, 300))
+    size = param.Integer(20, bounds=(2, 1000))
     restitution = param.Number(1.0, bounds=(0.0, 1.1))
     amplitude = param.Number(1.0, bounds=(0.1, 30.0))
     damping = param.Number(0.3, bounds=(0.1, 20.0))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from concurrent.futures import Executor
-from queue import SimpleQueue
 from threading import Lock
 from typing import Any
 
@@ -26,7 +25,8 @@ class Solving:
     """Theories of the session's chain.
 
     At e = 1 the densities appear by themselves, computed by ``threads``. The kinetic equation is
-    solved in a separate process, one at a time for all pages that share ``turn``.
+    solved in a separate process, one at a time for all pages that share ``turn``. What the threads
+    have found is shown by calls that they hand to ``arrived``.
     """
 
     def __init__(
@@ -36,12 +36,12 @@ class Solving:
         session: Session,
         threads: Executor,
         turn: Lock,
+        arrived: Callable[[Callable[[], None]], None],
     ) -> None:
         self._controls, self._pictures, self._session = controls, pictures, session
-        self._arrived: SimpleQueue[Callable[[], None]] = SimpleQueue()  # from other threads
         self._notes: dict[str, str] = {}
         self._elastic = [
-            Background(threads, job, self.show, self._arrived.put)
+            Background(threads, job, self.show, arrived)
             for job in (balance_density, exact_density)  # the faster one first
         ]
         self._kinetic = Solver(kinetic_density, turn)
@@ -75,11 +75,6 @@ class Solving:
         else:
             self._kinetic.ask(self._session.chain)
             self._controls.show_solving(0.0)
-
-    def take_arrived(self) -> None:
-        """Show what has arrived from other threads."""
-        while not self._arrived.empty():
-            self._arrived.get()()
 
     def poll(self) -> None:
         """Show the solution of the kinetic equation once it is there."""

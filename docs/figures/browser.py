@@ -122,10 +122,13 @@ def texts(browser: Any, selector: str) -> list[str]:
     return list(browser.execute_script(_with_found("found.map(said)"), selector))
 
 
-def press(browser: Any, name: str) -> None:
-    """Press the button whose name begins like this."""
-    script = "found.find(each => each.innerText.trim().startsWith(arguments[1])).click()"
-    browser.execute_script(_with_found(script), "button", name)
+def press(browser: Any, *names: str) -> None:
+    """Press the buttons of these names, or whose names begin like these, one after another."""
+    script = """[...arguments].slice(1).forEach(name => (
+      found.find(each => each.innerText.trim() === name) ??
+      found.find(each => each.innerText.trim().startsWith(name))
+    ).click())"""
+    browser.execute_script(_with_found(script), "button", *names)
 
 
 def _with_found(expression: str) -> str:

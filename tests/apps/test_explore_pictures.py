@@ -54,8 +54,10 @@ def test_a_preset_without_a_steady_state_is_shown_from_its_start_with_its_energy
     page.controls.history.value = "rate"
     page.session.time = 1.0
     page.setting.take(preset.chain)
+    page.react()
     page.session.time = 1.0
     page.controls.preset.value = preset.label
+    page.react()
     assert page.controls.history.value == ("rate" if preset.steady else "energy")
     assert page.session.time == (1.0 if preset.steady else 0.0)
     # These are the presets of figure 15, whose chains run away.
@@ -95,6 +97,7 @@ def test_panel_keeps_nothing_of_a_page_that_is_closed(page):
 def test_what_is_seen_before_a_chain_has_settled_is_grey(page, quantity):
     page.setting.restitution = 0.5
     page.controls.quantity.value = quantity
+    page.react()
     pictures, panel = page.pictures, page.pictures.panels[quantity]
 
     def shown(plot):

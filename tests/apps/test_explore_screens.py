@@ -124,9 +124,9 @@ def test_a_challenge_sets_its_chain_and_says_what_was_found(browser, address):
 def test_a_push_in_fast_motion_is_shown_in_slow_motion(browser, address):
     show_as(browser, *WIDE)
     visit(browser, address)
-    press(browser, "300")
     until(lambda: "measured for" in " ".join(texts(browser, ".progress")))
-    press(browser, "Push the left end")
+    # Both at nearly the same time: Panel then calls without the lock of the document.
+    press(browser, "300", "Push the left end")
     until(lambda: "e = 1: 1 of 1 arrived" in look(browser))
     [slow] = [each for each in elements(browser, "button") if each.text == "3"]
     assert "bk-active" in slow.get_attribute("class")
