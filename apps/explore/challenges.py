@@ -94,7 +94,7 @@ class PushJudge(Judge):
     def _say(self, e: float) -> str:
         found = self._found[e]
         if not found:
-            return f"e = {e:g}: not yet pushed."
+            return f"e = {e:g}: no push has ended yet."
         arrived = sum(v >= ARRIVED for v in found)
         return (
             f"e = {e:g}: {arrived} of {len(found)} arrived; the last rod reached {found[-1]:.1f} W."

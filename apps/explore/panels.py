@@ -144,7 +144,7 @@ class Avalanches:
             _HEIGHT,
             x_axis_type="log",
             y_axis_type="log",
-            x_range=Range1d(0.8, 300),
+            x_range=Range1d(0.8, 1000),
             y_range=Range1d(1e-6, 2),
             x_axis_label="collisions triggered N (log)",
             y_axis_label="probability p(N)",
@@ -161,7 +161,7 @@ class Avalanches:
         """Show only the paper's power law, which it states for e = 0."""
         self.measured.data = {"size": [], "p": []}
         stated = chain.restitution == 0
-        size = np.array([1.0, 300.0] if stated else [])
+        size = np.array([1.0, 1000.0] if stated else [])
         self.paper.data = {"size": size, "p": 0.6 * size**_PAPERS_EXPONENT}
         self._item.visible = stated
 

@@ -40,7 +40,7 @@ const ChainChallenges = (() => {
       for (const each of done) this.pushes[each.restitution]?.push(each.fastest);
       const say = (e) => {
         const all = this.pushes[e], arrived = all.filter((fastest) => fastest >= ARRIVED).length;
-        if (!all.length) return `e = ${e}: not yet pushed.`;
+        if (!all.length) return `e = ${e}: no push has ended yet.`;
         return `e = ${e}: ${arrived} of ${all.length} arrived; the last rod reached ` +
           `${all[all.length - 1].toFixed(1)}\u00a0W.`;
       };

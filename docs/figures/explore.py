@@ -127,10 +127,12 @@ def main(folder: Path, *names: str) -> None:
     """Take the pictures, all or those named, and check the names of the controls."""
     with served() as address, chromium() as browser:
         album = Album(browser, address, folder)
-        for name, look in looks(album).items():
-            if not names or name in names:
-                look()
-                album.keep(name)
+        known = looks(album)
+        if unknown := set(names) - set(known):
+            raise SystemExit(f"no picture {', '.join(unknown)}; there are {', '.join(known)}")
+        for name in names or known:
+            known[name]()
+            album.keep(name)
         album.open()
         time.sleep(3)
         controls = named(browser)

@@ -48,7 +48,10 @@ def test_the_page_begins_with_the_first_challenge_and_takes_all_of_them():
 @pytest.mark.compiled
 def test_a_push_arrives_at_restitution_one_and_not_at_nine_tenths():
     judge = PushJudge()
-    assert "e = 1: not yet pushed. e = 0.9: not yet pushed." in judge.verdict(Session(PUSH)).said
+    assert (
+        "e = 1: no push has ended yet. e = 0.9: no push has ended yet."
+        in judge.verdict(Session(PUSH)).said
+    )
     elastic = pushed(judge, 1.0, 1)
     assert "e = 1: 1 of 1 arrived" in elastic.said
     assert not elastic.done
@@ -62,7 +65,7 @@ def test_a_push_is_forgotten_when_the_chain_changes_before_it_arrives():
     judge.pushed(session)
     session.v[-1] = 2 * ARRIVED * session.chain.free_velocity_width
     session.change(PUSH.replace(damping=1.0))
-    assert "e = 1: not yet pushed" in run(session, judge, 30.0).said
+    assert "e = 1: no push has ended yet" in run(session, judge, 30.0).said
 
 
 @pytest.mark.compiled
