@@ -135,8 +135,9 @@ def require_sound(result):
     if not isinstance(result, xr.Dataset) or result.attrs.get("status") == "interrupted":
         return
     for name, values in result.variables.items():
-        if str(name).startswith("velocity_covariance"):  # NaN where i + r lies beyond the chain
-            inside = result.particle + result.separation <= chain_of(result).size
+        if "separation" in values.dims:  # NaN where the second rod or contact is beyond the chain
+            [first] = {"particle", "contact"} & set(values.dims)
+            inside = result[first] + result.separation <= result[first].size
             values = result[name].where(inside, 0.0).variable
         if str(name).endswith("_error"):  # infinite where nothing is known
             assert not np.isnan(values).any(), name

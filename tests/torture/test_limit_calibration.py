@@ -3,7 +3,11 @@
 100 independent limits of 30 rods at e = 0 against one long run at a quarter of the default step,
 which is off by less than 0.05 % and whose errors are a seventh of theirs. For every quantity the
 share of values within one of its own errors is counted over runs and rods, nodes or bins. The error
-of that share is at most 4.7 %.
+of that share is taken from its scatter between runs; for a single number it is 4.7 %.
+
+An error includes the bias that is expected. Where that is half of the squared error and the bias
+itself is zero, 84 % of the values lie within one error. Halved errors fail the test, and so do
+doubled ones.
 """
 
 import json
@@ -17,7 +21,8 @@ from crazybilliards.particles import simulate, simulate_limit
 from crazybilliards.particles.scales import default_time_step
 
 RUNS = 100
-SHARE, TOLERANCE = 0.68, 0.08
+SHARE, SHARE_WITHOUT_BIAS = 0.68, 0.84
+LEAST_KNOWN = 0.8  # of the bins in the mean: few visits to a bin, and no error is stated
 CHAIN = Chain(size=30, restitution=0)
 OBSERVE = ("widths", "density", "velocities", "energy")
 
@@ -56,19 +61,26 @@ def reference():
 
 def test_a_limit_lies_within_its_error_as_often_as_it_should():
     values, looked_at = reference()
-    inside, coupled = {}, 0
+    inside, stated, coupled = {}, {}, 0
     for seed in range(RUNS):
         limit = simulate_limit(
             CHAIN, accuracy=0.01, observe=OBSERVE, seed=600 + seed, progress=False
         )
         coupled += len(json.loads(limit.attrs["provenance"])["levels"]) > 1
         for name, value in values.items():
-            within = np.abs(limit[name].values - value) <= limit[f"{name}_error"].values
-            inside.setdefault(name, []).append(within[looked_at[name]].mean())
-    found = {name: float(np.mean(each)) for name, each in inside.items()}
-    print(coupled, {name: f"{share:.3f}" for name, share in found.items()})
-    for name, share in found.items():
-        assert share == pytest.approx(SHARE, abs=TOLERANCE), name
+            errors = limit[f"{name}_error"].values
+            known = looked_at[name] & ~np.isnan(errors)
+            within = np.abs(limit[name].values - value) <= errors
+            inside.setdefault(name, []).append(within[known].mean())
+            stated.setdefault(name, []).append(known.sum() / looked_at[name].sum())
+    found = {
+        name: (float(np.mean(each)), float(np.std(each) / np.sqrt(RUNS)))
+        for name, each in inside.items()
+    }
+    print(coupled, {name: f"{share:.3f} +- {error:.3f}" for name, (share, error) in found.items()})
+    for name, (share, error) in found.items():
+        assert np.mean(stated[name]) > LEAST_KNOWN, name
+        assert SHARE - 5 * error < share < SHARE_WITHOUT_BIAS + 5 * error, name
 
 
 @pytest.mark.parametrize("accuracy", [0.1, 0.03])
