@@ -75,7 +75,7 @@ plt.show()
 # force times $\sqrt{\text{time}}$.
 #
 # **How fast, and how far?** Three averages answer both questions. During a short time $dt$ the
-# noise changes the velocity by $\frac{A}{m}\sqrt{dt}\,\xi$, where $\xi$ is a Gaussian number of
+# noise changes the velocity by $\frac{A}{m}\sqrt{dt}\,\zeta$, where $\zeta$ is a Gaussian number of
 # variance 1. On average this adds $\frac{A^2}{m^2}dt$ to $v^2$. Therefore
 #
 # $$\frac{d}{dt}\langle x^2\rangle = 2\langle xv\rangle,\qquad
@@ -130,8 +130,9 @@ for name, one in variants.items():
 # ## 2. The Fokker-Planck equation
 #
 # The widths do not describe the whole distribution. Imagine very many copies of the rod. Their
-# density $f(x, v, t)$ in phase space is carried along by velocity and force. The random kicks make
-# it diffuse in $v$:
+# density $f(x, v, t)$ in phase space is carried along by velocity and force, and the random kicks
+# make it diffuse in $v$. In $dt$ the kicks change $v$ by a random amount of mean square
+# $(A/m)^2dt$. A diffusion constant is half the mean square per time, here $A^2/2m^2$:
 #
 # $$\partial_t f + v\,\partial_x f - \frac{k}{m}x\,\partial_v f
 # = \partial_v\!\left[\frac{\gamma}{m}v f + \frac{A^2}{2m^2}\,\partial_v f\right].$$
@@ -155,6 +156,7 @@ for name, one in variants.items():
 # %%
 long = cb.simulate(chain, duration=200_000, every=1, observe="snapshots", seed=2, progress=False)
 x, v = long.position.values[0, :, 0], long.velocity.values[0, :, 0]
+k, m, gamma, A = chain.stiffness, chain.mass, chain.damping, chain.amplitude
 W, s = chain.free_velocity_width, chain.thermal_length
 
 # %% tags=["hide-input"]
@@ -211,26 +213,25 @@ for name, (values, theory) in moments.items():
 #
 # Write the equation as a system for the pair $z=(x,v)$,
 #
-# $$\dot z = \mathsf M z + \text{noise},\qquad
-# \mathsf M=\begin{pmatrix}0&1\\-k/m&-\gamma/m\end{pmatrix}.$$
+# $$\dot z = \mathsf G z + \text{noise},\qquad
+# \mathsf G=\begin{pmatrix}0&1\\-k/m&-\gamma/m\end{pmatrix}.$$
 #
 # The system is linear, so the noise does not change the mean: $\langle z(t)\rangle = e^{\mathsf
-# Mt}z(0)$. With $\beta=\gamma/2m$ and $\Omega=\sqrt{k/m-\beta^2}$ the eigenvalues of $\mathsf M$
+# Gt}z(0)$. With $\beta=\gamma/2m$ and $\Omega=\sqrt{k/m-\beta^2}$ the eigenvalues of $\mathsf G$
 # are $-\beta\pm i\Omega$, which is a damped swing. The covariance matrix $\mathsf C$ of $(x,v)$
-# obeys $\dot{\mathsf C}=\mathsf{MC}+\mathsf{CM}^{\mathsf T}+\mathsf D$, where $\mathsf D$ has only
-# the entry $A^2/m^2$ for $v$. These are the three equations of section 1. If all copies start from
-# one point, then
+# obeys $\dot{\mathsf C}=\mathsf{GC}+\mathsf{CG}^\top+\mathsf D$, where $\mathsf D$ has only the
+# entry $A^2/m^2$ for $v$. These are the three equations of section 1. If all copies start from one
+# point, then
 #
-# $$\mathsf C(t)=\mathsf C_\infty-e^{\mathsf Mt}\,\mathsf C_\infty\,e^{\mathsf M^{\mathsf T}t}.$$
+# $$\mathsf C(t)=\mathsf C_\infty-e^{\mathsf Gt}\,\mathsf C_\infty\,e^{\mathsf G^\top t}.$$
 #
 # To check this, insert it into the equation; it is zero at $t=0$. A Gaussian stays a Gaussian, so
 # mean and covariance are the full solution of Kramers' equation.
 
 # %%
-k, m, gamma, A = chain.stiffness, chain.mass, chain.damping, chain.amplitude
-M = np.array([[0, 1], [-k / m, -gamma / m]])
+G = np.array([[0, 1], [-k / m, -gamma / m]])
 D = np.diag([0, A**2 / m**2])
-C_infinity = solve_continuous_lyapunov(M, -D)  # solves M C + C M^T = -D
+C_infinity = solve_continuous_lyapunov(G, -D)  # solves G C + C G^T = -D
 beta = gamma / (2 * m)
 Omega = np.sqrt(k / m - beta**2)
 remaining = np.exp(-2 * np.pi * beta / Omega)
@@ -263,7 +264,7 @@ cloud = cb.simulate(
 # %%
 t = cloud.time.values
 z = np.stack([cloud.position.values[:, :, 0], cloud.velocity.values[:, :, 0]])  # (2, copies, times)
-E = np.array([expm(M * time) for time in t])
+E = np.array([expm(G * time) for time in t])
 mean = E @ np.array([4 * s, 0])
 covariance = C_infinity - E @ C_infinity @ E.transpose(0, 2, 1)
 
@@ -275,7 +276,7 @@ for place, colour in ((2, ORANGE), (4, GREEN), (8, PINK), (40, BLUE)):
     ellipse = mean[place][:, None] + np.linalg.cholesky(covariance[place]) @ circle
     name = f"t = {t[place]:.1f} T"
     ax.plot(ellipse[0] / s, ellipse[1] / W, color=colour, linewidth=2, label=name)
-way = np.array([expm(M * time) @ [4 * s, 0] for time in np.linspace(0, 66, 500)])
+way = np.array([expm(G * time) @ [4 * s, 0] for time in np.linspace(0, 66, 500)])
 ax.plot(way[:, 0] / s, way[:, 1] / W, "k--", linewidth=1, label="mean, theory")
 ax.plot(4, 0, "kx", label="start")
 ax.set(xlabel="x / s", ylabel="v / W", aspect="equal")
@@ -289,7 +290,7 @@ agree("variances", measured / variances, 1, np.sqrt(2 / (copies - 1)))  # of a G
 # %% [markdown]
 # <details><summary>Explain</summary>
 #
-# The cloud is carried along the spiral $e^{\mathsf Mt}z(0)$ and widens on the way. It first widens
+# The cloud is carried along the spiral $e^{\mathsf Gt}z(0)$ and widens on the way. It first widens
 # in $v$, where the noise acts. The swing then turns this width into a width in $x$. At the end the
 # cloud does not depend on the start: the ellipse has become the circle of section 2.
 #
@@ -297,9 +298,9 @@ agree("variances", measured / variances, 1, np.sqrt(2 / (copies - 1)))  # of a G
 #
 # **The same matrix describes how the *steady* motion forgets.** Choose the moments at which the
 # steady rod has the velocity $v_0$. Its position then has mean zero, so from there on its mean
-# velocity is $(e^{\mathsf Mt})_{vv}v_0$. Multiply by $v_0$ and average:
+# velocity is $(e^{\mathsf Gt})_{vv}v_0$. Multiply by $v_0$ and average:
 #
-# $$\frac{\langle v(0)\,v(t)\rangle}{W^2} = (e^{\mathsf Mt})_{vv}
+# $$\frac{\langle v(0)\,v(t)\rangle}{W^2} = (e^{\mathsf Gt})_{vv}
 # = e^{-\beta t}\left(\cos\Omega t-\frac\beta\Omega\sin\Omega t\right).$$
 #
 # This is Onsager's regression: on average a spontaneous fluctuation decays as a push by hand does.
@@ -314,14 +315,14 @@ def correlation(values, most):
 blocks = [correlation(block, 40) for block in np.array_split(v, 50)]  # snapshots are 1 T apart
 measured, error = mean_and_error(np.array(blocks) / W**2)
 lag = np.arange(41.0)
-theory = [expm(M * time)[1, 1] for time in lag]
+theory = [expm(G * time)[1, 1] for time in lag]
 agree("correlation of velocities", measured, theory, error)
 
 # %% tags=["hide-input"]
 fine = np.linspace(0, 40, 400)
 curve = np.exp(-beta * fine) * (np.cos(Omega * fine) - beta / Omega * np.sin(Omega * fine))
 ax = panels(width=7, height=3)
-ax.plot(fine, curve, color=ORANGE, linewidth=2, label=r"$(e^{\mathsf{M}t})_{vv}$")
+ax.plot(fine, curve, color=ORANGE, linewidth=2, label=r"$(e^{\mathsf{G}t})_{vv}$")
 ax.errorbar(lag, measured, error, fmt="o", color="black", markersize=3, label="simulation")
 ax.axhline(0, color="0.7", linewidth=0.8)
 ax.set(xlabel="time t [T]", ylabel=r"$\langle v(0)\,v(t)\rangle\,/\,W^2$", xlim=(-0.5, 40.5))
@@ -338,14 +339,14 @@ assert np.allclose(closed_form, theory)
 # Euler's scheme keeps all forces constant during a step $\Delta t$. The velocity changes first. The
 # new velocity then moves the rod. The paper uses Euler's scheme too, without saying which of the two
 # velocities moves the rod. The random kicks of a step add up like a random walk, so the noise
-# contributes $\frac Am\sqrt{\Delta t}\,\xi$, which is *not* proportional to $\Delta t$.
+# contributes $\frac Am\sqrt{\Delta t}\,\zeta$, which is *not* proportional to $\Delta t$.
 #
-# **Your turn.** Write one step. `xi` is a Gaussian number of variance 1.
+# **Your turn.** Write one step. `zeta` is a Gaussian number of variance 1.
 
 
 # %% tags=["remove-cell"]
-def euler_step(x, v, dt, xi):
-    v = v + dt / m * (-k * x - gamma * v) + A / m * np.sqrt(dt) * xi
+def euler_step(x, v, dt, zeta):
+    v = v + dt / m * (-k * x - gamma * v) + A / m * np.sqrt(dt) * zeta
     return x + dt * v, v
 
 
@@ -353,7 +354,7 @@ states = [(1.0, 0.0, 0.1, 0.0), (0.0, 1.0, 0.1, 0.0), (0.0, 0.0, 0.1, 1.0), (1.0
 
 
 # %%
-def my_step(x, v, dt, xi):
+def my_step(x, v, dt, zeta):
     return ...  # your code here: the new x and the new v
 
 
@@ -363,21 +364,21 @@ check(my_step, euler_step, at=states, hint="The noise grows like sqrt(dt); move 
 # <details><summary>Solution</summary>
 #
 # ```python
-# def my_step(x, v, dt, xi):
-#     v = v + dt / m * (-k * x - gamma * v) + A / m * np.sqrt(dt) * xi
+# def my_step(x, v, dt, zeta):
+#     v = v + dt / m * (-k * x - gamma * v) + A / m * np.sqrt(dt) * zeta
 #     return x + dt * v, v
 # ```
 #
 # </details>
 #
-# **Predict.** A swing takes 13 time units. Is $\Delta t = 1$ short enough? By how much will
-# $\langle v^2\rangle$ be wrong?
+# **Predict.** A swing takes $2\pi/\Omega \approx 13$ time units (section 3). Is $\Delta t = 1$
+# short enough? By how much will $\langle v^2\rangle$ be wrong?
 #
-# **Run.**
+# **Run.** The code calls `euler_step`, which is the step of the solution above.
 
 # %% tags=["remove-cell"]
-x_then, v_then, dt, xi = states[-1]
-v_now = v_then + A / m * np.sqrt(dt) * xi - dt / m * (k * x_then + gamma * v_then)
+x_then, v_then, dt, zeta = states[-1]
+v_now = v_then + A / m * np.sqrt(dt) * zeta - dt / m * (k * x_then + gamma * v_then)
 assert right(euler_step(*states[-1]), (x_then + dt * v_now, v_now))
 assert not right(lambda *state: euler_step(*state)[::-1], euler_step, at=states)
 
@@ -405,10 +406,10 @@ for dt in (1, 0.5, 0.25):
 # </details>
 #
 # The statistical noise hides smaller errors. They can be computed without any noise. One step is a
-# linear map, $z' = \mathsf B z + \mathsf b\,\xi$, so the covariance matrix that it leaves unchanged
-# solves
+# linear map, $z' = \mathsf B z + \mathsf b\,\zeta$, so the covariance matrix that it leaves
+# unchanged solves
 #
-# $$\mathsf C = \mathsf{BCB}^{\mathsf T}+\mathsf{bb}^{\mathsf T},$$
+# $$\mathsf C = \mathsf{BCB}^\top+\mathsf{bb}^\top,$$
 #
 # a *discrete Lyapunov equation*.
 
@@ -454,7 +455,7 @@ assert np.isclose(C[0, 1], 0.1 / 2 * C[1, 1])
 # velocity by $c=e^{-\gamma\Delta t/m}$. The kicks of the noise add up to a Gaussian number of mean
 # 0. Its width $\sigma$ does not depend on $v$, so the velocity after the step is
 #
-# $$v' = c\,v + \sigma\,\xi .$$
+# $$v' = c\,v + \sigma\,\zeta .$$
 #
 # **Your turn.** Write this step so that it is exact, however long $\Delta t$ is. To find $\sigma$,
 # use that friction and noise alone have a steady state too: velocities that have the width $W$
@@ -462,9 +463,9 @@ assert np.isclose(C[0, 1], 0.1 / 2 * C[1, 1])
 
 
 # %% tags=["remove-cell"]
-def friction_and_noise(v, dt, xi):
+def friction_and_noise(v, dt, zeta):
     c = np.exp(-gamma * dt / m)
-    return c * v + W * np.sqrt(1 - c**2) * xi
+    return c * v + W * np.sqrt(1 - c**2) * zeta
 
 
 pushes = [(1.0, 0.5, 0.0), (0.0, 0.5, 1.0), (-0.4, 8.0, 0.7)]
@@ -473,11 +474,11 @@ assert np.isclose(friction_and_noise(0, 1e-9, 1), A / m * np.sqrt(1e-9))
 c, kick = friction_and_noise(1, 0.3, 0), friction_and_noise(0, 0.3, 1)
 assert right(friction_and_noise(1, 0.6, 0), c**2)
 assert right(friction_and_noise(0, 0.6, 1), kick * np.sqrt(1 + c**2))
-assert not right(lambda v, dt, xi: v - gamma * dt / m * v, friction_and_noise, at=pushes)
+assert not right(lambda v, dt, zeta: v - gamma * dt / m * v, friction_and_noise, at=pushes)
 
 
 # %%
-def my_exact_step(v, dt, xi):
+def my_exact_step(v, dt, zeta):
     return ...  # your code here: the new v
 
 
@@ -485,7 +486,7 @@ check(
     my_exact_step,
     friction_and_noise,
     at=pushes,
-    hint="The variances of c v and of sigma xi add up to W**2: c**2 W**2 + sigma**2 = W**2.",
+    hint="The variances of c v and of sigma zeta add up to W**2: c**2 W**2 + sigma**2 = W**2.",
 )
 
 # %% [markdown]
@@ -495,9 +496,9 @@ check(
 # two are equal if $\sigma=W\sqrt{1-c^2}$. Ornstein and Uhlenbeck found this result.
 #
 # ```python
-# def my_exact_step(v, dt, xi):
+# def my_exact_step(v, dt, zeta):
 #     c = np.exp(-gamma * dt / m)
-#     return c * v + W * np.sqrt(1 - c**2) * xi
+#     return c * v + W * np.sqrt(1 - c**2) * zeta
 # ```
 #
 # </details>
@@ -557,9 +558,13 @@ for dt in (0.01, 0.1, 1, 3):
 # %% [markdown]
 # The velocities are right to rounding errors at *any* step. The error of the positions is of second
 # order, $\langle x^2\rangle=s^2/(1-(\omega_0\Delta t/2)^2)$ with $\omega_0=\sqrt{k/m}$. Both
-# statements hold for a linear spring. Friction and noise leave the Maxwellian unchanged. Verlet's
-# scheme conserves a quadratic form that is close to the energy: $v$ enters as in the energy, and
-# $x$ with a slightly smaller weight.
+# statements hold for a linear spring. Verlet's scheme conserves areas in phase space and, exactly,
+#
+# $$H' = \frac m2v^2 + \frac k2\Big[1-\Big(\frac{\omega_0\Delta t}2\Big)^2\Big]x^2 .$$
+#
+# Friction and noise leave the Maxwellian of $v$ unchanged. Every part of the step therefore leaves
+# $e^{-H'/T}$ unchanged. This distribution has the right width in $v$ and a slightly too large one
+# in $x$.
 #
 # ## 6. The order, measured
 #
@@ -584,7 +589,7 @@ for stepper in maps:
 
 # %%
 half_swing = np.pi / Omega
-relaxed = expm(M * half_swing) @ [s, 0]
+relaxed = expm(G * half_swing) @ [s, 0]
 counts = np.unique(np.geomspace(3, 640, 20).astype(int))  # of steps
 transients = {}
 for stepper, scheme in maps.items():
@@ -694,8 +699,8 @@ assert abs(np.sqrt(1 + errors(euler_map, 0.1)[1]) - 1.006) < 5e-4
 #
 # </details>
 #
-# **3. Two lines swapped.** In `euler_step`, compute the new $x$ from the *old* velocity. Is this
-# harmless?
+# **3. Two lines swapped.** Copy your `my_step` under the name `euler_step`, move $x$ with the *old*
+# $v$, and run `euler(0.1, 60, copies, rng)`. Is the swap harmless?
 #
 # <details><summary>Solution</summary>
 #
@@ -715,7 +720,7 @@ assert abs(np.sqrt(1 + errors(euler_map, 0.1)[1]) - 1.006) < 5e-4
 #
 # <details><summary>Solution</summary>
 #
-# $\int_0^\infty e^{\mathsf Mt}dt=-\mathsf M^{-1}=\begin{pmatrix}\gamma/k&m/k\\-1&0\end{pmatrix}$.
+# $\int_0^\infty e^{\mathsf Gt}dt=-\mathsf G^{-1}=\begin{pmatrix}\gamma/k&m/k\\-1&0\end{pmatrix}$.
 # The entry for velocities is 0: the rod is tied to its anchor and does not diffuse. The negative
 # parts of the curve in section 3 cancel the positive ones. (Without a spring the same calculation
 # gives $m/\gamma$, and with it Einstein's $W^2m/\gamma=T/\gamma$.) The entry for positions is

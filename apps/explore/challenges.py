@@ -148,7 +148,7 @@ class BorderJudge(Judge):
             self._best = known
         words = f"Now {self._ratio.say(session)}."
         if self._best is None:
-            words += f" It counts when it is above {_HOTTER} by {_SURE} standard errors."
+            words += f" It counts when it is clearly above {_HOTTER}: by {_SURE} standard errors."
         else:
             words += (
                 f" Done: {self._best[0]:.1f} ± {self._best[1]:.1f}. Rods in the middle meet more "
@@ -213,14 +213,15 @@ CHALLENGES = (
     Challenge(
         "Run away",
         f"Above e = 1 each collision adds energy. Make the chain run away with {_FEW} rods or "
-        "fewer.",
+        "fewer. What takes the energy out again?",
         Chain(size=40, restitution=1.02),
         30,
         RunawayJudge,
     ),
     Challenge(
         "Hot ends",
-        f"Make the two outermost rods hotter than the centre: {_HOTTER} times the kinetic energy.",
+        f"Make the two outermost rods hotter than the centre: {_HOTTER} times the kinetic energy. "
+        "What decides how much a collision takes?",
         Chain(size=20, restitution=0.9),
         300,
         BorderJudge,

@@ -155,11 +155,17 @@ const ChainControls = (() => {
     picture.drawDensity(coverage, exact, measurement.settled);
     const theory = elastic ? Array(chain.size).fill(1) : stored(chain);
     picture.drawWidths(measurement.widths().map((each) => each / width), theory, measurement.settled);
-    find("status").textContent =
-      `W = ${width.toPrecision(2)} R/T. ` + (measurement.settled
-        ? `Measured for ${Math.round(measurement.time)} T.`
-        : `Settling for another ${Math.ceil(measurement.settling)} T.`);
+    find("status").textContent = `W = ${width.toPrecision(2)} R/T. ` + happening();
     ask();
+  }
+
+  function happening() {
+    const { measurement } = world;
+    if (world.ranAway)
+      return `The chain has run away: its energy has grown ${RUN_AWAY} times. Start again, or change a slider.`;
+    if (pushed) return "A push is under way.";
+    return measurement.settled ? `Measured for ${Math.round(measurement.time)} T.`
+      : `Pale until the chain has settled, in ${Math.ceil(measurement.settling)} T.`;
   }
 
   /* The theory's velocity widths in free widths, if they were computed for this chain. */

@@ -106,7 +106,7 @@ def test_ends_are_hot_enough_where_collisions_take_much_energy():
     hot, judge = Session(BORDER.replace(restitution=0.3, size=60)), BorderJudge()
     waiting = judge.verdict(hot)
     assert "settling for another" in waiting.said
-    assert "It counts when it is above 3 by 3 standard errors." in waiting.said
+    assert "It counts when it is clearly above 3: by 3 standard errors." in waiting.said
     assert run(hot, judge, 2000.0, 10.0).done
     mild, judge = Session(BORDER), BorderJudge()
     verdict = run(mild, judge, 2000.0, 10.0)
