@@ -134,7 +134,7 @@ benchmark: $(VENV)/installed-benchmark
 	mkdir -p $(OUTPUT)
 	$(BIN)/python -m pytest benchmarks -o python_files="*.py" --timeout=1800 --benchmark-columns=median,iqr,rounds \
 	  --benchmark-max-time=0.3 --benchmark-min-rounds=3 --benchmark-json=$(OUTPUT)/benchmark.json
-	$(BIN)/python benchmarks/report.py $(OUTPUT)/benchmark.json $(OUTPUT)/cost.png
+	$(BIN)/python benchmarks/report.py $(OUTPUT)/benchmark.json $(OUTPUT)/cost.csv $(OUTPUT)/cost.png
 
 # twine finds what the package index would refuse.
 package: $(VENV)/installed-package

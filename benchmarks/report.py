@@ -1,8 +1,9 @@
-"""Table and figure of the documentation from the measurements of ``make benchmark``.
+"""Table and figure of the documentation, from the measurements of ``make benchmark``.
 
-python benchmarks/report.py results/benchmark.json docs/figures/cost.png
+python benchmarks/report.py results/benchmark.json docs/tables/cost.csv docs/figures/cost.png
 """
 
+import csv
 import json
 import re
 import sys
@@ -18,11 +19,17 @@ from particle_steps import NOISE, SIZES
 from crazybilliards.comparison.drawing import COLOURS, SYMBOLS
 from crazybilliards.comparison.layout import house_style, legend_above, panels
 
-# Measured elsewhere, on the same kind of machine, for L = 1000, dt = 1e-3, e = 0 [ns].
-PEERS = {"Siconos (Lemke)": 80_000, "pymunk": 780, "MuJoCo": 470}
+LABELS = {
+    "sort": "sort, e = 1, dt = 1e-3",
+    "sort, default step": "sort, e = 1, default step",
+    "isotonic": "isotonic, e = 0, dt = 1e-3",
+    "events, e=0.95": "events, e = 0.95, dt = 1e-3",
+    "events, e=1, default step": "events, e = 1, default step",
+    "contact dynamics, e=0": "Contact Dynamics, e = 0, dt = 1e-3",
+}
 
 
-def main(source: Path, figure: Path) -> None:
+def main(source: Path, table: Path, figure: Path) -> None:
     costs: dict[str, dict[int, float]] = defaultdict(dict)
     for measured in json.loads(source.read_text())["benchmarks"]:
         info = measured["extra_info"]
@@ -32,22 +39,33 @@ def main(source: Path, figure: Path) -> None:
             if "default step" in info["work"]:
                 rate = info["collisions"] / measured["stats"]["median"]
                 print(f"{info['work']}, L = {info['size']}: {rate:.2g} collisions per second")
-    print("\n| ns per particle and step | " + " | ".join(f"L = {size}" for size in SIZES) + " |")
-    print("|---" * (len(SIZES) + 1) + "|")
-    for work, by_size in costs.items():
-        cells = [
-            f"{by_size[size]:.1f} ({by_size[size] / costs[NOISE][size]:.1f}x)"
-            if size in by_size
-            else "-"
-            for size in SIZES
-        ]
-        print(f"| {work} | " + " | ".join(cells) + " |")
+    noise = costs[NOISE]
+    print("noise alone [ns]:", ", ".join(f"{cost:.1f}" for cost in noise.values()))
+    with table.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(["", *(f"L = {_spaced(size)}" for size in SIZES)])
+        for work, label in LABELS.items():
+            cells = [
+                f"{_short(cost)} ({_short(cost / noise[size])}x)" if cost else ""
+                for size in SIZES
+                for cost in [costs[work].get(size)]
+            ]
+            writer.writerow([label, *cells])
     draw(costs, figure)
 
 
+def _spaced(size: int) -> str:
+    return f"{size:,}".replace(",", " ") if size >= 10_000 else str(size)
+
+
+def _short(value: float) -> str:
+    return f"{value:.1f}" if value < 10 else f"{value:.0f}"
+
+
 def with_formula(work: str) -> str:
-    """Return the name of some work with the restitution as a formula."""
-    return re.sub(r"\be ?= ?([\d.]+)", r"$e = \1$", work)
+    """Return the name of some work with restitution and time step as formulas."""
+    named = re.sub(r"\be = ([\d.]+)", r"$e = \1$", work)
+    return named.replace("dt = 1e-3", r"$\Delta t = 10^{-3}$")
 
 
 def draw(costs: dict[str, dict[int, float]], figure: Path) -> None:
@@ -58,15 +76,14 @@ def draw(costs: dict[str, dict[int, float]], figure: Path) -> None:
             if work != NOISE:
                 look = {"color": COLOURS[number - 1], "marker": SYMBOLS[number - 1]}
                 look |= {"markerfacecolor": "none"}
-            ax.plot(list(by_size), list(by_size.values()), label=with_formula(work), **look)
-        for name, cost in PEERS.items():
-            ax.plot(1000, cost, "*", color="black", markersize=7, markerfacecolor="none")
-            ax.annotate(name, (1000, cost), xytext=(6, -3), textcoords="offset points")
-        ax.plot(
-            [], [], "*", color="black", markerfacecolor="none", label="others, measured elsewhere"
-        )
+            ax.plot(
+                list(by_size),
+                list(by_size.values()),
+                label=with_formula(LABELS.get(work, work)),
+                **look,
+            )
         ax.set(xscale="log", yscale="log", xlabel="rods $L$", ylabel="cost per rod and step [ns]")
-        ax.set_ylim(2, 2e5)
+        ax.set_ylim(2, 2e3)
         legend_above(drawn, ax)
         drawn.savefig(figure)
 
