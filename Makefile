@@ -52,18 +52,18 @@ kernels: $(VENV)/installed-test
 # Two processes use two cores. Threads of the linear algebra would only make them wait. All tests of
 # a file run in one of them, and compute only once what they share. The files come in their order:
 # the last ones take seconds, so that both processes end together.
-IN_TWO := OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder
+IN_TWO := -m pytest -n 2 --dist loadfile --no-loadscope-reorder
 
 test: $(VENV)/installed-test
-	$(IN_TWO) -m "not validate"
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python $(IN_TWO) -m "not validate"
 
 validate: $(VENV)/installed-test
-	$(IN_TWO) -m validate
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python $(IN_TWO) -m validate
 
 # numba's cache belongs to one version, so each environment needs a cache of its own.
 test-lowest: $(OLDEST)/installed
 	OPENBLAS_NUM_THREADS=1 NUMBA_CACHE_DIR=$(CURDIR)/$(OLDEST)/numba \
-	  $(OLDEST)/bin/python -m pytest -n 2
+	  $(OLDEST)/bin/python $(IN_TWO)
 
 # Three processes for two cores: these tests wait a lot for others that they kill.
 torture: $(VENV)/installed-test
@@ -171,7 +171,7 @@ $(VENV)/installed-%: pyproject.toml $(BIN)/uv
 $(OLDEST)/installed: pyproject.toml
 	@$(CHECK_PYTHON)
 	$(PYTHON) -m venv $(OLDEST)
-	$(OLDEST)/bin/python -m pip install --quiet --upgrade pip uv
+	$(OLDEST)/bin/python -m pip install --quiet --upgrade pip setuptools uv
 	$(OLDEST)/bin/uv --system-certs pip install --quiet --python $(OLDEST)/bin/python --resolution lowest-direct \
 	  --editable ".[test]"
 	touch $@

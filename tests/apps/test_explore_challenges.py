@@ -60,6 +60,12 @@ def test_a_push_arrives_at_restitution_one_and_not_at_nine_tenths():
     assert lossy.done
 
 
+def test_a_push_is_forgotten_when_it_is_shown_too_fast_to_be_seen():
+    judge, session = PushJudge(), Session(PUSH)
+    judge.pushed(session)
+    assert "e = 1: no push has ended yet" in run(session, judge, 30.0, 1.0).said
+
+
 def test_a_push_is_forgotten_when_the_chain_changes_before_it_arrives():
     judge, session = PushJudge(), Session(PUSH)
     judge.pushed(session)

@@ -23,9 +23,12 @@ pytestmark = pytest.mark.filterwarnings("ignore::PendingDeprecationWarning")
 @pytest.fixture
 def page():
     """Return a page whose clock stands still."""
+
+    async def make(threads):
+        return Page(threads, Lock())  # in an event loop, as where it is served
+
     with asyncio.Runner() as runner, ThreadPoolExecutor(1) as threads:
-        runner.get_loop()  # makes the event loop that a page finds where it is served
-        yield Page(threads, Lock())
+        yield runner.run(make(threads))
 
 
 def test_why_a_chain_ran_away_is_not_replaced_by_a_refusal_of_the_theory(page):

@@ -87,6 +87,7 @@ def test_simulate_refuses_in_one_line(refused, arguments, message, tmp_path, mon
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.compiled  # uncompiled, an overflow warns
 def test_a_chain_that_diverges_ends_with_status_1(run, tmp_path):
     options = ["--size", 50, "--restitution", 2, "--damping", 0.01, "--duration", 1e5]
     done = run("simulate", *options, "--output", tmp_path / "run.nc")
