@@ -56,8 +56,8 @@ def without_k():
     derived = found.group == "derived with"
     return {
         "docs/correlations.md": [
-            f"was up to {ceil(largest[derived].max())} % too small in chains of 10 to 300 rods, and "
-            f"up to {ceil(largest[found.L == 1000].item())} % with 1000",
+            f"was up to {ceil(largest[derived].max())} % too small in chains of 10 to 300 rods, "
+            f"and up to {ceil(largest[found.L == 1000].item())} % with 1000",
         ]
     }
 
