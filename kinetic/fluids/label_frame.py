@@ -150,14 +150,13 @@ def solve_on_labels(
     def rate(values: Array) -> Array:
         return np.asarray(label_rate(values, *constants, chain.potential_exponent))
 
+    fields = _starting_fields(chain, cells, state, start, thermal=thermal)
     # The first trial step of very light rods may overflow. The integrator then shortens it.
     with np.errstate(over="ignore", invalid="ignore"):
         solution = solve(
             lambda values, time: interval * rate(values),
             # The cells are not equally wide. For py-pde they have numbers and not positions.
-            make_state(
-                _starting_fields(chain, cells, state, start, thermal=thermal), (0, cells.labels.size)
-            ),
+            make_state(fields, (0, cells.labels.size)),
             np.arange(float(times.size)),
             progress=progress,
             solver="scipy",
