@@ -83,7 +83,7 @@ def draw(costs: dict[str, dict[int, float]], figure: Path) -> None:
                 **look,
             )
         ax.set(xscale="log", yscale="log", xlabel="rods $L$", ylabel="cost per rod and step [ns]")
-        ax.set_ylim(2, 2e3)
+        ax.set_ylim(0.7, 2e3)
         legend_above(drawn, ax)
         drawn.savefig(figure)
 
