@@ -68,7 +68,7 @@ def command(
     ] = False,
     quality: Annotated[
         Quality,
-        typer.Option(help="All figures take 3 minutes (quick) or 12 (full) on two cores."),
+        typer.Option(help="All figures take 2 minutes (quick) or 10 (full) on two cores."),
     ] = Quality.QUICK,
     output: Annotated[
         Path,
