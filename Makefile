@@ -124,7 +124,7 @@ browser:
 
 # Warnings are errors, for example links that lead nowhere and examples that fail.
 docs: $(VENV)/installed-docs build/notebooks/executed
-	$(BIN)/python -m sphinx -W --keep-going -b html docs build/docs
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m sphinx -W --keep-going -b html docs build/docs
 	@echo "open build/docs/index.html"
 
 linkcheck: $(VENV)/installed-docs build/notebooks/executed
