@@ -14,19 +14,10 @@ from typing import Any
 import matplotlib
 
 matplotlib.use("agg")
-from particle_steps import NOISE, SIZES
+from particle_steps import NOISE, SIZES, WORK
 
 from crazybilliards.comparison.drawing import COLOURS, SYMBOLS
 from crazybilliards.comparison.layout import house_style, legend_above, panels
-
-LABELS = {
-    "sort": "sort, e = 1, dt = 1e-3",
-    "sort, default step": "sort, e = 1, default step",
-    "isotonic": "isotonic, e = 0, dt = 1e-3",
-    "events, e=0.95": "events, e = 0.95, dt = 1e-3",
-    "events, e=1, default step": "events, e = 1, default step",
-    "contact dynamics, e=0": "Contact Dynamics, e = 0, dt = 1e-3",
-}
 
 
 def main(source: Path, table: Path, figure: Path) -> None:
@@ -44,13 +35,13 @@ def main(source: Path, table: Path, figure: Path) -> None:
     with table.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(["", *(f"L = {_spaced(size)}" for size in SIZES)])
-        for work, label in LABELS.items():
+        for work in WORK:
             cells = [
                 f"{_short(cost)} ({_short(cost / noise[size])}x)" if cost else ""
                 for size in SIZES
                 for cost in [costs[work].get(size)]
             ]
-            writer.writerow([label, *cells])
+            writer.writerow([work, *cells])
     draw(costs, figure)
 
 
@@ -76,12 +67,7 @@ def draw(costs: dict[str, dict[int, float]], figure: Path) -> None:
             if work != NOISE:
                 look = {"color": COLOURS[number - 1], "marker": SYMBOLS[number - 1]}
                 look |= {"markerfacecolor": "none"}
-            ax.plot(
-                list(by_size),
-                list(by_size.values()),
-                label=with_formula(LABELS.get(work, work)),
-                **look,
-            )
+            ax.plot(list(by_size), list(by_size.values()), label=with_formula(work), **look)
         ax.set(xscale="log", yscale="log", xlabel="rods $L$", ylabel="cost per rod and step [ns]")
         ax.set_ylim(0.7, 2e3)
         legend_above(drawn, ax)

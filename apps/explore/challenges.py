@@ -58,10 +58,7 @@ class PushJudge(Judge):
     def __init__(self) -> None:
         self._found: dict[float, list[float]] = {1.0: [], 0.9: []}
         self._fastest, self._until, self._of = 0.0, -math.inf, Chain()
-        self._seen, self._unseen = (
-            0.0,
-            0.0,
-        )  # when it was looked at, and for how long it need not be
+        self._seen, self._longest = 0.0, 0.0  # when it was last looked at, and how long that may be
 
     def pushed(self, session: Session) -> None:
         """Follow this push for twice the time that it takes through free space."""
@@ -69,14 +66,14 @@ class PushJudge(Judge):
         space = chain.gap * (chain.size - 1) + 4 * chain.thermal_length
         self._fastest, self._of = 0.0, chain
         lasts = 2 * space / (KICK * chain.free_velocity_width)
-        self._until, self._seen, self._unseen = session.time + lasts, session.time, lasts / 10
+        self._until, self._seen, self._longest = session.time + lasts, session.time, lasts / 10
 
     def follow(self, session: Session) -> None:
         """Note how fast the rightmost rod is, until the time of the push is over.
 
         A push is forgotten if the chain changes, or is now shown so fast that it would be missed.
         """
-        missed = session.time > self._seen + self._unseen
+        missed = session.time > self._seen + self._longest
         if session.chain != self._of or session.diverged or missed:
             self._until = -math.inf
         self._seen = session.time

@@ -151,7 +151,7 @@ def solve_on_labels(
         return np.asarray(label_rate(values, *constants, chain.potential_exponent))
 
     fields = _starting_fields(chain, cells, state, start, thermal=thermal)
-    # The first trial step of very light rods may overflow. The integrator then shortens it.
+    # A trial step may overflow if rods are very light. The solver refuses what is not a number.
     with np.errstate(over="ignore", invalid="ignore"):
         solution = solve(
             lambda values, time: interval * rate(values),
