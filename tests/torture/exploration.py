@@ -135,8 +135,8 @@ def require_sound(result):
     if not isinstance(result, xr.Dataset) or result.attrs.get("status") == "interrupted":
         return
     for name, values in result.variables.items():
-        if "separation" in values.dims:  # NaN where the second rod or contact is beyond the chain
-            [first] = {"particle", "contact"} & set(values.dims)
+        first, *rest = values.dims or (None,)
+        if rest == ["separation"]:  # NaN where the second rod or contact is beyond the chain
             inside = result[first] + result.separation <= result[first].size
             values = result[name].where(inside, 0.0).variable
         if str(name).endswith("_error"):  # infinite where nothing is known
