@@ -135,9 +135,10 @@ def require_sound(result):
     if not isinstance(result, xr.Dataset) or result.attrs.get("status") == "interrupted":
         return
     for name, values in result.variables.items():
-        first, *rest = values.dims or (None,)
-        if rest == ["separation"]:  # NaN where the second rod or contact is beyond the chain
-            inside = result[first] + result.separation <= result[first].size
+        if values.dims[1:] and values.dims[-1] == "separation":
+            # NaN where the second rod or contact is beyond the chain.
+            first = result[values.dims[-2]]
+            inside = first + result.separation <= first.size
             values = result[name].where(inside, 0.0).variable
         if str(name).endswith("_error"):  # infinite where nothing is known
             assert not np.isnan(values).any(), name
