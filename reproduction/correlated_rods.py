@@ -77,10 +77,8 @@ def _length(result: xr.Dataset, spectrum: np.ndarray) -> float:
     wave = np.pi * result.mode.values / chain.size
     short = spectrum[-max(3, spectrum.size // 10) :].mean()
     whole = chain.free_velocity_width**2
-    below = (spectrum[1:] - short) / (whole - short)
-    first = int(np.argmax(below < 0.5)) + 1
-    if first == 1:  # between the centre of mass and the first mode
-        shares, waves = (below[0], 1.0), (wave[1], 0.0)
-    else:
-        shares, waves = below[[first - 1, first - 2]], wave[[first, first - 1]]
-    return float(1 / np.interp(0.5, shares, waves))
+    shares = (spectrum - short) / (whole - short)
+    shares[0] = 1.0  # the centre of mass is mode 0
+    first = int(np.argmax(shares[1:] < 0.5)) + 1
+    between = [first, first - 1]
+    return float(1 / np.interp(0.5, shares[between], wave[between]))

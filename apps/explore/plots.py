@@ -30,6 +30,12 @@ LABELS = {
 # Pictures that stand one above the other have frames of the same width.
 _LEFT, _RIGHT = 84, 16
 _TYPE = "14px"
+# A legend that is wider than the frame gets a second line: on a phone it would leave the screen.
+_WRAPPED = f"""
+@media (max-width: 800px) {{
+  .bk-grid {{ display: flex; flex-wrap: wrap; max-width: calc(100vw - {_LEFT + _RIGHT + 16}px); }}
+}}
+"""
 _LOW = """
 @media (max-width: 800px) {{
   :host {{ height: {0}px !important; flex: 0 0 {0}px !important; }}
@@ -100,6 +106,7 @@ def add_legend(plot: Any, *items: LegendItem) -> None:
         border_line_alpha=0,
         background_fill_alpha=0,
         label_text_font_size=_TYPE,
+        stylesheets=[_WRAPPED],
     )
     plot.add_layout(legend, "above")
 

@@ -20,12 +20,15 @@ pytestmark = [
 ]
 
 
-def box(browser, selector):
-    """Return left, top, right and bottom, on the screen, of the first element that matches."""
+def edges(browser, element):
+    """Return left, top, right and bottom of an element on the screen."""
     script = "const {left, top, right, bottom} = arguments[0].getBoundingClientRect();"
-    return browser.execute_script(
-        f"{script} return [left, top, right, bottom]", elements(browser, selector)[0]
-    )
+    return browser.execute_script(f"{script} return [left, top, right, bottom]", element)
+
+
+def box(browser, selector):
+    """Return the edges of the first element that matches."""
+    return edges(browser, elements(browser, selector)[0])
 
 
 def shown(browser, selector):
@@ -91,6 +94,15 @@ def test_rods_and_strip_stay_on_top_of_a_phone(browser, address):
         if stays:  # and leave at least two thirds of the screen to what is scrolled
             assert 0 < box(browser, strip)[3] < screen[1] / 3
         assert browser.execute_script("return document.documentElement.scrollWidth") == screen[0]
+
+
+def test_legends_on_a_phone_are_not_wider_than_the_frames(browser, address):
+    show_as(browser, *NARROW)
+    visit(browser, address)
+    until(lambda: "force balance" in texts(browser, ".bk-label"))
+    boxes = [edges(browser, legend) for legend in shown(browser, ".bk-grid")]
+    assert len(boxes) == 3
+    assert all(84 <= left < right <= NARROW[0] for left, _, right, _ in boxes)
 
 
 def test_a_phone_shows_three_sliders_and_folds_the_rest(browser, address):
