@@ -30,10 +30,12 @@ LABELS = {
 # Pictures that stand one above the other have frames of the same width.
 _LEFT, _RIGHT = 84, 16
 _TYPE = "14px"
-# A legend that is wider than the frame gets a second line: on a phone it would leave the screen.
+_MARGIN = 8  # of the page, on each side: page.css
+# On a narrow screen a legend that is wider than the frame gets a second line: it would be cut off.
+_FRAME = f"calc(100vw - {_LEFT + _RIGHT + 2 * _MARGIN}px)"
 _WRAPPED = f"""
 @media (max-width: 800px) {{
-  .bk-grid {{ display: flex; flex-wrap: wrap; max-width: calc(100vw - {_LEFT + _RIGHT + 16}px); }}
+  .bk-grid {{ display: flex; flex-wrap: wrap; max-width: {_FRAME}; }}
 }}
 """
 _LOW = """

@@ -85,7 +85,8 @@ def test_every_parameter_of_a_chain_is_an_option_that_reaches_the_chain(
         raise ValueError("far enough")
 
     _, room, *_, name = TAKES_IT[command].split(".")
-    # The room first: it takes its name from the module, and would be given back the replacement.
+    # The name is replaced in its room first, because a room fetches it from the module at the first
+    # use. In the other order monkeypatch would save, and later restore, the replacement.
     monkeypatch.setattr(f"crazybilliards.{room}.{name}", stop)
     monkeypatch.setattr(TAKES_IT[command], stop)
     options = [f"--{name.replace('_', '-')}={value}" for name, value in asked.items()]
