@@ -42,7 +42,7 @@ def test_exact(benchmark, solver):
 
     def solve_all():
         for y, v in states:
-            drift(y.copy(), v.copy(), TIME_STEP, law, scratch, UNSEEN)
+            drift(y.copy(), v.copy(), np.zeros(SIZE), TIME_STEP, law, scratch, UNSEEN)
 
     benchmark(solve_all)
 
@@ -55,6 +55,6 @@ def test_gauss_seidel(benchmark, solver, tolerance):
     def solve_all():
         impulses, bounds = np.zeros((2, SIZE - 1))
         for y, v in states:
-            solve(y, v.copy(), TIME_STEP, 0.0, tolerance, impulses, bounds)
+            solve(y, v.copy(), np.zeros(SIZE), TIME_STEP, 0.0, tolerance, impulses, bounds)
 
     benchmark.pedantic(solve_all, rounds=3, warmup_rounds=1)

@@ -110,6 +110,7 @@ def make_dynamics(
             default_merging(chain) if merging is None else merging,
             speed,
             counted=counted,
+            halves=stepper == "splitting",
         ),
         diverged * speed if speed > 0 else math.inf,
     )
@@ -211,7 +212,7 @@ def take_step(y, v, kicks, part, dynamics, scratch, tally):  # type: ignore[no-u
     if strength != 1.0:
         strengthen(kicks, scratch.clusters, strength)
     kick(y, v, dynamics.anchors, kicks, step, part)
-    return drift(y, v, step.time_step, dynamics.law, scratch, tally)
+    return drift(y, v, dynamics.anchors, step.time_step, dynamics.law, scratch, tally)
 
 
 @kernel

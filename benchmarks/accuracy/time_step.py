@@ -88,7 +88,7 @@ def advance(copy, anchors, tally):
     if step.closed != 1.0:
         strengthen(copy.kicks, copy.scratch.clusters, step.closed)
     v[:] = step.decay * v + step.noise * copy.kicks - step.kick * (y - anchors)
-    drift(y, v, step.time_step, copy.law, copy.scratch, tally)
+    drift(y, v, anchors, step.time_step, copy.law, copy.scratch, tally)
     v -= step.kick * (y - anchors)
 
 

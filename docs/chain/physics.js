@@ -170,7 +170,7 @@ const ChainPhysics = (() => {
         state.diverged = true;
         break;
       }
-      const [a, b] = collide(state, contact, now, step.mergeSpeed);
+      const [a, b] = collide(state, contact, now, step);
       due[contact] = Infinity; // the two now separate or move as one
       if (a > 0) due[a - 1] = meeting(y, v, a - 1, now, step.duration);
       if (b < contacts) due[b] = meeting(y, v, b, now, step.duration);
@@ -202,7 +202,7 @@ const ChainPhysics = (() => {
 
   /* Let the rods left and right of a contact collide, with all that stick to them: momentum stays,
      and the relative velocity changes by -e. Return the outermost rods of the two clusters. */
-  function collide(state, contact, now, mergeSpeed) {
+  function collide(state, contact, now, step) {
     const { v, joined, held, chain } = state;
     let a = contact, b = contact + 1;
     while (a > 0 && joined[a - 1]) a--;
@@ -216,9 +216,15 @@ const ChainPhysics = (() => {
     const common = vLeft + (vRight - vLeft) * share;
     // Flippers (e > 1) act when rods meet, not on rods that touch at the beginning of the step.
     const e = now === 0 ? Math.min(chain.restitution, 1) : chain.restitution;
-    const rebound = e * (vLeft - vRight), merges = rebound <= mergeSpeed;
-    setVelocities(state, a, contact, merges ? common : common - rebound * share, now);
-    setVelocities(state, contact + 1, b, merges ? common : common + rebound * (1 - share), now);
+    // With a gap the springs of two rods pull differently. At `now` the rods should have got this
+    // much more from them than by the half kick at the beginning, and the one at the end takes it
+    // back. So the true relative velocity rebounds.
+    const alone = a === contact && b === contact + 1 && held !== a && held !== b;
+    const ahead = alone ? (STIFFNESS / MASS) * chain.gap * (now - step.duration / 2) : 0;
+    const rebound = e * (vLeft - vRight - ahead), merges = rebound <= step.mergeSpeed;
+    const apart = merges ? 0 : Math.max(rebound - ahead, 0);
+    setVelocities(state, a, contact, common - apart * share, now);
+    setVelocities(state, contact + 1, b, common + apart * (1 - share), now);
     if (merges) {
       joined[contact] = 1;
       for (let i = a; i <= b; i++) state.y[i] = state.y[contact];
@@ -239,7 +245,7 @@ const ChainPhysics = (() => {
   /* Take so many steps of this duration. The state is that in the middle of a kick. */
   function advance(state, duration, steps) {
     const step = makeStep(state.chain, duration);
-    const sorting = state.chain.restitution === 1 && state.held < 0;
+    const sorting = state.chain.restitution === 1 && state.chain.gap === 0 && state.held < 0;
     for (let taken = 0; taken < steps && !state.diverged; taken++) {
       kick(state, step, taken === 0 ? FIRST : WHOLE);
       if (sorting) driftBySorting(state, duration);

@@ -33,6 +33,8 @@ class Law(NamedTuple):
     restitution: float
     merge_speed: float  # speed of separation below which rods cluster until the end of the step
     most: int  # collisions in one step after which the chain counts as diverged
+    pull: float = 0.0  # k/m if springs that meet may differ and are kicked in halves
+    exponent: int = 2  # of the spring's potential
 
 
 class Scratch(NamedTuple):
@@ -45,10 +47,10 @@ class Scratch(NamedTuple):
 
 
 def make_scratch(size: int) -> Scratch:
-    """Return the scratch space for ``size`` rods: 80 bytes a rod."""
+    """Return the scratch space for ``size`` rods: 88 bytes a rod."""
     return Scratch(
         np.zeros((4, size), dtype=np.int64),
-        np.zeros((3, size)),
+        np.zeros((4, size)),
         make_clusters(size),
         np.zeros((max(1, BLOCK // size), size)),
     )
@@ -62,33 +64,40 @@ def make_law(
     speed: float,
     *,
     counted: bool = False,
+    halves: bool = True,
 ) -> Law:
     """Choose the operator for the chain.
 
     ``merging`` is in velocity kicks of one step's noise. With little or no noise 1e-9 of the
     typical ``speed`` is used, so that inelastic collapse stays finite. ``counted``: every collision
-    has to be recorded.
+    has to be recorded. ``halves``: springs kick before and after the drift. With a gap, collisions
+    are then corrected one by one, so chains with e = 1 cannot be sorted.
     """
+    pull = chain.stiffness / chain.mass if halves else 0.0
     if method == "contact-dynamics":
         operator = CONTACTS
-    elif counted:
+    elif counted or (chain.restitution == 1 and chain.gap * pull > 0):
         operator = EVENTS
     else:
         operator = {1.0: SORT, 0.0: ISOTONIC}.get(chain.restitution, EVENTS)
     kick = chain.amplitude / chain.mass * math.sqrt(time_step)
     merge_speed = max(merging * kick, 1e-9 * speed) if chain.restitution < 1 else 0.0
-    return Law(operator, chain.restitution, merge_speed, 1_000 * chain.size + 1_000_000)
+    if operator == EVENTS and chain.gap == 0:
+        pull = 0.0  # rods with one anchor have the same acceleration where they meet
+    most = 1_000 * chain.size + 1_000_000
+    return Law(operator, chain.restitution, merge_speed, most, pull, chain.potential_exponent)
 
 
 @kernel
-def drift(y, v, dt, law, scratch, tally):  # type: ignore[no-untyped-def]
+def drift(y, v, anchors, dt, law, scratch, tally):  # type: ignore[no-untyped-def]
     """Advance ``y`` and ``v`` in place by ``dt`` with the operator that ``law`` names."""
     if law.operator == SORT:
         return sort.drift(y, v, dt, scratch.floats[0], scratch.floats[1])
     if law.operator == ISOTONIC:
         return isotonic.drift(y, v, dt, scratch.integers[0], scratch.floats, scratch.clusters)
     if law.operator == CONTACTS:
-        return contact_dynamics.drift(y, v, dt, law.restitution, scratch.integers, scratch.floats)
+        spring_and_scratch = law.pull, law.exponent, scratch.integers, scratch.floats
+        return contact_dynamics.drift(y, v, anchors, dt, law.restitution, *spring_and_scratch)
     return event_driven.drift(
         y,
         v,
@@ -96,6 +105,9 @@ def drift(y, v, dt, law, scratch, tally):  # type: ignore[no-untyped-def]
         law.restitution,
         law.merge_speed,
         law.most,
+        anchors,
+        law.pull,
+        law.exponent,
         scratch.integers,
         scratch.floats,
         scratch.clusters,

@@ -95,7 +95,8 @@ def test_deviations_are_made_stronger_and_momentum_is_kept(y, seed, strength):
 )
 def test_what_an_operator_reports_are_the_clusters_it_leaves(y, seed, dt, law):
     v, scratch = np.random.default_rng(seed).normal(size=y.size), make_scratch(y.size)
-    drift(y, v, dt, Law(*law, merge_speed=1e-3, most=10**6), scratch, UNSEEN)
+    law = Law(*law, merge_speed=1e-3, most=10**6)
+    drift(y, v, np.zeros(y.size), dt, law, scratch, UNSEEN)
     assert listed(scratch.clusters) == found(y)
 
 
@@ -140,7 +141,7 @@ def test_steps_are_those_that_the_page_describes(e, counted):
             fill(noise, kicks)
             in_contact += len(runs(y))
             v = decay * v - step.kick * y + size * strengthened(kicks, y, strength)
-            drift(y, v, 0.2, law, make_scratch(chain.size), UNSEEN)
+            drift(y, v, dynamics.anchors, 0.2, law, make_scratch(chain.size), UNSEEN)
             v -= step.kick * y
             decay, size, strength = step.decay, step.noise, step.closed
         fill(noise, kicks)

@@ -166,7 +166,7 @@ def test_collisions_make_half_of_the_energy_they_take_into_covariance(seed, size
     before, impacts = v.copy(), make_impacts(size)
     tally = make_tally(size, contacts=True)._replace(impacts=impacts)
     law = Law(EVENTS, e, merge_speed if e < 1 else 0.0, 400)
-    if drift(y, v, 3.0, law, make_scratch(size), tally) < 0:
+    if drift(y, v, np.zeros(size), 3.0, law, make_scratch(size), tally) < 0:
         return
     given_away = np.cumsum(before - v)[:-1]
     np.testing.assert_allclose(impacts[0] + impacts[2], given_away, atol=1e-9)

@@ -47,19 +47,20 @@ def states(draw):
     state=states(),
     e=st.sampled_from([0.0, 0.1, 0.5, 0.95, 1.0, 1.05]),
     merge_speed=st.sampled_from([1e-9, 1e-3, 0.1]),
+    gap=st.sampled_from([0.0, 0.01, 1.0]),
+    exponent=st.sampled_from([2, 3]),
 )
-def test_every_bit_is_that_of_the_twin(state, e, merge_speed):
+def test_every_bit_is_that_of_the_twin(state, e, merge_speed, gap, exponent):
     """Positions, velocities, clusters, collisions, waves; and the same without a tally."""
     y, v, dt = state
     merge_speed = merge_speed if e < 1 else 0.0
+    anchors = gap * (np.arange(y.size) - y.size / 3)
+    law, scratch = Law(EVENTS, e, merge_speed, MOST, 0.1 * gap, exponent), make_scratch(y.size)
     expected_tally = everything(y.size)
-    *expected, clusters, collisions = next_collision.drift(
-        y, v, dt, e, merge_speed, MOST, expected_tally
-    )
-    law, scratch = Law(EVENTS, e, merge_speed, MOST), make_scratch(y.size)
+    *expected, clusters, collisions = next_collision.drift(y, v, anchors, dt, law, expected_tally)
     for tally in (everything(y.size), make_tally(y.size, contacts=False)):
         after_y, after_v = y.copy(), v.copy()
-        assert drift(after_y, after_v, dt, law, scratch, tally) == collisions
+        assert drift(after_y, after_v, anchors, dt, law, scratch, tally) == collisions
         if collisions < 0:
             return
         np.testing.assert_array_equal((after_y, after_v), expected)

@@ -21,12 +21,20 @@ UNSEEN = make_tally(2, contacts=False)
 OPERATORS = {"sort": SORT, "isotonic": ISOTONIC, "events": EVENTS, "contacts": CONTACTS}
 
 
-def drifted(operator, y, v, dt, restitution, merge_speed=1e-9, tally=UNSEEN):
+def drifted(
+    operator, y, v, dt, restitution, merge_speed=1e-9, tally=UNSEEN, anchors=None, pull=0.0
+):
     """Positions and velocities after the drift, and what the operator returned."""
     y, v = y.copy(), v.copy()
-    law = Law(operator, restitution, merge_speed, 10**6)
-    collisions = drift(y, v, dt, law, make_scratch(y.size), tally)
+    law = Law(operator, restitution, merge_speed, 10**6, pull)
+    anchors = np.zeros(y.size) if anchors is None else anchors
+    collisions = drift(y, v, anchors, dt, law, make_scratch(y.size), tally)
     return y, v, collisions
+
+
+def springs(size, gap):
+    """Return the springs of a chain with a gap, as ``drifted`` takes them."""
+    return {"anchors": gap * (np.arange(size) - (size - 1) / 2), "pull": 0.2}
 
 
 @st.composite
@@ -40,6 +48,7 @@ def states(draw, touching=True):
     return np.cumsum(gaps), generator.normal(size=size), draw(st.floats(1e-3, 2))
 
 
+gaps = st.sampled_from([0.0, 0.05, 1.0])
 restitutions = st.sampled_from([0.0, 0.3, 0.8, 0.95, 1.0, 1.05])
 
 
@@ -70,11 +79,14 @@ def test_energy_loss_of_a_binary_collision(e, closing, drift_speed):
     assert lost == pytest.approx((1 - e**2) * closing**2 / 4, abs=1e-9)
 
 
-@given(state=states())
-def test_isotonic_is_event_driven_without_restitution(state):
+@given(state=states(), gap=gaps)
+def test_isotonic_is_event_driven_without_restitution(state, gap):
     y, v, dt = state
+    own = springs(y.size, gap)
     for ours, theirs in zip(
-        drifted(ISOTONIC, y, v, dt, 0.0)[:2], drifted(EVENTS, y, v, dt, 0.0)[:2], strict=True
+        drifted(ISOTONIC, y, v, dt, 0.0, **own)[:2],
+        drifted(EVENTS, y, v, dt, 0.0, **own)[:2],
+        strict=True,
     ):
         np.testing.assert_allclose(ours, theirs, atol=1e-11)
 
@@ -115,30 +127,34 @@ def test_sort_is_event_driven_at_restitution_one(state):
     assert sort[2] == heap[2]
 
 
-@given(state=states(), e=restitutions)
-def test_contact_dynamics_is_what_gauss_seidel_converges_to(state, e):
+@given(state=states(), e=restitutions, gap=gaps, pull=st.sampled_from([0.0, 0.2]))
+def test_contact_dynamics_is_what_gauss_seidel_converges_to(state, e, gap, pull):
     y, v, dt = state
-    _, exact, _ = drifted(CONTACTS, y, v, dt, e)
-    swept = v.copy()
-    solve(y, swept, dt, e, 1e-14, np.zeros(v.size - 1), np.zeros(v.size - 1))
+    own = springs(y.size, gap) | {"pull": pull}
+    _, exact, _ = drifted(CONTACTS, y, v, dt, e, **own)
+    swept, given_by_springs = v.copy(), -pull * (y - own["anchors"]) * dt / 2
+    solve(y, swept, given_by_springs, dt, e, 1e-14, *np.zeros((2, v.size - 1)))
     np.testing.assert_allclose(exact, swept, atol=1e-9)
 
 
-def assume_determined(operator, y, v, dt, e):
+def assume_determined(operator, y, v, dt, e, **own):
     """Pass over states near inelastic collapse, where rounding decides what comes out."""
     nearby = v + 1e-12 * np.cos(np.arange(v.size))
     for one, other in zip(
-        drifted(operator, y, v, dt, e)[:2], drifted(operator, y, nearby, dt, e)[:2], strict=True
+        drifted(operator, y, v, dt, e, **own)[:2],
+        drifted(operator, y, nearby, dt, e, **own)[:2],
+        strict=True,
     ):
         assume(np.allclose(one, other, rtol=0, atol=1e-10))
 
 
-@given(state=states(), e=restitutions, name=st.sampled_from(sorted(OPERATORS)))
-def test_reflection_symmetry(state, e, name):
+@given(state=states(), e=restitutions, name=st.sampled_from(sorted(OPERATORS)), gap=gaps)
+def test_reflection_symmetry(state, e, name, gap):
     y, v, dt = state
-    assume_determined(OPERATORS[name], y, v, dt, e)
-    one = drifted(OPERATORS[name], y, v, dt, e)
-    other = drifted(OPERATORS[name], -y[::-1], -v[::-1], dt, e)
+    own = springs(y.size, gap)
+    assume_determined(OPERATORS[name], y, v, dt, e, **own)
+    one = drifted(OPERATORS[name], y, v, dt, e, **own)
+    other = drifted(OPERATORS[name], -y[::-1], -v[::-1], dt, e, **own)
     np.testing.assert_allclose(-other[0][::-1], one[0], atol=1e-10)
     np.testing.assert_allclose(-other[1][::-1], one[1], atol=1e-9 / dt)
 
@@ -187,10 +203,11 @@ def test_inelastic_collapse_takes_a_bounded_number_of_collisions():
     assert (np.diff(after) >= 0).all()
     assert len(np.unique(after)) < 60
     # Without clusters the same drift does not end.
-    assert drift(y, v, 100.0, Law(EVENTS, 0.5, 0.0, 100_000), make_scratch(100), UNSEEN) == -1
+    endless = Law(EVENTS, 0.5, 0.0, 100_000)
+    assert drift(y, v, np.zeros(100), 100.0, endless, make_scratch(100), UNSEEN) == -1
 
 
 def test_too_many_collisions_are_given_up_not_endured():
     y, v = np.linspace(0, 1, 100), np.linspace(1, -1, 100)
     law = Law(EVENTS, 0.99, 0.0, 50)
-    assert drift(y, v, 10.0, law, make_scratch(100), UNSEEN) == -1
+    assert drift(y, v, np.zeros(100), 10.0, law, make_scratch(100), UNSEEN) == -1

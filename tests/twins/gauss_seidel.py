@@ -8,17 +8,21 @@ from numba import njit
 
 
 @njit(cache=True, nogil=True)
-def solve(y, v, dt, restitution, tolerance, impulses, bounds):
+def solve(y, v, given, dt, restitution, tolerance, impulses, bounds):
     """Velocities after contact, in place; return the number of sweeps.
 
-    ``impulses`` (L - 1) is the starting guess and the result, per mass; ``bounds`` is scratch.
+    ``given`` (L) is the velocity that each rod has got from its spring in the half kick before: the
+    true one, without it, rebounds, and it is given once more. ``impulses`` (L - 1) is the starting
+    guess and the result, per mass; ``bounds`` is scratch.
     """
     n = y.size
     for i in range(n - 1):
         closing = v[i] - v[i + 1]
         gap = y[i + 1] - y[i]
-        bounces = restitution > 0 and gap < dt * closing
-        bounds[i] = restitution * closing if bounces else -gap / dt
+        bounds[i] = -gap / dt
+        if restitution > 0 and gap < dt * closing:
+            change = given[i + 1] - given[i]
+            bounds[i] = max(restitution * (closing + change) + change, bounds[i])
     for i in range(n - 1):
         v[i] -= impulses[i]
         v[i + 1] += impulses[i]

@@ -7,36 +7,45 @@ for every collision. The arithmetic is the same, so that results must agree to t
 import math
 from itertools import pairwise
 
+from crazybilliards.model import spring
 from crazybilliards.particles.laws.avalanche import record_collision
 from crazybilliards.particles.laws.impacts import record_impact
 
 
-def drift(y, v, dt, restitution, merge_speed, most, tally):
+def drift(y, v, anchors, dt, law, tally):
     """Positions, velocities, runs of rods in contact, and the collisions, or -1 if too many."""
+    restitution, merge_speed = law.restitution, law.merge_speed
     bodies = [(float(y[i]), float(v[i]), i, i) for i in range(len(y))]  # first and last rod
     due = [meeting(*pair, 0.0, dt) for pair in pairwise(bodies)]
     collisions = 0
     while min(due, default=math.inf) < math.inf:
-        closing = [one[1] - other[1] for one, other in pairwise(bodies)]
-        k = min(range(len(due)), key=lambda k: (due[k], -closing[k]))  # of equal ones the leftmost
+        speeds = [one[1] - other[1] for one, other in pairwise(bodies)]
+        k = min(range(len(due)), key=lambda k: (due[k], -speeds[k]))  # of equal ones the leftmost
         now = due[k]
         y_left, v_left, first, middle = bodies[k]
         y_right, v_right, _, last = bodies[k + 1]
         collisions += 1
-        if collisions > most:
+        if collisions > law.most:
             return None, None, None, -1
         record_collision(middle, first, last, v_left, v_right, tally)
         left, right = middle - first + 1, last - middle
         common = v_left + (v_right - v_left) * right / (left + right)
         e = min(restitution, 1.0) if now == 0 else restitution
-        rebound = e * (v_left - v_right)
+        ahead = 0.0
+        if left == right == 1:  # of what the springs have given so far
+            here = y_left + v_left * now
+            forces = [spring.force(here - anchors[i], law.exponent) for i in (middle, middle + 1)]
+            ahead = law.pull * (forces[0] - forces[1]) * (now - dt / 2)
+        closing = v_left - v_right - ahead
+        rebound = e * closing
         separating = rebound if rebound > merge_speed else 0.0
-        record_impact(middle, first, last, v_left - v_right, separating, tally.impacts)
+        record_impact(middle, first, last, closing, separating, tally.impacts)
         if rebound <= merge_speed:
             bodies[k : k + 2] = [(y_left + (v_left - common) * now, common, first, last)]
             del due[k]
             changed = (k - 1, k)
         else:
+            rebound = max(rebound - ahead, 0.0)  # no rod passes another
             new_left = common - rebound * right / (left + right)
             new_right = common + rebound * left / (left + right)
             bodies[k] = (y_left + (v_left - new_left) * now, new_left, first, middle)
