@@ -5,6 +5,12 @@ calls changes in another file, and would run the old one. Cache entries made her
 carry a fingerprint of the files of all kernels that a kernel calls, directly or not, and of the
 constants that these import.
 
+**No counting of references.** numba counts the references to every array that a function receives,
+or takes out of a tuple, although the arrays of a kernel belong to the Python code that called it.
+For a short chain this took far longer than the work. numba's ``_nrt=False`` switches the counting
+off for kernels that allocate no memory. Where a later numba does not know this option, kernels
+count again and are slower.
+
 The cache only saves time. If it cannot be written, as in a container without a home or on a full
 disk, kernels are compiled in every process, with one warning.
 """
@@ -23,6 +29,7 @@ from typing import Any
 
 import numpy as np
 from numba import njit
+from numba.core.options import DefaultOptions
 
 from crazybilliards.model.fingerprint import fingerprint_of
 from crazybilliards.model.process import announce_compilation, interrupts_held_back
@@ -31,15 +38,25 @@ _ANEW = "the kernels are compiled anew in every process, which takes some second
 _warned: set[str] = set()
 
 
-def kernel(function: Callable[..., Any] | None = None, *, fused: bool = False) -> Any:
+def _compiled(function: Callable[..., Any], *, fused: bool, allocates: bool, **options: Any) -> Any:
+    """Return the function as numba's dispatcher."""
+    if not allocates and hasattr(DefaultOptions, "_nrt"):
+        options["_nrt"] = False
+    fast = {"contract"} if fused else False
+    return njit(nogil=True, error_model="numpy", fastmath=fast, **options)(function)
+
+
+def kernel(
+    function: Callable[..., Any] | None = None, *, fused: bool = False, allocates: bool = False
+) -> Any:
     """Compile ``function`` when it is first called; a decorator.
 
     ``fused``: a multiplication and an addition may become one instruction with one rounding.
+    ``allocates``: it makes arrays, or returns one. Otherwise numba refuses ("NRT required").
     """
     if function is None:
-        return partial(kernel, fused=fused)
-    fast = {"contract"} if fused else False
-    dispatcher: Any = njit(nogil=True, error_model="numpy", fastmath=fast)(function)
+        return partial(kernel, fused=fused, allocates=allocates)
+    dispatcher = _compiled(function, fused=fused, allocates=allocates)
     if not hasattr(dispatcher, "enable_caching"):  # compilation is disabled
         # Compiled code does not warn where it divides by zero.
         return np.errstate(divide="ignore", invalid="ignore")(dispatcher)
@@ -109,8 +126,7 @@ def inlined(function: Callable[..., Any] | None = None, *, fused: bool = False) 
     """
     if function is None:
         return partial(inlined, fused=fused)
-    fast = {"contract"} if fused else False
-    return njit(nogil=True, error_model="numpy", forceinline=True, fastmath=fast)(function)
+    return _compiled(function, fused=fused, allocates=False, forceinline=True)
 
 
 @inlined

@@ -75,6 +75,8 @@ class Noise(NamedTuple):
     normals: NDArray[np.float64]  # the present block, (BLOCK,)
     taken: NDArray[np.int64]  # how many of them are used up, (1,)
     bits: NDArray[np.uint64]  # scratch space, (BLOCK,)
+    numbers: NDArray[np.int64]  # the first half of the bits as integers, (BLOCK/2,)
+    reals: NDArray[np.float64]  # the same as floats
     radii: NDArray[np.float64]  # scratch space, (BLOCK/2,)
 
 
@@ -84,11 +86,15 @@ STATE = ("lanes", "normals", "taken")  # what the next numbers depend on
 def make_noise(stream: np.random.SeedSequence) -> Noise:
     """Return the noise of a stream: streams spawned from one seed are independent."""
     lanes = np.asarray(stream.generate_state(4 * LANES, np.uint64), dtype=np.uint64)
+    bits = np.zeros(BLOCK, dtype=np.uint64)
+    half = bits[: BLOCK // 2]
     return Noise(
         lanes.reshape(4, LANES),
         np.zeros(BLOCK),
         np.array([BLOCK]),
-        np.zeros(BLOCK, dtype=np.uint64),
+        bits,
+        half.view(np.int64),
+        half.view(np.float64),
         np.zeros(BLOCK // 2),
     )
 
@@ -167,13 +173,12 @@ def _rotate(bits, radii, first, second):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _draw_block(lanes, bits, radii, normals):  # type: ignore[no-untyped-def]
+def _draw_block(noise):  # type: ignore[no-untyped-def]
     """Draw the next block of normal numbers."""
-    half = radii.size
-    _draw_bits(lanes, bits)
-    numbers = bits.view(np.int64)[:half]
-    _radii(numbers, numbers.view(np.float64), radii)
-    _rotate(bits[half:], radii, normals[:half], normals[half:])
+    half = noise.radii.size
+    _draw_bits(noise.lanes, noise.bits)
+    _radii(noise.numbers, noise.reals, noise.radii)
+    _rotate(noise.bits[half:], noise.radii, noise.normals[:half], noise.normals[half:])
 
 
 @kernel
@@ -182,7 +187,7 @@ def fill(noise, values):  # type: ignore[no-untyped-def]
     done, taken = 0, noise.taken[0]
     while done < values.size:
         if taken == BLOCK:
-            _draw_block(noise.lanes, noise.bits, noise.radii, noise.normals)
+            _draw_block(noise)
             taken = 0
         number = min(values.size - done, BLOCK - taken)
         # Two slices and a loop: copied as a vector, with indices that begin at 0.

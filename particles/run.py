@@ -20,7 +20,7 @@ from crazybilliards.model import Chain
 from crazybilliards.model.checks import check_choice, check_integer, check_real, shown
 from crazybilliards.model.grid import require_resolved
 from crazybilliards.model.memory import require_memory
-from crazybilliards.particles.laws.law import Method
+from crazybilliards.particles.laws.law import EXACT, Method, choose_operator
 from crazybilliards.particles.scales import start_swing, typical_speed
 from crazybilliards.particles.schedule import Average, Schedule, make_schedule
 from crazybilliards.particles.start import replica_starts
@@ -32,7 +32,7 @@ _GROUPS = 32  # of an ensemble: enough for an error bar good to an eighth
 
 # Measured peak memory: copies while observers are joined and averaged, and chunks of snapshots.
 _COPIES = 7
-_BYTES_PER_ROD = 100
+_BYTES_PER_ROD = 200
 _BYTES_PER_REPLICA = 10_000
 _CHUNKS = 4e7
 
@@ -63,7 +63,7 @@ class Run:
     Raises
     ------
     ValueError
-        For a wrong argument, or if the run would not fit into memory: it takes 100 bytes a rod
+        For a wrong argument, or if the run would not fit into memory: it takes 200 bytes a rod
         and 10 kB a replica, 40 MB for the snapshots under way, and seven times what the
         observers keep, while they are joined and averaged.
     """
@@ -114,6 +114,7 @@ class Run:
             average=self.average,
             replicas=self.replicas,
             stepper=self.stepper,
+            exact=self.exact,
             started=self.start is not None,
         )
 
@@ -149,6 +150,12 @@ class Run:
     def copies(self) -> int:
         """Number of replicas in the largest group."""
         return -(-self.replicas // self.groups)
+
+    @property
+    def exact(self) -> bool:
+        """Whether every step is exact, whatever its length (``exact_flight.py``)."""
+        kind = {"counted": self.counted, "halves": self.stepper == "splitting"}
+        return choose_operator(self.chain, self.method, **kind) == EXACT
 
     @property
     def counted(self) -> bool:

@@ -1,9 +1,12 @@
 """The schedule of a run: whole numbers of steps, blocks and snapshots.
 
-* time step: see :func:`crazybilliards.particles.scales.default_time_step`.
+* time step: see :func:`crazybilliards.particles.scales.default_time_step`. Where the motion of the
+  chain is known exactly (``exact_flight.py``), any step is right, and it is the time between
+  snapshots.
 * warm-up: 12 relaxation times of the slowest mode, so that the start has decayed to exp(-12). There
   is none with a given start or for an ensemble, whose time begins with the start.
-* snapshots: every 10 steps; for an ensemble every hundredth of the duration.
+* snapshots: every 10 steps; for an ensemble every hundredth of the duration. With exact motion they
+  are as far apart as 10 steps would be.
 """
 
 from __future__ import annotations
@@ -91,6 +94,7 @@ def make_schedule(
     average: Average = "time",
     replicas: int = 1,
     stepper: Stepper = "splitting",
+    exact: bool = False,
     started: bool = False,
 ) -> Schedule:
     """Check the given times, choose the others, and return whole numbers of steps.
@@ -98,17 +102,21 @@ def make_schedule(
     Averages in time get their standard errors from 64 blocks in all. The measured duration is
     rounded up so that the blocks are equally long. ``every``, the time between snapshots, is kept
     exactly, and the step becomes a whole fraction of it. An ``every`` that makes it over a thousand
-    times as short and the run over a million steps long is refused.
+    times as short and the run over a million steps long is refused. ``exact``: every step is right,
+    whatever its length.
     """
     ensemble = average == "ensemble"
     duration = check_real("duration", duration, positive=True)
     if every is None and ensemble:
         every = duration / _OUTPUTS
-    needed = _needed_step(chain, time_step, stepper)
-    step, stride = _step_and_stride(needed, every)
     if warmup is None:
         warmup = 0.0 if started or ensemble else _RELAXATIONS * relaxation_time(chain)
     warmup = check_real("warmup", warmup)
+    if exact:
+        needed, step, stride = _exact_steps(chain, time_step, every, warmup)
+    else:
+        needed = _needed_step(chain, time_step, stepper)
+        step, stride = _step_and_stride(needed, every)
     _refuse_short_steps(step, needed, warmup + duration)
     if (warmup + duration) / step > 1e15:
         raise ValueError(f"time_step {step:g} is too small for {warmup + duration:g} time units")
@@ -139,6 +147,22 @@ def _needed_step(chain: Chain, time_step: float | None, stepper: Stepper) -> flo
     if step >= limit:
         raise ValueError(f"time_step must be below {limit:.3g} to be stable, got {step:g}")
     return step
+
+
+def _exact_steps(
+    chain: Chain, time_step: float | None, every: float | None, warmup: float
+) -> tuple[float, float, int]:
+    """Return the step without regard to snapshots, the step, and the steps between snapshots.
+
+    The warm-up is a whole number of steps. They are short enough not to make it much longer.
+    """
+    if time_step is not None:
+        needed = check_real("time_step", time_step, positive=True)
+        return needed, *_step_and_stride(needed, every)
+    needed = default_time_step(chain)
+    every = _STRIDE * needed if every is None else check_real("every", every, positive=True)
+    longest = max(_STRIDE * needed, warmup / 100) if warmup > 0 else every
+    return needed, *_step_and_stride(longest, every)
 
 
 def _step_and_stride(step: float, every: float | None) -> tuple[float, int]:

@@ -29,6 +29,7 @@ from numpy.typing import NDArray
 
 from crazybilliards.model import Chain, spring
 from crazybilliards.model.kernels import copy, inlined, kernel
+from crazybilliards.particles.exact_flight import Propagator, fly, make_propagator
 from crazybilliards.particles.laws.closed_contacts import (
     CLOSED_KICK,
     CRITICAL_RESTITUTION,
@@ -36,7 +37,7 @@ from crazybilliards.particles.laws.closed_contacts import (
     second_half,
     strengthen,
 )
-from crazybilliards.particles.laws.law import Law, Method, drift, make_law
+from crazybilliards.particles.laws.law import EXACT, Law, Method, drift, make_law
 from crazybilliards.particles.noise import Noise, fill, make_noise
 from crazybilliards.particles.scales import spring_rate
 
@@ -72,6 +73,7 @@ class Dynamics(NamedTuple):
     anchors: NDArray[np.float64]  # reduced, (L,)
     step: Step
     law: Law
+    propagator: Propagator  # of a step, if the law is EXACT
     fastest: float  # with a faster rod the chain has diverged
 
 
@@ -112,6 +114,7 @@ def make_dynamics(
             counted=counted,
             halves=stepper == "splitting",
         ),
+        make_propagator(chain, time_step),
         diverged * speed if speed > 0 else math.inf,
     )
 
@@ -188,13 +191,13 @@ def kick(y, v, anchors, kicks, step, part):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def draw_kicks(noise, kicks, due):  # type: ignore[no-untyped-def]
-    """Fill rows of ``kicks``, shape (rows, L), for as many of the ``due`` steps as have room.
+def draw_kicks(noise, kicks, width, due):  # type: ignore[no-untyped-def]
+    """Fill ``kicks`` for as many of the ``due`` steps of ``width`` numbers as have room.
 
-    Return how many rows are filled. Several are drawn at once, because one by one is slower.
+    Return for how many. Several are drawn at once, because one by one is slower.
     """
-    rows = min(kicks.shape[0], due)
-    fill(noise, kicks.ravel()[: rows * kicks.shape[1]])
+    rows = min(kicks.size // width, due)
+    fill(noise, kicks[: rows * width])
     return rows
 
 
@@ -215,17 +218,25 @@ def take_step(y, v, kicks, part, dynamics, scratch, tally):  # type: ignore[no-u
     return drift(y, v, dynamics.anchors, step.time_step, dynamics.law, scratch, tally)
 
 
-@kernel
-def advance(y, v, noise, dynamics, scratch, tally, steps):  # type: ignore[no-untyped-def]
-    """Take ``steps`` steps of the chain in place; return the collisions, or -1 if diverged.
+@inlined
+def _fly(y, v, noise, dynamics, scratch, steps):  # type: ignore[no-untyped-def]
+    """Take steps of a chain whose motion is known exactly; collisions are not counted."""
+    width, row, rows = 2 * y.size, 0, 0
+    for taken in range(steps):
+        if row == rows:
+            row, rows = 0, draw_kicks(noise, scratch.kicks, width, steps - taken)
+        kicks = scratch.kicks[row * width : (row + 1) * width]
+        fly(y, v, kicks, dynamics.propagator, scratch)
+        row += 1
+    return 0
 
-    ``y`` and ``v`` are float arrays of shape (L,) in the reduced coordinate. ``noise`` is a stream
-    for this thread alone (``noise.py``). For ``scratch`` see ``laws/law.py``, for ``tally``
-    ``laws/avalanche.py``.
-    """
+
+@inlined
+def _step(y, v, noise, dynamics, scratch, tally, steps):  # type: ignore[no-untyped-def]
+    """Take steps of kicks and drifts."""
     if steps == 0:
         return 0
-    step, kicks = dynamics.step, scratch.kicks
+    step, size = dynamics.step, y.size
     if step.closed != 1.0:
         find_clusters(y, scratch.clusters)
     collisions, row, rows = 0, 0, 0
@@ -234,10 +245,11 @@ def advance(y, v, noise, dynamics, scratch, tally, steps):  # type: ignore[no-un
     due = steps + 1 if step.symmetric else steps
     for taken in range(due):
         if row == rows:
-            row, rows = 0, draw_kicks(noise, kicks, due - taken)
+            row, rows = 0, draw_kicks(noise, scratch.kicks, size, due - taken)
         if taken == steps:
             part = LAST
-        met = take_step(y, v, kicks[row], part, dynamics, scratch, tally)
+        kicks = scratch.kicks[row * size : (row + 1) * size]
+        met = take_step(y, v, kicks, part, dynamics, scratch, tally)
         if met < 0:
             return -1
         row += 1
@@ -248,6 +260,24 @@ def advance(y, v, noise, dynamics, scratch, tally, steps):  # type: ignore[no-un
     return collisions
 
 
+@inlined
+def _advance(y, v, noise, dynamics, scratch, tally, steps):  # type: ignore[no-untyped-def]
+    if dynamics.law.operator == EXACT:
+        return _fly(y, v, noise, dynamics, scratch, steps)
+    return _step(y, v, noise, dynamics, scratch, tally, steps)
+
+
+@kernel
+def advance(y, v, noise, dynamics, scratch, tally, steps):  # type: ignore[no-untyped-def]
+    """Take ``steps`` steps of the chain in place; return the collisions, or -1 if diverged.
+
+    ``y`` and ``v`` are float arrays of shape (L,) in the reduced coordinate. ``noise`` is a stream
+    for this thread alone (``noise.py``). For ``scratch`` see ``laws/law.py``, for ``tally``
+    ``laws/avalanche.py``.
+    """
+    return _advance(y, v, noise, dynamics, scratch, tally, steps)
+
+
 @kernel
 def bounded(y, v, fastest):  # type: ignore[no-untyped-def]
     """Return whether all values are finite and no rod is faster than ``fastest``."""
@@ -255,6 +285,16 @@ def bounded(y, v, fastest):  # type: ignore[no-untyped-def]
         if not (abs(v[i]) <= fastest and abs(y[i]) < np.inf):
             return False
     return True
+
+
+@inlined
+def _keep(source, target, tally):  # type: ignore[no-untyped-def]
+    """Copy what ``tally`` records of collisions, from or to the scratch space."""
+    for contact in range(tally.contacts.size):
+        target.contacts[contact] = source.contacts[contact]
+    for row in range(tally.impacts.shape[0]):
+        for contact in range(tally.impacts.shape[1]):
+            target.impacts[row, contact] = source.impacts[row, contact]
 
 
 @kernel
@@ -267,15 +307,13 @@ def record(  # type: ignore[no-untyped-def]
     because a drift had too many collisions or a rod became too fast. The counted collisions are
     then those up to the last valid snapshot, because diverging steps may have had a million.
     """
-    contacts, impacts = tally.contacts.copy(), tally.impacts.copy()
+    _keep(tally, scratch, tally)
     for snapshot in range(y_buffer.shape[0]):
-        met = advance(y, v, noise, dynamics, scratch, tally, stride)
+        met = _advance(y, v, noise, dynamics, scratch, tally, stride)
         if met < 0 or not bounded(y, v, dynamics.fastest):
-            copy(contacts, tally.contacts)
-            copy(impacts.ravel(), tally.impacts.ravel())
+            _keep(scratch, tally, tally)
             return snapshot
-        copy(tally.contacts, contacts)
-        copy(tally.impacts.ravel(), impacts.ravel())
+        _keep(tally, scratch, tally)
         copy(y, y_buffer[snapshot])
         copy(v, v_buffer[snapshot])
     return y_buffer.shape[0]

@@ -76,7 +76,7 @@ def _hll(left, right, constants, sound):  # type: ignore[no-untyped-def]
     )
 
 
-@kernel
+@kernel(allocates=True)
 def primitive(fields, constants):  # type: ignore[no-untyped-def]
     """Return ln p, V and ln W^2, (M, 3); with an energy, W^2 follows from it.
 
@@ -101,7 +101,7 @@ def primitive(fields, constants):  # type: ignore[no-untyped-def]
     return state
 
 
-@kernel
+@kernel(allocates=True)
 def eulerian_rate(fields, constants):  # type: ignore[no-untyped-def]
     """Rates of change of (rho, rho V) or (rho, rho V, E), (2 or 3, M); see ``Constants``."""
     number, cells = fields.shape

@@ -93,7 +93,7 @@ def _faces(state: Stationary, number: int | None) -> Array:
     return np.asarray(np.sign(count) * np.interp(np.abs(count), cells_up_to, fine))
 
 
-@kernel
+@kernel(allocates=True)
 def label_rate(fields, labels, shares, kappa, stationary_distance, lam, gamma, exponent):  # type: ignore[no-untyped-def]
     """Rates of change of (eta, V) or, with a temperature, of (eta, V, S).
 

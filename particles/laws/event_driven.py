@@ -119,23 +119,20 @@ def drift(  # type: ignore[no-untyped-def]
     anchors,
     pull,
     exponent,
-    integers,
-    floats,
-    clusters,
+    scratch,
     tally,
 ):
     """Advance ``y`` and ``v`` in place by ``dt``; return the collisions, or -1 if too many.
 
     ``pull`` is k/m if the springs of rods that meet may differ and are kicked in halves, else 0.
-    ``integers`` (4, L) and ``floats`` (2, L) are scratch space. ``clusters`` records the rods that
-    are in contact at the end, and ``tally`` (an ``avalanche.Tally``) every collision. The drift
-    stops after ``most`` collisions. The chain then counts as diverged, and its state must not be
-    used.
+    ``scratch.clusters`` records the rods that are in contact at the end, and ``tally`` (an
+    ``avalanche.Tally``) every collision. The drift stops after ``most`` collisions. The chain then
+    counts as diverged, and its state must not be used.
     """
     contacts = INDEX(y.size - 1)
-    first, last = integers[0], integers[1]
+    first, last = scratch.integers[0], scratch.integers[1]
     # The tournament: the winner at each node, and the time at which its contact closes.
-    winner, due = integers[2:].ravel(), floats[:2].ravel()
+    winner, due = scratch.winner, scratch.due
     tallied = tally.contacts.size + tally.pushes.heads.size + tally.triggered.heads.size > 0
     summed = tally.impacts.size > 0
     for i in range(y.size):
@@ -143,7 +140,8 @@ def drift(  # type: ignore[no-untyped-def]
         last[i] = i
     # A single rod has no contact for the root. If the leaves have two depths, the first ones climb
     # past nodes that are decided only later.
-    due[:] = np.inf
+    for node in range(2 * y.size):
+        due[node] = np.inf
     for contact in range(contacts):
         closing, gap = v[contact] - v[contact + _1], y[contact + _1] - y[contact]
         due[contacts + contact] = _meeting(closing, gap, 0.0, dt)
@@ -210,5 +208,5 @@ def drift(  # type: ignore[no-untyped-def]
         _climb(low, leaf, due, winner, v)
         _climb(leaf, high, due, winner, v)
         _climb(high, _0, due, winner, v)
-    _finish(y, v, dt, last, clusters)
+    _finish(y, v, dt, last, scratch.clusters)
     return collisions

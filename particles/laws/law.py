@@ -1,10 +1,12 @@
 """The collision operators under one signature, and the choice between them.
 
 An operator advances y and v over one step of free flight with collisions. It returns the number of
-collisions, or -1 if there were too many. ``method="event-driven"`` gives the result of one
-collision after the other: by sorting at e = 1, by isotonic regression at e = 0 (both in O(L)), and
-by taking the collisions in their order (``EVENTS``) otherwise, or if every collision has to be
-counted at its contact. ``method="contact-dynamics"`` solves all contacts of a step at once.
+collisions (0 where rods are sorted), or -1 if there were too many. ``method="event-driven"`` gives
+the result of one collision after the other: by sorting at e = 1, by isotonic regression at e = 0
+(both in O(L)), and by taking the collisions in their order (``EVENTS``) otherwise, or if every
+collision has to be counted at its contact. ``method="contact-dynamics"`` solves all contacts of a
+step at once. ``EXACT`` is no operator: chains whose motion is known with noise and springs
+(``exact_flight.py``) need none.
 """
 
 from __future__ import annotations
@@ -16,14 +18,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crazybilliards.model import Chain
-from crazybilliards.model.kernels import kernel
+from crazybilliards.model.kernels import inlined
+from crazybilliards.particles.exact_flight import independent_rods
 from crazybilliards.particles.laws import contact_dynamics, event_driven, isotonic, sort
 from crazybilliards.particles.laws.closed_contacts import Clusters, make_clusters
+from crazybilliards.particles.laws.impacts import make_impacts
 from crazybilliards.particles.noise import BLOCK
 
 Method = Literal["event-driven", "contact-dynamics"]
 
-SORT, ISOTONIC, EVENTS, CONTACTS = range(4)
+SORT, ISOTONIC, EVENTS, CONTACTS, EXACT = range(5)
 
 
 class Law(NamedTuple):
@@ -40,20 +44,50 @@ class Law(NamedTuple):
 class Scratch(NamedTuple):
     """Arrays the kernels work in, made once for each replica."""
 
-    integers: NDArray[np.int64]
-    floats: NDArray[np.float64]
+    integers: NDArray[np.int64]  # (3, L)
+    floats: NDArray[np.float64]  # (4, L)
+    winner: NDArray[np.int64]  # of every node of the tournament in ``event_driven``, (2 L,)
+    due: NDArray[np.float64]  # the time at each of these nodes
+    buckets: NDArray[np.int32]  # of each rod in ``sort``, (L,)
+    counts: NDArray[np.int32]  # of the rods in each bucket
     clusters: Clusters  # rods in contact after the last drift, if the law needs them
-    kicks: NDArray[np.float64]  # of the noise, for one step or several, (steps, L)
+    kicks: NDArray[np.float64]  # of the noise, for one step or several, one after the other
+    contacts: NDArray[np.int64]  # a copy of what was counted up to the last snapshot, (L,)
+    impacts: NDArray[np.float64]  # the same of what was summed, (4, L)
 
 
 def make_scratch(size: int) -> Scratch:
-    """Return the scratch space for ``size`` rods: 88 bytes a rod."""
+    """Return the scratch space for ``size`` rods: 172 bytes a rod."""
     return Scratch(
-        np.zeros((4, size), dtype=np.int64),
+        np.zeros((3, size), dtype=np.int64),
         np.zeros((4, size)),
+        np.zeros(2 * size, dtype=np.int64),
+        np.zeros(2 * size),
+        np.zeros(size, dtype=np.int32),
+        np.zeros(sort.BUCKETS * size, dtype=np.int32),
         make_clusters(size),
-        np.zeros((max(1, BLOCK // size), size)),
+        # The exact flight takes two numbers a rod.
+        np.zeros(max(2, BLOCK // size) * size),
+        np.zeros(size, dtype=np.int64),
+        make_impacts(size + 1),
     )
+
+
+def choose_operator(chain: Chain, method: Method, *, counted: bool, halves: bool) -> int:
+    """Return the operator for the chain.
+
+    ``counted``: every collision has to be recorded. ``halves``: springs kick before and after the
+    drift. With a gap, collisions are then corrected one by one, so e = 1 cannot be sorted.
+    """
+    if method == "contact-dynamics":
+        return CONTACTS
+    if counted:
+        return EVENTS
+    if halves and independent_rods(chain):
+        return EXACT
+    if halves and chain.restitution == 1 and chain.gap * chain.stiffness > 0:
+        return EVENTS
+    return {1.0: SORT, 0.0: ISOTONIC}.get(chain.restitution, EVENTS)
 
 
 def make_law(
@@ -66,20 +100,13 @@ def make_law(
     counted: bool = False,
     halves: bool = True,
 ) -> Law:
-    """Choose the operator for the chain.
+    """Return the law of the chain; for ``counted`` and ``halves`` see :func:`choose_operator`.
 
     ``merging`` is in velocity kicks of one step's noise. With little or no noise 1e-9 of the
-    typical ``speed`` is used, so that inelastic collapse stays finite. ``counted``: every collision
-    has to be recorded. ``halves``: springs kick before and after the drift. With a gap, collisions
-    are then corrected one by one, so chains with e = 1 cannot be sorted.
+    typical ``speed`` is used, so that inelastic collapse stays finite.
     """
     pull = chain.stiffness / chain.mass if halves else 0.0
-    if method == "contact-dynamics":
-        operator = CONTACTS
-    elif counted or (chain.restitution == 1 and chain.gap * pull > 0):
-        operator = EVENTS
-    else:
-        operator = {1.0: SORT, 0.0: ISOTONIC}.get(chain.restitution, EVENTS)
+    operator = choose_operator(chain, method, counted=counted, halves=halves)
     kick = chain.amplitude / chain.mass * math.sqrt(time_step)
     merge_speed = max(merging * kick, 1e-9 * speed) if chain.restitution < 1 else 0.0
     if operator == EVENTS and chain.gap == 0:
@@ -88,11 +115,12 @@ def make_law(
     return Law(operator, chain.restitution, merge_speed, most, pull, chain.potential_exponent)
 
 
-@kernel
+@inlined
 def drift(y, v, anchors, dt, law, scratch, tally):  # type: ignore[no-untyped-def]
     """Advance ``y`` and ``v`` in place by ``dt`` with the operator that ``law`` names."""
     if law.operator == SORT:
-        return sort.drift(y, v, dt, scratch.floats[0], scratch.floats[1])
+        sort.drift(y, v, dt, scratch)
+        return 0
     if law.operator == ISOTONIC:
         return isotonic.drift(y, v, dt, scratch.integers[0], scratch.floats, scratch.clusters)
     if law.operator == CONTACTS:
@@ -108,8 +136,6 @@ def drift(y, v, anchors, dt, law, scratch, tally):  # type: ignore[no-untyped-de
         anchors,
         law.pull,
         law.exponent,
-        scratch.integers,
-        scratch.floats,
-        scratch.clusters,
+        scratch,
         tally,
     )

@@ -63,7 +63,10 @@ def collect(run: Run, replicas: list[Replica], interrupted: bool) -> xr.Dataset:
     width = centre_width(chain) * chain.free_velocity_width
     if "velocity_width" in measured:
         width = float(measured.velocity_width.min())
-    if np.isfinite(width) and chain.restitution != 1:
+    measured.attrs["flight"] = "exact" if run.exact else "in steps"
+    if run.exact:
+        measured.attrs["time_step_error"] = 0.0
+    elif np.isfinite(width) and chain.restitution != 1:
         corrected = run.stepper == "splitting" and run.method == "event-driven"
         measured.attrs["time_step_error"] = time_step_error(
             chain, schedule.time_step, width, corrected=corrected

@@ -19,8 +19,9 @@ from crazybilliards.particles.stepping import Dynamics, advance, bounded, record
 
 Array = NDArray[np.float64]
 
-# Number of particle steps between two checks for Ctrl-C (about 20 ms).
-_CHUNK = 2**20
+# Number of particle steps between two checks for Ctrl-C (about 20 ms), and the most positions in
+# the snapshots between them, which then stay in a processor's cache.
+_CHUNK, _ROOM = 2**20, 2**17
 
 NEVER = 2**62
 
@@ -126,7 +127,8 @@ class Replica:
     def _measure(self, stop: Event) -> Iterator[int]:
         schedule, chunk = self.schedule, self._chunk()
         scratch, tally = self._scratch(), self._tally()
-        rows = min(max(chunk // schedule.stride, 1), schedule.snapshots_per_block)
+        rows = max(min(chunk // schedule.stride, _ROOM // self.y.shape[-1]), 1)
+        rows = min(rows, schedule.snapshots_per_block)
         y_buffer, v_buffer = np.empty((2, *self.y.shape[:-1], rows, self.y.shape[-1]))
         while self.snapshots < schedule.snapshots and not (self.over or stop.is_set()):
             block, left = self._block()

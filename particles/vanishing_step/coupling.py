@@ -50,14 +50,16 @@ def advance_pair(  # type: ignore[no-untyped-def]
     if finer.step.closed != 1.0:
         find_clusters(y[0], scratch[0].clusters)
         find_clusters(y[1], scratch[1].clusters)
-    kicks, together = scratch[0].kicks, scratch[1].kicks[0]
-    together[:] = 0.0
+    size = y.shape[1]
+    kicks, together = scratch[0].kicks, scratch[1].kicks[:size]
+    for i in range(size):
+        together[i] = 0.0
     row, rows = 0, 0
     last, middle = ratio * steps, ratio // 2
     for taken in range(last + 1):
         if row == rows:
-            row, rows = 0, draw_kicks(noise, kicks, last + 1 - taken)
-        xi = kicks[row]
+            row, rows = 0, draw_kicks(noise, kicks, size, last + 1 - taken)
+        xi = kicks[row * size : (row + 1) * size]
         row += 1
         part = FIRST if taken == 0 else LAST if taken == last else WHOLE
         decay = finer.step.decay if part == WHOLE else finer.step.outer_decay
@@ -72,12 +74,15 @@ def advance_pair(  # type: ignore[no-untyped-def]
             continue
         if taken == middle:
             part = FIRST
-        together /= coarser.step.noise if part == WHOLE else coarser.step.outer_noise
+        sigma = coarser.step.noise if part == WHOLE else coarser.step.outer_noise
+        for i in range(size):
+            together[i] /= sigma
         met = take_step(y[1], v[1], together, part, coarser, scratch[1], tally)
         if met < 0:
             return -1
         tally.collisions[1] += met
-        together[:] = 0.0
+        for i in range(size):
+            together[i] = 0.0
     return 0
 
 

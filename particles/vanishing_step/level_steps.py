@@ -8,7 +8,8 @@ velocity kicks exceed 1.5 W_v is not correlated with any other. One level with a
 shortest step is planned in reserve, in case the shortest step turns out to be too long.
 
 For e = 1 the step need not resolve the noise. Its error is that of the springs, which is known, and
-one level is enough.
+one level is enough. Where the motion of the chain is known exactly (``exact_flight.py``) there is
+no error, and the step is the time between snapshots.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ import math
 from typing import NamedTuple
 
 from crazybilliards.model import Chain
+from crazybilliards.particles.exact_flight import independent_rods
 from crazybilliards.particles.scales import (
     centre_width,
     correlation_time,
@@ -60,11 +62,16 @@ class Steps(NamedTuple):
 
 def relative_bias(chain: Chain, time_step: float, width: float) -> float:
     """Relative error of a velocity width that a step is expected to cause."""
+    if independent_rods(chain):
+        return 0.0
     return time_step_error(chain, time_step, width) + (spring_rate(chain) * time_step) ** 2 / 8
 
 
 def plan_steps(chain: Chain, accuracy: float, warmup: float | None) -> Steps:
     """Choose the steps of the levels; the last one is used only if the bias is too large."""
+    interval = _STRIDE * default_time_step(chain)
+    if independent_rods(chain):
+        return _steps(chain, [interval], [1], warmup, interval)
     width = centre_width(chain) * chain.free_velocity_width
     fastest = max(spring_rate(chain), chain.damping / chain.mass)
     longest = step = _SPRINGS / fastest
@@ -79,8 +86,19 @@ def plan_steps(chain: Chain, accuracy: float, warmup: float | None) -> Steps:
         ratios.append(_NARROW_RATIO)
         step /= _NARROW_RATIO
     time_steps = [step * math.prod(ratios[level + 1 :]) for level in range(len(ratios))]
+    return _steps(chain, time_steps, ratios, warmup, interval)
+
+
+def _steps(
+    chain: Chain,
+    time_steps: list[float],
+    ratios: list[int],
+    warmup: float | None,
+    interval: float,
+) -> Steps:
+    """Return the levels with snapshots about ``interval`` apart."""
     first = time_steps[0]
-    stride = max(round(_STRIDE * default_time_step(chain) / first), 1)
+    stride = max(round(interval / first), 1)
     warm = math.ceil((_RELAXATIONS * relaxation_time(chain) if warmup is None else warmup) / first)
     least, pilot = (
         max(math.ceil(each * correlation_time(chain) / (stride * first)), 1)

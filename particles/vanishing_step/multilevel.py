@@ -40,7 +40,7 @@ import numpy as np
 
 from crazybilliards.model import Chain
 from crazybilliards.particles.laws.closed_contacts import CRITICAL_RESTITUTION
-from crazybilliards.particles.laws.law import EVENTS, ISOTONIC, SORT
+from crazybilliards.particles.laws.law import EVENTS, EXACT, ISOTONIC, SORT
 from crazybilliards.particles.vanishing_step.level_steps import Steps, relative_bias
 from crazybilliards.particles.vanishing_step.level_terms import CENTRAL, Array, Estimate, estimate
 from crazybilliards.particles.vanishing_step.sampler import Sampler
@@ -48,8 +48,9 @@ from crazybilliards.particles.vanishing_step.sampler import Sampler
 _LARGEST_BIAS = 0.7  # largest bias without another level, in units of the accuracy
 _GROWTH = 4  # of a level in one round: its variance is not known well before
 _PILOT_SHARE = 0.25  # of the work, for a longer pilot round
-# Measured costs on one core [ns]: of a step of a chain, of one rod in it, of a collision.
-_STEP, _ROD, _COLLISION = 300.0, 6.0, {SORT: 1.0, ISOTONIC: 15.0, EVENTS: 50.0}
+# Measured costs on one core [ns]: of a step of a chain, of one rod in it, of a collision. Where
+# rods are sorted, collisions are not counted.
+_STEP, _ROD, _COLLISION = 20.0, 6.0, {EXACT: 0.0, SORT: 0.0, ISOTONIC: 15.0, EVENTS: 50.0}
 _WORTH = 1.1  # a round that makes no level longer than this does not pay
 
 

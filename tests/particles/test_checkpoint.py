@@ -127,7 +127,7 @@ def test_a_disk_that_fills_up_costs_the_checkpoint_and_not_the_run(tmp_path, mon
 
 @pytest.mark.compiled
 def test_between_two_snapshots_far_apart_a_run_can_be_stopped_and_resumed(tmp_path, monkeypatch):
-    chain = Chain(size=50)
+    chain = Chain(size=50, spring="quadratic")
     options = {"duration": 4e4, "every": 2e4, "average": "ensemble", "progress": False}
     options |= {"observe": ("widths", "energy")}
     whole = simulate(chain, **options)

@@ -119,13 +119,14 @@ def test_a_step_is_refused_just_where_it_gets_unstable(stepper, damping, stiffne
         values = abs(np.linalg.eigvals(step))
         return values.max() if stiffness else abs(step[1, 1])
 
+    pair = chain.replace(size=2, restitution=0.5)  # one rod alone is flown exactly
     limit = longest_step(chain, stepper)
     if limit < np.inf:
         assert growth(1.01 * limit) > 1
         with pytest.raises(ValueError, match="time_step must be below"):
-            simulate(chain, time_step=1.01 * limit, stepper=stepper)
+            simulate(pair, time_step=1.01 * limit, stepper=stepper)
     assert growth(0.99 * min(limit, 1e3)) < 1 + 1e-12
-    simulate(chain, duration=2e4, time_step=0.99 * min(limit, 10.0), warmup=0, stepper=stepper)
+    simulate(pair, duration=2e4, time_step=0.99 * min(limit, 10.0), warmup=0, stepper=stepper)
 
 
 def test_a_spring_without_a_rate_takes_a_time_step():
@@ -204,7 +205,7 @@ def test_a_chain_that_blows_up_is_marked_diverged():
         ({"duration": 1e-3, "every": 1e-6}, "warm-up and duration would take 1e.08 steps"),
         ({"warmup": -1}, "warmup must be"),
         ({"time_step": 0}, "time_step must be"),
-        ({"time_step": 5}, "time_step must be below"),
+        ({"time_step": 5, "method": "contact-dynamics"}, "time_step must be below"),
         ({"stepper": "leapfrog"}, "stepper must be one of"),
         ({"method": "magic"}, "method must be one of"),
         ({"merging": -1}, "merging must be"),

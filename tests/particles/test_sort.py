@@ -5,28 +5,34 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from crazybilliards.model.kernels import kernel
 from crazybilliards.particles.laws import sort
+from crazybilliards.particles.laws.law import make_scratch
 
 
 def drift(y, v, dt):
-    return sort.drift(y, v, dt, np.empty(y.size), np.empty(y.size))
+    sort_and_fly(y, v, dt, make_scratch(y.size))
+
+
+@kernel
+def sort_and_fly(y, v, dt, scratch):
+    sort.drift(y, v, dt, scratch)
 
 
 def drift_slowly(y, v, dt):
     """Elastic collisions one at a time: find the next, go there, swap the two velocities."""
     y, v = y.copy(), v.copy()
-    remaining, collisions = dt, 0
+    remaining = dt
     while True:
         closing = v[:-1] - v[1:]
         with np.errstate(divide="ignore", invalid="ignore"):
             times = np.where(closing > 0, np.diff(y) / closing, np.inf)
         pair = int(np.argmin(times)) if times.size else 0
         if times.size == 0 or times[pair] > remaining:
-            return y + remaining * v, v, collisions
+            return y + remaining * v, v
         y += times[pair] * v
         remaining -= times[pair]
         v[pair], v[pair + 1] = v[pair + 1], v[pair]
-        collisions += 1
 
 
 @st.composite
@@ -40,12 +46,11 @@ def states(draw):
 @given(state=states(), dt=st.floats(0, 3))
 def test_equals_its_slow_twin(state, dt):
     y, v = state
-    expected_y, expected_v, expected_collisions = drift_slowly(y, v, dt)
+    expected_y, expected_v = drift_slowly(y, v, dt)
     y, v = y.copy(), v.copy()
-    collisions = drift(y, v, dt)
+    drift(y, v, dt)
     np.testing.assert_allclose(y, expected_y, atol=1e-12)
     np.testing.assert_allclose(v, expected_v, atol=1e-12)
-    assert collisions == expected_collisions
 
 
 @given(state=states(), dt=st.floats(0, 3))
@@ -71,24 +76,40 @@ def test_is_reflection_symmetric(state, dt):
 
 def test_newtons_cradle():
     y, v = np.array([-1.0, 0, 0, 0]), np.array([1.0, 0, 0, 0])
-    assert drift(y, v, 2.0) == 3
+    drift(y, v, 2.0)
     np.testing.assert_array_equal(v, [0, 0, 0, 1])
     np.testing.assert_array_equal(y, [0, 0, 0, 1])
 
 
-@pytest.mark.parametrize("size", [29, 30, 31, 63, 64, 65, 128, 200, 1000])
-@pytest.mark.parametrize("dt", [0.0, 1e-3, 0.1, 10.0])
-def test_long_chains_are_sorted_and_every_inversion_is_counted(size, dt):
-    """Beyond 64 rods runs are merged: the same as sorting, inversions counted by brute force."""
-    generator = np.random.default_rng(size)
-    y, v = np.sort(generator.normal(size=size)), generator.normal(size=size)
-    free = y + dt * v
-    order = np.argsort(free)
-    inversions = np.triu(free[:, np.newaxis] > free[np.newaxis, :]).sum()
-    velocities = v.copy()
-    assert drift(y, v, dt) == inversions
+PLACES = {
+    "normal": lambda generator, size: generator.normal(size=size),
+    "far away": lambda generator, size: 1e200 * generator.standard_cauchy(size),
+    "in one bucket": lambda generator, size: np.append(1e6, 1e-6 * generator.normal(size=size - 1)),
+    "at one place": lambda generator, size: np.full(size, 3.0),
+    "hardly apart": lambda generator, size: 1 + 2.0**-52 * generator.integers(0, size, size),
+    "next to nothing": lambda generator, size: 5e-324 * generator.integers(0, size, size),
+}
+
+
+@pytest.mark.parametrize("size", [2, 15, 16, 17, 63, 64, 65, 128, 200, 1000, 10_001])
+@pytest.mark.parametrize("places", PLACES)
+def test_rods_are_sorted_wherever_they_are(size, places):
+    """Below 16 rods by insertion, beyond by buckets; beyond 64 runs are merged."""
+    free = PLACES[places](np.random.default_rng(size), size)
+    y, v = free.copy(), np.arange(float(size))
+    drift(y, v, 0.0)
+    order = np.argsort(free, kind="stable")
     np.testing.assert_array_equal(y, free[order])
-    np.testing.assert_array_equal(v, velocities[order])
+    np.testing.assert_array_equal(v, order)
+
+
+@pytest.mark.parametrize("wrong", [np.nan, np.inf, -np.inf])
+def test_a_chain_that_diverges_harms_nothing(wrong):
+    """Positions may be no numbers then: all rods are still there."""
+    y, v = np.random.default_rng(1).normal(size=100), np.arange(100.0)
+    y[[3, 50]] = wrong
+    drift(y, v, 0.0)
+    assert sorted(v) == list(range(100))
 
 
 @pytest.mark.parametrize("size", [12, 30, 31, 100, 1000])
@@ -97,6 +118,5 @@ def test_rods_at_the_same_place_keep_their_order(size):
     free = generator.integers(0, size // 3, size).astype(float)  # many rods end at the same place
     names = np.arange(1.0, size + 1)
     y, v = free - names, names.copy()
-    inversions = np.triu(free[:, np.newaxis] > free[np.newaxis, :]).sum()
-    assert drift(y, v, 1.0) == inversions
+    drift(y, v, 1.0)
     np.testing.assert_array_equal(v, names[np.argsort(free, kind="stable")])

@@ -1,0 +1,186 @@
+"""Elastic rods with one anchor, flown exactly: any step, damping and stiffness, any start."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from crazybilliards.kinetic import breathing_cloud, equilibrium
+from crazybilliards.model import Chain
+from crazybilliards.particles import given_start, simulate, simulate_limit
+from crazybilliards.particles.exact_flight import make_propagator
+from crazybilliards.particles.observers import Raw
+
+CRITICAL = 2 * math.sqrt(4 * math.pi / 3)
+DAMPINGS = [0.0, 0.1, 1.0, CRITICAL, 10.0]
+STEPS = [0.1, 3.0, 20.0]
+
+
+def moves(chain, time):
+    """Return E by the roots of the characteristic equation, with more digits than are needed."""
+    half, square = chain.damping / (2 * chain.mass), chain.stiffness / chain.mass
+    root = np.emath.sqrt(half**2 - square)
+    decay, turn = np.exp(-half * time), root * time
+    even = np.cosh(turn)
+    odd = time if abs(turn) < 1e-7 else np.sinh(turn) / root
+    e = decay * np.array([[even + half * odd, odd], [-square * odd, even - half * odd]])
+    return e.real
+
+
+def heats(chain, time):
+    """Return Sigma by Gauss-Legendre quadrature over times that are short for the chain."""
+    pieces = max(int(20 * time * max(1.0, chain.damping / chain.mass)), 1)
+    nodes, weights = np.polynomial.legendre.leggauss(12)
+    sigma = np.zeros((2, 2))
+    for piece in range(pieces):
+        for node, weight in zip(nodes, weights, strict=True):
+            [y, v] = moves(chain, time / pieces * (piece + (node + 1) / 2))[:, 1]
+            sigma += weight * np.outer((y, v), (y, v))
+    return sigma * (chain.amplitude / chain.mass) ** 2 * time / pieces / 2
+
+
+@pytest.mark.parametrize("time", [1e-4, *STEPS])
+@pytest.mark.parametrize("damping", DAMPINGS)
+@pytest.mark.parametrize("stiffness", [0.0, 1.0])
+def test_the_propagator_is_that_of_an_oscillator(stiffness, damping, time):
+    chain = Chain(size=3, stiffness=stiffness, damping=damping, amplitude=1.7)
+    step = make_propagator(chain, time)
+    e = [[step.y_from_y, step.y_from_v], [step.v_from_y, step.v_from_v]]
+    np.testing.assert_allclose(e, moves(chain, time), rtol=1e-10, atol=1e-12)
+    root = np.array([[step.shared_noise, step.own_noise], [step.noise, 0.0]])
+    np.testing.assert_allclose(root @ root.T, heats(chain, time), rtol=1e-9, atol=1e-14)
+
+
+some = st.just(0.0) | st.floats(1e-9, 20)
+
+
+@given(one=st.floats(1e-3, 30), other=st.floats(1e-3, 30), damping=some, stiffness=some)
+def test_two_steps_are_one_of_their_sum(one, other, damping, stiffness):
+    """E and Sigma alike, whatever the damping: nothing else is assumed of an exact law."""
+    chain = Chain(size=3, damping=damping, stiffness=stiffness)
+
+    def matrices(time):
+        step = make_propagator(chain, time)
+        root = np.array([[step.shared_noise, step.own_noise], [step.noise, 0.0]])
+        e = np.array([[step.y_from_y, step.y_from_v], [step.v_from_y, step.v_from_v]])
+        return e, root @ root.T
+
+    (e, sigma), (f, rho), (both, all_noise) = (matrices(t) for t in (one, other, one + other))
+    scale = np.abs(f) @ np.abs(e)
+    assert np.abs(f @ e - both).max() <= 1e-10 * scale.max()
+    found = f @ sigma @ f.T + rho
+    assert np.abs(found - all_noise).max() <= 1e-9 * np.abs(all_noise).max()
+
+
+def followed(chain, times, *, copies, seed=1, **start):
+    """Return <x x(t)>, <v v(t)> and their errors over all rods, from the first snapshot on."""
+    run = simulate(
+        chain,
+        average="ensemble",
+        observe=Raw(),
+        replicas=copies,
+        seed=seed,
+        progress=False,
+        **times,
+        **start,
+    )
+    return run.position.values - chain.anchors, run.velocity.values
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("step", STEPS)
+@pytest.mark.parametrize("damping", [0.1, 1.0, CRITICAL, 10.0])
+def test_the_steady_state_is_exact_at_any_step(damping, step):
+    chain = Chain(size=10, damping=damping)
+    run = simulate(chain, time_step=step, every=max(step, 1.0), duration=20_000, progress=False)
+    exact = equilibrium(chain)
+    assert run.attrs["time_step_error"] == 0
+    assert run.attrs["flight"] == "exact"
+    for name in ("velocity_width", "displacement_width", "mean_displacement"):
+        assert (np.abs(run[name] - exact[name]) < 5 * run[f"{name}_error"]).all(), name
+    assert (run.velocity_width_error < 0.06 * chain.free_velocity_width).all()
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("step", STEPS)
+@pytest.mark.parametrize("damping", DAMPINGS)
+@pytest.mark.parametrize("stiffness", [0.0, 1.0])
+def test_rods_forget_as_one_oscillator(stiffness, damping, step):
+    """Sums over the chain, <sum_i x_i sum_j x_j(t)> and of v, do not know who is who.
+
+    They start from a given spread, and also grow as the noise has it.
+    """
+    chain = Chain(size=6, damping=damping, stiffness=stiffness)
+    copies, generator = 4000, np.random.default_rng(7)
+    y = np.sort(generator.normal(1.0, 2.0, (copies, chain.size)), axis=1)
+    v = generator.normal(0.5, 0.7, (copies, chain.size))
+    start = given_start(chain, chain.physical(y), v, replicas=copies)
+    times = {"duration": 3 * step, "every": step, "time_step": step}
+    x, u = followed(chain, times, copies=copies, start=start)
+    before = np.stack([x[:, 0].mean(1), u[:, 0].mean(1)])
+    for k in (1, 2, 3):
+        e, sigma = moves(chain, k * step), heats(chain, k * step)
+        after = np.stack([x[:, k].mean(1), u[:, k].mean(1)])
+        left = after - e @ before
+        spread = np.sqrt(np.diag(sigma) / chain.size)
+        assert (np.abs(left.mean(1)) < 5 * spread / math.sqrt(copies)).all()
+        found = (left**2).mean(1)
+        assert (np.abs(found - spread**2) < 5 * spread**2 * math.sqrt(2 / copies)).all()
+        for state, row in ((x[:, k], 0), (u[:, k], 1)):  # all rods, whoever they are
+            expected = e[row, 0] ** 2 * y.var() + e[row, 1] ** 2 * v.var() + sigma[row, row]
+            variance = state.var()
+            assert variance == pytest.approx(expected, rel=5 * math.sqrt(2 / state.size) * 1.5)
+        assert (np.diff(x[:, k], axis=1) > -1e-9 * np.abs(x).max()).all()
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("step", [1.0, 6.0])
+def test_a_stretched_cloud_breathes_as_it_should(step):
+    chain = Chain(size=10)
+    exact = breathing_cloud(chain, 24.0, every=6.0, stretch=3.0, shift=1.0)
+    generator, copies = np.random.default_rng(5), 4000
+    y = generator.normal(1.0, 3 * chain.thermal_length, (copies, chain.size))
+    v = generator.normal(0.0, chain.free_velocity_width, (copies, chain.size))
+    start = given_start(chain, chain.physical(np.sort(y, axis=1)), v, replicas=copies)
+    times = {"duration": 24.0, "every": 6.0, "time_step": step}
+    x, _ = followed(chain, times, copies=copies, start=start)
+    error = x.std(0) / math.sqrt(copies)
+    assert (np.abs(x.mean(0) - exact.mean_displacement.values) < 5 * error).all()
+
+
+@pytest.mark.compiled
+def test_the_limit_has_one_level_and_no_bias():
+    chain = Chain(size=10)
+    limit = simulate_limit(chain, accuracy=0.005, progress=False)
+    exact = equilibrium(chain)
+    assert limit.attrs["time_step_error"] == 0
+    assert limit.attrs["flight"] == "exact"
+    assert "coupling" not in limit.attrs
+    for name in ("velocity_width", "displacement_width", "mean_displacement"):
+        assert (np.abs(limit[name] - exact[name]) < 5 * limit[f"{name}_error"]).all(), name
+
+
+@pytest.mark.parametrize(
+    ("chain", "settings"),
+    [
+        (Chain(size=3, restitution=0.9), {}),
+        (Chain(size=3, gap=0.1), {}),
+        (Chain(size=3, spring="quadratic"), {}),
+        (Chain(size=3), {"stepper": "euler"}),
+        (Chain(size=3), {"method": "contact-dynamics"}),
+        (Chain(size=3), {"observe": ("widths", "collisions")}),
+    ],
+)
+def test_what_cannot_be_flown_is_taken_in_steps(chain, settings):
+    run = simulate(chain, duration=300, progress=False, **settings)
+    assert run.attrs["flight"] == "in steps"
+    assert run.attrs.get("time_step_error") != 0
+
+
+def test_a_warm_up_is_not_made_much_longer_by_rare_snapshots():
+    chain = Chain(size=3)
+    options = {"duration": 64_000, "every": 1000.0, "observe": "snapshots", "progress": False}
+    assert simulate(chain, **options, warmup=50).time[0] == pytest.approx(1050, abs=1.1)
+    assert simulate(chain, **options, warmup=0).time[0] == 1000
