@@ -10,6 +10,7 @@ from gauss_seidel import solve
 
 from crazybilliards.model import Chain
 from crazybilliards.particles import stepping
+from crazybilliards.particles.dynamics import make_dynamics
 from crazybilliards.particles.laws.avalanche import make_tally
 from crazybilliards.particles.laws.law import drift, make_scratch
 from crazybilliards.particles.noise import fill, make_noise
@@ -22,7 +23,7 @@ UNSEEN = make_tally(2, contacts=False)
 def solver():
     """Return a settled chain's law and fifty successive states, the next kick already given."""
     chain = Chain(size=SIZE, restitution=0)
-    dynamics = stepping.make_dynamics(chain, TIME_STEP, speed=1.0, method="contact-dynamics")
+    dynamics = make_dynamics(chain, TIME_STEP, speed=1.0, method="contact-dynamics")
     noise = make_noise(np.random.SeedSequence(0))
     scratch = make_scratch(SIZE)
     y, v = np.zeros((2, SIZE))

@@ -24,11 +24,12 @@ from scipy.optimize import brentq
 
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate_limit
+from crazybilliards.particles.dynamics import make_dynamics
 from crazybilliards.particles.laws.avalanche import make_tally
 from crazybilliards.particles.laws.law import make_scratch
 from crazybilliards.particles.noise import make_noise
 from crazybilliards.particles.scales import relaxation_time
-from crazybilliards.particles.stepping import advance, make_dynamics
+from crazybilliards.particles.stepping import advance
 
 CASES = [(0.0, 100), (0.0, 1000), (0.5, 100)]  # restitution, size
 

@@ -20,11 +20,11 @@ from crazybilliards.model import Chain
 from crazybilliards.model.checks import check_choice, check_integer, check_real, shown
 from crazybilliards.model.grid import require_resolved
 from crazybilliards.model.memory import require_memory
+from crazybilliards.particles.dynamics import Dynamics, Stepper, default_merging, make_dynamics
 from crazybilliards.particles.laws.law import EXACT, Method, choose_operator
 from crazybilliards.particles.scales import start_swing, typical_speed
 from crazybilliards.particles.schedule import Average, Schedule, make_schedule
 from crazybilliards.particles.start import replica_starts
-from crazybilliards.particles.stepping import Dynamics, Stepper, default_merging, make_dynamics
 
 Array = NDArray[np.float64]
 
@@ -153,9 +153,14 @@ class Run:
 
     @property
     def exact(self) -> bool:
-        """Whether every step is exact, whatever its length (``exact_flight.py``)."""
+        """Whether every step is exact, whatever its length (``laws/exact_flight.py``)."""
         kind = {"counted": self.counted, "halves": self.stepper == "splitting"}
         return choose_operator(self.chain, self.method, **kind) == EXACT
+
+    @property
+    def flight(self) -> str:
+        """How rods move between collisions: "exact", or "in steps" of kicks and drifts."""
+        return "exact" if self.exact else "in steps"
 
     @property
     def counted(self) -> bool:

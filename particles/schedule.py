@@ -1,7 +1,7 @@
 """The schedule of a run: whole numbers of steps, blocks and snapshots.
 
 * time step: see :func:`crazybilliards.particles.scales.default_time_step`. Where the motion of the
-  chain is known exactly (``exact_flight.py``), any step is right, and it is the time between
+  chain is known exactly (``laws/exact_flight.py``), any step is right, and it is the time between
   snapshots.
 * warm-up: 12 relaxation times of the slowest mode, so that the start has decayed to exp(-12). There
   is none with a given start or for an ensemble, whose time begins with the start.
@@ -20,8 +20,8 @@ from numpy.typing import NDArray
 
 from crazybilliards.model import Chain
 from crazybilliards.model.checks import check_real
+from crazybilliards.particles.dynamics import Stepper, longest_step
 from crazybilliards.particles.scales import default_time_step, relaxation_time
-from crazybilliards.particles.stepping import Stepper, longest_step
 
 _STRIDE = 10
 _RELAXATIONS = 12

@@ -16,6 +16,7 @@ from crazybilliards.model.checks import check_integer, check_real
 from crazybilliards.model.grid import deposit
 from crazybilliards.model.process import announced, cores
 from crazybilliards.model.randomness import Randomness, seed_of
+from crazybilliards.particles.dynamics import Stepper, make_dynamics
 from crazybilliards.particles.laws.avalanche import make_tally
 from crazybilliards.particles.laws.law import Method, make_scratch
 from crazybilliards.particles.noise import make_noise
@@ -26,13 +27,7 @@ from crazybilliards.particles.running.collecting import collect
 from crazybilliards.particles.running.replica import Replica
 from crazybilliards.particles.running.threads import run_all
 from crazybilliards.particles.schedule import Average
-from crazybilliards.particles.stepping import (
-    Stepper,
-    advance,
-    bounded,
-    make_dynamics,
-    record,
-)
+from crazybilliards.particles.stepping import advance, bounded, record
 
 
 def simulate(

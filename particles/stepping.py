@@ -19,159 +19,18 @@ then the drift. It is of first order: a free rod without a spring has
 W^2 = (T/m)/(1 - gamma dt/2m).
 """
 
-from __future__ import annotations
-
-import math
-from typing import Literal, NamedTuple
-
 import numpy as np
-from numpy.typing import NDArray
 
-from crazybilliards.model import Chain, spring
+from crazybilliards.model import spring
 from crazybilliards.model.kernels import copy, inlined, kernel
-from crazybilliards.particles.exact_flight import Propagator, fly, make_propagator
-from crazybilliards.particles.laws.closed_contacts import (
-    CLOSED_KICK,
-    CRITICAL_RESTITUTION,
-    find_clusters,
-    second_half,
-    strengthen,
-)
-from crazybilliards.particles.laws.law import EXACT, Law, Method, drift, make_law
-from crazybilliards.particles.noise import Noise, fill, make_noise
-from crazybilliards.particles.scales import spring_rate
-
-# In velocity kicks of one step: rods that separate more slowly move as one. Below the critical
-# restitution a larger threshold adds energy, because the noise of closed contacts is stronger.
-_MERGING, _MERGING_OF_CLOSED = 0.1, 0.03
-
-Stepper = Literal["splitting", "euler"]
+from crazybilliards.particles.laws.closed_contacts import find_clusters, strengthen
+from crazybilliards.particles.laws.exact_flight import fly
+from crazybilliards.particles.laws.law import EXACT, drift
+from crazybilliards.particles.noise import fill
 
 FIRST, WHOLE, LAST = range(3)  # parts of a kick
 
 _pull = inlined(spring.force)
-
-
-class Step(NamedTuple):
-    """The plain numbers of the chain and the scheme that a kernel needs."""
-
-    time_step: float
-    decay: float  # factor on v from the damping
-    noise: float  # standard deviation of the velocity kick
-    outer_decay: float  # the same for the first kick of successive steps (and the last one)
-    outer_noise: float
-    kick: float  # velocity kick per unit of F/k, one half of it for the splitting
-    exponent: int  # of the spring's potential
-    symmetric: bool  # splitting: half kicks of spring and noise after the drift
-    closed: float  # strength of the noise that opens closed contacts; 1: as all other noise
-    closed_outer: float  # the same for the half kick after a snapshot
-
-
-class Dynamics(NamedTuple):
-    """Everything that the kernels need of a run; it is the same for all replicas."""
-
-    anchors: NDArray[np.float64]  # reduced, (L,)
-    step: Step
-    law: Law
-    propagator: Propagator  # of a step, if the law is EXACT
-    fastest: float  # with a faster rod the chain has diverged
-
-
-def make_dynamics(
-    chain: Chain,
-    time_step: float,
-    *,
-    speed: float,
-    method: Method = "event-driven",
-    stepper: Stepper = "splitting",
-    merging: float | None = None,
-    counted: bool = False,
-    diverged: float = 1e6,
-) -> Dynamics:
-    """Return the numbers and arrays that the kernels need of a chain.
-
-    Parameters
-    ----------
-    chain, time_step, method, stepper, merging
-        As in ``simulate``.
-    speed
-        A typical speed of the rods [R/T].
-    counted
-        Whether every collision is to be recorded at its contact.
-    diverged
-        Speed, in typical speeds, from which on the chain counts as diverged. In the steady
-        states for e > 1 rods reach some tens of typical speeds.
-    """
-    return Dynamics(
-        chain.reduced_anchors,
-        make_step(chain, time_step, stepper, method),
-        make_law(
-            chain,
-            time_step,
-            method,
-            default_merging(chain) if merging is None else merging,
-            speed,
-            counted=counted,
-            halves=stepper == "splitting",
-        ),
-        make_propagator(chain, time_step),
-        diverged * speed if speed > 0 else math.inf,
-    )
-
-
-def default_merging(chain: Chain) -> float:
-    """Return the threshold of merging at this restitution, in velocity kicks of one step."""
-    return _MERGING_OF_CLOSED if chain.restitution < CRITICAL_RESTITUTION else _MERGING
-
-
-def make_step(
-    chain: Chain, time_step: float, stepper: Stepper, method: Method = "event-driven"
-) -> Step:
-    """Return the numbers of one step of the chain under the named scheme."""
-    m, gamma = chain.mass, chain.damping
-    full_kick = chain.stiffness * time_step / m
-    exponent = chain.potential_exponent
-    if stepper == "euler":
-        decay = 1 - gamma * time_step / m
-        noise = chain.amplitude / m * math.sqrt(time_step)
-        return Step(time_step, decay, noise, decay, noise, full_kick, exponent, False, 1.0, 1.0)
-    inner, outer = (_ornstein_uhlenbeck(chain, duration) for duration in (time_step, time_step / 2))
-    # Contact Dynamics has no correction, as in the paper.
-    sticking = chain.restitution < CRITICAL_RESTITUTION and method == "event-driven"
-    strength = CLOSED_KICK if sticking else 1.0
-    outer_strength = second_half(strength, outer[0])
-    return Step(time_step, *inner, *outer, full_kick / 2, exponent, True, strength, outer_strength)
-
-
-def start_noise(stream: np.random.SeedSequence, dynamics: Dynamics) -> Noise:
-    """Return the noise that drives one copy of the chain, from its own random numbers.
-
-    White noise remembers nothing, so it is the same for every chain. Noise with a memory of each
-    rod would be made here from ``dynamics``, and :func:`draw_kicks` would correlate it.
-    """
-    return make_noise(stream)
-
-
-def longest_step(chain: Chain, stepper: Stepper) -> float:
-    """Return the limit of stability: with longer steps the energy of a rod grows without bound.
-
-    It is 2/w0 for the splitting and 4/(g + sqrt(g^2 + 4 w0^2)), g = gamma/m, for euler. It is
-    infinite for a quadratic spring without damping, which has no rate. Such a run may diverge.
-    """
-    if chain.spring == "quadratic" and math.isinf(chain.temperature):
-        return math.inf
-    rate = spring_rate(chain)
-    damping = chain.damping / chain.mass if stepper == "euler" else 0.0
-    slowest = damping + math.hypot(damping, 2 * rate)
-    return 4 / slowest if slowest > 0 else math.inf
-
-
-def _ornstein_uhlenbeck(chain: Chain, duration: float) -> tuple[float, float]:
-    """Return the exact decay and noise of the velocity under damping and noise alone."""
-    rate = 2 * chain.damping * duration / chain.mass
-    # (1 - c^2)/rate -> 1 without damping: the noise alone, variance A^2 dt/m^2.
-    share = -math.expm1(-rate) / rate if rate > 0 else 1.0
-    return math.exp(-rate / 2), chain.amplitude / chain.mass * math.sqrt(duration * share)
 
 
 @kernel

@@ -21,7 +21,8 @@ STANDS_ON = {
 # What stands on one floor may import what stands there or below, but never in a circle.
 FLOORS = {
     "particles": (
-        {"scales", "noise", "stepping", "laws"},
+        {"scales", "noise", "laws"},
+        {"dynamics", "stepping"},
         {"schedule", "start"},
         {"run"},
         {"observers"},

@@ -20,11 +20,12 @@ from crazybilliards.apps.explore.sums import Sums
 from crazybilliards.kinetic import equilibrium_states
 from crazybilliards.model import Chain
 from crazybilliards.model.vocabulary import result
+from crazybilliards.particles.dynamics import Dynamics, make_dynamics
 from crazybilliards.particles.laws.avalanche import make_tally, make_waves
 from crazybilliards.particles.laws.law import make_scratch
 from crazybilliards.particles.noise import make_noise
 from crazybilliards.particles.scales import default_time_step, relaxation_time, typical_speed
-from crazybilliards.particles.stepping import Dynamics, advance, bounded, make_dynamics
+from crazybilliards.particles.stepping import advance, bounded
 
 Array = NDArray[np.float64]
 
@@ -222,8 +223,8 @@ class Session:
         chain.require_steady_state()
         self.chain = chain
         usual = default_time_step(chain)
-        self._dynamics = self._make_dynamics(min(usual, self._longest), self._resolved)
-        self._single = self._make_dynamics(usual * _SINGLE, True)
+        self._dynamics = self._make_dynamics(min(usual, self._longest))
+        self._single = self._make_dynamics(usual * _SINGLE)
         self._scratch = make_scratch(chain.size)
         self._silent = make_tally(chain.size, contacts=False)
         self._tally = make_tally(chain.size, contacts=True)
@@ -232,12 +233,10 @@ class Session:
         self._offsets = chain.physical(np.zeros(chain.size))
         self._owed = 0.0
 
-    def _make_dynamics(self, time_step: float, counted: bool) -> Dynamics:
+    def _make_dynamics(self, time_step: float) -> Dynamics:
         rest = self.chain.reduced_anchors, np.zeros(self.chain.size)
         speed = typical_speed(self.chain, math.inf, *rest)
-        return make_dynamics(
-            self.chain, time_step, speed=speed, diverged=_DIVERGED, counted=counted
-        )
+        return make_dynamics(self.chain, time_step, speed=speed, diverged=_DIVERGED, counted=True)
 
     def _start(self) -> None:
         """Start in equilibrium where it is known, from rest otherwise."""

@@ -18,11 +18,12 @@ import numpy as np
 
 from crazybilliards.model import Chain
 from crazybilliards.model.kernels import kernel
+from crazybilliards.particles.dynamics import make_dynamics
 from crazybilliards.particles.laws.avalanche import make_tally
 from crazybilliards.particles.laws.law import make_scratch
 from crazybilliards.particles.noise import fill, make_noise
 from crazybilliards.particles.scales import centre_width, default_time_step
-from crazybilliards.particles.stepping import WHOLE, make_dynamics, take_step
+from crazybilliards.particles.stepping import WHOLE, take_step
 
 WARM_UP = 60.0
 PARTS = 32
@@ -30,7 +31,7 @@ STEPS = 200  # of one call
 QUANTITIES = ("W_v, middle third", "relative velocity", "W_v, ends")
 
 
-@kernel
+@kernel(allocates=True)
 def run(y, v, noise, dynamics, scratch, tally, sums):
     """Take a step for each row of ``noise``; add the squares after each, and return collisions."""
     size, collisions, step = y.size, 0, dynamics.step

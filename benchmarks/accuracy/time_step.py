@@ -24,12 +24,12 @@ import numpy as np
 from crazybilliards.model import Chain
 from crazybilliards.model.chain import middle_tenth
 from crazybilliards.model.kernels import kernel
+from crazybilliards.particles.dynamics import Step, default_merging, make_step
 from crazybilliards.particles.laws.avalanche import make_tally
 from crazybilliards.particles.laws.closed_contacts import CRITICAL_RESTITUTION, strengthen
 from crazybilliards.particles.laws.law import Law, Scratch, drift, make_law, make_scratch
 from crazybilliards.particles.noise import fill, make_noise
 from crazybilliards.particles.scales import default_time_step
-from crazybilliards.particles.stepping import Step, default_merging, make_step
 from crazybilliards.reproduction.claims.repetition import error_of_mean
 
 WARM_UP = 60.0
@@ -81,7 +81,7 @@ def make_copy(chain: Chain, time_step: float) -> Copy:
     return Copy(y, zeros[0], step, law, scratch, zeros[1], np.zeros((4, chain.size)))
 
 
-@kernel
+@kernel(allocates=True)
 def advance(copy, anchors, tally):
     """One step: kick by the noise in ``copy.kicks`` and the spring, drift, half a spring kick."""
     y, v, step = copy.y, copy.v, copy.step
@@ -92,7 +92,7 @@ def advance(copy, anchors, tally):
     v -= step.kick * (y - anchors)
 
 
-@kernel
+@kernel(allocates=True)
 def measure(copy, anchors):
     """Add the state after the drift to the sums."""
     d, squares = copy.y - anchors, copy.v**2
@@ -102,7 +102,7 @@ def measure(copy, anchors):
     copy.sums[3] += squares * squares
 
 
-@kernel
+@kernel(allocates=True)
 def run(coarse, fine, anchors, noise, tally, steps, measured):
     """Take coarse steps and finer ones under the same noise; measure both after each."""
     xi = np.empty((FINER, anchors.size))

@@ -27,7 +27,7 @@ RATIO = 3
 QUANTITIES = ("W_v, centre", "W_v, middle third", "<dx>, outer tenth", "W_v after the drift")
 
 
-@kernel
+@kernel(allocates=True)
 def run(copies, anchors, noise, tally, steps, measured):
     """Take longest steps of all chains under the same noise; measure all after each."""
     xi = np.empty(anchors.size)

@@ -6,8 +6,8 @@ Per step the velocities u after contact satisfy, for every contact between i and
 
 with b_i = e (v_i - v_{i+1}) for a contact that would close within the step and bounces (e > 0), and
 b_i = -gap_i/dt for every other contact, which then does not overlap. (With the splitting the
-velocities are corrected for what the springs have not given yet, see ``springs_ahead.py``. Without
-this two elastic rods would gain energy in every collision.) This linear complementarity
+velocities are corrected for what the springs have not given yet, see ``spring_correction.py``.
+Without this two elastic rods would gain energy in every collision.) This linear complementarity
 problem is the optimality condition of "u as close to v as the constraints allow". With B_i the sum
 of the b_j left of i, the constraints say that u_i - B_i ascends. The solution is the isotonic
 regression of v_i - B_i. Other programs usually iterate to it (M. Jean, Comput. Methods Appl. Mech.
@@ -23,7 +23,7 @@ import numpy as np
 
 from crazybilliards.model.kernels import kernel
 from crazybilliards.particles.laws.isotonic import INDEX, pool
-from crazybilliards.particles.laws.springs_ahead import springs_ahead
+from crazybilliards.particles.laws.spring_correction import springs_ahead
 
 
 @kernel

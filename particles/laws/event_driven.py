@@ -5,17 +5,17 @@ drift finds the contact that closes first. The velocities of its two rods change
 
     v - v' -> -e (v - v')      at constant momentum (eq. ``eq:rest`` of the paper),
 
-and at most three contacts get a new time. A collision costs O(log L). If contacts close at the same
-time, the one with the larger closing speed is taken first, which makes the operator symmetric under
-reflection. If the speeds are equal too, the left one is taken first.
+and at most three contacts get a new time. If contacts close at the same time, the one with the
+larger closing speed is taken first, which makes the operator symmetric under reflection. If the
+speeds are equal too, the left one is taken first.
 
-**A knockout tournament** finds the contact that closes first. The contacts are the leaves of a
-binary tree, and every node above them holds the earlier one of its two children, so that the root
-holds the next collision. Node k has the children 2k and 2k + 1, the root is node 1, and contact c
-is leaf L - 1 + c. A collision changes three leaves, which climb to the root together: the first
-one until it meets the path of the second one, and so on. A heap needs as many comparisons, but its
-next step depends on their outcomes, which a processor cannot predict. In the tournament the
-comparisons only select numbers.
+**A calendar** (``calendar.py``) finds the contact that closes first. The step is divided into as
+many equal parts as contacts are due, and each part has a list of those that are due in it. The next
+collision is the earliest one of the first list that is not empty. A collision costs O(1), because
+a list holds about one contact. **Rods that touch** at the beginning collide at time 0. Rows of
+touching rods do not know of each other, so they are gone through row by row, by closing speeds.
+Where a row or a list is long, as for rods at rest at one place, **a tournament**
+(``tournament.py``) takes over until the end of the step, and a collision costs O(log L).
 
 **Inelastic collapse.** For e < 1 neighbours may collide infinitely often in a finite time. If the
 speed of separation e |v - v'| would be below ``merge_speed``, the two become a *cluster* that
@@ -33,20 +33,23 @@ has to be moved before the end of the step.
 The state of a cluster is stored at its outermost members, the only ones with contacts to others.
 
 **Springs that differ.** With a gap the velocities of two rods that meet are corrected for what
-their springs have not given them yet (``springs_ahead.py``). Clusters are left out, because they
-dissipate much more than the correction is worth.
+their springs have not given them yet (``spring_correction.py``). Clusters are left out, because
+they dissipate much more than the correction is worth.
 """
 
 import numpy as np
 
 from crazybilliards.model.kernels import inlined, kernel
 from crazybilliards.particles.laws.avalanche import record_collision
+from crazybilliards.particles.laws.calendar import earliest, list_due, list_of, move, open_calendar
 from crazybilliards.particles.laws.impacts import record_impact
-from crazybilliards.particles.laws.springs_ahead import springs_ahead
+from crazybilliards.particles.laws.spring_correction import springs_ahead
+from crazybilliards.particles.laws.tournament import INDEX, climb, plant
 
-# With unsigned indices compiled code need not check for indices from the end of an array.
-INDEX = np.uint64
 _0, _1 = INDEX(0), INDEX(1)
+
+LONG = 128  # contacts in a row or a list from which on a tournament is quicker
+_TOUCHING = 1e-290  # distance from which on a meeting may be at time 0, by underflow
 
 
 @inlined
@@ -62,36 +65,29 @@ def _meeting(closing, gap, now, dt):  # type: ignore[no-untyped-def]
     return time if (closing > 0) & (gap < dt * closing) else np.inf
 
 
-@kernel
-def _climb(node, until, due, winner, v):  # type: ignore[no-untyped-def]
-    """Decide the nodes above ``node`` again, until its path meets the path of node ``until``.
-
-    0 stands for the root. The path of ``until`` finds the last node decided here as an opponent.
-    """
-    # Compiled code counts references to the arrays that a helper receives, which would take most of
-    # the time. It does not do so for a helper as simple as this one, a loop that calls nothing.
-    time = due[node]
-    while node > _1 and node ^ until > _1:
-        opponent = node ^ _1
-        other_time = due[opponent]
-        first = node ^ INDEX(other_time < time)
-        # True for equal times (or nearly equal ones, by underflow). Two infinities are not equal
-        # here, because their difference is NaN. A comparison that is rarely true costs nothing.
-        difference = other_time - time
-        if difference * difference <= 0.0:
-            a, b = INDEX(winner[node]), INDEX(winner[opponent])
-            speed_a, speed_b = v[a] - v[a + _1], v[b] - v[b + _1]
-            faster = speed_b > speed_a or (speed_b == speed_a and b < a)
-            first = node ^ INDEX(other_time < time or (other_time == time and faster))
-        time = other_time if other_time < time else time
-        node, until = node >> _1, until >> _1
-        due[node], winner[node] = time, winner[first]
+@inlined
+def _fastest(begin, end, due, v):  # type: ignore[no-untyped-def]
+    """Return the contact of a row that closes fastest among those due at time 0; ``end``: none."""
+    found, speed = INDEX(end), 0.0
+    for contact in range(begin, end):
+        closing = v[contact] - v[contact + _1]
+        closing = closing if due[contact] == 0.0 else 0.0
+        found = INDEX(contact) if closing > speed else found
+        speed = closing if closing > speed else speed
+    return found
 
 
-@kernel
-def _finish(y, v, dt, last, clusters):  # type: ignore[no-untyped-def]
-    """Move the rods to the end of the step, and record those that are in contact."""
+@inlined
+def _finish(y, v, dt, merged, scratch):  # type: ignore[no-untyped-def]
+    """Move the rods to the end of the step, and record those in contact, if any have merged."""
+    first, last, clusters = scratch.first, scratch.last, scratch.clusters
     a = number = 0
+    if not merged:
+        for i in range(y.size):
+            y[i] += dt * v[i]
+        for i in range(1, y.size):
+            y[i] = y[i - 1] if y[i] < y[i - 1] else y[i]
+        a = y.size
     while a < y.size:
         b = last[a]
         position = y[a] + dt * v[a]
@@ -104,109 +100,176 @@ def _finish(y, v, dt, last, clusters):  # type: ignore[no-untyped-def]
             for i in range(a + 1, b + 1):
                 y[i] = position
                 v[i] = v[a]
+                first[i] = last[i] = i
+            last[a] = a
         a = b + 1
     clusters.number[0] = number
 
 
+@inlined
+def _row_of(contact, y):  # type: ignore[no-untyped-def]
+    """Return the first contact of a row of touching rods, and the one after its last."""
+    begin, end = contact, contact + _1
+    while begin > _0 and y[begin] - y[begin - _1] <= _TOUCHING:
+        begin -= _1
+    while end < INDEX(y.size - 1) and y[end + _1] - y[end] <= _TOUCHING:
+        end += _1
+    return begin, end
+
+
+@inlined
+def _part(change, share, other, single):  # type: ignore[no-untyped-def]
+    """Return the part of a change with this share. Between single rods no division is needed."""
+    return 0.5 * change if single else change * share / (share + other)
+
+
+@inlined
+def _collide(contact, now, y, v, anchors, dt, law, scratch, tally):  # type: ignore[no-untyped-def]
+    """Let the two rods or clusters at a contact collide at the time ``now``.
+
+    Return the outermost rods of the two, and whether they have become one.
+    """
+    first, last, neighbour = scratch.first, scratch.last, contact + _1
+    a, b = INDEX(first[contact]), INDEX(last[neighbour])
+    left, right = float(neighbour - a), float(b - contact)
+    single = (a == contact) & (b == neighbour)
+    v_left, v_right = v[contact], v[neighbour]
+    # The common velocity of the two, computed as a change of v_left.
+    common = v_left + _part(v_right - v_left, right, left, single)
+    ahead = 0.0
+    if law.pull > 0.0 and single:
+        here = y[contact] + v_left * now
+        displacements = here - anchors[contact], here - anchors[neighbour]
+        ahead = springs_ahead(*displacements, law.pull, law.exponent, now - dt / 2)
+    # Flippers act when rods meet. Otherwise rods at rest in contact, such as those at the start,
+    # would exchange one kick again and again at the same time and gain energy without bound.
+    e = min(law.restitution, 1.0) if now == 0.0 else law.restitution
+    closing = v_left - v_right - ahead
+    rebound = e * closing
+    merges = rebound <= law.merge_speed
+    indices = np.int64(contact), np.int64(a), np.int64(b)
+    if tally.contacts.size + tally.pushes.heads.size + tally.triggered.heads.size > 0:
+        record_collision(*indices, v_left, v_right, tally)
+    if tally.impacts.size > 0:
+        separating = 0.0 if merges else rebound
+        record_impact(*indices, closing, separating, tally.impacts)
+    if merges:
+        first[b], last[a] = a, b
+        new_left = new_right = common
+        y_left = y_right = y[contact] + (v_left - common) * now
+    else:
+        rebound = max(rebound - ahead, 0.0)  # no rod passes another
+        new_left = common - _part(rebound, right, left, single)
+        new_right = common + _part(rebound, left, right, single)
+        y_left = y[contact] + (v_left - new_left) * now
+        y_right = y[neighbour] + (v_right - new_right) * now
+    # Of the inner members of a cluster y and v are outdated: their contacts never close again.
+    v[a] = v[contact] = new_left
+    v[b] = v[neighbour] = new_right
+    y[a] = y[contact] = y_left
+    y[b] = y[neighbour] = y_right
+    return a, b, merges
+
+
+@inlined
+def _meet_again(contact, a, b, now, y, v, dt, due):  # type: ignore[no-untyped-def]
+    """Set when the contacts beside the rods ``a`` to ``b`` close, who have met; return them."""
+    low = high = contact
+    due[contact] = np.inf  # the two now separate or form one cluster
+    if a > _0:
+        low = a - _1
+        due[low] = _meeting(v[low] - v[a], y[a] - y[low], now, dt)
+    if b < INDEX(y.size - 1):
+        high = b
+        due[high] = _meeting(v[b] - v[b + _1], y[b + _1] - y[b], now, dt)
+    return low, high
+
+
+@inlined
+def _collide_touching(y, v, anchors, dt, law, scratch, tally, count):  # type: ignore[no-untyped-def]
+    """Let the rods that touch collide at time 0, row by row.
+
+    Return the collisions, whether any rods merged, and whether a row is too long to do so.
+    """
+    waiting, due, end = scratch.integers[0], scratch.due, _0
+    collisions, merged = 0, False
+    for k in range(count):
+        contact = INDEX(waiting[k])
+        if due[contact] != 0.0 or contact < end:
+            continue
+        begin, end = _row_of(contact, y)
+        if end - begin > INDEX(LONG):
+            return collisions, merged, True
+        contact = _fastest(begin, end, due, v)
+        while contact < end and collisions <= law.most:
+            rods = _collide(contact, 0.0, y, v, anchors, dt, law, scratch, tally)
+            merged |= rods[2]
+            collisions += 1
+            _meet_again(contact, rods[0], rods[1], 0.0, y, v, dt, due)
+            contact = _fastest(begin, end, due, v)
+    return collisions, merged, False
+
+
 @kernel
-def drift(  # type: ignore[no-untyped-def]
-    y,
-    v,
-    dt,
-    restitution,
-    merge_speed,
-    most,
-    anchors,
-    pull,
-    exponent,
-    scratch,
-    tally,
-):
+def drift(y, v, anchors, dt, law, scratch, tally):  # type: ignore[no-untyped-def]
     """Advance ``y`` and ``v`` in place by ``dt``; return the collisions, or -1 if too many.
 
-    ``pull`` is k/m if the springs of rods that meet may differ and are kicked in halves, else 0.
     ``scratch.clusters`` records the rods that are in contact at the end, and ``tally`` (an
-    ``avalanche.Tally``) every collision. The drift stops after ``most`` collisions. The chain then
-    counts as diverged, and its state must not be used.
+    ``avalanche.Tally``) every collision. The drift stops after ``law.most`` collisions. The chain
+    then counts as diverged, and its state must not be used.
     """
-    contacts = INDEX(y.size - 1)
-    first, last = scratch.integers[0], scratch.integers[1]
-    # The tournament: the winner at each node, and the time at which its contact closes.
-    winner, due = scratch.winner, scratch.due
-    tallied = tally.contacts.size + tally.pushes.heads.size + tally.triggered.heads.size > 0
-    summed = tally.impacts.size > 0
-    for i in range(y.size):
-        first[i] = i
-        last[i] = i
-    # A single rod has no contact for the root. If the leaves have two depths, the first ones climb
-    # past nodes that are decided only later.
-    for node in range(2 * y.size):
-        due[node] = np.inf
-    for contact in range(contacts):
-        closing, gap = v[contact] - v[contact + _1], y[contact + _1] - y[contact]
-        due[contacts + contact] = _meeting(closing, gap, 0.0, dt)
-        winner[contacts + contact] = contact
-    leaves = contacts + contacts
-    for leaf in range(contacts, leaves):
-        _climb(leaf, leaf + _1 if leaf + _1 < leaves else _0, due, winner, v)
-    collisions = 0
-    while due[1] < np.inf:
-        now, contact = due[1], INDEX(winner[1])
-        collisions += 1
-        if collisions > most:
-            return -1
-        neighbour = contact + _1
-        a, b = INDEX(first[contact]), INDEX(last[neighbour])
-        left, right = float(neighbour - a), float(b - contact)
-        v_left, v_right = v[contact], v[neighbour]
-        if tallied:
-            record_collision(np.int64(contact), np.int64(a), np.int64(b), v_left, v_right, tally)
-        # The common velocity of the cluster or pair, computed as a change of v_left.
-        common = v_left + (v_right - v_left) * right / (left + right)
-        # Flippers act when rods meet. Otherwise rods at rest in contact, such as those at the
-        # start, would exchange one kick again and again at the same time and gain energy without
-        # bound.
-        ahead = 0.0
-        if pull > 0.0 and a == contact and b == neighbour:
-            here = y[contact] + v_left * now
-            displacements = here - anchors[contact], here - anchors[neighbour]
-            ahead = springs_ahead(*displacements, pull, exponent, now - dt / 2)
-        closing = v_left - v_right - ahead
-        rebound = (min(restitution, 1.0) if now == 0.0 else restitution) * closing
-        if summed:
-            separating = rebound if rebound > merge_speed else 0.0
-            indices = np.int64(contact), np.int64(a), np.int64(b)
-            record_impact(*indices, closing, separating, tally.impacts)
-        if rebound <= merge_speed:
-            y_common = y[contact] + (v_left - common) * now
-            first[b] = a
-            last[a] = b
-            v[a] = v[b] = common
-            y[a] = y[b] = y_common
-            # From here on v of the inner members is outdated; their contact never closes again.
-            v[contact] = v[neighbour] = common
-            y[contact] = y[neighbour] = y_common
+    size, contacts = y.size, INDEX(y.size - 1)
+    due, winner = scratch.due, scratch.winner
+    following, preceding = scratch.following, scratch.preceding
+    leaves = due[contacts:]
+    waiting = scratch.integers[0]
+    collisions, merged, tree, at_once = 0, False, False, 0
+    for i in range(size - 1):
+        due[i] = _meeting(v[i] - v[i + 1], y[i + 1] - y[i], 0.0, dt)
+        at_once += due[i] == 0.0
+    count = list_due(due, size, waiting)
+    if at_once > 0:
+        collisions, merged, tree = _collide_touching(y, v, anchors, dt, law, scratch, tally, count)
+        count = list_due(due, size, waiting)
+    if tree:
+        plant(size - 1, due, winner, v)
+    node, end = INDEX(size), INDEX(size) + count + _1
+    scale, parts = open_calendar(dt, due, waiting, count, size, following, preceding)
+    while collisions <= law.most:
+        if tree:
+            contact, now = winner[_1], due[_1]
+            if now == np.inf or size == 1:
+                break
         else:
-            rebound = max(rebound - ahead, 0.0)  # no rod passes another
-            new_left = common - rebound * right / (left + right)
-            new_right = common + rebound * left / (left + right)
-            y_left = y[contact] + (v_left - new_left) * now
-            y_right = y[neighbour] + (v_right - new_right) * now
-            v[a] = v[contact] = new_left
-            y[a] = y[contact] = y_left
-            v[b] = v[neighbour] = new_right
-            y[b] = y[neighbour] = y_right
-        # The two now separate or form one cluster.
-        low = high = leaf = contacts + contact
-        due[leaf] = np.inf
-        if a > _0:
-            low = contacts + a - _1
-            due[low] = _meeting(v[a - _1] - v[a], y[a] - y[a - _1], now, dt)
-        if b < contacts:
-            high = contacts + b
-            due[high] = _meeting(v[b] - v[b + _1], y[b + _1] - y[b], now, dt)
-        _climb(low, leaf, due, winner, v)
-        _climb(leaf, high, due, winner, v)
-        _climb(high, _0, due, winner, v)
-    _finish(y, v, dt, last, scratch.clusters)
-    return collisions
+            while node < end and following[node] == node:
+                node += _1
+            if node == end:
+                break
+            contact, length = earliest(node, following, due, v)
+            now = due[contact]
+            if length > LONG:
+                tree = True
+                plant(size - 1, due, winner, v)
+                continue
+        collisions += 1
+        a, b, merges = _collide(contact, now, y, v, anchors, dt, law, scratch, tally)
+        merged |= merges
+        if tree:
+            low, high = _meet_again(contact, a, b, now, y, v, dt, leaves)
+            climb(contacts + low, contacts + contact, due, winner, v)
+            climb(contacts + contact, contacts + high, due, winner, v)
+            climb(contacts + high, _0, due, winner, v)
+            continue
+        low, high = _meet_again(contact, a, b, now, y, v, dt, due)
+        move(contact, contact, following, preceding)
+        if low != contact:
+            to = list_of(low, due[low], scale, size, parts)
+            move(low, to, following, preceding)
+        if high != contact:
+            to = list_of(high, due[high], scale, size, parts)
+            move(high, to, following, preceding)
+    if tree or collisions > law.most:
+        for each in range(following.size):
+            following[each] = preceding[each] = each
+    _finish(y, v, dt, merged, scratch)
+    return collisions if collisions <= law.most else -1

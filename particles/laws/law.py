@@ -19,9 +19,9 @@ from numpy.typing import NDArray
 
 from crazybilliards.model import Chain
 from crazybilliards.model.kernels import inlined
-from crazybilliards.particles.exact_flight import independent_rods
 from crazybilliards.particles.laws import contact_dynamics, event_driven, isotonic, sort
 from crazybilliards.particles.laws.closed_contacts import Clusters, make_clusters
+from crazybilliards.particles.laws.exact_flight import independent_rods
 from crazybilliards.particles.laws.impacts import make_impacts
 from crazybilliards.particles.noise import BLOCK
 
@@ -46,8 +46,12 @@ class Scratch(NamedTuple):
 
     integers: NDArray[np.int64]  # (3, L)
     floats: NDArray[np.float64]  # (4, L)
-    winner: NDArray[np.int64]  # of every node of the tournament in ``event_driven``, (2 L,)
-    due: NDArray[np.float64]  # the time at each of these nodes
+    first: NDArray[np.int64]  # rods of the cluster at each rod in ``event_driven``, (L,)
+    last: NDArray[np.int64]
+    due: NDArray[np.float64]  # when contacts close there, (2 L,)
+    following: NDArray[np.uint64]  # its lists of contacts
+    preceding: NDArray[np.uint64]
+    winner: NDArray[np.uint64]  # of every node of its tournament
     buckets: NDArray[np.int32]  # of each rod in ``sort``, (L,)
     counts: NDArray[np.int32]  # of the rods in each bucket
     clusters: Clusters  # rods in contact after the last drift, if the law needs them
@@ -57,12 +61,13 @@ class Scratch(NamedTuple):
 
 
 def make_scratch(size: int) -> Scratch:
-    """Return the scratch space for ``size`` rods: 172 bytes a rod."""
+    """Return the scratch space for ``size`` rods: 220 bytes a rod."""
     return Scratch(
         np.zeros((3, size), dtype=np.int64),
         np.zeros((4, size)),
-        np.zeros(2 * size, dtype=np.int64),
+        *(np.arange(size) for _ in range(2)),
         np.zeros(2 * size),
+        *(np.arange(2 * size, dtype=np.uint64) for _ in range(3)),
         np.zeros(size, dtype=np.int32),
         np.zeros(sort.BUCKETS * size, dtype=np.int32),
         make_clusters(size),
@@ -126,16 +131,4 @@ def drift(y, v, anchors, dt, law, scratch, tally):  # type: ignore[no-untyped-de
     if law.operator == CONTACTS:
         spring_and_scratch = law.pull, law.exponent, scratch.integers, scratch.floats
         return contact_dynamics.drift(y, v, anchors, dt, law.restitution, *spring_and_scratch)
-    return event_driven.drift(
-        y,
-        v,
-        dt,
-        law.restitution,
-        law.merge_speed,
-        law.most,
-        anchors,
-        law.pull,
-        law.exponent,
-        scratch,
-        tally,
-    )
+    return event_driven.drift(y, v, anchors, dt, law, scratch, tally)

@@ -5,11 +5,11 @@ other and swapped names. In the reduced coordinate a drift over dt therefore let
 freely, y + dt v, and then sorts the pairs (y, v) by y. The result is exact for any number of
 collisions (D. W. Jepsen, J. Math. Phys. 6, 405, 1965), which it does not count.
 
-**The sort** distributes the pairs over two buckets a rod, equally wide, and then sorts what is left
-by insertion, in short runs that are merged. The cost of a rod hardly depends on the length of the
-chain, or on how often rods have met. Where many lie in one bucket, because the rods are not spread
-evenly, the runs bound the work by O(L log L). Equal positions keep their order, so the
-result does not depend on how it is sorted.
+**The sort** distributes the pairs over two buckets a rod, equally wide. They are then nearly in
+order, and insertion in short runs, which are merged, does the rest. The cost of a rod hardly
+depends on the length of the chain, or on how often rods have met. Where many lie in one bucket,
+because the rods are not spread evenly, the runs bound the work by O(L log L). Equal positions keep
+their order, so the result does not depend on how it is sorted.
 """
 
 import numpy as np
@@ -114,7 +114,7 @@ def _distribute(y, v, buckets, counts, y_other, v_other):  # type: ignore[no-unt
 
 
 @inlined
-def sort(y, v, scratch):  # type: ignore[no-untyped-def]
+def sort_pairs(y, v, scratch):  # type: ignore[no-untyped-def]
     """Sort the pairs (y, v) by y in place."""
     y_other, v_other = scratch.floats[0], scratch.floats[1]
     if y.size >= _FEW:
@@ -127,4 +127,4 @@ def drift(y, v, dt, scratch):  # type: ignore[no-untyped-def]
     """Advance reduced coordinates ``y``, ascending, and velocities ``v`` by ``dt`` in place."""
     for i in range(y.size):
         y[i] += dt * v[i]
-    sort(y, v, scratch)
+    sort_pairs(y, v, scratch)

@@ -63,7 +63,7 @@ def collect(run: Run, replicas: list[Replica], interrupted: bool) -> xr.Dataset:
     width = centre_width(chain) * chain.free_velocity_width
     if "velocity_width" in measured:
         width = float(measured.velocity_width.min())
-    measured.attrs["flight"] = "exact" if run.exact else "in steps"
+    measured.attrs["flight"] = run.flight
     if run.exact:
         measured.attrs["time_step_error"] = 0.0
     elif np.isfinite(width) and chain.restitution != 1:

@@ -10,12 +10,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from crazybilliards.particles.dynamics import Dynamics, start_noise
 from crazybilliards.particles.laws.avalanche import Tally, make_tally
 from crazybilliards.particles.laws.law import EVENTS, make_scratch
 from crazybilliards.particles.noise import STATE
 from crazybilliards.particles.observers import Observer, Snapshots, restore
 from crazybilliards.particles.schedule import Schedule
-from crazybilliards.particles.stepping import Dynamics, advance, bounded, record, start_noise
+from crazybilliards.particles.stepping import advance, bounded, record
 
 Array = NDArray[np.float64]
 

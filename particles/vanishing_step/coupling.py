@@ -25,14 +25,7 @@ from __future__ import annotations
 
 from crazybilliards.model.kernels import copy, kernel
 from crazybilliards.particles.laws.closed_contacts import find_clusters
-from crazybilliards.particles.stepping import (
-    FIRST,
-    LAST,
-    WHOLE,
-    bounded,
-    draw_kicks,
-    take_step,
-)
+from crazybilliards.particles.stepping import FIRST, LAST, WHOLE, bounded, draw_kicks, take_step
 
 
 @kernel

@@ -8,8 +8,8 @@ velocity kicks exceed 1.5 W_v is not correlated with any other. One level with a
 shortest step is planned in reserve, in case the shortest step turns out to be too long.
 
 For e = 1 the step need not resolve the noise. Its error is that of the springs, which is known, and
-one level is enough. Where the motion of the chain is known exactly (``exact_flight.py``) there is
-no error, and the step is the time between snapshots.
+one level is enough. Where the motion of the chain is known exactly (``laws/exact_flight.py``) there
+is no error, and the step is the time between snapshots.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ import math
 from typing import NamedTuple
 
 from crazybilliards.model import Chain
-from crazybilliards.particles.exact_flight import independent_rods
+from crazybilliards.particles.laws.exact_flight import independent_rods
 from crazybilliards.particles.scales import (
     centre_width,
     correlation_time,

@@ -288,8 +288,7 @@ def _collect(levels: Levels, interrupted: bool, progress: bool) -> xr.Dataset:
     method["levels"] = levels.described(terms)
     limit = collected(variables, coordinates=coordinates, method=method)
     limit.attrs["time_step_error"] = float(bias[CENTRAL] / limit[CENTRAL])
-    limit.attrs["flight"] = "exact" if finest.exact else "in steps"
-    limit.attrs |= levels.coupling(terms)
+    limit.attrs |= {"flight": finest.flight} | levels.coupling(terms)
     if progress and limit.attrs.get("coupling") == "weak":
         long, short = levels.steps.time_steps[levels.used[-1] - 1 : levels.used[-1] + 1]
         print(

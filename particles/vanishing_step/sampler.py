@@ -17,13 +17,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from crazybilliards.model import Chain
+from crazybilliards.particles.dynamics import make_dynamics
 from crazybilliards.particles.laws.avalanche import Tally, make_tally
 from crazybilliards.particles.laws.law import make_scratch
 from crazybilliards.particles.noise import STATE, make_noise
 from crazybilliards.particles.observers import Observer, Snapshots, restore
 from crazybilliards.particles.run import Run
 from crazybilliards.particles.running.replica import Replica
-from crazybilliards.particles.stepping import bounded, make_dynamics
+from crazybilliards.particles.stepping import bounded
 from crazybilliards.particles.vanishing_step.coupling import advance_pair, record_pair
 
 Array = NDArray[np.float64]

@@ -8,16 +8,11 @@ from chain_pictures import written
 
 import crazybilliards as cb
 from crazybilliards.comparison.coverage import coverage_density
+from crazybilliards.particles.dynamics import default_merging, make_dynamics, make_step, start_noise
 from crazybilliards.particles.laws.avalanche import make_tally
 from crazybilliards.particles.laws.law import drift, make_law, make_scratch
 from crazybilliards.particles.scales import default_time_step
-from crazybilliards.particles.stepping import (
-    advance,
-    default_merging,
-    make_dynamics,
-    make_step,
-    start_noise,
-)
+from crazybilliards.particles.stepping import advance
 
 RESTITUTIONS = [0.0, 0.5, 1.0, 1.05]
 BLOCKS, RUNS = 64, 32  # of the page, of the package

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from crazybilliards.model import Chain, spring
-from crazybilliards.particles.stepping import FIRST, kick, make_step
+from crazybilliards.particles.dynamics import make_step
+from crazybilliards.particles.stepping import FIRST, kick
 
 D = np.concatenate([-np.geomspace(10, 0.01, 30), np.geomspace(0.01, 10, 30)])
 

@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 from time_step import QUANTITIES, compared
 
 from crazybilliards.model import Chain
-from crazybilliards.particles import stepping
+from crazybilliards.particles import dynamics as dynamics_module
+from crazybilliards.particles.dynamics import make_dynamics, make_step
 from crazybilliards.particles.laws.avalanche import make_tally
 from crazybilliards.particles.laws.closed_contacts import (
     CLOSED_KICK,
@@ -20,7 +21,7 @@ from crazybilliards.particles.laws.closed_contacts import (
 )
 from crazybilliards.particles.laws.law import EVENTS, ISOTONIC, Law, drift, make_scratch
 from crazybilliards.particles.noise import fill, make_noise
-from crazybilliards.particles.stepping import FIRST, LAST, WHOLE, advance, kick, make_dynamics
+from crazybilliards.particles.stepping import FIRST, LAST, WHOLE, advance, kick
 
 UNSEEN = make_tally(2, contacts=False)
 
@@ -105,7 +106,7 @@ def test_what_an_operator_reports_are_the_clusters_it_leaves(y, seed, dt, law):
 def test_two_half_kicks_have_the_variance_of_a_whole_one(time_step, damping):
     """Relative velocity of two rods in contact, where no spring pulls."""
     chain = Chain(size=2, restitution=0, damping=damping)
-    step = stepping.make_step(chain, time_step, "splitting")
+    step = make_step(chain, time_step, "splitting")
     y, apart, none = chain.reduced_anchors, np.array([-1.0, 1.0]), np.zeros(2)
 
     def after(*kicks):
@@ -179,7 +180,7 @@ def test_what_the_paper_describes_is_left_alone(e, settings):
 @pytest.mark.parametrize("strength", [CLOSED_KICK, 1.0])
 def test_a_long_step_is_right_to_a_percent_and_only_so_with_the_correction(strength, monkeypatch):
     """Ten rods at e = 0; a kick of 0.4 widths, against one of 0.2 under the same noise."""
-    monkeypatch.setattr(stepping, "CLOSED_KICK", strength)
+    monkeypatch.setattr(dynamics_module, "CLOSED_KICK", strength)
     chain, corrected = Chain(size=10, restitution=0), strength == CLOSED_KICK
     seeds, duration = (8, 4000) if corrected else (6, 1500)
     off = np.array([compared(chain, 0.11, duration, seed) for seed in range(seeds)])

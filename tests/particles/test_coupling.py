@@ -4,18 +4,12 @@ import numpy as np
 import pytest
 
 from crazybilliards.model import Chain
+from crazybilliards.particles.dynamics import make_dynamics
 from crazybilliards.particles.laws.avalanche import make_tally
 from crazybilliards.particles.laws.closed_contacts import find_clusters
 from crazybilliards.particles.laws.law import make_scratch
 from crazybilliards.particles.noise import fill, make_noise
-from crazybilliards.particles.stepping import (
-    FIRST,
-    LAST,
-    WHOLE,
-    advance,
-    make_dynamics,
-    take_step,
-)
+from crazybilliards.particles.stepping import FIRST, LAST, WHOLE, advance, take_step
 from crazybilliards.particles.vanishing_step.coupling import advance_pair, record_pair
 
 RATIOS = (3, 9)

@@ -9,13 +9,14 @@ from scipy.fft import dct
 
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate, simulate_limit
+from crazybilliards.particles.dynamics import make_dynamics
 from crazybilliards.particles.laws.avalanche import make_tally
 from crazybilliards.particles.laws.impacts import make_impacts
 from crazybilliards.particles.laws.law import EVENTS, Law, drift, make_scratch
 from crazybilliards.particles.noise import make_noise
 from crazybilliards.particles.observers import Covariances
 from crazybilliards.particles.running.replica import Replica
-from crazybilliards.particles.stepping import make_dynamics, record
+from crazybilliards.particles.stepping import record
 
 ALL = ["widths", Covariances(separations=9), "modes", "impacts"]
 

@@ -12,12 +12,13 @@ import pytest
 from crazybilliards.kinetic import equilibrium_states
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
+from crazybilliards.particles.dynamics import make_dynamics
 from crazybilliards.particles.laws.avalanche import make_tally
 from crazybilliards.particles.laws.impacts import make_impacts
 from crazybilliards.particles.laws.law import make_scratch
 from crazybilliards.particles.noise import make_noise
 from crazybilliards.particles.scales import default_time_step
-from crazybilliards.particles.stepping import advance, make_dynamics
+from crazybilliards.particles.stepping import advance
 
 SPRINGS = ["linear", "quadratic"]
 GAPS = [0.0, 0.3, 1.0, 2.0]

@@ -18,9 +18,21 @@ def everything(size):
     return make_tally(size, contacts=True)._replace(impacts=make_impacts(size), **waves)
 
 
+def running(waves):
+    """Return front and origin of all running waves; in which places they are kept is no matter."""
+    found = []
+    for front, wave in enumerate(waves.heads):
+        while wave >= 0:
+            found.append((front, waves.origins[wave]))
+            wave = waves.following[wave]
+    return sorted(found)
+
+
 def numbers(tally):
-    """Return all arrays of a tally."""
-    return [tally.contacts, *tally.pushes, *tally.triggered, tally.impacts]
+    """Return all that a tally has recorded."""
+    both = tally.pushes, tally.triggered
+    waves = [each for one in both for each in (one.sizes, running(one))]
+    return [tally.contacts, *waves, tally.impacts]
 
 
 @st.composite

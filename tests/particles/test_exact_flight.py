@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from crazybilliards.kinetic import breathing_cloud, equilibrium
 from crazybilliards.model import Chain
 from crazybilliards.particles import given_start, simulate, simulate_limit
-from crazybilliards.particles.exact_flight import make_propagator
+from crazybilliards.particles.laws.exact_flight import make_propagator
 from crazybilliards.particles.observers import Raw
 
 CRITICAL = 2 * math.sqrt(4 * math.pi / 3)

@@ -96,6 +96,6 @@ def test_the_work_is_planned_with_the_collisions_that_were_met(monkeypatch):
     )
     collisions = float(run.collision_rate.sum()) / chain.size * planned.steps.interval
     steps = planned.steps.stride * planned.steps.per_step(base) + 1
-    expected = steps * (300 / chain.size + 6) + 50 * collisions
+    expected = steps * (20 / chain.size + 6) + 50 * collisions
     assert planned._cost(base, coupled=False) == pytest.approx(expected, rel=0.02)
     assert 50 * collisions > 0.1 * expected

@@ -9,11 +9,11 @@ import xarray as xr
 from crazybilliards.kinetic import equilibrium, equilibrium_states
 from crazybilliards.model import Chain
 from crazybilliards.particles import given_start, simulate
+from crazybilliards.particles.dynamics import longest_step
 from crazybilliards.particles.observers.widths import Widths
 from crazybilliards.particles.running.replica import Replica
 from crazybilliards.particles.scales import relaxation_time
 from crazybilliards.particles.schedule import make_schedule
-from crazybilliards.particles.stepping import longest_step
 
 QUANTITIES = ("velocity_width", "mean_displacement", "displacement_width")
 

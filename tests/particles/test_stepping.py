@@ -7,10 +7,11 @@ from scipy.linalg import solve_discrete_lyapunov
 from crazybilliards.kinetic import equilibrium
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
+from crazybilliards.particles.dynamics import make_dynamics, make_step
 from crazybilliards.particles.laws.avalanche import make_tally
 from crazybilliards.particles.laws.law import make_scratch
 from crazybilliards.particles.noise import make_noise
-from crazybilliards.particles.stepping import advance, make_dynamics, make_step
+from crazybilliards.particles.stepping import advance
 
 
 def take_steps(chain, y, v, noise, step, steps):

@@ -28,7 +28,7 @@ from scipy.linalg import expm
 
 from crazybilliards.model import Chain
 from crazybilliards.model.kernels import inlined, kernel
-from crazybilliards.particles.laws.sort import sort
+from crazybilliards.particles.laws.sort import sort_pairs
 
 
 class Propagator(NamedTuple):
@@ -95,4 +95,4 @@ def propagate(y, v, kicks, step):  # type: ignore[no-untyped-def]
 def fly(y, v, kicks, step, scratch):  # type: ignore[no-untyped-def]
     """Take one step of the chain in place."""
     propagate(y, v, kicks, step)
-    sort(y, v, scratch)
+    sort_pairs(y, v, scratch)

@@ -6,8 +6,8 @@ given a dt/2. The true relative velocity of two rods therefore differs from that
 
     ahead = (a' - a) (t - dt/2).
 
-A collision at t has to reverse the true one, and the second half kick will add ``-ahead`` to what
-is left, so that
+A collision at t has to reverse the true one. The drift goes on with that less ``ahead``, because
+the second half kick adds it:
 
     v' - v -> -e (v' - v + ahead) - ahead.
 
