@@ -112,10 +112,7 @@ def at_the_left(ax: Axes) -> bool:
 
 
 def legend_above(
-    figure: Figure,
-    ax: Axes,
-    title: str | None = None,
-    extra: Sequence[tuple[Artist, str]] = (),
+    figure: Figure, ax: Axes, title: str | None = None, extra: Sequence[tuple[Artist, str]] = ()
 ) -> None:
     """Put the legend of one panel over all of them, in as many columns as fit."""
     handles, labels = ax.get_legend_handles_labels()

@@ -132,10 +132,7 @@ TRANSIENT = {
 }
 TRANSIENT_DAMPINGS = 0.29, 0.49  # gamma/sqrt(k m); gamma = 0.6 and 1
 # gamma = 4.
-DRIVEN_TRANSIENT = {
-    10: {1.0: 0.0, 1.05: 0.027},
-    30: {1.0: 0.0, 1.05: 0.031},
-}
+DRIVEN_TRANSIENT = {10: {1.0: 0.0, 1.05: 0.027}, 30: {1.0: 0.0, 1.05: 0.031}}
 DRIVEN_TRANSIENT_DAMPINGS = 1.95, 1.96
 
 # correlated_phase_space, chains of 10 to 300 rods and of more, gamma from 0.4 to 3. By restitution:

@@ -7,17 +7,7 @@ from crazybilliards.model import Chain
 # Parameters that the theories' equations contain, or that `require_chain` can refuse by name. A new
 # parameter of the chain is refused by every theory until it is added here.
 _KNOWN = frozenset(
-    {
-        "size",
-        "restitution",
-        "amplitude",
-        "damping",
-        "stiffness",
-        "gap",
-        "radius",
-        "mass",
-        "spring",
-    }
+    {"size", "restitution", "amplitude", "damping", "stiffness", "gap", "radius", "mass", "spring"}
 )
 
 

@@ -8,10 +8,7 @@ def simulated(x, density, error=1e-4):
     """Return a density over x as a simulation would report it."""
     units = {"units": "1/R", "long_name": "density"}
     return xr.Dataset(
-        {
-            "density": ("x", density, units),
-            "density_error": ("x", np.full(x.size, error), units),
-        },
+        {"density": ("x", density, units), "density_error": ("x", np.full(x.size, error), units)},
         coords={"x": ("x", x, {"units": "R", "long_name": "position x"})},
         attrs={"source": "simulation"},
     )

@@ -145,11 +145,7 @@ SOLVERS = {
     "simulate, euler": _run(stepper="euler"),
     "simulate_limit": Solver(
         lambda chain, given: simulate_limit(
-            chain,
-            accuracy=0.1,
-            warmup=given.warmup,
-            observe=("widths", "density"),
-            progress=False,
+            chain, accuracy=0.1, warmup=given.warmup, observe=("widths", "density"), progress=False
         )
     ),
 }

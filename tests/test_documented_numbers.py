@@ -57,7 +57,7 @@ def without_k():
     return {
         "docs/correlations.md": [
             f"was up to {ceil(largest[derived].max())} % too small in chains of 10 to 300 rods, "
-            f"and up to {ceil(largest[found.L == 1000].item())} % with 1000",
+            f"and up to {ceil(largest[found.L == 1000].item())} % with 1000"
         ]
     }
 
@@ -113,9 +113,7 @@ def verdicts():
         .split(", ")
     )
     total = reproduced + not_so + cannot + undecided
-    return {
-        "paper.md": [f"Of {total} statements {reproduced} are reproduced, {not_so} are not"],
-    }
+    return {"paper.md": [f"Of {total} statements {reproduced} are reproduced, {not_so} are not"]}
 
 
 @pytest.mark.parametrize("tell", [held_out, without_k, correlation_lengths, first_order, verdicts])

@@ -70,10 +70,7 @@ CASES = {
     for name, solver in SOLVERS.items()
     for chain in (each.replace(**solver.needs) for each in CHAINS)
 }
-OTHER = {
-    "long": Units(2.0**40, 2.0**-20, 4.0**15),
-    "short": Units(2.0**-30, 2.0**10, 4.0**-20),
-}
+OTHER = {"long": Units(2.0**40, 2.0**-20, 4.0**15), "short": Units(2.0**-30, 2.0**10, 4.0**-20)}
 
 
 def solved(case, units):

@@ -20,16 +20,11 @@ if TYPE_CHECKING:
     from rich.table import Table
 
 _ANY_WIDTH = 10_000
-_COLUMNS = {
-    "velocity_width": "W_v",
-    "mean_displacement": "<dx>",
-    "displacement_width": "W_x",
-}
+_COLUMNS = {"velocity_width": "W_v", "mean_displacement": "<dx>", "displacement_width": "W_x"}
 # Facts that --json prints; None if text is printed.
 _facts: ContextVar[dict[str, Any] | None] = ContextVar("facts", default=None)
 _Option = Annotated[
-    bool,
-    typer.Option("--json", help="Print one JSON object instead of text, numbers in full."),
+    bool, typer.Option("--json", help="Print one JSON object instead of text, numbers in full.")
 ]
 
 

@@ -18,8 +18,7 @@ def command(
         str, typer.Option(help="Address to serve it at; the default is this machine only.")
     ] = "127.0.0.1",
     open_to_network: Annotated[
-        bool,
-        typer.Option("--open-to-network", help="Allow an address that other machines reach."),
+        bool, typer.Option("--open-to-network", help="Allow an address that other machines reach.")
     ] = False,
     browser: Annotated[
         bool, typer.Option("--browser/--no-browser", help="Open the page in the browser.")

@@ -13,15 +13,7 @@ from typing import Annotated
 
 import typer
 
-from crazybilliards.apps.commands import (
-    compare,
-    explore,
-    relax,
-    reproduce,
-    simulate,
-    sweep,
-    theory,
-)
+from crazybilliards.apps.commands import compare, explore, relax, reproduce, simulate, sweep, theory
 from crazybilliards.apps.commands.answers import with_json
 from crazybilliards.apps.commands.output import INTERRUPTED
 from crazybilliards.apps.commands.streams import READER_GONE, plain_streams

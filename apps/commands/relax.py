@@ -13,12 +13,7 @@ import typer
 
 from crazybilliards.apps.commands.answers import note, print_table, wrote
 from crazybilliards.apps.commands.chain_options import with_chain_options
-from crazybilliards.apps.commands.output import (
-    conclude,
-    place,
-    write_figures,
-    writing_to,
-)
+from crazybilliards.apps.commands.output import conclude, place, write_figures, writing_to
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -134,7 +129,7 @@ def _print(tree: xr.DataTree) -> None:
 
     table = Table(
         caption="Rms over the rods of their mean position in theory minus simulation, in thermal "
-        "lengths, at the time when it is largest.",
+        "lengths, at the time when it is largest."
     )
     table.add_column("theory")
     table.add_column("rms distance / s", justify="right")

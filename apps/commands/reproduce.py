@@ -67,8 +67,7 @@ def command(
         bool, typer.Option("--list", help="List the figures and the studies, and stop.")
     ] = False,
     quality: Annotated[
-        Quality,
-        typer.Option(help="All figures take 2 minutes (quick) or 10 (full) on two cores."),
+        Quality, typer.Option(help="All figures take 2 minutes (quick) or 10 (full) on two cores.")
     ] = Quality.QUICK,
     output: Annotated[
         Path,

@@ -98,10 +98,7 @@ def engine(
 
 
 def compute_cases(
-    cases: Iterable[Case],
-    folder: Path,
-    executor: AbstractContextManager[Executor],
-    keep_old: bool,
+    cases: Iterable[Case], folder: Path, executor: AbstractContextManager[Executor], keep_old: bool
 ) -> None:
     """Compute what is missing; end the command, and say why, unless all succeed."""
     from crazybilliards.comparison.sweeps.missing import check_cases, find_missing

@@ -14,12 +14,7 @@ import typer
 
 from crazybilliards.apps.commands.answers import answer_rods, note, print_table, say, wrote
 from crazybilliards.apps.commands.chain_options import with_chain_options
-from crazybilliards.apps.commands.output import (
-    conclude,
-    place,
-    write_figures,
-    writing_to,
-)
+from crazybilliards.apps.commands.output import conclude, place, write_figures, writing_to
 from crazybilliards.comparison.stationary_theories import THEORIES, best_theory
 
 if TYPE_CHECKING:

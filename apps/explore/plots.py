@@ -22,11 +22,7 @@ THEORIES: Mapping[str, Mapping[str, Any]] = {
     "balance": {"color": "#0072B2", "line_width": 2, "line_dash": "dashed"},
     "kinetic": {"color": "#D55E00", "line_width": 2.5, "line_dash": "dotdash"},
 }
-LABELS = {
-    "exact": "exact",
-    "balance": "force balance",
-    "kinetic": "kinetic equation",
-}
+LABELS = {"exact": "exact", "balance": "force balance", "kinetic": "kinetic equation"}
 # Pictures that stand one above the other have frames of the same width.
 _LEFT, _RIGHT = 84, 16
 _TYPE = "14px"

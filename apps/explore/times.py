@@ -8,14 +8,7 @@ from typing import Any
 import numpy as np
 from bokeh.models import ColumnDataSource, DataRange1d, LegendItem
 
-from crazybilliards.apps.explore.plots import (
-    BLACK,
-    GREY,
-    THEORIES,
-    Array,
-    add_legend,
-    make_plot,
-)
+from crazybilliards.apps.explore.plots import BLACK, GREY, THEORIES, Array, add_legend, make_plot
 from crazybilliards.comparison.fits import fit_growth
 from crazybilliards.kinetic.kinetic_equation.weak_damping import (
     weak_damping_critical_size,

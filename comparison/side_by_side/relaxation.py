@@ -35,11 +35,7 @@ Release = Literal["compressed", "displaced", "quenched"]
 PARTICLES = "particles"
 # The argument velocity_variance of hydrodynamics.
 FLUIDS: dict[str, Literal["evolving"] | None] = {"isothermal": None, "evolving": "evolving"}
-LEGEND = {
-    "isothermal": "isothermal fluid",
-    "evolving": "fluid with temperature",
-    "exact": "exact",
-}
+LEGEND = {"isothermal": "isothermal fluid", "evolving": "fluid with temperature", "exact": "exact"}
 
 
 def compare_relaxation(

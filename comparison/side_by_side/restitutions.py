@@ -19,10 +19,7 @@ from crazybilliards.model.randomness import Randomness, seed_of
 
 THEORY = "kinetic_equation"
 # The theories by their names in the results.
-LEGEND = {
-    THEORY: THEORIES["phase_space"],
-    "pair_correlations": THEORIES["correlated_phase_space"],
-}
+LEGEND = {THEORY: THEORIES["phase_space"], "pair_correlations": THEORIES["correlated_phase_space"]}
 
 
 def compare_restitutions(

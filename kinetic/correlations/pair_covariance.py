@@ -186,12 +186,7 @@ def _of_cell_means(cells: Cells, strength: Array) -> Array:
 
 def _parts(M: int) -> tuple[slice, slice, slice, slice]:
     """Places of u and V (cells), Theta (contacts) and q (cells but those at the ends)."""
-    return (
-        slice(0, M),
-        slice(M, 2 * M),
-        slice(2 * M, 3 * M - 1),
-        slice(3 * M - 1, 4 * M - 3),
-    )
+    return (slice(0, M), slice(M, 2 * M), slice(2 * M, 3 * M - 1), slice(3 * M - 1, 4 * M - 3))
 
 
 def _steps(cells: Cells) -> Array:

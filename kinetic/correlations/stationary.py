@@ -24,18 +24,11 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from crazybilliards.kinetic.correlations.cells import make_cells
-from crazybilliards.kinetic.correlations.closure import (
-    Closure,
-    background,
-    implied,
-)
+from crazybilliards.kinetic.correlations.closure import Closure, background, implied
 from crazybilliards.kinetic.correlations.collision_moments import moments_of_collisions
 from crazybilliards.kinetic.correlations.fixed_point import NoFixedPointError, find_fixed_point
 from crazybilliards.kinetic.correlations.one_rod import profiles_of_one_rod
-from crazybilliards.kinetic.correlations.pair_covariance import (
-    linear_response,
-    solve_pairs,
-)
+from crazybilliards.kinetic.correlations.pair_covariance import linear_response, solve_pairs
 from crazybilliards.kinetic.correlations.stationary_result import Correlated, assemble, rods
 from crazybilliards.kinetic.kinetic_equation.continuation import (
     CELLS,

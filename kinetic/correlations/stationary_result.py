@@ -12,12 +12,7 @@ from crazybilliards.kinetic.accuracy import (
     expected_correlated_displacement,
     expected_correlated_phase_space,
 )
-from crazybilliards.kinetic.correlations.cells import (
-    Cells,
-    make_cells,
-    of_cells,
-    of_rods,
-)
+from crazybilliards.kinetic.correlations.cells import Cells, make_cells, of_cells, of_rods
 from crazybilliards.kinetic.correlations.closure import Closure, collective_variance
 from crazybilliards.kinetic.correlations.collective_motion import as_seen_in_place
 from crazybilliards.kinetic.correlations.collision_moments import moments_of_collisions
@@ -77,8 +72,7 @@ def assemble(found: Correlated, of_rods: Rods, mesh_error: float) -> xr.Dataset:
         mesh_error=mesh_error,
         expected=expected_correlated_phase_space(chain),
     ).assign_attrs(
-        iterations=found.iterations,
-        displacement_error=expected_correlated_displacement(chain),
+        iterations=found.iterations, displacement_error=expected_correlated_displacement(chain)
     )
 
 

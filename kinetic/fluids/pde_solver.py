@@ -51,12 +51,7 @@ def make_state(fields: Mapping[str, Array], ends: tuple[float, float]) -> FieldC
 
 
 def solve(
-    rate: Rate,
-    state: FieldCollection,
-    times: Array,
-    *,
-    progress: bool,
-    **solver: Any,
+    rate: Rate, state: FieldCollection, times: Array, *, progress: bool, **solver: Any
 ) -> Array:
     """Solve from ``times[0]`` on; return the fields at all ``times``, (times, fields, cells).
 
@@ -73,12 +68,7 @@ def solve(
         trackers.append(ProgressTracker(list(times), leave=False))
     flow = Flow(rate)
     try:
-        flow.solve(
-            state,
-            t_range=(float(times[0]), float(times[-1])),
-            tracker=trackers,
-            **solver,
-        )
+        flow.solve(state, t_range=(float(times[0]), float(times[-1])), tracker=trackers, **solver)
     except RuntimeError as error:  # a step that became too small, or not a number
         raise ValueError(f"the hydrodynamic equations could not be solved: {error}") from error
     outputs = len(storage.data)

@@ -30,17 +30,9 @@ from numpy.typing import NDArray
 from scipy.optimize import root_scalar
 
 from crazybilliards.kinetic.kinetic_equation.velocity_moments import fitting_box
-from crazybilliards.kinetic.kinetic_equation.velocity_space import (
-    Box,
-    VelocitySpace,
-    one_thread,
-)
+from crazybilliards.kinetic.kinetic_equation.velocity_space import Box, VelocitySpace, one_thread
 from crazybilliards.kinetic.kinetic_equation.weak_damping import weak_damping_drag
-from crazybilliards.kinetic.kinetic_equation.weak_form import (
-    Coefficients,
-    Equation,
-    Jacobian,
-)
+from crazybilliards.kinetic.kinetic_equation.weak_form import Coefficients, Equation, Jacobian
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain
 

@@ -29,11 +29,7 @@ from crazybilliards.kinetic.kinetic_equation.relaxation_result import (
     positions,
     snapshot,
 )
-from crazybilliards.kinetic.kinetic_equation.start import (
-    REACH,
-    PhaseSpaceStart,
-    read_phase_space,
-)
+from crazybilliards.kinetic.kinetic_equation.start import REACH, PhaseSpaceStart, read_phase_space
 from crazybilliards.kinetic.kinetic_equation.velocity_moments import moments
 from crazybilliards.kinetic.kinetic_equation.velocity_space import (
     Box,
@@ -163,10 +159,7 @@ def relax_phase_space(
     status = "completed"
     try:
         for _ in tqdm(
-            range(count),
-            desc="kinetic equation",
-            unit=" outputs",
-            disable=bar_hidden(progress),
+            range(count), desc="kinetic equation", unit=" outputs", disable=bar_hidden(progress)
         ):
             flow = flow.advanced(interval / unit_time / steps, steps)
             sound = flow.sound()

@@ -190,11 +190,7 @@ class VelocitySpace:
         (y, v), values = self.axes, self.values(f)
         if not self.symmetric:
             return y, v, values
-        return (
-            np.concatenate([-y[:0:-1], y]),
-            v,
-            np.concatenate([values[:0:-1, ::-1], values]),
-        )
+        return (np.concatenate([-y[:0:-1], y]), v, np.concatenate([values[:0:-1, ::-1], values]))
 
     def sampled(self, f: Array) -> tuple[Array, Array, Array]:
         """Return y, v and the values of f at the quadrature points of the whole plane.

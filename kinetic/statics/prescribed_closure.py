@@ -79,10 +79,7 @@ def _integrate(
                 f"displacement is not finite at x = {x:g}; an attribute `support` "
                 "can tell the interval on which it is"
             )
-        return [
-            -force * s / chain.temperature / room,
-            pressure / room,
-        ]
+        return [-force * s / chain.temperature / room, pressure / room]
 
     def in_the_tail(distance: float, state: Array) -> float:
         return state[0] - log_pressure + _TAIL

@@ -8,13 +8,7 @@ from typing import ClassVar, Self
 import numpy as np
 
 from crazybilliards.particles.laws.avalanche import Tally, Waves, make_waves
-from crazybilliards.particles.observers.base import (
-    Array,
-    Integers,
-    Observer,
-    Snapshots,
-    Variables,
-)
+from crazybilliards.particles.observers.base import Array, Integers, Observer, Snapshots, Variables
 from crazybilliards.particles.run import Run
 
 

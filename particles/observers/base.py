@@ -188,10 +188,7 @@ class Averaged(Observer):
         self.sums = self.sums.sum(axis=0, keepdims=True)
 
     def averages(
-        self,
-        quantities: Mapping[str, Callable[[Array], Array]],
-        counts: Integers,
-        *dimensions: str,
+        self, quantities: Mapping[str, Callable[[Array], Array]], counts: Integers, *dimensions: str
     ) -> Variables:
         """Return every quantity, which is a function of the averaged sums, and its error."""
         sums = self.sums

@@ -5,13 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from crazybilliards.model.checks import check_integer
-from crazybilliards.particles.observers.base import (
-    Array,
-    Averaged,
-    Integers,
-    Snapshots,
-    Variables,
-)
+from crazybilliards.particles.observers.base import Array, Averaged, Integers, Snapshots, Variables
 from crazybilliards.particles.run import Run
 
 _MOST = 100_000

@@ -9,13 +9,7 @@ from typing import Self
 import numpy as np
 
 from crazybilliards.model.grid import deposit, position_grid, thermal_reach
-from crazybilliards.particles.observers.base import (
-    Array,
-    Averaged,
-    Integers,
-    Snapshots,
-    Variables,
-)
+from crazybilliards.particles.observers.base import Array, Averaged, Integers, Snapshots, Variables
 from crazybilliards.particles.run import Run
 
 

@@ -8,13 +8,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from crazybilliards.particles.observers.base import (
-    Array,
-    Integers,
-    Observer,
-    Snapshots,
-    Variables,
-)
+from crazybilliards.particles.observers.base import Array, Integers, Observer, Snapshots, Variables
 from crazybilliards.particles.observers.error_bars import jackknife
 from crazybilliards.particles.run import Run
 

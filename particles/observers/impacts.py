@@ -15,13 +15,7 @@ from crazybilliards.particles.laws.impacts import (
     ROWS,
     make_impacts,
 )
-from crazybilliards.particles.observers.base import (
-    Array,
-    Averaged,
-    Integers,
-    Snapshots,
-    Variables,
-)
+from crazybilliards.particles.observers.base import Array, Averaged, Integers, Snapshots, Variables
 from crazybilliards.particles.run import Run
 
 

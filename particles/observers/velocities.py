@@ -8,13 +8,7 @@ from typing import Self
 import numpy as np
 
 from crazybilliards.model.checks import check_integer
-from crazybilliards.particles.observers.base import (
-    Array,
-    Averaged,
-    Integers,
-    Snapshots,
-    Variables,
-)
+from crazybilliards.particles.observers.base import Array, Averaged, Integers, Snapshots, Variables
 from crazybilliards.particles.run import Run
 
 _MOST_BINS = 100_001

@@ -4,13 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from crazybilliards.particles.observers.base import (
-    Array,
-    Averaged,
-    Integers,
-    Snapshots,
-    Variables,
-)
+from crazybilliards.particles.observers.base import Array, Averaged, Integers, Snapshots, Variables
 from crazybilliards.particles.run import Run
 
 

@@ -54,11 +54,7 @@ def collect(run: Run, replicas: list[Replica], interrupted: bool) -> xr.Dataset:
         status="interrupted" if interrupted else "diverged" if diverged else "completed",
         end_time=end_time,
         particles=run.chosen + 1,
-        method={
-            **run.provenance(),
-            "duration": schedule.duration,
-            "snapshots": int(counts.sum()),
-        },
+        method={**run.provenance(), "duration": schedule.duration, "snapshots": int(counts.sum())},
     )
     width = centre_width(chain) * chain.free_velocity_width
     if "velocity_width" in measured:

@@ -90,11 +90,7 @@ def plan_steps(chain: Chain, accuracy: float, warmup: float | None) -> Steps:
 
 
 def _steps(
-    chain: Chain,
-    time_steps: list[float],
-    ratios: list[int],
-    warmup: float | None,
-    interval: float,
+    chain: Chain, time_steps: list[float], ratios: list[int], warmup: float | None, interval: float
 ) -> Steps:
     """Return the levels with snapshots about ``interval`` apart."""
     first = time_steps[0]

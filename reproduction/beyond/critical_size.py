@@ -21,12 +21,7 @@ from crazybilliards.kinetic.kinetic_equation.weak_damping import weak_damping_cr
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.reproduction.claims.study import Cases, Quality, Results, Study
 from crazybilliards.reproduction.claims.tables import Tables
-from crazybilliards.reproduction.claims.verdicts import (
-    Claim,
-    Estimate,
-    positive_claim,
-    small_claim,
-)
+from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, positive_claim, small_claim
 
 _SIMULATED = {  # restitution and damping
     "quick": ((1.05, 1.0),),
@@ -82,10 +77,7 @@ def _critical(runs: list[xr.Dataset]) -> Estimate:
     if len(sizes) < _LEAST:
         return Estimate(math.nan, math.nan)
     line, parabola = (
-        min(
-            (root.real for root in np.roots(fit) if root.real > sizes[-1]),
-            default=math.nan,
-        )
+        min((root.real for root in np.roots(fit) if root.real > sizes[-1]), default=math.nan)
         for fit in (np.polyfit(sizes, shares, n, w=1 / np.array(errors)) for n in (1, 2))
     )
     return Estimate(float(parabola), max(float(abs(line - parabola)), _LEAST_ERROR))

@@ -15,12 +15,7 @@ from crazybilliards.comparison.sweeps import Case
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.particles.scales import default_time_step
 from crazybilliards.reproduction.claims.study import Cases, Quality, Results, Study
-from crazybilliards.reproduction.claims.verdicts import (
-    Claim,
-    Estimate,
-    positive_claim,
-    small_claim,
-)
+from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, positive_claim, small_claim
 from crazybilliards.reproduction.correlated_rods import CELLS
 
 _AGREE, _FAIL = Chain(size=100, restitution=0.75), Chain(size=30, restitution=0.5)

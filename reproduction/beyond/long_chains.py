@@ -22,11 +22,7 @@ from crazybilliards.model.chain import middle_tenth
 from crazybilliards.reproduction.claims.study import Cases, Quality, Results, Study
 from crazybilliards.reproduction.claims.tables import Table, Tables
 from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, positive_claim
-from crazybilliards.reproduction.correlated_rods import (
-    correlation_length,
-    neighbours,
-    sizes,
-)
+from crazybilliards.reproduction.correlated_rods import correlation_length, neighbours, sizes
 
 _HEADS = {  # of the tables
     "W_v": "$W_v/W$",
@@ -160,7 +156,7 @@ def claims(results: Results) -> list[Claim]:
             "the common motion of neighbours falls more slowly with L than the relative one",
             "difference of the slopes",
             steeper,
-        ),
+        )
     ]
     if longest > _FIRST:
         slope = _slope(runs, "common", _FIRST, longest)

@@ -14,12 +14,7 @@ from crazybilliards.model.chain import middle_tenth
 from crazybilliards.reproduction.claims.repetition import error_of_mean
 from crazybilliards.reproduction.claims.study import Cases, Quality, Results, Study
 from crazybilliards.reproduction.claims.tables import Tables
-from crazybilliards.reproduction.claims.verdicts import (
-    Claim,
-    Estimate,
-    positive_claim,
-    small_claim,
-)
+from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, positive_claim, small_claim
 from crazybilliards.reproduction.correlated_rods import (
     SNAPPED,
     correlation_length,
@@ -75,9 +70,7 @@ def _in_the_centre(result: xr.Dataset) -> Estimate:
 
 def tables(results: Results) -> Tables:
     """Give correlation lengths, covariances of neighbours, and how many rods move together."""
-    rows = [
-        ["e", "L", *_columns("xi"), *_columns("h_c/T centre"), "W^2/<v^2>, simulation"],
-    ]
+    rows = [["e", "L", *_columns("xi"), *_columns("h_c/T centre"), "W^2/<v^2>, simulation"]]
     for e, by_size in _pairs(results).items():
         for size, (run, theory) in by_size.items():
             length, shared = correlation_length(run), _in_the_centre(run)

@@ -19,12 +19,7 @@ from crazybilliards.comparison.widths import (
 from crazybilliards.reproduction.checked_chains import Checked, Group, checked
 from crazybilliards.reproduction.claims.study import Cases, Quality, Results, Study
 from crazybilliards.reproduction.claims.tables import Tables, percent
-from crazybilliards.reproduction.claims.verdicts import (
-    Claim,
-    Estimate,
-    positive_claim,
-    same_claim,
-)
+from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, positive_claim, same_claim
 from crazybilliards.reproduction.errors_of_theories import Error, draw_errors
 
 _TABLES = {

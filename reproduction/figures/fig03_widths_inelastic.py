@@ -33,12 +33,7 @@ from crazybilliards.reproduction.power_laws import (
     origin,
     weighted_nu,
 )
-from crazybilliards.reproduction.vanishing_step import (
-    LABEL,
-    common_bias,
-    limit_estimate,
-    limits,
-)
+from crazybilliards.reproduction.vanishing_step import LABEL, common_bias, limit_estimate, limits
 
 _SIZES = predictions.SIZES
 _RUNS = {size: at_step(size, None) for size in _SIZES}  # at the default step

@@ -24,12 +24,7 @@ from crazybilliards.reproduction.claims.verdicts import (
     positive_claim,
     same_claim,
 )
-from crazybilliards.reproduction.vanishing_step import (
-    LABEL,
-    central_limit,
-    limits,
-    relative_shift,
-)
+from crazybilliards.reproduction.vanishing_step import LABEL, central_limit, limits, relative_shift
 
 _PAPER, _PRECISION = -0.38, 0.005  # "with exponent -0.38": half a unit of the last digit
 # Beyond the paper: the default step would take hours there. These steps are in the ratio of the
@@ -81,10 +76,7 @@ def claims(results: Results) -> list[Claim]:
     """Check: the exponent is -0.38, for all sizes and time steps."""
     default, coarse = (_widths(results, _at_step(step)) for step in (None, STEPS[0]))
     long = _widths(results, _LONG)
-    fits = {
-        "L = 10 to 1000": _fit(default),
-        f"L = 10 to 1000 at dt = {STEPS[0]:g}": _fit(coarse),
-    }
+    fits = {"L = 10 to 1000": _fit(default), f"L = 10 to 1000 at dt = {STEPS[0]:g}": _fit(coarse)}
     short, rest = (_exponent(fit) for fit in (_fit(default, most=100), _fit(default, least=100)))
     at = {f"dt = {step:g}": _fit(_widths(results, _at_step(step))) for step in STEPS}
     others = {"default time step": _fit(default), **at, "L = 30 to 1000": _fit(default, least=30)}

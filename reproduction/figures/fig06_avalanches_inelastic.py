@@ -40,10 +40,7 @@ _RUNS = {
         f"dt={step:g}",
         Chain(size=LARGE, restitution=0.0),
         _LONGER if step == _BETWEEN else _GRANTED,
-        {
-            "time_step": step,
-            "observe": ["avalanches", "triggered-collisions"],
-        },
+        {"time_step": step, "observe": ["avalanches", "triggered-collisions"]},
     )
     for step in _STEPS
 }

@@ -34,12 +34,7 @@ from crazybilliards.reproduction.predictions import (
     minus_nu,
     predicted,
 )
-from crazybilliards.reproduction.vanishing_step import (
-    LABEL,
-    central_limit,
-    limits,
-    relative_shift,
-)
+from crazybilliards.reproduction.vanishing_step import LABEL, central_limit, limits, relative_shift
 
 IN_LIMIT = {"quick": (0.0, 0.95), "full": RESTITUTIONS}
 _RUNS = {e: dissipative(LARGE, e) for e in RESTITUTIONS}
@@ -197,10 +192,7 @@ def _draw_theories(ax: Axes, results: Results, e: float, unit: float, colour: st
 
 def _draw_centre(ax: Axes, results: Results) -> None:
     unit = _RUNS[0.0].chain.free_velocity_width
-    full: dict[str, Any] = {
-        "fmt": SYMBOLS[2],
-        "color": COLOURS[0],
-    }
+    full: dict[str, Any] = {"fmt": SYMBOLS[2], "color": COLOURS[0]}
     for found, label, style in (
         (_central_widths(results), "default step", {**_OPEN, "markersize": 5}),
         (_central_limits(results), LABEL, full),
@@ -218,13 +210,7 @@ def _draw_exponents(ax: Axes, results: Results) -> None:
     found = _exponents(results)
     fit = _fit(found)
     values, errors = np.array(list(found.values())).T
-    ax.errorbar(
-        list(found),
-        values,
-        errors,
-        label="simulation",
-        **_OPEN,
-    )
+    ax.errorbar(list(found), values, errors, label="simulation", **_OPEN)
     for theory, of_theory in predicted(results).items():
         exponents = [minus_nu(each) for each in of_theory.values()]
         ax.plot(list(of_theory), exponents, **CROSSES[theory], label=theory)

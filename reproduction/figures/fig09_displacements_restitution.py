@@ -17,12 +17,7 @@ from crazybilliards.reproduction.chains import LARGE, dissipative
 from crazybilliards.reproduction.claims.study import Cases, PaperFigure, Quality, Results, all_of
 from crazybilliards.reproduction.claims.verdicts import About, Claim, Estimate, positive_claim
 from crazybilliards.reproduction.figures.fig05_displacements_inelastic import swelling
-from crazybilliards.reproduction.predictions import (
-    LINES,
-    by_restitution,
-    listed,
-    predicted,
-)
+from crazybilliards.reproduction.predictions import LINES, by_restitution, listed, predicted
 
 _FRAME = 0.7
 _LABEL = r"displacement $\langle\Delta x\rangle/s$"

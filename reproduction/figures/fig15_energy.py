@@ -153,10 +153,7 @@ def draw(results: Results) -> Figure:
         [np.interp(90, run.time, run.kinetic_energy) for run in _LINEAR.members(results)]
     )
     left.semilogy(
-        t,
-        anchor * np.exp(rate * (t - 90)),
-        "k--",
-        label=rf"theory: $\exp({rate:.3f}\,t/$T$)$",
+        t, anchor * np.exp(rate * (t - 90)), "k--", label=rf"theory: $\exp({rate:.3f}\,t/$T$)$"
     )
     left.set(xlabel="time $t$ [T]", ylabel=_ENERGY, xlim=(0, _HALF_WAY), ylim=(1, 1e8))
     left.legend()

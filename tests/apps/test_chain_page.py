@@ -104,11 +104,7 @@ def test_the_stored_curves_are_those_of_the_best_theories():
     """All are for chains that the challenges begin with or lead to."""
     found, turn = curves()
     turning = {g: chain_curves.TURNING.replace(damping=g) for g in chain_curves.DAMPINGS}
-    assert set(found) == {
-        *turning.values(),
-        chain_curves.PUSHED,
-        *chain_curves.DISSIPATIVE,
-    }
+    assert set(found) == {*turning.values(), chain_curves.PUSHED, *chain_curves.DISSIPATIVE}
     solved = {g: chain_curves.solve(chain) for g, chain in turning.items()}
     assert chain_curves.turning(solved) == pytest.approx(turn, abs=0.051)
     solved = {turning[g]: theory for g, theory in solved.items()}

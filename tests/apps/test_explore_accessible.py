@@ -18,10 +18,7 @@ TAKES_LONG = "?size=300&restitution=0.5&amplitude=1&gap=0&damping=1"
 RUNS_AWAY = "?size=100&restitution=1.01&damping=0.4&amplitude=1&gap=0"
 SAME_LINE = 5.0  # pixels by which boxes in lines one below the other may overlap
 # Panel announces other names of arguments, which the oldest version that we allow does not know.
-pytestmark = [
-    pytest.mark.validate,
-    pytest.mark.filterwarnings("ignore::PendingDeprecationWarning"),
-]
+pytestmark = [pytest.mark.validate, pytest.mark.filterwarnings("ignore::PendingDeprecationWarning")]
 
 
 def sliders():

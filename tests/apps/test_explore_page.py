@@ -4,16 +4,7 @@ from urllib.parse import quote
 
 import numpy as np
 import pytest
-from browser import (
-    column,
-    elements,
-    errors,
-    has,
-    press,
-    texts,
-    until,
-    visit,
-)
+from browser import column, elements, errors, has, press, texts, until, visit
 
 from crazybilliards.apps.explore.presets import PRESETS
 from crazybilliards.model import Chain

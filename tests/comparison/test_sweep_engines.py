@@ -16,13 +16,7 @@ from missing_cases import missing_cases
 
 from crazybilliards.apps.commands.line import main
 from crazybilliards.comparison import load_sweep
-from crazybilliards.comparison.sweeps import (
-    Case,
-    dask_cluster,
-    process_pool,
-    read_sweep,
-    run_cases,
-)
+from crazybilliards.comparison.sweeps import Case, dask_cluster, process_pool, read_sweep, run_cases
 from crazybilliards.comparison.sweeps.case import compute
 from crazybilliards.model import Chain
 from crazybilliards.model.storage import write_sealed
@@ -162,10 +156,7 @@ def test_the_death_of_the_scheduler_is_one_line(number, scheduler, tmp_path, mon
 
 
 def test_no_scheduler_at_the_address():
-    with (
-        pytest.raises(ValueError, match="no dask scheduler"),
-        dask_cluster("nowhere"),
-    ):
+    with pytest.raises(ValueError, match="no dask scheduler"), dask_cluster("nowhere"):
         pass
 
 

@@ -27,10 +27,7 @@ from crazybilliards.model.locks import locked
         ({"grid": {"size": 3}}, "size must be a list"),
         ({"grid": {"gap": [3, 3.0]}}, "twice"),
         ({"grid": {"damping": [1.0, 2.0]}}, "given twice"),
-        (
-            {"grid": {"length": [1, 2]}},
-            r"^\[grid\] takes .*'gap', .*'duration', .*got 'length'",
-        ),
+        ({"grid": {"length": [1, 2]}}, r"^\[grid\] takes .*'gap', .*'duration', .*got 'length'"),
         ({"grid": {"size": [3, -1]}}, "size must be an integer"),
         ({"grid": {"seed": range(2000), "gap": range(2000)}}, "must be a list"),
         ({"grid": {"seed": [*range(2000)], "gap": [*range(2000)]}}, "4000000 cases"),
@@ -178,10 +175,7 @@ def test_nothing_is_submitted_to_workers_that_died(raised, tmp_path):
 
 def test_a_folder_is_filled_by_one_process_at_a_time(tmp_path):
     cases = sweep().cases()[:1]
-    with (
-        locked(tmp_path),
-        pytest.raises(BlockingIOError, match=f"in use by process {os.getpid()}"),
-    ):
+    with locked(tmp_path), pytest.raises(BlockingIOError, match=f"in use by process {os.getpid()}"):
         run_cases(cases, tmp_path, AtOnce(), progress=False)
     assert run_cases(cases, tmp_path, AtOnce(), progress=False) == {}
 

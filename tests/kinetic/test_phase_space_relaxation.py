@@ -15,9 +15,7 @@ from crazybilliards.kinetic import (
     relax_phase_space,
 )
 from crazybilliards.kinetic.exact.breathing import breathing_cloud
-from crazybilliards.kinetic.kinetic_equation import (
-    relaxation as phase_space_relaxation,
-)
+from crazybilliards.kinetic.kinetic_equation import relaxation as phase_space_relaxation
 from crazybilliards.kinetic.kinetic_equation.continuation import continued, elastic_state
 from crazybilliards.model import Chain
 

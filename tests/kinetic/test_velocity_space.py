@@ -9,11 +9,7 @@ from skfem import LinearForm
 
 from crazybilliards.kinetic.kinetic_equation.order_statistics import points
 from crazybilliards.kinetic.kinetic_equation.velocity_moments import fitting_box, moments
-from crazybilliards.kinetic.kinetic_equation.velocity_space import (
-    Box,
-    VelocitySpace,
-    graded,
-)
+from crazybilliards.kinetic.kinetic_equation.velocity_space import Box, VelocitySpace, graded
 
 BOX = Box(6.5, 6.5, 1.5, 1.5)
 

@@ -250,12 +250,7 @@ def test_wrong_starts_are_refused():
     with pytest.raises(ValueError, match="no 'velocity'"):
         simulate(chain, start=start.drop_vars("velocity"), replicas=2, progress=False)
     with pytest.raises(ValueError, match="in order"):
-        simulate(
-            chain,
-            start=start.assign(position=-start.position),
-            replicas=2,
-            progress=False,
-        )
+        simulate(chain, start=start.assign(position=-start.position), replicas=2, progress=False)
     with pytest.raises(ValueError, match="finite"):
         simulate(chain, start=start * np.nan, replicas=2, progress=False)
 

@@ -15,11 +15,7 @@ from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.vocabulary import result
 from crazybilliards.reproduction.claims.report import Reproduced, html, markdown
 from crazybilliards.reproduction.figures import FIGURES
-from crazybilliards.reproduction.vanishing_step import (
-    central_limit,
-    limit_estimate,
-    limits,
-)
+from crazybilliards.reproduction.vanishing_step import central_limit, limit_estimate, limits
 
 pytestmark = pytest.mark.validate
 
@@ -44,10 +40,7 @@ def made_up(chain, job, *, seed=0, scale=1.0, steeper=0.0):
     tilt = NOISE * normal[0] * np.log(profile / profile.min())  # of each run, so that nu scatters
     width = profile * (1 + NOISE * normal[1] + tilt)
     error = np.full(chain.size, NOISE) * width
-    variables = {
-        "velocity_width": ("particle", width),
-        "velocity_width_error": ("particle", error),
-    }
+    variables = {"velocity_width": ("particle", width), "velocity_width_error": ("particle", error)}
     if job == "simulate_limit":
         error = np.hypot(NOISE, BIAS) * width.min()
         variables["central_velocity_width"] = ((), width.min())

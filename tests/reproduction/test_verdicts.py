@@ -72,12 +72,7 @@ def every_kind(value, error):
     ]
 
 
-@given(
-    value=st.floats(-5, 5),
-    error=st.floats(0, 5),
-    more=st.floats(1, 10),
-    kind=st.integers(0, 4),
-)
+@given(value=st.floats(-5, 5), error=st.floats(0, 5), more=st.floats(1, 10), kind=st.integers(0, 4))
 def test_large_errors_help_no_claim(value, error, more, kind):
     """A verdict with large errors is that with small ones, or undecided."""
     precise, poor = (every_kind(value, each)[kind].verdict for each in (error, error * more))

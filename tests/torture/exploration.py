@@ -14,10 +14,7 @@ import xarray as xr
 from hypothesis import HealthCheck, event, settings
 from hypothesis import strategies as st
 
-from crazybilliards.kinetic import (
-    displaced,
-    hydrodynamics,
-)
+from crazybilliards.kinetic import displaced, hydrodynamics
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.particles import simulate
 

@@ -161,11 +161,7 @@ def test_a_sweep_on_a_full_disk_keeps_what_fits_and_goes_on_with_more_room(small
 
 @pytest.mark.parametrize(
     "arguments",
-    [
-        ["compare", "--size", "30", "--duration", "2000"],
-        ["theory"],
-        ["reproduce", "1"],
-    ],
+    [["compare", "--size", "30", "--duration", "2000"], ["theory"], ["reproduce", "1"]],
     ids=lambda arguments: arguments[0],
 )
 def test_commands_on_a_full_disk_say_so_and_show_what_they_can(arguments, small):
