@@ -70,18 +70,18 @@ class Run:
 
     chain: Chain
     duration: float
-    warmup: float | None
-    time_step: float | None
-    method: Method
-    stepper: Stepper
-    merging: float | None
-    seed: int
     observers: tuple[Measurement, ...]
-    start: xr.Dataset | None
+    seed: int
+    time_step: float | None
+    merging: float | None
     particles: Sequence[int] | None
-    replicas: int
-    average: Average
-    every: float | None
+    warmup: float | None = None
+    method: Method = "event-driven"
+    stepper: Stepper = "splitting"
+    start: xr.Dataset | None = None
+    replicas: int = 1
+    average: Average = "time"
+    every: float | None = None
 
     def __post_init__(self) -> None:
         for name, kinds in (("method", Method), ("stepper", Stepper), ("average", Average)):

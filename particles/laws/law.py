@@ -62,12 +62,16 @@ class Scratch(NamedTuple):
 
 def make_scratch(size: int) -> Scratch:
     """Return the scratch space for ``size`` rods: 220 bytes a rod."""
+    nodes = np.arange(2 * size, dtype=np.uint64)
     return Scratch(
         np.zeros((3, size), dtype=np.int64),
         np.zeros((4, size)),
-        *(np.arange(size) for _ in range(2)),
+        np.arange(size),
+        np.arange(size),
         np.zeros(2 * size),
-        *(np.arange(2 * size, dtype=np.uint64) for _ in range(3)),
+        nodes,
+        nodes.copy(),
+        nodes.copy(),
         np.zeros(size, dtype=np.int32),
         np.zeros(sort.BUCKETS * size, dtype=np.int32),
         make_clusters(size),

@@ -139,11 +139,11 @@ def simulate_limit(
         chain,
         accuracy=accuracy,
         warmup=warmup,
-        merging=merging,
-        seed=seed,
         observe=observe,
-        particles=particles,
         replicas=replicas,
+        seed=seed,
+        merging=merging,
+        particles=particles,
     )
     levels = Levels(chain, float(accuracy), steps, _samplers(runs, seed, replicas))
     samplers = [sampler for level in levels.samplers for sampler in level]
@@ -174,11 +174,9 @@ def make_runs(
     *,
     accuracy: float,
     warmup: float | None,
-    merging: float | None,
-    seed: int,
     observe: Any,
-    particles: Sequence[int] | None,
     replicas: int,
+    **arguments: Any,
 ) -> tuple[Steps, list[LevelRun]]:
     """Check all arguments of :func:`simulate_limit` and plan its levels, without any work.
 
@@ -209,18 +207,9 @@ def make_runs(
         LevelRun(
             chain=chain,
             duration=math.inf,
-            warmup=None,
             time_step=time_step,
-            method="event-driven",
-            stepper="splitting",
-            merging=merging,
-            seed=seed,
             observers=observers,
-            start=None,
-            particles=particles,
-            replicas=1,
-            average="time",
-            every=None,
+            **arguments,
             warmup_steps=steps.warmup * steps.per_step(level),
             stride=steps.stride * steps.per_step(level),
         )
