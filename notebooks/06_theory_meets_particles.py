@@ -42,15 +42,15 @@ from teaching import GREEN, ORANGE, PINK, agree, check, panels, right
 # ## The paper's calculation in one cell
 #
 # [Lesson 0](00_the_analytics_section_in_sixty_lines.ipynb) repeats the paper's section with scipy.
-# Its force balance stands here with the numbers $B$ and $C$ of the fit that it makes to a simulation.
-# Section 3 explains the equation. The function `force_balance` of the package does the same with a
+# Its force balance stands here with the numbers $B$ and $C$ of the fit that section 3 makes to a
+# simulation. That section also explains the equation. The function `force_balance` of the package does the same with a
 # solution in closed form, and section 3 compares the two.
 
 # %%
 import crazybilliards as cb
 
 L, R, k, m = 100, 1.0, 1.0, 4 * np.pi / 3
-W2, B, C = 10**2 / (2 * m), 9.96, 1 / 123.5  # A = 10, gamma = 1
+W2, B, C = 10**2 / (2 * m), 9.96, 1 / 123.52  # A = 10, gamma = 1
 half = np.linspace(0, 0.9999 / C, 2000)
 
 
@@ -178,7 +178,8 @@ check(slope, slope_solution, at=places, hint=hint)
 fit = cb.fit_arctanh(run)
 print(f"B = {fit.scale / s:.2f} s, 1/C = {1 / fit.steepness:.1f} R, misfit {fit.misfit:.3f} R")
 paper = cb.force_balance(chain, displacement=fit)
-apart = np.abs(np.interp(half, paper.x, paper.density) - in_one_cell).max()
+inside = half < 123  # the density falls to 0 within one cell of the grid of force_balance, at 123.5
+apart = np.abs(np.interp(half, paper.x, paper.density) - in_one_cell)[inside].max()
 print(f"force_balance and the first cell: {2 * R * apart:.1e} of close packing apart")
 
 # %% tags=["remove-cell"]

@@ -67,6 +67,8 @@ def simulate(
     time_step
         None: 0.05 of the shorter of the times of spring and damping (0.1 for the default chain).
         For e != 1 it is also short enough to resolve the noise between collisions; see ``scales``.
+        Elastic rods on linear springs without a gap, and a single rod, are flown exactly, unless
+        single collisions are observed. Any step is right then; None: the time between snapshots.
     method
         ``"event-driven"``: every collision in its order in time. ``"contact-dynamics"``: all
         contacts of a step at once, the paper's method, which is right only if there are few
@@ -109,7 +111,8 @@ def simulate(
         equal times, for relaxation: widths, density, energy over (time, ...), the first time
         being the start. Errors are then those of 32 groups of replicas.
     every
-        Time between snapshots [T]; None: 10 steps, for an ensemble a hundredth of the duration.
+        Time between snapshots [T]; None: 10 steps, for an ensemble a hundredth of the duration
+        (with exact flight as far apart as 10 steps of a chain with a gap would be).
         The time step is shortened to a whole fraction of it. At most a million steps may be
         shorter than a thousandth of what they would be without it.
     checkpoint
@@ -127,9 +130,9 @@ def simulate(
         everything measured until then) or ``diverged`` (everything before the divergence).
         ``attrs["end_time"]`` is the shortest time that any replica reached, warm-up included, or
         the last time reported for an ensemble. A chain that diverged before anything was measured
-        has no variables (``warmup=0`` measures from the start). For e != 1
-        ``attrs["time_step_error"]`` is the estimated relative error of the smallest velocity
-        width due to the time step.
+        has no variables (``warmup=0`` measures from the start). ``attrs["flight"]`` is ``exact``
+        or ``in steps``. For e != 1 ``attrs["time_step_error"]`` is the estimated relative error of
+        the smallest velocity width due to the time step. It is 0 if the flight was exact.
 
         SIGTERM and SIGHUP end the program, once the checkpoint is written, unless the program
         ignores them or handles them itself. With the handler ``signal.default_int_handler`` they

@@ -37,7 +37,7 @@ save(run, output)
 @pytest.mark.compiled
 @pytest.mark.parametrize("e", [1.0, pytest.param(0.7, marks=pytest.mark.validate)])
 def test_killed_at_random_moments_and_resumed_it_is_the_undisturbed_run(e, tmp_path):
-    script = SCRIPT.format(e=e, duration=60_000 if e == 1 else 16_000)
+    script = SCRIPT.format(e=e, duration=100_000)
     undisturbed, output = tmp_path / "undisturbed.nc", tmp_path / "run.nc"
     checkpoint = tmp_path / "state"
     assert run_and_signal(script, "", undisturbed) == 0
