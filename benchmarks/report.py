@@ -27,7 +27,7 @@ def main(source: Path, table: Path, figure: Path) -> None:
         if "particle_steps" in info:
             cost = measured["stats"]["median"] / info["particle_steps"] * 1e9
             costs[info["work"]][info["size"]] = cost
-            if "default step" in info["work"]:
+            if "default step" in info["work"] and info["collisions"]:
                 rate = info["collisions"] / measured["stats"]["median"]
                 print(f"{info['work']}, L = {info['size']}: {rate:.2g} collisions per second")
     noise = costs[NOISE]
