@@ -10,7 +10,7 @@ import hashlib
 from collections.abc import Collection, Sequence
 from dataclasses import asdict, dataclass
 from functools import cached_property
-from typing import Any, ClassVar, Protocol, get_args
+from typing import Any, get_args
 
 import numpy as np
 import xarray as xr
@@ -37,25 +37,6 @@ _BYTES_PER_REPLICA = 10_000
 _CHUNKS = 4e7
 
 
-class Measurement(Protocol):
-    """The part of an observer that a run needs before it begins; see ``observers/base.py``."""
-
-    name: ClassVar[str]
-    gives: ClassVar[tuple[str, ...]]
-    along: ClassVar[tuple[str, ...]]
-    least_rods: ClassVar[int]
-    single_collisions: ClassVar[bool]
-    ensemble: ClassVar[bool]
-    limit: ClassVar[bool]
-    shares_time: ClassVar[bool]
-
-    def memory(self, run: Run) -> float:
-        """Return the bytes it would keep for one replica, or for one group of an ensemble."""
-
-    def prepared(self, run: Run, copies: int) -> Any:
-        """Return an observer with the same parameters that is ready to measure."""
-
-
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Run:
     """A checked run; its fields are the arguments of ``simulate``.
@@ -70,7 +51,7 @@ class Run:
 
     chain: Chain
     duration: float
-    observers: tuple[Measurement, ...]
+    observers: tuple[Any, ...]  # an ``Observer`` reads the run, and its module stands on this one
     seed: int
     time_step: float | None
     merging: float | None
@@ -200,7 +181,7 @@ class Run:
 
 def _check_observers(run: Run) -> None:
     """Raise if an observer cannot work in this run, or if two report the same variable."""
-    given: dict[str, Measurement] = {}
+    given: dict[str, Any] = {}
     for observer in run.observers:
         if run.chain.size < observer.least_rods:
             raise ValueError(
