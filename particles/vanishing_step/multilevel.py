@@ -41,10 +41,12 @@ import numpy as np
 from crazybilliards.model import Chain
 from crazybilliards.particles.laws.closed_contacts import CRITICAL_RESTITUTION
 from crazybilliards.particles.laws.law import EVENTS, EXACT, ISOTONIC, SORT
-from crazybilliards.particles.vanishing_step.level_steps import Steps, relative_bias
+from crazybilliards.particles.vanishing_step.level_steps import Steps, relative_bias, velocity_bias
 from crazybilliards.particles.vanishing_step.level_terms import CENTRAL, Array, Estimate, estimate
 from crazybilliards.particles.vanishing_step.sampler import Sampler
 
+# Variables that the springs do not make wrong.
+_VELOCITIES = {CENTRAL, "velocity_width", "velocity_density", "kinetic_energy"}
 _LARGEST_BIAS = 0.7  # largest bias without another level, in units of the accuracy
 _GROWTH = 4  # of a level in one round: its variance is not known well before
 _PILOT_SHARE = 0.25  # of the work, for a longer pilot round
@@ -135,8 +137,11 @@ class Levels:
         if len(terms) == 1:
             values = terms[0].values
             step = self.steps.time_steps[self.used[-1]]
-            relative = relative_bias(self.chain, step, float(values[CENTRAL]))
-            return {name: relative * np.abs(value) for name, value in values.items()}
+            case = self.chain, step, float(values[CENTRAL])
+            relative = dict.fromkeys(values, relative_bias(*case))
+            if self.chain.spring == "linear":
+                relative |= dict.fromkeys(_VELOCITIES & values.keys(), velocity_bias(*case))
+            return {name: relative[name] * np.abs(value) for name, value in values.items()}
         ratio, bias = self.steps.ratios[self.used[-1]], {}
         for name, value in terms[-1].values.items():
             order = 0.75
