@@ -19,7 +19,6 @@ from crazybilliards.model.kernels import inlined, kernel
 BUCKETS = 2  # a rod
 _RUN = 64
 _FEW = 16  # rods that are sorted by insertion as fast
-_LANES = 4
 
 
 @inlined
@@ -67,25 +66,13 @@ def _insert_and_merge(y, v, y_left, v_left):  # type: ignore[no-untyped-def]
         width *= 2
 
 
-@inlined
-def _extremes(y):  # type: ignore[no-untyped-def]
-    """Return the smallest and the largest number, by four comparisons at a time."""
-    a = b = c = d = low = high = y[0]
-    p = q = r = s = y[0]
-    whole = y.size - y.size % _LANES
-    for i in range(0, whole, _LANES):
-        a, b, c, d = min(a, y[i]), min(b, y[i + 1]), min(c, y[i + 2]), min(d, y[i + 3])
-        p, q, r, s = max(p, y[i]), max(q, y[i + 1]), max(r, y[i + 2]), max(s, y[i + 3])
-    for i in range(whole, y.size):
-        low, high = min(low, y[i]), max(high, y[i])
-    return min(low, a, b, c, d), max(high, p, q, r, s)
-
-
 @kernel
 def _distribute(y, v, buckets, counts, y_other, v_other):  # type: ignore[no-untyped-def]
     """Order the pairs by their buckets, in place."""
     n = y.size
-    low, high = _extremes(y)
+    low = high = y[0]
+    for i in range(n):
+        low, high = min(low, y[i]), max(high, y[i])
     last = float(BUCKETS * n - 1)
     scale = last / (high - low)
     if not (high > low and scale < np.inf):
