@@ -698,8 +698,8 @@ assert abs(np.sqrt(1 + errors(euler_map, 0.1)[1]) - 1.006) < 5e-4
 # <details><summary>Solution</summary>
 #
 # `np.abs(np.linalg.eigvals(B)).max()` crosses 1 at $\Delta t=3.21$ for Euler and at $\Delta
-# t=2/\omega_0 =4.09$ for splitting, with or without friction. Above $2/\omega_0$ `simulate`
-# refuses to start. With Euler at 3.3 it starts, and the `status` of the result is `diverged`.
+# t=2/\omega_0 =4.09$ for splitting, with or without friction. `simulate` refuses to start with a
+# longer step, and says which limit its scheme has.
 #
 # </details>
 #

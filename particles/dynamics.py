@@ -110,7 +110,7 @@ def make_step(
         noise = chain.amplitude / m * math.sqrt(time_step)
         return Step(time_step, decay, noise, decay, noise, full_kick, exponent, False, 1.0, 1.0)
     inner, outer = (_ornstein_uhlenbeck(chain, duration) for duration in (time_step, time_step / 2))
-    # Contact Dynamics has no correction, as in the paper.
+    # Contact Dynamics has no stronger noise for closed contacts, as in the paper.
     sticking = chain.restitution < CRITICAL_RESTITUTION and method == "event-driven"
     strength = CLOSED_KICK if sticking else 1.0
     outer_strength = second_half(strength, outer[0])
