@@ -13,6 +13,8 @@ around it.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
@@ -24,6 +26,8 @@ from crazybilliards.model.vocabulary import require, result
 
 Array = NDArray[np.float64]
 
+_ONCE, _TWICE = "coverage", "coverage, running average"
+
 
 def coverage_density(source: xr.Dataset) -> xr.Dataset:
     """First step of the paper: the fraction of each bin that rods cover, divided by 2R.
@@ -31,9 +35,10 @@ def coverage_density(source: xr.Dataset) -> xr.Dataset:
     Parameters
     ----------
     source
-        One of three kinds of result: *states* (``position`` over replica and particle), a
-        *simulation* (``density``, ``density_error``, ``density_block`` over x), or a *theory*
-        (``density`` and ``label`` over x). All but states may be over time as well.
+        One of three kinds of result: a *simulation* (``density``, ``density_error``,
+        ``density_block`` over x), a *theory* (``density`` and ``label`` over x), or, without a
+        density, *states* (``position``, averaged over replicas and times). Of states of some rods
+        it is the density of these rods. The other two may be over time.
 
     Returns
     -------
@@ -49,20 +54,33 @@ def coverage_density(source: xr.Dataset) -> xr.Dataset:
     chain = chain_of(source)
     if "smoothed" in source.attrs:
         raise ValueError("the density is smoothed already")
-    if "position" in source:
-        return _box(_hat_density_of_states(chain, source))
-    require(source, ("density",))
-    return _box(_hat_density_of_theory(source) if "label" in source else source)
+    if "density" not in source and "position" in source:
+        found = _hat_density_of_states(chain, source)
+    else:
+        require(source, ("density",))
+        found = _hat_density_of_theory(source) if "label" in source else source
+    return _box(found).assign_attrs(smoothed=_ONCE)
 
 
 def smooth(source: xr.Dataset) -> xr.Dataset:
     """Both steps of the paper: :func:`coverage_density`, then the running average over 2R.
 
-    A result that is smoothed already, which its attribute ``smoothed`` says, is returned as it is.
+    What is smoothed already, which its attribute ``smoothed`` says, is not smoothed again.
     """
-    if "smoothed" in source.attrs:
+    if source.attrs.get("smoothed") == _TWICE:
         return source
-    return _box(coverage_density(source)).assign_attrs(smoothed="coverage, running average")
+    once = source if source.attrs.get("smoothed") == _ONCE else coverage_density(source)
+    return _box(once).assign_attrs(smoothed=_TWICE)
+
+
+def require_same_smoothing(results: Mapping[str, xr.Dataset]) -> None:
+    """Raise a ValueError if some densities are smoothed and others are not, or in another way."""
+    ways = {
+        label: result.attrs.get("smoothed", "not smoothed") for label, result in results.items()
+    }
+    if len(set(ways.values())) > 1:
+        listed = "; ".join(f"{label}: {way}" for label, way in ways.items())
+        raise ValueError(f"the densities are not smoothed alike ({listed}); take cb.smooth of all")
 
 
 def _box(source: xr.Dataset) -> xr.Dataset:
@@ -84,14 +102,15 @@ def _box(source: xr.Dataset) -> xr.Dataset:
 
 
 def _hat_density_of_states(chain: Chain, source: xr.Dataset) -> xr.Dataset:
-    positions = source.position.values
-    reach = float(np.abs(positions - chain.anchors).max()) + chain.radius
+    positions = source.position.transpose(..., "particle").values
+    observed = source.particle.values.astype(int) - 1
+    reach = float(np.abs(positions - chain.anchors[observed]).max()) + chain.radius
     x = position_grid(chain, reach)
     weights = np.zeros(x.size)
     outside = deposit(positions.ravel(), x[0], x[1] - x[0], weights)
     if outside:
         raise ValueError("the states hold positions that are not finite")
-    density = weights / (x[1] - x[0]) / (positions.size / chain.size)
+    density = weights / (x[1] - x[0]) / (positions.size / observed.size)
     return result(
         chain,
         {"density": ("x", density)},

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
-from crazybilliards.model import chain_of
+from crazybilliards.comparison.coverage import require_same_smoothing
+from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.vocabulary import require
+
+_SAME_RODS = 0.02  # of the number of rods, by which two densities of a chain may differ
+_RELIABLE = 0.2  # of a density, up to which an error bar is
 
 
 @dataclass(frozen=True)
@@ -24,7 +29,8 @@ class Deviation:
         int |difference| dx / L, which is twice the share of the rods in the wrong place.
     maximum_in_errors, rms_in_errors
         The same with each difference divided by its standard error; None if neither result has
-        errors. They are about 3-4 and 1 if the two agree.
+        errors. If the two agree they are about 3 to 4.5 and 1, for 10 to 100 rods and the errors
+        from 64 blocks of a long run. A short run has fewer blocks and larger maxima.
     """
 
     maximum: float
@@ -40,18 +46,20 @@ def deviation(result: xr.Dataset, reference: xr.Dataset, floor: float = 1e-3) ->
     Parameters
     ----------
     result, reference
-        Two results with ``density`` over x, smoothed in the same way, on grids of the same
-        spacing (as for results of one chain). Beyond the end of a grid the density is 0.
+        Two results with ``density`` over x of one chain, smoothed in the same way. Beyond the end
+        of a grid the density is 0. A warning says in which parameters two chains differ.
     floor
-        Differences count where either density exceeds this fraction of close packing, and
-        differences in units of errors where both do. Further out a simulation has too few rods
-        for a reliable error bar.
+        Differences count where either density exceeds this fraction of close packing. Differences
+        in units of errors count where both do and the error is at most a fifth of the density.
+        Elsewhere a simulation has too few rods for a reliable error bar.
 
     Raises
     ------
     ValueError
-        If a result has no density, or the grids do not match.
+        If a result has no density, if only one is smoothed, or if they are of other numbers of
+        rods, or of rods of other lengths.
     """
+    _say_what_differs(chain_of(result), chain_of(reference))
     difference, error, either = _differences(result, reference, floor)
     differences = difference[either] if either.any() else np.zeros(1)
     known = np.isfinite(error)
@@ -90,7 +98,13 @@ def _differences(
     """
     for dataset in (result, reference):
         require(dataset, ("density",))
+    require_same_smoothing({"result": result, "reference": reference})
     spacing = float(reference.x[1] - reference.x[0])
+    rods = [
+        float(each.density.sum("x").max() * (each.x[1] - each.x[0])) for each in (result, reference)
+    ]
+    if abs(rods[0] - rods[1]) > _SAME_RODS * max(rods):
+        raise ValueError(f"the two densities hold {rods[0]:.4g} and {rods[1]:.4g} rods")
     if not np.isclose(float(result.x[1] - result.x[0]), spacing, rtol=1e-9):
         raise ValueError("the two densities lie on grids of different spacing")
     unit = chain_of(reference).close_packed_density
@@ -102,9 +116,20 @@ def _differences(
     a, b = xr.align(ours.density, theirs.density, join="outer", fill_value=0.0)
     squared_error = (_squared_error(ours, a) + _squared_error(theirs, b)).values
     high = [(density > floor * unit).values for density in (a, b)]
-    known = high[0] & high[1] & (squared_error > 0)
+    reliable = squared_error <= np.square(_RELIABLE * np.maximum(a.values, b.values))
+    known = high[0] & high[1] & (squared_error > 0) & reliable
     error = np.where(known, np.sqrt(squared_error), np.inf) / unit
     return (a - b).values / unit, error, high[0] | high[1]
+
+
+def _say_what_differs(ours: Chain, theirs: Chain) -> None:
+    """Warn once if two densities are of different chains."""
+    mine, others = ours.parameters(), theirs.parameters()
+    differ = [
+        f"{name} {mine[name]} and {others[name]}" for name in mine if mine[name] != others[name]
+    ]
+    if differ:
+        warnings.warn(f"the two results are of different chains: {', '.join(differ)}", stacklevel=3)
 
 
 def _squared_error(dataset: xr.Dataset, like: xr.DataArray) -> xr.DataArray:

@@ -13,6 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.container import ErrorbarContainer
 from numpy.typing import ArrayLike
 
+from crazybilliards.comparison.coverage import require_same_smoothing
 from crazybilliards.comparison.curves import Curve, axis_label, find_curve, is_of_one_rod
 from crazybilliards.comparison.symbols import draw_measured
 from crazybilliards.model.checks import check_choice, got
@@ -55,8 +56,8 @@ def overlay(
         in a band of one standard error.
     quantity
         A variable over x, time, particle, contact, mode, separation, velocity or velocity_bin.
-        Smooth all densities in the same way first. ``velocity_density`` is that of a rod picked at
-        random, unless one particle was chosen: the mean over all rods of a simulation, the
+        Densities must be smoothed all or not at all. ``velocity_density`` is that of a rod picked
+        at random, unless one particle was chosen: the mean over all rods of a simulation, the
         integral over y of a ``phase_space_density``.
     along
         Abscissa of a quantity over particle: i_n in -1..1, or the mean position of the rods. A
@@ -112,6 +113,8 @@ def _curves(results: Mapping[str, xr.Dataset], quantity: str, along: str) -> dic
     curves = {
         label: find_curve(label, dataset, quantity, along) for label, dataset in results.items()
     }
+    if quantity == "density":
+        require_same_smoothing(results)
     single = [label for label, dataset in results.items() if is_of_one_rod(dataset, quantity)]
     of_all = [label for label, dataset in results.items() if quantity not in dataset]
     if single and of_all:

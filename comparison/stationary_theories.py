@@ -34,15 +34,12 @@ class Theory:
         The module below ``crazybilliards.kinetic`` that has the function and ``check_NAME``.
     seconds
         Computing time on one core, by the chain, within a factor of three.
-    judged_by
-        The quantity whose error the attribute ``model_error`` of its results is.
     """
 
     name: str
     title: str
     module: str
     seconds: Callable[[Chain], float]
-    judged_by: str = "W_v of the particles 3 to L-2"
 
     @property
     def solve(self) -> Callable[..., xr.Dataset]:
@@ -94,13 +91,7 @@ THEORIES = {
             "exact.gibbs_measure",
             lambda chain: 1e-3 * chain.size,
         ),
-        Theory(
-            "force_balance",
-            "force balance",
-            "statics.balance",
-            lambda chain: 0.03,
-            "the smoothed density, of close packing",
-        ),
+        Theory("force_balance", "force balance", "statics.balance", lambda chain: 0.03),
         Theory(
             "phase_space",
             "kinetic equation",
@@ -131,12 +122,16 @@ def theories(chain: Chain) -> xr.Dataset:
     -------
     xarray.Dataset
         Over ``theory``, the name of the function: ``takes`` (whether it takes the chain),
-        ``reason`` (why not), ``expected_error`` and ``border_error`` (the relative errors that its
-        result states, of the quantity ``error_of`` and of W_v of the first and the last rod; NaN
-        where none was measured or the chain is not taken), and ``expected_seconds`` on one core,
-        within a factor of three. ``attrs["best"]`` is the name of the theory with the smallest
-        expected error, or empty if none takes the chain. A chain with e > 1 may turn out to have
-        no steady state when a theory is solved (see ``critical_size``).
+        ``reason`` (why not), the errors that its result states, and ``expected_seconds`` on one
+        core, within a factor of three. The errors are the largest that simulations of chains like
+        this one, or exact solutions, showed: relative ones of W_v (``velocity_width_error`` of the
+        particles 3 to L - 2, ``border_error`` of the first and the last) and of W_x
+        (``displacement_width_error``), of the mean displacement in thermal lengths
+        (``mean_displacement_error``), and of the smoothed density relative to close packing
+        (``density_error``). They are NaN where none was measured or the chain is not taken.
+        ``attrs["best"]`` is the name of the theory with the smallest error of W_v, or empty if none
+        takes the chain. A chain with e > 1 may turn out to have no steady state when a theory is
+        solved (see ``critical_size``).
 
     Examples
     --------
@@ -150,18 +145,22 @@ def theories(chain: Chain) -> xr.Dataset:
     import numpy as np
     import xarray as xr
 
+    from crazybilliards.kinetic.accuracy import Accuracy
+
     rows = []
     for theory in THEORIES.values():
         reason = theory.refusal(chain)
-        errors = (math.nan, math.nan) if reason else tuple(theory.accuracy(chain))
+        errors = Accuracy() if reason else theory.accuracy(chain)
         seconds = math.nan if reason else theory.seconds(chain)
-        rows.append((not reason, reason, *errors, theory.judged_by, seconds))
+        rows.append((not reason, reason, *errors, seconds))
     columns = (
         ("takes", "whether the theory takes the chain", ""),
         ("reason", "why not", ""),
-        ("expected_error", "expected relative error", "1"),
+        ("velocity_width_error", "expected relative error of W_v", "1"),
         ("border_error", "expected relative error of W_v at the border", "1"),
-        ("error_of", "what the expected error is of", ""),
+        ("displacement_width_error", "expected relative error of W_x", "1"),
+        ("mean_displacement_error", "expected error of the mean displacement, over s", "1"),
+        ("density_error", "expected error of the density, over close packing", "1"),
         ("expected_seconds", "expected computing time", "s"),
     )
     variables = {
@@ -173,7 +172,7 @@ def theories(chain: Chain) -> xr.Dataset:
 
 
 def best_theory(chain: Chain, settings: Mapping[str, Any] | None = None) -> Theory:
-    """Return the theory with the smallest expected error among those that take the chain.
+    """Return the theory with the smallest expected error of W_v of those that take the chain.
 
     An error that was not measured counts as larger than any other. Raises ValueError, with all
     reasons, if no theory takes the chain and the ``settings``.
@@ -183,7 +182,7 @@ def best_theory(chain: Chain, settings: Mapping[str, Any] | None = None) -> Theo
     if not taking:
         reasons = "; ".join(f"{name}: {reason}" for name, reason in refusals.items())
         raise ValueError(f"no theory takes this chain: {reasons}")
-    return min(taking, key=lambda theory: _or_infinite(theory.accuracy(chain).inner))
+    return min(taking, key=lambda theory: _or_infinite(theory.accuracy(chain).velocity_width))
 
 
 def _or_infinite(error: float) -> float:

@@ -1,34 +1,56 @@
-"""How far the theories are from simulations and exact solutions: the errors in docs/tables.
+"""How far the theories are from simulations and exact solutions: the errors that they state.
 
-    crazybilliards reproduce validity --quality full
-    python benchmarks/accuracy/relaxation_error.py
+The errors are those of the theories, not of their numerical solutions. They are read from the
+tables in ``kinetic/measured``, which
+
+    python benchmarks/accuracy/stationary_errors.py FOLDER
     python benchmarks/accuracy/force_balance.py
+    python benchmarks/accuracy/relaxation_error.py FOLDER
 
-measure them: those of the kinetic equations for the steady state, with gaps, with pair correlations
-and in time, and those of the force balance. They are errors of the theories, not of their numerical
-solutions. ``expected_NAME(chain)`` states that of the theory NAME.
+have written. A stated error is the measured one plus two of its standard errors: the largest of the
+measured chains on all sides of a chain. It is NaN beyond them. ``expected_NAME(chain)`` states
+those of the theory NAME.
 """
 
 from __future__ import annotations
 
+import csv
 import math
 import warnings
-from typing import NamedTuple, TypeVar
+from collections.abc import Iterator, Mapping
+from functools import cache
+from importlib.resources import files
+from typing import Any, NamedTuple
 
-import numpy as np
-
-from crazybilliards.kinetic import measured_errors as errors
 from crazybilliards.model import Chain
 
-_Number = TypeVar("_Number", int, float)
-_Measured = TypeVar("_Measured", float, tuple[float, float])
+# Coordinates in the tables, in order. The density of shorter rods is less wrong, so that of the
+# next smaller s/R counts.
+_PLACE = ("g L/s", "L", "e", "Gamma")
+_OF_FORCE_BALANCE = ("g/s", "L")
+_LENGTH = "s/R"
+_CONTINUOUS, _SAME = ("Gamma", "g L/s", "g/s"), 5e-3  # relative
+_ANY = 0.49  # Gamma of a measured chain
 
 
 class Accuracy(NamedTuple):
-    """Relative errors of W_v to expect, of the force balance of the density; NaN: not measured."""
+    """Errors to expect of a theory's quantities; NaN: not measured."""
 
-    inner: float  # particles 3 to L - 2
-    border: float  # the first and the last
+    velocity_width: float = math.nan  # relative, of the particles 3 to L - 2
+    border: float = math.nan  # the same of the first and the last
+    displacement_width: float = math.nan  # relative, of any particle
+    mean_displacement: float = math.nan  # in thermal lengths, of any particle
+    density: float = math.nan  # of the smoothed density, relative to close packing
+
+    def attributes(self, main: str = "velocity_width") -> dict[str, float]:
+        """Return the attributes of a result; ``model_error`` is that of the main quantity."""
+        return {
+            "model_error": getattr(self, main),
+            "border_error": self.border,
+            "displacement_error": self.displacement_width,
+            "mean_displacement_model_error": self.mean_displacement,
+            "density_model_error": self.density,
+        }
 
 
 class UnmeasuredWarning(UserWarning):
@@ -48,102 +70,108 @@ def warn_if_unmeasured(theory: str, error: float) -> None:
 
 def expected_equilibrium(chain: Chain) -> Accuracy:
     """Return the errors of ``equilibrium``, which is exact."""
-    return Accuracy(0.0, 0.0)
+    return Accuracy(0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 def expected_force_balance(chain: Chain) -> Accuracy:
-    """Return the largest error of the density on the measured chains around this one.
-
-    It lies at the border, and is also that of the next shorter thermal length.
-    """
-    shorter = sum(length <= chain.thermal_length / chain.radius for length in errors.LENGTHS)
-    if chain.spring != "linear" or shorter == 0:
-        return Accuracy(np.nan, np.nan)
-    gap = chain.lattice_gap / chain.thermal_length
-    sizes = errors.OF_DENSITY[0.0]
-    if not (gap <= max(errors.OF_DENSITY) and min(sizes) <= chain.size <= max(sizes)):
-        return Accuracy(np.nan, np.nan)
-    error = max(
-        errors.OF_DENSITY[g][size][shorter - 1]
-        for g in _neighbours(gap, list(errors.OF_DENSITY))
-        for size in _neighbours(chain.size, list(sizes))
+    """Return the errors of ``force_balance`` at e = 1, where it has the exact velocity width."""
+    if chain.spring != "linear" or chain.restitution != 1:
+        return Accuracy()
+    s = chain.thermal_length
+    place = {"L": chain.size, "g/s": chain.lattice_gap / s, _LENGTH: s / chain.radius}
+    return _expected("force_balance", place, _OF_FORCE_BALANCE)._replace(
+        velocity_width=0.0, border=0.0, displacement_width=math.nan
     )
-    return Accuracy(error, error)
 
 
 def expected_phase_space(chain: Chain) -> Accuracy:
     """Return the largest errors of ``phase_space`` on the measured chains around this one."""
-    if chain.restitution == 1:
-        return Accuracy(0.0, 0.0)
-    if chain.restitution > 1:
-        tables, dampings = {0.0: errors.DRIVEN}, (errors.LEAST_DRIVEN_DAMPING, np.inf)
-    else:
-        tables, dampings = {0.0: errors.DISSIPATIVE, **errors.WITH_GAPS}, errors.DAMPINGS
-    lattice = chain.lattice_gap * chain.size / chain.thermal_length
-    if lattice > max(tables):
-        return Accuracy(np.nan, np.nan)
-    shorter, longer = (
-        _around(chain, tables[each], dampings) for each in _neighbours(lattice, list(tables))
-    )
-    return _largest(shorter + longer) if shorter and longer else Accuracy(np.nan, np.nan)
+    return _expected("phase_space", _place(chain), _PLACE)
 
 
 def expected_correlated_phase_space(chain: Chain) -> Accuracy:
-    """Return the largest errors of ``correlated_phase_space`` on chains of no smaller e."""
-    return Accuracy(*_of_correlated(chain)[:2])
+    """Return those of ``correlated_phase_space``."""
+    return _expected("correlated_phase_space", _place(chain), _PLACE)
 
 
-def expected_correlated_displacement(chain: Chain) -> float:
-    """Return the largest relative error of its W_x, of any particle, on these chains."""
-    return _of_correlated(chain)[2]
-
-
-def _of_correlated(chain: Chain) -> tuple[float, float, float]:
-    measured = errors.OF_SHORT if chain.size <= errors.SHORT else errors.OF_LONG
-    return measured[max(e for e in measured if e <= chain.restitution)]
-
-
-def expected_relax_phase_space(chain: Chain) -> float:
+def expected_relax_phase_space(chain: Chain, compression: float) -> float:
     """Return the relative error of the kinetic energy in time to expect; NaN if none was measured.
 
-    It is the largest of the measured chains on all sides of this one. Without a gap and at e = 1
-    the equation is exact.
+    ``compression``: what y of the equilibrium at e = 1 was multiplied by at the start; NaN for
+    another start. Without a gap and at e = 1 the equation is exact.
     """
-    if chain.restitution == 1 and chain.gap == 0:
+    if chain.gap > 0:
+        return math.nan
+    if chain.restitution == 1:
         return 0.0
-    driven = chain.restitution > 1
-    around = chain.gap == 0 and _around(
-        chain,
-        errors.DRIVEN_TRANSIENT if driven else errors.TRANSIENT,
-        errors.DRIVEN_TRANSIENT_DAMPINGS if driven else errors.TRANSIENT_DAMPINGS,
+    place = _place(chain) | {"y times": compression}
+    return _around("relax_phase_space", "kinetic_energy", place, ("L", "e", "Gamma", "y times"))
+
+
+def _place(chain: Chain) -> dict[str, float]:
+    """Return where a chain lies in the tables; NaN for quadratic springs, which are in none."""
+    if chain.spring != "linear" or min(chain.stiffness, chain.damping, chain.amplitude) == 0:
+        return dict.fromkeys((*_PLACE, _LENGTH), math.nan)
+    s = chain.thermal_length
+    return {
+        "L": chain.size,
+        "e": chain.restitution,
+        # At e = 1 no distribution in space depends on the damping.
+        "Gamma": _ANY if chain.restitution == 1 else _damping(chain),
+        "g L/s": chain.lattice_gap * chain.size / s,
+        _LENGTH: s / chain.radius,
+    }
+
+
+def _damping(chain: Chain) -> float:
+    return chain.damping / math.sqrt(chain.stiffness * chain.mass)
+
+
+def _expected(theory: str, place: Mapping[str, float], axes: tuple[str, ...]) -> Accuracy:
+    """Return the errors of all quantities at a place."""
+    return Accuracy(
+        *(_around(theory, quantity, place, axes) for quantity in Accuracy._fields[:-1]),
+        density=_around(theory, "density", place, (*axes, _LENGTH)),
     )
-    return float(np.max(around)) if around else np.nan
 
 
-def _largest(errors: list[tuple[float, float]]) -> Accuracy:
-    return Accuracy(*map(max, zip(*errors, strict=True)))
+def _around(theory: str, quantity: str, place: Mapping[str, float], axes: tuple[str, ...]) -> float:
+    """Return the largest error of the measured chains on all sides of a place; NaN beyond them."""
+    return _largest(_tables().get((theory, quantity), {}), [(axis, place[axis]) for axis in axes])
 
 
-def _around(
-    chain: Chain, table: dict[int, dict[float, _Measured]], dampings: tuple[float, float]
-) -> list[_Measured]:
-    """Return the errors of the measured chains on all sides of this one; none beyond them."""
-    restitutions = list(next(iter(table.values())))
-    damping = chain.damping / np.sqrt(chain.stiffness * chain.mass)
-    measured = (
-        dampings[0] <= damping <= dampings[1]
-        and min(table) <= chain.size <= max(table)
-        and min(restitutions) <= chain.restitution <= max(restitutions)
-    )
-    if chain.spring != "linear" or not measured:
-        return []
-    return [
-        table[size][e]
-        for size in _neighbours(chain.size, list(table))
-        for e in _neighbours(chain.restitution, restitutions)
-    ]
+def _largest(measured: Any, place: list[tuple[str, float]]) -> float:
+    """Return the largest error on both sides of the first coordinate, and so on for the others."""
+    if not place:
+        return float(measured)
+    (axis, value), *rest = place
+    if axis in _CONTINUOUS:  # gamma = 1 is measured as Gamma = 0.49
+        value = next((each for each in measured if abs(each - value) <= _SAME * each), value)
+    below = [each for each in measured if each <= value]
+    above = [each for each in measured if each >= value]
+    if not below or not (above or axis == _LENGTH):
+        return math.nan
+    sides = {max(below)} if axis == _LENGTH else {max(below), min(above)}
+    errors = [_largest(measured[side], rest) for side in sides]
+    return math.nan if any(map(math.isnan, errors)) else max(errors)
 
 
-def _neighbours(value: _Number, measured: list[_Number]) -> tuple[_Number, _Number]:
-    """Return the measured values on both sides of this one, which may be the same."""
-    return max(m for m in measured if m <= value), min(m for m in measured if m >= value)
+@cache
+def _tables() -> dict[tuple[str, str], Any]:
+    """Return the errors to state, by theory and quantity, then by the coordinates of the chain."""
+    tables: dict[tuple[str, str], Any] = {}
+    for row in _rows():
+        theory, quantity = row.pop("theory"), row.pop("quantity")
+        error = float(row.pop("error")) + 2 * float(row.pop("standard error"))
+        *outer, last = (float(value) for value in row.values() if value)
+        branch = tables.setdefault((theory, quantity), {})
+        for value in outer:
+            branch = branch.setdefault(value, {})
+        branch[last] = error
+    return tables
+
+
+def _rows() -> Iterator[dict[str, str]]:
+    for table in (files("crazybilliards.kinetic") / "measured").iterdir():
+        if table.name.endswith(".csv"):
+            yield from csv.DictReader(table.read_text(encoding="utf-8").splitlines())

@@ -41,7 +41,7 @@ from IPython.display import HTML
 from matplotlib.animation import FuncAnimation
 from scipy.integrate import quad
 from scipy.optimize import linear_sum_assignment
-from teaching import BLUE, GREEN, ORANGE, agree, check, mean_and_error, panels, right
+from teaching import BLUE, GREEN, ORANGE, check, mean_and_error, panels, right
 
 # %% [markdown]
 # ## 1. Two springs
@@ -67,7 +67,7 @@ def release(chain, seed, **settings):
 
 
 seeds = range(12)
-slow = [release(linear, seed, duration=150, time_step=0.02, every=0.2) for seed in seeds]
+slow = [release(linear, seed, duration=300, time_step=0.02, every=0.2) for seed in seeds]
 fast = [release(quadratic, seed, duration=100, time_step=0.002, every=0.1) for seed in seeds]
 end = np.array([run.attrs["end_time"] for run in fast])
 print("status of the quadratic runs:", {run.attrs["status"] for run in fast})
@@ -163,35 +163,29 @@ check(growth_rate, growth_rate_solution, at=chains, hint=hint)
 #
 # **Predict.** Does the simulation tell the two rates apart?
 #
-# **Run.** We fit an exponential where the energy is above $10^3$, because the noise no longer
-# matters there.
-
+# **Run.** We fit an exponential from 150 T on. The noise no longer matters there, and the chain has
+# forgotten its start.
 
 # %%
-def beyond(time, energy, threshold):
-    """Return the times and energies from the first energy above a threshold."""
-    first = int(np.argmax(energy > threshold))
-    return time[first:], energy[first:]
-
-
-fits = [cb.fit_growth(*beyond(run.time.values, run.kinetic_energy.values, 1e3)) for run in slow]
+late = [run.sel(time=slice(150, None)) for run in slow]
+fits = [cb.fit_growth(run.time.values, run.kinetic_energy.values) for run in late]
 rate, rate_error = mean_and_error([fit.rate for fit in fits])
-print(f"measured rate: {rate:.4f} +- {rate_error:.4f} per T, from twelve runs")
+print(f"measured rate: {rate:.5f} +- {rate_error:.5f} per T, from twelve runs")
+print(f"balance: {unexpanded:.5f} with e^2 - 1, {first_order:.5f} with e - 1")
 print(f"error that one fit gives: {fits[0].rate_error:.5f} per T")
 print(f"scatter of the fits:      {np.std([fit.rate for fit in fits], ddof=1):.5f} per T")
 
-# %% tags=["hide-input"]
-agree("measured rate and the balance with e^2 - 1", rate, unexpanded, rate_error)
-
 # %% tags=["remove-cell"]
-assert abs(rate / first_order - 1) < 0.02
-assert abs(rate - first_order) > 5 * rate_error
+assert first_order + 5 * rate_error < rate < unexpanded - 5 * rate_error
+assert abs(rate / unexpanded - 1) < 0.007
 
 # %% [markdown]
 # <details><summary>Explain</summary>
 #
-# Yes. The balance with $(e^2-1)/2$ gives the measured rate within its error, and nothing was fitted.
-# The first order is 1 % lower. This is expected, because $e - 1$ is 1 %.
+# It does, and it agrees with neither of them. The measured rate lies between the two, 0.5 % below the
+# balance with $(e^2-1)/2$ and 0.8 % above the first order, and it is many standard errors away from
+# both. The balance is a good approximation and not an exact law, although nothing in it was fitted:
+# it takes the energy to be the same during half a period, in which it grows by half.
 #
 # The error is the scatter of twelve independent runs divided by $\sqrt{12}$. One fit alone gives too
 # small an error, because the energy of a single run wanders slowly about its mean growth.

@@ -11,6 +11,7 @@ from .observers.modes import Modes as Modes
 from .observers.raw import Raw as Raw
 from .observers.velocities import Velocities as Velocities
 from .observers.widths import Widths as Widths
+from .scales import relaxation_time as relaxation_time
 from .simulation import simulate as simulate
 from .start import given_start as given_start
 from .vanishing_step.limit import simulate_limit as simulate_limit

@@ -120,7 +120,20 @@ class Run:
     @cached_property
     def swing(self) -> float:
         """Largest distance from its anchor that the energy of the start gives a rod [R]."""
-        return max(start_swing(self.chain, y, v) for y, v in self.starts)
+        duration = self.schedule.warmup + self.schedule.duration
+        return max(start_swing(self.chain, duration, y, v) for y, v in self.starts)
+
+    def streams(self) -> list[np.random.SeedSequence]:
+        """Return the random numbers of every replica; a given start is a part of their seed.
+
+        Otherwise a run that continues another one would repeat its noise.
+        """
+        given = [] if self.start is None else list(self._digest_of_starts())
+        return np.random.SeedSequence([self.seed, *given]).spawn(self.replicas)
+
+    def _digest_of_starts(self) -> bytes:
+        states = (state.tobytes() for start in self.starts for state in start)
+        return hashlib.sha256(b"".join(states)).digest()
 
     @property
     def groups(self) -> int:
@@ -163,7 +176,6 @@ class Run:
 
     def provenance(self) -> dict[str, Any]:
         """Return everything except the chain that determines the numbers, in a form for JSON."""
-        states = (state.tobytes() for start in self.starts for state in start)
         return {
             "method": self.method,
             "stepper": self.stepper,
@@ -174,7 +186,7 @@ class Run:
             "particles": "all" if self.particles is None else (self.chosen + 1).tolist(),
             "start": "at rest"
             if self.start is None
-            else f"sha256 {hashlib.sha256(b''.join(states)).hexdigest()}",
+            else f"sha256 {self._digest_of_starts().hex()}",
             "schedule": asdict(self.schedule),
         }
 

@@ -51,6 +51,7 @@ _RESOLUTION = 0.05
 _KICK = 0.3
 # Relative errors of W_v for a kick of r W_v, in units of r^3, r^(3/2), |1 - e| r^(3/2) and r^4.
 _CORRECTED, _UNCORRECTED, _REBOUNDS, _LONG = 0.1, 0.24, 0.1, 0.05
+_HEATING = 1.5e-3  # by collisions with a gap, in units of (m w0/gamma) (w0 dt)^4
 _SLOWEST_MODE = 1.241  # rate of a strongly damped rod on a quadratic spring, in k s/gamma
 
 
@@ -102,41 +103,84 @@ def default_time_step(chain: Chain) -> float:
 
 
 def time_step_error(
-    chain: Chain, time_step: float, velocity_width: float, *, corrected: bool = True
+    chain: Chain,
+    time_step: float,
+    velocity_width: float,
+    *,
+    stepper: str = "splitting",
+    method: str = "event-driven",
 ) -> float:
-    """Relative error of a ``velocity_width`` for e != 1 that is due to the kicks of the noise.
+    """Relative error of a ``velocity_width`` above 0 that is due to the time step; NaN: not known.
 
-    With r = (A sqrt(dt)/m)/W_v, from simulations of 10 to 100 rods:
+    It is that of the noise, for e != 1, and that of the springs. With r = (A sqrt(dt)/m)/W_v the
+    noise causes, in simulations of 10 to 100 rods:
 
     * 0.1 r^3 below the critical restitution, with the correction for closed contacts
       (``laws/closed_contacts.py``), r = 0.2 to 0.6;
-    * 0.24 r^(3/2) in the Euler scheme and with Contact Dynamics, which have no correction: at e = 0
-      the number of excursions from one contact to the next that last longer than dt is ~ dt^(-1/4),
-      and each loses the energy of one kick, ~ dt;
+    * 0.24 r^(3/2) in the Euler scheme, and with Contact Dynamics below the critical restitution,
+      which have no correction: at e = 0 the number of excursions from one contact to the next that
+      last longer than dt is ~ dt^(-1/4), and each loses the energy of one kick, ~ dt;
     * the larger of 0.1 |1 - e| r^(3/2) and 0.05 r^4 at higher restitutions, r = 0.06 to 1.3.
 
     The last one is an empirical law, an upper estimate of the paired differences that
     ``benchmarks/accuracy/time_step_law.py`` measures: W_v is too small for short steps, and too
     large for long ones because of the half kick before each snapshot. The relative errors of mean
     displacements are of the same size, for e = 0.1 up to three times as large.
+
+    The springs cause an error of (w0 dt)^2/8 if they are quadratic, and none if they are linear.
+    With a gap collisions heat the chain a little (``laws/spring_correction.py``), by the fraction
+    3e-3 w0 (w0 dt)^4 of the energy per time, measured at dt = 0.1 and 0.5 for gaps of one and two
+    radii. Damping limits this to 1.5e-3 (m w0/gamma) (w0 dt)^4 of a width. In the Euler scheme
+    W_v^2 of a linear spring is larger by 1/(1 - gamma dt/2m - (w0 dt)^2/4). Its errors with a gap,
+    and those of Contact Dynamics where rods rebound, are not known.
     """
-    if chain.restitution == 1 or velocity_width == 0:
-        return 0.0
+    e, gap = chain.restitution, chain.lattice_gap
+    if not 0 < velocity_width < math.inf or (chain.amplitude == 0 and e != 1):
+        return math.nan
+    if chain.damping == 0 and (gap > 0 or chain.spring == "quadratic"):
+        return math.nan
+    sticking = e < CRITICAL_RESTITUTION
     ratio = chain.amplitude / chain.mass * math.sqrt(time_step) / velocity_width
-    if corrected and chain.restitution < CRITICAL_RESTITUTION:
-        return _CORRECTED * ratio**3
-    if not corrected:
-        return _UNCORRECTED * ratio**1.5
-    return max(_REBOUNDS * abs(1 - chain.restitution) * ratio**1.5, _LONG * ratio**4)
+    swing = (spring_rate(chain) * time_step) ** 2
+    springs = swing / 8 if chain.spring == "quadratic" else 0.0
+    if stepper == "euler":
+        heat = 1 - chain.damping * time_step / (2 * chain.mass) - swing / 4
+        springs += 1 / math.sqrt(heat) - 1 if heat > 0 else math.inf
+    if (stepper == "euler" and gap > 0) or (method == "contact-dynamics" and not sticking):
+        return math.nan
+    if gap > 0:
+        springs += _HEATING * chain.mass * spring_rate(chain) / chain.damping * swing**2
+    if e == 1:
+        return springs
+    if stepper == "euler" or method == "contact-dynamics":
+        return springs + _UNCORRECTED * ratio**1.5
+    if sticking:
+        return springs + _CORRECTED * ratio**3
+    return springs + max(_REBOUNDS * abs(1 - e) * ratio**1.5, _LONG * ratio**4)
 
 
 def relaxation_time(chain: Chain) -> float:
-    """Time constant of the slowest mode of a chain [T]; 0 if nothing relaxes.
+    """Time in which a chain forgets its start [T], but for a factor e; infinite without damping.
 
-    It is exact for linear springs at restitution 1. For quadratic springs see the module.
+    It is the time constant of the chain's slowest mode. With linear springs this is the motion of
+    the centre of mass, on which collisions do not act: exactly 2m/gamma for weak damping, and about
+    gamma/k for strong damping, at every restitution. All other modes are as fast at e = 1, and not
+    slower in simulations with e < 1. For quadratic springs the time is an estimate, which is right
+    to a third (the module ``scales``). For e > 1 it is a lower bound: near the critical size, where
+    the noise is amplified without limit, the energy takes longer.
+
+    Take a warm-up of at least five times it (the default is 12), and durations of hundreds.
+
+    Examples
+    --------
+    >>> from crazybilliards.model import Chain
+    >>> round(relaxation_time(Chain()), 2)
+    8.38
+    >>> round(relaxation_time(Chain(damping=10)), 2)
+    9.56
     """
     if chain.damping == 0:
-        return 0.0
+        return math.inf
     half_damping = chain.damping / (2 * chain.mass)
     rate = math.sqrt(_relaxing_stiffness(chain) / chain.mass)
     if rate == 0:
@@ -181,9 +225,11 @@ def typical_speed(chain: Chain, duration: float, y: Array, v: Array) -> float:
     return float(noise + spring + np.abs(v).max())
 
 
-def start_swing(chain: Chain, y: Array, v: Array) -> float:
-    """Largest displacement of a free rod with the energy of the start [R]."""
-    energy = chain.potential(y - chain.reduced_anchors) + chain.mass / 2 * v**2
+def start_swing(chain: Chain, duration: float, y: Array, v: Array) -> float:
+    """Largest displacement of a free rod with the start's energy, in this time if unbound [R]."""
+    displacement = y - chain.reduced_anchors
     if chain.stiffness == 0:
-        return 0.0  # no bound, and no grid asks for one
+        flight = min(duration, chain.mass / chain.damping) if chain.damping else duration
+        return float(np.abs(displacement).max() + np.abs(v).max() * flight)
+    energy = chain.potential(displacement) + chain.mass / 2 * v**2
     return chain.reach(float(energy.max()))

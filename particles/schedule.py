@@ -5,6 +5,8 @@
   snapshots.
 * warm-up: 12 relaxation times of the slowest mode, so that the start has decayed to exp(-12). There
   is none with a given start or for an ensemble, whose time begins with the start.
+* blocks: 64 in all. They are fewer, but at least 10, where they would be shorter than 4 correlation
+  times of the chain, because the means of successive blocks must not be correlated.
 * snapshots: every 10 steps; for an ensemble every hundredth of the duration. With exact motion they
   are as far apart as 10 steps would be.
 """
@@ -12,6 +14,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from dataclasses import dataclass
 from typing import Literal
 
@@ -21,11 +24,16 @@ from numpy.typing import NDArray
 from crazybilliards.model import Chain
 from crazybilliards.model.checks import check_real
 from crazybilliards.particles.dynamics import Stepper, longest_step
-from crazybilliards.particles.scales import default_time_step, relaxation_time
+from crazybilliards.particles.scales import correlation_time, default_time_step, relaxation_time
 
 _STRIDE = 10
 _RELAXATIONS = 12
-_BLOCKS = 64
+_BLOCKS, _FEWEST_BLOCKS = 64, 10
+# Of a block in correlation times. The standard error of a mean is then too small by an eighth for
+# exponential correlations, which are the worst case.
+_BLOCK = 4.0
+# Warm-up from which on a start has decayed enough, in relaxation times.
+_ENOUGH = 5.0
 _OUTPUTS = 100
 # A short time between snapshots shortens the step. Only in a short run may it become so much
 # shorter than the chain needs.
@@ -99,18 +107,18 @@ def make_schedule(
 ) -> Schedule:
     """Check the given times, choose the others, and return whole numbers of steps.
 
-    Averages in time get their standard errors from 64 blocks in all. The measured duration is
-    rounded up so that the blocks are equally long. ``every``, the time between snapshots, is kept
-    exactly, and the step becomes a whole fraction of it. An ``every`` that makes it over a thousand
-    times as short and the run over a million steps long is refused. ``exact``: every step is right,
-    whatever its length.
+    The measured duration is rounded up so that the blocks are equally long. ``every``, the time
+    between snapshots, is kept exactly, and the step becomes a whole fraction of it. An ``every``
+    that makes it over a thousand times as short and the run over a million steps long is refused.
+    ``exact``: every step is right, whatever its length.
     """
     ensemble = average == "ensemble"
     duration = check_real("duration", duration, positive=True)
     if every is None and ensemble:
         every = duration / _OUTPUTS
     if warmup is None:
-        warmup = 0.0 if started or ensemble else _RELAXATIONS * relaxation_time(chain)
+        none = started or ensemble or chain.damping == 0
+        warmup = 0.0 if none else _RELAXATIONS * relaxation_time(chain)
     warmup = check_real("warmup", warmup)
     if exact:
         needed, step, stride = _exact_steps(chain, time_step, every, warmup)
@@ -127,7 +135,7 @@ def make_schedule(
             raise ValueError(f"every must be at most the duration {duration:g}, got {every:g}")
         times = math.ceil(snapshots - 1e-9) + 1
         return Schedule(step, warmup_steps, stride, times, 1, ensemble=True)
-    blocks = math.ceil(_BLOCKS / replicas)
+    blocks = _number_of_blocks(chain, duration, replicas)
     if snapshots < blocks:
         least = blocks * stride * step
         raise ValueError(
@@ -136,6 +144,43 @@ def make_schedule(
         )
     # The small tolerance keeps a duration that is a whole number of blocks but for rounding.
     return Schedule(step, warmup_steps, stride, blocks, math.ceil(snapshots / blocks - 1e-9))
+
+
+def _number_of_blocks(chain: Chain, duration: float, replicas: int) -> int:
+    """Return the blocks of each replica: as many as their errors can use, and long enough."""
+    fewest, most = math.ceil(_FEWEST_BLOCKS / replicas), math.ceil(_BLOCKS / replicas)
+    block = _BLOCK * correlation_time(chain)
+    return most if block * most <= duration else max(int(duration / block), fewest)
+
+
+def warn_if_short(
+    chain: Chain, duration: float, warmup: float | None, *, replicas: int, from_rest: bool
+) -> None:
+    """Say it once if an average over time is too short for the memory of the chain.
+
+    ``from_rest``: the start is no state of the steady state, so that the warm-up must forget it.
+    """
+    if chain.damping == 0:
+        warnings.warn(
+            "damping=0: the chain never forgets its start, so that the error bars of averages "
+            "over time mean nothing; average='ensemble' averages over replicas at equal times",
+            stacklevel=3,
+        )
+        return
+    memory = relaxation_time(chain)
+    least = _BLOCK * correlation_time(chain) * math.ceil(_FEWEST_BLOCKS / replicas)
+    if replicas < _FEWEST_BLOCKS and duration < least * (1 - 1e-9):
+        warnings.warn(
+            f"duration={duration:g} is short for a chain with the relaxation time {memory:.3g}: "
+            f"error bars are too small; take at least {least:.4g}, or {_FEWEST_BLOCKS} replicas",
+            stacklevel=3,
+        )
+    if from_rest and warmup is not None and warmup < _ENOUGH * memory * (1 - 1e-9):
+        warnings.warn(
+            f"warmup={warmup:g} is short for a chain with the relaxation time {memory:.3g}: the "
+            f"averages still contain the start; take at least {_ENOUGH * memory:.4g}",
+            stacklevel=3,
+        )
 
 
 def _needed_step(chain: Chain, time_step: float | None, stepper: Stepper) -> float:
@@ -159,8 +204,15 @@ def _exact_steps(
     if time_step is not None:
         needed = check_real("time_step", time_step, positive=True)
         return needed, *_step_and_stride(needed, every)
-    needed = default_time_step(chain)
-    every = _STRIDE * needed if every is None else check_real("every", every, positive=True)
+    if every is not None:
+        every = check_real("every", every, positive=True)
+    try:
+        needed = default_time_step(chain)
+    except ValueError:  # free rods have no time scale, and need none if snapshots have one
+        if every is None:
+            raise
+        needed = every
+    every = every or _STRIDE * needed
     longest = max(_STRIDE * needed, warmup / 100) if warmup > 0 else every
     return needed, *_step_and_stride(longest, every)
 

@@ -26,7 +26,7 @@ from crazybilliards.particles.running.checkpoint import Checkpoint, identity
 from crazybilliards.particles.running.collecting import collect
 from crazybilliards.particles.running.replica import Replica
 from crazybilliards.particles.running.threads import run_all
-from crazybilliards.particles.schedule import Average
+from crazybilliards.particles.schedule import Average, warn_if_short
 from crazybilliards.particles.stepping import advance, bounded, record
 
 
@@ -60,7 +60,8 @@ def simulate(
         The chain, with any restitution.
     duration
         Time measured in each replica [T]; rounded up to whole blocks of snapshots. Good values
-        are hundreds of relaxation times 2m/gamma (8.4 for the default chain).
+        are hundreds of relaxation times (:func:`relaxation_time`, 8.4 for the default chain).
+        In less than some twenty of them, error bars would be too small, which a warning says.
     warmup
         Time before measuring [T]; None: 12 relaxation times, or 0 with a ``start`` and for an
         ensemble.
@@ -81,13 +82,14 @@ def simulate(
         restitution 0.163, where 0.1 would make W_v 0.2 % larger.
     seed
         Integer >= 0. The same seed gives the same result to the last bit for all ``threads``.
+        A ``start`` belongs to the seed: a run that continues another one has new random numbers.
     rng
         Instead of ``seed``: a seed, a ``SeedSequence`` or a numpy ``Generator``. A seed is drawn
         from a Generator and stands in the provenance: a resumed run must have the same bits, and
         a Generator's state cannot be split among replicas reproducibly.
     observe
         Any of ``"widths"`` (velocity_width, mean_velocity, mean_displacement, displacement_width
-        and the autocorrelation_time that tells whether warm-up and duration were long enough),
+        and autocorrelation_time),
         ``"density"``, ``"velocities"`` (velocity_density,
         velocity_skewness, velocity_kurtosis), ``"energy"`` (kinetic_energy in time),
         ``"covariances"`` (velocity_covariance, gap_covariance, mean_gap, neighbour_covariance,
@@ -131,8 +133,9 @@ def simulate(
         ``attrs["end_time"]`` is the shortest time that any replica reached, warm-up included, or
         the last time reported for an ensemble. A chain that diverged before anything was measured
         has no variables (``warmup=0`` measures from the start). ``attrs["flight"]`` is ``exact``
-        or ``in steps``. For e != 1 ``attrs["time_step_error"]`` is the estimated relative error of
-        the smallest velocity width due to the time step. It is 0 if the flight was exact.
+        or ``in steps``. ``attrs["time_step_error"]`` is the estimated relative error of the
+        smallest velocity width above 0 due to the time step: 0 if the flight was exact, NaN where
+        it is not known. ``attrs["relaxation_time"]`` is that of the chain.
 
         SIGTERM and SIGHUP end the program, once the checkpoint is written, unless the program
         ignores them or handles them itself. With the handler ``signal.default_int_handler`` they
@@ -161,6 +164,9 @@ def simulate(
     checkpoint_interval = check_real("checkpoint_interval", checkpoint_interval)
     threads = check_integer("threads", cores() if threads is None else threads, least=1)
     run = make_run(**asked)
+    if run.average == "time" and not all(observer.shares_time for observer in run.observers):
+        given = start is not None and start.attrs.get("source") != "start"
+        warn_if_short(chain, duration, run.schedule.warmup, replicas=replicas, from_rest=not given)
     copies = _replicas(run)
     with announced(bool(progress)):
         compile_kernels()
@@ -185,7 +191,7 @@ def make_run(chain: Chain, *, observe: Any, **arguments: Any) -> Run:
 
 def _replicas(run: Run) -> list[Replica]:
     """Distribute the replicas over groups, each with observers of its own."""
-    streams = np.random.SeedSequence(run.seed).spawn(run.replicas)
+    streams = run.streams()
     dynamics = run.dynamics()
     return [
         Replica(

@@ -5,6 +5,7 @@ Only the standard library and typer are imported up here, so that ``--help`` ans
 
 from __future__ import annotations
 
+import math
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -171,11 +172,10 @@ def _print(result: xr.Dataset) -> None:
         width, error = result.central_velocity_width, result.central_velocity_width_error
         note(central_velocity_width=width.item(), central_velocity_width_error=error.item())
         say(f"W_v in the centre as dt -> 0: {width.item():.5g} +- {error.item():.2g} R/T")
-    if "time_step_error" in result.attrs and status != "diverged":
-        note(time_step_error=result.attrs["time_step_error"])
-        say(
-            f"error of the smallest W_v due to the time step: {result.attrs['time_step_error']:.1%}"
-        )
+    error = result.attrs["time_step_error"]
+    if status != "diverged" and not math.isnan(error):
+        note(time_step_error=error)
+        say(f"error of the smallest W_v due to the time step: {error:.1%}")
     if "velocity_width" in result:
         last = "time" in result.velocity_width.dims
         answer_rods(

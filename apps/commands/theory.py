@@ -6,6 +6,7 @@ Only the standard library and typer are imported up here, so that ``--help`` ans
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -24,6 +25,13 @@ if TYPE_CHECKING:
     from crazybilliards.comparison.stationary_theories import Theory
     from crazybilliards.model import Chain
 
+_IN_WORDS = {
+    "velocity_width": "W_v of the particles 3 to L-2",
+    "border": "of the first and the last",
+    "displacement_width": "W_x",
+    "mean_displacement": "<dx> (of s)",
+    "density": "smoothed density (of close packing)",
+}
 _NAMES = ", ".join(f"{name} ({theory.title})" for name, theory in THEORIES.items())
 
 
@@ -117,26 +125,27 @@ def _list(chain: Chain) -> None:
     found = theories(chain)
     table = Table(
         title=f"Theories for L = {chain.size}, e = {chain.restitution:g}",
-        caption="Expected relative errors of the theory itself, measured on chains like this one: "
-        "of W_v of the particles 3 to L-2 and of the two at the ends; of the force balance those "
-        "of the smoothed density, of close packing. Times on one core, within a factor of three.",
+        caption="Largest errors of the theory itself on chains like this one: relative ones of W_v "
+        "(particles 3 to L-2; border: the two at the ends) and of W_x; of the mean displacement "
+        "in thermal lengths; of the smoothed density, of close packing. -: not measured. "
+        "Times on one core, within a factor of three.",
     )
-    for heading in ("theory", "error", "border", "time"):
+    for heading in ("theory", "W_v", "border", "W_x", "<dx>", "density", "time"):
         table.add_column(heading, justify="left" if heading == "theory" else "right")
     for name, row in found.to_dataframe().iterrows():
         marked = f"{name} (best)" if name == found.attrs["best"] else str(name)
         if row.takes:
-            errors = (_percent(row.expected_error), _percent(row.border_error))
+            errors = [_percent(row[column]) for column in row.index if column.endswith("_error")]
             table.add_row(marked, *errors, f"{row.expected_seconds:.2g} s")
         else:
-            table.add_row(f"{name}: {row.reason}", "-", "-", "-")
+            table.add_row(f"{name}: {row.reason}", *["-"] * 6)
     columns = found.to_dataframe().reset_index().to_dict("records")
     note(best=found.attrs["best"], theories=columns)
     print_table(table)
 
 
 def _percent(error: float) -> str:
-    return "not measured" if math.isnan(error) else f"{100 * error:.2g} %"
+    return "-" if math.isnan(error) else f"{100 * error:.2g} %"
 
 
 def _print(theory: Theory, result: xr.Dataset) -> None:
@@ -147,24 +156,24 @@ def _print(theory: Theory, result: xr.Dataset) -> None:
     numbers = {name: result.attrs[name] for name in accuracy if name in result.attrs}
     caption = f"A free rod has W_v = {chain.free_velocity_width:.4g} R/T."
     caption += "".join(f" {accuracy[name]}: {value:.1e}." for name, value in numbers.items())
-    if "model_error" in result.attrs:
-        numbers["model_error"] = result.attrs["model_error"]
-        caption += "\n" + _caveat(theory, numbers["model_error"])
+    stated = theory.accuracy(chain)._asdict()
+    known = {f"{name}_error": error for name, error in stated.items() if not math.isnan(error)}
+    numbers |= known
+    caption += "\n" + _caveat(stated)
     note(theory=theory.name, free_velocity_width=chain.free_velocity_width, **numbers)
     title = f"{theory.title.capitalize()}, L = {chain.size}, e = {chain.restitution:g}"
     answer_rods(result, title, caption)
 
 
-def _caveat(theory: Theory, model_error: float) -> str:
-    """Return the error of the theory itself in words."""
-    if model_error == 0:
+def _caveat(stated: Mapping[str, float]) -> str:
+    """Return the errors of the theory itself in words."""
+    known = {name: error for name, error in stated.items() if not math.isnan(error)}
+    if not known:
+        return "The errors of the theory were not measured for chains like this one."
+    if not any(known.values()):
         return "The theory is exact for this chain."
-    if math.isnan(model_error):
-        return "The error of the theory was not measured for chains like this one."
-    return (
-        f"The error of the theory, in {theory.judged_by}, is up to {100 * model_error:.2g} % "
-        "(measured on chains like this one)."
-    )
+    listed = ", ".join(f"{_IN_WORDS[name]} {_percent(error)}" for name, error in known.items())
+    return f"Largest errors of the theory on chains like this one: {listed}."
 
 
 def _write(theory: Theory, result: xr.Dataset, folder: Path, suffix: str) -> None:

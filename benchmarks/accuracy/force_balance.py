@@ -1,10 +1,14 @@
-"""The error of the force balance closed by labels, against the exact equilibrium.
+"""How far the force balance closed by labels is from the exact equilibrium.
 
     python benchmarks/accuracy/force_balance.py
 
-Prints the largest error of the smoothed density, relative to close packing, by gap over the thermal
-length s, size, and thermal length over the radius: what ``expected_force_balance`` states.
+Prints kinetic/measured/force_balance.csv: the largest error of the smoothed density, relative to
+close packing, and of the mean displacement, in thermal lengths s.
 """
+
+import csv
+import itertools
+import sys
 
 import numpy as np
 
@@ -12,23 +16,32 @@ from crazybilliards import Chain, equilibrium, force_balance, smooth
 
 GAPS = (0.0, 0.1, 0.3, 1.0, 3.0, 10.0)
 SIZES = (2, 10, 100, 1000)
-AMPLITUDES = (1.0, 3.0, 10.0, 30.0)
+LENGTHS = (0.7, 2.1, 7.0, 21.0)  # s/R
+COLUMNS = ("theory", "quantity", "g/s", "L", "s/R", "error", "standard error")
 
 
-def error(chain: Chain) -> float:
-    exact, found = (smooth(theory(chain)).density for theory in (equilibrium, force_balance))
-    off = np.abs(found.interp(x=exact.x, kwargs={"fill_value": 0.0}) - exact)
-    return float(off.max()) / chain.close_packed_density
+def errors(chain: Chain) -> tuple[float, float]:
+    """Return those of the density and of the mean displacement."""
+    exact, found = equilibrium(chain), force_balance(chain)
+    theirs, ours = smooth(found).density, smooth(exact).density
+    off = np.abs(theirs.interp(x=ours.x, kwargs={"fill_value": 0.0}) - ours)
+    moved = np.abs(found.mean_displacement - exact.mean_displacement)
+    return float(off.max()) / chain.close_packed_density, float(moved.max()) / chain.thermal_length
 
 
 def main() -> None:
-    print(f"| g/s | L | {' | '.join(f's = {0.7071 * each:.3g} R' for each in AMPLITUDES)} |")
-    print("|---" * (2 + len(AMPLITUDES)) + "|")
-    for gap in GAPS:
-        for size in SIZES:
-            chains = [Chain(size=size, amplitude=amplitude) for amplitude in AMPLITUDES]
-            errors = [error(chain.replace(gap=gap * chain.thermal_length)) for chain in chains]
-            print(f"| {gap:g} | {size} | {' | '.join(f'{each:.4f}' for each in errors)} |")
+    writer = csv.writer(sys.stdout, lineterminator="\n")
+    writer.writerow(COLUMNS)
+    chain = Chain()
+    s = chain.thermal_length
+    for gap, size in itertools.product(GAPS, SIZES):
+        placed = chain.replace(size=size, gap=gap * s)
+        found = [errors(placed.replace(radius=s / length)) for length in LENGTHS]
+        place = ("force_balance", "mean_displacement", gap, size)
+        writer.writerow([*place, "", f"{found[0][1]:.4f}", 0])
+        for length, (density, _) in zip(LENGTHS, found, strict=True):
+            place = ("force_balance", "density", gap, size, length)
+            writer.writerow([*place, f"{density:.4f}", 0])
 
 
 if __name__ == "__main__":

@@ -91,10 +91,8 @@ def correlated_phase_space(
         by 10 % at e = 0.3.
         ``attrs``: ``residual``, the largest disagreement of one rod and pairs, relative;
         ``iterations``; ``mesh_error``, the largest relative change of a velocity width in the
-        last refinement (NaN if ``cells`` was given); ``cells``; ``model_error`` and
-        ``border_error``, the largest relative errors of W_v, of particles 3 to L - 2 and of the
-        two at the ends, that simulations show at restitutions like this one (the table of the
-        page on correlations); ``displacement_error``, that of W_x of any particle.
+        last refinement (NaN if ``cells`` was given); ``cells``; and the
+        errors of the theory, the same as those of ``phase_space``.
 
     Raises
     ------

@@ -99,7 +99,7 @@ def equilibrium(chain: Chain) -> xr.Dataset:
         method={"theory": "exact equilibrium"},
         residual=float(np.ptp(log_z)),
     )
-    dataset.attrs["model_error"] = expected_equilibrium(chain).inner
+    dataset.attrs |= expected_equilibrium(chain).attributes("density")
     return dataset
 
 

@@ -44,12 +44,14 @@ Array = NDArray[np.float64]
 _COURANT = 0.5
 _MOST_COURANT = 1.0  # beyond, four-stage Runge-Kutta with second-order fluxes is not stable
 _HALVINGS = 6
-_CELL = 0.1  # default width in thermal lengths
-_WIDEST_CELL = 0.5  # in thermal lengths; the scheme's error is then 0.01 to 0.03 of s
+# Widths of a cell, by default and at most, in units of what it has to resolve, see ``_finest``. With
+# the widest cells the scheme's error is 0.01 to 0.03 of s.
+_CELL, _WIDEST_CELL = 0.1, 0.5
 _MOST_BY_DEFAULT = 50_000
 MOST_CELLS = 100_000
 _POPULATED = 1e-12  # of the largest density; how far thinner places swing does not matter
 _JUST_INSIDE = 1 - 1e-9  # an arctanh is infinite at its end
+_CELLS_OF_RODS = 200  # cells in the length that the rods of a start take, by default
 _ROOM = 9.5  # beyond the lattice of anchors, in thermal lengths
 _MARGIN = 3.0  # beyond the farthest swing
 _AT_THE_WALL = 1e-4  # of the density L/s
@@ -74,7 +76,7 @@ def solve_on_positions(
     ``variance``: W^2(x) if prescribed; ``displacement``: <dx>(x) if frozen.
     """
     for wider in (1.0, 1.6, 2.5, 4.0):
-        faces = make_faces(chain, start, number, wider)
+        faces = make_faces(chain, start, times[-1], number, wider)
         fields = starting_fields(chain, start, faces, thermal=thermal)
         constants = make_constants(chain, faces, variance, displacement)
         solution = _integrate(fields, times, faces, constants, progress=progress)
@@ -155,7 +157,9 @@ def _frozen(profile: Profile, x: Array) -> Array:
     return values
 
 
-def make_faces(chain: Chain, start: Start, number: int | None, wider: float) -> Array:
+def make_faces(
+    chain: Chain, start: Start, duration: float, number: int | None, wider: float
+) -> Array:
     """Return the positions [R] of the cells' faces, beyond the farthest swing."""
     s, W, L = chain.thermal_length, chain.free_velocity_width, chain.size
     density = start.label(start.x, 1)
@@ -164,16 +168,30 @@ def make_faces(chain: Chain, start: Start, number: int | None, wider: float) -> 
     u = (start.x - (2 * chain.radius + chain.lattice_gap) * (label - L / 2))[there] / s
     swing = float(np.hypot(u, start.velocity(start.x)[there] / W).max())
     half = (chain.radius + chain.lattice_gap / 2) * L / s + wider * max(_ROOM, swing + _MARGIN)
+    finest = _finest(chain, start, duration, there) / s
     if number is None:
-        number = min(math.ceil(2 * half / _CELL), _MOST_BY_DEFAULT)
-    enough = 2 * half / _WIDEST_CELL
+        number = min(math.ceil(2 * half / (_CELL * finest)), _MOST_BY_DEFAULT)
+    enough = 2 * half / (_WIDEST_CELL * finest)
     if number < enough:
         advice = f"give cells={math.ceil(enough)}" if enough <= MOST_CELLS else "use frame='label'"
         raise ValueError(
             f"frame='eulerian' with {number} cells: each is {2 * half / number:.3g} thermal "
-            f"lengths wide, {_WIDEST_CELL:g} at most resolve the flow; {advice}"
+            f"lengths wide, {_WIDEST_CELL * finest:.3g} at most resolve the flow; {advice}"
         )
     return s * np.linspace(-half, half, number + 1)
+
+
+def _finest(chain: Chain, start: Start, duration: float, there: NDArray[np.bool_]) -> float:
+    """Return the length that cells have to resolve [R].
+
+    It is the thermal length, or less if the spring is so soft that the rods, or the waves that a
+    steep place of the start sends out, are short against it.
+    """
+    rods = float(np.ptp(start.x[there])) / _CELLS_OF_RODS
+    density, slope = (np.abs(start.label(start.x[there], order)).max() for order in (1, 2))
+    steep = float(density / slope) if slope > 0 else math.inf
+    waves = chain.free_velocity_width * duration
+    return min(chain.thermal_length, rods / _CELL, max(waves, steep))
 
 
 def starting_fields(chain: Chain, start: Start, faces: Array, *, thermal: bool) -> dict[str, Array]:

@@ -13,8 +13,9 @@ its border, and the solution ends as "diverged" when the energy has grown a thou
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -67,6 +68,7 @@ _LOST = 2e-4  # share of the points on a line of the outermost cells at which th
 _NEGATIVE = 0.1
 _DIVERGED = 1e3  # times the energy of the start or the free rod
 _ENLARGED = 1.4
+_LIKE = 0.01  # of a start: how far it may be from an equilibrium, relatively
 
 
 @one_thread
@@ -114,9 +116,9 @@ def relax_phase_space(
         ``covariance``. ``attrs["status"]`` is ``diverged`` if the energy grew without bound, or
         ``interrupted`` if Ctrl-C ended it. The result then has the times before.
         ``attrs["model_error"]`` is the largest relative error of ``kinetic_energy`` at any time
-        that the theory had in simulations of chains like this one, released from equilibrium at
-        e = 1, and from there with y multiplied by 0.4 (NaN, with an ``UnmeasuredWarning``, where
-        none was measured).
+        that the theory had in simulations of chains like this one, released from their
+        equilibrium at e = 1, or from there with y multiplied by 0.4 to 1. It is NaN, with an
+        ``UnmeasuredWarning``, for other starts, and where none was measured.
 
     Notes
     -----
@@ -172,9 +174,22 @@ def relax_phase_space(
     except KeyboardInterrupt:
         status = "interrupted"
     dataset = in_vocabulary(chain, units, outputs, times[: len(outputs)], flow.space, status)
-    error = dataset.attrs["model_error"] = expected_relax_phase_space(chain)
+    released = _compression(chain, outputs[0])
+    error = dataset.attrs["model_error"] = expected_relax_phase_space(chain, released)
     warn_if_unmeasured("the kinetic equation in time", error)
     return dataset
+
+
+def _compression(chain: Chain, start: Mapping[str, Any]) -> float:
+    """Return what y of the equilibrium at e = 1 was multiplied by; NaN for any other start."""
+    s, energy = chain.thermal_length, chain.size * chain.temperature / 2
+    unlike = (
+        start["kinetic_energy"] / energy - 1,
+        start["centre"] / s,
+        start["covariance"] / (s * chain.free_velocity_width),
+    )
+    known = chain.gap == 0 and max(map(abs, unlike)) < _LIKE
+    return round(start["cloud_width"] / s, 2) if known else math.nan
 
 
 def _unresolved(time: float, cells: int) -> str:

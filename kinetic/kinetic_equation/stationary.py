@@ -78,9 +78,12 @@ def phase_space(
         ``mean_displacement`` and, without gap, ``displacement_width`` over particle.
         ``attrs``: ``residual``, the last Newton step relative to max f; ``mesh_error``, the
         largest relative change of a velocity width in the last refinement (NaN if ``cells`` was
-        given); ``cells``; ``model_error`` and ``border_error``, the relative error of W_v that
-        the theory had in simulations of chains like this one, over particles 3 to L - 2 and of
-        the first and the last (NaN, with an ``UnmeasuredWarning``, where none was measured).
+        given); ``cells``; and the errors of the theory in simulations of chains like this one,
+        NaN where none was measured: ``model_error`` and ``border_error``, relative, of W_v of the
+        particles 3 to L - 2 and of the first and the last; ``displacement_error``, relative, of
+        W_x; ``mean_displacement_model_error``, in thermal lengths; ``density_model_error``, of
+        the smoothed density, relative to close packing. An ``UnmeasuredWarning`` says that
+        ``model_error`` is not known.
         The flow velocity should vanish, and is below 1e-9 W wherever there are rods.
 
     Notes
@@ -88,8 +91,8 @@ def phase_space(
     Compared with simulations (L = 100, gamma = 1, particles 3 to L - 2) velocity widths are
     within 0.8 % for e = 0.95 to 1, 1.0 % at 0.9, and 6.6 % at 0.8. Displacement widths are up to
     13 % too small at 0.95 and 20 % at 0.9, because only the collective motion of the centre of
-    mass is included. With a gap of g L = 4, 14 and 42 thermal lengths the velocity widths are
-    within 1.0, 1.6 and 2.4 % (e = 0.95) and the mean displacements within 0.01, 0.05 and 0.17 s.
+    mass is included. With a gap the mean displacements are those of the mean field, which also
+    has displacements in the middle of the chain where there are none.
 
     Raises
     ------

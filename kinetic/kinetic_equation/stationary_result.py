@@ -52,12 +52,7 @@ def in_vocabulary(
         method={**method, "cells": state.space.cells},
         residual=residual,
     )
-    dataset.attrs |= {
-        "mesh_error": mesh_error,
-        "cells": state.space.cells,
-        "model_error": expected.inner,
-        "border_error": expected.border,
-    }
+    dataset.attrs |= {"mesh_error": mesh_error, "cells": state.space.cells, **expected.attributes()}
     return dataset
 
 

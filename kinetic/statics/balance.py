@@ -36,11 +36,9 @@ interval of its profile. An arctanh ends at a place where the density is small b
 
 from __future__ import annotations
 
-import math
-
 import xarray as xr
 
-from crazybilliards.kinetic.accuracy import warn_if_unmeasured
+from crazybilliards.kinetic.accuracy import Accuracy, warn_if_unmeasured
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.kinetic.statics.label_closure import solve_label_closure
 from crazybilliards.kinetic.statics.prescribed_closure import solve_prescribed_closure
@@ -80,10 +78,12 @@ def force_balance(
         ``density``, ``label`` and ``displacement`` over x, by labels also ``mean_displacement``
         and ``velocity_width`` over particle. ``attrs["residual"]`` is, by labels, the drift of
         the conserved quantity of the equations (an error of ln rho), and with a prescribed
-        displacement the relative error of the number of rods. ``attrs["model_error"]``, by
-        labels, is the largest error of the smoothed density, relative to close packing, of the
-        theory for chains like this one, of 2 to 1000 rods, linear springs and gaps up to 10 s: its
-        distance from the exact equilibrium. For others it is NaN, with an ``UnmeasuredWarning``.
+        displacement the relative error of the number of rods. By labels there are also the errors
+        of the theory itself, its distance from the exact equilibrium for chains like this one: 2
+        to 1000 rods, linear springs, gaps up to 10 s, e = 1. ``attrs["model_error"]``, which is
+        ``attrs["density_model_error"]``, is the largest error of the smoothed density, relative to
+        close packing, and ``attrs["mean_displacement_model_error"]`` that of ``mean_displacement``
+        in thermal lengths. For others they are NaN, with an ``UnmeasuredWarning``.
 
     Raises
     ------
@@ -106,8 +106,8 @@ def force_balance(
         found = solve_variable_temperature(chain, variance)
     else:
         found = solve_label_closure(chain)
-    if velocity_variance is not None:
-        found.attrs["model_error"] = math.nan  # measured for the free variance only
+    if velocity_variance is not None:  # measured for the free variance only
+        found.attrs |= Accuracy().attributes()
     warn_if_unmeasured("the force balance", found.attrs["model_error"])
     return found
 

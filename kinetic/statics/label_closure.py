@@ -66,7 +66,7 @@ def solve_label_closure(chain: Chain) -> xr.Dataset:
         method={"theory": "force balance, by labels"},
         residual=state.edge.residual,
     )
-    dataset.attrs["model_error"] = expected_force_balance(chain).inner
+    dataset.attrs |= expected_force_balance(chain).attributes("density")
     return dataset
 
 

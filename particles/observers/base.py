@@ -84,7 +84,9 @@ class Observer(ABC):
 
     def __str__(self) -> str:
         """Return the name and, if there are any, the parameters."""
-        given = ", ".join(f"{name}={value!r}" for name, value in vars(self).items())
+        given = ", ".join(
+            f"{name}={value!r}" for name, value in vars(self).items() if value is not None
+        )
         return f"{self.name}({given})" if given else self.name
 
     @abstractmethod

@@ -8,19 +8,28 @@ from typing import Self
 
 import numpy as np
 
+from crazybilliards.model.checks import check_real
 from crazybilliards.model.grid import deposit, position_grid, thermal_reach
 from crazybilliards.particles.observers.base import Array, Averaged, Integers, Snapshots, Variables
 from crazybilliards.particles.run import Run
 
+_TAIL, _WIDTHS = 40.0, 8.0  # of the energy, in T; of a displacement, in standard deviations
 
-def _grid(run: Run) -> Array:
-    chain = run.chain
-    if not np.isfinite(thermal_reach(chain)):
-        raise ValueError("observe: 'density' needs damping and stiffness above 0, to size its grid")
+
+def _reach(run: Run) -> float:
+    """Distance from its anchor that hardly any rod exceeds [R]."""
+    chain, time = run.chain, run.schedule.warmup + run.schedule.duration
+    thermal = thermal_reach(chain)
+    if not np.isfinite(thermal):
+        # Without damping or springs rods are heated, or spread, for the whole run.
+        damped = min(time, chain.mass / chain.damping) if chain.damping > 0 else time
+        heat = chain.amplitude**2 * damped / (2 * chain.mass)
+        noise = chain.amplitude / chain.mass * damped * np.sqrt(time)
+        thermal = chain.reach(_TAIL * heat) if chain.stiffness > 0 else _WIDTHS * noise
     # Flippers (e > 1) drive a chain apart by several times the free reach.
-    thermal = thermal_reach(chain) * (5 if chain.restitution > 1 else 1)
+    thermal *= 5 if chain.restitution > 1 else 1
     # A start with thermal or smaller displacements needs no more room than that.
-    return position_grid(chain, thermal + max(0.0, run.swing - 0.75 * thermal))
+    return float(thermal + max(0.0, run.swing - 0.75 * thermal))
 
 
 class Density(Averaged):
@@ -28,6 +37,12 @@ class Density(Averaged):
 
     The block means are part of the result, because the error of a smoothed density does not
     follow from the errors of the bins. They take 8 bytes per node and block.
+
+    Parameters
+    ----------
+    reach
+        Distance from the outer anchors to the ends of the grid [R]. None: as far as noise and the
+        start can move rods.
     """
 
     name = "density"
@@ -35,14 +50,20 @@ class Density(Averaged):
     along = ("x",)
     histograms = ("density",)
 
+    def __init__(self, reach: float | None = None) -> None:
+        self.reach = None if reach is None else check_real("reach", reach, positive=True)
+
+    def _grid(self, run: Run) -> Array:
+        return position_grid(run.chain, _reach(run) if self.reach is None else self.reach)
+
     def shape(self, run: Run) -> tuple[int, ...]:
         """Return the shape of the sums of one block: one number a node of the grid."""
-        return (_grid(run).size,)
+        return (self._grid(run).size,)
 
     def prepare(self, run: Run, copies: int) -> None:
         """Make the sums."""
         super().prepare(run, copies)
-        self.x = _grid(run)
+        self.x = self._grid(run)
         self.first, self.spacing = self.x[0], self.x[1] - self.x[0]
         self.offsets = run.chain.physical(np.zeros(run.chain.size))
         self.outside = 0
@@ -62,7 +83,8 @@ class Density(Averaged):
         if self.outside:
             share = self.outside / counts.sum()
             warnings.warn(
-                f"density: {share:.3g} rods per snapshot lay outside the grid and are missing",
+                f"density: {share:.3g} rods per snapshot lay outside the grid and are missing; "
+                "observe=cb.Density(reach=...) makes the grid wider",
                 stacklevel=2,
             )
         spacing = self.spacing

@@ -16,9 +16,11 @@ class Raw(Observer):
     """position and velocity of every chosen particle at every snapshot of every replica.
 
     It takes 16 bytes per particle, snapshot and replica, so ask for few snapshots with ``every``.
-    Snapshots that an interrupted run did not reach are NaN. A single time can be the start of
-    another run: ``run.isel(time=-1)``. Any other observers can be recorded beside it. Velocity
-    distributions lie over ``velocity_bin``, and the energy is then that of every snapshot.
+    Snapshots that an interrupted run did not reach are NaN. A single time of all particles can be
+    the start of another run, ``run.isel(time=-1)``. The start is a part of the seed of that run,
+    which therefore has other noise with the same ``seed``, too. Any other observers can be
+    recorded beside it. Velocity distributions lie over ``velocity_bin``, and the energy is then
+    that of every snapshot.
     """
 
     name = "snapshots"

@@ -12,7 +12,7 @@ from crazybilliards.model.vocabulary import result
 from crazybilliards.particles.observers import Integers, Variables
 from crazybilliards.particles.run import Run
 from crazybilliards.particles.running.replica import NEVER, Replica
-from crazybilliards.particles.scales import centre_width, time_step_error
+from crazybilliards.particles.scales import centre_width, relaxation_time, time_step_error
 
 Array = NDArray[np.float64]
 
@@ -56,18 +56,24 @@ def collect(run: Run, replicas: list[Replica], interrupted: bool) -> xr.Dataset:
         particles=run.chosen + 1,
         method={**run.provenance(), "duration": schedule.duration, "snapshots": int(counts.sum())},
     )
-    width = centre_width(chain) * chain.free_velocity_width
-    if "velocity_width" in measured:
-        width = float(measured.velocity_width.min())
-    measured.attrs["flight"] = run.flight
-    if run.exact:
-        measured.attrs["time_step_error"] = 0.0
-    elif np.isfinite(width) and chain.restitution != 1:
-        corrected = run.stepper == "splitting" and run.method == "event-driven"
-        measured.attrs["time_step_error"] = time_step_error(
-            chain, schedule.time_step, width, corrected=corrected
-        )
+    measured.attrs |= {
+        "flight": run.flight,
+        "relaxation_time": relaxation_time(chain),
+        "time_step_error": _time_step_error(run, measured),
+    }
     return measured
+
+
+def _time_step_error(run: Run, measured: xr.Dataset) -> float:
+    """Return the relative error of the smallest velocity width above 0; NaN if it is not known."""
+    if run.exact:
+        return 0.0
+    width = centre_width(run.chain) * run.chain.free_velocity_width
+    if "velocity_width" in measured:
+        widths = measured.velocity_width.values
+        width = float(np.min(widths, initial=np.inf, where=widths > 0))
+    step = run.schedule.time_step
+    return time_step_error(run.chain, step, width, stepper=run.stepper, method=run.method)
 
 
 def only_chosen(

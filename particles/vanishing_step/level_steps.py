@@ -1,15 +1,12 @@
 """The time steps of the levels of a limit dt -> 0, chosen before anything is computed.
 
 The shortest step is chosen so that its expected error is a quarter of the accuracy. This error is
-that of the noise (``scales.time_step_error``) plus that of the springs, (w0 dt)^2/8, which on
-linear springs displacements have, but velocities do not. With a gap, collisions still heat the
-chain a little (``laws/spring_correction.py``), by the fraction 3e-3 w0 (w0 dt)^4 of the energy per
-time, measured at dt = 0.1 and 0.5 for gaps of one and two radii. Weak damping lets this grow to
-1.5e-3 (m w0/gamma) (w0 dt)^4 of a width. Each longer
-step is nine times the one before. Runs at two steps are correlated about equally for the ratios
-three and nine (0.97 to 0.99 for 100 rods at e = 0), and nine needs fewer levels. A step whose
-velocity kicks exceed 1.5 W_v is not correlated with any other. One level with a third of the
-shortest step is planned in reserve, in case the shortest step turns out to be too long.
+that of velocities (``scales.time_step_error``) plus, on linear springs, (w0 dt)^2/8, which only
+displacements have there. Each longer step is nine times the one before. Runs at two steps are
+correlated about equally for the ratios three and nine (0.97 to 0.99 for 100 rods at e = 0), and
+nine needs fewer levels. A step whose velocity kicks exceed 1.5 W_v is not correlated with any
+other. One level with a third of the shortest step is planned in reserve, in case the shortest step
+turns out to be too long.
 
 For e = 1 the step need not resolve the noise. Its error is that of the springs, which is known, and
 one level is enough. Where the motion of the chain is known exactly (``laws/exact_flight.py``) there
@@ -36,7 +33,6 @@ GROUPS = 32  # of a level: a standard error is then known to an eighth
 _RATIO, _NARROW_RATIO = 9, 3  # of successive steps; of the one in reserve
 _EXPECTED = 0.25  # bias, in units of the accuracy
 _LONGEST_KICK = 1.5  # in W_v: with a longer step nothing is correlated
-_HEATING = 1.5e-3  # by collisions with a gap, see above
 _SPRINGS = 0.5  # longest step, over that of spring or damping
 # Least duration of a group, in correlation times. The means of successive groups of the base are
 # then correlated by 0.06 at most, which makes a standard error 5 % too small.
@@ -66,18 +62,15 @@ class Steps(NamedTuple):
 
 
 def velocity_bias(chain: Chain, time_step: float, width: float) -> float:
-    """Relative error of velocities that a step is expected to cause, on linear springs."""
-    if independent_rods(chain):
-        return 0.0
-    rate = spring_rate(chain)
-    swings = rate * chain.mass / chain.damping if chain.gap > 0 else 0.0
-    return time_step_error(chain, time_step, width) + _HEATING * swings * (rate * time_step) ** 4
+    """Relative error of velocities that a step is expected to cause."""
+    return 0.0 if independent_rods(chain) else time_step_error(chain, time_step, width)
 
 
 def relative_bias(chain: Chain, time_step: float, width: float) -> float:
-    """Relative error of displacements, and on quadratic springs of velocities."""
-    spring = 0.0 if independent_rods(chain) else (spring_rate(chain) * time_step) ** 2 / 8
-    return velocity_bias(chain, time_step, width) + spring
+    """Relative error of displacements."""
+    bias = velocity_bias(chain, time_step, width)
+    linear = chain.spring == "linear" and not independent_rods(chain)
+    return bias + (spring_rate(chain) * time_step) ** 2 / 8 if linear else bias
 
 
 def plan_steps(chain: Chain, accuracy: float, warmup: float | None) -> Steps:

@@ -26,6 +26,7 @@ from crazybilliards.particles.run import Run
 from crazybilliards.particles.running.checkpoint import Checkpoint, identity
 from crazybilliards.particles.running.collecting import only_chosen
 from crazybilliards.particles.running.threads import run_all
+from crazybilliards.particles.scales import relaxation_time
 from crazybilliards.particles.schedule import Schedule
 from crazybilliards.particles.simulation import compile_kernels
 from crazybilliards.particles.vanishing_step.level_steps import GROUPS, Steps, plan_steps
@@ -276,8 +277,12 @@ def _collect(levels: Levels, interrupted: bool, progress: bool) -> xr.Dataset:
     coordinates.pop("time", None)  # there is none
     method["levels"] = levels.described(terms)
     limit = collected(variables, coordinates=coordinates, method=method)
-    limit.attrs["time_step_error"] = float(bias[CENTRAL] / limit[CENTRAL])
-    limit.attrs |= {"flight": finest.flight} | levels.coupling(terms)
+    limit.attrs |= {
+        "flight": finest.flight,
+        "relaxation_time": relaxation_time(levels.chain),
+        "time_step_error": float(bias[CENTRAL] / limit[CENTRAL]),
+        **levels.coupling(terms),
+    }
     if progress and limit.attrs.get("coupling") == "weak":
         long, short = levels.steps.time_steps[levels.used[-1] - 1 : levels.used[-1] + 1]
         print(

@@ -45,7 +45,7 @@ from crazybilliards.particles.vanishing_step.level_steps import Steps, relative_
 from crazybilliards.particles.vanishing_step.level_terms import CENTRAL, Array, Estimate, estimate
 from crazybilliards.particles.vanishing_step.sampler import Sampler
 
-# Variables that the springs do not make wrong.
+# Variables that linear springs do not make wrong.
 _VELOCITIES = {CENTRAL, "velocity_width", "velocity_density", "kinetic_energy"}
 _LARGEST_BIAS = 0.7  # largest bias without another level, in units of the accuracy
 _GROWTH = 4  # of a level in one round: its variance is not known well before
@@ -139,8 +139,7 @@ class Levels:
             step = self.steps.time_steps[self.used[-1]]
             case = self.chain, step, float(values[CENTRAL])
             relative = dict.fromkeys(values, relative_bias(*case))
-            if self.chain.spring == "linear":
-                relative |= dict.fromkeys(_VELOCITIES & values.keys(), velocity_bias(*case))
+            relative |= dict.fromkeys(_VELOCITIES & values.keys(), velocity_bias(*case))
             return {name: relative[name] * np.abs(value) for name, value in values.items()}
         ratio, bias = self.steps.ratios[self.used[-1]], {}
         for name, value in terms[-1].values.items():

@@ -176,7 +176,8 @@ def test_the_limit_has_one_level_and_no_bias():
 def test_what_cannot_be_flown_is_taken_in_steps(chain, settings):
     run = simulate(chain, duration=300, progress=False, **settings)
     assert run.attrs["flight"] == "in steps"
-    assert run.attrs.get("time_step_error") != 0
+    # Where collisions are counted, the splitting has the right W_v at every step.
+    assert (run.attrs["time_step_error"] == 0) == ("observe" in settings)
 
 
 def test_a_warm_up_is_not_made_much_longer_by_rare_snapshots():

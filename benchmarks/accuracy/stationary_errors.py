@@ -1,0 +1,202 @@
+"""How far the stationary theories are from simulations, and at e = 1 from the exact equilibrium.
+
+    python benchmarks/accuracy/stationary_errors.py FOLDER [--held-out]
+
+Prints kinetic/measured/stationary.csv, from which the theories read the errors that they state,
+or kinetic/measured/stationary_held_out.csv: chains drawn at random before any of them was looked
+at. Every chain is simulated in the limit of a vanishing time step, with three radii, because only
+its density depends on the radius. Chains that are done are kept in FOLDER, and several processes
+may share it. On two cores the first table takes about an hour and a half.
+"""
+
+import csv
+import itertools
+import json
+import math
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+from scipy.interpolate import PchipInterpolator
+
+import crazybilliards as cb
+
+RADII = (0.7, 2.1, 7.0)  # s/R; s: thermal length
+COLUMNS = ("theory", "quantity", "g L/s", "L", "e", "Gamma", "s/R", "error", "standard error")
+# Relative accuracy of W_v in the centre of each of the three runs, by size.
+ACCURACY = {10: 0.004, 30: 0.004, 100: 0.006, 300: 0.012, 1000: 0.03}
+HELD_OUT = 40
+
+Row = tuple[str | float, ...]
+Place = tuple[int, float, float, float]  # L, e, Gamma = gamma/sqrt(k m), g L/s
+
+
+def places() -> Iterator[Place]:
+    """Give the measured chains; the long ones come last."""
+    dissipative = (0.0, 0.3, 0.5, 0.75, 0.83, 0.9, 0.95, 0.98, 1.0)
+    dampings = (0.15, 0.49, 1.5)
+    for size in (10, 30, 100, 300):
+        yield from itertools.product([size], dissipative, dampings, [0.0])
+        yield from itertools.product(
+            [size], (0.5, 0.75, 0.9, 0.95, 1.0), dampings, (4.0, 14.0, 42.0)
+        )
+    for size in (10, 30, 100):
+        yield from itertools.product([size], (1.0, 1.05), (1.95, 8.0), [0.0])
+    yield from itertools.product([1000], (0.0, 0.5, 0.75, 0.9, 0.95, 0.98, 1.0), [0.49], [0.0])
+
+
+def held_out() -> Iterator[Place]:
+    """Draw chains in the ranges of the table, half of them with a gap."""
+    draw = np.random.default_rng(20261125)
+    for number in range(HELD_OUT):
+        size = round(math.exp(draw.uniform(math.log(10), math.log(300))))
+        damping = math.exp(draw.uniform(math.log(0.15), math.log(1.5)))
+        lattice = math.exp(draw.uniform(math.log(0.5), math.log(42))) if number % 2 else 0.0
+        yield size, draw.uniform(0.5 if lattice else 0.0, 0.98), damping, lattice
+
+
+def chain_at(place: Place, length: float) -> cb.Chain:
+    """Return the chain at a place whose thermal length is so many radii."""
+    size, e, damping, lattice = place
+    chain = cb.Chain(size=size, restitution=e)
+    chain = chain.replace(damping=damping * math.sqrt(chain.stiffness * chain.mass))
+    s = chain.thermal_length
+    return chain.replace(gap=lattice * s / size, radius=s / length)
+
+
+def simulated(place: Place, length: float, seed: int) -> xr.Dataset:
+    """Return what a theory is compared with."""
+    chain = chain_at(place, length)
+    if chain.restitution == 1:
+        return cb.equilibrium(chain)
+    accuracy = ACCURACY[min(each for each in ACCURACY if each >= chain.size)]
+    return cb.simulate_limit(
+        chain,
+        accuracy=accuracy,
+        observe=("widths", "density"),
+        seed=seed,
+        threads=1,
+        progress=False,
+    )
+
+
+def of_radius(theory: xr.Dataset, run: xr.Dataset) -> xr.Dataset:
+    """Return the density of a theory for rods of the radius of ``run``; y and the labels stay."""
+    chain, other = cb.chain_of(theory), cb.chain_of(run)
+    longer = 2 * (other.radius - chain.radius)
+    x = theory.x.values + longer * (theory.label.values - chain.size / 2)
+    fine = np.unique(np.concatenate([run.x.values, [2 * run.x.values[0], 2 * run.x.values[-1]]]))
+    spacing = run.x.values[1] - run.x.values[0]
+    fine = spacing * np.arange(np.rint(fine[0] / spacing), np.rint(fine[-1] / spacing) + 1)
+    kept = np.concatenate([[True], np.diff(x) > 0])
+    label = PchipInterpolator(x[kept], theory.label.values[kept], extrapolate=False)
+    ends = {"left": 0.0, "right": float(chain.size)}
+    labels = label(fine)
+    labels = np.where(fine < x[0], ends["left"], np.where(fine > x[-1], ends["right"], labels))
+    density = np.nan_to_num(label.derivative()(fine))
+    return xr.Dataset({"density": ("x", density), "label": ("x", labels)}, {"x": fine}, run.attrs)
+
+
+def pooled(runs: list[xr.Dataset], name: str, sign: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return a profile over the rods and its standard error: the mean of runs and of mirrored rods.
+
+    ``sign`` is that of the mirrored profile.
+    """
+    exact = f"{name}_error" not in runs[0]
+    values = np.mean([run[name].values for run in runs], axis=0)
+    errors = [0 * values if exact else run[f"{name}_error"].values for run in runs]
+    error = np.sqrt(np.sum(np.square(errors), axis=0)) / len(runs)
+    return (values + sign * values[::-1]) / 2, np.hypot(error, error[::-1]) / 2
+
+
+def largest(off: np.ndarray, error: np.ndarray) -> tuple[float, float]:
+    """Return the largest difference and its standard error."""
+    worst = int(np.argmax(np.abs(off)))
+    return abs(float(off[worst])), float(error[worst])
+
+
+def density_errors(theory: xr.Dataset, run: xr.Dataset) -> tuple[float, float]:
+    """Return the largest difference of the smoothed densities as a part of close packing."""
+    theirs, ours = (cb.smooth(each) for each in (theory, run))
+    unit = cb.chain_of(theory).close_packed_density
+    spacing = float(ours.x[1] - ours.x[0])
+    theirs, ours = (
+        each.assign_coords(x=np.rint(each.x / spacing).astype(int)) for each in (theirs, ours)
+    )
+    a, b = xr.align(theirs.density, ours.density, join="outer", fill_value=0.0)
+    off, density = (a - b).values / unit, b.values / unit
+    # Both halves of the chain are samples of the same density.
+    uneven = ((density - density[::-1]) / 2)[density > 1e-3]
+    error = np.full(off.size, math.sqrt(float(np.mean(uneven**2))))
+    return largest((off + off[::-1]) / 2, error)
+
+
+def rows(place: Place, theory: str, found: xr.Dataset, runs: list[xr.Dataset]) -> list[Row]:
+    """Return the errors of a theory, one row a quantity."""
+    chain, errors = cb.chain_of(found), {}
+    border = np.minimum(np.arange(chain.size), np.arange(chain.size)[::-1])
+    for name, sign in (("velocity_width", 1), ("displacement_width", 1), ("mean_displacement", -1)):
+        if name not in found:
+            continue
+        value, error = pooled(runs, name, sign)
+        unit = chain.thermal_length if sign < 0 else value
+        off, error = (found[name].values - value) / unit, error / unit
+        if name != "velocity_width":
+            errors[name] = largest(off, error)
+            continue
+        errors[name] = largest(off[border >= 2], error[border >= 2])
+        errors["border"] = largest(off[border == 0], error[border == 0])
+    common = (theory, *place)
+    table: list[Row] = [(*common, "", name, *pair) for name, pair in errors.items()]
+    for length, run in zip(RADII, runs, strict=True):
+        table.append((*common, length, "density", *density_errors(of_radius(found, run), run)))
+    return table
+
+
+def measured(place: Place) -> list[Row]:
+    """Return the errors of all theories that take the chain at this place."""
+    runs = [simulated(place, length, seed) for seed, length in enumerate(RADII)]
+    table = []
+    for theory in ("phase_space", "correlated_phase_space"):
+        chain = chain_at(place, RADII[0])
+        if not cb.theories(chain).takes.sel(theory=theory):
+            continue
+        solve = getattr(cb, theory)
+        try:
+            found = solve(chain)
+        except ValueError:  # the finest mesh misses the usual tolerance by a little
+            found = solve(chain, tolerance=4e-3)
+        table += rows(place, theory, found, runs)
+    return table
+
+
+def main(folder: Path, *, held: bool) -> None:
+    folder.mkdir(parents=True, exist_ok=True)
+    table: list[Row] = []
+    missing = False
+    for place in held_out() if held else places():
+        file = folder / f"{'_'.join(f'{each:g}' for each in place)}.json"
+        try:
+            with file.open("x") as mine:  # another process leaves it alone
+                json.dump(measured(place), mine)
+        except FileExistsError:
+            pass
+        try:
+            table += json.loads(file.read_text())
+        except json.JSONDecodeError:
+            missing = True  # another process is at it
+    if missing:
+        return
+    writer = csv.writer(sys.stdout, lineterminator="\n")
+    writer.writerow(COLUMNS)
+    for theory, *place, length, quantity, error, own in table:
+        size, e, damping, lattice = place
+        coordinates = (lattice, size, e, damping)
+        named = [theory, quantity, *(f"{each:g}" for each in coordinates), length]
+        writer.writerow([*named, f"{error:.4f}", f"{own:.4f}"])
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]), held="--held-out" in sys.argv)
