@@ -12,6 +12,6 @@ from .observers.raw import Raw as Raw
 from .observers.velocities import Velocities as Velocities
 from .observers.widths import Widths as Widths
 from .scales import relaxation_time as relaxation_time
-from .simulation import simulate as simulate
+from .simulation import ShortRunWarning as ShortRunWarning, simulate as simulate
 from .start import given_start as given_start
 from .vanishing_step.limit import simulate_limit as simulate_limit

@@ -23,7 +23,7 @@ from crazybilliards.model.memory import require_memory
 from crazybilliards.particles.dynamics import Dynamics, Stepper, default_merging, make_dynamics
 from crazybilliards.particles.laws.law import EXACT, Method, choose_operator
 from crazybilliards.particles.scales import start_swing, typical_speed
-from crazybilliards.particles.schedule import Average, Schedule, make_schedule
+from crazybilliards.particles.schedule import Average, Schedule, make_schedule, too_short
 from crazybilliards.particles.start import replica_starts
 
 Array = NDArray[np.float64]
@@ -160,6 +160,15 @@ class Run:
     def counted(self) -> bool:
         """Whether an observer needs every single collision."""
         return any(observer.single_collisions for observer in self.observers)
+
+    @property
+    def too_short(self) -> str:
+        """In what averages over time are too short for the memory of the chain, or nothing."""
+        if self.average != "time" or all(observer.shares_time for observer in self.observers):
+            return ""
+        at_rest = self.start is None or self.start.attrs.get("source") == "start"
+        times = self.duration, self.schedule.warmup
+        return too_short(self.chain, *times, self.replicas, at_rest)
 
     def dynamics(self) -> Dynamics:
         """Return the numbers and arrays that the kernels need."""

@@ -14,7 +14,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from dataclasses import dataclass
 from typing import Literal
 
@@ -153,34 +152,30 @@ def _number_of_blocks(chain: Chain, duration: float, replicas: int) -> int:
     return most if block * most <= duration else max(int(duration / block), fewest)
 
 
-def warn_if_short(
-    chain: Chain, duration: float, warmup: float | None, *, replicas: int, from_rest: bool
-) -> None:
-    """Say it once if an average over time is too short for the memory of the chain.
+def too_short(chain: Chain, duration: float, warmup: float, replicas: int, at_rest: bool) -> str:
+    """Return in what an average over time is too short for the memory of the chain, or nothing.
 
-    ``from_rest``: the start is no state of the steady state, so that the warm-up must forget it.
+    ``at_rest``: the start is no state of the steady state, so that the warm-up must forget it.
     """
     if chain.damping == 0:
-        warnings.warn(
-            "damping=0: the chain never forgets its start, so that the error bars of averages "
-            "over time mean nothing; average='ensemble' averages over replicas at equal times",
-            stacklevel=3,
+        return (
+            "damping=0: the chain never forgets its start, so that the error bars of averages over "
+            "time mean nothing; average='ensemble' averages over replicas at equal times"
         )
-        return
-    memory = relaxation_time(chain)
+    memory = f"is short for a chain with the relaxation time {relaxation_time(chain):.3g}: "
     least = _BLOCK * correlation_time(chain) * math.ceil(_FEWEST_BLOCKS / replicas)
     if replicas < _FEWEST_BLOCKS and duration < least * (1 - 1e-9):
-        warnings.warn(
-            f"duration={duration:g} is short for a chain with the relaxation time {memory:.3g}: "
-            f"error bars are too small; take at least {least:.4g}, or {_FEWEST_BLOCKS} replicas",
-            stacklevel=3,
+        return (
+            f"duration={duration:g} {memory}error bars are too small; take at least {least:.4g}, "
+            f"or {_FEWEST_BLOCKS} replicas"
         )
-    if from_rest and warmup is not None and warmup < _ENOUGH * memory * (1 - 1e-9):
-        warnings.warn(
-            f"warmup={warmup:g} is short for a chain with the relaxation time {memory:.3g}: the "
-            f"averages still contain the start; take at least {_ENOUGH * memory:.4g}",
-            stacklevel=3,
+    enough = _ENOUGH * relaxation_time(chain)
+    if at_rest and warmup < enough * (1 - 1e-9):
+        return (
+            f"warmup={warmup:g} {memory}averages still contain the start; take at least "
+            f"{enough:.4g}"
         )
+    return ""
 
 
 def _needed_step(chain: Chain, time_step: float | None, stepper: Stepper) -> float:

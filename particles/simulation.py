@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Sequence
 from contextlib import nullcontext
 from pathlib import Path
@@ -26,8 +27,12 @@ from crazybilliards.particles.running.checkpoint import Checkpoint, identity
 from crazybilliards.particles.running.collecting import collect
 from crazybilliards.particles.running.replica import Replica
 from crazybilliards.particles.running.threads import run_all
-from crazybilliards.particles.schedule import Average, warn_if_short
+from crazybilliards.particles.schedule import Average
 from crazybilliards.particles.stepping import advance, bounded, record
+
+
+class ShortRunWarning(UserWarning):
+    """An average over time is too short for the memory of the chain."""
 
 
 def simulate(
@@ -164,9 +169,8 @@ def simulate(
     checkpoint_interval = check_real("checkpoint_interval", checkpoint_interval)
     threads = check_integer("threads", cores() if threads is None else threads, least=1)
     run = make_run(**asked)
-    if run.average == "time" and not all(observer.shares_time for observer in run.observers):
-        given = start is not None and start.attrs.get("source") != "start"
-        warn_if_short(chain, duration, run.schedule.warmup, replicas=replicas, from_rest=not given)
+    if run.too_short:
+        warnings.warn(run.too_short, ShortRunWarning, stacklevel=2)
     copies = _replicas(run)
     with announced(bool(progress)):
         compile_kernels()

@@ -45,7 +45,7 @@ _AT_STEP: dict[int, Granted] = {
     },
 }
 _ELASTIC: Granted = {"quick": (4, {"duration": 5000.0}), "full": (8, {"duration": 50_000.0})}
-_FLIPPERS: Granted = {"quick": (3, {"duration": 1000.0}), "full": (8, {"duration": 8000.0})}
+_FLIPPERS: Granted = {"quick": (4, {"duration": 1000.0}), "full": (8, {"duration": 8000.0})}
 
 
 def _granted(by_size: Mapping[int, Granted], size: int) -> Granted:

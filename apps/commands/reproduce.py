@@ -125,7 +125,7 @@ def command(
         reproduced = _draw(wanted, quality, output, keep_old=keep_old, **drawing)
         if which in _REPORTS:
             _write_report(reproduced, quality, output, *_REPORTS[which])
-        _print_claims(reproduced)
+        _print_claims(reproduced, quality)
 
 
 def _print_list() -> None:
@@ -180,7 +180,7 @@ def _write_report(
         wrote(output / name)
 
 
-def _print_claims(reproduced: list[Reproduced]) -> None:
+def _print_claims(reproduced: list[Reproduced], quality: Quality) -> None:
     """Print the claims of the figures, if there are any, and how many came out how."""
     from crazybilliards.reproduction.claims.report import details, summary
 
@@ -196,7 +196,9 @@ def _print_claims(reproduced: list[Reproduced]) -> None:
                 "variations": [_flat(other) for other in claim.variations],
             }
             noted.append(which | said | numbers)
-            say(_indented(1, f"{claim.statement}: {claim.verdict}"))
+            more = " from so few runs (--quality full has more)" if quality is Quality.QUICK else ""
+            undecided = more if claim.verdict == "undecided" else ""
+            say(_indented(1, f"{claim.statement}: {claim.verdict}{undecided}"))
             for name in (name for name in said if name in _PRINTED):
                 say(_indented(2, f"{name}: {said[name]}"))
     note(claims=noted, summary=summary(reproduced))

@@ -32,6 +32,7 @@ from crazybilliards.kinetic.accuracy import UnmeasuredWarning
 from crazybilliards.model import Chain, load
 from crazybilliards.model.checks import check_choice, got
 from crazybilliards.model.storage import load_attributes, small_netcdf
+from crazybilliards.particles import ShortRunWarning
 
 
 class OutdatedError(ValueError):
@@ -132,6 +133,11 @@ class Case:
         return isinstance(other, Case) and self.canonical == other.canonical
 
     @property
+    def too_short(self) -> str:
+        """In what a simulation is too short for the memory of the chain, or nothing."""
+        return JOBS[self.job].too_short(self.chain, **self.settings)
+
+    @property
     def source(self) -> str:
         """Fingerprint of the source code that its result depends on."""
         return JOBS[self.job].source
@@ -193,6 +199,7 @@ def compute(case: Case, source: str) -> bytes:
     with _libraries(len(sys.modules)).limit(limits=1), warnings.catch_warnings():
         # The result states that its error is unknown; a line per process would not say of which.
         warnings.simplefilter("ignore", UnmeasuredWarning)
+        warnings.simplefilter("ignore", ShortRunWarning)  # said of the whole sweep
         result = JOBS[case.job].function(case.chain, **{**case.settings, **own})
     if result.attrs["status"] == "interrupted":
         raise KeyboardInterrupt

@@ -44,6 +44,8 @@ class Job:
         ValueError that the function would raise for a wrong argument, without its work.
     settings
         The names of the settings with their defaults.
+    too_short
+        In what averages over time are too short for the memory of the chain, or nothing.
     source
         Fingerprint of the source code that the result depends on. It is computed when this module
         is imported, together with that code. A later edit during a long interactive session
@@ -54,6 +56,7 @@ class Job:
     work: Callable[..., float]
     settings: Mapping[str, Any]
     source: str
+    too_short: Callable[..., str] = lambda chain, **settings: ""
 
 
 def _settings(function: Callable[..., Any]) -> dict[str, Any]:
@@ -65,6 +68,10 @@ def _settings(function: Callable[..., Any]) -> dict[str, Any]:
 def _steps(chain: Chain, **settings: Any) -> float:
     run = make_run(chain, start=None, **settings)
     return float(run.schedule.steps) * chain.size * run.replicas
+
+
+def _too_short(chain: Chain, **settings: Any) -> str:
+    return make_run(chain, start=None, **settings).too_short
 
 
 def _limit_steps(chain: Chain, **settings: Any) -> float:
@@ -88,6 +95,7 @@ JOBS: dict[str, Job] = {
     "simulate": Job(
         function=partial(simulate, threads=1, progress=False),
         work=_steps,
+        too_short=_too_short,
         settings=_settings(simulate),
         source=room_fingerprint("model", "particles"),
     ),

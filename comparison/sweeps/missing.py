@@ -7,6 +7,7 @@ again when it is computed.
 from __future__ import annotations
 
 import sys
+import warnings
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -19,6 +20,7 @@ from tqdm import tqdm
 from crazybilliards.comparison.sweeps.case import Case, OutdatedError
 from crazybilliards.comparison.sweeps.grid import Sweep
 from crazybilliards.model.process import bar_hidden
+from crazybilliards.particles import ShortRunWarning
 
 _Item = TypeVar("_Item")
 
@@ -120,8 +122,15 @@ def _check_sweep(sweep: Sweep, progress: bool) -> NDArray[np.float64]:
             pass
         chains["seed"] = first["seed"]
     bar = _bar(replace(sweep, grid=chains), f"checking {len(sweep)} cases", progress)
-    work = np.array([case.work for case in bar]).reshape([*map(len, chains.values())])
-    return np.broadcast_to(work, [*map(len, sweep.grid.values())]).ravel()
+    work, short = [], []
+    for case in bar:
+        work.append(case.work)
+        short += [case.too_short] if case.too_short else []
+    if short:
+        many = f"{len(short)} of {len(work)} cases; the first: " if len(work) > 1 else ""
+        warnings.warn(many + short[0], ShortRunWarning, stacklevel=4)
+    sizes = [*map(len, chains.values())]
+    return np.broadcast_to(np.array(work).reshape(sizes), [*map(len, sweep.grid.values())]).ravel()
 
 
 def find_missing(

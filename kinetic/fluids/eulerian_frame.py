@@ -44,7 +44,7 @@ Array = NDArray[np.float64]
 _COURANT = 0.5
 _MOST_COURANT = 1.0  # beyond, four-stage Runge-Kutta with second-order fluxes is not stable
 _HALVINGS = 6
-# Widths of a cell, by default and at most, in units of what it has to resolve, see ``_finest``. With
+# Widths of a cell, by default and at most, in units of what it has to resolve (``_finest``). With
 # the widest cells the scheme's error is 0.01 to 0.03 of s.
 _CELL, _WIDEST_CELL = 0.1, 0.5
 _MOST_BY_DEFAULT = 50_000

@@ -22,6 +22,7 @@ from crazybilliards.reproduction.claims.study import Cases, Quality, Results
 from crazybilliards.reproduction.claims.verdicts import Estimate
 
 _SQUARED = ("velocity_width", "displacement_width")
+_FEWEST = 4  # runs that show their scatter
 _COUNTED = ("avalanche_count", "triggered_count")
 
 
@@ -113,11 +114,13 @@ def error_of_mean(values: ArrayLike) -> NDArray[np.float64]:
     """Return the standard error of the mean of independent runs, along the first axis.
 
     It comes from their scatter, which few runs do not show well. It is therefore enlarged by
-    Student's factor, so that 68 % of all means lie within one error however few the runs: by 1.84
-    for two runs, 1.20 for four, 1.08 for eight.
+    Student's factor, so that 68 % of all means lie within one error: by 1.20 for four runs, 1.08
+    for eight. With fewer than four runs it is not known, and infinity is returned.
     """
     values = np.asarray(values, dtype=float)
     number = len(values)
+    if number < _FEWEST:
+        return np.full(values.shape[1:], np.inf)
     factor = float(t.ppf(norm.cdf(1), number - 1))
     return np.asarray(factor * values.std(axis=0, ddof=1) / number**0.5)
 

@@ -64,8 +64,10 @@ class Estimate(NamedTuple):
 
     def __str__(self) -> str:
         """Return both, to the error's second digit."""
-        if not (math.isfinite(self.value) and math.isfinite(self.error)):
+        if not math.isfinite(self.value):
             return "not determined"
+        if not math.isfinite(self.error):
+            return f"{self.value:.3g}, with an unknown error"
         digits = max(0, 1 - math.floor(math.log10(self.error))) if self.error > 0 else 4
         return f"{self.value:.{digits}f} ± {self.error:.{digits}f}"
 

@@ -33,7 +33,7 @@ _PAPER, _PRECISION = -0.38, 0.005  # "with exponent -0.38": half a unit of the l
 _LONG_STEPS = {1000: 6.5e-3, 10_000: 1e-3}
 _GRANTED: dict[int, Granted] = {
     1000: {
-        "quick": (2, {"duration": 100.0, "warmup": 40.0}),
+        "quick": (4, {"duration": 60.0, "warmup": 40.0}),
         "full": (4, {"duration": 400.0, "warmup": 60.0}),
     },
     10_000: {

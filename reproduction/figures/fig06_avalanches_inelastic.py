@@ -28,7 +28,7 @@ from crazybilliards.reproduction.distributions import draw_sizes
 
 _LONGEST, _BETWEEN, _MIDDLE, _SHORTEST = _STEPS = (1e-1, 2.3e-2, 1e-2, 1e-3)
 _GRANTED: Granted = {
-    "quick": (2, {"duration": 64.0, "warmup": 30.0}),
+    "quick": (4, {"duration": 40.0, "warmup": 30.0}),
     "full": (4, {"duration": 200.0, "warmup": 60.0}),
 }
 # The step at which pushes have the paper's exponent, found by trial. The runs are long enough to

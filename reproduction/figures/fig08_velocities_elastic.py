@@ -33,9 +33,12 @@ from crazybilliards.reproduction.distributions import (
 _SIZE = 100
 _RUNS = elastic(_SIZE)
 _PARTICLES = (1, 50)
-_LONG: Granted = {"quick": (2, {"duration": 200.0}), "full": (4, {"duration": 2000.0})}
+_LONG: Granted = {"quick": (4, {"duration": 2000.0}), "full": (4, {"duration": 2000.0})}
 # Contact Dynamics is off by far more, and its steps are short.
-_SHORT: Granted = {"quick": (2, {"duration": 50.0}), "full": (4, {"duration": 200.0})}
+_SHORT: Granted = {
+    "quick": (4, {"duration": 50.0, "warmup": 30.0}),
+    "full": (4, {"duration": 200.0}),
+}
 _SHOWN = 4.0  # free widths to either side in the plot of a distribution
 _SOURCE = "section seq:e_larger, fig.4.2"
 _STEPS = (1e-2, 1e-3)  # of Contact Dynamics

@@ -20,7 +20,7 @@ from crazybilliards.reproduction.claims.verdicts import Claim, positive_claim, s
 _RESTITUTIONS = (0.0, 0.75, 0.95)
 _GAPS = (0.05, 0.2, 1.0)
 _GRANTED: Granted = {
-    "quick": (2, {"duration": 120.0, "warmup": 50.0}),
+    "quick": (4, {"duration": 80.0, "warmup": 50.0}),
     "full": (4, {"duration": 600.0, "warmup": 100.0}),
 }
 _SOURCE = "appendix, fig:mom_var_gaps"

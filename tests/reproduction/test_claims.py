@@ -58,21 +58,24 @@ def test_cases_of_runs_differ_in_their_seeds_and_their_qualities_in_what_each_gr
 
 
 def test_errors_of_estimates_cover_the_truth_however_few_the_runs():
-    """68 % of the estimates from three runs lie within one error, thanks to Student's factor."""
+    """68 % of the estimates from four runs lie within one error, thanks to Student's factor."""
     generator = np.random.default_rng(5)
     hits, trials = 0, 300
     for _ in range(trials):
-        results = {f"a/{k}": generator.normal(1, 0.1) for k in range(3)}  # of runs only the number
+        results = {f"a/{k}": generator.normal(1, 0.1) for k in range(4)}  # of runs only the number
         value, error = RUNS.estimate(results, float)
         hits += abs(value - 1) < error
     assert abs(hits / trials - 0.683) < 5 * (0.683 * 0.317 / trials) ** 0.5
 
 
-def test_two_runs_have_an_error_of_student():
-    """The half-difference times 1.84; several quantities at once have each their own."""
-    factor = t.ppf(norm.cdf(1), 1)
-    assert factor == pytest.approx(1.837, abs=1e-3)
-    np.testing.assert_allclose(error_of_mean([[1.0, 5.0], [2.0, 5.0]]), [0.5 * factor, 0.0])
+def test_few_runs_have_an_error_of_student_or_none():
+    """Of four the scatter times 1.2; several quantities at once have each their own."""
+    factor = t.ppf(norm.cdf(1), 3)
+    assert factor == pytest.approx(1.197, abs=1e-3)
+    four = [[1.0, 5.0], [3.0, 5.0], [1.0, 5.0], [3.0, 5.0]]
+    np.testing.assert_allclose(error_of_mean(four), [factor / 3**0.5, 0.0])
+    assert np.isinf(error_of_mean(four[:3])).all()
+    assert "standard error" not in str(Estimate(0.5, np.inf))
 
 
 def test_all_of_few_runs_are_not_all_runs():
