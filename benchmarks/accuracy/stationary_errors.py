@@ -14,7 +14,7 @@ import itertools
 import json
 import math
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -22,8 +22,10 @@ import xarray as xr
 from scipy.interpolate import PchipInterpolator
 
 import crazybilliards as cb
+from crazybilliards.kinetic import accuracy
 
-RADII = (0.7, 2.1, 7.0)  # s/R; s: thermal length
+LENGTHS = (0.7, 2.1, 7.0)  # s/R; s: thermal length
+OTHER_LENGTHS = (0.9, 3.0, 10.0)  # of the chains drawn at random
 COLUMNS = ("theory", "quantity", "g L/s", "L", "e", "Gamma", "s/R", "error", "standard error")
 # Relative accuracy of W_v in the centre of each of the three runs, by size.
 ACCURACY = {10: 0.004, 30: 0.004, 100: 0.006, 300: 0.012, 1000: 0.03}
@@ -35,13 +37,12 @@ Place = tuple[int, float, float, float]  # L, e, Gamma = gamma/sqrt(k m), g L/s
 
 def places() -> Iterator[Place]:
     """Give the measured chains; the long ones come last."""
-    dissipative = (0.0, 0.3, 0.5, 0.75, 0.83, 0.9, 0.95, 0.98, 1.0)
+    without, with_gap = (0.0, 0.3, 0.5, 0.65, 0.75, 0.83, 0.9, 0.95, 0.98, 1.0), slice(2, 8)
     dampings = (0.15, 0.49, 1.5)
     for size in (10, 30, 100, 300):
-        yield from itertools.product([size], dissipative, dampings, [0.0])
-        yield from itertools.product(
-            [size], (0.5, 0.75, 0.9, 0.95, 1.0), dampings, (4.0, 14.0, 42.0)
-        )
+        yield from itertools.product([size], without, dampings, [0.0])
+        dissipative = (*without[with_gap], 1.0)
+        yield from itertools.product([size], dissipative, dampings, (4.0, 8.0, 14.0, 24.0, 42.0))
     for size in (10, 30, 100):
         yield from itertools.product([size], (1.0, 1.05), (1.95, 8.0), [0.0])
     yield from itertools.product([1000], (0.0, 0.5, 0.75, 0.9, 0.95, 0.98, 1.0), [0.49], [0.0])
@@ -133,7 +134,9 @@ def density_errors(theory: xr.Dataset, run: xr.Dataset) -> tuple[float, float]:
     return largest((off + off[::-1]) / 2, error)
 
 
-def rows(place: Place, theory: str, found: xr.Dataset, runs: list[xr.Dataset]) -> list[Row]:
+def rows(
+    place: Place, theory: str, found: xr.Dataset, runs: list[xr.Dataset], lengths: Sequence[float]
+) -> list[Row]:
     """Return the errors of a theory, one row a quantity."""
     chain, errors = cb.chain_of(found), {}
     border = np.minimum(np.arange(chain.size), np.arange(chain.size)[::-1])
@@ -150,17 +153,17 @@ def rows(place: Place, theory: str, found: xr.Dataset, runs: list[xr.Dataset]) -
         errors["border"] = largest(off[border == 0], error[border == 0])
     common = (theory, *place)
     table: list[Row] = [(*common, "", name, *pair) for name, pair in errors.items()]
-    for length, run in zip(RADII, runs, strict=True):
+    for length, run in zip(lengths, runs, strict=True):
         table.append((*common, length, "density", *density_errors(of_radius(found, run), run)))
     return table
 
 
-def measured(place: Place) -> list[Row]:
+def measured(place: Place, lengths: Sequence[float]) -> list[Row]:
     """Return the errors of all theories that take the chain at this place."""
-    runs = [simulated(place, length, seed) for seed, length in enumerate(RADII)]
+    runs = [simulated(place, length, seed) for seed, length in enumerate(lengths)]
     table = []
     for theory in ("phase_space", "correlated_phase_space"):
-        chain = chain_at(place, RADII[0])
+        chain = chain_at(place, lengths[0])
         if not cb.theories(chain).takes.sel(theory=theory):
             continue
         solve = getattr(cb, theory)
@@ -168,8 +171,14 @@ def measured(place: Place) -> list[Row]:
             found = solve(chain)
         except ValueError:  # the finest mesh misses the usual tolerance by a little
             found = solve(chain, tolerance=4e-3)
-        table += rows(place, theory, found, runs)
+        table += rows(place, theory, found, runs, lengths)
     return table
+
+
+def stated(theory: str, place: Place, length: float, quantity: str) -> float:
+    """Return the error that the theory states for a chain that was drawn at random."""
+    expected = getattr(accuracy, f"expected_{theory}")(chain_at(place, length))
+    return float(getattr(expected, quantity))
 
 
 def main(folder: Path, *, held: bool) -> None:
@@ -180,7 +189,7 @@ def main(folder: Path, *, held: bool) -> None:
         file = folder / f"{'_'.join(f'{each:g}' for each in place)}.json"
         try:
             with file.open("x") as mine:  # another process leaves it alone
-                json.dump(measured(place), mine)
+                json.dump(measured(place, OTHER_LENGTHS if held else LENGTHS), mine)
         except FileExistsError:
             pass
         try:
@@ -190,12 +199,15 @@ def main(folder: Path, *, held: bool) -> None:
     if missing:
         return
     writer = csv.writer(sys.stdout, lineterminator="\n")
-    writer.writerow(COLUMNS)
+    writer.writerow([*COLUMNS, "stated", "beyond it, standard errors"] if held else COLUMNS)
     for theory, *place, length, quantity, error, own in table:
         size, e, damping, lattice = place
-        coordinates = (lattice, size, e, damping)
-        named = [theory, quantity, *(f"{each:g}" for each in coordinates), length]
-        writer.writerow([*named, f"{error:.4f}", f"{own:.4f}"])
+        coordinates = (f"{each:.3g}" for each in (lattice, size, e, damping))
+        row = [theory, quantity, *coordinates, length, f"{error:.4f}", f"{own:.4f}"]
+        if held:
+            limit = stated(theory, tuple(place), length or OTHER_LENGTHS[0], quantity)
+            row += [f"{limit:.4f}", f"{max(error - limit, 0) / own if own else 0:.1f}"]
+        writer.writerow(row)
 
 
 if __name__ == "__main__":

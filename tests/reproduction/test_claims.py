@@ -12,7 +12,7 @@ from crazybilliards.model.vocabulary import result
 from crazybilliards.particles import simulate, simulate_limit
 from crazybilliards.reproduction.claims.repetition import Runs, error_of_mean, share_of_runs
 from crazybilliards.reproduction.claims.study import all_of
-from crazybilliards.reproduction.claims.verdicts import positive_claim
+from crazybilliards.reproduction.claims.verdicts import Estimate, positive_claim
 from crazybilliards.reproduction.distributions import mean_shape
 
 
