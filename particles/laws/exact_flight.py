@@ -27,8 +27,7 @@ import numpy as np
 from scipy.linalg import expm
 
 from crazybilliards.model import Chain
-from crazybilliards.model.kernels import inlined, kernel
-from crazybilliards.particles.laws.sort import sort_pairs
+from crazybilliards.model.kernels import kernel
 
 
 class Propagator(NamedTuple):
@@ -89,10 +88,3 @@ def propagate(y, v, kicks, step):  # type: ignore[no-untyped-def]
         noise = step.shared_noise * first[i] + step.own_noise * second[i]
         y[i] = step.y_from_y * y_i + step.y_from_v * v_i + noise
         v[i] = step.v_from_y * y_i + step.v_from_v * v_i + step.noise * first[i]
-
-
-@inlined
-def fly(y, v, kicks, step, scratch):  # type: ignore[no-untyped-def]
-    """Take one step of the chain in place."""
-    propagate(y, v, kicks, step)
-    sort_pairs(y, v, scratch)

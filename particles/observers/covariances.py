@@ -74,9 +74,7 @@ class Covariances(Averaged):
         """Return all covariances and their standard errors."""
         last = self.furthest + 1
         at_anchors = np.diff(self.anchors)
-
-        def of_velocities(average: Array) -> Array:
-            return _known(average[..., :last, :])
+        of_velocities = {"velocity_covariance": lambda average: _known(average[..., :last, :])}
 
         def of_gaps(average: Array) -> Array:
             products, mean = average[..., last:-1, :-1], average[..., -1, :-1]
@@ -96,9 +94,7 @@ class Covariances(Averaged):
             "relative_temperature": relative,
         }
         return {
-            **self.averages(
-                {"velocity_covariance": of_velocities}, counts, "particle", "separation"
-            ),
+            **self.averages(of_velocities, counts, "particle", "separation"),
             **self.averages({"gap_covariance": of_gaps}, counts, "contact", "separation"),
             **self.averages(of_contacts, counts, "contact"),
         }

@@ -82,22 +82,16 @@ class Impacts(Averaged):
         """Return the four quantities and their standard errors."""
         per_time = self.mass / (self.schedule.stride * self.schedule.time_step)
 
-        def force(average: Array) -> Array:
-            return per_time * (average[MOMENTUM_BEFORE] + average[MOMENTUM_AFTER])
-
-        def loss(average: Array) -> Array:
-            return per_time * (average[ENERGY_BEFORE] - average[ENERGY_AFTER])
-
         def rebound(average: Array) -> Array:
             merged = (average[MOMENTUM_AFTER] == 0) & (average[MOMENTUM_BEFORE] > 0)
             found = _temperature(average[MOMENTUM_AFTER], average[ENERGY_AFTER])
             return np.where(merged, 0.0, found)
 
         quantities = {
-            "contact_force": force,
-            "contact_loss": loss,
-            "contact_temperature": lambda average: _temperature(
-                average[MOMENTUM_BEFORE], average[ENERGY_BEFORE]
+            "contact_force": lambda sums: per_time * (sums[MOMENTUM_BEFORE] + sums[MOMENTUM_AFTER]),
+            "contact_loss": lambda sums: per_time * (sums[ENERGY_BEFORE] - sums[ENERGY_AFTER]),
+            "contact_temperature": lambda sums: _temperature(
+                sums[MOMENTUM_BEFORE], sums[ENERGY_BEFORE]
             ),
             "rebound_temperature": rebound,
         }

@@ -16,19 +16,12 @@ _FINEST = 0.05  # of the free width: bins are equal below, grow in proportion to
 _WIDEST = 1000.0
 
 
-def _central_moment(average: Array, order: int) -> Array:
-    """Return the variance, the third or the fourth moment around the mean, from raw moments."""
-    mean, second, third, fourth = (average[..., k, :] for k in range(4))
-    if order == 2:
-        return np.asarray(second - mean**2)
-    if order == 3:
-        return np.asarray(third - 3 * mean * second + 2 * mean**3)
-    return np.asarray(fourth - 4 * mean * third + 6 * mean**2 * second - 3 * mean**4)
-
-
 def _standardized(average: Array, order: int) -> Array:
-    """Return that moment in units of the width; NaN for a rod that had one velocity only."""
-    moment, variance = _central_moment(average, order), _central_moment(average, 2)
+    """Return the third or fourth central moment in widths; NaN for a rod with one velocity only."""
+    mean, second, third, fourth = (average[..., k, :] for k in range(4))
+    variance, moment = second - mean**2, third - 3 * mean * second + 2 * mean**3
+    if order == 4:
+        moment = fourth - 4 * mean * third + 6 * mean**2 * second - 3 * mean**4
     nothing = np.full_like(moment, np.nan)
     return np.divide(moment, variance ** (order / 2), where=variance > 0, out=nothing)
 
