@@ -110,15 +110,12 @@ def time_step_error(
 
     * 0.1 r^3 below the critical restitution, with the correction for closed contacts
       (``laws/closed_contacts.py``), r = 0.2 to 0.6;
-    * 0.24 r^(3/2) in the Euler scheme and with Contact Dynamics, which have no correction: at e = 0
-      the number of excursions from one contact to the next that last longer than dt is ~ dt^(-1/4),
-      and each loses the energy of one kick, ~ dt;
+    * 0.24 r^(3/2) in the Euler scheme and with Contact Dynamics, which have no correction;
     * the larger of 0.1 |1 - e| r^(3/2) and 0.05 r^4 at higher restitutions, r = 0.06 to 1.3.
 
     The last one is an empirical law, an upper estimate of the paired differences that
-    ``benchmarks/accuracy/time_step_law.py`` measures: W_v is too small for short steps, and too
-    large for long ones because of the half kick before each snapshot. The relative errors of mean
-    displacements are of the same size, for e = 0.1 up to three times as large.
+    ``benchmarks/accuracy/time_step_law.py`` measures (docs/particles.md). The relative errors of
+    mean displacements are of the same size, for e = 0.1 up to three times as large.
     """
     if chain.restitution == 1 or velocity_width == 0:
         return 0.0

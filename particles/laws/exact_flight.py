@@ -1,10 +1,9 @@
 r"""Elastic rods on linear springs with one common anchor: their exact motion over any time.
 
-Equal masses that collide elastically swap their velocities, as if they passed through each other
-and swapped names. Without a gap all springs are equal, too, and so are damping and noise. The rods
-are then independent oscillators that swap names, and sorting them by their positions gives the
-chain, exactly, however often they have met. For a linear spring the position and the velocity after
-a time t are jointly normal,
+Elastic rods move as if they passed through each other and swapped names (``sort.py``). Without a
+gap all springs are equal, too, and so are damping and noise. The rods are then independent
+oscillators, and sorting them by their positions gives the chain, exactly, however often they have
+met. For a linear spring the position and the velocity after a time t are jointly normal,
 
     (y, v)(t) = E (y, v)(0) + noise of covariance Sigma,
     E = exp(B t),   B = [[0, 1], [-k/m, -gamma/m]],

@@ -5,11 +5,11 @@ that of the noise (``scales.time_step_error``) plus that of the springs, (w0 dt)
 linear springs displacements have, but velocities do not. With a gap, collisions still heat the
 chain a little (``laws/spring_correction.py``), by the fraction 3e-3 w0 (w0 dt)^4 of the energy per
 time, measured at dt = 0.1 and 0.5 for gaps of one and two radii. Weak damping lets this grow to
-1.5e-3 (m w0/gamma) (w0 dt)^4 of a width. Each longer
-step is nine times the one before. Runs at two steps are correlated about equally for the ratios
-three and nine (0.97 to 0.99 for 100 rods at e = 0), and nine needs fewer levels. A step whose
-velocity kicks exceed 1.5 W_v is not correlated with any other. One level with a third of the
-shortest step is planned in reserve, in case the shortest step turns out to be too long.
+1.5e-3 (m w0/gamma) (w0 dt)^4 of a width. Each longer step is nine times the one before. Runs at two
+steps are correlated about equally for the ratios three and nine (0.97 to 0.99 for 100 rods at
+e = 0), and nine needs fewer levels. A step whose velocity kicks exceed 1.5 W_v is not correlated
+with any other. One level with a third of the shortest step is planned in reserve, in case the
+shortest step turns out to be too long.
 
 For e = 1 the step need not resolve the noise. Its error is that of the springs, which is known, and
 one level is enough. Where the motion of the chain is known exactly (``laws/exact_flight.py``) there

@@ -145,8 +145,16 @@ def simulate_limit(
         merging=merging,
         particles=particles,
     )
-    levels = Levels(chain, float(accuracy), steps, _samplers(runs, seed, replicas))
-    samplers = [sampler for level in levels.samplers for sampler in level]
+    groups = -(-GROUPS // replicas)
+    by_level = [
+        [
+            Sampler(run, longer, np.random.SeedSequence(seed, spawn_key=(level, replica)), groups)
+            for replica in range(replicas)
+        ]
+        for level, (run, longer) in enumerate(zip(runs, [None, *runs[:-1]], strict=True))
+    ]
+    levels = Levels(chain, float(accuracy), steps, by_level)
+    samplers = [sampler for level in by_level for sampler in level]
     with announced(progress):
         compile_kernels()
         compile_pair()
@@ -156,7 +164,6 @@ def simulate_limit(
         keeper = Checkpoint(
             Path(checkpoint), identity(samplers[0].finer) | own, checkpoint_interval
         )
-    levels.start()
     with (
         interrupts_noted() as signals,  # between two rounds as well
         nullcontext() if keeper is None else keeper.resumed(samplers),
@@ -222,23 +229,6 @@ def make_runs(
         "observe (ask for fewer particles)", (chains * groups + _JOINED * replicas * groups) * kept
     )
     return steps, runs
-
-
-def _samplers(runs: Sequence[LevelRun], seed: int, replicas: int) -> list[list[Sampler]]:
-    """Return the samplers by level and replica, each with noise of its own."""
-    groups = -(-GROUPS // replicas)
-    return [
-        [
-            Sampler(
-                run,
-                runs[level - 1] if level else None,
-                np.random.SeedSequence(seed, spawn_key=(level, replica)),
-                groups,
-            )
-            for replica in range(replicas)
-        ]
-        for level, run in enumerate(runs)
-    ]
 
 
 def _collect(levels: Levels, interrupted: bool, progress: bool) -> xr.Dataset:

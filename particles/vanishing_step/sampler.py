@@ -24,7 +24,7 @@ from crazybilliards.particles.noise import make_noise
 from crazybilliards.particles.observers import Observer, Snapshots
 from crazybilliards.particles.run import Run
 from crazybilliards.particles.running.replica import Replica
-from crazybilliards.particles.vanishing_step.coupling import advance_pair, record_pair
+from crazybilliards.particles.vanishing_step.coupling import record_pair
 
 Array = NDArray[np.float64]
 
@@ -57,8 +57,7 @@ class Sampler(Replica):
     def _set_steps(self) -> None:
         """Compute the quantities that follow from the chains and the requested snapshots."""
         schedule = (self.coarser or self.finer).schedule
-        groups = self.counts.size
-        self.schedule = replace(schedule, blocks=groups, snapshots_per_block=self.target)
+        self.schedule = replace(schedule, blocks=self.counts.size, snapshots_per_block=self.target)
         self.observers = [each for chains in self.measured for some in chains for each in some]
         # Number of rods that move in every counted step.
         self.weight = self.finer.chain.size
@@ -152,6 +151,4 @@ def compile_pair() -> None:
     y, v = np.zeros((2, 2, 2))
     scratch = make_scratch(2), make_scratch(2)
     noise, tally = make_noise(np.random.SeedSequence(0)), make_tally(2, contacts=False)
-    pair = y, v, noise, dynamics, 3, scratch, tally, 1
-    advance_pair(*pair)
-    record_pair(*pair, 1, *np.zeros((2, 2, 1, 2)))
+    record_pair(y, v, noise, dynamics, 3, scratch, tally, 1, 1, *np.zeros((2, 2, 1, 2)))
