@@ -1,14 +1,11 @@
 r"""The physical scales of a chain, from which a run is planned.
 
-The scales of a chain are the spring's rate w0 = sqrt(F'(d)/m), taken for a quadratic spring at
-the displacement d that ten times the temperature reaches, and the damping rate gamma/m.
-
-**Time step.** The step is 0.05 / max(w0, gamma/m). The splitting scheme then has W_x right to 3e-4
-(linear springs, no gap). For e != 1 the step must also be short enough to resolve the noise, most
-of all in the centre, where the chain is coldest. What matters is r = (A sqrt(dt)/m)/W_v, the ratio
-of the velocity kick of one step to W_v. It is held at 0.3, with the estimate of W_v by
-:func:`centre_width`. The error of W_v is then at most 1 %. For every step the result states the
-expected error (:func:`time_step_error`).
+**Time step.** The step is 0.05 / max(w0, gamma/m), w0 from :func:`spring_rate`. The splitting
+scheme then has W_x right to 3e-4 (linear springs, no gap). For e != 1 the step must also be short
+enough to resolve the noise, most of all in the centre, where the chain is coldest. What matters is
+r = (A sqrt(dt)/m)/W_v, the ratio of the velocity kick of one step to W_v. It is held at 0.3, with
+the estimate of W_v by :func:`centre_width`. The error of W_v is then at most 1 %. For every step
+the result states the expected error (:func:`time_step_error`).
 
 **Relaxation time.** A rod on a linear spring k' relaxes with its slowest mode,
 
@@ -55,7 +52,7 @@ _SLOWEST_MODE = 1.241  # rate of a strongly damped rod on a quadratic spring, in
 
 
 def spring_rate(chain: Chain) -> float:
-    """w0 = sqrt(F'(d)/m) [1/T]; a quadratic spring's is taken at U(d) = 10 T."""
+    """w0 = sqrt(F'(d)/m) [1/T]; a quadratic spring's is taken at U(d) = 10 T, the temperature."""
     if chain.spring == "linear":
         return math.sqrt(chain.stiffness / chain.mass)
     if chain.stiffness == 0 or chain.temperature == 0:

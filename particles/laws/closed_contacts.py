@@ -11,9 +11,7 @@ The same factor is taken up to the critical restitution exp(-pi/sqrt 3) = 0.163 
 Bray, Phys. Rev. Lett. 81, 1142, 1998), below which two rods that meet still come to rest in
 contact. D was not worked out there, but the factor removes the error in chains at e = 0.1.
 
-The deviations of the kicks from the mean of their cluster are made stronger, which does not change
-the momentum. If a snapshot splits a kick into two halves, the two together have the law of a whole
-kick when the second half is made stronger by ``second_half``.
+Only the deviations of kicks from the mean of their cluster grow, which keeps the momentum.
 """
 
 from __future__ import annotations

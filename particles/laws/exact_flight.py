@@ -66,15 +66,9 @@ def make_propagator(chain: Chain, duration: float) -> Propagator:
     root = math.sqrt(sigma[1, 1])
     shared = sigma[0, 1] / root
     own = math.sqrt(max(sigma[0, 0] - shared**2, 0.0))
-    return Propagator(
-        float(e[0, 0]),
-        float(e[0, 1]) * h,
-        float(e[1, 0]) / h,
-        float(e[1, 1]),
-        kick * root,
-        kick * h * float(shared),
-        kick * h * own,
-    )
+    (yy, yv), (vy, vv) = e.tolist()
+    noise = kick * root, kick * h * float(shared), kick * h * own
+    return Propagator(yy, yv * h, vy / h, vv, *noise)
 
 
 @kernel

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import ClassVar, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
@@ -28,7 +28,7 @@ class _CountedWaves(Observer):
 
     def tally(self, tally: Tally) -> Tally:
         """Return the tally with the waves of this observer."""
-        waves = Waves(self.heads, self.following, self.origins, self.unused, self.sizes)
+        waves: Any = Waves(self.heads, self.following, self.origins, self.unused, self.sizes)
         return tally._replace(**{self.record: waves})
 
     def memory(self, run: Run) -> float:

@@ -84,14 +84,12 @@ class Covariances(Averaged):
                 squared[..., r, : size - r] = mean[..., : size - r] * mean[..., r:]
             return _known(products - squared)
 
-        def relative(average: Array) -> Array:
-            own = (average[..., 0, 1:] + average[..., 0, :-1]) / 2
-            return np.asarray(own - average[..., 1, :-1])
-
         of_contacts = {
             "mean_gap": lambda average: average[..., -1, :-1] + at_anchors,
             "neighbour_covariance": lambda average: average[..., 1, :-1],
-            "relative_temperature": relative,
+            "relative_temperature": lambda average: (
+                (average[..., 0, 1:] + average[..., 0, :-1]) / 2 - average[..., 1, :-1]
+            ),
         }
         return {
             **self.averages(of_velocities, counts, "particle", "separation"),

@@ -83,22 +83,20 @@ class Impacts(Averaged):
 
         def rebound(average: Array) -> Array:
             merged = (average[MOMENTUM_AFTER] == 0) & (average[MOMENTUM_BEFORE] > 0)
-            found = _temperature(average[MOMENTUM_AFTER], average[ENERGY_AFTER])
+            found = _temperature(average, MOMENTUM_AFTER, ENERGY_AFTER)
             return np.where(merged, 0.0, found)
 
         quantities = {
             "contact_force": lambda sums: per_time * (sums[MOMENTUM_BEFORE] + sums[MOMENTUM_AFTER]),
             "contact_loss": lambda sums: per_time * (sums[ENERGY_BEFORE] - sums[ENERGY_AFTER]),
-            "contact_temperature": lambda sums: _temperature(
-                sums[MOMENTUM_BEFORE], sums[ENERGY_BEFORE]
-            ),
+            "contact_temperature": lambda sums: _temperature(sums, MOMENTUM_BEFORE, ENERGY_BEFORE),
             "rebound_temperature": rebound,
         }
         return self.averages(quantities, counts, "contact")
 
 
-def _temperature(momentum: Array, energy: Array) -> Array:
+def _temperature(sums: Array, momentum: int, energy: int) -> Array:
     """Return (pi/16) (<w^2>/<w>)^2 = (pi/4) (energy/momentum)^2, NaN without any collision."""
-    unknown = np.full_like(momentum, np.nan)
-    ratio = np.divide(energy, momentum, out=unknown, where=momentum > 0)
+    unknown = np.full_like(sums[momentum], np.nan)
+    ratio = np.divide(sums[energy], sums[momentum], out=unknown, where=sums[momentum] > 0)
     return np.asarray(np.pi / 4 * ratio**2)

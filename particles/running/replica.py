@@ -14,7 +14,7 @@ from crazybilliards.particles.dynamics import Dynamics, start_noise
 from crazybilliards.particles.laws.avalanche import Tally, make_tally
 from crazybilliards.particles.laws.law import EVENTS, make_scratch
 from crazybilliards.particles.noise import STATE
-from crazybilliards.particles.observers import Observer, Snapshots, restore
+from crazybilliards.particles.observers.base import Observer, Snapshots, restore
 from crazybilliards.particles.schedule import Schedule
 from crazybilliards.particles.stepping import record
 
@@ -46,7 +46,8 @@ class Replica:
     snapshots: int = 0  # taken of it
     over: bool = False  # it diverged
     reached: int = NEVER  # the first block that a diverged copy did not fill
-    changing: ClassVar = ("copy", "y", "v", "counts", "steps", "snapshots", "over", "reached")
+    # Attributes that a checkpoint keeps.
+    changing: ClassVar[Any] = ("copy", "y", "v", "counts", "steps", "snapshots", "over", "reached")
     lock: Any = field(default_factory=Lock)  # held while a chunk is under way
 
     def __post_init__(self) -> None:

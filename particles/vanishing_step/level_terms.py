@@ -16,8 +16,7 @@ from numpy.typing import NDArray
 from scipy.special import ndtr, stdtrit
 
 from crazybilliards.model.chain import middle_tenth
-from crazybilliards.particles.observers import Observer
-from crazybilliards.particles.observers.base import Averaged
+from crazybilliards.particles.observers.base import Averaged, Observer
 from crazybilliards.particles.observers.error_bars import jackknife_error
 from crazybilliards.particles.vanishing_step.sampler import Sampler
 

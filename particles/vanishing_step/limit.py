@@ -222,12 +222,9 @@ def make_runs(
         )
         for level, time_step in enumerate(steps.time_steps)
     ]
-    groups = -(-GROUPS // replicas)
     kept = sum(observer.memory(runs[0]) for observer in observers)
-    chains = replicas * (2 * len(runs) - 1)
-    require_memory(
-        "observe (ask for fewer particles)", (chains * groups + _JOINED * replicas * groups) * kept
-    )
+    copies = replicas * -(-GROUPS // replicas) * (2 * len(runs) - 1 + _JOINED)
+    require_memory("observe (ask for fewer particles)", copies * kept)
     return steps, runs
 
 
@@ -239,13 +236,12 @@ def _collect(levels: Levels, interrupted: bool, progress: bool) -> xr.Dataset:
     method = finest.provenance() | {"accuracy": levels.accuracy}
     method["replicas"] = len(levels.samplers[0])
     del method["schedule"]
-    ends = [sampler.steps * sampler.schedule.time_step for sampler in used]
     collected = partial(
         result,
         levels.chain,
         source="simulation",
         status="interrupted" if interrupted else "diverged" if diverged else "completed",
-        end_time=min(ends),
+        end_time=min(sampler.steps * sampler.schedule.time_step for sampler in used),
         particles=finest.chosen + 1,
     )
     if diverged:  # an average at long steps alone is not the limit

@@ -227,10 +227,11 @@ class Levels:
         levels = list(self.used)
         alone = [estimate(self.samplers[each], difference=False, only="widths") for each in levels]
         spread, width = alone[0].spread, float(alone[-1].values[CENTRAL])
-        spreads = [spread]
-        for level, single in zip(levels[1:], alone[1:], strict=True):
-            difference = estimate(self.samplers[level], difference=True, only="widths")
-            spreads.append(difference.spread / single.spread * spread)
+        differences = [
+            estimate(self.samplers[each], difference=True, only="widths") for each in levels[1:]
+        ]
+        both = zip(differences, alone[1:], strict=True)
+        spreads = [spread, *(difference.spread / one.spread * spread for difference, one in both)]
         work = []
         for place, level in enumerate(levels):
             pairs = zip(spreads[place + 1 :], levels[place + 1 :], strict=True)
@@ -245,9 +246,6 @@ class Levels:
         )
         if _GROWTH * pilot < _PILOT_SHARE * needed:
             return False
-        samplers = self.samplers[levels[base]]
-        if samplers[0].coarser is not None:
-            correlation = estimate(samplers, difference=True, only="widths").correlation
-            for sampler in samplers:
-                sampler.uncouple(correlation)
+        for sampler in self.samplers[levels[base]] if base else ():
+            sampler.uncouple(differences[base - 1].correlation)
         return True

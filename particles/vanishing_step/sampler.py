@@ -21,7 +21,7 @@ from crazybilliards.particles.dynamics import make_dynamics
 from crazybilliards.particles.laws.avalanche import Tally, make_tally
 from crazybilliards.particles.laws.law import make_scratch
 from crazybilliards.particles.noise import make_noise
-from crazybilliards.particles.observers import Observer, Snapshots
+from crazybilliards.particles.observers.base import Observer, Snapshots
 from crazybilliards.particles.run import Run
 from crazybilliards.particles.running.replica import Replica
 from crazybilliards.particles.vanishing_step.coupling import record_pair
