@@ -38,11 +38,11 @@ class Impacts(Averaged):
     exactly as long as no rods merge, and ``correlated_phase_space`` has F sqrt(Theta) for the root.
 
     The means of w and w^2 alone depend on the time step, because rods that noise holds together
-    collide ever more often, at ever smaller speeds. Their ratio has a limit. Rods that merge
-    separate with speed 0 (``laws/impacts.py``). Below the restitution 0.163 the loss contains the
-    energy of the stronger kicks that open closed contacts (``laws/closed_contacts.py``). It
-    vanishes with the time step: at e = 0 and 20 rods it is 11 % of the loss at the default step,
-    5 and 2 % at a fourth and a sixteenth of it.
+    collide ever more often, at ever smaller speeds. Their ratio has a limit. Clusters count as
+    ``laws/impacts.py`` says, and rods that merge separate with speed 0. Below the restitution 0.163
+    the loss contains the energy of the stronger kicks that open closed contacts
+    (``laws/closed_contacts.py``). It vanishes with the time step: at e = 0 and 20 rods it is 11 %
+    of the loss at the default step, 5 and 2 % at a fourth and a sixteenth of it.
 
     Without any collisions the temperatures of a contact are NaN; the rebound temperature is 0
     where all rods that met merged.
