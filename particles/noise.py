@@ -119,25 +119,12 @@ def _draw_bits(lanes, bits):  # type: ignore[no-untyped-def]
 
 
 @inlined(fused=True)
-def _logarithm(z):  # type: ignore[no-untyped-def]
-    """ln((1 + z)/(1 - z)) for |z| < 0.172."""
-    x, k = z * z, _LOG
-    high = k[5] + x * (k[6] + x * (k[7] + x * k[8]))
-    return z * (k[0] + x * (k[1] + x * (k[2] + x * (k[3] + x * (k[4] + x * high)))))
-
-
-@inlined(fused=True)
-def _sine(a):  # type: ignore[no-untyped-def]
-    """Return sin(a) for |a| < pi/4."""
-    x, k = a * a, _SIN
-    return a * (k[0] + x * (k[1] + x * (k[2] + x * (k[3] + x * (k[4] + x * (k[5] + x * k[6]))))))
-
-
-@inlined(fused=True)
-def _cosine(a):  # type: ignore[no-untyped-def]
-    """Return cos(a) for |a| < pi/4."""
-    x, k = a * a, _COS
-    return k[0] + x * (k[1] + x * (k[2] + x * (k[3] + x * (k[4] + x * (k[5] + x * k[6])))))
+def _polynomial(coefficients, x):  # type: ignore[no-untyped-def]
+    """Return sum_k coefficients[k] x^k, by Horner's scheme."""
+    value = coefficients[-1]
+    for k in range(len(coefficients) - 2, -1, -1):
+        value = coefficients[k] + x * value
+    return value
 
 
 @kernel(fused=True)
@@ -154,7 +141,7 @@ def _radii(numbers, reals, radii):  # type: ignore[no-untyped-def]
         radii[i] = exponent
     for i in range(radii.size):
         z = (reals[i] - 1.0) / (reals[i] + 1.0)
-        radii[i] = np.sqrt(-2.0 * ((radii[i] - 52.0) * _LN_2 + _logarithm(z)))
+        radii[i] = np.sqrt(-2.0 * ((radii[i] - 52.0) * _LN_2 + z * _polynomial(_LOG, z * z)))
 
 
 @kernel(fused=True)
@@ -164,7 +151,8 @@ def _rotate(bits, radii, first, second):  # type: ignore[no-untyped-def]
         b = bits[i]
         fraction = np.float64(np.int64((b >> np.uint64(12)) & np.uint64(0x3FFFFFFFFFFFF)))
         angle = (fraction * 2.0**-50 - (0.5 - 2.0**-51)) * (np.pi / 2)
-        sine, cosine = _sine(angle), _cosine(angle)
+        square = angle * angle
+        sine, cosine = angle * _polynomial(_SIN, square), _polynomial(_COS, square)
         radius = radii[i] if (b >> np.uint64(62)) & np.uint64(1) else -radii[i]
         along, across = cosine * radius, sine * radius
         turned = (b >> np.uint64(63)) != np.uint64(0)

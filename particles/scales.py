@@ -1,14 +1,11 @@
 r"""The physical scales of a chain, from which a run is planned.
 
-The scales of a chain are the spring's rate w0 = sqrt(F'(d)/m), taken for a quadratic spring at
-the displacement d that ten times the temperature reaches, and the damping rate gamma/m.
-
-**Time step.** The step is 0.05 / max(w0, gamma/m). The splitting scheme then has W_x right to 3e-4
-(linear springs, no gap). For e != 1 the step must also be short enough to resolve the noise, most
-of all in the centre, where the chain is coldest. What matters is r = (A sqrt(dt)/m)/W_v, the ratio
-of the velocity kick of one step to W_v. It is held at 0.3, with the estimate of W_v by
-:func:`centre_width`. The error of W_v is then at most 1 %. For every step the result states the
-expected error (:func:`time_step_error`).
+**Time step.** The step is 0.05 / max(w0, gamma/m), w0 from :func:`spring_rate`. The splitting
+scheme then has W_x right to 3e-4 (linear springs, no gap). For e != 1 the step must also be short
+enough to resolve the noise, most of all in the centre, where the chain is coldest. What matters is
+r = (A sqrt(dt)/m)/W_v, the ratio of the velocity kick of one step to W_v. It is held at 0.3, with
+the estimate of W_v by :func:`centre_width`. The error of W_v is then at most 1 %. For every step
+the result states the expected error (:func:`time_step_error`).
 
 **Relaxation time.** A rod on a linear spring k' relaxes with its slowest mode,
 
@@ -56,7 +53,7 @@ _SLOWEST_MODE = 1.241  # rate of a strongly damped rod on a quadratic spring, in
 
 
 def spring_rate(chain: Chain) -> float:
-    """w0 = sqrt(F'(d)/m) [1/T]; a quadratic spring's is taken at U(d) = 10 T."""
+    """w0 = sqrt(F'(d)/m) [1/T]; a quadratic spring's is taken at U(d) = 10 T, the temperature."""
     if chain.spring == "linear":
         return math.sqrt(chain.stiffness / chain.mass)
     if chain.stiffness == 0 or chain.temperature == 0:
@@ -118,14 +115,12 @@ def time_step_error(
     * 0.1 r^3 below the critical restitution, with the correction for closed contacts
       (``laws/closed_contacts.py``), r = 0.2 to 0.6;
     * 0.24 r^(3/2) in the Euler scheme, and with Contact Dynamics below the critical restitution,
-      which have no correction: at e = 0 the number of excursions from one contact to the next that
-      last longer than dt is ~ dt^(-1/4), and each loses the energy of one kick, ~ dt;
+      which have no correction;
     * the larger of 0.1 |1 - e| r^(3/2) and 0.05 r^4 at higher restitutions, r = 0.06 to 1.3.
 
     The last one is an empirical law, an upper estimate of the paired differences that
-    ``benchmarks/accuracy/time_step_law.py`` measures: W_v is too small for short steps, and too
-    large for long ones because of the half kick before each snapshot. The relative errors of mean
-    displacements are of the same size, for e = 0.1 up to three times as large.
+    ``benchmarks/accuracy/time_step_law.py`` measures (docs/particles.md). The relative errors of
+    mean displacements are of the same size, for e = 0.1 up to three times as large.
 
     The springs cause an error of (w0 dt)^2/8 if they are quadratic, and none if they are linear.
     With a gap collisions heat the chain a little (``laws/spring_correction.py``), by the fraction

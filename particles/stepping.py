@@ -24,8 +24,9 @@ import numpy as np
 from crazybilliards.model import spring
 from crazybilliards.model.kernels import copy, inlined, kernel
 from crazybilliards.particles.laws.closed_contacts import find_clusters, strengthen
-from crazybilliards.particles.laws.exact_flight import fly
+from crazybilliards.particles.laws.exact_flight import propagate
 from crazybilliards.particles.laws.law import EXACT, drift
+from crazybilliards.particles.laws.sort import sort_pairs
 from crazybilliards.particles.noise import fill
 
 FIRST, WHOLE, LAST = range(3)  # parts of a kick
@@ -85,7 +86,8 @@ def _fly(y, v, noise, dynamics, scratch, steps):  # type: ignore[no-untyped-def]
         if row == rows:
             row, rows = 0, draw_kicks(noise, scratch.kicks, width, steps - taken)
         kicks = scratch.kicks[row * width : (row + 1) * width]
-        fly(y, v, kicks, dynamics.propagator, scratch)
+        propagate(y, v, kicks, dynamics.propagator)
+        sort_pairs(y, v, scratch)
         row += 1
     return 0
 

@@ -1,19 +1,9 @@
 """Avalanches: waves of momentum that run along the chain from collision to collision.
 
 A wave has an origin, the rod i that hit its right neighbour, and a front, which is i + 1 at first.
-The next collision of the front rod decides. If it is with the right neighbour of the front and the
-momentum points right, the front moves on by one. Otherwise the wave ends and is counted at its
-origin. There are two counts:
-
-**triggered**, the paper's (section ``seq:e_0``)
-    Every hit of i on i + 1 starts a wave, also if the momentum points left. The momentum of a
-    collision is that of the two rods that meet. N_c = front - origin - 1 is the number of
-    collisions after the first.
-**pushes**, our extension
-    The first hit needs a momentum that points right, too, and it is counted: N_c = front - origin.
-    Rods that stick together pass a push on without delay. When two clusters meet, the collisions
-    therefore run through the cluster that is pushed, to its far end. The momentum is that of both
-    clusters.
+docs/physics/avalanches.md has the rules of the two counts: **triggered**, the paper's (section
+``seq:e_0``, N_c = front - origin - 1), and **pushes**, our extension (N_c = front - origin), in
+which a push runs through a cluster to its far end.
 
 Waves with the same front share their future. They are kept in a linked list that moves as a whole.
 Each counted collision starts at most one wave, and each wave ends once, so one costs O(1) on

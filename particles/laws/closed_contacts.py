@@ -1,28 +1,17 @@
-r"""Contacts that are closed after a drift, and a correction of the noise that opens them.
+"""Contacts that are closed after a drift, and a correction of the noise that opens them.
 
 At e = 0 two rods that have met stay in contact until a kick of the noise separates them. In the
-limit dt -> 0 they separate at once: their relative motion is that of a randomly
-accelerated particle at a wall where it sticks (McKean, J. Math. Kyoto Univ. 2, 227, 1963; Bertoin,
-Ann. Probab. 35, 2021, 2007). With one kick per step they stay in contact longer. The number n of
-steps between successive closings has the tail P(>n) ~ C n^(-1/4), and
-
-    D = lim [ sum_(k <= n) P(>k) - (4/3) C n^(3/4) ]
-
-is the number of steps by which these times are longer than in the limit. There are ~ dt^(-1/4)
-closings per time, so the delay causes an error ~ dt^(3/4) of the velocity widths. D vanishes if the
-relative kick of a closed contact is ``CLOSED_KICK`` times as strong. The number follows from a
-single contact and holds for every chain at e = 0. ``benchmarks/accuracy/closed_contact.py``
-computes it.
+limit dt -> 0 they separate at once. With one kick per step they stay in contact longer, by D steps
+on average, which causes an error ~ dt^(3/4) of the velocity widths. D vanishes if the relative kick
+of a closed contact is ``CLOSED_KICK`` times as strong. The number follows from a single contact and
+holds for every chain at e = 0. ``benchmarks/accuracy/closed_contact.py`` computes it, and
+docs/particles.md defines D and has the sources and the measured errors.
 
 The same factor is taken up to the critical restitution exp(-pi/sqrt 3) = 0.163 (Cornell, Swift and
-Bray, Phys. Rev. Lett. 81, 1142, 1998), below which a contact still collapses onto the wall. D was
-not worked out there. In chains at e = 0.1 the factor of e = 0 removes the error, and a stronger
-factor adds more error than it removes (docs/particles.md). Above the critical restitution contacts
-do not collapse, and no factor is taken.
+Bray, Phys. Rev. Lett. 81, 1142, 1998), below which two rods that meet still come to rest in
+contact. D was not worked out there, but the factor removes the error in chains at e = 0.1.
 
-The deviations of the kicks from the mean of their cluster are made stronger, which does not change
-the momentum. If a snapshot splits a kick into two halves, the two together have the law of a whole
-kick when the second half is made stronger by ``second_half``.
+Only the deviations of kicks from the mean of their cluster grow, which keeps the momentum.
 """
 
 from __future__ import annotations

@@ -6,24 +6,20 @@ Per step the velocities u after contact satisfy, for every contact between i and
 
 with b_i = e (v_i - v_{i+1}) for a contact that would close within the step and bounces (e > 0), and
 b_i = -gap_i/dt for every other contact, which then does not overlap. (With the splitting the
-velocities are corrected for what the springs have not given yet, see ``spring_correction.py``.
-Without this two elastic rods would gain energy in every collision.) This linear complementarity
-problem is the optimality condition of "u as close to v as the constraints allow". With B_i the sum
-of the b_j left of i, the constraints say that u_i - B_i ascends. The solution is the isotonic
-regression of v_i - B_i. Other programs usually iterate to it (M. Jean, Comput. Methods Appl. Mech.
-Engrg. 177, 235, 1999). The paper quotes a cost of O(L^2) for its program.
+velocities are corrected for what the springs have not given yet, see ``spring_correction.py``.)
+With B_i the sum of the b_j left of i, u_i - B_i is the isotonic regression of v_i - B_i.
+docs/physics/collisions.md derives this and compares the law with others. Other programs usually
+iterate to the solution (M. Jean, Comput. Methods Appl. Mech. Engrg. 177, 235, 1999).
 
-The law is the position form, in which rods never overlap beyond rounding. Simultaneous contacts
-share an impulse, so Newton's cradle of three rods in contact gives (-1/3, 2/3, 2/3) at e = 1 and
-not (0, 0, 1). Every law that solves contacts simultaneously has this property. It is the reason why
-event-driven collisions are the default.
+The law is the position form, in which rods never overlap beyond rounding.
 """
 
 import numpy as np
 
 from crazybilliards.model.kernels import kernel
-from crazybilliards.particles.laws.isotonic import INDEX, pool
+from crazybilliards.particles.laws.isotonic import pool
 from crazybilliards.particles.laws.spring_correction import springs_ahead
+from crazybilliards.particles.laws.tournament import INDEX
 
 
 @kernel

@@ -9,22 +9,17 @@ and at most three contacts get a new time. If contacts close at the same time, t
 larger closing speed is taken first, which makes the operator symmetric under reflection. If the
 speeds are equal too, the left one is taken first.
 
-**A calendar** (``calendar.py``) finds the contact that closes first. The step is divided into as
-many equal parts as contacts are due, and each part has a list of those that are due in it. The next
-collision is the earliest one of the first list that is not empty. A collision costs O(1), because
-a list holds about one contact. **Rods that touch** at the beginning collide at time 0. Rows of
-touching rods do not know of each other, so they are gone through row by row, by closing speeds.
-Where a row or a list is long, as for rods at rest at one place, **a tournament**
-(``tournament.py``) takes over until the end of the step, and a collision costs O(log L).
+**A calendar** (``calendar.py``) finds the contact that closes first, in the first list that is not
+empty. A collision costs O(1), because a list holds about one contact. **Rods that touch** at the
+beginning collide at time 0. Rows of touching rods do not know of each other, so they are gone
+through row by row, by closing speeds. Where a row or a list is long, as for rods at rest at one
+place, **a tournament** (``tournament.py``) takes over until the end of the step, and a collision
+costs O(log L).
 
 **Inelastic collapse.** For e < 1 neighbours may collide infinitely often in a finite time. If the
 speed of separation e |v - v'| would be below ``merge_speed``, the two become a *cluster* that
 moves as one until the end of the drift, with the mean velocity of its members and as many masses.
-Every collision that does not merge then costs at least (1 - e^2)/(4 e^2) m merge_speed^2 of
-energy, so the number of events is finite. ``merge_speed`` is a small fraction of the
-velocity kick that the noise gives in one step; results do not depend on it.
-
-**Resting contacts.** For e > 1 rods that touch at the beginning of a step collide as at e = 1.
+Every collision that does not merge then takes energy, so the number of events is finite.
 
 **Positions at the beginning of the step.** y holds the position that a point with its present
 velocity would have had at t = 0. A collision at t changes y by (v_before - v_after) t, and no point

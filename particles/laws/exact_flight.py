@@ -1,10 +1,9 @@
 r"""Elastic rods on linear springs with one common anchor: their exact motion over any time.
 
-Equal masses that collide elastically swap their velocities, as if they passed through each other
-and swapped names. Without a gap all springs are equal, too, and so are damping and noise. The rods
-are then independent oscillators that swap names, and sorting them by their positions gives the
-chain, exactly, however often they have met. For a linear spring the position and the velocity after
-a time t are jointly normal,
+Elastic rods move as if they passed through each other and swapped names (``sort.py``). Without a
+gap all springs are equal, too, and so are damping and noise. The rods are then independent
+oscillators, and sorting them by their positions gives the chain, exactly, however often they have
+met. For a linear spring the position and the velocity after a time t are jointly normal,
 
     (y, v)(t) = E (y, v)(0) + noise of covariance Sigma,
     E = exp(B t),   B = [[0, 1], [-k/m, -gamma/m]],
@@ -27,8 +26,7 @@ import numpy as np
 from scipy.linalg import expm
 
 from crazybilliards.model import Chain
-from crazybilliards.model.kernels import inlined, kernel
-from crazybilliards.particles.laws.sort import sort_pairs
+from crazybilliards.model.kernels import kernel
 
 
 class Propagator(NamedTuple):
@@ -68,15 +66,9 @@ def make_propagator(chain: Chain, duration: float) -> Propagator:
     root = math.sqrt(sigma[1, 1])
     shared = sigma[0, 1] / root
     own = math.sqrt(max(sigma[0, 0] - shared**2, 0.0))
-    return Propagator(
-        float(e[0, 0]),
-        float(e[0, 1]) * h,
-        float(e[1, 0]) / h,
-        float(e[1, 1]),
-        kick * root,
-        kick * h * float(shared),
-        kick * h * own,
-    )
+    (yy, yv), (vy, vv) = e.tolist()
+    noise = kick * root, kick * h * float(shared), kick * h * own
+    return Propagator(yy, yv * h, vy / h, vv, *noise)
 
 
 @kernel
@@ -89,10 +81,3 @@ def propagate(y, v, kicks, step):  # type: ignore[no-untyped-def]
         noise = step.shared_noise * first[i] + step.own_noise * second[i]
         y[i] = step.y_from_y * y_i + step.y_from_v * v_i + noise
         v[i] = step.v_from_y * y_i + step.v_from_v * v_i + step.noise * first[i]
-
-
-@inlined
-def fly(y, v, kicks, step, scratch):  # type: ignore[no-untyped-def]
-    """Take one step of the chain in place."""
-    propagate(y, v, kicks, step)
-    sort_pairs(y, v, scratch)

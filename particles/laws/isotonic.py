@@ -1,10 +1,9 @@
 """Drift with perfectly inelastic collisions (e = 0): isotonic regression.
 
 Points that stick end at the projection of their free positions y + dt v onto the ordered positions,
-y_1 <= ... <= y_L (L. Natile and G. Savaré, SIAM J. Math. Anal. 41, 1340, 2009). The
-pool-adjacent-violators algorithm (M. Ayer and others, Ann. Math. Statist. 26, 641, 1955) computes
-it exactly in O(L). The points of one block have met. By conservation of momentum a block moves with
-the mean velocity of its members, so it lies at the mean of their free positions.
+y_1 <= ... <= y_L (L. Natile and G. Savaré, SIAM J. Math. Anal. 41, 1340, 2009), for which
+docs/physics/collisions.md gives the reason. The pool-adjacent-violators algorithm (M. Ayer and
+others, Ann. Math. Statist. 26, 641, 1955) computes it exactly in O(L).
 
 Most rods meet no other rod within a step. Which rods do is random, and a mispredicted branch costs
 a processor more than the arithmetic of a rod. The violations (rods that have overtaken their left
@@ -14,9 +13,8 @@ neighbour) are therefore listed first, without a branch. Only their blocks are t
 import numpy as np
 
 from crazybilliards.model.kernels import kernel
+from crazybilliards.particles.laws.tournament import INDEX
 
-# With unsigned indices compiled code need not check for indices from the end of an array.
-INDEX = np.uint64
 _0, _1, _2 = INDEX(0), INDEX(1), INDEX(2)
 
 

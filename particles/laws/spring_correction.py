@@ -6,16 +6,15 @@ given a dt/2. The true relative velocity of two rods therefore differs from that
 
     ahead = (a' - a) (t - dt/2).
 
-A collision at t has to reverse the true one. The drift goes on with that less ``ahead``, because
-the second half kick adds it:
+A collision at t has to reverse the true one, or it would add energy on average. The drift goes on
+with that less ``ahead``, because the second half kick adds it:
 
     v' - v -> -e (v' - v + ahead) - ahead.
 
 No rod passes another: v' - v becomes 0 where this is negative, as it may be for rods that hardly
-touch. If the law reversed v' - v itself, collisions would add energy on average, and an elastic
-chain with a gap would heat up without end. Rods that meet have the same displacement if there is no
-gap. ``ahead`` is then 0 in an event-driven collision. Contact Dynamics reverses velocities at the
-beginning of the step, t = 0, where the rods have not met yet, so it needs the correction always.
+touch. Rods that meet have the same displacement if there is no gap. ``ahead`` is then 0 in an
+event-driven collision. Contact Dynamics reverses velocities at the beginning of the step, t = 0,
+where the rods have not met yet, so it needs the correction always.
 """
 
 from crazybilliards.model import spring

@@ -9,14 +9,9 @@ from collections.abc import Collection
 
 from crazybilliards.model.checks import got, shown
 from crazybilliards.particles.observers.avalanches import Avalanches, TriggeredCollisions
-from crazybilliards.particles.observers.base import (
-    Averaged,
-    Integers,
-    Observer,
-    Snapshots,
-    Variables,
-    restore,
-)
+from crazybilliards.particles.observers.base import Integers as Integers
+from crazybilliards.particles.observers.base import Observer
+from crazybilliards.particles.observers.base import Variables as Variables
 from crazybilliards.particles.observers.collisions import Collisions
 from crazybilliards.particles.observers.covariances import Covariances
 from crazybilliards.particles.observers.density import Density
@@ -43,28 +38,6 @@ OBSERVERS: dict[str, type[Observer]] = {
         Raw,
     )
 }
-
-__all__ = [
-    "OBSERVERS",
-    "Avalanches",
-    "Averaged",
-    "Collisions",
-    "Covariances",
-    "Density",
-    "Energy",
-    "Impacts",
-    "Integers",
-    "Modes",
-    "Observer",
-    "Raw",
-    "Snapshots",
-    "TriggeredCollisions",
-    "Variables",
-    "Velocities",
-    "Widths",
-    "find_observers",
-    "restore",
-]
 
 
 def find_observers(observe: str | Observer | Collection[str | Observer]) -> tuple[Observer, ...]:

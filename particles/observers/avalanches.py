@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import ClassVar, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
@@ -19,14 +19,17 @@ class _CountedWaves(Observer):
     ensemble = False
     limit = False
     smallest: ClassVar[int]  # least N_c
+    record: ClassVar[str]  # name of the waves in the tally
 
     def prepare(self, run: Run, copies: int) -> None:
         """Make the sums."""
         waves = make_waves(run.chain.size)
         self.heads, self.following, self.origins, self.unused, self.sizes = waves
 
-    def _waves(self) -> Waves:
-        return Waves(self.heads, self.following, self.origins, self.unused, self.sizes)
+    def tally(self, tally: Tally) -> Tally:
+        """Return the tally with the waves of this observer."""
+        waves: Any = Waves(self.heads, self.following, self.origins, self.unused, self.sizes)
+        return tally._replace(**{self.record: waves})
 
     def memory(self, run: Run) -> float:
         """Return the bytes it keeps."""
@@ -63,10 +66,7 @@ class Avalanches(_CountedWaves):
     gives = ("avalanche_count",)
     along = ("avalanche_size",)
     smallest = 1
-
-    def tally(self, tally: Tally) -> Tally:
-        """Return the tally with the waves of this observer."""
-        return tally._replace(pushes=self._waves())
+    record = "pushes"
 
 
 class TriggeredCollisions(_CountedWaves):
@@ -82,7 +82,4 @@ class TriggeredCollisions(_CountedWaves):
     gives = ("triggered_count",)
     along = ("triggered_collisions",)
     smallest = 0
-
-    def tally(self, tally: Tally) -> Tally:
-        """Return the tally with the waves of this observer."""
-        return tally._replace(triggered=self._waves())
+    record = "triggered"

@@ -74,9 +74,7 @@ class Covariances(Averaged):
         """Return all covariances and their standard errors."""
         last = self.furthest + 1
         at_anchors = np.diff(self.anchors)
-
-        def of_velocities(average: Array) -> Array:
-            return _known(average[..., :last, :])
+        of_velocities = {"velocity_covariance": lambda average: _known(average[..., :last, :])}
 
         def of_gaps(average: Array) -> Array:
             products, mean = average[..., last:-1, :-1], average[..., -1, :-1]
@@ -86,19 +84,15 @@ class Covariances(Averaged):
                 squared[..., r, : size - r] = mean[..., : size - r] * mean[..., r:]
             return _known(products - squared)
 
-        def relative(average: Array) -> Array:
-            own = (average[..., 0, 1:] + average[..., 0, :-1]) / 2
-            return np.asarray(own - average[..., 1, :-1])
-
         of_contacts = {
             "mean_gap": lambda average: average[..., -1, :-1] + at_anchors,
             "neighbour_covariance": lambda average: average[..., 1, :-1],
-            "relative_temperature": relative,
+            "relative_temperature": lambda average: (
+                (average[..., 0, 1:] + average[..., 0, :-1]) / 2 - average[..., 1, :-1]
+            ),
         }
         return {
-            **self.averages(
-                {"velocity_covariance": of_velocities}, counts, "particle", "separation"
-            ),
+            **self.averages(of_velocities, counts, "particle", "separation"),
             **self.averages({"gap_covariance": of_gaps}, counts, "contact", "separation"),
             **self.averages(of_contacts, counts, "contact"),
         }

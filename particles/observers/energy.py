@@ -32,9 +32,8 @@ class Energy(Observer):
     def prepare(self, run: Run, copies: int) -> None:
         """Make the sums."""
         self.schedule = run.schedule
-        self.shared = self._shared(run)
-        every = run.schedule.ensemble or self.shared
-        self.together = 1 if every else -(-run.schedule.snapshots // _MOST_TIMES)
+        self.every = self._keeps_every(run)
+        self.together = 1 if self.every else -(-run.schedule.snapshots // _MOST_TIMES)
         self.mass = run.chain.mass
         times = -(-run.schedule.snapshots // self.together)
         self.sums = np.zeros((1, times))
@@ -42,8 +41,7 @@ class Energy(Observer):
 
     def memory(self, run: Run) -> float:
         """Return the bytes it keeps."""
-        every = run.schedule.ensemble or self._shared(run)
-        return 16.0 * (run.schedule.snapshots if every else _MOST_TIMES)
+        return 16.0 * (run.schedule.snapshots if self._keeps_every(run) else _MOST_TIMES)
 
     def observe(self, snapshots: Snapshots) -> None:
         """Add the energies of snapshots to their times."""
@@ -86,8 +84,9 @@ class Energy(Observer):
     def _reached(self) -> NDArray[np.bool_]:
         """Return which times are reported."""
         counted = self.counts > 0
-        return np.asarray(counted.any(axis=0) if self.shared else counted.all(axis=0))
+        return np.asarray(counted.any(axis=0) if self.every else counted.all(axis=0))
 
     @staticmethod
-    def _shared(run: Run) -> bool:
-        return sum(observer.shares_time for observer in run.observers) > 1
+    def _keeps_every(run: Run) -> bool:
+        shared = sum(observer.shares_time for observer in run.observers) > 1
+        return run.schedule.ensemble or shared

@@ -13,22 +13,15 @@ from crazybilliards.particles.run import Run
 
 _MOST_BINS = 100_001
 _FINEST = 0.05  # of the free width: bins are equal below, grow in proportion to v above
-_WIDEST = 1000.0
-
-
-def _central_moment(average: Array, order: int) -> Array:
-    """Return the variance, the third or the fourth moment around the mean, from raw moments."""
-    mean, second, third, fourth = (average[..., k, :] for k in range(4))
-    if order == 2:
-        return np.asarray(second - mean**2)
-    if order == 3:
-        return np.asarray(third - 3 * mean * second + 2 * mean**3)
-    return np.asarray(fourth - 4 * mean * third + 6 * mean**2 * second - 3 * mean**4)
+_LAST = np.arcsinh(1000.0 / _FINEST)  # edge of the last bin: 1000 free widths
 
 
 def _standardized(average: Array, order: int) -> Array:
-    """Return that moment in units of the width; NaN for a rod that had one velocity only."""
-    moment, variance = _central_moment(average, order), _central_moment(average, 2)
+    """Return the third or fourth central moment in widths; NaN for a rod with one velocity only."""
+    mean, second, third, fourth = (average[..., k, :] for k in range(4))
+    variance, moment = second - mean**2, third - 3 * mean * second + 2 * mean**3
+    if order == 4:
+        moment = fourth - 4 * mean * third + 6 * mean**2 * second - 3 * mean**4
     nothing = np.full_like(moment, np.nan)
     return np.divide(moment, variance ** (order / 2), where=variance > 0, out=nothing)
 
@@ -77,9 +70,8 @@ class Velocities(Averaged):
             raise ValueError(
                 "observe: 'velocities' needs amplitude and damping above 0, to size its bins"
             )
-        last = np.arcsinh(_WIDEST / _FINEST)
-        self.scale, self.last = _FINEST * scale, last
-        self.edges = self.scale * np.sinh(np.linspace(-last, last, self.bins + 1))
+        self.scale = _FINEST * scale
+        self.edges = self.scale * np.sinh(np.linspace(-_LAST, _LAST, self.bins + 1))
         self.chosen = run.chosen
         self.rows = np.arange(run.chosen.size) * self.bins
         self.counts = np.zeros(run.chosen.size * self.bins, dtype=np.int64)
@@ -97,7 +89,7 @@ class Velocities(Averaged):
         sums[1] += square.sum(axis=0)
         sums[2] += np.einsum("sp,sp->p", square, v)
         sums[3] += np.einsum("sp,sp->p", square, square)
-        place = (np.arcsinh(v / self.scale) / self.last + 1) * (self.bins / 2)
+        place = (np.arcsinh(v / self.scale) / _LAST + 1) * (self.bins / 2)
         inside = (place >= 0) & (place < self.bins)
         self.outside += int(inside.size - inside.sum())
         cells = (self.rows + place.astype(np.int64))[inside]
@@ -113,13 +105,10 @@ class Velocities(Averaged):
     def report(self, counts: Integers) -> Variables:
         """Return velocity_density, the share of velocities beyond all bins, and the shape."""
         snapshots = counts.sum()
-        table = self.counts.reshape(-1, self.bins)
+        density = self.counts.reshape(-1, self.bins) / (snapshots * np.diff(self.edges))
         return {
-            "velocity_density": (
-                ("particle", "velocity_bin"),
-                table / (snapshots * np.diff(self.edges)),
-            ),
-            "velocity_outside": ((), self.outside / (snapshots * len(table))),
+            "velocity_density": (("particle", "velocity_bin"), density),
+            "velocity_outside": ((), self.outside / (snapshots * len(density))),
             **self.averages(_QUANTITIES, counts, "particle"),
         }
 

@@ -4,19 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from crazybilliards.particles.observers.base import Array, Averaged, Integers, Snapshots, Variables
+from crazybilliards.particles.observers.base import Averaged, Integers, Snapshots, Variables
 from crazybilliards.particles.run import Run
-
-
-def _displacement_width(average: Array) -> Array:
-    # max: a rod that never moves has a variance of 0 up to rounding.
-    variance = average[..., 1, :] - average[..., 0, :] ** 2
-    return np.asarray(np.sqrt(np.maximum(variance, 0)))
-
 
 _QUANTITIES = {
     "mean_displacement": lambda average: average[..., 0, :],
-    "displacement_width": _displacement_width,
+    # maximum: a rod that never moves has a variance of 0 up to rounding.
+    "displacement_width": lambda average: np.sqrt(
+        np.maximum(average[..., 1, :] - average[..., 0, :] ** 2, 0)
+    ),
     "mean_velocity": lambda average: average[..., 2, :],
     "velocity_width": lambda average: np.sqrt(average[..., 3, :]),
 }

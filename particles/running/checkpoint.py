@@ -80,7 +80,8 @@ class Checkpoint:
 
     def _write(self, replicas: Sequence[Replica]) -> None:
         """Write the state of all replicas, each at the end of its chunk."""
-        arrays: dict[str, np.ndarray] = {"header": _text({"identity": self.identity})}
+        header = json.dumps({"identity": self.identity}).encode()
+        arrays = {"header": np.frombuffer(header, dtype=np.uint8)}
         for number, replica in enumerate(replicas):
             with replica.lock:
                 for name, value in replica.state().items():
@@ -100,9 +101,13 @@ class Checkpoint:
         except Exception as error:
             raise ValueError(f"{self.path}: not a checkpoint") from error
         self._require_same_run(found)
+        states: dict[str, dict[str, np.ndarray]] = {}
+        for name, value in arrays.items():
+            number, _, own = name.partition("/")
+            states.setdefault(number, {})[own] = value
         try:
-            for number, replica in enumerate(replicas):
-                _restore_replica(replica, number, arrays)
+            for place, replica in enumerate(replicas):
+                replica.restore(states[str(place)])
         except (KeyError, TypeError, ValueError) as error:
             raise ValueError(f"{self.path}: a checkpoint without a part of the run") from error
 
@@ -132,17 +137,3 @@ def identity(run: Run) -> dict[str, Any]:
         "version": version("crazybilliards"),
         "source": _SOURCE,
     }
-
-
-def _restore_replica(replica: Replica, number: int, arrays: Mapping[str, np.ndarray]) -> None:
-    prefix = f"{number}/"
-    state = {
-        name.removeprefix(prefix): value
-        for name, value in arrays.items()
-        if name.startswith(prefix)
-    }
-    replica.restore(state)
-
-
-def _text(content: Any) -> np.ndarray:
-    return np.frombuffer(json.dumps(content).encode(), dtype=np.uint8)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from threading import Event, Lock
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,9 +14,9 @@ from crazybilliards.particles.dynamics import Dynamics, start_noise
 from crazybilliards.particles.laws.avalanche import Tally, make_tally
 from crazybilliards.particles.laws.law import EVENTS, make_scratch
 from crazybilliards.particles.noise import STATE
-from crazybilliards.particles.observers import Observer, Snapshots, restore
+from crazybilliards.particles.observers.base import Observer, Snapshots, restore
 from crazybilliards.particles.schedule import Schedule
-from crazybilliards.particles.stepping import advance, bounded, record
+from crazybilliards.particles.stepping import record
 
 Array = NDArray[np.float64]
 
@@ -25,8 +25,6 @@ Array = NDArray[np.float64]
 _CHUNK, _ROOM = 2**20, 2**17
 
 NEVER = 2**62
-
-_CHANGING = ("copy", "y", "v", "counts", "steps", "snapshots", "over", "reached")
 
 
 @dataclass
@@ -48,6 +46,8 @@ class Replica:
     snapshots: int = 0  # taken of it
     over: bool = False  # it diverged
     reached: int = NEVER  # the first block that a diverged copy did not fill
+    # Attributes that a checkpoint keeps.
+    changing: ClassVar[Any] = ("copy", "y", "v", "counts", "steps", "snapshots", "over", "reached")
     lock: Any = field(default_factory=Lock)  # held while a chunk is under way
 
     def __post_init__(self) -> None:
@@ -66,7 +66,7 @@ class Replica:
 
     def state(self) -> dict[str, ArrayLike]:
         """Return everything that changes during the run."""
-        state: dict[str, ArrayLike] = {name: getattr(self, name) for name in _CHANGING}
+        state: dict[str, ArrayLike] = {name: getattr(self, name) for name in self.changing}
         state |= {f"noise {name}": getattr(self.noise, name) for name in STATE}
         for number, observer in enumerate(self.observers):
             for name, value in observer.state().items():
@@ -75,7 +75,7 @@ class Replica:
 
     def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
         """Restore the state that :meth:`state` returned."""
-        for name in _CHANGING:
+        for name in self.changing:
             restore(self, name, state[name])
         for name in STATE:
             getattr(self.noise, name)[...] = state[f"noise {name}"]
@@ -163,12 +163,12 @@ class Replica:
 
     def _scratch(self) -> Any:
         """Return the arrays that the kernels work in."""
-        return make_scratch(self.y.size)
+        return make_scratch(self.y.shape[-1])
 
     def _advance(self, scratch: Any, tally: Tally, steps: int) -> bool:
         """Take steps without snapshots; return False if the chain diverged."""
-        met = advance(self.y, self.v, self.noise, self.dynamics, scratch, tally, steps)
-        return bool(met >= 0 and bounded(self.y, self.v, self.dynamics.fastest))
+        last = np.empty((2, *self.y.shape[:-1], 1, self.y.shape[-1]))
+        return self._record(scratch, tally, steps, 1, *last) == 1
 
     def _record(self, scratch: Any, tally: Tally, due: int, n: int, y: Array, v: Array) -> int:
         """Fill ``n`` rows of the buffers, ``due`` steps apart; return the number of valid rows."""

@@ -17,8 +17,7 @@ the whole duration. eta is the kick of the coarser chain, so both chains have ex
 noise. The eta/sigma of successive kicks are independent normal numbers, because no xi is in two of
 them. The coarser chain therefore has the law of a chain at its own step. The finer chain even has
 the bits of a single chain. The noise of closed contacts is made stronger in each chain where its
-own contacts are closed
-(``laws/closed_contacts.py``).
+own contacts are closed (``laws/closed_contacts.py``).
 """
 
 from __future__ import annotations

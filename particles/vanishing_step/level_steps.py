@@ -76,8 +76,22 @@ def relative_bias(chain: Chain, time_step: float, width: float) -> float:
 def plan_steps(chain: Chain, accuracy: float, warmup: float | None) -> Steps:
     """Choose the steps of the levels; the last one is used only if the bias is too large."""
     interval = _STRIDE * default_time_step(chain)
-    if independent_rods(chain):
-        return _steps(chain, [interval], [1], warmup, interval)
+    step, ratios = interval, [1]
+    if not independent_rods(chain):
+        step, ratios = _inexact_steps(chain, accuracy)
+    time_steps = [step * math.prod(ratios[level + 1 :]) for level in range(len(ratios))]
+    first = time_steps[0]
+    stride = max(round(interval / first), 1)
+    warm = math.ceil((_RELAXATIONS * relaxation_time(chain) if warmup is None else warmup) / first)
+    least, pilot = (
+        max(math.ceil(each * correlation_time(chain) / (stride * first)), 1)
+        for each in (_LEAST, _PILOT)
+    )
+    return Steps(time_steps, ratios, warm, stride, least, pilot)
+
+
+def _inexact_steps(chain: Chain, accuracy: float) -> tuple[float, list[int]]:
+    """Return the shortest step and the ratios of the steps, for motion that is not exact."""
     width = centre_width(chain) * chain.free_velocity_width
     fastest = max(spring_rate(chain), chain.damping / chain.mass)
     longest = step = _SPRINGS / fastest
@@ -91,19 +105,4 @@ def plan_steps(chain: Chain, accuracy: float, warmup: float | None) -> Steps:
             ratios.append(_RATIO)
         ratios.append(_NARROW_RATIO)
         step /= _NARROW_RATIO
-    time_steps = [step * math.prod(ratios[level + 1 :]) for level in range(len(ratios))]
-    return _steps(chain, time_steps, ratios, warmup, interval)
-
-
-def _steps(
-    chain: Chain, time_steps: list[float], ratios: list[int], warmup: float | None, interval: float
-) -> Steps:
-    """Return the levels with snapshots about ``interval`` apart."""
-    first = time_steps[0]
-    stride = max(round(interval / first), 1)
-    warm = math.ceil((_RELAXATIONS * relaxation_time(chain) if warmup is None else warmup) / first)
-    least, pilot = (
-        max(math.ceil(each * correlation_time(chain) / (stride * first)), 1)
-        for each in (_LEAST, _PILOT)
-    )
-    return Steps(time_steps, ratios, warm, stride, least, pilot)
+    return step, ratios

@@ -16,10 +16,9 @@ from numpy.typing import NDArray
 from scipy.special import ndtr, stdtrit
 
 from crazybilliards.model.chain import middle_tenth
-from crazybilliards.particles.observers import Observer
-from crazybilliards.particles.observers.base import Averaged
+from crazybilliards.particles.observers.base import Averaged, Observer
 from crazybilliards.particles.observers.error_bars import jackknife_error
-from crazybilliards.particles.vanishing_step.sampler import Sampler, groups_of
+from crazybilliards.particles.vanishing_step.sampler import Sampler
 
 Array = NDArray[np.float64]
 
@@ -77,9 +76,13 @@ def estimate(samplers: Sequence[Sampler], *, difference: bool, only: str | None 
 
     ``only``: name of the only observer to ask, which is quicker.
     """
-    groups, counts = groups_of(samplers)
-    if only is not None:
-        groups = [[[o for o in chain if o.name == only] for chain in group] for group in groups]
+    counts = np.array([n for sampler in samplers for n in sampler.counts if n])
+    groups = [
+        [[each for each in chain if only in (None, each.name)] for chain in group]
+        for sampler in samplers
+        for group, n in zip(sampler.measured, sampler.counts, strict=True)
+        if n
+    ]
     whole = [_reported(groups, chain, counts) for chain in range(1 + difference)]
     left_out: list[dict[str, list[Array]]] = [{name: [] for name in whole[0]} for _ in whole]
     with warnings.catch_warnings():
@@ -93,12 +96,9 @@ def estimate(samplers: Sequence[Sampler], *, difference: bool, only: str | None 
     student = float(stdtrit(counts.size - 1, _ONE_SIGMA)) if counts.size > 1 else 1.0
     values: dict[str, Array] = {}
     variances: dict[str, Array] = {}
-    signs = (1.0, -1.0)[: len(whole)]
     for name in whole[0]:
-        values[name], without = (
-            np.asarray(sum(sign * np.array(part) for sign, part in zip(signs, parts, strict=True)))
-            for parts in ([each[name][1] for each in whole], [each[name] for each in left_out])
-        )
+        values[name] = np.subtract.reduce([each[name][1] for each in whole])
+        without = np.subtract.reduce([each[name] for each in left_out])
         variances[name] = (student * jackknife_error(values[name], without, counts)) ** 2
     for name in {each for observer in groups[0][0] for each in observer.histograms}:
         for part, rest_of in zip(whole, left_out, strict=True):

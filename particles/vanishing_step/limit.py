@@ -146,8 +146,16 @@ def simulate_limit(
         merging=merging,
         particles=particles,
     )
-    levels = Levels(chain, float(accuracy), steps, _samplers(runs, seed, replicas))
-    samplers = [sampler for level in levels.samplers for sampler in level]
+    groups = -(-GROUPS // replicas)
+    by_level = [
+        [
+            Sampler(run, longer, np.random.SeedSequence(seed, spawn_key=(level, replica)), groups)
+            for replica in range(replicas)
+        ]
+        for level, (run, longer) in enumerate(zip(runs, [None, *runs[:-1]], strict=True))
+    ]
+    levels = Levels(chain, float(accuracy), steps, by_level)
+    samplers = [sampler for level in by_level for sampler in level]
     with announced(progress):
         compile_kernels()
         compile_pair()
@@ -157,7 +165,6 @@ def simulate_limit(
         keeper = Checkpoint(
             Path(checkpoint), identity(samplers[0].finer) | own, checkpoint_interval
         )
-    levels.start()
     with (
         interrupts_noted() as signals,  # between two rounds as well
         nullcontext() if keeper is None else keeper.resumed(samplers),
@@ -216,30 +223,10 @@ def make_runs(
         )
         for level, time_step in enumerate(steps.time_steps)
     ]
-    groups = -(-GROUPS // replicas)
     kept = sum(observer.memory(runs[0]) for observer in observers)
-    chains = replicas * (2 * len(runs) - 1)
-    require_memory(
-        "observe (ask for fewer particles)", (chains * groups + _JOINED * replicas * groups) * kept
-    )
+    copies = replicas * -(-GROUPS // replicas) * (2 * len(runs) - 1 + _JOINED)
+    require_memory("observe (ask for fewer particles)", copies * kept)
     return steps, runs
-
-
-def _samplers(runs: Sequence[LevelRun], seed: int, replicas: int) -> list[list[Sampler]]:
-    """Return the samplers by level and replica, each with noise of its own."""
-    groups = -(-GROUPS // replicas)
-    return [
-        [
-            Sampler(
-                run,
-                runs[level - 1] if level else None,
-                np.random.SeedSequence(seed, spawn_key=(level, replica)),
-                groups,
-            )
-            for replica in range(replicas)
-        ]
-        for level, run in enumerate(runs)
-    ]
 
 
 def _collect(levels: Levels, interrupted: bool, progress: bool) -> xr.Dataset:
@@ -250,13 +237,12 @@ def _collect(levels: Levels, interrupted: bool, progress: bool) -> xr.Dataset:
     method = finest.provenance() | {"accuracy": levels.accuracy}
     method["replicas"] = len(levels.samplers[0])
     del method["schedule"]
-    ends = [sampler.steps * sampler.schedule.time_step for sampler in used]
     collected = partial(
         result,
         levels.chain,
         source="simulation",
         status="interrupted" if interrupted else "diverged" if diverged else "completed",
-        end_time=min(ends),
+        end_time=min(sampler.steps * sampler.schedule.time_step for sampler in used),
         particles=finest.chosen + 1,
     )
     if diverged:  # an average at long steps alone is not the limit

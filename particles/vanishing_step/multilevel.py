@@ -4,10 +4,8 @@ r"""The limit of a vanishing time step as a sum over levels: multilevel Monte Ca
 
     lim Q(dt) = <Q(dt_0)> + <Q(dt_1) - Q(dt_0)> + ... + <Q(dt_n) - Q(dt_(n-1))> + bias.
 
-The first term is the base. It needs most of the statistics and is cheap, because its step is long.
-In a difference both chains have the same noise (``coupling.py``). The difference therefore
-fluctuates little and needs few of the expensive short steps. The terms are independent
-(``level_terms.py``).
+The first term is the base. In a difference both chains have the same noise (``coupling.py``), so
+that it needs few of the expensive short steps. The terms are independent (``level_terms.py``).
 
 **Durations.** Let V be the variance of W_v in the centre times the duration, and C the cost of a
 unit of time. The work for an error s is least for the durations t_l = sqrt(V_l/C_l)
@@ -64,6 +62,9 @@ class Levels:
     ) -> None:
         self.chain, self.accuracy, self.steps, self.samplers = chain, accuracy, steps, samplers
         self.groups = sum(sampler.counts.size for sampler in samplers[0])
+        # The pilot round. The last level is one in reserve if there are several.
+        for level in range(max(len(samplers) - 1, 1)):
+            self._extend(level, self._first(level))
 
     @property
     def used(self) -> range:
@@ -82,11 +83,6 @@ class Levels:
     def _groups(self, level: int) -> int:
         """Return how many groups of a level have snapshots."""
         return sum(int(np.count_nonzero(sampler.counts)) for sampler in self.samplers[level])
-
-    def start(self) -> None:
-        """Ask for the pilot round; the last level is one in reserve if there are several."""
-        for level in range(max(len(self.samplers) - 1, 1)):
-            self._extend(level, self._first(level))
 
     def extend(self) -> bool:
         """Request the snapshots that the variances require; return whether any are missing."""
@@ -230,10 +226,11 @@ class Levels:
         levels = list(self.used)
         alone = [estimate(self.samplers[each], difference=False, only="widths") for each in levels]
         spread, width = alone[0].spread, float(alone[-1].values[CENTRAL])
-        spreads = [spread]
-        for level, single in zip(levels[1:], alone[1:], strict=True):
-            difference = estimate(self.samplers[level], difference=True, only="widths")
-            spreads.append(difference.spread / single.spread * spread)
+        differences = [
+            estimate(self.samplers[each], difference=True, only="widths") for each in levels[1:]
+        ]
+        both = zip(differences, alone[1:], strict=True)
+        spreads = [spread, *(difference.spread / one.spread * spread for difference, one in both)]
         work = []
         for place, level in enumerate(levels):
             pairs = zip(spreads[place + 1 :], levels[place + 1 :], strict=True)
@@ -248,9 +245,6 @@ class Levels:
         )
         if _GROWTH * pilot < _PILOT_SHARE * needed:
             return False
-        samplers = self.samplers[levels[base]]
-        if samplers[0].coarser is not None:
-            correlation = estimate(samplers, difference=True, only="widths").correlation
-            for sampler in samplers:
-                sampler.uncouple(correlation)
+        for sampler in self.samplers[levels[base]] if base else ():
+            sampler.uncouple(differences[base - 1].correlation)
         return True

@@ -8,28 +8,25 @@ the standard error of everything that the observers report.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from threading import Event
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from crazybilliards.model import Chain
 from crazybilliards.particles.dynamics import make_dynamics
 from crazybilliards.particles.laws.avalanche import Tally, make_tally
 from crazybilliards.particles.laws.law import make_scratch
-from crazybilliards.particles.noise import STATE, make_noise
-from crazybilliards.particles.observers import Observer, Snapshots, restore
+from crazybilliards.particles.noise import make_noise
+from crazybilliards.particles.observers.base import Observer, Snapshots
 from crazybilliards.particles.run import Run
 from crazybilliards.particles.running.replica import Replica
-from crazybilliards.particles.stepping import bounded
-from crazybilliards.particles.vanishing_step.coupling import advance_pair, record_pair
+from crazybilliards.particles.vanishing_step.coupling import record_pair
 
 Array = NDArray[np.float64]
-
-_CHANGING = ("correlation", "collisions", "counts", "steps", "snapshots", "over", "reached")
 
 
 class Sampler(Replica):
@@ -37,6 +34,8 @@ class Sampler(Replica):
 
     It takes no steps until :meth:`extend` requests snapshots.
     """
+
+    changing = (*Replica.changing, "before", "target", "correlation", "collisions")
 
     def __init__(
         self, finer: Run, coarser: Run | None, stream: np.random.SeedSequence, groups: int
@@ -58,8 +57,8 @@ class Sampler(Replica):
     def _set_steps(self) -> None:
         """Compute the quantities that follow from the chains and the requested snapshots."""
         schedule = (self.coarser or self.finer).schedule
-        groups = self.counts.size
-        self.schedule = replace(schedule, blocks=groups, snapshots_per_block=self.target)
+        self.schedule = replace(schedule, blocks=self.counts.size, snapshots_per_block=self.target)
+        self.observers = [each for chains in self.measured for some in chains for each in some]
         # Number of rods that move in every counted step.
         self.weight = self.finer.chain.size
         if self.coarser is not None:
@@ -100,40 +99,13 @@ class Sampler(Replica):
         """Number of rod steps taken."""
         return float(self.steps * self.weight)
 
-    def state(self) -> dict[str, ArrayLike]:
-        """Return everything that changes during the run."""
-        state: dict[str, ArrayLike] = {
-            "before": self.before,
-            "target": self.target,
-            "coupled": self.coarser is not None,
-            **{name: getattr(self, name) for name in ("y", "v", *_CHANGING)},
-            **{f"noise {name}": getattr(self.noise, name) for name in STATE},
-        }
-        for place, observer in self._places():
-            state |= {f"{place} {name}": value for name, value in observer.state().items()}
-        return state
-
     def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Restore the state that :meth:`state` returned."""
-        if self.coarser is not None and not state["coupled"]:
+        """Restore the state that :meth:`state` returned, of both chains or of the finer one."""
+        if self.coarser is not None and state["y"].ndim == 1:
             self.uncouple(0.0)
         if state["target"]:
-            self.extend(int(state["before"]))
             self.extend(int(state["target"]))
-        for name in ("y", "v", *_CHANGING):
-            restore(self, name, state[name])
-        for name in STATE:
-            getattr(self.noise, name)[...] = state[f"noise {name}"]
-        for place, observer in self._places():
-            for name in observer.state():
-                restore(observer, name, state[f"{place} {name}"])
-
-    def _places(self) -> Iterator[tuple[str, Observer]]:
-        """Return every observer with a name that gives its group and chain."""
-        for group, chains in enumerate(self.measured):
-            for chain, observers in enumerate(chains):
-                for number, observer in enumerate(observers):
-                    yield f"observer {group} {chain} {number}", observer
+        super().restore(state)
 
     def run(self, stop: Event) -> Iterator[int]:
         """Continue to the end of the round; yield the number of steps after every chunk."""
@@ -144,21 +116,12 @@ class Sampler(Replica):
         return max(super()._chunk() * self.finer.chain.size // self.weight, 1)
 
     def _scratch(self) -> Any:
-        size = self.finer.chain.size
         if self.coarser is None:
-            return make_scratch(size)
-        return make_scratch(size), make_scratch(size)
+            return super()._scratch()
+        return super()._scratch(), super()._scratch()
 
     def _tally(self) -> Tally:
         return make_tally(self.finer.chain.size, contacts=False)
-
-    def _advance(self, scratch: Any, tally: Tally, steps: int) -> bool:
-        if self.coarser is None:
-            return super()._advance(scratch, tally, steps)
-        pair = self.y, self.v, self.noise, self.both, self.ratio
-        met = advance_pair(*pair, scratch, tally, steps)
-        chains = zip(self.y, self.v, self.both, strict=True)
-        return bool(met >= 0 and all(bounded(y, v, each.fastest) for y, v, each in chains))
 
     def _record(self, scratch: Any, tally: Tally, due: int, n: int, y: Array, v: Array) -> int:
         if self.coarser is None:
@@ -182,19 +145,10 @@ class Sampler(Replica):
                 observer.observe(Snapshots(0, first, 0, own_y, own_v, tally.contacts))
 
 
-def groups_of(samplers: Sequence[Sampler]) -> tuple[list[list[list[Observer]]], NDArray[np.int64]]:
-    """Return the groups that have measurements, and the number of snapshots in each."""
-    groups = [group for sampler in samplers for group in sampler.measured]
-    counts = np.concatenate([sampler.counts for sampler in samplers if sampler.measured])
-    return [group for group, n in zip(groups, counts, strict=True) if n], counts[counts > 0]
-
-
 def compile_pair() -> None:
     """Compile the kernels of a pair, or load them from numba's cache."""
     dynamics = tuple(make_dynamics(Chain(size=2), step, speed=1.0) for step in (0.1, 0.3))
     y, v = np.zeros((2, 2, 2))
     scratch = make_scratch(2), make_scratch(2)
     noise, tally = make_noise(np.random.SeedSequence(0)), make_tally(2, contacts=False)
-    pair = y, v, noise, dynamics, 3, scratch, tally, 1
-    advance_pair(*pair)
-    record_pair(*pair, 1, *np.zeros((2, 2, 1, 2)))
+    record_pair(y, v, noise, dynamics, 3, scratch, tally, 1, 1, *np.zeros((2, 2, 1, 2)))

@@ -9,8 +9,8 @@ from described_runs import a_run, some_snapshots
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
 from crazybilliards.particles.laws.avalanche import make_tally
-from crazybilliards.particles.observers import OBSERVERS, restore
-from crazybilliards.particles.observers.base import Averaged
+from crazybilliards.particles.observers import OBSERVERS
+from crazybilliards.particles.observers.base import Averaged, restore
 
 BUILT_IN = [pytest.param(observer, id=name) for name, observer in OBSERVERS.items()]
 
