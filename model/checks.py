@@ -7,9 +7,24 @@ import reprlib
 from collections.abc import Iterable
 from difflib import get_close_matches
 from numbers import Integral, Real
+from typing import Any
 
 # Squares and ratios of parameters must neither overflow nor underflow.
 _SMALLEST, _LARGEST = 1e-60, 1e60
+
+# The symbols of the paper, and the names of their parameters of Chain and simulate.
+SYMBOLS = {
+    "L": "size",
+    "R": "radius",
+    "m": "mass",
+    "k": "stiffness",
+    "gamma": "damping",
+    "A": "amplitude",
+    "e": "restitution",
+    "g": "gap",
+    "dt": "time_step",
+    "\N{GREEK SMALL LETTER GAMMA}": "damping",
+}
 
 _SHORTLY = reprlib.Repr()
 _SHORTLY.maxstring = _SHORTLY.maxother = _SHORTLY.maxlong = 80
@@ -21,38 +36,43 @@ def shown(value: object) -> str:
 
 
 def check_real(name: str, value: object, *, positive: bool = False, signed: bool = False) -> float:
-    """Return ``value`` as a float, or raise one ValueError that says what ``name`` accepts.
+    """Return ``value`` as a float, or raise one ValueError that says what is wrong with it.
 
-    Accepts real numbers (Python's or numpy's) that are finite and whose magnitude lies within
-    1e-60..1e60, or 0 unless ``positive``; negative ones only if ``signed``.
+    Accepts real numbers (Python's or numpy's, also in an array without dimensions) that are finite
+    and whose magnitude lies within 1e-60..1e60, or 0 unless ``positive``; negative ones only if
+    ``signed``.
     """
-    sign = "" if signed else "positive " if positive else "non-negative "
-    wanted = f"{name} must be a finite {sign}number between 1e-60 and 1e60"
-    if not positive:
-        wanted += " (or 0)"
-    if isinstance(value, bool) or not isinstance(value, Real):
-        raise ValueError(f"{wanted}, got {shown(value)}")
-    try:
-        number = float(value)
-    except OverflowError:  # a whole number of more than 308 digits
-        number = math.inf
-    in_range = _SMALLEST <= abs(number) <= _LARGEST or (number == 0 and not positive)
-    if not in_range or (number < 0 and not signed):
-        raise ValueError(f"{wanted}, got {shown(value)}")
-    return number
+    number = _plain(value)
+    if isinstance(number, bool) or not isinstance(number, Real):
+        wanted = "a number"
+    elif not _SMALLEST <= abs(number) <= _LARGEST and number != 0:
+        finite = isinstance(number, Integral) or math.isfinite(number)
+        wanted = "between 1e-60 and 1e60 in magnitude, or 0" if finite else "finite"
+        wanted = wanted.removesuffix(", or 0") if positive else wanted
+    elif (number < 0 and not signed) or (number == 0 and positive):
+        wanted = "positive" if positive else "0 or more"
+    else:
+        return float(number)
+    raise ValueError(f"{name} must be {wanted}, got {shown(value)}")
+
+
+def _plain(value: Any) -> Any:
+    """Return the number in an array without dimensions, such as one value of a coordinate."""
+    return value.item() if getattr(value, "shape", None) == () else value
 
 
 def check_integer(name: str, value: object, *, least: int, most: int | None = None) -> int:
     """Return ``value`` as an int, or raise one ValueError that says what ``name`` accepts."""
     wanted = f"an integer >= {least}" if most is None else f"an integer from {least} to {most}"
+    number = _plain(value)
     if (
-        isinstance(value, bool)
-        or not isinstance(value, Integral)
-        or int(value) < least
-        or (most is not None and int(value) > most)
+        isinstance(number, bool)
+        or not isinstance(number, Integral)
+        or number < least
+        or (most is not None and number > most)
     ):
         raise ValueError(f"{name} must be {wanted}, got {shown(value)}")
-    return int(value)
+    return int(number)
 
 
 def check_choice(name: str, value: object, choices: Iterable[str]) -> str:
@@ -70,6 +90,9 @@ def got(value: object, choices: Iterable[str]) -> str:
 
 
 def meant(value: object, choices: Iterable[str]) -> str:
-    """Return a question whether the nearest accepted name was meant, or nothing."""
+    """Return the accepted name that was meant, by a symbol of the paper or nearly, or nothing."""
+    choices = tuple(choices)
+    if isinstance(value, str) and SYMBOLS.get(value) in choices:
+        return f"; {SYMBOLS[value]} is {value} of the paper"
     near = get_close_matches(value, choices, 1) if isinstance(value, str) else []
     return f"; did you mean {near[0]!r}?" if near else ""
