@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
+from crazybilliards.model.checks import shown
 from crazybilliards.model.vocabulary import VOCABULARY, chain_of, require
 
 # Dimension: abscissa. A quantity over the particle has the one that is asked for.
@@ -65,6 +66,8 @@ def find_curve(label: str, dataset: xr.Dataset, quantity: str, along: str) -> Cu
         If the result, which the message calls ``label``, lacks the quantity, or has it over
         another dimension or several.
     """
+    if not isinstance(dataset, xr.Dataset):
+        raise ValueError(f"{label}: not a crazybilliards result: {shown(dataset)}")
     if quantity == "velocity_density":
         dataset = _of_any_rod(dataset)
     require(dataset, (quantity,))

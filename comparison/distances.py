@@ -9,6 +9,7 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from crazybilliards.model import chain_of
+from crazybilliards.model.checks import check_real
 from crazybilliards.model.vocabulary import require
 
 
@@ -88,6 +89,7 @@ def _differences(
 
     In units of close packing, on the common grid. An error is infinite where it is not reliable.
     """
+    floor = check_real("floor", floor)
     for dataset in (result, reference):
         require(dataset, ("density",))
     spacing = float(reference.x[1] - reference.x[0])

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 
 from crazybilliards.comparison.curves import Curve, axis_label, find_curve, is_of_one_rod
 from crazybilliards.comparison.symbols import draw_measured
-from crazybilliards.model.checks import check_choice, got
+from crazybilliards.model.checks import check_choice, got, shown
 
 Along = Literal["normalized_particle", "mean_position"]
 
@@ -80,6 +80,12 @@ def overlay(
         The axes without a legend; call its ``legend()``.
     """
     curves = _curves(results, quantity, along)
+    if not (ax is None or isinstance(ax, Axes)):
+        raise ValueError(f"ax must be Axes of matplotlib, got {shown(ax)}")
+    if not isinstance(style or {}, Mapping) or not all(
+        isinstance(own, Mapping) for own in (style or {}).values()
+    ):
+        raise ValueError(f"style must be keywords of matplotlib by label, got {shown(style)}")
     for label in style or {}:
         if label not in results:
             raise ValueError(f"style: the results are {got(label, list(results))}")
@@ -109,6 +115,8 @@ def _curves(results: Mapping[str, xr.Dataset], quantity: str, along: str) -> dic
             f"got a {type(results).__name__}"
         )
     check_choice("along", along, get_args(Along))
+    if not isinstance(quantity, str):
+        raise ValueError(f"quantity must be the name of a variable, got {shown(quantity)}")
     curves = {
         label: find_curve(label, dataset, quantity, along) for label, dataset in results.items()
     }

@@ -8,14 +8,13 @@ wrong type are refused by the annotation of the argument. A right call takes a m
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import FrozenInstanceError, is_dataclass
 from functools import cache, wraps
 from pkgutil import resolve_name
 from typing import Any
 
-from crazybilliards.model.checks import SYMBOLS, meant, shown
-from crazybilliards.model.parameters import Parameters
+from crazybilliards.model.checks import SYMBOLS, meant_argument, shown
 
 # annotation: (the classes it stands for, what is wanted)
 _OBJECTS = {
@@ -42,9 +41,6 @@ _OBJECTS = {
         "a FuncAnimation of matplotlib, which animate(tree) returns",
     ),
 }
-
-# Arguments that are often given to the wrong function.
-_OWNERS = dict.fromkeys(Parameters.__dataclass_fields__, "Chain") | {"time_step": "simulate"}
 
 
 def checked(item: Any, room: str) -> Any:
@@ -100,9 +96,7 @@ def _checked(
 def _require(argument: str, value: object, kind: str) -> None:
     """Raise a ValueError unless the value is of a class that the annotation ``kind`` names."""
     if not isinstance(value, _classes(kind)):
-        article = "an" if type(value).__name__[0] in "aeiou" else "a"
-        came = f"{article} {type(value).__name__}" if hasattr(value, "dims") else shown(value)
-        raise ValueError(f"{argument} must be {_OBJECTS[kind][1]}; got {came}")
+        raise ValueError(f"{argument} must be {_OBJECTS[kind][1]}; got {shown(value)}")
 
 
 @cache
@@ -120,12 +114,15 @@ def _problem(
     takes = ", ".join(known) or "no arguments"
     for each in keywords:
         if each not in known:
-            return f"{name} has no argument {each!r}{_hint(each, known) or f'; it takes {takes}'}"
+            hint = meant_argument(each, known) or f"; it takes {takes}"
+            return f"{name} has no argument {each!r}{hint}"
     if len(given) > len(by_place):
         more = shown(given[len(by_place)])
         free = [f"{each}={more}" for each in by_name if each not in keywords]
-        way = f": write {free[0]}, with the name" if free else f"; it takes {takes}"
-        return f"{name} takes {', '.join(by_place) or 'nothing'} without a name, got {more}{way}"
+        way = f": write {free[0]} with its name" if free else f"; it takes {takes}"
+        return (
+            f"{name} takes {', '.join(by_place) or 'no argument'} without a name, got {more}{way}"
+        )
     for each in by_place[: len(given)]:
         if each in keywords:
             return f"{name} got {each} twice, by its place and by its name"
@@ -135,15 +132,6 @@ def _problem(
         if known[each].default is inspect.Parameter.empty and each not in keywords
     ]
     return f"{name} needs {' and '.join(missing)}; it takes {takes}" if missing else ""
-
-
-def _hint(name: str, known: Collection[str]) -> str:
-    """Return the argument that was meant, of this function or of another one, or nothing."""
-    argument = SYMBOLS.get(name, name)
-    if (hint := meant(name, known)) or argument not in _OWNERS:
-        return hint
-    symbol = f"is {name} of the paper," if name in SYMBOLS else "is"
-    return f"; {argument} {symbol} an argument of {_OWNERS[argument]}"
 
 
 def _refuse_change(self: Any, name: str, *_: Any) -> None:

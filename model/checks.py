@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+import os
 import reprlib
 from collections.abc import Iterable
 from difflib import get_close_matches
 from numbers import Integral, Real
+from pathlib import Path
 from typing import Any
 
 # Squares and ratios of parameters must neither overflow nor underflow.
@@ -25,13 +27,20 @@ SYMBOLS = {
     "dt": "time_step",
     "\N{GREEK SMALL LETTER GAMMA}": "damping",
 }
+# Arguments that are often given to another function than this one.
+_OWNERS = dict.fromkeys((*SYMBOLS.values(), "spring"), "Chain") | {"time_step": "simulate"}
 
 _SHORTLY = reprlib.Repr()
 _SHORTLY.maxstring = _SHORTLY.maxother = _SHORTLY.maxlong = 80
 
 
 def shown(value: object) -> str:
-    """Return a wrong value in the form for an error: on one line, cut in the middle if long."""
+    """Return a wrong value in the form for an error: on one line, cut in the middle if long.
+
+    Of an object of xarray only the kind is shown.
+    """
+    if type(value).__module__.startswith("xarray."):
+        return f"a {type(value).__name__}"
     return " ".join(_SHORTLY.repr(value).split())
 
 
@@ -83,6 +92,16 @@ def check_choice(name: str, value: object, choices: Iterable[str]) -> str:
     return value
 
 
+def check_path(name: str, path: object) -> Path:
+    """Return ``path``, in which ``~`` is the home folder, or raise a ValueError if it is none."""
+    if not isinstance(path, str | os.PathLike):
+        raise ValueError(f"{name} must be a text or a Path, got {shown(path)}")
+    try:
+        return Path(path).expanduser()
+    except RuntimeError as error:
+        raise ValueError(f"{name}: there is no home folder for {shown(str(path))}") from error
+
+
 def got(value: object, choices: Iterable[str]) -> str:
     """Return the end of a message about a wrong name: what is accepted, what came, what is near."""
     choices = tuple(choices)
@@ -90,9 +109,29 @@ def got(value: object, choices: Iterable[str]) -> str:
 
 
 def meant(value: object, choices: Iterable[str]) -> str:
-    """Return the accepted name that was meant, by a symbol of the paper or nearly, or nothing."""
-    choices = tuple(choices)
-    if isinstance(value, str) and SYMBOLS.get(value) in choices:
-        return f"; {SYMBOLS[value]} is {value} of the paper"
+    """Return a question whether the nearest accepted name was meant, or nothing."""
     near = get_close_matches(value, choices, 1) if isinstance(value, str) else []
     return f"; did you mean {near[0]!r}?" if near else ""
+
+
+def check_arguments(owner: str, given: Iterable[str], known: Iterable[str]) -> None:
+    """Raise a ValueError for the first name of an argument that ``owner`` does not take."""
+    known = tuple(known)
+    for name in given:
+        if name not in known:
+            hint = meant_argument(name, known)
+            raise ValueError(f"{owner} takes any of {known}, got {shown(name)}{hint}")
+
+
+def meant_argument(name: str, known: Iterable[str]) -> str:
+    """Return the argument that was meant, by a symbol of the paper or nearly, or nothing.
+
+    One that ``known`` lacks, because another function takes it, is named with this function.
+    """
+    argument = SYMBOLS.get(name, name)
+    near = "" if name in SYMBOLS else meant(name, known)
+    if near or argument not in _OWNERS:
+        return near
+    facts = [f"{name} of the paper"] if name in SYMBOLS else []
+    facts += [] if argument in known else [f"an argument of {_OWNERS[argument]}"]
+    return f"; {argument} is {', '.join(facts)}"

@@ -18,7 +18,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from crazybilliards.model.chain import Chain
-from crazybilliards.model.checks import meant
+from crazybilliards.model.checks import meant, shown
 
 # name: (meaning, unit). R length, M mass, T = sqrt(M/k) time.
 VOCABULARY = {
@@ -198,7 +198,7 @@ def chain_of(dataset: xr.Dataset) -> Chain:
 def require(dataset: xr.Dataset, names: Iterable[str]) -> None:
     """Raise a ValueError naming the first of ``names`` that the result lacks."""
     if not isinstance(dataset, xr.Dataset):
-        raise ValueError(f"not a crazybilliards result: {type(dataset).__name__}")
+        raise ValueError(f"not a crazybilliards result: {shown(dataset)}")
     for name in names:
         if name not in dataset:
             known = list(map(str, dataset.data_vars))

@@ -20,6 +20,7 @@ from crazybilliards.model import Chain
 from crazybilliards.model.checks import check_choice, check_integer, check_real, shown
 from crazybilliards.model.grid import require_resolved
 from crazybilliards.model.memory import require_memory
+from crazybilliards.model.vocabulary import VOCABULARY
 from crazybilliards.particles.dynamics import Dynamics, Stepper, default_merging, make_dynamics
 from crazybilliards.particles.laws.law import EXACT, Method, choose_operator
 from crazybilliards.particles.scales import start_swing, typical_speed
@@ -196,6 +197,12 @@ def _check_observers(run: Run) -> None:
                 f"observe: {observer.name!r} needs single collisions, which only "
                 "method='event-driven' sees"
             )
+        for name in (*observer.along, *observer.gives):
+            if name.removesuffix("_error") not in VOCABULARY:
+                raise ValueError(
+                    f"observe: {observer.name!r} gives {name!r}, which has no entry, meaning and "
+                    "unit, in VOCABULARY of crazybilliards.model.vocabulary"
+                )
         # The times of an ensemble are the same for all observers.
         own = set(observer.along) - ({"time"} if run.average == "ensemble" else set())
         for name in sorted(own | set(observer.gives)):

@@ -6,6 +6,7 @@ import logging
 import multiprocessing
 import os
 import signal
+import sys
 import threading
 from collections.abc import Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor
@@ -71,7 +72,7 @@ def dask_cluster(address: str | None = None) -> Iterator[Executor]:
         from distributed.comm import get_address_host_port
     except ImportError as error:
         raise ValueError(
-            "dask is not installed: python -m pip install 'crazybilliards[sweep]'"
+            f"dask is not installed: {sys.executable} -m pip install 'crazybilliards[sweep]'"
         ) from error
     if address is None:
         with (
