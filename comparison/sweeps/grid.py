@@ -36,7 +36,7 @@ from crazybilliards.comparison.sweeps.case import Case, plain, stored_parameters
 from crazybilliards.comparison.sweeps.jobs import JOBS
 from crazybilliards.model import Chain, load
 from crazybilliards.model.checks import check_arguments, check_choice, check_path, got, shown
-from crazybilliards.model.vocabulary import ATTRIBUTES
+from crazybilliards.model.vocabulary import ATTRIBUTES, described
 
 _MOST_CASES = 1_000_000
 _TEXTS = ("status", "provenance")  # are always variables
@@ -244,13 +244,13 @@ def _with_attributes(results: Sequence[xr.Dataset], leave: Sequence[str]) -> lis
         if not (number or differs or name in _TEXTS):
             continue
         meaning, unit = ATTRIBUTES.get(name, (name.replace("_", " "), "1"))
-        described = {"long_name": meaning, "units": unit} if number else {}
+        about = described(meaning, unit) if number else {}
         for place, (dataset, value) in enumerate(zip(made, values, strict=True)):
             if number:
                 each = np.array(math.nan if value is None else value, dtype=float)
             else:
                 each = np.array("" if value is None else str(value), dtype=object)
-            made[place] = dataset.assign({name: ((), each, described)})
+            made[place] = dataset.assign({name: ((), each, about)})
             made[place].attrs.pop(name, None)
     return made
 

@@ -112,8 +112,8 @@ def simulate_limit(
         cheaper, or ``one step`` if one was enough from the beginning. ``attrs["correlation"]``, if
         there are several, is that of the widths at the last two. ``attrs["saving"]``, if the
         coupling is strong, estimates how many times the work of the levels a plain run at the
-        shortest step would take. The error of a density is NaN at nodes (of a velocity density in bins) that so
-        few rods visited that it is not known. The provenance describes every level.
+        shortest step would take. The error of a density is NaN at nodes (of a velocity density in
+        bins) that so few rods visited that it is not known. The provenance describes every level.
 
     Raises
     ------

@@ -1,0 +1,1 @@
+"""What surrounds a program: home folders, numpy's settings, archives, scripts, units, quotas."""
