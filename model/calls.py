@@ -14,7 +14,12 @@ from functools import cache, wraps
 from pkgutil import resolve_name
 from typing import Any
 
+import numpy as np
+
 from crazybilliards.model.checks import SYMBOLS, meant_argument, shown
+
+# numpy's own settings: solvers rely on them, whatever numpy.seterr the user has chosen.
+_NUMPY: Any = {"divide": "warn", "over": "warn", "under": "ignore", "invalid": "warn"}
 
 # annotation: (the classes it stands for, what is wanted)
 _OBJECTS = {
@@ -83,7 +88,8 @@ def _checked(
             elif argument in keywords:
                 _require(argument, keywords[argument], kind)
         try:
-            return function(*arguments, **keywords)
+            with np.errstate(**_NUMPY):
+                return function(*arguments, **keywords)
         except TypeError:
             given = arguments[1:] if owner else arguments
             if problem := _problem(name, signature, given, keywords):

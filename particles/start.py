@@ -88,10 +88,11 @@ def replica_starts(
 def _states(start: xr.Dataset) -> list[Array]:
     """Return positions and velocities of a start, each of shape (replicas, rods)."""
     names = ("position", "velocity")
-    if not isinstance(start, xr.Dataset) or not set(names) <= set(start.data_vars):
+    found = sorted(map(str, start.data_vars)) if isinstance(start, xr.Dataset) else []
+    if not set(names) <= set(found):
         raise ValueError(
             "start must be a result with position and velocity, which given_start(chain, position) "
-            f"and equilibrium_states(chain, replicas) return, got {shown(start)}"
+            f"and equilibrium_states(chain, replicas) return, got {shown(found or start)}"
         )
     for name in names:
         dims = start[name].dims
