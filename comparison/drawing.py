@@ -82,25 +82,27 @@ def overlay(
     curves = _curves(results, quantity, along)
     if not (ax is None or isinstance(ax, Axes)):
         raise ValueError(f"ax must be Axes of matplotlib, got {shown(ax)}")
-    if not isinstance(style or {}, Mapping) or not all(
-        isinstance(own, Mapping) for own in (style or {}).values()
-    ):
+    style = {} if style is None else style
+    if not isinstance(style, Mapping) or not all(isinstance(own, Mapping) for own in style.values()):
         raise ValueError(f"style must be keywords of matplotlib by label, got {shown(style)}")
-    for label in style or {}:
+    for label in style:
         if label not in results:
             raise ValueError(f"style: the results are {got(label, list(results))}")
     if ax is None:
         _, ax = plt.subplots(layout="constrained")
     lines, symbols = cycle(_LINES), cycle(_SIMULATIONS)
     for label, (abscissa, values, error) in curves.items():
-        own, look = dict((style or {}).get(label, {})), dict[str, Any](label=label)
-        if results[label].attrs.get("source") == "simulation":
-            look |= {"markersize": 3.5, "zorder": 3} | next(symbols) | own
-            spread = None if error is None else error.values
-            draw_measured(ax, abscissa.values, values.values, spread, look)
-        else:
-            look |= {"zorder": 2} | next(lines) | own
-            ax.plot(abscissa, values, **look)
+        own, look = dict(style.get(label, {})), dict[str, Any](label=label)
+        try:
+            if results[label].attrs.get("source") == "simulation":
+                look |= {"markersize": 3.5, "zorder": 3} | next(symbols) | own
+                spread = None if error is None else error.values
+                draw_measured(ax, abscissa.values, values.values, spread, look)
+            else:
+                look |= {"zorder": 2} | next(lines) | own
+                ax.plot(abscissa, values, **look)
+        except (AttributeError, TypeError, ValueError) as problem:  # of matplotlib, for a keyword
+            raise ValueError(f"style of {label!r}: {problem}") from problem
         ax.set_xlabel(axis_label(abscissa))
         ax.set_ylabel(axis_label(values))
     return ax

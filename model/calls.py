@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import FrozenInstanceError, is_dataclass
+from dataclasses import FrozenInstanceError
 from functools import cache, wraps
 from pkgutil import resolve_name
 from typing import Any
@@ -41,6 +41,8 @@ _OBJECTS = {
         ("xarray:Dataset", "xarray:DataTree"),
         "a result or a tree of results, an xarray.Dataset or xarray.DataTree",
     ),
+    "bool": (("builtins:int", "numpy:bool"), "True or False"),
+    "bool | str": (("builtins:int", "numpy:bool", "builtins:str"), "True, False or a text"),
     "FuncAnimation": (
         ("matplotlib.animation:FuncAnimation",),
         "a FuncAnimation of matplotlib, which animate(tree) returns",
@@ -59,14 +61,19 @@ def checked(item: Any, room: str) -> Any:
         return public
     if issubclass(item, BaseException):
         return item
-    signature = inspect.signature(item)
-    itself = inspect.Parameter("self", inspect.Parameter.POSITIONAL_ONLY)
-    start: Any = _checked(item.__init__, signature, item.__name__)
-    start.__signature__ = signature.replace(parameters=[itself, *signature.parameters.values()])
-    item.__init__ = start
-    if is_dataclass(item):  # all of them are frozen
-        item.__setattr__ = item.__delattr__ = _refuse_change
+    _check_class(item)
     return item
+
+
+def _check_class(owner: Any) -> None:
+    signature = inspect.signature(owner)
+    itself = inspect.Parameter("self", inspect.Parameter.POSITIONAL_ONLY)
+    start: Any = _checked(owner.__init__, signature, owner.__name__)
+    start.__signature__ = signature.replace(parameters=[itself, *signature.parameters.values()])
+    owner.__init__ = start
+    if "__dataclass_fields__" in vars(owner):  # all of them are frozen
+        owner.__setattr__ = _explained(owner.__setattr__)
+        owner.__delattr__ = _explained(owner.__delattr__)
 
 
 def _checked(
@@ -140,8 +147,17 @@ def _problem(
     return f"{name} needs {' and '.join(missing)}; it takes {takes}" if missing else ""
 
 
-def _refuse_change(self: Any, name: str, *_: Any) -> None:
-    """Refuse to set or to delete an attribute of a frozen object."""
-    name = SYMBOLS.get(name, name)
-    way = f"; chain.replace({name}=...) returns another one" if hasattr(self, "replace") else ""
-    raise FrozenInstanceError(f"{name}: a {type(self).__name__} cannot be changed{way}")
+def _explained(refuse: Callable[..., None]) -> Callable[..., None]:
+    """Return the method of a frozen class that refuses a change, with a message of what to do."""
+
+    @wraps(refuse)
+    def change(self: Any, name: str, *value: Any) -> None:
+        try:
+            refuse(self, name, *value)
+        except FrozenInstanceError:
+            name = SYMBOLS.get(name, name)
+            way = f"; chain.replace({name}=...) returns another" if hasattr(self, "replace") else ""
+            kind = type(self).__name__
+            raise FrozenInstanceError(f"{name}: a {kind} cannot be changed{way}") from None
+
+    return change

@@ -52,7 +52,7 @@ def check_real(name: str, value: object, *, positive: bool = False, signed: bool
     ``signed``.
     """
     number = _plain(value)
-    if isinstance(number, bool) or not isinstance(number, Real):
+    if not _is_a(Real, number):
         wanted = "a number"
     elif not _SMALLEST <= abs(number) <= _LARGEST and number != 0:
         finite = isinstance(number, Integral) or math.isfinite(number)
@@ -65,6 +65,11 @@ def check_real(name: str, value: object, *, positive: bool = False, signed: bool
     raise ValueError(f"{name} must be {wanted}, got {shown(value)}")
 
 
+def _is_a(kind: type, number: Any) -> bool:
+    """Return whether this is a number of a kind; a truth value is none."""
+    return isinstance(number, kind) and not isinstance(number, bool)
+
+
 def _plain(value: Any) -> Any:
     """Return the number in an array without dimensions, such as one value of a coordinate."""
     return value.item() if getattr(value, "shape", None) == () else value
@@ -74,12 +79,7 @@ def check_integer(name: str, value: object, *, least: int, most: int | None = No
     """Return ``value`` as an int, or raise one ValueError that says what ``name`` accepts."""
     wanted = f"an integer >= {least}" if most is None else f"an integer from {least} to {most}"
     number = _plain(value)
-    if (
-        isinstance(number, bool)
-        or not isinstance(number, Integral)
-        or number < least
-        or (most is not None and number > most)
-    ):
+    if not _is_a(Integral, number) or number < least or (most is not None and number > most):
         raise ValueError(f"{name} must be {wanted}, got {shown(value)}")
     return int(number)
 

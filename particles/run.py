@@ -25,7 +25,7 @@ from crazybilliards.particles.dynamics import Dynamics, Stepper, default_merging
 from crazybilliards.particles.laws.law import EXACT, Method, choose_operator
 from crazybilliards.particles.scales import start_swing, typical_speed
 from crazybilliards.particles.schedule import Average, Schedule, make_schedule
-from crazybilliards.particles.start import replica_starts
+from crazybilliards.particles.start import MOST_REPLICAS, replica_starts
 
 Array = NDArray[np.float64]
 
@@ -71,7 +71,9 @@ class Run:
         merging = default_merging(self.chain) if self.merging is None else self.merging
         object.__setattr__(self, "merging", check_real("merging", merging))
         object.__setattr__(self, "seed", check_integer("seed", self.seed, least=0))
-        object.__setattr__(self, "replicas", check_integer("replicas", self.replicas, least=1))
+        object.__setattr__(
+            self, "replicas", check_integer("replicas", self.replicas, least=1, most=MOST_REPLICAS)
+        )
         # Each of these properties checks its own arguments and raises if they are wrong.
         own = self.replicas * (_BYTES_PER_ROD * float(self.chain.size) + _BYTES_PER_REPLICA)
         require_memory(f"replicas={self.replicas} of {self.chain.size} rods", own + _CHUNKS)

@@ -14,6 +14,8 @@ from crazybilliards.model.vocabulary import result
 
 Array = NDArray[np.float64]
 
+MOST_REPLICAS = 10**15  # more than any memory holds, and still exact as a float
+
 
 def given_start(
     chain: Chain, position: ArrayLike, velocity: ArrayLike = 0.0, *, replicas: int = 1
@@ -44,7 +46,7 @@ def given_start(
     >>> compressed.position.values[0]
     array([-2.2,  0. ,  2.2])
     """
-    replicas = check_integer("replicas", replicas, least=1)
+    replicas = check_integer("replicas", replicas, least=1, most=MOST_REPLICAS)
     require_memory(f"replicas={replicas} of {chain.size} rods", 40.0 * replicas * chain.size)
     shape, dims = (replicas, chain.size), ("replica", "particle")
     states = {}

@@ -152,6 +152,7 @@ cb.overlay({"a": run}, 3) | quantity must be the name of a variable, got 3
 cb.overlay({"a": run}, "widths") | has no 'widths'
 cb.overlay({"a": run}, ax=3) | ax must be Axes of matplotlib, got 3
 cb.overlay({"a": run}, style=3) | style must be keywords...by label, got 3
+cb.overlay({"a": exact}, style={"a": {"colour": "red"}}) | style of 'a': ...'colour'
 cb.overlay({"a": run}, style={"a": 3}) | style must be keywords...by label, got {'a': 3}
 cb.save(3, "a.nc") | result must be a result or a tree of results...got 3
 cb.save({"a": run}, "a.nc") | result must be a result or a tree of results...got {'a'
@@ -189,6 +190,10 @@ cb.fit_exponential([1, 2, 3], None, [1, 1, 1]) | y must be numbers
 cb.fit_growth([1, 2, 3], [1, 2]) | time, energy must have
 cb.fit_growth(None, None) | time must be numbers, got None
 cb.fit_singularity([1, 2, 3], {}) | energy must be numbers, got {}
+cb.fit_growth([1, 2, np.nan], [1, 2, 3]) | time must be finite, got [1, 2, nan]
+cb.fit_border_power_law(run, weighted="no") | weighted must be True or False; got 'no'
+cb.simulate(chain, progress=np.zeros(3)) | progress must be True, False or a text; got array
+cb.simulate(chain, replicas=10**400) | replicas must be an integer from 1 to
 cb.fit_avalanches({}) | count must be numbers, got {}
 cb.fit_avalanches(3) | count must have one dimension
 cb.fit_avalanches(run) | count must be numbers, got a Dataset

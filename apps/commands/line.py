@@ -105,7 +105,7 @@ def _with_symbol(error: typer.TyperException) -> str:
     symbol = getattr(error, "option_name", "").lstrip("-")
     context = getattr(error, "ctx", None)
     known = [each.name for each in context.command.params] if context else []
-    if (name := SYMBOLS.get(symbol)) not in known:
+    if (name := SYMBOLS.get(symbol, "")) not in known:
         return error.format_message()
     return f"{error}; --{name.replace('_', '-')} is {symbol} of the paper"
 

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crazybilliards.model.arrays import check_numbers
+from crazybilliards.model.checks import shown
 
 
 def check_points(**columns: object) -> list[NDArray[np.float64]]:
@@ -17,4 +18,7 @@ def check_points(**columns: object) -> list[NDArray[np.float64]]:
             f"{', '.join(columns)} must have one dimension and the same length, got the shapes "
             f"{', '.join(map(str, shapes))}"
         )
+    for name, array in zip(columns, arrays, strict=True):
+        if not np.isfinite(array).all():
+            raise ValueError(f"{name} must be finite, got {shown(columns[name])}")
     return arrays
