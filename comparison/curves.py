@@ -7,7 +7,8 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from crazybilliards.model.vocabulary import VOCABULARY, chain_of, require
+from crazybilliards.model.checks import shown
+from crazybilliards.model.vocabulary import VOCABULARY, chain_of, described, require, unit_of
 
 # Dimension: abscissa. A quantity over the particle has the one that is asked for.
 _ABSCISSAE = {
@@ -65,6 +66,8 @@ def find_curve(label: str, dataset: xr.Dataset, quantity: str, along: str) -> Cu
         If the result, which the message calls ``label``, lacks the quantity, or has it over
         another dimension or several.
     """
+    if not isinstance(dataset, xr.Dataset):
+        raise ValueError(f"{label}: not a crazybilliards result: {shown(dataset)}")
     if quantity == "velocity_density":
         dataset = _of_any_rod(dataset)
     require(dataset, (quantity,))
@@ -94,7 +97,7 @@ def is_of_one_rod(dataset: xr.Dataset, quantity: str) -> bool:
 
 def axis_label(variable: xr.DataArray) -> str:
     """Return the name and the unit of a variable."""
-    unit = variable.attrs["units"]
+    unit = unit_of(variable)
     name = _LABELS.get(str(variable.name), variable.attrs["long_name"])
     return name + (f" [{unit}]" if unit != "1" else "")
 
@@ -104,17 +107,16 @@ def _of_any_rod(dataset: xr.Dataset) -> xr.Dataset:
 
     A simulation that has all rods has their mean, a kinetic equation int f dy/L.
     """
-    meaning, unit = VOCABULARY["velocity_density"]
-    described = {"long_name": meaning, "units": unit}
+    about = described(*VOCABULARY["velocity_density"])
     if "velocity_density" in dataset:
         density = dataset.velocity_density
         if density.sizes.get("particle", 0) != chain_of(dataset).size:
             return dataset
-        mean = density.mean("particle").assign_attrs(described)
+        mean = density.mean("particle").assign_attrs(about)
         names = [name for name in dataset.data_vars if str(name).startswith("velocity_density")]
         return dataset.drop_vars(names).assign(velocity_density=mean)
     if "phase_space_density" not in dataset:
         return dataset
     marginal = dataset.phase_space_density.integrate("y")
     density = marginal / marginal.integrate("velocity")
-    return dataset.assign(velocity_density=density.assign_attrs(described))
+    return dataset.assign(velocity_density=density.assign_attrs(about))

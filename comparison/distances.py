@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from crazybilliards.comparison.coverage import require_same_smoothing
 from crazybilliards.model import Chain, chain_of
+from crazybilliards.model.checks import check_real
 from crazybilliards.model.vocabulary import require
 
 _SAME_RODS = 0.02  # of the number of rods, by which two densities of a chain may differ
@@ -96,6 +97,7 @@ def _differences(
 
     In units of close packing, on the common grid. An error is infinite where it is not reliable.
     """
+    floor = check_real("floor", floor)
     for dataset in (result, reference):
         require(dataset, ("density",))
     require_same_smoothing({"result": result, "reference": reference})

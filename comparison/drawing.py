@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 from crazybilliards.comparison.coverage import require_same_smoothing
 from crazybilliards.comparison.curves import Curve, axis_label, find_curve, is_of_one_rod
 from crazybilliards.comparison.symbols import draw_measured
-from crazybilliards.model.checks import check_choice, got
+from crazybilliards.model.checks import check_choice, got, shown
 
 Along = Literal["normalized_particle", "mean_position"]
 
@@ -81,21 +81,31 @@ def overlay(
         The axes without a legend; call its ``legend()``.
     """
     curves = _curves(results, quantity, along)
-    for label in style or {}:
+    if not (ax is None or isinstance(ax, Axes)):
+        raise ValueError(f"ax must be Axes of matplotlib, got {shown(ax)}")
+    style = {} if style is None else style
+    if not isinstance(style, Mapping) or not all(
+        isinstance(own, Mapping) for own in style.values()
+    ):
+        raise ValueError(f"style must be keywords of matplotlib by label, got {shown(style)}")
+    for label in style:
         if label not in results:
             raise ValueError(f"style: the results are {got(label, list(results))}")
     if ax is None:
         _, ax = plt.subplots(layout="constrained")
     lines, symbols = cycle(_LINES), cycle(_SIMULATIONS)
     for label, (abscissa, values, error) in curves.items():
-        own, look = dict((style or {}).get(label, {})), dict[str, Any](label=label)
-        if results[label].attrs.get("source") == "simulation":
-            look |= {"markersize": 3.5, "zorder": 3} | next(symbols) | own
-            spread = None if error is None else error.values
-            draw_measured(ax, abscissa.values, values.values, spread, look)
-        else:
-            look |= {"zorder": 2} | next(lines) | own
-            ax.plot(abscissa, values, **look)
+        own, look = dict(style.get(label, {})), dict[str, Any](label=label)
+        try:
+            if results[label].attrs.get("source") == "simulation":
+                look |= {"markersize": 3.5, "zorder": 3} | next(symbols) | own
+                spread = None if error is None else error.values
+                draw_measured(ax, abscissa.values, values.values, spread, look)
+            else:
+                look |= {"zorder": 2} | next(lines) | own
+                ax.plot(abscissa, values, **look)
+        except (AttributeError, TypeError, ValueError) as problem:  # of matplotlib, for a keyword
+            raise ValueError(f"style of {label!r}: {problem}") from problem
         ax.set_xlabel(axis_label(abscissa))
         ax.set_ylabel(axis_label(values))
     return ax
@@ -110,6 +120,8 @@ def _curves(results: Mapping[str, xr.Dataset], quantity: str, along: str) -> dic
             f"got a {type(results).__name__}"
         )
     check_choice("along", along, get_args(Along))
+    if not isinstance(quantity, str):
+        raise ValueError(f"quantity must be the name of a variable, got {shown(quantity)}")
     curves = {
         label: find_curve(label, dataset, quantity, along) for label, dataset in results.items()
     }

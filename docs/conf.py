@@ -3,7 +3,9 @@
 import re
 import shutil
 from html import escape
+from importlib import import_module
 from importlib.metadata import version as version_of
+from inspect import unwrap
 from pathlib import Path
 from runpy import run_path
 
@@ -258,11 +260,18 @@ def write_formula(translator, node) -> None:
     raise SkipNode
 
 
+def defining_module(_, room: str, name: str) -> str | None:
+    """Return the module with the source code of a function, which its room hands out."""
+    found = getattr(import_module(room), name, None)
+    return unwrap(found).__module__ if hasattr(found, "__wrapped__") else None
+
+
 def setup(app) -> None:
     """Let Sphinx know of the above."""
     copy_notebooks()
     pack_lessons()
     app.connect("source-read", point_to_copies)
+    app.connect("viewcode-follow-imported", defining_module)
     app.add_html_math_renderer("mathml", (write_inline_formula, None), (write_formula, None))
     app.connect("doctree-resolved", mark_pictures)
     app.connect("doctree-resolved", mark_numbers)

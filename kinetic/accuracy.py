@@ -64,7 +64,7 @@ def warn_if_unmeasured(theory: str, error: float) -> None:
             f"the error of {theory} was not measured for chains like this one (model_error is "
             "NaN); crazybilliards.theories(chain) lists what is known",
             UnmeasuredWarning,
-            stacklevel=3,
+            stacklevel=4,  # the theory, and what hands it out
         )
 
 

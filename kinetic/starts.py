@@ -25,6 +25,10 @@ from crazybilliards.model.vocabulary import require, result
 Array = NDArray[np.float64]
 
 _RODS_TOLERANCE = 1e-3
+_CRYSTAL = (
+    "these are the spikes of a crystal, which no fluid has; take the smooth density of "
+    "force_balance or phase_space"
+)
 _NO_SIGN_CHANGE = -1  # status of a root that scipy did not look for; those below are failures
 
 
@@ -124,16 +128,17 @@ def read_start(chain: Chain, start: xr.Dataset) -> Start:
     x, density = (_numbers(start, name) for name in ("x", "density"))
     if not (np.isfinite(density).all() and (np.diff(x) > 0).all() and (density >= 0).all()):
         raise ValueError("start: the density must be finite and not negative, over ascending x")
-    if density.max() >= chain.close_packed_density:
-        raise ValueError(
-            f"start: rods overlap, the density reaches {density.max():.4g} and close packing is "
-            f"{chain.close_packed_density:.4g}"
-        )
     if "label" in start:
         label = _numbers(start, "label")
         label = label - label[0]
     else:
         label = PchipInterpolator(x, density).antiderivative()(x)
+    if density.max() >= chain.close_packed_density:
+        crowded = np.interp(x + 2 * chain.radius, x, label) - label > 1 + _RODS_TOLERANCE
+        raise ValueError(
+            f"start: the density reaches {density.max():.4g}, close packing is "
+            f"{chain.close_packed_density:.4g}: " + ("rods overlap" if crowded.any() else _CRYSTAL)
+        )
     require_rods(chain, "density", label[-1])
     scale = chain.size / label[-1]
     profiles = {}

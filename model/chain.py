@@ -30,7 +30,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from crazybilliards.model import spring
-from crazybilliards.model.checks import got, shown
+from crazybilliards.model.checks import check_arguments, shown
 from crazybilliards.model.parameters import Parameters
 
 
@@ -73,10 +73,7 @@ class Chain(Parameters):
 
     def replace(self, **changes: Any) -> Self:
         """Return the same chain with some parameters changed (and all checked again)."""
-        known = {field.name for field in fields(self)}
-        for name in changes:
-            if name not in known:
-                raise ValueError(f"Chain takes any of {got(name, sorted(known))}")
+        check_arguments("Chain", changes, self.parameters())
         return replace(self, **changes)
 
     def parameters(self) -> dict[str, int | float | str]:

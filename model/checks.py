@@ -3,56 +3,85 @@
 from __future__ import annotations
 
 import math
+import os
 import reprlib
 from collections.abc import Iterable
 from difflib import get_close_matches
 from numbers import Integral, Real
+from pathlib import Path
+from typing import Any
 
 # Squares and ratios of parameters must neither overflow nor underflow.
 _SMALLEST, _LARGEST = 1e-60, 1e60
+
+# The symbols of the paper, and the names of their parameters of Chain and simulate.
+SYMBOLS = {
+    "L": "size",
+    "R": "radius",
+    "m": "mass",
+    "k": "stiffness",
+    "gamma": "damping",
+    "A": "amplitude",
+    "e": "restitution",
+    "g": "gap",
+    "dt": "time_step",
+    "\N{GREEK SMALL LETTER GAMMA}": "damping",
+}
+# Arguments that are often given to another function than this one.
+_OWNERS = dict.fromkeys((*SYMBOLS.values(), "spring"), "Chain") | {"time_step": "simulate"}
 
 _SHORTLY = reprlib.Repr()
 _SHORTLY.maxstring = _SHORTLY.maxother = _SHORTLY.maxlong = 80
 
 
 def shown(value: object) -> str:
-    """Return a wrong value in the form for an error: on one line, cut in the middle if long."""
+    """Return a wrong value in the form for an error: on one line, cut in the middle if long.
+
+    Of an object of xarray only the kind is shown.
+    """
+    if type(value).__module__.startswith("xarray."):
+        return f"a {type(value).__name__}"
     return " ".join(_SHORTLY.repr(value).split())
 
 
 def check_real(name: str, value: object, *, positive: bool = False, signed: bool = False) -> float:
-    """Return ``value`` as a float, or raise one ValueError that says what ``name`` accepts.
+    """Return ``value`` as a float, or raise one ValueError that says what is wrong with it.
 
-    Accepts real numbers (Python's or numpy's) that are finite and whose magnitude lies within
-    1e-60..1e60, or 0 unless ``positive``; negative ones only if ``signed``.
+    Accepts real numbers (Python's or numpy's, also in an array without dimensions) that are finite
+    and whose magnitude lies within 1e-60..1e60, or 0 unless ``positive``; negative ones only if
+    ``signed``.
     """
-    sign = "" if signed else "positive " if positive else "non-negative "
-    wanted = f"{name} must be a finite {sign}number between 1e-60 and 1e60"
-    if not positive:
-        wanted += " (or 0)"
-    if isinstance(value, bool) or not isinstance(value, Real):
-        raise ValueError(f"{wanted}, got {shown(value)}")
-    try:
-        number = float(value)
-    except OverflowError:  # a whole number of more than 308 digits
-        number = math.inf
-    in_range = _SMALLEST <= abs(number) <= _LARGEST or (number == 0 and not positive)
-    if not in_range or (number < 0 and not signed):
-        raise ValueError(f"{wanted}, got {shown(value)}")
-    return number
+    number = _plain(value)
+    if not _is_a(Real, number):
+        wanted = "a number"
+    elif not _SMALLEST <= abs(number) <= _LARGEST and number != 0:
+        finite = isinstance(number, Integral) or math.isfinite(number)
+        wanted = "between 1e-60 and 1e60 in magnitude, or 0" if finite else "finite"
+        wanted = wanted.removesuffix(", or 0") if positive else wanted
+    elif (number < 0 and not signed) or (number == 0 and positive):
+        wanted = "positive" if positive else "0 or more"
+    else:
+        return float(number)
+    raise ValueError(f"{name} must be {wanted}, got {shown(value)}")
+
+
+def _is_a(kind: type, number: Any) -> bool:
+    """Return whether this is a number of a kind; a truth value is none."""
+    return isinstance(number, kind) and not isinstance(number, bool)
+
+
+def _plain(value: Any) -> Any:
+    """Return the number in an array without dimensions, such as one value of a coordinate."""
+    return value.item() if getattr(value, "shape", None) == () else value
 
 
 def check_integer(name: str, value: object, *, least: int, most: int | None = None) -> int:
     """Return ``value`` as an int, or raise one ValueError that says what ``name`` accepts."""
     wanted = f"an integer >= {least}" if most is None else f"an integer from {least} to {most}"
-    if (
-        isinstance(value, bool)
-        or not isinstance(value, Integral)
-        or int(value) < least
-        or (most is not None and int(value) > most)
-    ):
+    number = _plain(value)
+    if not _is_a(Integral, number) or number < least or (most is not None and number > most):
         raise ValueError(f"{name} must be {wanted}, got {shown(value)}")
-    return int(value)
+    return int(number)
 
 
 def check_choice(name: str, value: object, choices: Iterable[str]) -> str:
@@ -61,6 +90,16 @@ def check_choice(name: str, value: object, choices: Iterable[str]) -> str:
     if not isinstance(value, str) or value not in choices:
         raise ValueError(f"{name} must be one of {got(value, choices)}")
     return value
+
+
+def check_path(name: str, path: object) -> Path:
+    """Return ``path``, in which ``~`` is the home folder, or raise a ValueError if it is none."""
+    if not isinstance(path, str | os.PathLike):
+        raise ValueError(f"{name} must be a text or a Path, got {shown(path)}")
+    try:
+        return Path(path).expanduser()
+    except RuntimeError as error:
+        raise ValueError(f"{name}: there is no home folder for {shown(str(path))}") from error
 
 
 def got(value: object, choices: Iterable[str]) -> str:
@@ -73,3 +112,26 @@ def meant(value: object, choices: Iterable[str]) -> str:
     """Return a question whether the nearest accepted name was meant, or nothing."""
     near = get_close_matches(value, choices, 1) if isinstance(value, str) else []
     return f"; did you mean {near[0]!r}?" if near else ""
+
+
+def check_arguments(owner: str, given: Iterable[str], known: Iterable[str]) -> None:
+    """Raise a ValueError for the first name of an argument that ``owner`` does not take."""
+    known = tuple(known)
+    for name in given:
+        if name not in known:
+            hint = meant_argument(name, known)
+            raise ValueError(f"{owner} takes any of {known}, got {shown(name)}{hint}")
+
+
+def meant_argument(name: str, known: Iterable[str]) -> str:
+    """Return the argument that was meant, by a symbol of the paper or nearly, or nothing.
+
+    One that ``known`` lacks, because another function takes it, is named with this function.
+    """
+    argument = SYMBOLS.get(name, name)
+    near = "" if name in SYMBOLS else meant(name, known)
+    if near or argument not in _OWNERS:
+        return near
+    facts = [f"{name} of the paper"] if name in SYMBOLS else []
+    facts += [] if argument in known else [f"an argument of {_OWNERS[argument]}"]
+    return f"; {argument} is {', '.join(facts)}"

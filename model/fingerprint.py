@@ -8,14 +8,13 @@ same fingerprint on every machine, so its results stay valid everywhere.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from functools import cache
-from pathlib import Path
+from importlib.resources import files
+from importlib.resources.abc import Traversable
 
-_PACKAGE = Path(__file__).parents[1]
 
-
-def fingerprint_of(sources: Iterable[Path], *others: str) -> str:
+def fingerprint_of(sources: Iterable[Traversable], *others: str) -> str:
     """Return a hash of the content of files, in any order, and of further text."""
     hashed = hashlib.sha256("\0".join(others).encode())
     for content in sorted(_content(source) for source in sources):
@@ -29,9 +28,19 @@ def room_fingerprint(*rooms: str) -> str:
 
     It has 20 hexadecimal digits. A process computes it once, in some milliseconds.
     """
-    return fingerprint_of(file for room in rooms for file in (_PACKAGE / room).rglob("*.py"))[:20]
+    sources = (each for room in rooms for each in _sources(files(f"crazybilliards.{room}")))
+    return fingerprint_of(sources)[:20]
 
 
-def _content(source: Path) -> bytes:
+def _sources(folder: Traversable) -> Iterator[Traversable]:
+    """Yield the modules in a folder, which may lie in a zip archive."""
+    for each in folder.iterdir():
+        if each.is_dir():
+            yield from _sources(each)
+        elif each.name.endswith(".py"):
+            yield each
+
+
+def _content(source: Traversable) -> bytes:
     """Return the name and the hash of a file."""
     return source.name.encode() + hashlib.sha256(source.read_bytes()).digest()

@@ -14,12 +14,16 @@ from contextlib import suppress
 from functools import lru_cache
 from pathlib import Path
 
+from crazybilliards.model.control_groups import limiting_groups
+
 _GIB = 2**30
 _LATELY = 0.1  # seconds; a look-up takes half a millisecond, and a sweep makes one for every case
 
 # Names of the limit, the usage, and the reclaimable part, in the two versions of control groups.
-_VERSION_1 = ("memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file")
-_VERSION_2 = ("memory.max", "memory.current", "inactive_file")
+_NAMES = {
+    1: ("memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file"),
+    2: ("memory.max", "memory.current", "inactive_file"),
+}
 
 
 def require_memory(wanted: str, needed: float) -> None:
@@ -58,24 +62,8 @@ def _of_the_machine() -> float:
 
 def _of_the_groups(root: Path) -> float:
     """Return the bytes that the control groups of this process leave; ``root`` is for tests."""
-    try:
-        lines = (root / "proc/self/cgroup").read_text().splitlines()
-    except OSError:
-        return math.inf  # not Linux
-    left = math.inf
-    for line in lines:  # number:controllers:path, with number 0 and no controllers in version 2
-        _, controllers, path = line.split(":", 2)
-        if controllers == "":
-            top, names = root / "sys/fs/cgroup", _VERSION_2
-        elif "memory" in controllers.split(","):
-            top, names = root / "sys/fs/cgroup/memory", _VERSION_1
-        else:
-            continue
-        group = top / path.lstrip("/")
-        # In a container the path may be that of the host, of which only the top exists here.
-        around = (group, *group.parents)
-        left = min([left, *(_left(each, *names) for each in around if each.is_relative_to(top))])
-    return left
+    groups = limiting_groups(root, "memory")
+    return min((_left(group, *_NAMES[version]) for group, version in groups), default=math.inf)
 
 
 def _left(group: Path, limit: str, usage: str, reclaimable: str) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import signal
 import sys
@@ -9,6 +10,9 @@ import threading
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from contextvars import ContextVar
+from pathlib import Path
+
+from crazybilliards.model.control_groups import limiting_groups
 
 # The signals that ask a program to end. Windows has no SIGHUP.
 _ENDING = [
@@ -17,11 +21,29 @@ _ENDING = [
 _to_announce: ContextVar[bool] = ContextVar("to_announce", default=False)
 
 
-def cores() -> int:
-    """Return how many cores this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
+def cores(root: Path = Path("/")) -> int:
+    """Return how many cores this process may use.
+
+    A container or a batch job may allow it a share of their time only, or Slurm fewer of them.
+    ``root`` is for tests.
+    """
+    affinity = getattr(os, "sched_getaffinity", None)
+    allowed: list[float] = [len(affinity(0)) if affinity else os.cpu_count() or 1]
+    allowed += [_quota(*group) for group in limiting_groups(root, "cpu")]
+    task = os.environ.get("SLURM_CPUS_PER_TASK", "")
+    if task.isdecimal():
+        allowed.append(int(task))
+    return max(math.ceil(min(allowed)), 1)
+
+
+def _quota(group: Path, version: int) -> float:
+    """Return how many cores a control group may use at a time; inf if there is no limit."""
+    names = ("cpu.max",) if version == 2 else ("cpu.cfs_quota_us", "cpu.cfs_period_us")
+    try:
+        quota, period = " ".join((group / name).read_text() for name in names).split()
+        return int(quota) / int(period) if int(quota) > 0 else math.inf
+    except (OSError, ValueError):  # the outermost group has none; "max" is no number
+        return math.inf
 
 
 def bar_hidden(progress: bool | str) -> bool | None:

@@ -43,4 +43,9 @@ def seed_of(seed: int, rng: Randomness | None) -> int:
         return sum(int(word) << 32 * i for i, word in enumerate(rng.generate_state(4)))
     if isinstance(rng, np.random.Generator):
         return int(rng.integers(2**63))
-    return check_integer("rng", rng, least=0)
+    if isinstance(rng, int | np.integer):
+        return check_integer("rng", rng, least=0)
+    raise ValueError(
+        "rng must be an integer >= 0, a SeedSequence or a Generator of numpy, such as "
+        f"numpy.random.default_rng(1), got {shown(rng)}"
+    )

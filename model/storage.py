@@ -25,9 +25,10 @@ import numpy as np
 import xarray as xr
 from xarray.backends import ScipyDataStore
 
+from crazybilliards.model.checks import check_path
 from crazybilliards.model.locks import open_locked
 
-_CLASSIC = b"CDF"
+_CLASSIC, _NETCDF_4 = b"CDF", b"\x89HDF"  # the first bytes of a file
 _MARK = b"\ncrazybilliards-1 sha256 "
 _TRAILER = len(_MARK) + 64 + 1  # hexadecimal digest and a newline
 
@@ -45,7 +46,7 @@ def save(result: xr.Dataset | xr.DataTree, path: str | os.PathLike[str]) -> Path
     OSError
         If the file cannot be written (no room, no permission).
     """
-    path = Path(path)
+    path = check_path("path", path)
     if path.suffix != ".nc":
         raise ValueError(f"results are NetCDF files: the name must end in .nc, got {str(path)!r}")
     write_sealed(path, bytes(result.to_netcdf(engine="h5netcdf")))
@@ -62,7 +63,7 @@ def load(path: str | os.PathLike[str]) -> xr.Dataset | xr.DataTree:
     ValueError
         If the file is damaged, truncated, or was not written by :func:`save`.
     """
-    content = read_sealed(Path(path))
+    content = read_sealed(check_path("path", path))
     try:
         if content.startswith(_CLASSIC):
             return _load_classic(content)
@@ -79,7 +80,7 @@ def load_attributes(path: str | os.PathLike[str]) -> dict[str, Any]:
 
     This is faster than :func:`load`, and the whole file is still checked.
     """
-    content = read_sealed(Path(path))
+    content = read_sealed(check_path("path", path))
     try:
         if content.startswith(_CLASSIC):
             with ScipyDataStore(io.BytesIO(content)) as store:
@@ -121,7 +122,10 @@ def read_sealed(path: Path) -> bytes:
     raw = path.read_bytes()
     content, trailer = raw[:-_TRAILER], raw[-_TRAILER:]
     if not trailer.startswith(_MARK):
-        raise ValueError(f"{path}: truncated, or not a file that crazybilliards saved")
+        saved = "truncated, or not a file that crazybilliards saved"
+        if raw.startswith((_CLASSIC, _NETCDF_4)):
+            saved += ": without the checksum of crazybilliards.save; xarray.open_dataset reads it"
+        raise ValueError(f"{path}: {saved}")
     if trailer[len(_MARK) : -1] != hashlib.sha256(content).hexdigest().encode():
         raise ValueError(f"{path}: damaged, its content does not match its checksum")
     return content

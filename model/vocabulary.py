@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import platform
+import re
 from collections.abc import Iterable, Mapping
 from functools import cache
 from importlib.metadata import version
@@ -18,7 +19,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from crazybilliards.model.chain import Chain
-from crazybilliards.model.checks import meant
+from crazybilliards.model.checks import meant, shown
 
 # name: (meaning, unit). R length, M mass, T = sqrt(M/k) time.
 VOCABULARY = {
@@ -163,7 +164,7 @@ def result(
         meaning, unit = VOCABULARY[str(name).removesuffix("_error")]
         if str(name).endswith("_error"):
             meaning = f"standard error of {meaning}"
-        dataset[name].attrs.update(long_name=meaning, units=unit)
+        dataset[name].attrs |= described(meaning, unit)
     if "separation" in dataset.coords and (reach := int(dataset.separation[-1])) < chain.size - 1:
         cut = f"cut at {reach} of {chain.size - 1}; Covariances(separations=...) sets where"
         dataset["separation"].attrs["comment"] = cut
@@ -176,6 +177,20 @@ def result(
         {"chain": chain.parameters(), **method, "versions": _versions()}, sort_keys=True
     )
     return dataset
+
+
+def described(meaning: str, unit: str) -> dict[str, str]:
+    """Return the attributes of a variable.
+
+    The units are written R_0, M_0 and T_0, because libraries of units take R for the gas constant
+    and T for tesla. :func:`unit_of` gives them as they are in the vocabulary.
+    """
+    return {"long_name": meaning, "units": re.sub("[RMT]", r"\g<0>_0", unit)}
+
+
+def unit_of(variable: xr.DataArray) -> str:
+    """Return the unit of a variable as in the vocabulary, R/T for example."""
+    return str(variable.attrs["units"]).replace("_0", "")  # up to version 0.3 it was written so
 
 
 def _require_all_rods(chain: Chain, label: ArrayLike) -> None:
@@ -201,7 +216,7 @@ def chain_of(dataset: xr.Dataset) -> Chain:
 def require(dataset: xr.Dataset, names: Iterable[str]) -> None:
     """Raise a ValueError naming the first of ``names`` that the result lacks."""
     if not isinstance(dataset, xr.Dataset):
-        raise ValueError(f"not a crazybilliards result: {type(dataset).__name__}")
+        raise ValueError(f"not a crazybilliards result: {shown(dataset)}")
     for name in names:
         if name not in dataset:
             known = list(map(str, dataset.data_vars))

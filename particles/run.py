@@ -20,11 +20,12 @@ from crazybilliards.model import Chain
 from crazybilliards.model.checks import check_choice, check_integer, check_real, shown
 from crazybilliards.model.grid import require_resolved
 from crazybilliards.model.memory import require_memory
+from crazybilliards.model.vocabulary import VOCABULARY
 from crazybilliards.particles.dynamics import Dynamics, Stepper, default_merging, make_dynamics
 from crazybilliards.particles.laws.law import EXACT, Method, choose_operator
 from crazybilliards.particles.scales import start_swing, typical_speed
 from crazybilliards.particles.schedule import Average, Schedule, make_schedule, too_short
-from crazybilliards.particles.start import replica_starts
+from crazybilliards.particles.start import MOST_REPLICAS, replica_starts
 
 Array = NDArray[np.float64]
 
@@ -70,7 +71,9 @@ class Run:
         merging = default_merging(self.chain) if self.merging is None else self.merging
         object.__setattr__(self, "merging", check_real("merging", merging))
         object.__setattr__(self, "seed", check_integer("seed", self.seed, least=0))
-        object.__setattr__(self, "replicas", check_integer("replicas", self.replicas, least=1))
+        object.__setattr__(
+            self, "replicas", check_integer("replicas", self.replicas, least=1, most=MOST_REPLICAS)
+        )
         # Each of these properties checks its own arguments and raises if they are wrong.
         own = self.replicas * (_BYTES_PER_ROD * float(self.chain.size) + _BYTES_PER_REPLICA)
         require_memory(f"replicas={self.replicas} of {self.chain.size} rods", own + _CHUNKS)
@@ -217,6 +220,12 @@ def _check_observers(run: Run) -> None:
                 f"observe: {observer.name!r} needs single collisions, which only "
                 "method='event-driven' sees"
             )
+        for name in (*observer.along, *observer.gives):
+            if name.removesuffix("_error") not in VOCABULARY:
+                raise ValueError(
+                    f"observe: {observer.name!r} gives {name!r}, which has no entry, meaning and "
+                    "unit, in VOCABULARY of crazybilliards.model.vocabulary"
+                )
         # The times of an ensemble are the same for all observers.
         own = set(observer.along) - ({"time"} if run.average == "ensemble" else set())
         for name in sorted(own | set(observer.gives)):

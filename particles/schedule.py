@@ -139,7 +139,7 @@ def make_schedule(
         least = blocks * stride * step
         raise ValueError(
             f"duration must be at least {least:.4g} (one snapshot in each of {blocks} blocks), "
-            f"got {duration:g}"
+            f"got {duration:g}; average='ensemble' takes any duration"
         )
     # The small tolerance keeps a duration that is a whole number of blocks but for rounding.
     return Schedule(step, warmup_steps, stride, blocks, math.ceil(snapshots / blocks - 1e-9))

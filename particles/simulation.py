@@ -6,14 +6,13 @@ import os
 import warnings
 from collections.abc import Sequence
 from contextlib import nullcontext
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from crazybilliards.model import Chain
-from crazybilliards.model.checks import check_integer, check_real
+from crazybilliards.model.checks import check_integer, check_path, check_real
 from crazybilliards.model.grid import deposit
 from crazybilliards.model.process import announced, cores
 from crazybilliards.model.randomness import Randomness, seed_of
@@ -167,16 +166,19 @@ def simulate(
         del asked[name]  # no number depends on these
     asked["seed"] = seed_of(seed, asked.pop("rng"))
     checkpoint_interval = check_real("checkpoint_interval", checkpoint_interval)
+    kept = None if checkpoint is None else check_path("checkpoint", checkpoint)
     threads = check_integer("threads", cores() if threads is None else threads, least=1)
     run = make_run(**asked)
     if run.too_short:
-        warnings.warn(run.too_short, ShortRunWarning, stacklevel=2)
+        warnings.warn(run.too_short, ShortRunWarning, stacklevel=3)
+    if _stays_at_rest(run):
+        warnings.warn("amplitude=0 and a start at rest: nothing will move", stacklevel=3)
     copies = _replicas(run)
     with announced(bool(progress)):
         compile_kernels()
     keeper = None
-    if checkpoint is not None:
-        keeper = Checkpoint(Path(checkpoint), identity(run), checkpoint_interval)
+    if kept is not None:
+        keeper = Checkpoint(kept, identity(run), checkpoint_interval)
     with nullcontext() if keeper is None else keeper.resumed(copies):
         interrupted = run_all(copies, threads, keeper, progress)
     return collect(run, copies, interrupted)
@@ -191,6 +193,15 @@ def make_run(chain: Chain, *, observe: Any, **arguments: Any) -> Run:
         For a wrong argument, or if the run would not fit into memory.
     """
     return Run(chain=chain, observers=find_observers(observe), **arguments)
+
+
+def _stays_at_rest(run: Run) -> bool:
+    """Return whether there is neither noise nor a velocity nor a stretched spring."""
+    chain, tolerance = run.chain, 1e-9 * run.chain.radius  # positions x are rounded
+    return chain.amplitude == 0 and not any(
+        v.any() or (chain.stiffness > 0 and np.abs(y - chain.reduced_anchors).max() > tolerance)
+        for y, v in run.starts
+    )
 
 
 def _replicas(run: Run) -> list[Replica]:

@@ -7,11 +7,14 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from crazybilliards.model import Chain
-from crazybilliards.model.checks import check_integer
+from crazybilliards.model.arrays import check_numbers
+from crazybilliards.model.checks import check_integer, shown
 from crazybilliards.model.memory import require_memory
-from crazybilliards.model.vocabulary import require, result
+from crazybilliards.model.vocabulary import result
 
 Array = NDArray[np.float64]
+
+MOST_REPLICAS = 10**15  # more than any memory holds, and still exact as a float
 
 
 def given_start(
@@ -43,19 +46,19 @@ def given_start(
     >>> compressed.position.values[0]
     array([-2.2,  0. ,  2.2])
     """
-    replicas = check_integer("replicas", replicas, least=1)
+    replicas = check_integer("replicas", replicas, least=1, most=MOST_REPLICAS)
     require_memory(f"replicas={replicas} of {chain.size} rods", 40.0 * replicas * chain.size)
     shape, dims = (replicas, chain.size), ("replica", "particle")
-    try:
-        states = {
-            "position": (dims, np.broadcast_to(np.asarray(position, dtype=float), shape).copy()),
-            "velocity": (dims, np.broadcast_to(np.asarray(velocity, dtype=float), shape).copy()),
-        }
-    except ValueError as error:
-        raise ValueError(
-            f"start: positions and velocities must be numbers that fit {replicas} replicas of "
-            f"{chain.size} rods"
-        ) from error
+    states = {}
+    for name, values in {"position": position, "velocity": velocity}.items():
+        numbers = check_numbers(name, values)
+        try:
+            states[name] = (dims, np.broadcast_to(numbers, shape).copy())
+        except ValueError:
+            raise ValueError(
+                f"{name} must fit {replicas} replicas of {chain.size} rods, shape {shape}, got "
+                f"{numbers.shape}"
+            ) from None
     start = result(chain, states, source="start", method={"start": "given"})
     replica_starts(chain, start, replicas)
     return start
@@ -68,19 +71,35 @@ def replica_starts(
     if start is None:
         rest = (chain.reduced_anchors, np.zeros(chain.size))
         return [(rest[0].copy(), rest[1].copy()) for _ in range(replicas)]
-    require(start, ("position", "velocity"))
-    shape = (replicas, chain.size)
-    y = chain.reduced(start.position.transpose("replica", "particle").values)
-    v = start.velocity.transpose("replica", "particle").values
-    if y.shape != shape or v.shape != shape:
-        raise ValueError(
-            f"start must hold {replicas} replicas of {chain.size} particles, got {y.shape}"
-        )
+    x, v = _states(start)
+    if x.shape[1] != chain.size:
+        raise ValueError(f"start has {x.shape[1]} rods, the chain {chain.size}")
+    if len(x) != replicas:
+        raise ValueError(f"start is for replicas={len(x)}, got replicas={replicas}")
+    y = chain.reduced(x)
     if not (np.isfinite(y).all() and np.isfinite(v).all()):
         raise ValueError("start must be finite")
     # Rounding in x -> y may put touching rods out of order by one unit in the last place of x.
-    tolerance = 1e-12 * max(float(np.abs(start.position).max()), chain.radius)
+    tolerance = 1e-12 * max(float(np.abs(x).max()), chain.radius)
     if (np.diff(y, axis=1) < -tolerance).any():
         raise ValueError("start must hold rods in order that do not overlap")
     y = np.maximum.accumulate(y, axis=1)
     return [(np.array(y[i]), np.array(v[i], dtype=float)) for i in range(replicas)]
+
+
+def _states(start: xr.Dataset) -> list[Array]:
+    """Return positions and velocities of a start, each of shape (replicas, rods)."""
+    names = ("position", "velocity")
+    found = sorted(map(str, start.data_vars)) if isinstance(start, xr.Dataset) else []
+    if not set(names) <= set(found):
+        raise ValueError(
+            "start must be a result with position and velocity, which given_start(chain, position) "
+            f"and equilibrium_states(chain, replicas) return, got {shown(found or start)}"
+        )
+    for name in names:
+        dims = start[name].dims
+        if "time" in dims:
+            raise ValueError("start is over time; choose one time, such as start.isel(time=-1)")
+        if set(dims) != {"replica", "particle"}:
+            raise ValueError(f"start: {name} must be over replica and particle, got {dims}")
+    return [check_numbers(name, start[name].transpose("replica", ...)) for name in names]

@@ -29,7 +29,7 @@ class Units:
         product = 1.0
         for part, sign in ((above, 1), (below, -1)):
             for each in part.split():
-                name, _, power = each.partition("^")
+                name, _, power = each.replace("_0", "").partition("^")
                 product *= factors[name] ** (sign * int(power or 1))
         return product
 

@@ -90,8 +90,10 @@ def answer_rods(result: xr.Dataset, title: str, caption: str) -> None:
     """Print widths and displacements of some rods, with their standard errors if there are any."""
     from rich.table import Table
 
+    from crazybilliards.model.vocabulary import unit_of
+
     columns = {name: text for name, text in _COLUMNS.items() if name in result}
-    headings = [f"{text} [{result[name].attrs['units']}]" for name, text in columns.items()]
+    headings = [f"{text} [{unit_of(result[name])}]" for name, text in columns.items()]
     table = Table("particle", *headings, title=title, caption=caption)
     for column in table.columns:
         column.justify = "right"
@@ -101,7 +103,7 @@ def answer_rods(result: xr.Dataset, title: str, caption: str) -> None:
         table.add_row(str(rod.particle.item()), *(_measured(rod, name) for name in columns))
         errors = [f"{name}_error" for name in columns if f"{name}_error" in rod]
         noted.append({name: rod[name].item() for name in ("particle", *columns, *errors)})
-    units = {name: result[name].attrs["units"] for name in columns}
+    units = {name: unit_of(result[name]) for name in columns}
     note(rods=noted, units=units)
     print_table(table)
 

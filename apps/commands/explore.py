@@ -5,6 +5,7 @@ Only the standard library and typer are imported up here, so that ``--help`` ans
 
 from __future__ import annotations
 
+import sys
 from typing import Annotated
 
 import typer
@@ -36,7 +37,7 @@ def command(
         import panel  # noqa: F401
     except ImportError as error:
         raise ValueError(
-            "Panel is not installed: python -m pip install 'crazybilliards[explore]'"
+            f"Panel is not installed: {sys.executable} -m pip install 'crazybilliards[explore]'"
         ) from error
     from crazybilliards.apps.explore.server import serve
 

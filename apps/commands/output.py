@@ -40,7 +40,9 @@ def place(text: str) -> Path:
     """Read the name of a file or a folder. An empty one would be the current folder."""
     if not str(text):
         raise typer.BadParameter("an empty name; the current folder is .")
-    return Path(text)
+    from crazybilliards.model.checks import check_path
+
+    return check_path("output", text)
 
 
 @contextmanager

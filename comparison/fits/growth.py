@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import curve_fit
 
+from crazybilliards.comparison.fits.points import check_points
+
 Array = NDArray[np.float64]
 
 
@@ -130,7 +132,7 @@ def fit_growth(time: ArrayLike, energy: ArrayLike) -> GrowthFit:
 
 def _logarithm(time: ArrayLike, energy: ArrayLike, least: int) -> tuple[Array, Array]:
     """Return the times and ln E, if there are enough and all energies are positive."""
-    t, E = np.asarray(time, dtype=float), np.asarray(energy, dtype=float)
+    t, E = check_points(time=time, energy=energy)
     if t.size < least or not (np.isfinite(E).all() and E.min() > 0):
         raise ValueError(f"the fit needs at least {least} energies, all of them positive")
     return t, np.log(E)

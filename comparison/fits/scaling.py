@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import curve_fit
 
+from crazybilliards.comparison.fits.points import check_points
+
 Array = NDArray[np.float64]
 
 
@@ -54,7 +56,7 @@ def fit_scaling(x: ArrayLike, y: ArrayLike, error: ArrayLike) -> ScalingFit:
     >>> round(fit.exponent, 3), round(fit.exponent_error, 3)
     (-1.0, 0.015)
     """
-    x, y, error = (np.asarray(each, dtype=float) for each in (x, y, error))
+    x, y, error = check_points(x=x, y=y, error=error)
     if x.size < 2 or not (np.min([x, y, error]) > 0 and np.isfinite([x, y, error]).all()):
         raise ValueError("a power law needs at least two points, positive, with positive errors")
     relative = error / y
@@ -125,7 +127,7 @@ def fit_exponential(restitution: ArrayLike, y: ArrayLike, error: ArrayLike) -> E
     >>> round(fit_exponential(e, y, [0.01] * 4).rate, 3)
     6.0
     """
-    e, y, error = (np.asarray(each, dtype=float) for each in (restitution, y, error))
+    e, y, error = check_points(restitution=restitution, y=y, error=error)
     if e.size < 3:
         raise ValueError("an exponential with offset needs at least three points")
 

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import minimize_scalar
 
-from crazybilliards.model.checks import check_integer
+from crazybilliards.comparison.fits.points import check_points
+from crazybilliards.model.checks import check_integer, check_real
 
 Array = NDArray[np.float64]
 
@@ -63,7 +64,7 @@ def fit_avalanches(
     >>> round(fit_avalanches(np.round(1e9 * sizes**-2.2)).exponent, 3)
     2.2
     """
-    counts = np.asarray(count, dtype=float)
+    [counts] = check_points(count=count)
     smallest = check_integer("smallest", smallest, least=1)
     largest = counts.size if largest is None else check_integer("largest", largest, least=smallest)
     sizes = np.arange(smallest, min(largest, counts.size) + 1, dtype=float)
@@ -119,7 +120,8 @@ def tail_length(velocity: ArrayLike, density: ArrayLike, beyond: float) -> float
     >>> round(tail_length(v, np.exp(-np.abs(v) / 3) / 6, beyond=2.0), 2)
     3.0
     """
-    v, p = np.asarray(velocity, dtype=float), np.asarray(density, dtype=float)
+    v, p = check_points(velocity=velocity, density=density)
+    beyond = check_real("beyond", beyond, signed=True)
     between = (v[1:] + v[:-1]) / 2
     edges = np.concatenate([[2 * v[0] - between[0]], between, [2 * v[-1] - between[-1]]])
     right = _beyond(edges, p, beyond)

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 
 import numpy as np
 import xarray as xr
 
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain
-from crazybilliards.model.checks import check_integer, check_real
+from crazybilliards.model.checks import check_integer, check_real, shown
 from crazybilliards.model.process import waiting_for
 from crazybilliards.particles import simulate
 from crazybilliards.particles.schedule import make_schedule
@@ -24,9 +24,11 @@ def varied_chains(
     chain: Chain, name: str, values: Sequence[float], duration: float
 ) -> dict[str, Chain]:
     """Return the chain at every value of a parameter; all are checked before any work."""
-    if not values:
-        raise ValueError(f"{name}s must hold at least one number")
+    if isinstance(values, str) or not isinstance(values, Iterable):
+        raise ValueError(f"{name}s must be a list of numbers, got {shown(values)}")
     checked = [check_real(name, value) for value in values]
+    if not checked:
+        raise ValueError(f"{name}s must hold at least one number")
     if len(set(checked)) != len(checked):
         raise ValueError(f"{name}s must differ from one another, got {list(values)}")
     chains = {f"{name}_{value:g}": chain.replace(**{name: value}) for value in checked}

@@ -144,6 +144,8 @@ def title(tree: xr.DataTree) -> str:
 def _densities(tree: xr.DataTree) -> dict[str, xr.Dataset]:
     """Return the available smoothed densities by the names they are drawn with."""
     names = {PARTICLES: SIMULATION} | LEGEND
+    if PARTICLES not in tree:
+        raise ValueError(f"tree must be what compare_relaxation returns, got {list(tree.children)}")
     return {
         name: smooth(tree[key].to_dataset())
         for key, name in names.items()

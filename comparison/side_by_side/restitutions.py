@@ -93,6 +93,10 @@ def width_deviations(tree: xr.DataTree) -> dict[str, dict[str, WidthDeviation]]:
     Both ends of a chain have the same averages. Simulated widths are therefore averaged over a rod
     and its mirror image, which lowers their errors by up to the root of two.
     """
+    if not all(SIMULATION in group for group in tree.children.values()):
+        raise ValueError(
+            f"tree must be what compare_restitutions returns, got {list(tree.children)}"
+        )
     return {
         name: {
             key: width_deviation(group[SIMULATION].to_dataset(), group[key].to_dataset())

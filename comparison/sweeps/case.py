@@ -30,7 +30,7 @@ from threadpoolctl import ThreadpoolController
 from crazybilliards.comparison.sweeps.jobs import JOBS
 from crazybilliards.kinetic.accuracy import UnmeasuredWarning
 from crazybilliards.model import Chain, load
-from crazybilliards.model.checks import check_choice, got
+from crazybilliards.model.checks import check_arguments, check_choice
 from crazybilliards.model.storage import load_attributes, small_netcdf
 from crazybilliards.particles import ShortRunWarning
 
@@ -77,9 +77,7 @@ class Case:
 
     def __post_init__(self) -> None:
         job = JOBS[check_choice("job", self.job, sorted(JOBS))]
-        for name in self.settings:
-            if name not in job.settings:
-                raise ValueError(f"{self.job} takes any of {got(name, sorted(job.settings))}")
+        check_arguments(self.job, self.settings, sorted(job.settings))
         settings = {name: plain(name, value) for name, value in self.settings.items()}
         object.__setattr__(self, "settings", {**_default_settings(self.job), **settings})
         object.__setattr__(self, "work", job.work(self.chain, **self.settings))

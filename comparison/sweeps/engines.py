@@ -6,15 +6,22 @@ import logging
 import multiprocessing
 import os
 import signal
+import sys
 import threading
 from collections.abc import Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
+from multiprocessing.synchronize import Event
 
 from tqdm import tqdm
 
 from crazybilliards.model.process import cores
 
+_UNGUARDED = (
+    "no worker process could start: each of them imports the script, which must therefore start "
+    "them under if __name__ == '__main__': only"
+)
 _PATIENCE = "20s"  # to wait for the answer of a scheduler
 
 
@@ -25,23 +32,26 @@ def process_pool(processes: int | None = None) -> Iterator[Executor]:
     An exception in the block, such as Ctrl-C, kills them.
     """
     before = set(multiprocessing.active_children())
+    context = multiprocessing.get_context("spawn")
+    started = context.Event()  # whether a worker did
     pool = ProcessPoolExecutor(
-        processes or cores(),
-        mp_context=multiprocessing.get_context("spawn"),
-        initializer=_prepare_worker,
+        processes or cores(), context, initializer=_prepare_worker, initargs=(started,)
     )
     try:
         yield pool
-    except BaseException:
+    except BaseException as error:
         for process in set(multiprocessing.active_children()) - before:
             process.kill()
         pool.shutdown(wait=False, cancel_futures=True)
+        if isinstance(error.__cause__, BrokenProcessPool) and not started.is_set():
+            raise RuntimeError(_UNGUARDED) from error.__cause__
         raise
     pool.shutdown()
 
 
-def _prepare_worker() -> None:
+def _prepare_worker(started: Event) -> None:
     """Ignore Ctrl-C, which the parent handles, and end when the parent ends."""
+    started.set()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     # The default lock of tqdm works across processes, and a killed worker would leave it behind.
     tqdm.set_lock(threading.RLock())
@@ -71,7 +81,7 @@ def dask_cluster(address: str | None = None) -> Iterator[Executor]:
         from distributed.comm import get_address_host_port
     except ImportError as error:
         raise ValueError(
-            "dask is not installed: python -m pip install 'crazybilliards[sweep]'"
+            f"dask is not installed: {sys.executable} -m pip install 'crazybilliards[sweep]'"
         ) from error
     if address is None:
         with (

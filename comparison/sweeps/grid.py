@@ -20,6 +20,7 @@ from __future__ import annotations
 import json
 import math
 import numbers
+import os
 import tomllib
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
@@ -34,8 +35,8 @@ import xarray as xr
 from crazybilliards.comparison.sweeps.case import Case, plain, stored_parameters
 from crazybilliards.comparison.sweeps.jobs import JOBS
 from crazybilliards.model import Chain, load
-from crazybilliards.model.checks import check_choice, got, shown
-from crazybilliards.model.vocabulary import ATTRIBUTES
+from crazybilliards.model.checks import check_arguments, check_choice, check_path, got, shown
+from crazybilliards.model.vocabulary import ATTRIBUTES, described
 
 _MOST_CASES = 1_000_000
 _TEXTS = ("status", "provenance")  # are always variables
@@ -71,8 +72,8 @@ class Sweep:
 
     def __post_init__(self) -> None:
         settings = list(JOBS[check_choice("job", self.job, sorted(JOBS))].settings)
-        _check_names("grid", self.grid, [*_CHAIN, *settings])
-        _check_names(self.job, self.settings, settings)
+        check_arguments("[grid]", self.grid, [*_CHAIN, *settings])
+        check_arguments(f"[{self.job}]", self.settings, settings)
         for name, values in self.grid.items():
             if not isinstance(values, list | tuple) or not values:
                 raise ValueError(f"grid: {name} must be a list of values, got {shown(values)}")
@@ -111,7 +112,7 @@ class Sweep:
         return list(self)
 
 
-def read_sweep(path: Path) -> Sweep:
+def read_sweep(path: str | os.PathLike[str]) -> Sweep:
     """Read a sweep from a TOML file with the tables grid, chain and that of the job.
 
     Raises
@@ -119,6 +120,7 @@ def read_sweep(path: Path) -> Sweep:
     ValueError
         If the file is not TOML, or a table is unknown or not a table.
     """
+    path = check_path("path", path)
     try:
         tables = tomllib.loads(path.read_text(encoding="utf-8"))
     except IsADirectoryError as error:
@@ -137,13 +139,7 @@ def read_sweep(path: Path) -> Sweep:
     return Sweep(tables.get("grid", {}), job, tables.get("chain", {}), tables.get(job, {}))
 
 
-def _check_names(table: str, given: Mapping[str, Any], known: Sequence[str]) -> None:
-    for name in given:
-        if name not in known:
-            raise ValueError(f"[{table}] takes any of {got(name, known)}")
-
-
-def load_sweep(folder: Path) -> xr.Dataset:
+def load_sweep(folder: str | os.PathLike[str]) -> xr.Dataset:
     """Read all cases of a folder into one Dataset over the parameters in which they differ.
 
     A parameter that did not exist when a file was written has its default. A warning says if
@@ -167,13 +163,13 @@ def load_sweep(folder: Path) -> xr.Dataset:
         If a file is damaged, if there are no files, if they are not cases of one job, or if two
         files hold the same case.
     """
-    paths = sorted(Path(folder).glob("*.nc"))
+    paths = sorted(check_path("folder", folder).glob("*.nc"))
     if not paths:
         raise ValueError(f"{folder}: holds no case of a sweep")
     points, results = zip(*map(_read_case, paths), strict=True)
     _check_points(paths, points)
     if len({result.attrs.get("source_fingerprint") for result in results}) > 1:
-        warnings.warn(f"{folder}: different source code computed these cases", stacklevel=2)
+        warnings.warn(f"{folder}: different source code computed these cases", stacklevel=3)
     table = pd.DataFrame([{k: _scalar(v) for k, v in point.items()} for point in points])
     names = [*_CHAIN, *(name for name in points[0] if name not in _CHAIN)]
     varied = [name for name in names if table[name].nunique(dropna=False) > 1]
@@ -248,13 +244,13 @@ def _with_attributes(results: Sequence[xr.Dataset], leave: Sequence[str]) -> lis
         if not (number or differs or name in _TEXTS):
             continue
         meaning, unit = ATTRIBUTES.get(name, (name.replace("_", " "), "1"))
-        described = {"long_name": meaning, "units": unit} if number else {}
+        about = described(meaning, unit) if number else {}
         for place, (dataset, value) in enumerate(zip(made, values, strict=True)):
             if number:
                 each = np.array(math.nan if value is None else value, dtype=float)
             else:
                 each = np.array("" if value is None else str(value), dtype=object)
-            made[place] = dataset.assign({name: ((), each, described)})
+            made[place] = dataset.assign({name: ((), each, about)})
             made[place].attrs.pop(name, None)
     return made
 

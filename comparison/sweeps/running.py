@@ -23,6 +23,7 @@ from tqdm import tqdm
 
 from crazybilliards.comparison.sweeps.case import Case, compute
 from crazybilliards.comparison.sweeps.missing import Missing, check_cases, find_missing
+from crazybilliards.model.checks import check_path
 from crazybilliards.model.locks import locked
 from crazybilliards.model.process import bar_hidden, interrupts_held_back
 from crazybilliards.model.storage import make_folder, write_sealed
@@ -86,6 +87,7 @@ def run_cases(
     OSError
         If the folder cannot be written to, or another process is filling it.
     """
+    folder = check_path("folder", folder)
     checked = check_cases(cases, progress=progress)
     make_folder(folder)
     with locked(folder):

@@ -151,7 +151,7 @@ def hydrodynamics(
     if cells is not None:
         cells = check_integer("cells", cells, least=8)
         if cells > MOST_CELLS:
-            raise ValueError(f"cells must be at most {MOST_CELLS}, got {cells}")
+            raise ValueError(f"cells must be at most {MOST_CELLS}, got {shown(cells)}")
     known = read_start(chain, start)
     nodes = position_grid(chain, float(np.abs(known.x).max())).size + chain.size
     require_memory(f"every: {times.size} outputs", _BYTES_PER_NODE * float(nodes) * times.size)

@@ -63,7 +63,7 @@ def read_velocity_variance(
     """
     if variance is None:
         return chain, None
-    if isinstance(variance, Real | np.generic):
+    if isinstance(variance, Real) or getattr(variance, "shape", None) == ():
         number = check_real("velocity_variance", variance, positive=True)
         amplitude = math.sqrt(2 * chain.damping * chain.mass * number)
         # Without damping no amplitude gives this temperature; such a chain has no steady state.

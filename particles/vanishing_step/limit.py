@@ -9,14 +9,13 @@ from collections.abc import Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
 from functools import cached_property, partial
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from crazybilliards.model import Chain
-from crazybilliards.model.checks import check_integer, check_real
+from crazybilliards.model.checks import check_integer, check_path, check_real
 from crazybilliards.model.memory import require_memory
 from crazybilliards.model.process import announced, cores, interrupts_noted
 from crazybilliards.model.randomness import Randomness, seed_of
@@ -110,12 +109,12 @@ def simulate_limit(
         negative by about one error.
         ``attrs["status"]`` is as in :func:`simulate`; an interrupted run has the errors reached
         so far. ``attrs["time_step_error"]`` is the remaining relative bias in the centre.
-        ``attrs["coupling"]`` is ``strong``, or ``weak`` if plain runs at the shortest step were
-        cheaper. ``attrs["correlation"]`` is that of the widths at the last two steps. Both are
-        missing if one step was enough from the beginning. ``attrs["saving"]``, if the coupling is
-        strong, estimates how many times the work of the levels a plain run at the shortest step
-        would take. The error of a density is NaN at nodes (of a velocity density in bins) that so
-        few rods visited that it is not known. The provenance describes every level.
+        ``attrs["coupling"]`` is ``strong``, ``weak`` if plain runs at the shortest step were
+        cheaper, or ``one step`` if one was enough from the beginning. ``attrs["correlation"]``, if
+        there are several, is that of the widths at the last two. ``attrs["saving"]``, if the
+        coupling is strong, estimates how many times the work of the levels a plain run at the
+        shortest step would take. The error of a density is NaN at nodes (of a velocity density in
+        bins) that so few rods visited that it is not known. The provenance describes every level.
 
     Raises
     ------
@@ -162,9 +161,8 @@ def simulate_limit(
     keeper = None
     if checkpoint is not None:
         own = {"accuracy": levels.accuracy, "replicas": replicas, "levels": levels.steps}
-        keeper = Checkpoint(
-            Path(checkpoint), identity(samplers[0].finer) | own, checkpoint_interval
-        )
+        path = check_path("checkpoint", checkpoint)
+        keeper = Checkpoint(path, identity(samplers[0].finer) | own, checkpoint_interval)
     with (
         interrupts_noted() as signals,  # between two rounds as well
         nullcontext() if keeper is None else keeper.resumed(samplers),

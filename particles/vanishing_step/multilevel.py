@@ -153,7 +153,7 @@ class Levels:
         """
         last = self.used[-1]
         if last == 0:  # one step is enough: always at e = 1, elsewhere if little is asked for
-            return {}
+            return {"coupling": "one step"}
         if len(terms) == 1:
             return {"coupling": "weak", "correlation": self.samplers[last][0].correlation}
         costs = [self._cost(level, level > self.used[0]) for level in self.used]

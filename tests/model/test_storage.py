@@ -32,7 +32,7 @@ def test_a_result_comes_back_the_same(dataset, tmp_path):
     back = load(path)
     xr.testing.assert_identical(back, dataset)
     assert chain_of(back) == Chain(size=5, gap=0.5)
-    assert back.mean_displacement.attrs["units"] == "R"
+    assert back.mean_displacement.attrs["units"] == "R_0"
     assert [each.name for each in path.parent.iterdir()] == ["run.nc"]
 
 

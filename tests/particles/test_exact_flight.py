@@ -157,7 +157,7 @@ def test_the_limit_has_one_level_and_no_bias():
     exact = equilibrium(chain)
     assert limit.attrs["time_step_error"] == 0
     assert limit.attrs["flight"] == "exact"
-    assert "coupling" not in limit.attrs
+    assert limit.attrs["coupling"] == "one step"
     for name in ("velocity_width", "displacement_width", "mean_displacement"):
         assert (np.abs(limit[name] - exact[name]) < 5 * limit[f"{name}_error"]).all(), name
 

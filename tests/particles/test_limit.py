@@ -97,7 +97,7 @@ def test_an_elastic_chain_takes_one_step():
     exact = equilibrium(chain)
     [level] = levels(limit)
     assert 1 < level["time_step"] / default_time_step(chain) < 3
-    assert "coupling" not in limit.attrs
+    assert limit.attrs["coupling"] == "one step"
     for name in WIDTHS:
         error = limit[f"{name}_error"]
         assert float(np.abs((limit[name] - exact[name]) / error).max()) < 5, name

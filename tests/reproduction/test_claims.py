@@ -101,7 +101,7 @@ def test_pooling_runs_is_averaging_them():
     np.testing.assert_array_equal(run.avalanche_count, counts)
     middle = np.mean([each.mean_position.values for each in simulated.values()], axis=0)
     np.testing.assert_allclose(run.mean_position, middle)
-    assert run.velocity_width.attrs["units"] == "R/T"
+    assert run.velocity_width.attrs["units"] == "R_0/T_0"
 
 
 def test_widths_of_centre_and_border():

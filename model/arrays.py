@@ -1,0 +1,18 @@
+"""Arrays that a user gives: checked to be numbers."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crazybilliards.model.checks import shown
+
+
+def check_numbers(name: str, values: object) -> NDArray[np.float64]:
+    """Return ``values`` as an array of floats, or raise a ValueError that names the argument."""
+    try:
+        if values is not None:  # numpy would make a NaN of it
+            return np.asarray(values, dtype=float)
+    except (TypeError, ValueError, OverflowError):
+        pass
+    raise ValueError(f"{name} must be numbers, got {shown(values)}")

@@ -1,0 +1,39 @@
+"""The public names of a room: each is loaded when it is first used, and its calls are checked.
+
+A room lists its names in its ``__init__.pyi``, which type checkers read too. What it hands out
+refuses a wrong call as :mod:`.calls` says. The loader of the room reads the list, so that a room
+can also lie in a zip archive.
+"""
+
+from __future__ import annotations
+
+import ast
+import os
+import sys
+from collections.abc import Callable
+from importlib import import_module
+from typing import Any
+
+
+def hand_out(room: str) -> tuple[Callable[[str], Any], Callable[[], list[str]], list[str]]:
+    """Return ``__getattr__``, ``__dir__`` and ``__all__`` of a room."""
+    module = sys.modules[room]
+    loader: Any = module.__loader__
+    stub = loader.get_data(os.path.join(module.__path__[0], "__init__.pyi"))
+    module_of = {
+        alias.name: f"{room}.{line.module}"
+        for line in ast.parse(stub).body
+        if isinstance(line, ast.ImportFrom)
+        for alias in line.names
+    }
+
+    def __getattr__(name: str) -> Any:  # noqa: N807
+        if name not in module_of:
+            raise AttributeError(f"module {room!r} has no attribute {name!r}")
+        from crazybilliards.model.calls import checked
+
+        value = checked(getattr(import_module(module_of[name]), name), room)
+        # Another thread may have been quicker: there is one object of a name.
+        return vars(module).setdefault(name, value)
+
+    return __getattr__, lambda: list(module_of), list(module_of)

@@ -1,0 +1,158 @@
+"""What a wrong call says: one line that names what came, what is wanted and the nearest name."""
+
+import csv
+import inspect
+import pickle
+import re
+import sys
+from dataclasses import FrozenInstanceError
+from importlib import import_module
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+from wrong_calls import GAMMA, WRONG_CALLS
+
+import crazybilliards as cb
+from crazybilliards.apps.commands.line import main
+from crazybilliards.model import checks
+
+
+class Unknown(cb.Density):
+    name = "unknown"
+    gives = ("my_variable",)
+
+
+@pytest.fixture(scope="module")
+def names(tmp_path_factory):
+    """Return what the calls name."""
+
+    def swept(text):
+        from crazybilliards.comparison.sweeps import read_sweep
+
+        path = tmp_path_factory.mktemp("sweep") / "grid.toml"
+        path.write_text(text, encoding="utf-8")
+        return read_sweep(path)
+
+    chain, six = cb.Chain(size=5), cb.Chain(size=6)
+    exact = cb.equilibrium(chain)
+    raw = {"duration": 10, "average": "ensemble", "observe": "snapshots", "progress": False}
+    return {
+        "cb": cb,
+        "np": np,
+        "GAMMA": GAMMA,
+        "chain": chain,
+        "six": six,
+        "exact": exact,
+        "Unknown": Unknown,
+        "crystal": cb.equilibrium(cb.Chain(size=20)),
+        "run": cb.simulate(chain, duration=100, progress=False),
+        "snapshots": cb.simulate(chain, **raw),
+        "some": cb.simulate(chain, particles=[2, 3], **raw),
+        "start": cb.given_start(chain, chain.anchors),
+        "tree": xr.DataTree.from_dict({"a": exact}),
+        "foreign": xr.Dataset({"density": ("x", np.full(9, 0.1))}, {"x": np.arange(9.0)}),
+        "swept": swept,
+    }
+
+
+@pytest.mark.parametrize(("call", "said"), WRONG_CALLS)
+def test_a_wrong_call_says_in_one_line_what_is_wanted(call, said, names):
+    with pytest.raises((ValueError, TypeError)) as caught:
+        eval(call, dict(names))
+    message = str(caught.value)
+    assert len(message) < 400
+    assert "\n" not in message
+    assert re.search(".*".join(map(re.escape, said.split("..."))), message), message
+
+
+@pytest.mark.parametrize("change", [lambda it, name: setattr(it, name, 1), delattr])
+def test_a_frozen_object_says_how_to_get_another(change, names):
+    for name, named in (("gap", "gap"), ("e", "restitution"), ("nonsense", "nonsense")):
+        with pytest.raises(FrozenInstanceError, match=f"chain.replace.{named}=...") as caught:
+            change(names["chain"], name)
+        assert "\n" not in str(caught.value)
+    with pytest.raises(FrozenInstanceError, match="rms: a Deviation cannot be changed"):
+        change(cb.deviation(names["exact"], names["exact"]), "rms")
+
+
+@pytest.mark.parametrize("number", [np.array(0.5), np.float32(0.5), xr.DataArray([0.5, 1])[0]])
+def test_an_array_without_dimensions_is_a_number(number, names):
+    chain = names["chain"].replace(gap=number)
+    assert type(chain.gap) is float
+    assert chain == names["chain"].replace(gap=0.5)
+    assert cb.Chain(size=np.array(5)) == names["chain"]
+    for start in (cb.displaced(chain, number), cb.compressed(chain, number)):
+        run = cb.hydrodynamics(chain, start, number, every=number, progress=False)
+        assert run.time.values.tolist() == [0.0, 0.5]
+    assert cb.force_balance(chain, velocity_variance=number).equals(
+        cb.force_balance(chain, velocity_variance=0.5)
+    )
+
+
+@pytest.mark.parametrize("stiffness", [0, 1])
+def test_what_cannot_move_is_warned_of(stiffness):
+    chain = cb.Chain(size=2, amplitude=0, stiffness=stiffness)
+    still = [None, cb.given_start(chain, chain.anchors)]
+    settings = {"duration": 10, "average": "ensemble", "observe": "energy", "progress": False}
+    for start in still:
+        with pytest.warns(UserWarning, match="amplitude=0 and a start at rest") as caught:
+            cb.simulate(chain, start=start, **settings)
+        assert [warning.filename for warning in caught] == [__file__]
+    cb.simulate(chain, start=cb.given_start(chain, chain.anchors, 1.0), **settings)
+
+
+def test_the_checks_of_calls_leave_everything_else_as_it_was():
+    from crazybilliards.particles.simulation import simulate
+
+    for room in cb._ROOMS:
+        for name in import_module(f"crazybilliards.{room}").__all__:
+            public = getattr(cb, name)
+            assert pickle.loads(pickle.dumps(public)) is public
+            assert public.__doc__
+    assert cb.simulate.__wrapped__ is simulate
+    assert inspect.signature(cb.simulate) == inspect.signature(simulate)
+    assert list(inspect.signature(cb.Chain).parameters) == list(cb.Chain().parameters())
+    assert inspect.signature(cb.Density) == inspect.Signature()
+    # An error within the function is not one of the call.
+    with pytest.raises(TypeError, match="unsupported operand"):
+        cb.force_balance(cb.Chain(size=3), displacement=lambda x: x + None)
+
+
+def test_the_symbols_are_those_of_the_tables():
+    """``docs/tables`` says which parameter each symbol of the paper stands for."""
+    tables = Path(__file__).parents[1] / "docs" / "tables"
+    names = ("symbols_chain.csv", "symbols_scales.csv")
+    files = [(tables / name).read_text(encoding="utf-8").splitlines() for name in names]
+    rows = [row for lines in files for row in csv.reader(lines)]
+    for symbol, parameter in checks.SYMBOLS.items():
+        written = "\\gamma" if symbol in ("gamma", GAMMA) else symbol
+        assert any(f"${written}$" in row[0] and row[-1] == f"`{parameter}`" for row in rows), symbol
+
+
+@pytest.mark.parametrize(
+    ("option", "said"),
+    [
+        ("--e=0.9", "--restitution is e of the paper"),
+        ("-e", "--restitution is e of the paper"),
+        ("--gamma=2", "--damping is gamma of the paper"),
+        ("--dt=0.1", "--time-step is dt of the paper"),
+        ("--restituton=1", "Possible options: --duration, --restitution"),
+    ],
+)
+def test_an_option_that_is_a_symbol(option, said, capsys, monkeypatch):
+    monkeypatch.setattr("sys.argv", ["crazybilliards", "simulate", option])
+    with pytest.raises(SystemExit):
+        main()
+    line = capsys.readouterr().err
+    assert said in line
+    assert line.count("\n") == 1
+
+
+def test_without_panel_the_python_to_install_it_with_is_named(capsys, monkeypatch):
+    monkeypatch.setitem(sys.modules, "panel", None)
+    monkeypatch.setattr("sys.argv", ["crazybilliards", "explore"])
+    with pytest.raises(SystemExit):
+        main()
+    assert f"{sys.executable} -m pip install" in capsys.readouterr().err
