@@ -142,6 +142,36 @@ def test_chains_drawn_at_random_keep_to_the_stated_errors():
     assert sum(float(row["beyond it, standard errors"]) > 2 for row in known) <= 2
 
 
+@pytest.mark.parametrize("which", ["derived_with", "held_out"])
+def test_chains_that_were_simulated_before_keep_to_them(which):
+    """The tables of the page on correlations are from other runs, at the default step."""
+    beyond = []
+    for row in rows(ROOT / "docs" / "tables" / f"correlations_{which}.csv"):
+        chain = Chain(size=int(row["L"]), restitution=float(row["e"]), damping=float(row["gamma"]))
+        expected = accuracy.expected_correlated_phase_space(chain)
+        _, of_rod, of_border = map(
+            float, row["error of the centre, a rod, the border, %"].split(",")
+        )
+        for column, stated, error in (
+            ("W_v largest, %", expected.velocity_width, of_rod),
+            ("W_v border, %", expected.border, of_border),
+            ("W_x largest, %", expected.displacement_width, of_rod),
+        ):
+            if abs(float(row[column])) > 100 * stated + 2 * error:
+                beyond.append(
+                    (
+                        chain.size,
+                        chain.restitution,
+                        chain.damping,
+                        column,
+                        row[column],
+                        stated,
+                        error,
+                    )
+                )
+    assert len(beyond) <= 1, beyond
+
+
 def stated(start, **changes):
     chain = Chain(**({"size": 20, "restitution": 0.92} | changes))
     begin = start(chain.replace(restitution=1.0))
