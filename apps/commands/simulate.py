@@ -173,9 +173,11 @@ def _print(result: xr.Dataset) -> None:
         note(central_velocity_width=width.item(), central_velocity_width_error=error.item())
         say(f"W_v in the centre as dt -> 0: {width.item():.5g} +- {error.item():.2g} R/T")
     error = result.attrs["time_step_error"]
-    if status != "diverged" and not math.isnan(error):
-        note(time_step_error=error)
-        say(f"error of the smallest W_v due to the time step: {error:.1%}")
+    if status != "diverged":
+        known = not math.isnan(error)
+        note(time_step_error=error if known else None)
+        shown = f"{error:.1%}" if known else "not known"
+        say(f"error of the smallest W_v due to the time step: {shown}")
     if "velocity_width" in result:
         last = "time" in result.velocity_width.dims
         answer_rods(

