@@ -14,7 +14,7 @@ from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.checks import check_real
 from crazybilliards.model.vocabulary import require
 
-_SAME_RODS = 0.02  # of the number of rods, by which two densities of a chain may differ
+_SAME_RODS = 0.05  # of the number of rods, by which two densities of a chain may differ
 _RELIABLE = 0.2  # of a density, up to which an error bar is
 
 
@@ -102,13 +102,11 @@ def _differences(
         require(dataset, ("density",))
     require_same_smoothing({"result": result, "reference": reference})
     spacing = float(reference.x[1] - reference.x[0])
-    rods = [
-        float(each.density.sum("x").max() * (each.x[1] - each.x[0])) for each in (result, reference)
-    ]
-    if abs(rods[0] - rods[1]) > _SAME_RODS * max(rods):
-        raise ValueError(f"the two densities hold {rods[0]:.4g} and {rods[1]:.4g} rods")
     if not np.isclose(float(result.x[1] - result.x[0]), spacing, rtol=1e-9):
         raise ValueError("the two densities lie on grids of different spacing")
+    rods = [float(each.density.sum("x").max() * spacing) for each in (result, reference)]
+    if abs(rods[0] - rods[1]) > _SAME_RODS * max(rods):
+        raise ValueError(f"the two densities hold {rods[0]:.4g} and {rods[1]:.4g} rods")
     unit = chain_of(reference).close_packed_density
     # Nodes are whole multiples of the spacing, so their numbers align the grids exactly.
     ours, theirs = (

@@ -77,7 +77,7 @@ def test_a_theory_with_unresolved_spikes_is_binned_right():
 
 
 def test_the_error_of_a_convolved_density_is_that_of_its_blocks():
-    run = simulate(Chain(size=5), duration=640, progress=False)
+    run = simulate(Chain(size=5), duration=2000, progress=False)
     convolved = smooth(run)
     blocks = convolved.density_block
     assert blocks.sizes["block"] == 64

@@ -30,9 +30,9 @@ def test_deviation_in_both_units():
 
 def test_outside_a_grid_the_density_is_zero():
     chain = Chain(size=10)
-    d = deviation(flat(chain, 0.3, 4), flat(chain, 0.3, 6))
-    assert d.maximum == pytest.approx(0.6)
-    assert d.integrated == pytest.approx(4 * 0.5 * 0.3 / 10)
+    d = deviation(flat(chain, 0.39, 4), flat(chain, 0.27, 6))  # equally many rods
+    assert d.maximum == pytest.approx(0.54)
+    assert d.integrated == pytest.approx((9 * 0.12 + 4 * 0.27) * 0.5 / 10)
     assert d.maximum_in_errors is None
 
 

@@ -156,7 +156,8 @@ def test_the_state_is_complete(taken):
 UNCOMPILED = """
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
-simulate(Chain(size=3, restitution=0), duration=65, time_step=0.1, warmup=0, progress=False)
+chain = Chain(size=3, restitution=0)
+simulate(chain, duration=20, time_step=0.1, warmup=42, replicas=10, threads=1, progress=False)
 """
 
 

@@ -77,7 +77,7 @@ def test_without_noise_everything_stays_at_the_anchors():
 
 
 def test_density_holds_every_rod_and_its_blocks_average_to_it():
-    run = simulate(Chain(size=7, gap=0.5), duration=300, progress=False)
+    run = simulate(Chain(size=7, gap=0.5), duration=1100, progress=False)
     spacing = run.x[1] - run.x[0]
     assert float(run.density.sum() * spacing) == pytest.approx(7)
     np.testing.assert_allclose(run.density_block.mean("block"), run.density, atol=1e-14)
@@ -242,8 +242,6 @@ def test_a_short_run_may_have_short_steps(average):
 def test_chains_without_a_scale_need_a_time_step():
     with pytest.raises(ValueError, match="give time_step"):
         simulate(Chain(stiffness=0, damping=0), observe="widths", progress=False)
-    with pytest.raises(ValueError, match="'density' needs"):
-        simulate(Chain(stiffness=0), progress=False)
 
 
 def test_wrong_starts_are_refused():
