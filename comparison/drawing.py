@@ -84,9 +84,8 @@ def overlay(
     if not (ax is None or isinstance(ax, Axes)):
         raise ValueError(f"ax must be Axes of matplotlib, got {shown(ax)}")
     style = {} if style is None else style
-    if not isinstance(style, Mapping) or not all(
-        isinstance(own, Mapping) for own in style.values()
-    ):
+    words = [style, *(style.values() if isinstance(style, Mapping) else ())]
+    if not all(isinstance(each, Mapping) for each in words):
         raise ValueError(f"style must be keywords of matplotlib by label, got {shown(style)}")
     for label in style:
         if label not in results:

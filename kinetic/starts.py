@@ -25,6 +25,7 @@ from crazybilliards.model.vocabulary import require, result
 Array = NDArray[np.float64]
 
 _RODS_TOLERANCE = 1e-3
+_CROWDED = 1.01  # so many rods in the length of one overlap, but for errors of the grid
 _CRYSTAL = (
     "these are the spikes of a crystal, which no fluid has; take the smooth density of "
     "force_balance or phase_space"
@@ -128,16 +129,17 @@ def read_start(chain: Chain, start: xr.Dataset) -> Start:
     x, density = (_numbers(start, name) for name in ("x", "density"))
     if not (np.isfinite(density).all() and (np.diff(x) > 0).all() and (density >= 0).all()):
         raise ValueError("start: the density must be finite and not negative, over ascending x")
-    if "label" in start:
-        label = _numbers(start, "label")
-        label = label - label[0]
-    else:
-        label = PchipInterpolator(x, density).antiderivative()(x)
+    rods = PchipInterpolator(x, density).antiderivative()(x)
+    label = _numbers(start, "label") if "label" in start else rods
+    label = label - label[0]
     if density.max() >= chain.close_packed_density:
-        crowded = np.interp(x + 2 * chain.radius, x, label) - label > 1 + _RODS_TOLERANCE
+        # The integral over narrow spikes is rough. A label that does not belong to the density is
+        # of no use.
+        counted = label if np.isclose(label[-1], rods[-1], rtol=0.1) else rods
+        crowded = np.interp(x + 2 * chain.radius, x, counted) - counted > _CROWDED
         raise ValueError(
             f"start: the density reaches {density.max():.4g}, close packing is "
-            f"{chain.close_packed_density:.4g}: " + ("rods overlap" if crowded.any() else _CRYSTAL)
+            f"{chain.close_packed_density:.4g}: {'rods overlap' if crowded.any() else _CRYSTAL}"
         )
     require_rods(chain, "density", label[-1])
     scale = chain.size / label[-1]

@@ -41,7 +41,7 @@ def test_equal_calls_give_equal_bits():
         ({"velocity_variance": "cold"}, "velocity_variance must be None, 'evolving', a number"),
         ({"velocity_variance": lambda x: 1.0}, "needs frame='eulerian'"),
         ({"velocity_variance": lambda x: -1.0, "frame": "eulerian"}, "finite and positive"),
-        ({"velocity_variance": -1.0}, "velocity_variance must be a finite positive number"),
+        ({"velocity_variance": -1.0}, "velocity_variance must be positive"),
         ({"displacement": ([0, 1], [1, 2])}, "needs frame='eulerian'"),
         ({"cells": 2}, "cells must be"),
         ({"cells": 10**8}, "at most 100000"),
@@ -91,7 +91,7 @@ def test_a_missing_start_is_explained(theory, call):
         theory(Chain(size=5), *call, **QUIET)
     for name in ("displaced(", "compressed(", "two_clumps(", "force_balance"):
         assert name in str(caught.value)
-    with pytest.raises(ValueError, match="duration must be a finite positive number"):
+    with pytest.raises(ValueError, match="duration must be a number, got None"):
         theory(Chain(size=5), displaced(Chain(size=5), 1.0), **QUIET)
 
 

@@ -17,6 +17,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import pytest
 import xarray as xr
 from exploration import (  # noqa: F401 (two are fixtures of every test)
     ANY,
@@ -66,6 +67,7 @@ def test_a_chain_is_sound_or_refused(parameters):
     assert not math.isnan(chain.temperature + chain.thermal_length + chain.free_velocity_width)
 
 
+@pytest.mark.filterwarnings("ignore:amplitude=0 and a start at rest")
 @explored()
 @given(
     chains(ANY),
