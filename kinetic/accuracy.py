@@ -129,10 +129,8 @@ def _damping(chain: Chain) -> float:
 
 def _expected(theory: str, place: Mapping[str, float], axes: tuple[str, ...]) -> Accuracy:
     """Return the errors of all quantities at a place."""
-    return Accuracy(
-        *(_around(theory, quantity, place, axes) for quantity in Accuracy._fields[:-1]),
-        density=_around(theory, "density", place, (*axes, _LENGTH)),
-    )
+    coordinates = dict.fromkeys(Accuracy._fields, axes) | {"density": (*axes, _LENGTH)}
+    return Accuracy(**{q: _around(theory, q, place, own) for q, own in coordinates.items()})
 
 
 def _around(theory: str, quantity: str, place: Mapping[str, float], axes: tuple[str, ...]) -> float:

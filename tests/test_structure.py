@@ -33,8 +33,7 @@ FLOORS = {
         {"vanishing_step"},
     ),
     "kinetic": (
-        {"measured_errors", "requirements", "times"},
-        {"accuracy"},
+        {"accuracy", "requirements", "times"},
         {"statics", "exact"},
         {"starts"},
         {"fluids", "kinetic_equation"},

@@ -27,8 +27,8 @@ enlarged so that chance exceeds three of them in any of the differences as rarel
 three in one number: by 1.1 for two differences, by 1.6 for a thousand.
 
 **Choices.** ``ours`` lists parameters that the paper does not give, and changes no verdict.
-``variations`` are the same number at other values of such a parameter. The rule is applied to
-each. Only if one of the numbers holds and another one fails, the verdict changes.
+``variations`` are the same number at other values of such a parameter, each judged by the rule.
+Only if one of the numbers holds and another one fails, the verdict changes.
 
 **Statements to the eye.** That a curve "matches" points, or that they "can be fitted" or
 "described" by it, is a statement about a plot. It gets two numbers: the largest deviation in units
@@ -64,10 +64,9 @@ class Estimate(NamedTuple):
 
     def __str__(self) -> str:
         """Return both, to the error's second digit."""
-        if not math.isfinite(self.value):
-            return "not determined"
-        if not math.isfinite(self.error):
-            return f"{self.value:.3g}, with an unknown error"
+        if not math.isfinite(self.value + self.error):
+            known = f"{self.value:.3g}, with an unknown error"
+            return known if math.isfinite(self.value) else "not determined"
         digits = max(0, 1 - math.floor(math.log10(self.error))) if self.error > 0 else 4
         return f"{self.value:.{digits}f} ± {self.error:.{digits}f}"
 
