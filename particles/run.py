@@ -170,8 +170,8 @@ class Run:
         if self.average != "time" or all(observer.shares_time for observer in self.observers):
             return ""
         at_rest = self.start is None or self.start.attrs.get("source") == "start"
-        times = self.duration, self.schedule.warmup
-        return too_short(self.chain, *times, self.replicas, at_rest)
+        warmup = self.schedule.warmup if self.warmup is None else self.warmup
+        return too_short(self.chain, self.duration, warmup, self.replicas, at_rest)
 
     def dynamics(self) -> Dynamics:
         """Return the numbers and arrays that the kernels need."""
