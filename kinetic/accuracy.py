@@ -25,7 +25,7 @@ from typing import Any, NamedTuple
 from crazybilliards.model import Chain
 
 # Coordinates in the tables, in order. The density of shorter rods is less wrong, so that of the
-# next smaller s/R counts.
+# largest s/R counts beyond it, too.
 _PLACE = ("g L/s", "L", "e", "Gamma")
 _OF_FORCE_BALANCE = ("g/s", "L")
 _LENGTH = "s/R"
@@ -149,7 +149,7 @@ def _largest(measured: Any, place: list[tuple[str, float]]) -> float:
     above = [each for each in measured if each >= value]
     if not below or not (above or axis == _LENGTH):
         return math.nan
-    sides = {max(below)} if axis == _LENGTH else {max(below), min(above)}
+    sides = {max(below), min(above, default=max(below))}
     errors = [_largest(measured[side], rest) for side in sides]
     return math.nan if any(map(math.isnan, errors)) else max(errors)
 

@@ -14,9 +14,9 @@ import numpy as np
 
 from crazybilliards import Chain, equilibrium, force_balance, smooth
 
-GAPS = (0.0, 0.1, 0.3, 1.0, 3.0, 10.0)
+GAPS = (0.0, 0.1, 0.2, 0.3, 0.6, 1.0, 1.5, 2.0, 3.0, 5.0, 7.0, 10.0)
 SIZES = (2, 3, 5, 10, 30, 100, 300, 1000)
-LENGTHS = (0.7, 2.1, 7.0, 21.0)  # s/R
+LENGTHS = (0.7, 0.8, 0.9, 1.0, 1.2, 1.5, 2.1, 3.0, 5.0, 7.0, 21.0)  # s/R
 COLUMNS = ("theory", "quantity", "g/s", "L", "s/R", "error", "standard error")
 
 

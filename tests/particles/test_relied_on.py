@@ -173,7 +173,7 @@ def test_the_grid_of_the_density_can_be_chosen():
     assert run.outside > 0
     wide = ensemble(Chain(size=5), observe=Density(reach=200.0))
     assert wide.x[-1] > 200
-    with pytest.raises(ValueError, match="reach must be above 0"):
+    with pytest.raises(ValueError, match="reach must be positive"):
         Density(reach=0)
 
 
