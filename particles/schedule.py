@@ -5,8 +5,8 @@
   snapshots.
 * warm-up: 12 relaxation times of the slowest mode, so that the start has decayed to exp(-12). There
   is none with a given start or for an ensemble, whose time begins with the start.
-* blocks: 64 in all. They are fewer, but at least 10, where they would be shorter than 4 correlation
-  times of the chain, because the means of successive blocks must not be correlated.
+* blocks: 64 in all, or more for as many in each replica. They are fewer, but at least 10, where
+  they would be shorter than 4 correlation times, because their means must not be correlated.
 * snapshots: every 10 steps; for an ensemble every hundredth of the duration. With exact motion they
   are as far apart as 10 steps would be.
 """
@@ -46,7 +46,7 @@ Average = Literal["time", "ensemble"]
 class Schedule:
     """A run in whole numbers: steps of warm-up, then blocks of snapshots ``stride`` steps apart.
 
-    In an ensemble every block is one snapshot, at one output time, the first one of the start.
+    In an ensemble every block is one snapshot, at one output time, the first after the warm-up.
     """
 
     time_step: float

@@ -79,11 +79,11 @@ def simulate(
         contacts of a step at once, the paper's method, which is right only if there are few
         collisions in a step.
     stepper
-        ``"splitting"`` (second order in the time step) or ``"euler"`` (the paper's, first order).
+        ``"splitting"`` (of second order if event-driven) or ``"euler"`` (the paper's, first order).
     merging
         For e < 1: rods that would separate more slowly than this many velocity kicks of one
-        step's noise move as one until the end of the step. None: 0.1, and 0.03 below the
-        restitution 0.163, where 0.1 would make W_v 0.2 % larger.
+        step's noise (at least 1e-9 of a typical speed) move as one until the end of the step.
+        None: 0.1, and 0.03 for e < 0.163, where 0.1 would make W_v 0.2 % larger.
     seed
         Integer >= 0. The same seed gives the same result to the last bit for all ``threads``.
         A ``start`` belongs to the seed: a run that continues another one has new random numbers.
@@ -115,7 +115,7 @@ def simulate(
     average
         ``"time"``: over the duration, for steady states. ``"ensemble"``: over the replicas at
         equal times, for relaxation: widths, density, energy over (time, ...), the first time
-        being the start. Errors are then those of 32 groups of replicas.
+        being the start or the end of a ``warmup``. Errors are then those of 32 groups of replicas.
     every
         Time between snapshots [T]; None: 10 steps, for an ensemble a hundredth of the duration
         (with exact flight as far apart as 10 steps of a chain with a gap would be).

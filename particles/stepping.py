@@ -9,9 +9,10 @@ r"""Time stepping: kicks (spring, damping, noise) alternate with drifts (flight 
 4. half a spring kick,
 5. the same as 1.
 
-The scheme is symmetric in time and therefore of second order, in transients too. Part 5 of a step
-and part 1 of the next are done as one over dt, with one draw of noise per step. Parts 2-4 are the
-symplectic Verlet scheme, and 1 and 5 leave a Maxwellian unchanged. A linear chain without a gap
+With collisions in their order it is of second order, in transients too, as long as no rods merge,
+and symmetric in time at e = 1. Contact Dynamics makes it of first order. Part 5 of a step and part
+1 of the next are done as one over dt, with one draw of noise per step. Parts 2-4 are the symplectic
+Verlet scheme, and 1 and 5 leave a Maxwellian unchanged. A linear elastic chain without a gap
 therefore has exactly the right velocity width at any dt, and <d^2> = (T/k)/(1 - (w0 dt/2)^2).
 
 **euler** (the paper's, eq. ``eq:discrete``). v <- v + (dt/m)(-F(d) - gamma v) + (A/m) sqrt(dt) xi,
@@ -165,8 +166,8 @@ def record(  # type: ignore[no-untyped-def]
     """Fill the buffers, shape (snapshots, L), with the state after every ``stride`` steps.
 
     Return the number of valid snapshots. It is smaller than the buffers if the chain diverged,
-    because a drift had too many collisions or a rod became too fast. The counted collisions are
-    then those up to the last valid snapshot, because diverging steps may have had a million.
+    because a drift had too many collisions or a rod became too fast. Contacts and impacts are then
+    those up to the last valid snapshot, but avalanches include those of diverging steps.
     """
     _keep(tally, scratch, tally)
     for snapshot in range(y_buffer.shape[0]):

@@ -6,30 +6,30 @@ drift finds the contact that closes first. The velocities of its two rods change
     v - v' -> -e (v - v')      at constant momentum (eq. ``eq:rest`` of the paper),
 
 and at most three contacts get a new time. If contacts close at the same time, the one with the
-larger closing speed is taken first, which makes the operator symmetric under reflection. If the
-speeds are equal too, the left one is taken first.
+larger closing speed is taken first, and of equal speeds the left one. The operator is symmetric
+under reflection, unless neighbouring contacts tie in both, or rounding decides which comes first.
 
 **A calendar** (``calendar.py``) finds the contact that closes first, in the first list that is not
 empty. A collision costs O(1), because a list holds about one contact. **Rods that touch** at the
-beginning collide at time 0. Rows of touching rods do not know of each other, so they are gone
-through row by row, by closing speeds. Where a row or a list is long, as for rods at rest at one
-place, **a tournament** (``tournament.py``) takes over until the end of the step, and a collision
-costs O(log L).
+beginning collide at time 0, row by row, because rows do not know of each other. Where a row or a
+list is long, **a tournament** (``tournament.py``) takes over until the end of the step, and a
+collision costs O(log L).
 
 **Inelastic collapse.** For e < 1 neighbours may collide infinitely often in a finite time. If the
 speed of separation e |v - v'| would be below ``merge_speed``, the two become a *cluster* that
 moves as one until the end of the drift, with the mean velocity of its members and as many masses.
-Every collision that does not merge then takes energy, so the number of events is finite.
+Without a gap every other collision takes energy, so the number of events is finite. Others that hit
+a cluster rebound as from a rigid rod, so that without noise the result of a collapse depends on the
+step; docs/physics/collisions.md has numbers.
 
 **Positions at the beginning of the step.** y holds the position that a point with its present
 velocity would have had at t = 0. A collision at t changes y by (v_before - v_after) t, and no point
 has to be moved before the end of the step.
 
-The state of a cluster is stored at its outermost members, the only ones with contacts to others.
+The state of a cluster is stored at its outermost members.
 
-**Springs that differ.** With a gap the velocities of two rods that meet are corrected for what
-their springs have not given them yet (``spring_correction.py``). Clusters are left out, because
-they dissipate much more than the correction is worth.
+**Springs that differ.** With a gap the velocities of two rods that meet, but not of clusters, are
+corrected for what their springs have not given them yet (``spring_correction.py``).
 """
 
 import numpy as np
@@ -209,9 +209,8 @@ def _collide_touching(y, v, anchors, dt, law, scratch, tally, count):  # type: i
 def drift(y, v, anchors, dt, law, scratch, tally):  # type: ignore[no-untyped-def]
     """Advance ``y`` and ``v`` in place by ``dt``; return the collisions, or -1 if too many.
 
-    ``scratch.clusters`` records the rods that are in contact at the end, and ``tally`` (an
-    ``avalanche.Tally``) every collision. The drift stops after ``law.most`` collisions. The chain
-    then counts as diverged, and its state must not be used.
+    ``scratch.clusters`` records the rods that have merged, and ``tally`` (an ``avalanche.Tally``)
+    every collision. After ``law.most`` of them the drift stops, and the state must not be used.
     """
     size, contacts = y.size, INDEX(y.size - 1)
     due, winner = scratch.due, scratch.winner

@@ -7,7 +7,8 @@ energy mu (w^2 - w'^2)/2.
 
 The impulse also crosses the contacts within the clusters: j rods beyond a contact of the left
 cluster get the share j/l of it, and in the same way on the right. The impulses at a contact
-therefore add up to the momentum that all rods on one side of it lose in collisions, exactly.
+therefore add up to the momentum that all rods on one side of it lose in collisions, except of rods
+with a gap that merge or hardly touch, whose w is corrected (``spring_correction.py``).
 """
 
 from __future__ import annotations

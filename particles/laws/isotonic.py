@@ -102,7 +102,7 @@ def drift(y, v, dt, violations, floats, clusters):  # type: ignore[no-untyped-de
     """Advance ``y`` and ``v`` in place by ``dt``; return the contacts that ended up closed.
 
     ``violations``, L integers, and ``floats``, at least two rows of L, are scratch space.
-    ``clusters`` records the rods that are in contact at the end.
+    ``clusters`` records the rods that have merged.
     """
     count = _0
     before = -np.inf

@@ -7,9 +7,8 @@ collisions (D. W. Jepsen, J. Math. Phys. 6, 405, 1965), which it does not count.
 
 **The sort** distributes the pairs over two buckets a rod, equally wide. They are then nearly in
 order, and insertion in short runs, which are merged, does the rest. The cost of a rod hardly
-depends on the length of the chain, or on how often rods have met. Where many lie in one bucket,
-because the rods are not spread evenly, the runs bound the work by O(L log L). Equal positions keep
-their order, so the result does not depend on how it is sorted.
+depends on the length of the chain. Where many lie in one bucket the runs bound the work by
+O(L log L). Equal positions keep their order, so the result does not depend on how it is sorted.
 """
 
 import numpy as np

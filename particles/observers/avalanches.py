@@ -58,8 +58,8 @@ class Avalanches(_CountedWaves):
     push on. This count is our extension; the paper's is :class:`TriggeredCollisions`.
 
     The collision kernel itself counts (``particles/laws/avalanche.py``). By symmetry leftward waves
-    are those of the mirrored particles. In a dissipative chain the counts depend on the time step,
-    because rods in contact are kicked anew in every step. The counts take 16 L^2 bytes.
+    are those of the mirrored particles. In a dissipative chain the counts depend on the time step.
+    In a chain that diverges they include the diverging steps. They take 16 L^2 bytes.
     """
 
     name = "avalanches"

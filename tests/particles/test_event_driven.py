@@ -2,10 +2,12 @@
 
 import next_collision
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from crazybilliards.particles.laws.avalanche import make_tally, make_waves
+from crazybilliards.particles.laws.event_driven import LONG
 from crazybilliards.particles.laws.impacts import make_impacts
 from crazybilliards.particles.laws.law import EVENTS, Law, drift, make_scratch
 
@@ -64,10 +66,29 @@ def states(draw):
 )
 def test_every_bit_is_that_of_the_twin(state, e, merge_speed, gap, exponent):
     """Positions, velocities, clusters, collisions, waves; and the same without a tally."""
-    y, v, dt = state
-    merge_speed = merge_speed if e < 1 else 0.0
+    agree(*state, e, merge_speed if e < 1 else 0.0, gap, exponent)
+
+
+@pytest.mark.parametrize("e", [0.05, 0.5, 0.9999, 1.05])
+@pytest.mark.parametrize(("rods", "rows"), [(LONG + 1, 1), (LONG + 2, 1), (5, 30)])
+@pytest.mark.parametrize("thrown", ["at random", "with equal speeds", "at rest", "in two halves"])
+def test_long_rows_of_touching_rods_move_to_the_bit_as_with_the_twin(thrown, rods, rows, e):
+    """Longer rows than a tournament needs, and many short ones, with exact ties."""
+    y = np.repeat(np.arange(float(rows)), rods)
+    v = np.random.default_rng(rods).normal(size=y.size) / 9
+    if thrown == "with equal speeds":
+        v = np.sign(v)
+    elif thrown == "at rest":
+        v = np.eye(1, y.size)[0]
+    elif thrown == "in two halves":
+        v = -np.sign(np.arange(y.size) - (y.size - 1) / 2)
+    agree(y, v, 1.5, e, 0.1 if e < 1 else 0.0, 0.0, 2, most=10_000)
+
+
+def agree(y, v, dt, e, merge_speed, gap, exponent, most=MOST):
+    """Require that a drift is that of the twin, with and without a tally."""
     anchors = gap * (np.arange(y.size) - y.size / 3)
-    law, scratch = Law(EVENTS, e, merge_speed, MOST, 0.1 * gap, exponent), make_scratch(y.size)
+    law, scratch = Law(EVENTS, e, merge_speed, most, 0.1 * gap, exponent), make_scratch(y.size)
     expected_tally = everything(y.size)
     *expected, clusters, collisions = next_collision.drift(y, v, anchors, dt, law, expected_tally)
     for tally in (everything(y.size), make_tally(y.size, contacts=False)):

@@ -243,3 +243,31 @@ def test_every_observer_has_a_name_of_its_own():
 
     built_in = {each for each in leaves(Observer) if each.__module__.startswith("crazybilliards.")}
     assert built_in == set(OBSERVERS.values())
+
+
+@pytest.mark.parametrize("e", [0.0, 0.5, 1.0])
+@pytest.mark.parametrize("size", [1, 2, 3])
+def test_observers_of_rods_at_rest_and_of_a_few_rods(size, e):
+    """Nothing moves without noise, what has no value is NaN, and sums are those of the rods."""
+    still = Chain(size=size, restitution=e, amplitude=0, gap=0.3)
+    some = {name for name, each in OBSERVERS.items() if each.least_rods <= size}
+    how = {"duration": 400, "progress": False, "time_step": 0.1}
+    with pytest.warns(UserWarning, match="nothing will move"):
+        rest = simulate(still, observe=sorted(some - {"velocities"}), **how)
+    for name in ("velocity_width", "autocorrelation_time", "kinetic_energy", "collision_rate"):
+        assert (rest[name] == 0).all()
+    if size > 1:
+        assert (rest.contact_force == 0).all()
+        assert rest.contact_temperature.isnull().all()
+    run = simulate(Chain(size=size, restitution=e), observe=sorted(some), merging=0, **how)
+    np.testing.assert_allclose(run.mode_velocity_variance.sum(), (run.velocity_width**2).sum())
+    energy = run.kinetic_energy.mean() / (Chain().mass / 2)
+    np.testing.assert_allclose(energy, (run.velocity_width**2).sum())
+    assert run.collision_rate[-1] == 0
+    assert run.sizes["time"] <= 1000 or "position" in run
+    spacing = run.x[1] - run.x[0]
+    assert float(run.density.sum() * spacing + run.outside) == pytest.approx(size)
+    if size > 1 and e > 0:
+        temperature, factor = run.contact_temperature, 2 / np.sqrt(np.pi) * (1 - e)
+        loss = factor * run.contact_force * np.sqrt(temperature)
+        np.testing.assert_allclose(run.contact_loss, loss, atol=1e-12)

@@ -1,0 +1,280 @@
+"""What docstrings of collision laws, steppers and observers promise, under hostile input.
+
+Exact ties, mirror images, equal speeds, rows of touching rods, rods at rest, no noise, no damping,
+no spring, one long step or many short ones, and chains of one to three rods.
+"""
+
+import numpy as np
+import pytest
+
+from crazybilliards.model import Chain
+from crazybilliards.particles.dynamics import make_dynamics
+from crazybilliards.particles.laws.avalanche import make_tally
+from crazybilliards.particles.laws.contact_dynamics import bound
+from crazybilliards.particles.laws.exact_flight import make_propagator
+from crazybilliards.particles.laws.impacts import make_impacts
+from crazybilliards.particles.laws.law import (
+    CONTACTS,
+    EVENTS,
+    ISOTONIC,
+    SORT,
+    Law,
+    drift,
+    make_scratch,
+)
+from crazybilliards.particles.noise import make_noise
+from crazybilliards.particles.schedule import make_schedule
+from crazybilliards.particles.stepping import advance
+
+RESTITUTIONS = [0.0, 0.05, 0.16, 0.17, 0.5, 0.9999, 1.0, 1.05]
+OPERATORS = {"sort": SORT, "isotonic": ISOTONIC, "events": EVENTS, "contacts": CONTACTS}
+GAPS = [0.0, 0.3]
+SPRINGS = ["linear", "quadratic"]
+METHODS = ["event-driven", "contact-dynamics"]
+
+# Positions and velocities; those of the first list are their own mirror images.
+MIRRORED = {
+    "two": ([-1, 1], [1, -1]),
+    "two touching": ([0, 0], [1, -1]),
+    "pairs that tie": ([-3, -2, 2, 3], [1, 0, 0, -1]),
+    "a row hit twice": ([0, 0, 0, 0], [1, 0, 0, -1]),
+    "two clumps": ([-1, -1, 1, 1], [2, 1, -1, -2]),
+    "at rest": ([0, 0, 0], [0, 0, 0]),
+}
+HOSTILE = MIRRORED | {
+    "one": ([0], [-2]),
+    "neighbours that tie": ([-1, 0, 1], [1, 0, -1]),
+    "touching neighbours that tie": ([0, 0, 0], [1, 0, -1]),
+    "a lattice that meets": ([-2, -1, 0, 1, 2], [2, 1, 0, -1, -2]),
+    "a row hit": ([-1, 0, 0, 0, 0], [1, 0, 0, 0, 0]),
+    "a tie of unequal speeds": ([-2, 0, 1], [2, 0, -1]),
+    "a row of unequal speeds": ([0, 0, 0, 0], [3, 1, 0, -1]),
+    "on their way together": ([0, 0, 1, 2], [1, 1, 1, 1]),
+    "met at the end": ([-1.5, 1.5], [1, -1]),
+}
+
+
+def drifted(operator, state, dt, e, *, pull=0.0, exponent=2, gap=0.0):
+    """Positions, velocities, collisions and impacts after a drift; rods on springs with a gap."""
+    y, v = (np.array(each, dtype=float) for each in state)
+    impacts = make_impacts(y.size)
+    tally = make_tally(y.size, contacts=True)._replace(impacts=impacts)
+    law = Law(operator, e, 1e-9 if e < 1 else 0.0, 10**6, pull, exponent)
+    anchors = gap * (np.arange(y.size) - (y.size - 1) / 2)
+    collisions = drift(y, v, anchors, dt, law, make_scratch(y.size), tally)
+    assert collisions >= 0
+    return y, v, collisions, impacts
+
+
+def moved(chain, y, v, time_step, steps, **settings):
+    """Positions and velocities after some steps without noise."""
+    y, v = y.copy(), v.copy()
+    dynamics = make_dynamics(chain, time_step, speed=max(np.abs(v).max(), 1.0), **settings)
+    tally = make_tally(y.size, contacts=settings.get("counted", False))
+    noise, scratch = make_noise(np.random.SeedSequence(0)), make_scratch(y.size)
+    assert advance(y, v, noise, dynamics, scratch, tally, steps) >= 0
+    return y, v
+
+
+@pytest.mark.parametrize("e", RESTITUTIONS)
+@pytest.mark.parametrize("name", HOSTILE)
+def test_no_rod_passes_another_and_nothing_is_lost_or_won(name, e):
+    """Order, momentum and centre of mass for all laws; energy and impulses as far as promised."""
+    y, v = (np.array(each, dtype=float) for each in HOSTILE[name])
+    known = {1.0: [SORT], 0.0: [ISOTONIC]}.get(e, [])
+    for operator in (EVENTS, CONTACTS, *known):
+        for dt, pull in ((1.5, 0.0), (500.0, 0.0), (1.5, 0.4)):
+            for gap in GAPS:
+                settings = {"pull": pull, "gap": gap, "exponent": 3 if gap else 2}
+                end, w, _, impacts = drifted(operator, (y, v), dt, e, **settings)
+                assert (np.diff(end) >= 0).all()
+                assert w.sum() == pytest.approx(v.sum(), abs=1e-12)
+                assert end.sum() == pytest.approx((y + dt * v).sum(), abs=1e-12 * dt)
+                if operator != EVENTS or (gap and pull):
+                    continue
+                assert (w**2).sum() <= (v**2).sum() * (1 + 1e-12) or e > 1
+                np.testing.assert_allclose(
+                    impacts[0] + impacts[2], np.cumsum(v - w)[:-1], atol=1e-12
+                )
+                taken = (impacts[1] - impacts[3]).sum()
+                assert taken == pytest.approx(((v**2).sum() - (w**2).sum()) / 2, abs=1e-12)
+
+
+@pytest.mark.parametrize("name", HOSTILE)
+@pytest.mark.parametrize(("special", "e"), [(SORT, 1.0), (ISOTONIC, 0.0)])
+def test_the_quick_laws_are_one_collision_after_the_other(name, special, e):
+    for dt in (1.5, 500.0):
+        quick, slow = (drifted(each, HOSTILE[name], dt, e) for each in (special, EVENTS))
+        np.testing.assert_allclose(quick[0], slow[0], atol=1e-12 * dt)
+        np.testing.assert_allclose(quick[1], slow[1], atol=1e-12)
+
+
+@pytest.mark.parametrize("e", RESTITUTIONS)
+@pytest.mark.parametrize("name", HOSTILE)
+def test_mirrored_rods_move_as_mirror_images(name, e):
+    """For every law, but not where neighbouring contacts tie: there the left one is first.
+
+    In a collapse rounding decides on the order, and by that which rods become a cluster first.
+    """
+    y, v = (np.array(each, dtype=float) for each in HOSTILE[name])
+    known = {1.0: [SORT], 0.0: [ISOTONIC]}.get(e, [])
+    ties = "neighbours that tie" in name or name == "a lattice that meets"
+    for operator in (EVENTS, CONTACTS, *known):
+        if operator == EVENTS and ties and 0 < e != 1:
+            continue
+        rough = 1e-4 if operator == EVENTS and 0 < e < 0.2 else 1e-10
+        for dt in (1.5, 500.0):
+            end, w, *_ = drifted(operator, (y, v), dt, e)
+            other, u, *_ = drifted(operator, (-y[::-1], -v[::-1]), dt, e)
+            np.testing.assert_allclose(-other[::-1], end, atol=rough * dt)
+            np.testing.assert_allclose(-u[::-1], w, atol=rough)
+            if name in MIRRORED:
+                np.testing.assert_allclose(w, -w[::-1], atol=rough)
+
+
+@pytest.mark.parametrize("together", [0.0, 1.0])
+def test_of_equal_contacts_the_faster_and_then_the_left_one_is_first(together):
+    """By hand, at e = 1/2; rods that touch, and rods that meet at the time 1."""
+    x = np.array([-1.0, 0.0, 1.0]) * together
+    _, v, collisions, _ = drifted(EVENTS, (x, [1, 0, -1]), 1.5, 0.5)
+    assert collisions == 3
+    np.testing.assert_array_equal(v, [-0.359375, 0.046875, 0.3125])
+    for side in (1, -1):  # the faster contact is the left one, or the right one
+        state = (
+            np.multiply([-2, 0, 1], together)[::side] * side,
+            np.array([2, 0, -1])[::side] * side,
+        )
+        _, v, _, _ = drifted(EVENTS, state, 1.5, 0.5)
+        np.testing.assert_array_equal(v[::side] * side, [-0.15625, 0.28125, 0.875])
+
+
+@pytest.mark.parametrize("e", RESTITUTIONS)
+@pytest.mark.parametrize("name", HOSTILE)
+def test_contact_dynamics_solves_every_contact(name, e):
+    """Bounds are kept, no impulse pulls, and only contacts at their bounds push."""
+    y, v = (np.array(each, dtype=float) for each in HOSTILE[name])
+    for dt in (0.1, 500.0):
+        _, w, *_ = drifted(CONTACTS, (y, v), dt, e)
+        least = [
+            bound(y[i + 1] - y[i], v[i] - v[i + 1], e, dt, 0, 0, 0, 2) for i in range(len(y) - 1)
+        ]
+        above, impulse = np.diff(w) - least, np.cumsum(v - w)[:-1]
+        assert (above > -1e-12).all()
+        assert (impulse > -1e-12).all()
+        np.testing.assert_allclose(above * impulse, 0, atol=1e-12)
+
+
+@pytest.mark.parametrize("e", RESTITUTIONS)
+@pytest.mark.parametrize("size", [1, 2, 3, 8])
+@pytest.mark.parametrize("gap", GAPS)
+def test_one_long_step_is_many_short_ones_without_noise_and_springs(gap, size, e):
+    """But for a collapse of many rods, see the next test."""
+    if size == 8 and 0 < e < 0.5:
+        return
+    chain = Chain(size=size, restitution=e, gap=gap, amplitude=0, damping=0, stiffness=0)
+    first, some = np.eye(1, size)[0], np.sin(9.0 * np.arange(size) + 1)
+    # Where a lattice with a gap meets at one point, rounding decides who is first.
+    lattice = np.linspace(1, -1, size) if size < 8 or gap == 0 else some[::-1]
+    for v in (first, -first[::-1], some, lattice):
+        one, *others = (
+            moved(chain, chain.reduced_anchors, v, step, steps, counted=counted, stepper=stepper)
+            for step, steps in ((500.0, 1), (0.1, 5000))
+            for counted in (True, False)
+            for stepper in ("splitting", "euler")
+        )
+        for other in others:
+            np.testing.assert_allclose(other[0], one[0], rtol=0, atol=1e-6)
+            np.testing.assert_allclose(other[1], one[1], rtol=0, atol=1e-8)
+
+
+@pytest.mark.parametrize(("step", "last"), [(500.0, 0.13572), (5.0, 0.12505), (0.5, 0.125)])
+def test_a_collapse_without_noise_depends_on_the_step_as_the_page_says(step, last):
+    chain = Chain(size=8, restitution=0.3, gap=0.3, amplitude=0, damping=0, stiffness=0)
+    _, v = moved(chain, chain.reduced_anchors, np.eye(1, 8)[0], step, round(500 / step))
+    assert v[-1] == pytest.approx(last, abs=1e-5)
+    assert v.mean() == pytest.approx(1 / 8)
+
+
+@pytest.mark.parametrize(("ratio", "least", "most"), [(1.0, 38, 40), (1.06, 0, 0)])
+def test_three_rods_stick_up_to_a_little_more_than_the_exact_restitution(ratio, least, most):
+    """``merging=0`` is 1e-9 of the speed, so that they still do a few per cent above it."""
+    generator, stuck = np.random.default_rng(1), 0
+    for _ in range(40):
+        y = [-generator.exponential(), 0.0, generator.exponential()]
+        v = [1.0, 0.1 * generator.normal(), -1.0]
+        _, w, *_ = drifted(EVENTS, (y, v), 1000.0, ratio * (7 - 4 * np.sqrt(3)))
+        stuck += np.ptp(w) == 0
+    assert least <= stuck <= most
+
+
+@pytest.mark.parametrize("size", [1, 2, 3])
+@pytest.mark.parametrize("damping", [0.0, 1.0])
+@pytest.mark.parametrize("e", RESTITUTIONS)
+def test_exact_flight_takes_any_step(e, damping, size):
+    chain = Chain(size=size, restitution=e, damping=damping, amplitude=0)
+    if e != 1 and size > 1:
+        return
+    y, v = np.arange(size) / 2 - 0.3, np.arange(size) * -1.0 + 1
+    one, other = moved(chain, y, v, 500.0, 1), moved(chain, y, v, 0.1, 5000)
+    np.testing.assert_allclose(other, one, rtol=0, atol=1e-9)
+    # A step is right with strong damping too, to rounding; at 1e7 this is 1e-3.
+    strong = Chain(damping=10 ** (1 + 6 * damping), stiffness=1.0, mass=1.0)
+    half, time = strong.damping / 2, strong.damping
+    quick = half + np.sqrt(half**2 - 1)
+    slow = 1 / quick
+    expected = (quick * np.exp(-slow * time) - slow * np.exp(-quick * time)) / (quick - slow)
+    found = make_propagator(strong, time).y_from_y
+    assert found == pytest.approx(expected, rel=1e-13 + 1e-16 * strong.damping**2)
+
+
+@pytest.mark.parametrize("spring", SPRINGS)
+@pytest.mark.parametrize("gap", GAPS)
+@pytest.mark.parametrize("size", [1, 2, 3, 6])
+@pytest.mark.parametrize("counted", [True, False])
+def test_elastic_steps_are_symmetric_in_time(counted, size, gap, spring):
+    """Turned round, the rods go back to where they began, collisions included."""
+    chain = Chain(size=size, gap=gap, amplitude=0, damping=0, spring=spring)
+    generator = np.random.default_rng(size)
+    y = np.sort(chain.reduced_anchors + generator.normal(size=size))
+    v = generator.normal(size=size)
+    there = moved(chain, y, v, 0.1, 40, counted=counted)
+    back = moved(chain, there[0], -there[1], 0.1, 40, counted=counted)
+    np.testing.assert_allclose(back, (y, -v), atol=1e-9)
+    assert np.abs(there[0] - y).max() > 0.1
+
+
+@pytest.mark.parametrize("e", [0.5, 0.9999, 1.0, 1.05])
+@pytest.mark.parametrize("gap", GAPS)
+@pytest.mark.parametrize(("method", "size", "order"), [(METHODS[0], 5, 2), (METHODS[1], 2, 1)])
+def test_steps_with_collisions_have_the_order_stated(method, size, order, gap, e):
+    """The mean error of transients from many starts."""
+    chain = Chain(size=size, restitution=e, amplitude=0, damping=0.3, gap=gap)
+    errors = []
+    for seed in range(40):
+        generator = np.random.default_rng(seed)
+        y = np.sort(chain.reduced_anchors + generator.normal(size=size))
+        v = generator.normal(size=size)
+        how = {"method": method, "counted": method == METHODS[0]}
+        fine, *ends = (
+            np.array(moved(chain, y, v, 2.0**-k, 2 ** (k + 1), **how)) for k in (14, 4, 8)
+        )
+        errors.append([np.abs(end - fine).max() for end in ends])
+    coarse, finer = np.mean(errors, axis=0)
+    assert np.log2(coarse / finer) / 4 == pytest.approx(order, abs=0.25)
+
+
+@pytest.mark.parametrize("average", ["time", "ensemble"])
+@pytest.mark.parametrize("replicas", [1, 2, 7, 50, 63, 64, 100])
+def test_the_schedule_keeps_what_it_was_asked_for(replicas, average):
+    for every in (0.1, 1 / 3, 0.7, np.pi, 1e-3, 1e4 / 7):
+        for step in (None, 0.05, 0.033):
+            chain, asked = Chain(size=3, restitution=0.5), {"warmup": 7.7, "replicas": replicas}
+            asked |= {"every": every, "time_step": step, "average": average}
+            schedule = make_schedule(chain, duration=6400 * every, **asked)
+            assert schedule.stride * schedule.time_step == pytest.approx(every, rel=4e-16)
+            assert schedule.time_step <= (step or np.inf) * (1 + 1e-9)
+            if average == "ensemble":
+                assert schedule.times[0] == schedule.warmup >= 7.7 * (1 - 1e-9)
+                continue
+            assert schedule.duration >= 6400 * every * (1 - 1e-9)
+            assert 10 <= schedule.blocks * replicas < 64 + replicas
