@@ -21,7 +21,7 @@ _EXACT = 0.005  # of s: half of what the arctanh is off at most
 
 def cases(quality: Quality) -> Cases:
     """L = 100, e = 1, A = 10."""
-    return {"run": simulation(_AMPLITUDE, quality)}
+    return {"run": simulation(_AMPLITUDE)}
 
 
 def claims(results: Results) -> list[Claim]:
