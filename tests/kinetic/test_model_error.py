@@ -215,7 +215,7 @@ def test_the_equation_in_time_states_its_error():
         lambda chain: displaced(chain, 1.0),
         lambda chain: two_clumps(chain, 3.0, 0.5),
         lambda chain: two_clumps(chain, 3.0, 0.0),
-        lambda chain: equilibrium(chain.replace(amplitude=3.0)),
+        lambda chain: force_balance(chain.replace(amplitude=3.0)),
         lambda chain: phase_space(chain.replace(restitution=0.9), cells=12),
     ],
 )
