@@ -19,7 +19,7 @@ from crazybilliards.apps.commands.line import main
 from crazybilliards.model import checks
 
 
-class Unknown(cb.Density):
+class Unknown(cb.Widths):
     name = "unknown"
     gives = ("my_variable",)
 

@@ -35,8 +35,7 @@ Only if one of the numbers holds and another one fails, the verdict changes.
 of the plot, and its significance in standard errors. Only the first one decides. It has to be below
 2 % of the plotted range, which an eye cannot see in a plot like the paper's: of an axis of 5 to
 7 cm these are 1.0 to 1.4 mm, the size of a symbol. This limit was fixed before any deviation was
-worked out. A deviation is the shortest distance of a symbol from the line in the plane of the plot
-(``distances_in_plot`` in ``comparison/distances.py``).
+worked out. A deviation is a distance in the plane of the plot (``distances_in_plot``).
 """
 
 from __future__ import annotations
@@ -65,8 +64,7 @@ class Estimate(NamedTuple):
     def __str__(self) -> str:
         """Return both, to the error's second digit."""
         if not math.isfinite(self.value + self.error):
-            known = f"{self.value:.3g}, with an unknown error"
-            return known if math.isfinite(self.value) else "not determined"
+            return "not determined" if math.isnan(self.value) else f"{self.value:.3g} ± unknown"
         digits = max(0, 1 - math.floor(math.log10(self.error))) if self.error > 0 else 4
         return f"{self.value:.{digits}f} ± {self.error:.{digits}f}"
 

@@ -168,7 +168,7 @@ def test_an_unknown_figure_is_one_line_and_nothing_written(command, tmp_path):
 
 @pytest.mark.compiled
 def test_a_figure_its_claims_and_nothing_computed_twice(command, tmp_path, monkeypatch):
-    monkeypatch.setitem(fig17_density._DURATION, "quick", 5000.0)
+    monkeypatch.setattr(fig17_density, "_DURATION", 5000.0)
     status, printed, errors = command("arctanh", "--processes", "1")
     assert status == 0, errors
     assert "1 cases, 0 of them" in printed
@@ -229,7 +229,7 @@ def test_the_table_of_the_stored_report_counts_its_verdicts():
 
 @pytest.mark.compiled
 def test_the_report_is_one_page_and_the_table_markdown(tmp_path, monkeypatch):
-    monkeypatch.setitem(fig17_density._DURATION, "quick", 5000.0)
+    monkeypatch.setattr(fig17_density, "_DURATION", 5000.0)
     monkeypatch.setitem(elastic_gaps._DURATION, "quick", 5000.0)
     studies = [*find_studies("model"), *find_studies("arctanh"), elastic_gaps.STUDY]
     run_cases(all_cases(studies, "quick"), tmp_path, ThreadPoolExecutor(1), progress=False)
