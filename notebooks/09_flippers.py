@@ -353,6 +353,12 @@ class Run:
 runaways = [Run(quadratic, seed, duration=100, time_step=0.002, every=0.02) for seed in range(12)]
 
 
+def beyond(time, energy, threshold):
+    """Return the times and energies from the first energy above a threshold."""
+    first = int(np.argmax(energy > threshold))
+    return time[first:], energy[first:]
+
+
 def exponents(run, threshold):
     """Return the fitted exponent, as it is and with damping removed."""
     t, E = beyond(run.time, run.kinetic, threshold)
