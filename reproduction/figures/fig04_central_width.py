@@ -37,7 +37,7 @@ _GRANTED: dict[int, Granted] = {
         "full": (4, {"duration": 400.0, "warmup": 60.0}),
     },
     10_000: {
-        "quick": (2, {"duration": 10.0, "warmup": 20.0}),
+        "quick": (4, {"duration": 5.0, "warmup": 10.0}),
         "full": (4, {"duration": 100.0, "warmup": 60.0}),
     },
 }
