@@ -80,6 +80,14 @@ def test_what_was_not_measured_is_unknown(chain):
     assert np.isnan(accuracy.expected_phase_space(chain)).all()
 
 
+@pytest.mark.parametrize("changes", [{"gap": 5.0}, {"spring": "quadratic"}, {"size": 5000}])
+@pytest.mark.parametrize("name", ["force_balance", *STATIONARY])
+def test_velocities_of_elastic_chains_are_exact_everywhere(name, changes):
+    expected = getattr(accuracy, f"expected_{name}")(Chain(**changes))
+    assert expected[:2] == (0, 0)
+    assert np.isnan(expected.density)
+
+
 NAMES = [
     "model_error",
     "border_error",
