@@ -3,9 +3,9 @@
 The errors are those of the theories, not of their numerical solutions. They are read from the
 tables in ``kinetic/measured``, which
 
-    python benchmarks/accuracy/stationary_errors.py FOLDER
-    python benchmarks/accuracy/force_balance.py
-    python benchmarks/accuracy/relaxation_error.py FOLDER
+    python -m studies.stationary_errors FOLDER
+    python -m studies.force_balance
+    python -m studies.relaxation_error FOLDER
 
 have written. A stated error is the measured one plus two of its standard errors: the largest of the
 measured chains on all sides of a chain. It is NaN beyond them. ``expected_NAME(chain)`` states

@@ -33,11 +33,7 @@ if TYPE_CHECKING:
 # Of what there is to say about a claim.
 _PRINTED = ("its number", "found here", "at other choices", "theory", "why")
 # By what is asked for: names of the page with everything and of the table of claims.
-_REPORTS = {
-    "all": ("report.html", "claims.md"),
-    "analytics": ("analytics.html", "analytics.md"),
-    "studies": ("studies.html", "studies.md"),
-}
+_REPORTS = {"all": ("report.html", "claims.md"), "analytics": ("analytics.html", "analytics.md")}
 
 
 class Quality(StrEnum):
@@ -58,14 +54,12 @@ def command(
     which: Annotated[
         str,
         typer.Argument(
-            help="Number or name of a figure of the paper, name of a study beyond the paper, "
-            "all (figures of the paper), analytics (those of the paper's section of that name and "
-            "the checks at restitution 1), or studies (all beyond the paper)."
+            help="Number or name of a figure of the paper, all (figures of the paper), or "
+            "analytics (those of the paper's section of that name and the checks at restitution 1, "
+            "elastic-gaps among them, which is no figure of the paper)."
         ),
     ] = "all",
-    show_list: Annotated[
-        bool, typer.Option("--list", help="List the figures and the studies, and stop.")
-    ] = False,
+    show_list: Annotated[bool, typer.Option("--list", help="List the figures, and stop.")] = False,
     quality: Annotated[
         Quality, typer.Option(help="All figures take 2 minutes (quick) or 10 (full) on two cores.")
     ] = Quality.QUICK,
@@ -96,10 +90,9 @@ def command(
 ) -> None:
     """Reproduce the figures of arXiv:1404.7460, and check what the paper claims.
 
-    Writes a picture for each figure and prints what became of the paper's claims. Some studies
-    have tables as well, which are written beside the picture. For all figures it also writes
-    report.html, one page with everything in it, and claims.md, the table of claims; for analytics
-    and studies these pages bear their names. Results are kept in the folder: drawing again is a
+    Writes a picture for each figure and prints what became of the paper's claims. For all figures
+    it also writes report.html, one page with everything in it, and claims.md, the table of claims;
+    for analytics these pages bear its name. Results are kept in the folder: drawing again is a
     matter of seconds, and after Ctrl-C or a crash the same command goes on.
 
     Example: crazybilliards reproduce analytics
@@ -130,14 +123,13 @@ def command(
 
 def _print_list() -> None:
     from crazybilliards.reproduction.claims.study import PaperFigure
-    from crazybilliards.reproduction.reproducible import groups
+    from crazybilliards.reproduction.reproducible import EVERYTHING
 
     listed = []
-    for group in ("all", "studies"):
-        for study in groups()[group]:
-            number = study.number if isinstance(study, PaperFigure) else None
-            listed.append({"number": number, "name": study.name, "title": study.title})
-            say(f"{number or '':3}  {study.name:28s} {study.title}")
+    for study in EVERYTHING:
+        number = study.number if isinstance(study, PaperFigure) else None
+        listed.append({"number": number, "name": study.name, "title": study.title})
+        say(f"{number or '':3}  {study.name:28s} {study.title}")
     note(studies=listed)
 
 
@@ -157,10 +149,6 @@ def _draw(studies: list[Study], quality: Quality, output: Path, **how: Any) -> l
         for kind, picture in each.pictures.items():
             path = output / f"{each.study.stem}.{kind}"
             write_atomically(path, picture)
-            wrote(path)
-        for name, table in each.tables.items():
-            path = output / f"{name}.csv"
-            write_atomically(path, table)
             wrote(path)
         reproduced.append(each)
     return reproduced

@@ -22,7 +22,6 @@ import matplotlib.pyplot as plt
 from crazybilliards.comparison.layout import Columns, house_style
 from crazybilliards.comparison.sweeps import Case
 from crazybilliards.reproduction.claims.study import Cases, Quality, Results, Study
-from crazybilliards.reproduction.claims.tables import as_csv
 from crazybilliards.reproduction.claims.verdicts import Claim, Verdict
 
 _NO_DATE = {"pdf": {"CreationDate": None}, "svg": {"Date": None}}
@@ -44,8 +43,6 @@ class Reproduced:
         The picture as a file, by format: PNG always, others as asked for.
     claims
         The checked claims.
-    tables
-        Its numbers as files of comma-separated values, by their names.
     parameters
         What was computed, a line for each kind of case.
     seconds
@@ -55,7 +52,6 @@ class Reproduced:
     study: Study
     pictures: dict[str, bytes]
     claims: list[Claim]
-    tables: dict[str, bytes]
     parameters: list[str]
     seconds: float
 
@@ -127,7 +123,6 @@ def _reproduced(
         study=study,
         pictures=pictures,
         claims=study.claims(results),
-        tables={name: as_csv(table) for name, table in study.tables(results).items()},
         parameters=describe(cases.values()),
         seconds=sum(run.attrs["seconds"] for run in results.values()),
     )

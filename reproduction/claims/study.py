@@ -10,7 +10,6 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from crazybilliards.comparison.sweeps import Case
-from crazybilliards.reproduction.claims.tables import Tables
 from crazybilliards.reproduction.claims.verdicts import Claim
 
 Quality = Literal["quick", "full"]
@@ -40,11 +39,6 @@ def no_claims(results: Results) -> list[Claim]:
     return []
 
 
-def no_tables(results: Results) -> Tables:
-    """No numbers besides those of the picture and the claims."""
-    return {}
-
-
 @dataclass(frozen=True, kw_only=True)
 class Study:
     """A question put to simulations and theories, answered by a picture and by checked claims.
@@ -61,8 +55,6 @@ class Study:
         ``draw(results)`` gives the picture, results being those of the cases by the same names.
     claims
         ``claims(results)`` sets what is claimed beside what was found.
-    tables
-        ``tables(results)`` gives tables of its numbers, by the names of their files.
     """
 
     name: str
@@ -71,7 +63,6 @@ class Study:
     draw: Callable[[Results], Figure]
     cases: Callable[[Quality], Cases] = no_cases
     claims: Callable[[Results], list[Claim]] = no_claims
-    tables: Callable[[Results], Tables] = no_tables
 
     @property
     def label(self) -> str:

@@ -17,7 +17,7 @@ from crazybilliards.apps.commands.line import main
 from crazybilliards.comparison.sweeps import Case, run_cases
 from crazybilliards.comparison.sweeps.jobs import JOBS
 from crazybilliards.model import Chain
-from crazybilliards.reproduction.beyond import STUDIES, elastic_gaps
+from crazybilliards.reproduction import elastic_gaps
 from crazybilliards.reproduction.claims.repetition import Runs
 from crazybilliards.reproduction.claims.report import (
     OF_PAPER,
@@ -31,7 +31,7 @@ from crazybilliards.reproduction.claims.report import (
 from crazybilliards.reproduction.claims.study import PaperFigure
 from crazybilliards.reproduction.claims.verdicts import EYE, Verdict
 from crazybilliards.reproduction.figures import FIGURES, fig17_density
-from crazybilliards.reproduction.reproducible import find_studies, groups
+from crazybilliards.reproduction.reproducible import EVERYTHING, find_studies, groups
 
 # -- figures ----------------------------------------------------------------------------------
 
@@ -45,7 +45,6 @@ def test_all_nineteen_figures_are_there_in_order():
 def test_figures_and_studies_are_found_by_number_name_or_group():
     assert find_studies("17") == find_studies("density") == [FIGURES[16]]
     assert find_studies("all") == list(FIGURES)
-    assert find_studies("studies") == list(STUDIES)
     assert find_studies("elastic-gaps") == [elastic_gaps.STUDY]
     analytics = find_studies("analytics")
     assert [study.label.split()[0] for study in analytics] == ["8", "16", "17", "elastic-gaps"]
@@ -60,14 +59,14 @@ def test_every_group_has_a_report_of_its_own():
     assert len(set(names)) == 2 * len(groups())
 
 
-def test_every_study_beyond_the_paper_is_found_and_has_a_name_of_its_own():
-    everything = [*FIGURES, *STUDIES]
-    assert elastic_gaps.STUDY in STUDIES
-    assert not any(isinstance(study, PaperFigure) for study in STUDIES)
-    assert len({study.name for study in everything}) == len(everything)
-    assert len({study.file_name for study in everything}) == len(everything)
-    assert not {"all", "analytics", "studies"} & {study.name for study in everything}
-    assert all(study.title and study.caption for study in everything)
+def test_everything_has_a_name_of_its_own():
+    assert [study for study in EVERYTHING if not isinstance(study, PaperFigure)] == [
+        elastic_gaps.STUDY
+    ]
+    assert len({study.name for study in EVERYTHING}) == len(EVERYTHING)
+    assert len({study.file_name for study in EVERYTHING}) == len(EVERYTHING)
+    assert not groups().keys() & {study.name for study in EVERYTHING}
+    assert all(study.title and study.caption for study in EVERYTHING)
 
 
 @pytest.mark.compiled
@@ -128,7 +127,7 @@ def test_list_needs_no_folder(command, tmp_path):
     status, lines, _ = command("--list")
     assert status == 0
     lines = lines.splitlines()
-    assert len(lines) == 19 + len(STUDIES)
+    assert len(lines) == 19 + 1
     assert lines[16].split()[:2] == ["17", "density"]
     assert "elastic-gaps" in [line.split()[0] for line in lines[19:]]
     assert list(tmp_path.iterdir()) == []
