@@ -33,7 +33,8 @@ def __getattr__(name: str) -> Any:
     if name not in _ROOM_OF:
         from crazybilliards.model.checks import meant
 
-        raise AttributeError(f"{__name__} has no {name!r}{meant(name, __all__)}")
+        hint = meant(name, __all__)
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}{hint}")
     return getattr(import_module(f"{__name__}.{_ROOM_OF[name]}"), name)
 
 
