@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from crazybilliards.reproduction import elastic_gaps, figures
-from crazybilliards.reproduction.claims.study import PaperFigure, Study
+from crazybilliards.reproduction.claims.study import Study
 
 # The paper's section "Analytics" and what can be checked at restitution 1, where the chain is
 # exactly solvable: velocities, arctanh fit, density, displacements of chains with gaps.
@@ -30,8 +30,7 @@ def find_studies(which: str) -> list[Study]:
     if which in groups():
         return list(groups()[which])
     for study in EVERYTHING:
-        number = str(study.number) if isinstance(study, PaperFigure) else None
-        if which in (study.name, number):
+        if which in (study.name, str(study.number or study.name)):
             return [study]
     names = ", ".join([*groups(), *(study.label for study in EVERYTHING)])
     raise ValueError(f"no figure or study {which!r}; there are: {names}")

@@ -8,6 +8,7 @@ from __future__ import annotations
 import shutil
 import textwrap
 from enum import StrEnum
+from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -27,7 +28,6 @@ from crazybilliards.apps.commands.sweep import (
 if TYPE_CHECKING:
     from crazybilliards.reproduction.claims.report import Reproduced
     from crazybilliards.reproduction.claims.study import Study
-    from crazybilliards.reproduction.claims.verdicts import Variation
 
 
 # Of what there is to say about a claim.
@@ -122,14 +122,12 @@ def command(
 
 
 def _print_list() -> None:
-    from crazybilliards.reproduction.claims.study import PaperFigure
     from crazybilliards.reproduction.reproducible import EVERYTHING
 
     listed = []
     for study in EVERYTHING:
-        number = study.number if isinstance(study, PaperFigure) else None
-        listed.append({"number": number, "name": study.name, "title": study.title})
-        say(f"{number or '':3}  {study.name:28s} {study.title}")
+        listed.append({"number": study.number, "name": study.name, "title": study.title})
+        say(f"{study.number or '':3}  {study.name:28s} {study.title}")
     note(studies=listed)
 
 
@@ -170,18 +168,19 @@ def _write_report(
 
 def _print_claims(reproduced: list[Reproduced], quality: Quality) -> None:
     """Print the claims of the figures, if there are any, and how many came out how."""
-    from crazybilliards.reproduction.claims.report import details, summary
+    from crazybilliards.reproduction.claims.report import summary
 
     noted = []
     for each in reproduced:
         if each.claims:
             say(f"\n{each.study.heading}")
         for claim in each.claims:
-            said = details(claim)
+            said = claim.details
             which = {"figure": each.study.name, "claim": claim.statement}
             numbers = {
-                "decisive": claim.decisive._asdict(),
-                "variations": [_flat(other) for other in claim.variations],
+                "number": claim.found._asdict(),
+                "within": [bound if isfinite(bound) else None for bound in claim.within],
+                "elsewhere": {name: at._asdict() for name, at in claim.elsewhere.items()},
             }
             noted.append(which | said | numbers)
             more = " from so few runs (--quality full has more)" if quality is Quality.QUICK else ""
@@ -194,11 +193,6 @@ def _print_claims(reproduced: list[Reproduced], quality: Quality) -> None:
         say("")
     for line in summary(reproduced):
         say(line)
-
-
-def _flat(other: Variation) -> dict[str, Any]:
-    """Return a variation for programs."""
-    return {"choice": other.choice, **other.measured._asdict(), "verdict": other.verdict}
 
 
 def _indented(levels: int, text: str) -> str:

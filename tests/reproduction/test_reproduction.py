@@ -19,16 +19,7 @@ from crazybilliards.comparison.sweeps.jobs import JOBS
 from crazybilliards.model import Chain
 from crazybilliards.reproduction import elastic_gaps
 from crazybilliards.reproduction.claims.repetition import Runs
-from crazybilliards.reproduction.claims.report import (
-    OF_PAPER,
-    OWN,
-    all_cases,
-    describe,
-    html,
-    markdown,
-    reproduce,
-)
-from crazybilliards.reproduction.claims.study import PaperFigure
+from crazybilliards.reproduction.claims.report import all_cases, describe, html, markdown, reproduce
 from crazybilliards.reproduction.claims.verdicts import EYE, Verdict
 from crazybilliards.reproduction.figures import FIGURES, fig17_density
 from crazybilliards.reproduction.reproducible import EVERYTHING, find_studies, groups
@@ -60,9 +51,7 @@ def test_every_group_has_a_report_of_its_own():
 
 
 def test_everything_has_a_name_of_its_own():
-    assert [study for study in EVERYTHING if not isinstance(study, PaperFigure)] == [
-        elastic_gaps.STUDY
-    ]
+    assert [study for study in EVERYTHING if study.number is None] == [elastic_gaps.STUDY]
     assert len({study.name for study in EVERYTHING}) == len(EVERYTHING)
     assert len({study.file_name for study in EVERYTHING}) == len(EVERYTHING)
     assert not groups().keys() & {study.name for study in EVERYTHING}
@@ -183,9 +172,10 @@ def test_a_figure_its_claims_and_nothing_computed_twice(command, tmp_path, monke
     status, facts, _ = command("16", "--json")
     claim, *_ = json.loads(facts)["claims"]
     assert (claim["figure"], claim["verdict"]) == ("arctanh", "reproduced")
-    assert claim["variations"] == []
-    decisive = claim["decisive"]
-    assert 0 < decisive["value"] + 3 * decisive["error"] < decisive["limit"] == EYE
+    assert claim["elsewhere"] == {}
+    number = claim["number"]
+    assert 0 < number["value"] + 3 * number["error"] < EYE
+    assert claim["within"] == [-EYE, EYE]
     # After an edit of the simulation: with --keep-old the same, otherwise it is computed anew.
     other = replace(JOBS["simulate"], source="other source code")
     monkeypatch.setitem(JOBS, "simulate", other)
@@ -204,18 +194,9 @@ def assert_table_counts_verdicts(page):
     for part in parts:
         heading = part.splitlines()[0]
         anchor = "".join(c for c in heading.lower() if c.isalnum() or c in " -").replace(" ", "-")
-        _, *kinds = re.split("^### ", part, flags=re.MULTILINE)
-        found = {
-            kind.splitlines()[0]: Counter(re.findall(r"^\* verdict: (.*)", kind, re.MULTILINE))
-            for kind in kinds
-        }
-        counts = [
-            ", ".join(
-                f"{number} {verdict}" for verdict in get_args(Verdict) if (number := of[verdict])
-            )
-            for of in (found.get(title, Counter()) for title in (OF_PAPER, OWN))
-        ]
-        expected.append([f"[{heading}](#{anchor})", *counts])
+        found = Counter(re.findall(r"^\* verdict: (.*)", part, re.MULTILINE))
+        counts = [f"{found[verdict]} {verdict}" for verdict in get_args(Verdict) if found[verdict]]
+        expected.append([f"[{heading}](#{anchor})", ", ".join(counts)])
     lines = re.findall(r"^\| (\[.*) \|$", first, re.MULTILINE)
     assert [line.split(" | ") for line in lines] == expected
     assert "|" not in "".join(parts)
@@ -241,26 +222,19 @@ def test_the_report_is_one_page_and_the_table_markdown(tmp_path, monkeypatch):
     assert page.count("data:image/png;base64,") == 3
     assert "amplitude 10" in page
     assert "&lt;dx&gt; is described by B arctanh(C x)" in page
-    assert re.findall(r'<h2 id="[^"]*">([^.<]*)', page) == [
-        "1",
-        "16",
-        "Displacements of elastic chains with gaps",
-    ]
-    # A figure has both kinds of claims, a study its own; no table is too wide for a telephone.
-    assert re.findall("<h3>(.*)</h3>", page) == [OF_PAPER, OWN, OWN]
-    assert "<table" not in page
-    assert page.count("<article") == 2 + 6
-    assert 'class="verdict"' in page
+    targets = re.findall(r'href="#([^"]*)"', page)
+    assert len(targets) == 3
+    assert targets == re.findall(r'<h2 id="([^"]*)">', page)
+    assert page.count("<li>verdict: ") == 1 + 6
     text = markdown(reproduced, "quick")
     assert re.findall("^## ([^. ]*)", text, re.MULTILINE) == ["1", "16", "Displacements"]
-    assert re.findall("^### (.*)", text, re.MULTILINE) == [OF_PAPER, OWN, OWN]
     assert_table_counts_verdicts(text)
-    assert text.count("* verdict: ") == 2 + 6
+    assert text.count("* verdict: ") == 1 + 6
     assert "**&lt;dx&gt; is described by B arctanh(C x)**" in text
     assert "* in the paper: section seq:analytics, fig:atan" in text
     assert r"**W\_x of every rod" in text
-    assert len(re.findall(rf"^\* {OF_PAPER}: 1 ", text, re.MULTILINE)) == 1
-    assert len(re.findall(rf"^\* {OWN}: 7 undecided", text, re.MULTILINE)) == 1
+    assert "\n* Statements of the paper: 1 " in text
+    assert "\n* Our own findings: 6 undecided" in text
     pictures = re.findall(r"!\[.*\]\((.*)\)", text)
     assert pictures == ["fig01_model.png", "fig16_arctanh.png", "study_elastic-gaps.png"]
     assert pictures == [each.study.file_name for each in reproduced]
