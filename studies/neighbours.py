@@ -91,18 +91,18 @@ def length_of(result: xr.Dataset, spectrum: np.ndarray) -> float:
     return float(1 / np.interp(0.5, shares[between], wave[between]))
 
 
+def errors_of(result: xr.Dataset, name: str) -> np.ndarray:
+    """Return the standard errors of a profile, which are 0 in theory. Neighbours err together."""
+    return result.get(f"{name}_error", 0 * result[name]).values
+
+
 def covariance(result: xr.Dataset) -> Estimate:
-    """Return <v_i v_i+1>/T at the contacts of the middle tenth; its error is 0 in theory."""
-    own = result.velocity_width.values**2
+    """Return <v_i v_i+1>/T at the contacts of the middle tenth."""
+    own, name = result.velocity_width.values**2, "neighbour_covariance"
     own = (own[1:] + own[:-1]) / 2
     middle = middle_tenth(own.size)
-    temperature = own[middle].mean()
-    share = float(result.neighbour_covariance.values[middle].mean() / temperature)
-    if "neighbour_covariance_error" not in result:
-        return Estimate(share, 0.0)
-    # Neighbouring contacts err together.
-    error = result.neighbour_covariance_error.values[middle].mean()
-    return Estimate(share, float(error / temperature))
+    both = (values[middle].mean() for values in (result[name].values, errors_of(result, name)))
+    return Estimate(*(float(each / own[middle].mean()) for each in both))
 
 
 def root(result: xr.Dataset, name: str, power: int) -> Estimate:
@@ -110,10 +110,7 @@ def root(result: xr.Dataset, name: str, power: int) -> Estimate:
     values, width = result[name].values, chain_of(result).free_velocity_width
     middle = middle_tenth(values.size)  # of L rods, or of L - 1 contacts
     value = float(np.sqrt((values[middle] ** power).mean()))
-    if f"{name}_error" not in result:
-        return Estimate(value / width, 0.0)
-    # Neighbouring rods err together.
-    errors = power * result[f"{name}_error"].values[middle] * values[middle] ** (power - 1)
+    errors = power * errors_of(result, name)[middle] * values[middle] ** (power - 1)
     return Estimate(value / width, float(errors.mean() / (2 * value)) / width)
 
 
@@ -123,9 +120,7 @@ def force(result: xr.Dataset) -> Estimate:
     half, unit = chain.size // 2, chain.thermal_length
     displaced = result.mean_displacement.values / unit
     value = float(displaced[::-1][:half].sum() - displaced[:half].sum()) / 2
-    if "mean_displacement_error" not in result:
-        return Estimate(value, 0.0)
-    errors = result.mean_displacement_error.values / unit
+    errors = errors_of(result, "mean_displacement") / unit
     return Estimate(value, float(errors[:half].sum()) / math.sqrt(2))
 
 
