@@ -26,6 +26,7 @@ from numpy.typing import NDArray
 from crazybilliards.kinetic.correlations.cells import make_cells
 from crazybilliards.kinetic.correlations.closure import Closure, background, implied
 from crazybilliards.kinetic.correlations.collision_moments import moments_of_collisions
+from crazybilliards.kinetic.correlations.displacements import relaxing_pairs
 from crazybilliards.kinetic.correlations.fixed_point import NoFixedPointError, find_fixed_point
 from crazybilliards.kinetic.correlations.one_rod import profiles_of_one_rod
 from crazybilliards.kinetic.correlations.pair_covariance import linear_response, solve_pairs
@@ -176,7 +177,7 @@ def _agreed(state: State, closure: Closure, agreement: float) -> Correlated:
         rod = profiles_of_one_rod(cells, state)
         around = background(rod, closure, chain.restitution)
         pairs = solve_pairs(cells, around, of_collisions, _damping(chain))
-        known[:] = [Correlated(state, closure, around, pairs, np.nan, 0)]
+        known[:] = [Correlated(state, closure, around, pairs, pairs.displacement, np.nan, 0)]
         return implied(chain.size, cells, rod, around, pairs).packed()
 
     end = find_fixed_point(image, closure.packed(), agreement, _MOST_ITERATIONS)
@@ -184,19 +185,18 @@ def _agreed(state: State, closure: Closure, agreement: float) -> Correlated:
 
 
 def _checked(found: Correlated) -> Correlated:
-    """Raise if the agreement is at a bound, or not stable."""
+    """Add the displacements; raise if the agreement is at a bound, or not stable."""
     if not found.closure.is_possible:
         raise NoFixedPointError("the correlations are too large for a linear theory of them")
-    chain = found.state.chain
-    response = linear_response(
-        make_cells(chain.size),
-        found.background,
-        moments_of_collisions(chain.restitution),
-        _damping(chain),
-    )
-    if (growth := response.largest_growth()) > 0:
-        raise NoFixedPointError(f"the state is not stable: deviations grow at the rate {growth:g}")
-    return found
+    chain, known = found.state.chain, (make_cells(found.state.chain.size), found.background)
+    rest = moments_of_collisions(chain.restitution), _damping(chain)
+    relaxing, pairs = relaxing_pairs(*known, found.closure.collective, *rest)
+    for response in (linear_response(*known, *rest), relaxing):
+        if (growth := response.largest_growth()) > 0:
+            raise NoFixedPointError(
+                f"the state is not stable: deviations grow at the rate {growth:g}"
+            )
+    return found._replace(displacement=pairs.displacement)
 
 
 def _damping(chain: Chain) -> float:

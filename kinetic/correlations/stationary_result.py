@@ -33,6 +33,7 @@ class Correlated(NamedTuple):
     closure: Closure
     background: Background
     pairs: PairCovariance
+    displacement: Array  # h' of cells
     residual: float
     iterations: int
 
@@ -42,9 +43,9 @@ def rods(found: Correlated) -> Rods:
 
     A rod moves in its neighbourhood, and with it.
     """
-    state, collective = found.state, _collective(found)
+    state, (displaced, moving) = found.state, _collective(found)
     own = points(state.chain.size, mirrored(moments(state.space, state.f)))
-    position, velocity = own.position_variance + collective, own.velocity_variance + collective
+    position, velocity = own.position_variance + displaced, own.velocity_variance + moving
     return Rods(own.position, position, velocity)
 
 
@@ -53,7 +54,7 @@ def assemble(found: Correlated, of_rods: Rods, mesh_error: float) -> xr.Dataset:
     chain, (length, velocity) = found.state.chain, free_units(found.state.chain)
     cells = make_cells(chain.size)
     return in_vocabulary(
-        as_seen_in_place(found.state, np.arange(0.5, chain.size), _collective(found)),
+        as_seen_in_place(found.state, np.arange(0.5, chain.size), *_collective(found)),
         {
             "velocity_width": ("particle", velocity * np.sqrt(of_rods.velocity_variance)),
             "mean_displacement": ("particle", length * of_rods.position),
@@ -72,9 +73,10 @@ def assemble(found: Correlated, of_rods: Rods, mesh_error: float) -> xr.Dataset:
 
 
 def _collective(found: Correlated) -> Array:
-    """Return the variance of the motion of each rod's neighbourhood."""
-    size = found.state.chain.size
-    return collective_variance(make_cells(size), found.pairs, np.arange(0.5, size))
+    """Return the variances of displacement and velocity of each rod's neighbourhood."""
+    size, both = found.state.chain.size, (found.displacement, found.pairs.displacement)
+    labels, cells = np.arange(0.5, size), make_cells(size)
+    return np.array([collective_variance(cells, each, labels) for each in both])
 
 
 def _of_pairs(
