@@ -18,11 +18,13 @@ from stationary_errors import largest, pooled, simulated_widths
 
 import crazybilliards as cb
 from crazybilliards.kinetic import accuracy
+from crazybilliards.kinetic.correlations.cells import make_cells
+from crazybilliards.kinetic.correlations.closure import collective_variance
 from crazybilliards.kinetic.correlations.stationary import _agree
 from crazybilliards.kinetic.correlations.stationary_result import rods
 
 NUMBER = 24
-LIMIT = 0.005
+ACCURACY, LIMIT = 0.0029, 0.01
 COLUMNS = ("L", "e", "Gamma", "before, %", "now, %", "rod", "its error, %", "stated, %")
 
 
@@ -39,13 +41,17 @@ def drawn() -> Iterator[cb.Chain]:
 
 def row(chain: cb.Chain) -> list[str]:
     """Return a line of the table."""
-    value, error = pooled([simulated_widths(chain, LIMIT)], "displacement_width", 1)
+    value, error = pooled([simulated_widths(chain, ACCURACY, LIMIT)], "displacement_width", 1)
     found = _agree(chain, 2e-3)
-    variances = (
-        rods(each).position_variance
-        for each in (found._replace(displacement=found.pairs.displacement), found)
+    of_velocities, of_displacements = (
+        collective_variance(make_cells(chain.size, whole=whole), pairs, np.arange(0.5, chain.size))
+        for whole, pairs in ((False, found.pairs), (True, found.displaced))
     )
-    before, now = (chain.thermal_length * np.sqrt(each) / value - 1 for each in variances)
+    variance = rods(found).position_variance
+    before, now = (
+        chain.thermal_length * np.sqrt(each) / value - 1
+        for each in (variance + of_velocities - of_displacements, variance)
+    )
     worst = int(np.argmax(np.abs(now[: (chain.size + 1) // 2])))
     stated = accuracy.expected_correlated_phase_space(chain).displacement_width
     Gamma = chain.damping / math.sqrt(chain.stiffness * chain.mass)

@@ -110,9 +110,9 @@ def background(rod: OneRod, closure: Closure, restitution: float) -> Background:
     )
 
 
-def collective_variance(cells: Cells, displacement: Array, labels: Array) -> Array:
+def collective_variance(cells: Cells, pairs: PairCovariance, labels: Array) -> Array:
     """Return h_uu at labels from 0 to L, continued from pairs of different cells."""
-    return at_distance(displacement, cells.centres, labels, 0.0)
+    return at_distance(pairs.displacement, cells.centres, labels, 0.0)
 
 
 def implied(
@@ -133,9 +133,7 @@ def implied(
     return Closure(
         np.log(_even((1 - 1 / size) * loss / rod.cubes)),
         np.minimum(_even(shared / (around.temperature + around.shared)), 1 - _LEAST),
-        np.minimum(
-            _even(collective_variance(cells, pairs.displacement, cells.contacts)), 1 - _LEAST
-        ),
+        np.minimum(_even(collective_variance(cells, pairs, cells.contacts)), 1 - _LEAST),
         np.log(np.maximum(_even(clustering), _LEAST)),
     )
 

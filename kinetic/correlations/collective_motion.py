@@ -2,8 +2,7 @@
 
 The kinetic equation with pair correlations has f(y, v) of rods whose neighbourhood is where it is
 in the mean. Neighbourhoods are displaced by u and move with V, Gaussian, independent at equal
-times, with the variances of :mod:`.displacements` and :mod:`.closure`. At a place one sees the
-convolution.
+times, with the variance h_uu each (see :mod:`.closure`). At a place one sees the convolution.
 """
 
 from __future__ import annotations
@@ -21,22 +20,19 @@ Array = NDArray[np.float64]
 _NARROWEST = 1e-4  # of a Gaussian, in free units: far below any mesh
 
 
-def as_seen_in_place(state: State, labels: Array, variances: Array) -> State:
-    """Return the state with its collective motion, at labels from 0 to L.
-
-    ``variances``: of displacement and velocity, shape (2, labels).
-    """
+def as_seen_in_place(state: State, labels: Array, variance: Array) -> State:
+    """Return the state with its collective motion, of the given variance at labels from 0 to L."""
     space, size = state.space, state.chain.size
     upper = size * (0.5 + moments(space, state.f).label)
-    halves = [np.interp(upper, labels, each) for each in variances]
-    widths = np.sqrt(np.maximum([np.append(half[::-1], half) for half in halves], _NARROWEST**2))
+    half = np.interp(upper, labels, variance)
+    width = np.sqrt(np.maximum(np.concatenate([half[::-1], half]), _NARROWEST**2))
     y, v, f = space.sampled(state.f)
     y_weights = np.concatenate([space.y_weights[::-1], space.y_weights]) / 2
     moving = np.empty_like(f)
     for place in range(y.size):
-        spread = _gaussian(v, space.v_weights, widths[1, place])
+        spread = _gaussian(v, space.v_weights, width[place])
         moving[place] = spread @ (space.v_weights * f[place])
-    displaced = _gaussian(y, y_weights, widths[0]) @ (y_weights[:, None] * moving)
+    displaced = _gaussian(y, y_weights, width) @ (y_weights[:, None] * moving)
     upper_half = displaced[y.size // 2 :]
     return replace(state, f=space.project(lambda _y, _v: upper_half))
 

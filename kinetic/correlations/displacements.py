@@ -5,13 +5,13 @@ with three changes, which docs/correlations.md derives. The velocities keep h.
 
 **Background.** W_x has the local part of f. So T_f, P/T_f and h_uu stand for Theta, n and h_c.
 
-**Source.** With the step function S, u Theta: Lambda(l) g(l') (S(l' - l) - l'/L).
+**Source.** u Theta: Lambda(l) g(l') (step(l' - l) - l'/L).
 
 **Relaxing stress.** Fluctuating gaps resist a sudden strain more than a slow one,
 
-    dPi = P (dTheta/Theta - dg/g) + sigma,      sigma' = -a (a + 1) h_gg P d_l V/g - sigma/tau,
+    dPi = P (dTheta/Theta - dg/g) + S,      S' = -alpha (alpha + 1) h_gg P d_l V/g - S/tau,
 
-with the force P ~ g^-a of a gas that cools. h_gg of neighbouring gaps and tau, the mean time in
+with the force P ~ g^-alpha of a gas that cools. h_gg of neighbouring gaps and tau, the mean time in
 which squares of waves relax, follow from h' itself.
 """
 
@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import block_diag
 
-from crazybilliards.kinetic.correlations.cells import Cells, at_distance, of_cells
+from crazybilliards.kinetic.correlations.cells import Cells, at_distance, make_cells, of_cells
 from crazybilliards.kinetic.correlations.collision_moments import CollisionMoments
 from crazybilliards.kinetic.correlations.fixed_point import find_fixed_point
 from crazybilliards.kinetic.correlations.pair_covariance import (
@@ -44,22 +44,25 @@ _MOST_ITERATIONS = 40
 
 
 def relaxing_pairs(
-    cells: Cells, around: Background, collective: Array, moments: CollisionMoments, damping: float
+    size: int, around: Background, collective: Array, moments: CollisionMoments, damping: float
 ) -> tuple[LinearResponse, PairCovariance]:
     """Return the linear response with the stress, and h', in free units.
 
     ``collective``: h_uu at the contacts, the variance of the collective velocities.
     """
-    T_f, P = around.temperature + around.shared - collective, around.pressure
-    strength = around.strength * np.sqrt(around.temperature / T_f)
-    state = Background(P / T_f, around.gap, T_f, P, strength, collective)
+    cells, contacts = make_cells(size, whole=True), make_cells(size).contacts
+    _, gap, Theta, P, b, shared, collective = (
+        np.interp(cells.contacts, contacts, each) for each in (*around, collective)
+    )
+    T_f = Theta + shared - collective
+    state = Background(P / T_f, gap, T_f, P, b * np.sqrt(Theta / T_f), collective)
     loss, cooling = dissipation(state, moments), 2 * damping * T_f
-    a = (loss / 2 + cooling) / (1.5 * loss + cooling)
+    alpha = (loss / 2 + cooling) / (1.5 * loss + cooling)
     plain = linear_response(cells, state, moments, damping)
     known: list[tuple[LinearResponse, PairCovariance]] = []
 
     def image(unknown: Array) -> Array:
-        excess, tau = a * (a + 1) * np.maximum(unknown[:-1], 0), np.exp(unknown[-1])
+        excess, tau = alpha * (alpha + 1) * np.maximum(unknown[:-1], 0), np.exp(unknown[-1])
         relaxing = _with_stress(cells, state, plain, loss, excess, tau)
         known[:] = [(relaxing, pairs := covariances(cells, state, relaxing))]
         gaps = at_distance(pairs.gap, cells.contacts, cells.contacts, 1.0)
@@ -72,17 +75,17 @@ def relaxing_pairs(
 def _with_stress(
     cells: Cells, state: Background, plain: LinearResponse, loss: Array, excess: Array, tau: float
 ) -> LinearResponse:
-    """Return the response with the right source and with sigma, in units of P, at the contacts."""
-    M, sigma = cells.rods.size, slice(len(plain.noise), None)
+    """Return the response with the right source and with S, in units of P, at the contacts."""
+    M, S = cells.rods.size, slice(len(plain.noise), None)
     (u, V, Th, _), scale, step = parts(M), scales(cells, state), steps(cells)
     below = np.tril(np.ones((M, M - 1)), -1) - cells.centres[:, None] / cells.rods.sum()
     source = of_cells(state.gap)[:, None] * below * loss
     generator, noise = (np.pad(each, (0, M - 1)) for each in plain[:2])
     noise[u, Th] = source / np.outer(scale[u], scale[Th])
     noise[Th, u] = noise[u, Th].T
-    generator[V, sigma] = step.T * state.pressure / (cells.rods * scale[V])[:, None]
-    generator[sigma, V] = -(excess / cells.distances / state.gap)[:, None] * step * scale[V]
-    generator[sigma, sigma] = -np.eye(M - 1) / tau
+    generator[V, S] = step.T * state.pressure / (cells.rods * scale[V])[:, None]
+    generator[S, V] = -(excess / cells.distances / state.gap)[:, None] * step * scale[V]
+    generator[S, S] = -np.eye(M - 1) / tau
     even, odd = plain.bases
     bases = block_diag(even, mirror_basis(M - 1, 1)), block_diag(odd, mirror_basis(M - 1, -1))
     return LinearResponse(generator, noise, bases)

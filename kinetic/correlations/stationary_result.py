@@ -33,7 +33,7 @@ class Correlated(NamedTuple):
     closure: Closure
     background: Background
     pairs: PairCovariance
-    displacement: Array  # h' of cells
+    displaced: PairCovariance  # h', of whole cells
     residual: float
     iterations: int
 
@@ -43,10 +43,11 @@ def rods(found: Correlated) -> Rods:
 
     A rod moves in its neighbourhood, and with it.
     """
-    state, (displaced, moving) = found.state, _collective(found)
+    state, whole = found.state, make_cells(found.state.chain.size, whole=True)
     own = points(state.chain.size, mirrored(moments(state.space, state.f)))
-    position, velocity = own.position_variance + displaced, own.velocity_variance + moving
-    return Rods(own.position, position, velocity)
+    displaced = collective_variance(whole, found.displaced, np.arange(0.5, state.chain.size))
+    velocity = own.velocity_variance + _collective(found)
+    return Rods(own.position, own.position_variance + displaced, velocity)
 
 
 def assemble(found: Correlated, of_rods: Rods, mesh_error: float) -> xr.Dataset:
@@ -54,7 +55,7 @@ def assemble(found: Correlated, of_rods: Rods, mesh_error: float) -> xr.Dataset:
     chain, (length, velocity) = found.state.chain, free_units(found.state.chain)
     cells = make_cells(chain.size)
     return in_vocabulary(
-        as_seen_in_place(found.state, np.arange(0.5, chain.size), *_collective(found)),
+        as_seen_in_place(found.state, np.arange(0.5, chain.size), _collective(found)),
         {
             "velocity_width": ("particle", velocity * np.sqrt(of_rods.velocity_variance)),
             "mean_displacement": ("particle", length * of_rods.position),
@@ -73,10 +74,9 @@ def assemble(found: Correlated, of_rods: Rods, mesh_error: float) -> xr.Dataset:
 
 
 def _collective(found: Correlated) -> Array:
-    """Return the variances of displacement and velocity of each rod's neighbourhood."""
-    size, both = found.state.chain.size, (found.displacement, found.pairs.displacement)
-    labels, cells = np.arange(0.5, size), make_cells(size)
-    return np.array([collective_variance(cells, each, labels) for each in both])
+    """Return the variance of the motion of each rod's neighbourhood."""
+    size = found.state.chain.size
+    return collective_variance(make_cells(size), found.pairs, np.arange(0.5, size))
 
 
 def _of_pairs(
