@@ -10,13 +10,13 @@ import matplotlib.pyplot as plt
 import pandas as pd
 
 from crazybilliards.comparison.drawing import COLOURS, SYMBOLS
-from crazybilliards.comparison.layout import entitle, house_style, panels
+from crazybilliards.comparison.layout import house_style, panels
 
 TABLE = Path(__file__).parents[1] / "tables" / "displacement_widths.csv"
 AXES = {
-    "e": ("restitution $e$", "linear"),
-    "Gamma": (r"damping $\Gamma = \gamma/\sqrt{km}$", "log"),
-    "L": ("number of rods $L$", "log"),
+    "e": ("restitution $e$", "linear", (0, 0.25, 0.5, 0.75, 1)),
+    "Gamma": (r"damping $\Gamma = \gamma/\sqrt{km}$", "log", (0.25, 0.5, 1)),
+    "L": ("number of rods $L$", "log", (25, 50, 100, 200)),
 }
 
 
@@ -25,7 +25,7 @@ def main() -> None:
     table = pd.read_csv(TABLE)
     with house_style():
         figure, axes = panels(1, 3, height=2.7)
-        for ax, (column, (label, scale)) in zip(axes, AXES.items(), strict=True):
+        for ax, (column, (label, scale, ticks)) in zip(axes, AXES.items(), strict=True):
             for number, name in enumerate(("before", "now")):
                 ax.errorbar(
                     table[column],
@@ -37,8 +37,10 @@ def main() -> None:
                     linewidth=0.8,
                     label={"before": "with $h$", "now": "with $h'$"}[name],
                 )
-            ax.set(xlabel=label, xscale=scale, ylim=0)
-            entitle(ax, "")
+            ax.set(xlabel=label, xscale=scale, ylim=(0, 22))
+            ax.minorticks_off()
+            ax.set_xticks(ticks, [f"{each:g}" for each in ticks])
+            ax.set_yticks(range(0, 21, 5))
         axes[0].set_ylabel("largest error of $W_x$ [%]")
         axes[0].legend()
         figure.savefig(Path(__file__).with_suffix(".png"))
