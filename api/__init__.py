@@ -31,7 +31,10 @@ def __getattr__(name: str) -> Any:
 
         return version("crazybilliards")
     if name not in _ROOM_OF:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        from crazybilliards.model.checks import meant
+
+        hint = meant(name, __all__)
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}{hint}")
     return getattr(import_module(f"{__name__}.{_ROOM_OF[name]}"), name)
 
 

@@ -113,10 +113,12 @@ def overlay(
 def _curves(results: Mapping[str, xr.Dataset], quantity: str, along: str) -> dict[str, Curve]:
     """Return what is drawn of every result, or raise before anything is drawn."""
     # A Dataset and a tree of them are mappings, too.
-    if not isinstance(results, Mapping) or isinstance(results, xr.Dataset | xr.DataTree):
+    by_labels = isinstance(results, Mapping) and not isinstance(results, xr.Dataset | xr.DataTree)
+    if not by_labels or not results:
+        got_this = "nothing" if by_labels else f"a {type(results).__name__}"
         raise ValueError(
             "overlay takes results by their labels, e.g. {'simulation': run, 'theory': theory}, "
-            f"got a {type(results).__name__}"
+            f"got {got_this}"
         )
     check_choice("along", along, get_args(Along))
     if not isinstance(quantity, str):

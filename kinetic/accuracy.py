@@ -3,9 +3,9 @@
 The errors are those of the theories, not of their numerical solutions. They are read from the
 tables in ``kinetic/measured``, which
 
-    python benchmarks/accuracy/stationary_errors.py FOLDER
-    python benchmarks/accuracy/force_balance.py
-    python benchmarks/accuracy/relaxation_error.py FOLDER
+    python -m studies.stationary_errors FOLDER
+    python -m studies.force_balance
+    python -m studies.relaxation_error FOLDER
 
 have written. A stated error is the measured one plus two of its standard errors: the largest of the
 measured chains on all sides of a chain. It is NaN beyond them. ``expected_NAME(chain)`` states
@@ -75,23 +75,21 @@ def expected_equilibrium(chain: Chain) -> Accuracy:
 
 def expected_force_balance(chain: Chain) -> Accuracy:
     """Return the errors of ``force_balance`` at e = 1, where it has the exact velocity width."""
-    if chain.spring != "linear" or chain.restitution != 1:
+    if chain.restitution != 1:
         return Accuracy()
-    s = chain.thermal_length
+    s = chain.thermal_length if chain.spring == "linear" else math.nan
     place = {"L": chain.size, "g/s": chain.lattice_gap / s, _LENGTH: s / chain.radius}
-    return _expected("force_balance", place, _OF_FORCE_BALANCE)._replace(
-        velocity_width=0.0, border=0.0, displacement_width=math.nan
-    )
+    return _maxwellian(chain, _expected("force_balance", place, _OF_FORCE_BALANCE))
 
 
 def expected_phase_space(chain: Chain) -> Accuracy:
     """Return the largest errors of ``phase_space`` on the measured chains around this one."""
-    return _expected("phase_space", _place(chain), _PLACE)
+    return _maxwellian(chain, _expected("phase_space", _place(chain), _PLACE))
 
 
 def expected_correlated_phase_space(chain: Chain) -> Accuracy:
     """Return those of ``correlated_phase_space``."""
-    return _expected("correlated_phase_space", _place(chain), _PLACE)
+    return _maxwellian(chain, _expected("correlated_phase_space", _place(chain), _PLACE))
 
 
 def expected_relax_phase_space(chain: Chain, compression: float) -> float:
@@ -106,6 +104,12 @@ def expected_relax_phase_space(chain: Chain, compression: float) -> float:
         return 0.0
     place = _place(chain) | {"y times": compression}
     return _around("relax_phase_space", "kinetic_energy", place, ("L", "e", "Gamma", "y times"))
+
+
+def _maxwellian(chain: Chain, expected: Accuracy) -> Accuracy:
+    """Return the errors, without any of velocities at e = 1, where all theories are exact."""
+    exact = {"velocity_width": 0.0, "border": 0.0} if chain.restitution == 1 else {}
+    return expected._replace(**exact)
 
 
 def _place(chain: Chain) -> dict[str, float]:

@@ -187,8 +187,8 @@ assert abs(rate / unexpanded - 1) < 0.007
 # both. The balance is a good approximation and not an exact law, although nothing in it was fitted:
 # it takes the energy to be the same during half a period, in which it grows by half.
 #
-# The error is the scatter of twelve independent runs divided by $\sqrt{12}$. One fit alone gives too
-# small an error, because the energy of a single run wanders slowly about its mean growth.
+# The error is the scatter of twelve independent runs divided by $\sqrt{12}$. The error that one fit
+# gives is not reliable, because the energy of a single run wanders slowly about its mean growth.
 # </details>
 #
 # ## 3. The cloud in phase space
@@ -351,6 +351,12 @@ class Run:
 
 # %%
 runaways = [Run(quadratic, seed, duration=100, time_step=0.002, every=0.02) for seed in range(12)]
+
+
+def beyond(time, energy, threshold):
+    """Return the times and energies from the first energy above a threshold."""
+    first = int(np.argmax(energy > threshold))
+    return time[first:], energy[first:]
 
 
 def exponents(run, threshold):

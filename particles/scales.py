@@ -119,7 +119,7 @@ def time_step_error(
     * the larger of 0.1 |1 - e| r^(3/2) and 0.05 r^4 at higher restitutions, r = 0.06 to 1.3.
 
     The last one is an empirical law, an upper estimate of the paired differences that
-    ``benchmarks/accuracy/time_step_law.py`` measures (docs/particles.md). The relative errors of
+    ``studies/time_step_law.py`` measures (docs/particles.md). The relative errors of
     mean displacements are of the same size, for e = 0.1 up to three times as large.
 
     The springs cause an error of (w0 dt)^2/8 if they are quadratic, and none if they are linear.

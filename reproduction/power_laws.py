@@ -23,21 +23,6 @@ def weighted_nu(run: xr.Dataset) -> float:
     return fit_border_power_law(run, weighted=True).exponent
 
 
-def lost_with_weights(run: xr.Dataset) -> float:
-    """Return by how much weights make the exponent steeper."""
-    return nu(run) - weighted_nu(run)
-
-
-def gained_without_c(run: xr.Dataset) -> float:
-    """Return by how much the exponent is flatter if the power laws begin at rod 0."""
-    return fit_border_power_law(run, shifted=False).exponent - nu(run)
-
-
-def origin(run: xr.Dataset) -> float:
-    """Return c, where the power laws begin."""
-    return fit_border_power_law(run).origin
-
-
 def fits_in_plot(runs: Iterable[xr.Dataset]) -> tuple[Estimate, float]:
     """Compare the fits with the widths in a plot of all runs, both axes logarithmic.
 

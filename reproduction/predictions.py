@@ -12,19 +12,16 @@ from matplotlib.figure import Figure
 from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_rods
 from crazybilliards.comparison.fits import fit_border_power_law
 from crazybilliards.comparison.layout import legend_above, panels
-from crazybilliards.comparison.widths import central_width, width_deviation
 from crazybilliards.model import chain_of
 from crazybilliards.reproduction.chains import (
     LARGE,
     RESTITUTIONS,
     Theory,
     correlated_equation,
-    dissipative,
     kinetic_equation,
 )
 from crazybilliards.reproduction.claims.repetition import Runs
 from crazybilliards.reproduction.claims.study import Cases, Quality, Results, all_of
-from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, small_claim
 
 SIZES = (30, 100, 300, LARGE)  # of chains at e = 0
 _SIZES_OF_PAIRS = {"quick": (30,), "full": SIZES}
@@ -44,13 +41,6 @@ CROSSES: dict[str, dict[str, Any]] = {
     INDEPENDENT: {"marker": "x", "linestyle": "none", "color": COLOURS[4]},
     PAIRS: {"marker": "+", "linestyle": "none", "color": COLOURS[2]},
 }
-_REASONS = {
-    INDEPENDENT: "correlations of velocities, which the theory leaves out, grow with L (1 - e)",
-    PAIRS: "the theory is linear in fluctuations, and in long chains those of gaps are as large as "
-    "their means",
-}
-_CLAIMED = {INDEPENDENT: f"the {INDEPENDENT}", PAIRS: f"the {INDEPENDENT} {PAIRS}"}
-
 Theories = dict[str, dict[float, xr.Dataset]]  # by name, then by restitution
 
 
@@ -93,12 +83,6 @@ def minus_nu(theory: xr.Dataset) -> float:
     return -fit_border_power_law(theory).exponent
 
 
-def exponent_of_size(results: Results, size: int) -> str:
-    """Return nu of the theory at e = 0, for a claim."""
-    theories = predicted_by_size(results)
-    return f"{PAIRS} {-minus_nu(theories[size]):.3f}" if size in theories else ""
-
-
 def draw_widths_by_size(ax: Axes, results: Results) -> None:
     """Draw W_v(i)/W of the theory at e = 0 as dotted lines."""
     for size, theory in predicted_by_size(results).items():
@@ -135,25 +119,3 @@ def listed(found: Theories, value: Callable[[xr.Dataset], float], *restitutions:
             values = ", ".join(f"{e:g}: {each:.3f}" for e, each in there.items())
             texts.append(values if name == INDEPENDENT else f"{name} {values}")
     return "; ".join(texts)
-
-
-def centre_claims(results: Results) -> list[Claim]:
-    """Check W_v in the centre of L = 1000 against both theories."""
-    claims = []
-    for name_of_theory, theories in predicted(results).items():
-        for e, theory in theories.items():
-            runs = dissipative(LARGE, e)
-            deviation = width_deviation(runs.pooled(results), theory)
-            # Rods of the centre move together: only runs are independent.
-            centre = runs.estimate(results, central_width)
-            claims.append(
-                small_claim(
-                    f"{_CLAIMED[name_of_theory]} gives W_v in the centre, e = {e:g}",
-                    "relative deviation",
-                    Estimate(deviation.centre, centre.error / centre.value),
-                    0.05,
-                    theory="nothing fitted",
-                    reason=_REASONS[name_of_theory],
-                )
-            )
-    return claims

@@ -1,25 +1,26 @@
-"""What can be reproduced, by number or name: the figures of the paper, then studies beyond it."""
+"""What can be reproduced, by number or name: the figures of the paper, then a check at e = 1."""
 
 from __future__ import annotations
 
-from crazybilliards.reproduction import figures
-from crazybilliards.reproduction.beyond import STUDIES
-from crazybilliards.reproduction.claims.study import PaperFigure, Study
+from crazybilliards.reproduction import elastic_gaps, figures
+from crazybilliards.reproduction.claims.study import Study
 
 # The paper's section "Analytics" and what can be checked at restitution 1, where the chain is
 # exactly solvable: velocities, arctanh fit, density, displacements of chains with gaps.
 _ANALYTICS = ("velocities-elastic", "arctanh", "density", "elastic-gaps")
 
 
+EVERYTHING: tuple[Study, ...] = (*figures.FIGURES, elastic_gaps.STUDY)
+
+
 def groups() -> dict[str, tuple[Study, ...]]:
-    """Return ``all`` figures of the paper, the ``studies`` beyond it, and the ``analytics``."""
-    everything = (*figures.FIGURES, *STUDIES)
-    analytics = tuple(study for study in everything if study.name in _ANALYTICS)
-    return {"all": figures.FIGURES, "studies": STUDIES, "analytics": analytics}
+    """Return ``all`` figures of the paper, and its ``analytics``."""
+    analytics = tuple(study for study in EVERYTHING if study.name in _ANALYTICS)
+    return {"all": figures.FIGURES, "analytics": analytics}
 
 
 def find_studies(which: str) -> list[Study]:
-    """Return what a number, a name, ``all``, ``studies`` or ``analytics`` stands for.
+    """Return what a number, a name, ``all`` or ``analytics`` stands for.
 
     Raises
     ------
@@ -28,10 +29,8 @@ def find_studies(which: str) -> list[Study]:
     """
     if which in groups():
         return list(groups()[which])
-    everything = [*groups()["all"], *groups()["studies"]]
-    for study in everything:
-        number = str(study.number) if isinstance(study, PaperFigure) else None
-        if which in (study.name, number):
+    for study in EVERYTHING:
+        if which in (study.name, str(study.number or study.name)):
             return [study]
-    names = ", ".join([*groups(), *(study.label for study in everything)])
+    names = ", ".join([*groups(), *(study.label for study in EVERYTHING)])
     raise ValueError(f"no figure or study {which!r}; there are: {names}")

@@ -57,13 +57,6 @@ def _relative_error(run: xr.Dataset) -> float:
     return float(run.central_velocity_width_error / run.central_velocity_width)
 
 
-def relative_shift(width: Estimate, limit: Estimate) -> Estimate:
-    """Return how much wider a width is than its limit, as a share of it."""
-    ratio = width.value / limit.value
-    error = ratio * math.hypot(width.error / width.value, limit.error / limit.value)
-    return Estimate(ratio - 1, error)
-
-
 def common_bias(runs: list[xr.Dataset]) -> float:
     """Return the remaining relative error of the step in W_v of the centre, mean of the limits."""
     return float(np.mean([run.attrs["time_step_error"] for run in runs]))

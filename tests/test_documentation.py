@@ -45,7 +45,8 @@ def test_a_script_that_a_page_names_exists():
     pages = [*DOCS.parent.glob("*.md"), *DOCS.rglob("*.md")]
     text = "\n".join(page.read_text(encoding="utf-8") for page in pages)
     named = set(re.findall(r"python\s+((?:benchmarks|docs/figures)/\S+?\.py)", text))
-    assert len(named) > 10
+    named |= {f"studies/{name}.py" for name in re.findall(r"python\s+-m\s+studies\.(\w+)", text)}
+    assert len(named) > 20
     assert not [script for script in named if not (DOCS.parent / script).exists()]
 
 

@@ -128,7 +128,7 @@ def verdicts():
         int(part.split()[0])
         for part in words("docs/paper/claims.md")
         .split("* Statements of the paper: ")[1]
-        .split(" * ")[0]
+        .split(" | ")[0]
         .split(", ")
     )
     total = reproduced + not_so + cannot + undecided

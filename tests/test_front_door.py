@@ -105,7 +105,7 @@ def installed(tmp_path_factory):
     return wheel, binaries
 
 
-PACKED = ("*.py", "*.pyi", "py.typed", "*.jinja", "*.mplstyle", "*.css", "*.js", "*.html", "*.csv")
+PACKED = ("*.py", "*.pyi", "py.typed", "*.mplstyle", "*.css", "*.js", "*.html", "*.csv")
 
 
 def test_the_wheel_holds_every_module_and_stub(installed):

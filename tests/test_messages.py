@@ -19,7 +19,7 @@ from crazybilliards.apps.commands.line import main
 from crazybilliards.model import checks
 
 
-class Unknown(cb.Density):
+class Unknown(cb.Widths):
     name = "unknown"
     gives = ("my_variable",)
 
@@ -114,7 +114,7 @@ def test_the_checks_of_calls_leave_everything_else_as_it_was():
     assert cb.simulate.__wrapped__ is simulate
     assert inspect.signature(cb.simulate) == inspect.signature(simulate)
     assert list(inspect.signature(cb.Chain).parameters) == list(cb.Chain().parameters())
-    assert inspect.signature(cb.Density) == inspect.Signature()
+    assert inspect.signature(cb.Widths) == inspect.Signature()
     # An error within the function is not one of the call.
     with pytest.raises(TypeError, match="unsupported operand"):
         cb.force_balance(cb.Chain(size=3), displacement=lambda x: x + None)

@@ -53,8 +53,8 @@ cb.simulate_limit(chain, accuraci=0.01) | did you mean 'accuracy'?
 cb.given_start(chain) | given_start needs position
 cb.given_start(chain, chain.anchors, 0.0, 3) | write replicas=3
 cb.given_start(chain, positions=chain.anchors) | did you mean 'position'?
-cb.Density(3) | Density takes no argument without a name, got 3
-cb.Density(bins=3) | Density has no argument 'bins'; it takes no arguments
+cb.Density(-3) | reach must be positive, got -3
+cb.Density(bins=3) | Density has no argument 'bins'; it takes reach
 cb.Velocities(bin=3) | did you mean 'bins'?
 cb.Velocities(3, 4) | Velocities takes bins without a name, got 4
 cb.Covariances(separation=3) | did you mean 'separations'?
@@ -146,6 +146,7 @@ cb.fit_border_power_law(3) | source must be a result
 cb.fit_border_power_law(foreign) | the result has no 'velocity_width'
 cb.overlay([run]) | overlay takes results by their labels...got a list
 cb.overlay(run) | overlay takes results by their labels...got a Dataset
+cb.overlay({}) | overlay takes results by their labels...got nothing
 cb.overlay({"a": 3}) | a: not a crazybilliards result: 3
 cb.overlay({"a": tree}) | a: not a crazybilliards result: a DataTree
 cb.overlay({"a": run}, 3) | quantity must be the name of a variable, got 3
@@ -215,7 +216,7 @@ cb.relax_phase_space(cb.Chain(size=20), crystal, 60) | spikes of a crystal...for
 """
 
 VALUES = """
-cb.simulate(chain, duration=10, every=1.0) | duration must be at least...average='ensemble'
+cb.simulate(chain, duration=5, every=1.0) | duration must be at least...average='ensemble'
 cb.Chain(restitution=-0.1) | restitution must be 0 or more, got -0.1
 cb.Chain(restitution=np.nan) | restitution must be finite, got nan
 cb.Chain(amplitude=np.inf) | amplitude must be finite, got inf

@@ -8,6 +8,7 @@ from __future__ import annotations
 import shutil
 import textwrap
 from enum import StrEnum
+from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -27,17 +28,12 @@ from crazybilliards.apps.commands.sweep import (
 if TYPE_CHECKING:
     from crazybilliards.reproduction.claims.report import Reproduced
     from crazybilliards.reproduction.claims.study import Study
-    from crazybilliards.reproduction.claims.verdicts import Variation
 
 
 # Of what there is to say about a claim.
 _PRINTED = ("its number", "found here", "at other choices", "theory", "why")
 # By what is asked for: names of the page with everything and of the table of claims.
-_REPORTS = {
-    "all": ("report.html", "claims.md"),
-    "analytics": ("analytics.html", "analytics.md"),
-    "studies": ("studies.html", "studies.md"),
-}
+_REPORTS = {"all": ("report.html", "claims.md"), "analytics": ("analytics.html", "analytics.md")}
 
 
 class Quality(StrEnum):
@@ -58,14 +54,12 @@ def command(
     which: Annotated[
         str,
         typer.Argument(
-            help="Number or name of a figure of the paper, name of a study beyond the paper, "
-            "all (figures of the paper), analytics (those of the paper's section of that name and "
-            "the checks at restitution 1), or studies (all beyond the paper)."
+            help="Number or name of a figure of the paper, all (figures of the paper), or "
+            "analytics (those of the paper's section of that name and the checks at restitution 1, "
+            "elastic-gaps among them, which is no figure of the paper)."
         ),
     ] = "all",
-    show_list: Annotated[
-        bool, typer.Option("--list", help="List the figures and the studies, and stop.")
-    ] = False,
+    show_list: Annotated[bool, typer.Option("--list", help="List the figures, and stop.")] = False,
     quality: Annotated[
         Quality, typer.Option(help="All figures take 2 minutes (quick) or 10 (full) on two cores.")
     ] = Quality.QUICK,
@@ -96,10 +90,9 @@ def command(
 ) -> None:
     """Reproduce the figures of arXiv:1404.7460, and check what the paper claims.
 
-    Writes a picture for each figure and prints what became of the paper's claims. Some studies
-    have tables as well, which are written beside the picture. For all figures it also writes
-    report.html, one page with everything in it, and claims.md, the table of claims; for analytics
-    and studies these pages bear their names. Results are kept in the folder: drawing again is a
+    Writes a picture for each figure and prints what became of the paper's claims. For all figures
+    it also writes report.html, one page with everything in it, and claims.md, the table of claims;
+    for analytics these pages bear its name. Results are kept in the folder: drawing again is a
     matter of seconds, and after Ctrl-C or a crash the same command goes on.
 
     Example: crazybilliards reproduce analytics
@@ -129,15 +122,12 @@ def command(
 
 
 def _print_list() -> None:
-    from crazybilliards.reproduction.claims.study import PaperFigure
-    from crazybilliards.reproduction.reproducible import groups
+    from crazybilliards.reproduction.reproducible import EVERYTHING
 
     listed = []
-    for group in ("all", "studies"):
-        for study in groups()[group]:
-            number = study.number if isinstance(study, PaperFigure) else None
-            listed.append({"number": number, "name": study.name, "title": study.title})
-            say(f"{number or '':3}  {study.name:28s} {study.title}")
+    for study in EVERYTHING:
+        listed.append({"number": study.number, "name": study.name, "title": study.title})
+        say(f"{study.number or '':3}  {study.name:28s} {study.title}")
     note(studies=listed)
 
 
@@ -157,10 +147,6 @@ def _draw(studies: list[Study], quality: Quality, output: Path, **how: Any) -> l
         for kind, picture in each.pictures.items():
             path = output / f"{each.study.stem}.{kind}"
             write_atomically(path, picture)
-            wrote(path)
-        for name, table in each.tables.items():
-            path = output / f"{name}.csv"
-            write_atomically(path, table)
             wrote(path)
         reproduced.append(each)
     return reproduced
@@ -182,18 +168,19 @@ def _write_report(
 
 def _print_claims(reproduced: list[Reproduced], quality: Quality) -> None:
     """Print the claims of the figures, if there are any, and how many came out how."""
-    from crazybilliards.reproduction.claims.report import details, summary
+    from crazybilliards.reproduction.claims.report import summary
 
     noted = []
     for each in reproduced:
         if each.claims:
             say(f"\n{each.study.heading}")
         for claim in each.claims:
-            said = details(claim)
+            said = claim.details
             which = {"figure": each.study.name, "claim": claim.statement}
             numbers = {
-                "decisive": claim.decisive._asdict(),
-                "variations": [_flat(other) for other in claim.variations],
+                "number": claim.found._asdict(),
+                "within": [bound if isfinite(bound) else None for bound in claim.within],
+                "elsewhere": {name: at._asdict() for name, at in claim.elsewhere.items()},
             }
             noted.append(which | said | numbers)
             more = " from so few runs (--quality full has more)" if quality is Quality.QUICK else ""
@@ -206,11 +193,6 @@ def _print_claims(reproduced: list[Reproduced], quality: Quality) -> None:
         say("")
     for line in summary(reproduced):
         say(line)
-
-
-def _flat(other: Variation) -> dict[str, Any]:
-    """Return a variation for programs."""
-    return {"choice": other.choice, **other.measured._asdict(), "verdict": other.verdict}
 
 
 def _indented(levels: int, text: str) -> str:

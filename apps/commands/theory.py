@@ -124,7 +124,8 @@ def _list(chain: Chain) -> None:
 
     found = theories(chain)
     table = Table(
-        title=f"Theories for L = {chain.size}, e = {chain.restitution:g}",
+        title=f"Theories for L = {chain.size}, e = {chain.restitution:g}; best of W_v: "
+        + (found.attrs["best"] or "none"),
         caption="Largest errors of the theory itself on chains like this one: relative ones of W_v "
         "(particles 3 to L-2; border: the two at the ends) and of W_x; of the mean displacement "
         "in thermal lengths; of the smoothed density, of close packing. -: not measured. "
@@ -132,16 +133,14 @@ def _list(chain: Chain) -> None:
     )
     for heading in ("theory", "W_v", "border", "W_x", "<dx>", "density", "time"):
         table.add_column(heading, justify="left" if heading == "theory" else "right")
-    for name, row in found.to_dataframe().iterrows():
-        marked = f"{name} (best)" if name == found.attrs["best"] else str(name)
-        if row.takes:
-            errors = [_percent(row[column]) for column in row.index if column.endswith("_error")]
-            table.add_row(marked, *errors, f"{row.expected_seconds:.2g} s")
-        else:
-            table.add_row(f"{name}: {row.reason}", *["-"] * 6)
-    columns = found.to_dataframe().reset_index().to_dict("records")
-    note(best=found.attrs["best"], theories=columns)
+    rows = found.to_dataframe()
+    for name, row in rows[rows.takes].iterrows():
+        errors = [_percent(row[column]) for column in row.index if column.endswith("_error")]
+        table.add_row(str(name), *errors, f"{row.expected_seconds:.2g} s")
+    note(best=found.attrs["best"], theories=rows.reset_index().to_dict("records"))
     print_table(table)
+    for name, row in rows[~rows.takes].iterrows():
+        say(f"{name} does not take the chain: {row.reason}")
 
 
 def _percent(error: float) -> str:

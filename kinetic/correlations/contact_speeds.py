@@ -24,7 +24,7 @@ stationary density of (r, w) then gives
 
     K(e)^2 = Theta_c/Theta,      sqrt(Theta_c) = (sqrt(pi)/4) <w^2>/<w>.
 
-benchmarks/accuracy/contact_speeds.py solves for it by finite volumes. K(1) = 1 is exact.
+studies/contact_speeds.py solves for it by finite volumes. K(1) = 1 is exact.
 """
 
 from __future__ import annotations

@@ -4,7 +4,7 @@ At e = 0 two rods that have met stay in contact until a kick of the noise separa
 limit dt -> 0 they separate at once. With one kick per step they stay in contact longer, by D steps
 on average, which causes an error ~ dt^(3/4) of the velocity widths. D vanishes if the relative kick
 of a closed contact is ``CLOSED_KICK`` times as strong. The number follows from a single contact and
-holds for every chain at e = 0. ``benchmarks/accuracy/closed_contact.py`` computes it, and
+holds for every chain at e = 0. ``studies/closed_contact.py`` computes it, and
 docs/particles.md defines D and has the sources and the measured errors.
 
 The same factor is taken up to the critical restitution exp(-pi/sqrt 3) = 0.163 (Cornell, Swift and

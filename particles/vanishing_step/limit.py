@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import os
 import sys
+import warnings
 from collections.abc import Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
@@ -26,8 +27,8 @@ from crazybilliards.particles.running.checkpoint import Checkpoint, identity
 from crazybilliards.particles.running.collecting import only_chosen
 from crazybilliards.particles.running.threads import run_all
 from crazybilliards.particles.scales import relaxation_time
-from crazybilliards.particles.schedule import Schedule
-from crazybilliards.particles.simulation import compile_kernels
+from crazybilliards.particles.schedule import Schedule, too_short
+from crazybilliards.particles.simulation import ShortRunWarning, compile_kernels
 from crazybilliards.particles.vanishing_step.level_steps import GROUPS, Steps, plan_steps
 from crazybilliards.particles.vanishing_step.level_terms import CENTRAL
 from crazybilliards.particles.vanishing_step.multilevel import Levels
@@ -145,6 +146,9 @@ def simulate_limit(
         merging=merging,
         particles=particles,
     )
+    given = math.inf if warmup is None else warmup
+    if short := too_short(chain, math.inf, given, replicas, at_rest=True):
+        warnings.warn(short, ShortRunWarning, stacklevel=3)
     groups = -(-GROUPS // replicas)
     by_level = [
         [

@@ -10,26 +10,41 @@ from collections import Counter
 from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass
 from functools import cache
-from html import escape
+from html import escape, unescape
 from importlib.metadata import version
-from importlib.resources import files
 from pathlib import Path
-from typing import Any, get_args
+from typing import get_args
 
-import jinja2
 import matplotlib.pyplot as plt
+from markdown_it import MarkdownIt
 
 from crazybilliards.comparison.layout import Columns, house_style
 from crazybilliards.comparison.sweeps import Case
-from crazybilliards.reproduction.claims.study import Cases, Quality, Results, Study
-from crazybilliards.reproduction.claims.tables import as_csv
+from crazybilliards.reproduction.claims.study import Quality, Results, Study
 from crazybilliards.reproduction.claims.verdicts import Claim, Verdict
 
+_HEAD = """<!doctype html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>Crazy 1d billiards, reproduced</title>
+<style>
+  body { font: 16px/1.5 system-ui, sans-serif; color: #222; overflow-wrap: break-word; }
+  body { max-width: 44rem; margin: 2rem auto; padding: 0 1rem; }
+  img { max-width: 100%; height: auto; }
+</style>
+</head>
+<body>
+"""
 _NO_DATE = {"pdf": {"CreationDate": None}, "svg": {"Date": None}}
 _VERSIONS = ("crazybilliards", "numpy", "numba", "scipy", "scikit-fem", "py-pde", "xarray")
-OF_PAPER = "Statements of the paper"
-OWN = "Our own findings"
-_LIMIT = "the limit dt -> 0; the error includes the remaining error of the step"
+_INTRODUCTION = (
+    "Figures of R. Mani, L. Böttcher, H. J. Herrmann and D. Helbing, "
+    "[arXiv:1404.7460](https://arxiv.org/abs/1404.7460), computed anew. A claim holds if its "
+    "number lies inside its limits with three standard errors to spare. It fails if the number "
+    "lies outside with three to spare. Otherwise it is undecided."
+)
 
 
 @dataclass(frozen=True)
@@ -44,39 +59,14 @@ class Reproduced:
         The picture as a file, by format: PNG always, others as asked for.
     claims
         The checked claims.
-    tables
-        Its numbers as files of comma-separated values, by their names.
     parameters
         What was computed, a line for each kind of case.
-    seconds
-        Computing time of its cases; those that studies share count for each.
     """
 
     study: Study
     pictures: dict[str, bytes]
     claims: list[Claim]
-    tables: dict[str, bytes]
     parameters: list[str]
-    seconds: float
-
-    @property
-    def picture(self) -> bytes:
-        """The picture as PNG."""
-        return self.pictures["png"]
-
-    @property
-    def embedded(self) -> str:
-        """The picture as text, for one self-contained page."""
-        return base64.b64encode(self.picture).decode()
-
-    @property
-    def parts(self) -> dict[str, list[Claim]]:
-        """The claims: those of the paper and our own, each under its title."""
-        both = {
-            OF_PAPER: [claim for claim in self.claims if claim.of_paper],
-            OWN: [claim for claim in self.claims if not claim.of_paper],
-        }
-        return {title: claims for title, claims in both.items() if claims}
 
 
 def all_cases(studies: Iterable[Study], quality: Quality) -> list[Case]:
@@ -105,7 +95,7 @@ def reproduce(
         results = {name: load(case) for name, case in cases.items()}
         with house_style(columns):
             pictures = _drawn(study, results, ("png", *formats))
-        yield _reproduced(study, cases, results, pictures)
+        yield Reproduced(study, pictures, study.claims(results), describe(cases.values()))
 
 
 def _drawn(study: Study, results: Results, formats: Iterable[str]) -> dict[str, bytes]:
@@ -118,19 +108,6 @@ def _drawn(study: Study, results: Results, formats: Iterable[str]) -> dict[str, 
         pictures[kind] = picture.getvalue()
     plt.close(drawn)
     return pictures
-
-
-def _reproduced(
-    study: Study, cases: Cases, results: Results, pictures: dict[str, bytes]
-) -> Reproduced:
-    return Reproduced(
-        study=study,
-        pictures=pictures,
-        claims=study.claims(results),
-        tables={name: as_csv(table) for name, table in study.tables(results).items()},
-        parameters=describe(cases.values()),
-        seconds=sum(run.attrs["seconds"] for run in results.values()),
-    )
 
 
 def describe(cases: Iterable[Case]) -> list[str]:
@@ -150,37 +127,33 @@ def markdown(reproduced: list[Reproduced], quality: Quality) -> str:
     It begins with a table that counts the verdicts of each study and leads to its part. The parts
     are in lists and not in tables, so that a narrow screen shows all of a claim.
     """
-    numbers = _versions()
+    versions = {"python": platform.python_version()} | {name: version(name) for name in _VERSIONS}
     rows = [
         "# What is claimed, and what was found",
         "",
         f"Quality: {quality}. Written by `crazybilliards reproduce`; "
-        f"{', '.join(f'{name} {number}' for name, number in numbers.items())}.",
+        f"{', '.join(f'{name} {number}' for name, number in versions.items())}.",
+        "",
+        _INTRODUCTION,
         "",
         *(f"* {line}" for line in summary(reproduced)),
         "",
-        *_verdicts_by_study(reproduced),
+        "| figure or study | verdicts |",
+        "|---|---|",
     ]
+    for each in reproduced:
+        heading = each.study.heading
+        rows.append(f"| [{heading}](#{_anchor(heading)}) | {_counted(each.claims)} |")
     for each in reproduced:
         study = each.study
         rows += ["", f"## {study.heading}", ""]
         rows += [f"![{study.title}]({study.file_name})", "", study.caption]
-        for title, claims in each.parts.items():
-            rows += ["", f"### {title}"]
-            for claim in claims:
-                rows += ["", f"**{_plain(claim.statement)}**", ""]
-                rows += [f"* {name}: {_plain(text)}" for name, text in details(claim).items()]
+        if each.parameters:
+            rows += ["", f"Computed: {_plain('; '.join(each.parameters))}."]
+        for claim in each.claims:
+            rows += ["", f"**{_plain(claim.statement)}**", ""]
+            rows += [f"* {name}: {_plain(text)}" for name, text in claim.details.items()]
     return "\n".join(rows) + "\n"
-
-
-def _verdicts_by_study(reproduced: list[Reproduced]) -> list[str]:
-    """Return a table of Markdown: how many claims of each study have which verdict."""
-    rows = [f"| figure or study | {OF_PAPER.lower()} | {OWN.lower()} |", "|---|---|---|"]
-    for each in reproduced:
-        heading = each.study.heading
-        verdicts = (_counted(each.parts.get(title, [])) for title in (OF_PAPER, OWN))
-        rows.append(f"| [{heading}](#{_anchor(heading)}) | {' | '.join(verdicts)} |")
-    return rows
 
 
 def _anchor(heading: str) -> str:
@@ -200,56 +173,26 @@ def _plain(text: str) -> str:
     return re.sub(r"([*_|\[\]])", r"\\\1", escape(text, quote=False))
 
 
-def details(claim: Claim) -> dict[str, str]:
-    """Return what there is to say about a claim, by what it is."""
-    said = {
-        "verdict": claim.verdict,
-        "in the paper": claim.source,
-        "its number": claim.paper,
-        "found here": claim.measured,
-        "time step": _LIMIT if claim.in_limit else "",
-        "theory": claim.theory,
-        "our choice, not given in the paper": claim.ours,
-        "at other choices": "; ".join(
-            f"{other.choice}: {other.measured}, {other.verdict}" for other in claim.variations
-        ),
-        "why": claim.reason,
-        "and yet, exactly": claim.exactly,
-    }
-    return {name: text for name, text in said.items() if text}
-
-
 def html(reproduced: list[Reproduced], quality: Quality) -> str:
-    """Return the report: one page with everything in it."""
-    template = (
-        files("crazybilliards.reproduction.claims").joinpath("report.html.jinja").read_text("utf-8")
+    """Return :func:`markdown` as one page, with the pictures in it."""
+    page = MarkdownIt("commonmark").enable("table").render(markdown(reproduced, quality))
+    page = re.sub(
+        "<h2>(.*?)</h2>",
+        lambda found: f'<h2 id="{_anchor(unescape(found[1]))}">{found[1]}</h2>',
+        page,
     )
-    environment = jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined)
-    page: dict[str, Any] = {
-        "reproduced": reproduced,
-        "quality": quality,
-        "summary": summary(reproduced),
-        "details": details,
-        "versions": _versions(),
-    }
-    return environment.from_string(template).render(page)
+    for each in reproduced:
+        embedded = base64.b64encode(each.pictures["png"]).decode()
+        named = f'src="{each.study.file_name}"'
+        page = page.replace(named, f'src="data:image/png;base64,{embedded}"')
+    return f"{_HEAD}{page}</body>\n</html>\n"
 
 
 def summary(reproduced: list[Reproduced]) -> list[str]:
-    """Count the verdicts, of statements of the paper and of our own findings, and the limits."""
-    lines = []
-    for title in (OF_PAPER, OWN):
-        claims = [claim for each in reproduced for claim in each.parts.get(title, ())]
-        if claims:
-            lines.append(f"{title}: {_counted(claims)}")
-    limits = sum(claim.in_limit for each in reproduced for claim in each.claims)
-    if limits:
-        lines.append(
-            f"Limits of a vanishing time step: the numbers of {limits} claims, marked so; every "
-            "other number of a simulation is that at the time step of its runs"
-        )
-    return lines
-
-
-def _versions() -> dict[str, str]:
-    return {"python": platform.python_version()} | {name: version(name) for name in _VERSIONS}
+    """Count the verdicts, of statements of the paper and of our own findings."""
+    claims = [claim for each in reproduced for claim in each.claims]
+    kinds = {
+        "Statements of the paper": [claim for claim in claims if claim.source],
+        "Our own findings": [claim for claim in claims if not claim.source],
+    }
+    return [f"{title}: {_counted(those)}" for title, those in kinds.items() if those]

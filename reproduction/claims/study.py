@@ -10,7 +10,6 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from crazybilliards.comparison.sweeps import Case
-from crazybilliards.reproduction.claims.tables import Tables
 from crazybilliards.reproduction.claims.verdicts import Claim
 
 Quality = Literal["quick", "full"]
@@ -30,27 +29,14 @@ def all_of(needed: Iterable[Needed], quality: Quality) -> Cases:
     return {name: case for each in needed for name, case in each.cases(quality).items()}
 
 
-def no_cases(quality: Quality) -> Cases:
-    """Nothing to compute."""
-    return {}
-
-
-def no_claims(results: Results) -> list[Claim]:
-    """Nothing claimed."""
-    return []
-
-
-def no_tables(results: Results) -> Tables:
-    """No numbers besides those of the picture and the claims."""
-    return {}
-
-
 @dataclass(frozen=True, kw_only=True)
 class Study:
     """A question put to simulations and theories, answered by a picture and by checked claims.
 
     Attributes
     ----------
+    number
+        Of the figure in the paper, arXiv:1404.7460, that it computes anew, if it is one.
     name
         A short name for the command line and for files.
     title, caption
@@ -61,62 +47,32 @@ class Study:
         ``draw(results)`` gives the picture, results being those of the cases by the same names.
     claims
         ``claims(results)`` sets what is claimed beside what was found.
-    tables
-        ``tables(results)`` gives tables of its numbers, by the names of their files.
     """
 
+    number: int | None = None
     name: str
     title: str
     caption: str
     draw: Callable[[Results], Figure]
-    cases: Callable[[Quality], Cases] = no_cases
-    claims: Callable[[Results], list[Claim]] = no_claims
-    tables: Callable[[Results], Tables] = no_tables
+    cases: Callable[[Quality], Cases] = lambda quality: {}
+    claims: Callable[[Results], list[Claim]] = lambda results: []
 
     @property
     def label(self) -> str:
         """What it is called in lists and tables."""
-        return self.name
+        return f"{self.number} {self.name}" if self.number else self.name
 
     @property
     def heading(self) -> str:
         """The heading of its part of a report."""
-        return self.title
+        return f"{self.number}. {self.title}" if self.number else self.title
+
+    @property
+    def stem(self) -> str:
+        """The name of its picture without the ending."""
+        return f"fig{self.number:02d}_{self.name}" if self.number else f"study_{self.name}"
 
     @property
     def file_name(self) -> str:
         """The name of its picture."""
         return f"{self.stem}.png"
-
-    @property
-    def stem(self) -> str:
-        """The name of its picture without the ending."""
-        return f"study_{self.name}"
-
-
-@dataclass(frozen=True, kw_only=True)
-class PaperFigure(Study):
-    """A figure of arXiv:1404.7460, computed anew; its claims are the paper's and our own findings.
-
-    Attributes
-    ----------
-    number
-        Its number in the paper.
-    """
-
-    number: int
-
-    @property
-    def label(self) -> str:
-        """Number and name."""
-        return f"{self.number} {self.name}"
-
-    @property
-    def heading(self) -> str:
-        """Number and title."""
-        return f"{self.number}. {self.title}"
-
-    @property
-    def stem(self) -> str:
-        """Number and name as the name of its picture."""
-        return f"fig{self.number:02d}_{self.name}"

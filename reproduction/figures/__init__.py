@@ -3,9 +3,9 @@
 from importlib import import_module
 from pkgutil import iter_modules
 
-from crazybilliards.reproduction.claims.study import PaperFigure
+from crazybilliards.reproduction.claims.study import Study
 
-FIGURES: tuple[PaperFigure, ...] = tuple(
+FIGURES: tuple[Study, ...] = tuple(
     import_module(f"{__name__}.{module.name}").FIGURE
     for module in iter_modules(__path__)  # in the order of their names
     if module.name.startswith("fig")

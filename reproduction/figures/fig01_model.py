@@ -10,7 +10,7 @@ from matplotlib.patches import Circle
 from crazybilliards.comparison.drawing import COLOURS
 from crazybilliards.comparison.layout import panels
 from crazybilliards.model import Chain
-from crazybilliards.reproduction.claims.study import PaperFigure, Results
+from crazybilliards.reproduction.claims.study import Results, Study
 
 _DISPLACEMENTS = (-1.3, -0.4, 0.5, 0.3)
 _CEILING = 2.7  # height of the anchors
@@ -62,7 +62,7 @@ def _measure(ax: Axes, start: float, end: float, height: float, text: str) -> No
     ax.text((start + end) / 2, height - 0.75, text, ha="center")
 
 
-FIGURE = PaperFigure(
+FIGURE = Study(
     number=1,
     name="model",
     title="The model",

@@ -8,8 +8,8 @@ from matplotlib.figure import Figure
 from crazybilliards.comparison.widths import border_width, central_width
 from crazybilliards.model.chain import middle_tenth
 from crazybilliards.reproduction.chains import LARGE, dissipative
-from crazybilliards.reproduction.claims.study import PaperFigure, Results
-from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, eye_claim, positive_claim
+from crazybilliards.reproduction.claims.study import Results, Study
+from crazybilliards.reproduction.claims.verdicts import POSITIVE, Claim, Estimate, in_plot
 from crazybilliards.reproduction.distributions import (
     figure_of_distributions,
     fit_gaussian,
@@ -40,12 +40,14 @@ def claims(results: Results) -> list[Claim]:
     kurtosis = _RUNS.estimate(results, lambda run: mean_shape(run, _BULK, "velocity_kurtosis"))
     border = _RUNS.estimate(results, border_width)
     return [
-        eye_claim(
+        Claim(
             "in the bulk the distributions can be fitted by Gaussians",
-            "p(v) of the middle hundred rods and the Gaussian of best height, centre and width, "
-            f"both axes linear, v to {_SHOWN:g} widths",
-            Estimate(_off(_RUNS.pooled(results)), _RUNS.estimate(results, _off).error),
-            abs(kurtosis.value) / kurtosis.error,
+            **in_plot(
+                "p(v) of the middle hundred rods and the Gaussian of best height, centre and "
+                f"width, both axes linear, v to {_SHOWN:g} widths",
+                Estimate(_off(_RUNS.pooled(results)), _RUNS.estimate(results, _off).error),
+                abs(kurtosis.value) / kurtosis.error,
+            ),
             source=_SOURCE,
             ours="the time step, and whether the axes are linear",
             reason="the distribution is more peaked than a Gaussian, with longer tails",
@@ -53,16 +55,18 @@ def claims(results: Results) -> list[Claim]:
             "has room is up to twice as fast as one in a crowd, and among rods with equal room the "
             "excess is about a third of that",
         ),
-        positive_claim(
+        Claim(
             "close to the border the distributions are slightly skewed",
             f"skewness of the outer three rods {skewness}, outward positive; its magnitude",
-            Estimate(abs(skewness.value), skewness.error),
+            found=Estimate(abs(skewness.value), skewness.error),
+            within=POSITIVE,
             source=_SOURCE,
         ),
-        positive_claim(
+        Claim(
             "narrower inside than at the border",
             "W_v(border) - W_v(centre) =",
-            border.minus(_RUNS.estimate(results, central_width)),
+            found=border.minus(_RUNS.estimate(results, central_width)),
+            within=POSITIVE,
             source=_SOURCE,
         ),
     ]
@@ -80,7 +84,7 @@ def draw(results: Results) -> Figure:
     return figure_of_distributions(_RUNS.members(results), _PARTICLES)
 
 
-FIGURE = PaperFigure(
+FIGURE = Study(
     number=2,
     name="velocities-inelastic",
     title="Velocity distributions at e = 0",

@@ -15,24 +15,16 @@ from crazybilliards.comparison.layout import mosaic
 from crazybilliards.model import chain_of
 from crazybilliards.reproduction import predictions
 from crazybilliards.reproduction.chains import LARGE, STEPS, at_step, at_steps, chain_step
-from crazybilliards.reproduction.claims.study import Cases, PaperFigure, Quality, Results, all_of
+from crazybilliards.reproduction.claims.study import Cases, Quality, Results, Study, all_of
 from crazybilliards.reproduction.claims.verdicts import (
+    POSITIVE,
     Claim,
     Estimate,
-    Variation,
-    eye_claim,
-    number_claim,
-    positive_claim,
-    same_claim,
+    around,
+    in_plot,
+    worst,
 )
-from crazybilliards.reproduction.power_laws import (
-    fits_in_plot,
-    gained_without_c,
-    lost_with_weights,
-    nu,
-    origin,
-    weighted_nu,
-)
+from crazybilliards.reproduction.power_laws import fits_in_plot, nu, weighted_nu
 from crazybilliards.reproduction.vanishing_step import LABEL, common_bias, limit_estimate, limits
 
 _SIZES = predictions.SIZES
@@ -56,138 +48,65 @@ def exponent(results: Results, size: int, step: float | None = None) -> Estimate
 
 
 def claims(results: Results) -> list[Claim]:
-    """Check: two power laws fit, nu is -0.46, the same for all L; and what changes nu."""
+    """Check: two power laws fit, nu is -0.46, the same for all L."""
     runs = {size: each.pooled(results) for size, each in _RUNS.items()}
     found = {size: exponent(results, size) for size in _SIZES}
+    listed = ", ".join(f"{size}: {each}" for size, each in found.items())
     free = chain_of(runs[_SIZES[0]]).free_velocity_width
     widest = max(runs.values(), key=lambda run: float(run.velocity_width.max()))
     at = int(widest.velocity_width.values.argmax())
     border = Estimate(*(float(widest[n][at]) / free for n in ("velocity_width", _ERROR)))
     return [
-        positive_claim(
+        Claim(
             "collisions make every velocity distribution narrower than a free rod's",
             "1 - W_v/W of the fastest rod of all four chains:",
-            Estimate(1 - border.value, border.error),
+            found=Estimate(1 - border.value, border.error),
+            within=POSITIVE,
             source="section seq:e_0, fig.2",
             ours="the sizes below 1000 and the time step",
         ),
         _fit_claim(runs),
         *(
-            number_claim(
+            Claim(
                 f"nu = -0.46 at L = {size}",
-                _PAPER,
-                _PRECISION,
-                each,
+                found=each,
+                within=around(_PAPER, _PRECISION),
                 source=_SOURCE,
                 ours="the time step, the weights" + (" and the size" if size < LARGE else ""),
-                variations=_variations(results, size),
+                elsewhere=_elsewhere(results, size),
             )
             for size, each in found.items()
         ),
-        same_claim(
+        Claim(
             "the same exponent for all L",
-            f"{_listed(found)}; difference of two",
-            _differences(found),
-            _SAME,
+            **worst(
+                f"{listed}; difference of two",
+                [one.minus(other) for one, other in itertools.combinations(found.values(), 2)],
+                _SAME,
+            ),
             source=_SOURCE,
             ours="the sizes below 1000 and the time step",
         ),
-        *_own_claims(results),
-        *_limit_claims(results, found),
     ]
 
 
-def _listed(found: dict[int, Estimate]) -> str:
-    return ", ".join(f"{size}: {each}" for size, each in found.items())
-
-
-def _differences(found: dict[int, Estimate]) -> list[Estimate]:
-    return [one.minus(other) for one, other in itertools.combinations(found.values(), 2)]
-
-
-def _variations(results: Results, size: int) -> list[Variation]:
+def _elsewhere(results: Results, size: int) -> dict[str, Estimate]:
     """Return nu at other time steps, and with weights."""
-    stepped = [Variation(f"dt = {step:g}", exponent(results, size, step)) for step in STEPS]
+    stepped = {f"dt = {step:g}": exponent(results, size, step) for step in STEPS}
     weighted = _RUNS[size].estimate(results, weighted_nu)
-    return [*stepped, Variation("rods weighed by their error bars", weighted)]
+    return stepped | {"rods weighed by their error bars": weighted}
 
 
 def _fit_claim(runs: dict[int, xr.Dataset]) -> Claim:
-    worst, significance = fits_in_plot(runs.values())
-    return eye_claim(
+    off, significance = fits_in_plot(runs.values())
+    return Claim(
         "W_v(i) can be fitted by a sum of two power laws",
-        "four chains and their fits, both axes logarithmic",
-        worst,
-        significance,
+        **in_plot("four chains and their fits, both axes logarithmic", off, significance),
         source=_SOURCE,
         ours="the sizes below 1000 and the time step",
         exactly="the profile is no sum of two power laws: the residuals are systematic, so that nu "
-        "depends on how the rods are weighed, and c on the size (see below)",
+        "depends on how the rods are weighed, and c on the size",
     )
-
-
-def _own_claims(results: Results) -> list[Claim]:
-    """Check what the exponent depends on."""
-    largest = STEPS[0]
-    coarse, fine = (exponent(results, LARGE, step) for step in (largest, STEPS[-1]))
-    middle = 300
-    origins = {size: each.estimate(results, origin) for size, each in _RUNS.items()}
-    return [
-        positive_claim(
-            f"without c the exponent is flatter, L = {middle}",
-            "nu without c less nu with it:",
-            _RUNS[middle].estimate(results, gained_without_c),
-        ),
-        positive_claim(
-            f"weighing the rods by their error bars makes it steeper, L = {middle}",
-            "nu from ordinary least squares less nu from weighted ones:",
-            _RUNS[middle].estimate(results, lost_with_weights),
-        ),
-        positive_claim(
-            "the longer the chain, the further out the power laws begin",
-            f"c by L: {_listed(origins)}; c at 100 less c at {LARGE}:",
-            origins[100].minus(origins[LARGE]),
-        ),
-        positive_claim(
-            f"a long time step makes the exponent of L = {LARGE} flatter",
-            f"nu = {coarse} at dt = {largest:g} and {fine} at dt = {STEPS[-1]:g}, difference",
-            coarse.minus(fine),
-        ),
-    ]
-
-
-def _limit_claims(results: Results, found: dict[int, Estimate]) -> list[Claim]:
-    """Check the same exponents in the limit dt -> 0, and what the default step does to them."""
-    limit = {size: limit_estimate(results, size, nu) for size in _SIZES}
-    shifts = {size: found[size].minus(limit[size]) for size in _SIZES}
-    return [
-        *(
-            number_claim(
-                f"nu = -0.46 in the limit dt -> 0, L = {size}",
-                _PAPER,
-                _PRECISION,
-                each,
-                in_limit=True,
-                reason="the sum of two power laws is no exact law, and its exponent depends on L",
-                theory=predictions.exponent_of_size(results, size),
-            )
-            for size, each in limit.items()
-        ),
-        same_claim(
-            "the same exponent for all L in the limit dt -> 0",
-            f"{_listed(limit)}; difference of two",
-            _differences(limit),
-            _SAME,
-            in_limit=True,
-            reason="the sum of two power laws is no exact law, and its exponent depends on L",
-        ),
-        same_claim(
-            "the default time step leaves the exponents as they are in the limit dt -> 0",
-            f"nu at the default step less that of the limit, by L: {_listed(shifts)}; difference",
-            shifts.values(),
-            _PRECISION,
-        ),
-    ]
 
 
 def draw(results: Results) -> Figure:
@@ -270,7 +189,7 @@ def _draw_steps(ax: Axes, results: Results) -> None:
     ax.set_xlim(0.5 * first, 4e-2)
 
 
-FIGURE = PaperFigure(
+FIGURE = Study(
     number=3,
     name="widths-inelastic",
     title="Velocity widths at e = 0: power laws from both borders",

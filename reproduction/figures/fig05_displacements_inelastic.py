@@ -13,8 +13,8 @@ from crazybilliards.comparison.layout import panels
 from crazybilliards.model import chain_of
 from crazybilliards.model.chain import middle_tenth
 from crazybilliards.reproduction.chains import LARGE, dissipative
-from crazybilliards.reproduction.claims.study import Cases, PaperFigure, Quality, Results, all_of
-from crazybilliards.reproduction.claims.verdicts import Claim, positive_claim
+from crazybilliards.reproduction.claims.study import Cases, Quality, Results, Study, all_of
+from crazybilliards.reproduction.claims.verdicts import POSITIVE, Claim
 
 _RUNS = {size: dissipative(size, 0.0) for size in (30, 100, 300, LARGE)}
 
@@ -45,18 +45,20 @@ def claims(results: Results) -> list[Claim]:
         claim
         for small, large in itertools.pairwise(_RUNS)
         for claim in (
-            positive_claim(
+            Claim(
                 f"the mean displacement decreases from L = {small} to L = {large}",
                 f"slope of <dx> against i_n: {found[small]} less {found[large]}, difference",
-                found[small].minus(found[large]),
+                found=found[small].minus(found[large]),
+                within=POSITIVE,
                 source=source,
                 ours=ours,
             ),
-            positive_claim(
+            Claim(
                 f"the interior is confined more strongly at L = {large} than at L = {small}",
                 f"W_x in the centre, middle tenth: {spread[small]} less {spread[large]}, "
                 "difference",
-                spread[small].minus(spread[large]),
+                found=spread[small].minus(spread[large]),
+                within=POSITIVE,
                 source=f"{source}, inset",
                 ours=ours,
             ),
@@ -80,7 +82,7 @@ def draw(results: Results) -> Figure:
     return figure
 
 
-FIGURE = PaperFigure(
+FIGURE = Study(
     number=5,
     name="displacements-inelastic",
     title="Mean displacements at e = 0",

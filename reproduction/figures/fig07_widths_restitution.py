@@ -15,26 +15,19 @@ from crazybilliards.comparison.layout import legend_above, mosaic
 from crazybilliards.comparison.widths import central_width
 from crazybilliards.model import chain_of
 from crazybilliards.reproduction.chains import LARGE, RESTITUTIONS, dissipative, elastic
-from crazybilliards.reproduction.claims.study import Cases, PaperFigure, Quality, Results, all_of
-from crazybilliards.reproduction.claims.verdicts import (
-    Claim,
-    Estimate,
-    eye_claim,
-    positive_claim,
-    same_claim,
-)
+from crazybilliards.reproduction.claims.study import Cases, Quality, Results, Study, all_of
+from crazybilliards.reproduction.claims.verdicts import POSITIVE, Claim, Estimate, in_plot, worst
 from crazybilliards.reproduction.figures.fig12_widths_damping import bulge
 from crazybilliards.reproduction.power_laws import fits_in_plot
 from crazybilliards.reproduction.predictions import (
     CROSSES,
     LINES,
     by_restitution,
-    centre_claims,
     listed,
     minus_nu,
     predicted,
 )
-from crazybilliards.reproduction.vanishing_step import LABEL, central_limit, limits, relative_shift
+from crazybilliards.reproduction.vanishing_step import LABEL, central_limit, limits
 
 IN_LIMIT = {"quick": (0.0, 0.95), "full": RESTITUTIONS}
 _RUNS = {e: dissipative(LARGE, e) for e in RESTITUTIONS}
@@ -78,78 +71,50 @@ def claims(results: Results) -> list[Claim]:
     low, high = RESTITUTIONS[0], RESTITUTIONS[-1]
     uneven = {e: _RUNS[e].estimate(results, bulge) for e in (low, high)}
     return [
-        positive_claim(
+        Claim(
             "the larger e, the less the width varies along the chain",
             f"ln of the border's width over the centre's: {uneven[low]} at e = {low:g} and "
             f"{uneven[high]} at e = {high:g}, difference",
-            uneven[low].minus(uneven[high]),
+            found=uneven[low].minus(uneven[high]),
+            within=POSITIVE,
             source=_SOURCE,
             ours=_OURS,
         ),
-        eye_claim(
+        Claim(
             "W_v(i) is described by a sum of two power laws at every e < 1",
-            "six restitutions and their fits, both axes logarithmic",
-            *fits_in_plot(runs.pooled(results) for runs in _RUNS.values()),
+            **in_plot(
+                "six restitutions and their fits, both axes logarithmic",
+                *fits_in_plot(runs.pooled(results) for runs in _RUNS.values()),
+            ),
             source=f"{_SOURCE}, eq:power_law",
             ours=_OURS,
             reason="the two power laws leave systematic residuals",
             exactly="the profile is no sum of two power laws: the residuals are systematic",
         ),
-        *_exponential_claims(results),
-        *centre_claims(results),
-        *_limit_claims(results),
+        _exponential_claim(results),
     ]
 
 
-def _exponential_claims(results: Results) -> list[Claim]:
+def _exponential_claim(results: Results) -> Claim:
     found = _exponents(results)
     fit = _fit(found)
     amplitude = Estimate(fit.amplitude, fit.amplitude_error)
     residuals = [Estimate(each.value - float(fit(e)), each.error) for e, each in found.items()]
     exponents = ", ".join(f"{e:g}: {each}" for e, each in found.items())
-    return [
-        same_claim(
-            "-nu depends on e like exp(-lambda (1 - e)) + d, lambda unknown",
+    return Claim(
+        "-nu depends on e like exp(-lambda (1 - e)) + d, lambda unknown",
+        **worst(
             f"with an amplitude a before it lambda = {Estimate(fit.rate, fit.rate_error)}, "
             f"a = {amplitude}, d = {Estimate(fit.offset, fit.offset_error)}; "
             f"-nu by e: {exponents}; -nu less the curve",
             residuals,
             _PRECISION,
-            source=f"{_SOURCE}, inset",
-            ours=_OURS,
-            theory=listed(predicted(results), minus_nu, *RESTITUTIONS),
-            reason="the errors of the exponents are about as large as the limit",
         ),
-        positive_claim(
-            "the exponential has an amplitude below 1; read as an equality, without one, it does "
-            "not fit",
-            f"a = {amplitude}; 1 - a:",
-            Estimate(1 - amplitude.value, amplitude.error),
-        ),
-    ]
-
-
-def _limit_claims(results: Results) -> list[Claim]:
-    """Check the central widths in the limit dt -> 0: their order, and those at the default step."""
-    limit, default = _central_limits(results), _central_widths(results)
-    low, high = min(limit), max(limit)
-    by_e = ", ".join(f"{e:g}: {each}" for e, each in limit.items())
-    shifts = {e: relative_shift(default[e], each) for e, each in limit.items()}
-    listed = ", ".join(f"{e:g}: {each}" for e, each in shifts.items())
-    return [
-        positive_claim(
-            "in the limit dt -> 0, too, the larger e the faster the centre",
-            f"W_v in the centre by e: {by_e}; at {high:g} less at {low:g}:",
-            limit[high].minus(limit[low]),
-            in_limit=True,
-        ),
-        same_claim(
-            "the default time step gives W_v in the centre as in the limit dt -> 0",
-            f"W_v at the default step over that of the limit, less 1, by e: {listed}; difference",
-            shifts.values(),
-            0.01,
-        ),
-    ]
+        source=f"{_SOURCE}, inset",
+        ours=_OURS,
+        theory=listed(predicted(results), minus_nu, *RESTITUTIONS),
+        reason="the errors of the exponents are about as large as the limit",
+    )
 
 
 def draw(results: Results) -> Figure:
@@ -221,7 +186,7 @@ def _draw_exponents(ax: Axes, results: Results) -> None:
     ax.legend()
 
 
-FIGURE = PaperFigure(
+FIGURE = Study(
     number=7,
     name="widths-restitution",
     title="Velocity widths for several restitutions",

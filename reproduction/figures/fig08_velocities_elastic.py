@@ -2,26 +2,17 @@
 
 from __future__ import annotations
 
-import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from crazybilliards.comparison.drawing import along_the_chain, draw_rods
 from crazybilliards.comparison.layout import entitle, panels
-from crazybilliards.comparison.widths import central_width
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.reproduction.chains import LARGE, elastic
 from crazybilliards.reproduction.claims.repetition import Granted, Runs
-from crazybilliards.reproduction.claims.study import Cases, PaperFigure, Quality, Results, all_of
-from crazybilliards.reproduction.claims.verdicts import (
-    EYE,
-    Claim,
-    Estimate,
-    eye_claim,
-    same_claim,
-    small_claim,
-)
+from crazybilliards.reproduction.claims.study import Cases, Quality, Results, Study, all_of
+from crazybilliards.reproduction.claims.verdicts import EYE, Claim, Estimate, in_plot, worst
 from crazybilliards.reproduction.distributions import (
     draw_distributions,
     gaussian,
@@ -60,55 +51,32 @@ def cases(quality: Quality) -> Cases:
 
 
 def claims(results: Results) -> list[Claim]:
-    """Check: identical to the free Gaussian; Contact Dynamics at L = 1000 is not."""
+    """Check: identical to the free Gaussian."""
     run = _RUNS.pooled(results)
     unit = chain_of(run).free_velocity_width
     shares = (run.velocity_width / unit - 1, run.velocity_width_error / unit)
     kurtosis = _RUNS.estimate(
         results, lambda run: mean_shape(run, range(1, _SIZE + 1), "velocity_kurtosis")
     )
-    wrong = _CONTACT[_STEPS[-1]].estimate(results, central_width)
     return [
-        same_claim(
+        Claim(
             "W_v of every rod is that of a free rod",
-            "W_v/W - 1 of a rod",
-            map(Estimate, *(each.values for each in shares)),
-            EYE,
+            **worst("W_v/W - 1 of a rod", map(Estimate, *(each.values for each in shares)), EYE),
             source=_SOURCE,
             theory="exact: 1 for every rod, any gap, any spring",
         ),
-        eye_claim(
+        Claim(
             "the distributions of rods 1 and 50 are a free rod's Gaussian",
-            f"p(v) and the free rod's, both axes linear, v to {_SHOWN:g} W",
-            Estimate(_off(run), _RUNS.estimate(results, _off).error),
-            abs(kurtosis.value) / kurtosis.error,
+            **in_plot(
+                f"p(v) and the free rod's, both axes linear, v to {_SHOWN:g} W",
+                Estimate(_off(run), _RUNS.estimate(results, _off).error),
+                abs(kurtosis.value) / kurtosis.error,
+            ),
             source=_SOURCE,
             theory="exact",
             exactly=f"Gaussian: the excess kurtosis, mean of all rods, is {kurtosis}",
         ),
-        same_claim(
-            f"W_v all along the chain is that of a free rod at L = {LARGE}, too",
-            "W_v/W - 1 of a tenth of the chain",
-            _EXACT.estimates(results, _tenths),
-            EYE,
-            theory="exact: 1",
-        ),
-        small_claim(
-            f"Contact Dynamics is right at e = 1, L = {LARGE}, dt = {_STEPS[-1]:g}",
-            "1 - W_v/W in the centre",
-            Estimate(1 - wrong.value / unit, wrong.error / unit),
-            0.02,
-            theory="exact: 0",
-            reason="a step sees many collisions of each rod there, and Contact Dynamics "
-            "dissipates in rows of contacts",
-        ),
     ]
-
-
-def _tenths(run: xr.Dataset) -> list[float]:
-    """Return W_v/W - 1 of ten parts of the chain: root mean squares over their rods."""
-    squares = (run.velocity_width.values / chain_of(run).free_velocity_width) ** 2
-    return [float(part.mean() ** 0.5 - 1) for part in np.array_split(squares, 10)]
 
 
 def _off(run: xr.Dataset) -> float:
@@ -143,7 +111,7 @@ def _draw_long_chains(ax: Axes, results: Results) -> None:
     ax.legend(loc="upper center", ncols=2)
 
 
-FIGURE = PaperFigure(
+FIGURE = Study(
     number=8,
     name="velocities-elastic",
     title="Velocity distributions at e = 1",

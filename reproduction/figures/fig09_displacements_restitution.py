@@ -14,8 +14,8 @@ from crazybilliards.comparison.layout import legend_above, panels
 from crazybilliards.model import chain_of
 from crazybilliards.model.chain import middle_tenth
 from crazybilliards.reproduction.chains import LARGE, dissipative
-from crazybilliards.reproduction.claims.study import Cases, PaperFigure, Quality, Results, all_of
-from crazybilliards.reproduction.claims.verdicts import About, Claim, Estimate, positive_claim
+from crazybilliards.reproduction.claims.study import Cases, Quality, Results, Study, all_of
+from crazybilliards.reproduction.claims.verdicts import POSITIVE, Claim, Estimate
 from crazybilliards.reproduction.figures.fig05_displacements_inelastic import swelling
 from crazybilliards.reproduction.predictions import LINES, by_restitution, listed, predicted
 
@@ -33,10 +33,11 @@ def claims(results: Results) -> list[Claim]:
     """Check: displacements grow with e, and the border has the larger energy at large e."""
     found = {e: runs.estimate(results, swelling) for e, runs in _RUNS.items()}
     growing = [
-        positive_claim(
+        Claim(
             f"the mean displacement grows from e = {low:g} to {high:g}",
             f"slope of <dx> against i_n: {found[low]} and {found[high]}, difference",
-            found[high].minus(found[low]),
+            found=found[high].minus(found[low]),
+            within=POSITIVE,
             source="section seq:e_larger, fig.5",
             theory=listed(predicted(results), swelling, low, high),
         )
@@ -52,17 +53,23 @@ def _energy_claims(results: Results) -> list[Claim]:
         for name in ("potential", "kinetic")
     )
     what = f"border's less centre's, in units of m W^2/2: potential {potential}, kinetic {kinetic}"
-    about: About = {"source": "section seq:e_larger", "ours": "the restitution"}
     both = Estimate(potential.value + kinetic.value, potential.error + kinetic.error)
     return [
-        positive_claim(
-            f"the energy is larger at the border, e = {e:g}", f"{what}; their sum", both, **about
+        Claim(
+            f"the energy is larger at the border, e = {e:g}",
+            f"{what}; their sum",
+            found=both,
+            within=POSITIVE,
+            source="section seq:e_larger",
+            ours="the restitution",
         ),
-        positive_claim(
+        Claim(
             f"because the potential energy is, e = {e:g}",
             f"{what}; potential less kinetic",
-            Estimate(potential.value - kinetic.value, both.error),
-            **about,
+            found=Estimate(potential.value - kinetic.value, both.error),
+            within=POSITIVE,
+            source="section seq:e_larger",
+            ours="the restitution",
         ),
     ]
 
@@ -103,7 +110,7 @@ def draw(results: Results) -> Figure:
     return figure
 
 
-FIGURE = PaperFigure(
+FIGURE = Study(
     number=9,
     name="displacements-restitution",
     title="Mean displacements for several restitutions",

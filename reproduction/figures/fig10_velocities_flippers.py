@@ -11,8 +11,8 @@ from crazybilliards.comparison.layout import legend_above, panels
 from crazybilliards.comparison.widths import border_width, central_width
 from crazybilliards.model import chain_of
 from crazybilliards.reproduction.chains import flippers
-from crazybilliards.reproduction.claims.study import PaperFigure, Results
-from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, positive_claim
+from crazybilliards.reproduction.claims.study import Results, Study
+from crazybilliards.reproduction.claims.verdicts import POSITIVE, Claim, Estimate
 from crazybilliards.reproduction.distributions import draw_distributions, mean_shape
 
 SIZE = 100
@@ -29,23 +29,26 @@ def claims(results: Results) -> list[Claim]:
     narrowest = _RUNS.estimate(results, _narrowest)
     source = "section Anti-Dissipation, fig:mom_hist_antidiss_gamma4"
     return [
-        positive_claim(
+        Claim(
             "every rod is faster than a free one",
             "W_v/W of the slowest rod less 1:",
-            narrowest.minus(Estimate(1.0, 0.0)),
+            found=narrowest.minus(Estimate(1.0, 0.0)),
+            within=POSITIVE,
             source=source,
         ),
-        positive_claim(
+        Claim(
             "large velocities are likelier at the border than in the centre",
             "W_v(border) - W_v(centre) =",
-            border.minus(_RUNS.estimate(results, central_width)),
+            found=border.minus(_RUNS.estimate(results, central_width)),
+            within=POSITIVE,
             source=source,
         ),
-        positive_claim(
+        Claim(
             "the tail at the border falls off exponentially",
             f"excess kurtosis {kurtosis}; length of the tail beyond 5 W_v over that beyond 3 W_v "
             f"{ratio} (exponential: 1, Gaussian: 0.65), less half-way between the two",
-            ratio.minus(Estimate(0.825, 0.0)),
+            found=ratio.minus(Estimate(0.825, 0.0)),
+            within=POSITIVE,
             source=f"{source}, inset",
             reason="the tail falls off faster than an exponential",
         ),
@@ -88,7 +91,7 @@ def draw(results: Results) -> Figure:
     return figure
 
 
-FIGURE = PaperFigure(
+FIGURE = Study(
     number=10,
     name="velocities-flippers",
     title="Velocity distributions at e = 1.05, gamma = 4",

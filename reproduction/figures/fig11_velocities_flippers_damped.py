@@ -6,8 +6,8 @@ from matplotlib.figure import Figure
 
 from crazybilliards.comparison.widths import border_width, central_width
 from crazybilliards.reproduction.chains import flippers
-from crazybilliards.reproduction.claims.study import PaperFigure, Results
-from crazybilliards.reproduction.claims.verdicts import Claim, positive_claim
+from crazybilliards.reproduction.claims.study import Results, Study
+from crazybilliards.reproduction.claims.verdicts import POSITIVE, Claim
 from crazybilliards.reproduction.distributions import figure_of_distributions
 from crazybilliards.reproduction.figures.fig10_velocities_flippers import PARTICLES, SIZE
 
@@ -18,10 +18,11 @@ def claims(results: Results) -> list[Claim]:
     """Check: the centre is the widest."""
     centre = _RUNS.estimate(results, central_width)
     return [
-        positive_claim(
+        Claim(
             "large velocities are likelier in the centre than at the border",
             "W_v(centre) - W_v(border) =",
-            centre.minus(_RUNS.estimate(results, border_width)),
+            found=centre.minus(_RUNS.estimate(results, border_width)),
+            within=POSITIVE,
             source="section Anti-Dissipation, fig:mom_hist_antidiss_gamma10",
         )
     ]
@@ -32,7 +33,7 @@ def draw(results: Results) -> Figure:
     return figure_of_distributions(_RUNS.members(results), PARTICLES)
 
 
-FIGURE = PaperFigure(
+FIGURE = Study(
     number=11,
     name="velocities-flippers-damped",
     title="Velocity distributions at e = 1.05, gamma = 10",

@@ -14,14 +14,8 @@ from crazybilliards.comparison.fits import PowerLawFit, fit_border_power_law
 from crazybilliards.comparison.widths import border_width, central_width
 from crazybilliards.model.chain import middle_tenth
 from crazybilliards.reproduction.chains import flippers, kinetic_equation
-from crazybilliards.reproduction.claims.study import Cases, PaperFigure, Quality, Results, all_of
-from crazybilliards.reproduction.claims.verdicts import (
-    EYE,
-    Claim,
-    Estimate,
-    Variation,
-    positive_claim,
-)
+from crazybilliards.reproduction.claims.study import Cases, Quality, Results, Study, all_of
+from crazybilliards.reproduction.claims.verdicts import EYE, POSITIVE, Claim, Estimate
 from crazybilliards.reproduction.predictions import draw_flippers
 
 _SIZE = 100
@@ -52,17 +46,19 @@ def claims(results: Results) -> list[Claim]:
     change = _crossing(values), _crossing(np.array(list(theory.values())))
     opposite = Estimate(-found[high].value, found[high].error)
     return [
-        positive_claim(
+        Claim(
             f"convex at gamma = {low:g}",
             "ln of the border's width over the centre's:",
-            found[low],
+            found=found[low],
+            within=POSITIVE,
             source=_SOURCE,
             theory=f"{theory[low]:+.3f}",
         ),
-        positive_claim(
+        Claim(
             f"concave at gamma = {high:g}",
             f"it changes at gamma = {change[0]:.1f}; ln of the centre's width over the border's:",
-            opposite,
+            found=opposite,
+            within=POSITIVE,
             source=_SOURCE,
             theory=f"{-theory[high]:+.3f}; changes at gamma = {change[1]:.1f}",
         ),
@@ -72,10 +68,11 @@ def claims(results: Results) -> list[Claim]:
 
 
 def _frequency_claim(results: Results, damping: float) -> Claim:
-    return positive_claim(
+    return Claim(
         f"rods collide more often in the bulk than at the border, gamma = {damping:g}",
         "ln of the collision rate of the middle tenth of the contacts over that of the outermost:",
-        _RUNS[damping].estimate(results, _crowding),
+        found=_RUNS[damping].estimate(results, _crowding),
+        within=POSITIVE,
         source=_SOURCE,
     )
 
@@ -99,14 +96,15 @@ def _power_law_claim(results: Results) -> Claim:
         linear, logarithmic = (
             _beyond_the_eye(results, run, fit, axes) for axes in (_unchanged, np.log)
         )
-    return positive_claim(
+    return Claim(
         f"the convex profile at gamma = {_DAMPINGS[0]:g} cannot be described by a power law",
         f"gamma W_v against i for the five dampings, both axes linear: {words}; by how much the "
         f"largest deviation, as a share of the plotted range, exceeds what an eye sees, {EYE:g}:",
-        linear,
+        found=linear,
+        within=POSITIVE,
         source=_SOURCE,
         ours="whether the axes are linear",
-        variations=[Variation("both axes logarithmic", logarithmic)],
+        elsewhere={"both axes logarithmic": logarithmic},
         reason="a sum of two flat power laws fits",
     )
 
@@ -153,7 +151,7 @@ def draw(results: Results) -> Figure:
     return draw_flippers(results, shown, label)
 
 
-FIGURE = PaperFigure(
+FIGURE = Study(
     number=12,
     name="widths-damping",
     title="Velocity widths of flippers for several dampings",

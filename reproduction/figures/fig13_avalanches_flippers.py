@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from crazybilliards.comparison.layout import at_the_left, entitle, panels
 from crazybilliards.reproduction.chains import flippers
-from crazybilliards.reproduction.claims.study import Cases, PaperFigure, Quality, Results, all_of
-from crazybilliards.reproduction.claims.verdicts import Claim, positive_claim
+from crazybilliards.reproduction.claims.study import Cases, Quality, Results, Study, all_of
+from crazybilliards.reproduction.claims.verdicts import POSITIVE, Claim
 from crazybilliards.reproduction.distributions import draw_sizes
 
 _SIZE = 100
@@ -58,10 +58,11 @@ def claims(results: Results) -> list[Claim]:
         if count == "avalanche_count":
             ours += "; that the first hit must point right is ours"
         claims.append(
-            positive_claim(
+            Claim(
                 f"avalanches span the system more often at gamma = 4 than at 10 ({name})",
                 f"{what} {weak} and {strong}, difference",
-                weak.minus(strong),
+                found=weak.minus(strong),
+                within=POSITIVE,
                 source=_SOURCE,
                 ours=ours,
             )
@@ -85,7 +86,7 @@ def draw(results: Results) -> Figure:
     return figure
 
 
-FIGURE = PaperFigure(
+FIGURE = Study(
     number=13,
     name="avalanches-flippers",
     title="Avalanche sizes at e = 1.05",

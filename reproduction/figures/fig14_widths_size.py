@@ -9,8 +9,8 @@ from crazybilliards.kinetic.kinetic_equation.weak_damping import weak_damping_cr
 from crazybilliards.model import Chain
 from crazybilliards.reproduction.chains import flippers, kinetic_equation
 from crazybilliards.reproduction.claims.repetition import Runs, share_of_runs
-from crazybilliards.reproduction.claims.study import Cases, PaperFigure, Quality, Results, all_of
-from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, positive_claim
+from crazybilliards.reproduction.claims.study import Cases, Quality, Results, Study, all_of
+from crazybilliards.reproduction.claims.verdicts import POSITIVE, Claim, Estimate
 from crazybilliards.reproduction.figures.fig12_widths_damping import bulge
 from crazybilliards.reproduction.predictions import draw_flippers
 
@@ -42,33 +42,37 @@ def claims(results: Results) -> list[Claim]:
     diverged = sum(run.attrs["status"] == "diverged" for run in unsteady)
     short, long = _SIZES[0], _SIZES[-1]
     return [
-        positive_claim(
+        Claim(
             f"concave at L = {short}",
             "ln of the centre's width over the border's:",
-            Estimate(-found[short].value, found[short].error),
+            found=Estimate(-found[short].value, found[short].error),
+            within=POSITIVE,
             source=_SOURCE,
             theory=f"{-theory[short]:+.3f}",
         ),
-        positive_claim(
+        Claim(
             f"convex at L = {long}",
             "ln of the border's width over the centre's:",
-            found[long],
+            found=found[long],
+            within=POSITIVE,
             source=_SOURCE,
             theory=f"{theory[long]:+.3f}",
         ),
-        positive_claim(
+        Claim(
             "the longer the chain, the larger W_v",
             f"W_v in the centre at L = {long} less that at L = {short}:",
-            _RUNS[long]
+            found=_RUNS[long]
             .estimate(results, central_width)
             .minus(_RUNS[short].estimate(results, central_width)),
+            within=POSITIVE,
             source=_SOURCE,
         ),
-        positive_claim(
+        Claim(
             f"without a steady state at L = {_UNSTEADY.chain.size}",
             f"{diverged} of {len(unsteady)} runs, released from rest, diverged; their share, as "
             "far as so few runs show it:",
-            share_of_runs(diverged, len(unsteady)),
+            found=share_of_runs(diverged, len(unsteady)),
+            within=POSITIVE,
             source=_SOURCE,
             ours="the size that is too large",
             theory=f"no steady state beyond L = {critical:.0f} (weak damping)",
@@ -85,7 +89,7 @@ def draw(results: Results) -> Figure:
     return draw_flippers(results, shown, "velocity width $W_v/W$")
 
 
-FIGURE = PaperFigure(
+FIGURE = Study(
     number=14,
     name="widths-size",
     title="Velocity widths of flippers for several sizes",

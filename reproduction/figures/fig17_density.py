@@ -7,7 +7,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from crazybilliards.comparison.coverage import smooth
-from crazybilliards.comparison.distances import Deviation, density_differences, distances_in_plot
+from crazybilliards.comparison.distances import Deviation, distances_in_plot
 from crazybilliards.comparison.side_by_side.elastic_chain import (
     LEGEND,
     deviations,
@@ -17,8 +17,8 @@ from crazybilliards.comparison.side_by_side.elastic_figures import draw_density
 from crazybilliards.comparison.side_by_side.parameter_series import SIMULATION
 from crazybilliards.comparison.sweeps import Case
 from crazybilliards.model import Chain, chain_of
-from crazybilliards.reproduction.claims.study import Cases, PaperFigure, Quality, Results
-from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, eye_claim, same_claim
+from crazybilliards.reproduction.claims.study import Cases, Quality, Results, Study
+from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, in_plot
 
 _AMPLITUDES = (1.0, 3.0, 10.0, 30.0)
 _ARCTANH = 10.0  # the amplitude of the paper's arctanh fit, fig:atan
@@ -26,7 +26,6 @@ _ARCTANH = 10.0  # the amplitude of the paper's arctanh fit, fig:atan
 # Some seconds at either quality, because elastic rods are flown exactly.
 _DURATION, _SHARE = 1_000_000.0, 0.25  # share: of the duration, for the other amplitudes
 _VISIBLE = 1e-3  # of close packing: where both densities are lower, nothing is drawn
-_EXACT = 0.01  # of close packing
 _SOURCE = "section seq:analytics, diff_gl, fig:rho_num_sim"
 
 
@@ -59,16 +58,6 @@ def claims(results: Results) -> list[Claim]:
     for name, by_theory in deviations(tree).items():
         amplitude = float(name.removeprefix("amplitude_"))
         claims.append(_match(groups[name], amplitude, by_theory))
-        run, exact = (smooth(groups[name][key].to_dataset()) for key in (SIMULATION, "exact"))
-        claims.append(
-            same_claim(
-                f"the exact density is the simulated one, A = {amplitude:g}",
-                "the difference in a bin, in units of close packing",
-                map(Estimate, *density_differences(run, exact)),
-                _EXACT,
-                theory="exact",
-            )
-        )
     return claims
 
 
@@ -77,11 +66,13 @@ def _match(group: xr.DataTree, amplitude: float, by_theory: dict[str, Deviation]
     run, theory = (smooth(group[key].to_dataset()) for key in (SIMULATION, "arctanh"))
     off, error = _off_in_plot(run, theory)
     arctanh, labels = by_theory["arctanh"], by_theory["labels"]
-    return eye_claim(
+    return Claim(
         f"simulated and integrated densities match perfectly, A = {amplitude:g}",
-        "rho(x) of simulation and theory, fed with the fitted displacement, both axes linear",
-        Estimate(off, error),
-        arctanh.maximum_in_errors or 0.0,
+        **in_plot(
+            "rho(x) of simulation and theory, fed with the fitted displacement, both axes linear",
+            Estimate(off, error),
+            arctanh.maximum_in_errors or 0.0,
+        ),
         source=_SOURCE,
         ours="the amplitude" + (", which is that of fig:atan" if amplitude == _ARCTANH else ""),
         theory=f"closed by labels, nothing fitted, off by {labels.maximum:.3f} of close packing",
@@ -108,7 +99,7 @@ def draw(results: Results) -> Figure:
     return draw_density(_tree(results))
 
 
-FIGURE = PaperFigure(
+FIGURE = Study(
     number=17,
     name="density",
     title="Density at e = 1: simulation and theory",

@@ -10,8 +10,8 @@ from crazybilliards.comparison.drawing import along_the_chain, draw_rods
 from crazybilliards.comparison.layout import entitle, panels
 from crazybilliards.model import chain_of
 from crazybilliards.reproduction.chains import LARGE, dissipative
-from crazybilliards.reproduction.claims.study import Cases, PaperFigure, Quality, Results, all_of
-from crazybilliards.reproduction.claims.verdicts import EYE, Claim, Estimate, same_claim
+from crazybilliards.reproduction.claims.study import Cases, Quality, Results, Study, all_of
+from crazybilliards.reproduction.claims.verdicts import EYE, Claim, Estimate, worst
 
 _RESTITUTIONS = (0.0, 0.95)
 _AMPLITUDES = (1.0, 3.0, 10.0)
@@ -59,12 +59,14 @@ def claims(results: Results) -> list[Claim]:
         for name, symbol in _SCALED.items():
             axis = "logarithmic" if name in _LOGARITHMIC else "linear"
             claims.append(
-                same_claim(
+                Claim(
                     f"{symbol} the same for all A, e = {restitution:g}",
-                    f"mean over a tenth of the chain at A = {' or '.join(others)} less that at "
-                    f"A = {first}, as a share of the plotted range, {axis} axis",
-                    _differences(results, restitution, name),
-                    EYE,
+                    **worst(
+                        f"mean over a tenth of the chain at A = {' or '.join(others)} less that at "
+                        f"A = {first}, as a share of the plotted range, {axis} axis",
+                        _differences(results, restitution, name),
+                        EYE,
+                    ),
                     source="appendix, fig:amp_influence",
                     ours="the amplitudes and restitutions",
                     theory="exact for linear springs without gap: A can be scaled away",
@@ -113,7 +115,7 @@ def draw(results: Results) -> Figure:
     return figure
 
 
-FIGURE = PaperFigure(
+FIGURE = Study(
     number=18,
     name="amplitude",
     title="The driving amplitude only sets the scale",

@@ -14,8 +14,8 @@ from crazybilliards.comparison.widths import central_width
 from crazybilliards.model import chain_of
 from crazybilliards.reproduction.chains import LARGE, dissipative
 from crazybilliards.reproduction.claims.repetition import Granted, Runs
-from crazybilliards.reproduction.claims.study import Cases, PaperFigure, Quality, Results, all_of
-from crazybilliards.reproduction.claims.verdicts import Claim, positive_claim, small_claim
+from crazybilliards.reproduction.claims.study import Cases, Quality, Results, Study, all_of
+from crazybilliards.reproduction.claims.verdicts import POSITIVE, Claim, around
 
 _RESTITUTIONS = (0.0, 0.75, 0.95)
 _GAPS = (0.05, 0.2, 1.0)
@@ -64,11 +64,12 @@ def _widening(results: Results, restitution: float) -> Claim:
     layers = [_runs(restitution, gap).estimate(results, _border_layer) for gap in _GAPS]
     gains = [narrow.minus(wide) for narrow, wide in itertools.pairwise(layers)]
     listed = ", ".join(f"{layer} at g = {gap:g}" for gap, layer in zip(_GAPS, layers, strict=True))
-    return positive_claim(
+    return Claim(
         f"the larger the gap, the wider the plateau, e = {restitution:g}",
         f"rods at each border where ln W_v^2 is more than {_FLAT:g} above the centre's: {listed}; "
         "what the plateau gains at each border, at least:",
-        min(gains, key=lambda gain: gain.value - 3 * gain.error),
+        found=min(gains, key=lambda gain: gain.value - 3 * gain.error),
+        within=POSITIVE,
         source=_SOURCE,
         ours=_OURS,
         reason="at the larger gaps the plateau reaches the last rod or two already",
@@ -83,21 +84,22 @@ def claims(results: Results) -> list[Claim]:
         without = _runs(restitution, 0.0).estimate(results, _change)
         for gap in _GAPS:
             claims.append(
-                small_claim(
+                Claim(
                     f"plateau in the interior, e = {restitution:g}, g = {gap:g}",
                     what,
-                    _runs(restitution, gap).estimate(results, _change),
-                    _FLAT,
+                    found=_runs(restitution, gap).estimate(results, _change),
+                    within=around(0.0, _FLAT),
                     source=_SOURCE,
                     ours=_OURS,
                     reason="the gap is too small for the interior to become homogeneous",
                 )
             )
         claims.append(
-            positive_claim(
+            Claim(
                 f"no plateau without a gap, e = {restitution:g}",
                 what,
-                without,
+                found=without,
+                within=POSITIVE,
                 source=_SOURCE,
                 ours=_OURS,
             )
@@ -129,7 +131,7 @@ def draw(results: Results) -> Figure:
     return figure
 
 
-FIGURE = PaperFigure(
+FIGURE = Study(
     number=19,
     name="gap",
     title="Velocity variances of chains with gaps",

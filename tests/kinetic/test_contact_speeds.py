@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from contact_speeds import contact_square, make_mesh, solve
 
 from crazybilliards.kinetic.correlations.contact_speeds import SQUARES, contact_speed
+from studies.contact_speeds import contact_square, make_mesh, solve
 
 COARSE = (75, 120), (100, 160)
 

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from time_step import QUANTITIES, compared
 
 from crazybilliards.model import Chain
 from crazybilliards.particles import dynamics as dynamics_module
@@ -22,6 +21,7 @@ from crazybilliards.particles.laws.closed_contacts import (
 from crazybilliards.particles.laws.law import EVENTS, ISOTONIC, Law, drift, make_scratch
 from crazybilliards.particles.noise import fill, make_noise
 from crazybilliards.particles.stepping import FIRST, LAST, WHOLE, advance, kick
+from studies.time_step import QUANTITIES, compared
 
 UNSEEN = make_tally(2, contacts=False)
 

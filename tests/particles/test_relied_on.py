@@ -14,6 +14,7 @@ from crazybilliards.particles import (
     given_start,
     relaxation_time,
     simulate,
+    simulate_limit,
 )
 
 QUIET = {"progress": False, "threads": 1}
@@ -107,6 +108,12 @@ def test_an_average_that_is_too_short_says_so_once(chain, settings, message):
     with pytest.warns(ShortRunWarning, match=message) as caught:
         simulate(chain, **({"duration": 200, "observe": "widths"} | settings), **QUIET)
     assert len(caught) == 1
+    assert caught[0].filename == __file__
+
+
+def test_a_limit_with_a_short_warm_up_says_so():
+    with pytest.warns(ShortRunWarning, match="warmup=1 .* at least 41.89") as caught:
+        simulate_limit(Chain(size=2, restitution=0.5), accuracy=0.1, warmup=1, **QUIET)
     assert caught[0].filename == __file__
 
 

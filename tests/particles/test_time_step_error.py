@@ -6,7 +6,7 @@ from crazybilliards.model import Chain
 from crazybilliards.particles.scales import time_step_error
 
 # By how many % W_v of 100 rods changes from kicks of r_0 to r, in units of W_v, and the standard
-# error (benchmarks/accuracy/time_step_law.py).
+# error (studies/time_step_law.py).
 MEASURED = [  # restitution, r, r_0, change, error
     (0.2, 0.167, 0.056, -0.40, 0.03),
     (0.2, 0.292, 0.169, -0.53, 0.02),

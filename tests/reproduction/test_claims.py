@@ -12,7 +12,7 @@ from crazybilliards.model.vocabulary import result
 from crazybilliards.particles import simulate, simulate_limit
 from crazybilliards.reproduction.claims.repetition import Runs, error_of_mean, share_of_runs
 from crazybilliards.reproduction.claims.study import all_of
-from crazybilliards.reproduction.claims.verdicts import Estimate, positive_claim
+from crazybilliards.reproduction.claims.verdicts import POSITIVE, Claim, Estimate
 from crazybilliards.reproduction.distributions import mean_shape
 
 
@@ -79,8 +79,9 @@ def test_few_runs_have_an_error_of_student_or_none():
 
 
 def test_all_of_few_runs_are_not_all_runs():
-    assert positive_claim("they diverge", "share", share_of_runs(4, 4)).verdict == "confirmed"
-    assert positive_claim("they diverge", "share", share_of_runs(1, 4)).verdict == "undecided"
+    for diverged, verdict in ((4, "confirmed"), (1, "undecided")):
+        share = share_of_runs(diverged, 4)
+        assert Claim("they diverge", found=share, within=POSITIVE).verdict == verdict
     value, error = share_of_runs(500, 1000)
     assert (value, error) == pytest.approx((0.5, 0.5 / 1000**0.5), rel=1e-2)
 

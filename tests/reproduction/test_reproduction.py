@@ -17,21 +17,12 @@ from crazybilliards.apps.commands.line import main
 from crazybilliards.comparison.sweeps import Case, run_cases
 from crazybilliards.comparison.sweeps.jobs import JOBS
 from crazybilliards.model import Chain
-from crazybilliards.reproduction.beyond import STUDIES, elastic_gaps
+from crazybilliards.reproduction import elastic_gaps
 from crazybilliards.reproduction.claims.repetition import Runs
-from crazybilliards.reproduction.claims.report import (
-    OF_PAPER,
-    OWN,
-    all_cases,
-    describe,
-    html,
-    markdown,
-    reproduce,
-)
-from crazybilliards.reproduction.claims.study import PaperFigure
+from crazybilliards.reproduction.claims.report import all_cases, describe, html, markdown, reproduce
 from crazybilliards.reproduction.claims.verdicts import EYE, Verdict
 from crazybilliards.reproduction.figures import FIGURES, fig17_density
-from crazybilliards.reproduction.reproducible import find_studies, groups
+from crazybilliards.reproduction.reproducible import EVERYTHING, find_studies, groups
 
 # -- figures ----------------------------------------------------------------------------------
 
@@ -45,7 +36,6 @@ def test_all_nineteen_figures_are_there_in_order():
 def test_figures_and_studies_are_found_by_number_name_or_group():
     assert find_studies("17") == find_studies("density") == [FIGURES[16]]
     assert find_studies("all") == list(FIGURES)
-    assert find_studies("studies") == list(STUDIES)
     assert find_studies("elastic-gaps") == [elastic_gaps.STUDY]
     analytics = find_studies("analytics")
     assert [study.label.split()[0] for study in analytics] == ["8", "16", "17", "elastic-gaps"]
@@ -60,14 +50,12 @@ def test_every_group_has_a_report_of_its_own():
     assert len(set(names)) == 2 * len(groups())
 
 
-def test_every_study_beyond_the_paper_is_found_and_has_a_name_of_its_own():
-    everything = [*FIGURES, *STUDIES]
-    assert elastic_gaps.STUDY in STUDIES
-    assert not any(isinstance(study, PaperFigure) for study in STUDIES)
-    assert len({study.name for study in everything}) == len(everything)
-    assert len({study.file_name for study in everything}) == len(everything)
-    assert not {"all", "analytics", "studies"} & {study.name for study in everything}
-    assert all(study.title and study.caption for study in everything)
+def test_everything_has_a_name_of_its_own():
+    assert [study for study in EVERYTHING if study.number is None] == [elastic_gaps.STUDY]
+    assert len({study.name for study in EVERYTHING}) == len(EVERYTHING)
+    assert len({study.file_name for study in EVERYTHING}) == len(EVERYTHING)
+    assert not groups().keys() & {study.name for study in EVERYTHING}
+    assert all(study.title and study.caption for study in EVERYTHING)
 
 
 @pytest.mark.compiled
@@ -128,7 +116,7 @@ def test_list_needs_no_folder(command, tmp_path):
     status, lines, _ = command("--list")
     assert status == 0
     lines = lines.splitlines()
-    assert len(lines) == 19 + len(STUDIES)
+    assert len(lines) == 19 + 1
     assert lines[16].split()[:2] == ["17", "density"]
     assert "elastic-gaps" in [line.split()[0] for line in lines[19:]]
     assert list(tmp_path.iterdir()) == []
@@ -168,7 +156,7 @@ def test_an_unknown_figure_is_one_line_and_nothing_written(command, tmp_path):
 
 @pytest.mark.compiled
 def test_a_figure_its_claims_and_nothing_computed_twice(command, tmp_path, monkeypatch):
-    monkeypatch.setitem(fig17_density._DURATION, "quick", 5000.0)
+    monkeypatch.setattr(fig17_density, "_DURATION", 5000.0)
     status, printed, errors = command("arctanh", "--processes", "1")
     assert status == 0, errors
     assert "1 cases, 0 of them" in printed
@@ -184,9 +172,10 @@ def test_a_figure_its_claims_and_nothing_computed_twice(command, tmp_path, monke
     status, facts, _ = command("16", "--json")
     claim, *_ = json.loads(facts)["claims"]
     assert (claim["figure"], claim["verdict"]) == ("arctanh", "reproduced")
-    assert claim["variations"] == []
-    decisive = claim["decisive"]
-    assert 0 < decisive["value"] + 3 * decisive["error"] < decisive["limit"] == EYE
+    assert claim["elsewhere"] == {}
+    number = claim["number"]
+    assert 0 < number["value"] + 3 * number["error"] < EYE
+    assert claim["within"] == [-EYE, EYE]
     # After an edit of the simulation: with --keep-old the same, otherwise it is computed anew.
     other = replace(JOBS["simulate"], source="other source code")
     monkeypatch.setitem(JOBS, "simulate", other)
@@ -205,18 +194,9 @@ def assert_table_counts_verdicts(page):
     for part in parts:
         heading = part.splitlines()[0]
         anchor = "".join(c for c in heading.lower() if c.isalnum() or c in " -").replace(" ", "-")
-        _, *kinds = re.split("^### ", part, flags=re.MULTILINE)
-        found = {
-            kind.splitlines()[0]: Counter(re.findall(r"^\* verdict: (.*)", kind, re.MULTILINE))
-            for kind in kinds
-        }
-        counts = [
-            ", ".join(
-                f"{number} {verdict}" for verdict in get_args(Verdict) if (number := of[verdict])
-            )
-            for of in (found.get(title, Counter()) for title in (OF_PAPER, OWN))
-        ]
-        expected.append([f"[{heading}](#{anchor})", *counts])
+        found = Counter(re.findall(r"^\* verdict: (.*)", part, re.MULTILINE))
+        counts = [f"{found[verdict]} {verdict}" for verdict in get_args(Verdict) if found[verdict]]
+        expected.append([f"[{heading}](#{anchor})", ", ".join(counts)])
     lines = re.findall(r"^\| (\[.*) \|$", first, re.MULTILINE)
     assert [line.split(" | ") for line in lines] == expected
     assert "|" not in "".join(parts)
@@ -229,7 +209,7 @@ def test_the_table_of_the_stored_report_counts_its_verdicts():
 
 @pytest.mark.compiled
 def test_the_report_is_one_page_and_the_table_markdown(tmp_path, monkeypatch):
-    monkeypatch.setitem(fig17_density._DURATION, "quick", 5000.0)
+    monkeypatch.setattr(fig17_density, "_DURATION", 5000.0)
     monkeypatch.setitem(elastic_gaps._DURATION, "quick", 5000.0)
     studies = [*find_studies("model"), *find_studies("arctanh"), elastic_gaps.STUDY]
     run_cases(all_cases(studies, "quick"), tmp_path, ThreadPoolExecutor(1), progress=False)
@@ -242,26 +222,19 @@ def test_the_report_is_one_page_and_the_table_markdown(tmp_path, monkeypatch):
     assert page.count("data:image/png;base64,") == 3
     assert "amplitude 10" in page
     assert "&lt;dx&gt; is described by B arctanh(C x)" in page
-    assert re.findall(r'<h2 id="[^"]*">([^.<]*)', page) == [
-        "1",
-        "16",
-        "Displacements of elastic chains with gaps",
-    ]
-    # A figure has both kinds of claims, a study its own; no table is too wide for a telephone.
-    assert re.findall("<h3>(.*)</h3>", page) == [OF_PAPER, OWN, OWN]
-    assert "<table" not in page
-    assert page.count("<article") == 2 + 6
-    assert 'class="verdict"' in page
+    targets = re.findall(r'href="#([^"]*)"', page)
+    assert len(targets) == 3
+    assert targets == re.findall(r'<h2 id="([^"]*)">', page)
+    assert page.count("<li>verdict: ") == 1 + 6
     text = markdown(reproduced, "quick")
     assert re.findall("^## ([^. ]*)", text, re.MULTILINE) == ["1", "16", "Displacements"]
-    assert re.findall("^### (.*)", text, re.MULTILINE) == [OF_PAPER, OWN, OWN]
     assert_table_counts_verdicts(text)
-    assert text.count("* verdict: ") == 2 + 6
+    assert text.count("* verdict: ") == 1 + 6
     assert "**&lt;dx&gt; is described by B arctanh(C x)**" in text
     assert "* in the paper: section seq:analytics, fig:atan" in text
     assert r"**W\_x of every rod" in text
-    assert len(re.findall(rf"^\* {OF_PAPER}: 1 ", text, re.MULTILINE)) == 1
-    assert len(re.findall(rf"^\* {OWN}: 7 undecided", text, re.MULTILINE)) == 1
+    assert "\n* Statements of the paper: 1 " in text
+    assert "\n* Our own findings: 6 undecided" in text
     pictures = re.findall(r"!\[.*\]\((.*)\)", text)
     assert pictures == ["fig01_model.png", "fig16_arctanh.png", "study_elastic-gaps.png"]
     assert pictures == [each.study.file_name for each in reproduced]

@@ -87,7 +87,7 @@ def test_without_a_name_it_is_the_best_theory_and_says_so(run, solved):
 def test_the_list_tells_who_takes_the_chain(run, solved):
     done = run("theory", "--list", "--restitution", 0.5)
     text = " ".join(done.stdout.split())
-    assert "correlated_phase_space (best)" in text
+    assert "best of W_v: correlated_phase_space" in text
     assert "restitution must be 1, got 0.5" in text
     assert solved == []
     facts = json.loads(run("theory", "--list", "--restitution", 0.5, "--json").stdout)

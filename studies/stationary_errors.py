@@ -1,6 +1,6 @@
 """How far the stationary theories are from simulations, and at e = 1 from the exact equilibrium.
 
-    python benchmarks/accuracy/stationary_errors.py FOLDER [--held-out] [--displacements]
+    python -m studies.stationary_errors FOLDER [--held-out] [--displacements]
 
 Prints kinetic/measured/stationary.csv, from which the theories read the errors that they state, or
 docs/tables/stationary_held_out.csv: chains drawn at random before any of them was looked at. Every

@@ -1,7 +1,7 @@
-"""How far a time step is from the limit dt -> 0: docs/tables/time_step.csv.
+"""How far is a time step from the limit dt -> 0? docs/tables/time_step.csv.
 
-    python benchmarks/accuracy/time_step.py [--size 100 ...] [--restitution 0 ...] [--longer 1]
-           [--share 1] [--runs 8] [--strength 1]
+    python -m studies.time_step [--size 100 ...] [--restitution 0 ...] [--longer 1] [--share 1]
+           [--runs 8] [--strength 1]
 
 For restitutions and sizes: widths, displacements and the kurtosis of the velocities at the default
 step (or ``--longer`` times it) and at a quarter of it, from eight runs unless told otherwise. Both
@@ -13,7 +13,6 @@ times as strong at the longer step. 1 is no correction, as in version 0.1. The d
 finer step, which has the default strength, is then given as it is below the critical restitution.
 """
 
-import argparse
 import csv
 import math
 import sys
@@ -31,6 +30,7 @@ from crazybilliards.particles.laws.law import Law, Scratch, drift, make_law, mak
 from crazybilliards.particles.noise import fill, make_noise
 from crazybilliards.particles.scales import default_time_step
 from crazybilliards.reproduction.claims.repetition import error_of_mean
+from studies.common import options, percents
 
 WARM_UP = 60.0
 FINER = 4
@@ -56,6 +56,7 @@ CASES = [  # restitution, damping, size, time units in all
     (1.0, 1.0, 1000, 80_000),
     (0.0, 1.0, 10_000, 300),
 ]
+QUANTITIES = ("W_v, centre", "W_v, border", "W_x, centre", "<dx>, outer tenth", "kurtosis of v")
 
 
 class Copy(NamedTuple):
@@ -103,26 +104,42 @@ def measure(copy, anchors):
 
 
 @kernel(allocates=True)
-def run(coarse, fine, anchors, noise, tally, steps, measured):
-    """Take coarse steps and finer ones under the same noise; measure both after each."""
-    xi = np.empty((FINER, anchors.size))
-    # The Ornstein-Uhlenbeck noise of all finer steps together.
-    weights = np.array([fine.step.decay ** (FINER - 1 - j) for j in range(FINER)])
-    weights *= fine.step.noise / coarse.step.noise
-    for _ in range(steps):
-        fill(noise, xi.ravel())
-        coarse.kicks[:] = 0.0
-        for j in range(FINER):
-            coarse.kicks[:] += weights[j] * xi[j]
-            fine.kicks[:] = xi[j]
-            advance(fine, anchors, tally)
-        advance(coarse, anchors, tally)
-        if measured:
-            measure(coarse, anchors)
-            measure(fine, anchors)
+def run(copies, anchors, noise, tally, steps, measured, finer):
+    """Take steps, each ``finer`` times as long as that of the copy before it, under one noise.
+
+    All copies are measured after each of the longest steps, whose number is given.
+    """
+    xi = np.empty(anchors.size)
+    finest, longest = copies[0], finer ** (len(copies) - 1)
+    for taken in range(1, steps * longest + 1):
+        fill(noise, xi)
+        finest.kicks[:] = xi
+        advance(finest, anchors, tally)
+        ratio = 1
+        for number in range(1, len(copies)):
+            copy, ratio = copies[number], ratio * finer
+            # The Ornstein-Uhlenbeck noise of all finest steps in one of this copy.
+            for i in range(xi.size):
+                copy.kicks[i] = finest.step.decay * copy.kicks[i] + finest.step.noise * xi[i]
+            if taken % ratio == 0:
+                copy.kicks[:] /= copy.step.noise
+                advance(copy, anchors, tally)
+                copy.kicks[:] = 0.0
+        if measured and taken % longest == 0:
+            for copy in copies:
+                measure(copy, anchors)
 
 
-QUANTITIES = ("W_v, centre", "W_v, border", "W_x, centre", "<dx>, outer tenth", "kurtosis of v")
+def measure_all(
+    chain: Chain, copies: tuple[Copy, ...], finer: int, duration: float, seed: int
+) -> int:
+    """Run the copies, the finest one first, and return the number of the longest steps."""
+    noise = make_noise(np.random.SeedSequence(seed))
+    tally, longest = make_tally(chain.size, contacts=False), copies[-1].step.time_step
+    steps = math.ceil(duration / longest)
+    for taken, measured in ((math.ceil(WARM_UP / longest), False), (steps, True)):
+        run(copies, chain.reduced_anchors, noise, tally, taken, measured, finer)
+    return steps
 
 
 def reported(copy: Copy, steps: int) -> np.ndarray:
@@ -146,46 +163,41 @@ def reported(copy: Copy, steps: int) -> np.ndarray:
 
 
 def compared(
-    chain: Chain, time_step: float, duration: float, seed: int, strength: float | None = None
+    chain: Chain, time_step: float, duration: float, seed: int, strength: float = math.nan
 ) -> np.ndarray:
-    """Coarse over fine - 1 for every quantity, of one run."""
-    copies = [make_copy(chain, dt) for dt in (time_step, time_step / FINER)]
-    if strength is not None:
-        copies[0] = copies[0]._replace(step=copies[0].step._replace(closed=strength))
-    noise = make_noise(np.random.SeedSequence(seed))
-    tally = make_tally(chain.size, contacts=False)
-    steps = math.ceil(duration / time_step)
-    for taken, measured in ((math.ceil(WARM_UP / time_step), False), (steps, True)):
-        run(*copies, chain.reduced_anchors, noise, tally, taken, measured)
-    coarse, fine = (reported(copy, steps) for copy in copies)
-    return coarse / fine - 1
+    """Coarse over fine - 1 for every quantity, of one run; NaN: with the default strength."""
+    fine, coarse = (make_copy(chain, dt) for dt in (time_step / FINER, time_step))
+    if not math.isnan(strength):
+        coarse = coarse._replace(step=coarse.step._replace(closed=strength))
+    steps = measure_all(chain, (fine, coarse), FINER, duration, seed)
+    return reported(coarse, steps) / reported(fine, steps) - 1
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--size", type=int, nargs="*", default=[10, 100, 1000, 10_000])
-    parser.add_argument("--restitution", type=float, nargs="*", default=[])
-    parser.add_argument("--longer", type=float, default=1.0, help="in default time steps")
-    parser.add_argument("--share", type=float, default=1.0, help="of the full duration")
-    parser.add_argument("--runs", type=int, default=8, help="that the duration is shared by")
-    parser.add_argument("--strength", type=float, help="of the kicks that open closed contacts")
-    asked = parser.parse_args()
+    asked = options(
+        __doc__,
+        size=[10, 100, 1000, 10_000],
+        restitution=sorted({case[0] for case in CASES}),
+        longer=1.0,
+        share=1.0,
+        runs=8,
+        strength=math.nan,
+    )
     table = csv.writer(sys.stdout, lineterminator="\n")
     table.writerow(("e", "L", "gamma", "time step", *(f"{name}, %" for name in QUANTITIES)))
-    for restitution, damping, size, duration in CASES:
-        if size not in asked.size or (asked.restitution and restitution not in asked.restitution):
+    for e, damping, size, duration in CASES:
+        if size not in asked.size or e not in asked.restitution:
             continue
-        chain = Chain(size=size, restitution=restitution, damping=damping)
+        chain = Chain(size=size, restitution=e, damping=damping)
         step = asked.longer * default_time_step(chain)
         each = asked.share * duration / asked.runs
         found = [compared(chain, step, each, seed, asked.strength) for seed in range(asked.runs)]
-        corrected = restitution < CRITICAL_RESTITUTION
-        order = 1.5 if corrected or restitution == 1 else 0.75
-        rest = 0.0 if asked.strength is not None and corrected else FINER**-order
+        corrected = e < CRITICAL_RESTITUTION
+        order = 1.5 if corrected or e == 1 else 0.75
+        rest = 0.0 if corrected and not math.isnan(asked.strength) else FINER**-order
         deviation = 100 / (1 - rest) * np.array(found)
-        mean, error = deviation.mean(axis=0), error_of_mean(deviation)
-        shown = [f"{d:+.2f} ± {s:.2f}" for d, s in zip(mean, error, strict=True)]
-        table.writerow((f"{restitution:g}", size, f"{damping:g}", f"{step:.1e}", *shown))
+        shown = percents(deviation.mean(axis=0), error_of_mean(deviation))
+        table.writerow((f"{e:g}", size, f"{damping:g}", f"{step:.1e}", *shown))
         sys.stdout.flush()
 
 

@@ -1,6 +1,6 @@
 """What the threshold below which rods merge changes, and what it costs.
 
-    python benchmarks/accuracy/merging.py RESTITUTION [--size 100] [--duration 30000]
+    python -m studies.merging RESTITUTION [--size 100] [--duration 30000]
            [--thresholds 0.03 0.1 0.3]
 
 Chains at the default step are driven by the same noise, each with its own threshold. The table
@@ -10,7 +10,6 @@ in the middle third of the rods and of W_v of the two rods at the ends. Errors a
 jackknife over 32 parts of the run.
 """
 
-import argparse
 import math
 import time
 
@@ -24,6 +23,7 @@ from crazybilliards.particles.laws.law import make_scratch
 from crazybilliards.particles.noise import fill, make_noise
 from crazybilliards.particles.scales import centre_width, default_time_step
 from crazybilliards.particles.stepping import WHOLE, take_step
+from studies.common import options, percents, print_heads, print_row
 
 WARM_UP = 60.0
 PARTS = 32
@@ -89,28 +89,17 @@ def deviations(sums: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("restitution", type=float)
-    parser.add_argument("--size", type=int, default=100)
-    parser.add_argument("--duration", type=float, default=30_000.0)
-    parser.add_argument("--thresholds", type=float, nargs="*", default=[0.03, 0.1, 0.3])
-    asked = parser.parse_args()
+    asked = options(
+        __doc__, restitution=float, size=100, duration=30_000.0, thresholds=[0.03, 0.1, 0.3]
+    )
     chain = Chain(size=asked.size, restitution=asked.restitution)
     sums, collisions, seconds = measured(chain, asked.thresholds, asked.duration)
     deviation, error = deviations(sums)
     print(f"e = {asked.restitution:g}, L = {asked.size}, {collisions[0]:.3g} collisions at first")
-    print(f"| threshold | collisions | time | {' | '.join(QUANTITIES)} |")
-    print("|---" * (3 + len(QUANTITIES)) + "|")
-    for number in range(1, len(asked.thresholds)):
-        shown = [
-            f"{d:+.2f} ± {s:.2f}"
-            for d, s in zip(deviation[number - 1], error[number - 1], strict=True)
-        ]
-        ratios = collisions[number] / collisions[0], seconds[number] / seconds[0]
-        print(
-            f"| {asked.thresholds[number]:g} | {ratios[0]:.2f} | {ratios[1]:.2f} "
-            f"| {' | '.join(shown)} |"
-        )
+    print_heads("threshold", "collisions", "time", *QUANTITIES)
+    for number, threshold in enumerate(asked.thresholds[1:], start=1):
+        ratios = (f"{each[number] / each[0]:.2f}" for each in (collisions, seconds))
+        print_row(f"{threshold:g}", *ratios, *percents(deviation[number - 1], error[number - 1]))
 
 
 if __name__ == "__main__":

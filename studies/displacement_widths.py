@@ -1,6 +1,6 @@
 """Displacement widths of the theory with pair correlations, on chains drawn at random.
 
-    python benchmarks/accuracy/displacement_widths.py
+    python -m studies.displacement_widths
 
 Prints docs/tables/displacement_widths.csv: the largest error of W_x of any rod against simulations
 in the limit of a vanishing time step, in which W_x has an error of 0.5 % in the mean of the rods.
@@ -14,7 +14,7 @@ import sys
 from collections.abc import Iterator
 
 import numpy as np
-from stationary_errors import largest, pooled, simulated_widths
+from studies.stationary_errors import largest, pooled, simulated_widths
 
 import crazybilliards as cb
 from crazybilliards.kinetic import accuracy

@@ -1,6 +1,6 @@
 r"""What happens at the contacts of a chain: simulation and the theory with pair correlations.
 
-    python benchmarks/accuracy/contacts.py [--duration 12000]
+    python -m studies.contacts FOLDER [--duration 12000]
 
 Prints what docs/correlations.md says of contacts, in units of the free rod. The first two
 tables are correlations_ingredients.csv and neighbourhoods.csv in docs/tables.
@@ -12,20 +12,28 @@ tables are correlations_ingredients.csv and neighbourhoods.csv in docs/tables.
 2. <v_i^2> of a rod, and the mean of the temperature T(y) over the places y where the rod is.
 3. ``contact_temperature`` over ``relative_temperature`` in the centre of 20 rods.
 
+FOLDER/ingredients.png shows what the theory is made of, for the last two chains of the first table.
 The time step is a quarter of the default one. Takes three minutes on one core.
 """
 
-import argparse
+from functools import cache
+from pathlib import Path
 
+import matplotlib as mpl
 import numpy as np
 import xarray as xr
+from matplotlib.figure import Figure
 
+from crazybilliards.comparison.drawing import COLOURS, draw_points
+from crazybilliards.comparison.layout import house_style, legend_above, panels
+from crazybilliards.kinetic import correlated_phase_space
 from crazybilliards.kinetic.correlations.contact_speeds import contact_speed
 from crazybilliards.kinetic.correlations.stationary import _agree
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
 from crazybilliards.particles.observers import Covariances
 from crazybilliards.particles.scales import default_time_step
+from studies.common import options, print_heads, print_row
 
 CHAINS = (
     Chain(size=30, restitution=0.9),
@@ -39,10 +47,13 @@ CONTACTS = (1, 4, 10)  # and the one in the centre
 FINER = 4  # than the default time step
 TOLERANCE = 2e-3  # of the theory, its default
 BLOCKS = 16  # of time, whose scatter gives the errors of what snapshots give
+CELLS = 22  # of the drawn theory
+MODES = 3  # panel of the spectrum
 BIN = 0.2  # of T(y), in thermal lengths
 Values = np.ndarray
 
 
+@cache  # the picture shows the runs of the first table
 def measured(chain: Chain, duration: float) -> xr.Dataset:
     return simulate(
         chain,
@@ -50,7 +61,7 @@ def measured(chain: Chain, duration: float) -> xr.Dataset:
         time_step=default_time_step(chain) / FINER,
         every=0.5,
         seed=11,
-        observe=("widths", Covariances(separations=2), "impacts", "snapshots"),
+        observe=("widths", Covariances(separations=2), "modes", "impacts", "snapshots"),
         threads=1,
         progress=False,
     )
@@ -144,7 +155,8 @@ def tabulate_places(duration: float) -> None:
 
 
 def tabulate_short(duration: float) -> None:
-    print("\n| rods | e | contact temperature over relative temperature, centre |\n|---|---|---|")
+    print()
+    print_heads("rods", "e", "contact temperature over relative temperature, centre")
     for chain in SHORT:
         centre = measured(chain, duration).sel(contact=slice(9, 11))
         ratio = (centre.contact_temperature / centre.relative_temperature).mean()
@@ -154,18 +166,76 @@ def tabulate_short(duration: float) -> None:
             for name in ("contact", "relative")
         ]
         error = float(ratio) * np.hypot(*errors)
-        print(f"| {chain.size} | {chain.restitution:g} | {float(ratio):.2f} ± {error:.2f} |")
+        print_row(chain.size, f"{chain.restitution:g}", f"{float(ratio):.2f} ± {error:.2f}")
+
+
+def ingredients(found: xr.Dataset, chain: Chain) -> dict[str, tuple[Values, Values, Values]]:
+    """Return coordinates, values and errors of what is drawn, in free units, by labels of axes.
+
+    The last is the root of ``contact_temperature``, for which the theory has K F sqrt(Theta).
+    """
+    square, own = chain.free_velocity_width**2, found.velocity_width.values**2
+    found = found.assign(
+        temperature=found.velocity_width**2,
+        before=np.sqrt(np.pi)
+        / 2
+        / (1 - chain.restitution)
+        * found.contact_loss
+        / found.contact_force,
+    )
+    if "contact_temperature" in found:
+        found["temperature_error"] = 2 * found.velocity_width * found.velocity_width_error
+        found["before_error"] = found.contact_temperature_error / 2 / found.before
+    units = {  # the error drawn of Theta/T is that of Theta alone
+        "$T/W^2$": ("temperature", square),
+        r"$\Theta/T$": ("relative_temperature", (own[1:] + own[:-1]) / 2),
+        r"$h_c = \langle v_i v_{i+1}\rangle/W^2$": ("neighbour_covariance", square),
+        r"$\langle|v_q|^2\rangle/W^2$": ("mode_velocity_variance", square),
+        r"force $P\ [k s]$": ("contact_force", chain.stiffness * chain.thermal_length),
+        r"before a collision: $\sqrt{\Theta_c}/W$": ("before", chain.free_velocity_width),
+    }
+    places = {"particle": (found.particle - 0.5) / chain.size}
+    places |= {"contact": found.contact / chain.size, "mode": found.mode}
+    drawn = {}
+    for label, (name, unit) in units.items():
+        errors = found.get(f"{name}_error", 0 * found[name])
+        place = places[str(found[name].dims[0])].values
+        drawn[label] = place, found[name].values / unit, errors.values / unit
+    return drawn
+
+
+def draw(duration: float) -> Figure:
+    """Draw six panels of two chains, their simulations and their theories."""
+    figure, axes = panels(2, 3, height=2.3)
+    for number, chain in enumerate(CHAINS[1:]):
+        runs = ingredients(measured(chain, duration), chain)
+        lines = ingredients(correlated_phase_space(chain, cells=CELLS), chain)
+        for ax, (name, found) in zip(axes, runs.items(), strict=True):
+            first = int(ax is axes[MODES])  # mode 0 is exact, and beyond a logarithmic axis
+            last = len(found[0]) - 1
+            shown = np.geomspace(1, last, 24) if first else np.linspace(0, last, 30)
+            place, values, errors = (each[np.unique(shown.astype(int))] for each in found)
+            label = f"$L = {chain.size}$, $e = {chain.restitution:g}$"
+            draw_points(ax, place, values, errors, number=number, label=label)
+            place, values, _ = lines[name]
+            ax.plot(place[first:], values[first:], color=COLOURS[number])
+            ax.set(xlabel="label $l/L$", ylabel=name)
+    for ax in axes:
+        ax.set_ylim(bottom=0)
+    axes[MODES].set(xlabel="mode $q$", xlim=(0.8, None), ylim=(0.02, 1))
+    axes[MODES].set(xscale="log", yscale="log")
+    legend_above(figure, axes[0], "symbols: simulation, lines: theory")
+    return figure
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("--duration", type=float, default=12_000.0, help="time units of each run")
-    asked = parser.parse_args()
+    mpl.use("Agg")
+    asked = options(__doc__, folder=Path, duration=12_000.0)  # time units of each run
     tabulate_contacts(asked.duration)
     tabulate_places(asked.duration)
     tabulate_short(asked.duration)
+    with house_style():
+        draw(asked.duration).savefig(asked.folder / "ingredients.png")
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
 """How far the force balance closed by labels is from the exact equilibrium.
 
-    python benchmarks/accuracy/force_balance.py
+    python -m studies.force_balance
 
 Prints kinetic/measured/force_balance.csv: the largest error of the smoothed density, relative to
 close packing, and of the mean displacement, in thermal lengths s.

@@ -1,6 +1,6 @@
 """Do the error bars of a limit dt -> 0 mean what they say? A table for the documentation.
 
-    python benchmarks/accuracy/limit_calibration.py [--restitution 0 0.5 1] [--damping 1 4 10]
+    python -m studies.limit_calibration [--restitution 0 0.5 1] [--damping 1 4 10]
            [--size 5] [--gap 0] [--accuracy 0.1 0.03 0.01] [--seeds 200]
 
 Limits of one chain that differ in their seeds only. For every quantity: the share of values that
@@ -12,7 +12,6 @@ their maximum. Last come the median duration of the base in relaxation times, th
 stated error of W_v in the centre over the accuracy, and the seconds of one limit.
 """
 
-import argparse
 import itertools
 import json
 import time
@@ -24,6 +23,7 @@ from crazybilliards.kinetic import equilibrium
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate_limit
 from crazybilliards.particles.scales import relaxation_time
+from studies.common import options
 
 OBSERVE = ("widths", "density", "velocities", "energy", "covariances", "modes")
 
@@ -64,14 +64,15 @@ def deviates(chain: Chain, limits: list[xr.Dataset]) -> dict[str, np.ndarray]:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--restitution", type=float, nargs="*", default=[0.0, 0.5, 1.0])
-    parser.add_argument("--damping", type=float, nargs="*", default=[1.0, 4.0, 10.0])
-    parser.add_argument("--size", type=int, nargs="*", default=[5])
-    parser.add_argument("--gap", type=float, nargs="*", default=[0.0])
-    parser.add_argument("--accuracy", type=float, nargs="*", default=[0.1, 0.03, 0.01])
-    parser.add_argument("--seeds", type=int, default=200)
-    asked = parser.parse_args()
+    asked = options(
+        __doc__,
+        restitution=[0.0, 0.5, 1.0],
+        damping=[1.0, 4.0, 10.0],
+        size=[5],
+        gap=[0.0],
+        accuracy=[0.1, 0.03, 0.01],
+        seeds=200,
+    )
     axes = asked.restitution, asked.size, asked.gap, asked.damping, asked.accuracy
     for e, size, gap, damping, accuracy in itertools.product(*axes):
         chain = Chain(size=size, restitution=e, damping=damping, gap=gap)

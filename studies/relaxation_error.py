@@ -1,6 +1,6 @@
 """How far the kinetic equation in time is from simulations: the error of the kinetic energy.
 
-    python benchmarks/accuracy/relaxation_error.py FOLDER [--held-out]
+    python -m studies.relaxation_error FOLDER [--held-out]
 
 Prints kinetic/measured/relaxation.csv, from which the equation reads the error that it states, or
 docs/tables/kinetic_equation_in_time_held_out.csv: chains whose errors were looked at once, after

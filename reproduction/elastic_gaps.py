@@ -14,7 +14,7 @@ from crazybilliards.comparison.layout import legend_above, panels
 from crazybilliards.comparison.sweeps import Case
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.reproduction.claims.study import Cases, Quality, Results, Study
-from crazybilliards.reproduction.claims.verdicts import EYE, Claim, Estimate, same_claim
+from crazybilliards.reproduction.claims.verdicts import EYE, Claim, Estimate, worst
 
 _GAPS = (0.0, 0.5, 2.0)
 _DURATION = {"quick": 500_000.0, "full": 1_000_000.0}
@@ -44,11 +44,13 @@ def claims(results: Results) -> list[Claim]:
             s = chain_of(rods).thermal_length
             difference, error = (rods[name] - exact[name]) / s, rods[f"{name}_error"] / s
             claims.append(
-                same_claim(
+                Claim(
                     f"{symbol} of every rod is the exact one, g = {gap:g}",
-                    f"{symbol} of a rod less the exact one, in units of s",
-                    map(Estimate, difference.values, error.values),
-                    EYE,
+                    **worst(
+                        f"{symbol} of a rod less the exact one, in units of s",
+                        map(Estimate, difference.values, error.values),
+                        EYE,
+                    ),
                     theory="exact",
                 )
             )

@@ -1,6 +1,6 @@
 r"""How fast neighbours are when they meet: K(e) of the theory with pair correlations.
 
-    python benchmarks/accuracy/contact_speeds.py [E ...]
+    python -m studies.contact_speeds [--restitution E ...]
 
 Prints K^2 beside the table of kinetic/correlations/contact_speeds.py, which explains it. Two
 neighbours have the distance r > 0 and the relative velocity w,
@@ -21,7 +21,6 @@ Then, with means over what arrives at r = 0,
 Takes 14 seconds for each e.
 """
 
-import argparse
 from typing import NamedTuple
 
 import numpy as np
@@ -30,6 +29,7 @@ from scipy.optimize import root_scalar
 from scipy.sparse.linalg import spsolve
 
 from crazybilliards.kinetic.correlations.contact_speeds import SQUARES
+from studies.common import options
 
 DAMPING = np.sqrt(2 / np.pi)  # a sqrt(<w^2>)
 SLOWEST = 1e-2  # width of the cells at w = 0, about
@@ -151,12 +151,8 @@ def contact_square(e: float, meshes: tuple[tuple[int, int], ...] = MESHES) -> fl
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("restitutions", metavar="E", nargs="*", type=float, default=list(SQUARES))
     print("e,K^2,of the package")
-    for e in parser.parse_args().restitutions:
+    for e in options(__doc__, restitution=list(SQUARES)).restitution:
         print(f"{e:g},{contact_square(e):.4f},{SQUARES.get(e, np.nan):.3f}", flush=True)
 
 

@@ -1,6 +1,6 @@
 r"""How much stronger the kicks of closed contacts must be: the constant of ``closed_contacts.py``.
 
-    python benchmarks/accuracy/closed_contact.py [MILLIONS]
+    python -m studies.closed_contact [--millions 40]
 
 The relative motion of two rods with e = 0: a position x >= 0 and a velocity u, a kick of variance 1
 a step, then x + u; whoever would end below 0 is at rest at 0. The continuous counterpart is the
@@ -23,12 +23,11 @@ ends with the step. What is left is small in 1/n: compare the rows. The continuo
 has D = 0. The kick that opens the contact is made stronger until the walk has D = 0 as well.
 """
 
-import sys
-
 import numpy as np
 from scipy.special import gamma, hyp1f1, hyperu
 
 from crazybilliards.reproduction.claims.repetition import error_of_mean
+from studies.common import options, print_heads, print_row
 
 STRENGTHS = np.array([1.0, 1.15, 1.2, 1.25, 1.3])
 STEPS = (8, 16, 32)
@@ -71,9 +70,8 @@ def delay(strength: float, kicks: np.ndarray) -> float:
 
 
 def main() -> None:
-    batches = round(float(sys.argv[1] if len(sys.argv) > 1 else 40) * 1e6 / BATCH)
-    print("| steps n | D without correction | strength where D = 0 |")
-    print("|---|---|---|")
+    batches = round(options(__doc__, millions=40.0).millions * 1e6 / BATCH)
+    print_heads("steps n", "D without correction", "strength where D = 0")
     for steps in STEPS:
         generator = np.random.default_rng(steps)
         found = np.empty((batches, STRENGTHS.size))
@@ -85,13 +83,8 @@ def main() -> None:
         for part in (found, *np.array_split(found, 8)):
             curve = np.polyfit(STRENGTHS[1:], part.mean(axis=0)[1:], 2)
             roots.append(min(np.roots(curve).real, key=lambda root: abs(root - 1.2)))
-        error = error_of_mean(roots[1:])
-        plain = found[:, 0]
-        print(
-            f"| {steps} | {plain.mean():.4f} ± {error_of_mean(plain):.4f} "
-            f"| {roots[0]:.4f} ± {error:.4f} |",
-            flush=True,
-        )
+        delays, strength = found[:, 0], f"{roots[0]:.4f} ± {error_of_mean(roots[1:]):.4f}"
+        print_row(steps, f"{delays.mean():.4f} ± {error_of_mean(delays):.4f}", strength)
 
 
 if __name__ == "__main__":

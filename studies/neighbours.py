@@ -1,0 +1,229 @@
+"""How many rods move together? Correlation lengths and covariances of velocities, to 3000 rods.
+
+    python -m studies.neighbours FOLDER
+
+Simulations have the default time step; the theory with pair correlations goes to 1000 rods. The
+first table has five restitutions. The other two have quantities in the centre at e = 0, and the
+slopes of their logarithms: roots of temperatures over W, the force over k s, the correlation
+length. Takes an hour on one core.
+"""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise, product
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from crazybilliards.comparison.drawing import COLOURS, draw_points
+from crazybilliards.comparison.fits import fit_border_power_law
+from crazybilliards.comparison.layout import entitle, legend_above, panels
+from crazybilliards.comparison.sweeps import Case
+from crazybilliards.model import Chain, chain_of
+from crazybilliards.model.chain import middle_tenth
+from crazybilliards.reproduction.claims.repetition import error_of_mean
+from crazybilliards.reproduction.claims.verdicts import Estimate
+from studies.common import Results, Table, carry_out
+
+RESTITUTIONS = (0.95, 0.9, 0.75, 0.5, 0.0)
+DURATIONS = {30: 8000.0, 100: 6000.0, 300: 3000.0, 1000: 1000.0}
+LONGEST, ITS_DURATION = 3000, 300.0  # at e = 0 only, and too long for the theory
+CELLS = 22  # on which the theory's widths are right to a few per mille
+SNAPPED = 100  # rods of the chains whose snapshots are kept
+BLOCKS = 16  # of the snapshots in time, whose scatter gives errors
+SEPARATIONS = 14  # that are drawn
+SPECTRA = 100  # drawn at random, for the error of the correlation length
+HEADS = ["L", "$W_v/W$", r"$\sqrt{\Theta}/W$", r"$\sqrt{h_c}/W$", "$P/ks$", r"$\xi$"]
+
+
+def cases() -> dict[str, Case]:
+    """Return simulations and theories."""
+    found = {}
+    chains = [(e, *of_size) for e, of_size in product(RESTITUTIONS, DURATIONS.items())]
+    for e, size, duration in [*chains, (0.0, LONGEST, ITS_DURATION)]:
+        chain, raw = Chain(size=size, restitution=e), ["snapshots"] if size == SNAPPED else []
+        observe = ["widths", "covariances", "modes", *raw]
+        settings = {"duration": duration, "every": 0.5, "observe": observe}
+        found[f"rods {e} {size}"] = Case("simulate", chain, settings)
+        if size != LONGEST:
+            found[f"theory {e} {size}"] = Case("correlated_phase_space", chain, {"cells": CELLS})
+    return found
+
+
+def pairs(results: Results) -> dict[tuple[float, int], tuple[xr.Dataset, xr.Dataset]]:
+    """Return simulation and theory by restitution and length."""
+    return {
+        (e, size): (results[f"rods {e} {size}"], results[f"theory {e} {size}"])
+        for e, size in product(RESTITUTIONS, DURATIONS)
+        if f"theory {e} {size}" in results
+    }
+
+
+def correlation_length(result: xr.Dataset) -> Estimate:
+    """Return the correlation length xi in rods, from the spectrum of the velocities.
+
+    Correlations exp(-r/xi) have the spectrum S = S_inf + (S_0 - S_inf)/(1 + (k xi)^2) with
+    k = pi q/L; here xi is 1/k where a spectrum lies halfway between S_0, which is that of the
+    centre of mass, and its shortest waves. Its standard error, 0 in theory, is that under
+    independent errors of all modes.
+    """
+    spectrum = result.mode_velocity_variance.values
+    length = length_of(result, spectrum)
+    if "mode_velocity_variance_error" not in result:
+        return Estimate(length, 0.0)
+    noise = np.random.default_rng(0).normal(size=(SPECTRA, spectrum.size))
+    noise *= result.mode_velocity_variance_error.values
+    return Estimate(length, float(np.std([length_of(result, spectrum + each) for each in noise])))
+
+
+def length_of(result: xr.Dataset, spectrum: np.ndarray) -> float:
+    """Return the correlation length of one spectrum."""
+    chain = chain_of(result)
+    wave = np.pi * result.mode.values / chain.size
+    short = spectrum[-max(3, spectrum.size // 10) :].mean()
+    shares = (spectrum - short) / (chain.free_velocity_width**2 - short)
+    shares[0] = 1.0  # the centre of mass is mode 0
+    first = int(np.argmax(shares[1:] < 0.5)) + 1
+    between = [first, first - 1]
+    return float(1 / np.interp(0.5, shares[between], wave[between]))
+
+
+def errors_of(result: xr.Dataset, name: str) -> np.ndarray:
+    """Return the standard errors of a profile, which are 0 in theory. Neighbours err together."""
+    return result.get(f"{name}_error", 0 * result[name]).values
+
+
+def covariance(result: xr.Dataset) -> Estimate:
+    """Return <v_i v_i+1>/T at the contacts of the middle tenth."""
+    own, name = result.velocity_width.values**2, "neighbour_covariance"
+    own = (own[1:] + own[:-1]) / 2
+    middle = middle_tenth(own.size)
+    both = (values[middle].mean() for values in (result[name].values, errors_of(result, name)))
+    return Estimate(*(float(each / own[middle].mean()) for each in both))
+
+
+def root(result: xr.Dataset, name: str, power: int) -> Estimate:
+    """Return the root of the mean of values to a power over the middle tenth, over W."""
+    values, width = result[name].values, chain_of(result).free_velocity_width
+    middle = middle_tenth(values.size)  # of L rods, or of L - 1 contacts
+    value = float(np.sqrt((values[middle] ** power).mean()))
+    errors = power * errors_of(result, name)[middle] * values[middle] ** (power - 1)
+    return Estimate(value / width, float(errors.mean() / (2 * value)) / width)
+
+
+def force(result: xr.Dataset) -> Estimate:
+    """Return the force in the centre, which balances the springs of half of the chain."""
+    chain = chain_of(result)
+    half, unit = chain.size // 2, chain.thermal_length
+    displaced = result.mean_displacement.values / unit
+    value = float(displaced[::-1][:half].sum() - displaced[:half].sum()) / 2
+    errors = errors_of(result, "mean_displacement") / unit
+    return Estimate(value, float(errors[:half].sum()) / math.sqrt(2))
+
+
+def quantities(result: xr.Dataset) -> list[Estimate]:
+    """Return what the columns of ``HEADS`` have."""
+    powers = {"velocity_width": 2, "relative_temperature": 1, "neighbour_covariance": 1}
+    roots = [root(result, *each) for each in powers.items()]
+    return [*roots, force(result), correlation_length(result)]
+
+
+def printed(value: float, error: float) -> str:
+    """Return a number, and its error unless it is exact."""
+    return f"{value:.4g} ± {error:.2g}" if error else f"{value:.4g}"
+
+
+def along_lengths(found: dict[int, xr.Dataset], last: str, column: dict[int, str]) -> Table:
+    """Return quantities and one more column, then the slopes of their logarithms."""
+    rows, values = [[*HEADS, last]], {size: quantities(each) for size, each in found.items()}
+    for size, row in values.items():
+        rows.append([f"{size}", *(printed(*each) for each in row), column[size]])
+    for small, large in pairwise(values):
+        span, slopes = math.log(large / small), []
+        for one, other in zip(values[small], values[large], strict=True):
+            error = math.hypot(one.error / one.value, other.error / other.value) / span
+            slopes.append(printed(round(math.log(other.value / one.value) / span, 3), error))
+        rows.append([f"{small} → {large}", *slopes, ""])
+    return rows
+
+
+def guess(run: xr.Dataset) -> str:
+    """Return what the correlation length would be if collisions took all energy."""
+    chain = chain_of(run)
+    unit = math.sqrt(chain.stiffness * chain.mass) / chain.damping
+    return f"{math.sqrt(2 / 3) * force(run).value * unit:.1f}"
+
+
+def tables(results: Results) -> dict[str, Table]:
+    """Give correlation lengths and covariances, then what grows with the length at e = 0."""
+    sources = "simulation", "theory"
+    names = [f"{of}, {which}" for of in ("xi", "h_c/T centre") for which in sources]
+    rows = [["e", "L", *names, "W^2/<v^2>, simulation"]]
+    for (e, size), (run, theory) in pairs(results).items():
+        length, shared = correlation_length(run), covariance(run)
+        together = chain_of(run).free_velocity_width ** 2 / float((run.velocity_width**2).mean())
+        lengths = [
+            f"{length.value:.1f} ± {length.error:.1f}",
+            f"{correlation_length(theory).value:.1f}",
+        ]
+        shares = [f"{shared.value:.3f} ± {shared.error:.3f}", f"{covariance(theory).value:.3f}"]
+        rows.append([f"{e:g}", f"{size}", *lengths, *shares, f"{together:.2f}"])
+    zero = [result for result in results.values() if chain_of(result).restitution == 0]
+    runs, theories = (
+        {chain_of(each).size: each for each in zero if ("velocity_width_error" in each) is of_rods}
+        for of_rods in (True, False)
+    )
+    guesses = {size: guess(run) for size, run in runs.items()}
+    fits = {size: fit_border_power_law(theory) for size, theory in theories.items()}
+    powers = {size: f"{fit.exponent:.3f} ± {fit.exponent_error:.3f}" for size, fit in fits.items()}
+    return {
+        "correlation_lengths": rows,
+        "long_chains_simulation": along_lengths(runs, r"$\sqrt{2/3}\,P/\Gamma$", guesses),
+        "long_chains_theory": along_lengths(theories, r"$\nu$", powers),
+    }
+
+
+def draw(results: Results) -> Figure:
+    """Draw correlation lengths, covariances of neighbours, and covariances against distance."""
+    figure, axes = panels(1, 3, height=2.6)
+    sizes = list(DURATIONS)
+    for number, e in enumerate(RESTITUTIONS):
+        both = [pairs(results)[e, size] for size in sizes]
+        for ax, value in zip(axes, (correlation_length, covariance), strict=False):
+            values, errors = np.transpose([value(run) for run, _ in both])
+            draw_points(ax, sizes, values, errors, number=number, label=f"$e = {e:g}$")
+            ax.plot(sizes, [value(theory).value for _, theory in both], color=COLOURS[number])
+        draw_covariances(axes[2], results[f"rods {e} {SNAPPED}"], number)
+    for ax in axes[:2]:
+        ax.set(xscale="log", xlabel="rods $L$")
+        ax.set_xticks(sizes, [f"{size}" for size in sizes])
+        ax.xaxis.set_minor_formatter("")
+    axes[0].set(yscale="log", ylabel=r"correlation length $\xi$ [rods]")
+    axes[1].set(ylim=(0, 1), ylabel=r"$\langle v_i v_{i+1}\rangle/T$, centre")
+    axes[2].set(ylim=(0, 0.75), xlabel="separation $r$ [rods]")
+    axes[2].set(ylabel=r"$\langle v_i v_{i+r}\rangle/T$, centre")
+    entitle(axes[2], f"$L = {SNAPPED}$")
+    legend_above(figure, axes[0], "symbols: simulation, lines: theory")
+    return figure
+
+
+def draw_covariances(ax: Axes, run: xr.Dataset, number: int) -> None:
+    """Draw covariances of rods at equal distances from the centre, over their temperatures."""
+    size = run.sizes["particle"]
+    v, widths = run.velocity.values.reshape(-1, size), run.velocity_width.values
+    separations = np.unique(np.geomspace(1, size // 2, SEPARATIONS).astype(int))
+    values, errors = [], []
+    for r in separations:
+        first = np.arange((size - r) // 2 - size // 20, (size - r) // 2 + size // 20 + 1)
+        temperature = (widths[first] * widths[first + r]).mean()
+        products = (v[:, first] * v[:, first + r]).mean(axis=1) / temperature
+        values.append(products.mean())
+        errors.append(error_of_mean([part.mean() for part in np.array_split(products, BLOCKS)]))
+    draw_points(ax, separations, values, errors, number=number)
+
+
+if __name__ == "__main__":
+    carry_out(__doc__, cases(), tables, draw)
