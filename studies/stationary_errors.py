@@ -1,12 +1,15 @@
 """How far the stationary theories are from simulations, and at e = 1 from the exact equilibrium.
 
-    python -m studies.stationary_errors FOLDER [--held-out]
+    python -m studies.stationary_errors FOLDER [--held-out] [--displacements]
 
 Prints kinetic/measured/stationary.csv, from which the theories read the errors that they state, or
 docs/tables/stationary_held_out.csv: chains drawn at random before any of them was looked at. Every
 chain is simulated in the limit of a vanishing time step, with three radii, because only its density
 depends on the radius. Chains that are done are kept in FOLDER, and several processes may share it.
 On two cores the first table takes about an hour, and the second one five minutes.
+
+With --displacements only the rows of W_x in ``correlated_phase_space`` without a gap are printed,
+each from a run of its own at one radius, long enough for W_x.
 """
 
 import csv
@@ -81,6 +84,26 @@ def simulated(place: Place, length: float, seed: int) -> xr.Dataset:
         threads=1,
         progress=False,
     )
+
+
+def simulated_widths(chain: cb.Chain, accuracy: float, limit: float) -> xr.Dataset:
+    """Return the widths in the limit of a vanishing step.
+
+    If they are not, with W_v in the centre to ``accuracy``, W_x to the relative error ``limit``,
+    another run is as much more accurate.
+    """
+    if chain.restitution == 1:
+        return cb.equilibrium(chain)
+    for seed in range(2):
+        run = cb.simulate_limit(
+            chain, accuracy=accuracy, observe="widths", seed=seed, threads=1, progress=False
+        )
+        relative = run.displacement_width_error / run.displacement_width
+        error = math.sqrt(float((relative**2).mean()))
+        if error < 1.1 * limit:
+            break
+        accuracy *= limit / error
+    return run
 
 
 def of_radius(theory: xr.Dataset, run: xr.Dataset) -> xr.Dataset:
@@ -177,21 +200,39 @@ def measured(place: Place, lengths: Sequence[float]) -> list[Row]:
     return table
 
 
+def measured_displacements(place: Place) -> list[Row]:
+    """Return the error of W_x in the theory with pair correlations, if it takes the chain."""
+    theory, name, chain = (
+        "correlated_phase_space",
+        "displacement_width",
+        chain_at(place, LENGTHS[0]),
+    )
+    if place[-1] or not cb.theories(chain).takes.sel(theory=theory):
+        return []
+    found = cb.correlated_phase_space(chain)
+    one = ACCURACY[min(each for each in ACCURACY if each >= chain.size)]
+    run = simulated_widths(chain, one / math.sqrt(3), 2 * one)
+    value, error = pooled([run], name, 1)
+    return [(theory, *place, "", name, *largest(found[name].values / value - 1, error / value))]
+
+
 def stated(theory: str, place: Place, length: float, quantity: str) -> float:
     """Return the error that the theory states for a chain that was drawn at random."""
     expected = getattr(accuracy, f"expected_{theory}")(chain_at(place, length))
     return float(getattr(expected, quantity))
 
 
-def main(folder: Path, *, held: bool) -> None:
+def main(folder: Path, *, held: bool, displacements: bool) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     table: list[Row] = []
     missing = False
+    lengths = OTHER_LENGTHS if held else LENGTHS
     for place in held_out() if held else places():
         file = folder / f"{'_'.join(f'{each:g}' for each in place)}.json"
         try:
             with file.open("x") as mine:  # another process leaves it alone
-                json.dump(measured(place, OTHER_LENGTHS if held else LENGTHS), mine)
+                found = measured_displacements(place) if displacements else measured(place, lengths)
+                json.dump(found, mine)
         except FileExistsError:
             pass
         try:
@@ -207,10 +248,13 @@ def main(folder: Path, *, held: bool) -> None:
         coordinates = (f"{each:.3g}" for each in (lattice, size, e, damping))
         row = [theory, quantity, *coordinates, length, f"{error:.4f}", f"{own:.4f}"]
         if held:
-            limit = stated(theory, tuple(place), length or OTHER_LENGTHS[0], quantity)
+            limit = stated(theory, tuple(place), length or lengths[0], quantity)
             row += [f"{limit:.4f}", f"{max(error - limit, 0) / own if own else 0:.1f}"]
         writer.writerow(row)
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]), held="--held-out" in sys.argv)
+    options = sys.argv[2:]
+    main(
+        Path(sys.argv[1]), held="--held-out" in options, displacements="--displacements" in options
+    )

@@ -25,12 +25,16 @@ class Cells(NamedTuple):
     distances: Array  # from centre to centre, shape (M - 1,)
 
 
-def make_cells(size: int, most: int = MOST) -> Cells:
-    """Divide ``size`` rods into at most ``most`` cells, symmetric about the centre."""
+def make_cells(size: int, most: int = MOST, *, whole: bool = False) -> Cells:
+    """Divide ``size`` rods into at most ``most`` cells, symmetric about the centre.
+
+    ``whole``: none is shorter than a rod.
+    """
     ends = np.arange(size + 1.0)
     if size > most:
         s = np.linspace(0, 1, most + 1)
-        ends = size * (s - np.sin(2 * np.pi * s) / (4 * np.pi))
+        uneven = 1 - most / size if whole else 0.5
+        ends = size * (s - uneven * np.sin(2 * np.pi * s) / (2 * np.pi))
         ends = (ends + size - ends[::-1]) / 2  # symmetric but for rounding
     rods, centres = np.diff(ends), (ends[1:] + ends[:-1]) / 2
     return Cells(rods, centres, ends[1:-1], np.diff(centres))

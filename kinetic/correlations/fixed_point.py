@@ -58,7 +58,7 @@ def find_fixed_point(
         points, residuals = [*points, x][-_KEPT:], [*residuals, residual][-_KEPT:]
         x = x + _step(points, residuals)
     raise NoFixedPointError(
-        f"one rod and pairs do not agree after {most} iterations: they differ by {size:.2g}"
+        f"no agreement after {most} iterations: what is looked for still changes by {size:.2g}"
     )
 
 

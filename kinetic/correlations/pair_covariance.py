@@ -104,10 +104,15 @@ def solve_pairs(
     cells: Cells, state: Background, moments: CollisionMoments, damping: float
 ) -> PairCovariance:
     """Solve the Lyapunov equation of this module."""
-    scale = _scales(cells, state)
-    h = linear_response(cells, state, moments, damping).stationary() * np.outer(scale, scale)
-    u, V, Th, _ = _parts(cells.rods.size)
-    relative = _steps(cells) / _mean_gaps(cells, state)[:, None]
+    return covariances(cells, state, linear_response(cells, state, moments, damping))
+
+
+def covariances(cells: Cells, state: Background, response: LinearResponse) -> PairCovariance:
+    """Return what is stationary, of a response that may have more fields."""
+    scale = scales(cells, state)
+    h = response.stationary()[: scale.size, : scale.size] * np.outer(scale, scale)
+    u, V, Th, _ = parts(cells.rods.size)
+    relative = steps(cells) / _mean_gaps(cells, state)[:, None]
     return PairCovariance(
         velocity=h[V, V],
         displacement=h[u, u],
@@ -121,22 +126,22 @@ def linear_response(
     cells: Cells, state: Background, moments: CollisionMoments, damping: float
 ) -> LinearResponse:
     """Return M and Q, every field in units of its own size, which keeps them well conditioned."""
-    M, scale = cells.rods.size, _scales(cells, state)
+    M, scale = cells.rods.size, scales(cells, state)
     generator = _generator(cells, state, moments, damping) * scale / scale[:, None]
     noise = _noise(cells, state, moments, damping) / np.outer(scale, scale)
     fields = ((M, -1), (M, -1), (M - 1, 1), (M - 2, -1))  # u, V and q change sign in the mirror
     even, odd = (
-        block_diag(*(_mirror_basis(size, parity * sign) for size, sign in fields))
+        block_diag(*(mirror_basis(size, parity * sign) for size, sign in fields))
         for parity in (1, -1)
     )
     return LinearResponse(generator, noise, (even, odd))
 
 
 def _generator(cells: Cells, state: Background, moments: CollisionMoments, damping: float) -> Array:
-    M, N, apart, step = cells.rods.size, cells.rods, cells.distances, _steps(cells)
+    M, N, apart, step = cells.rods.size, cells.rods, cells.distances, steps(cells)
     n, Theta, P, gaps = state.density, state.temperature, state.pressure, _mean_gaps(cells, state)
     energy = dissipation(state, moments)
-    u, V, Th, q = _parts(M)
+    u, V, Th, q = parts(M)
     A = np.zeros((4 * M - 3, 4 * M - 3))
     force = step.T / N[:, None]  # minus the difference of the pressures on both sides
     A[u, V] = np.eye(M)
@@ -158,7 +163,7 @@ def _noise(cells: Cells, state: Background, moments: CollisionMoments, damping: 
     M, N = cells.rods.size, cells.rods
     n, Theta, b = state.density, state.temperature, state.strength
     energy = dissipation(state, moments)
-    u, V, Th, q = _parts(M)
+    u, V, Th, q = parts(M)
     Q = np.zeros((4 * M - 3, 4 * M - 3))
     kept = 2 * damping * of_cells(state.shared) / N
     # Of the contacts that one between cells stands for, the others lie within the two.
@@ -184,13 +189,13 @@ def _of_cell_means(cells: Cells, strength: Array) -> Array:
     return np.asarray((np.append(halves, 0.0) + np.append(0.0, halves)) / cells.rods**2)
 
 
-def _parts(M: int) -> tuple[slice, slice, slice, slice]:
-    """Places of u and V (cells), Theta (contacts) and q (cells but those at the ends)."""
+def parts(M: int) -> tuple[slice, slice, slice, slice]:
+    """Return the places of u, V (cells), Theta (contacts) and q (cells but those at the ends)."""
     return (slice(0, M), slice(M, 2 * M), slice(2 * M, 3 * M - 1), slice(3 * M - 1, 4 * M - 3))
 
 
-def _steps(cells: Cells) -> Array:
-    """Matrix from cells to contacts: the next cell minus this one."""
+def steps(cells: Cells) -> Array:
+    """Return the matrix from cells to contacts: the next cell minus this one."""
     return np.diff(np.eye(cells.rods.size), axis=0)
 
 
@@ -202,7 +207,8 @@ def _means(at_contacts: Array) -> Array:
     return (at_contacts[1:] + at_contacts[:-1]) / 2
 
 
-def _scales(cells: Cells, state: Background) -> Array:
+def scales(cells: Cells, state: Background) -> Array:
+    """Return the size of every field."""
     gap = np.full(cells.rods.size, _mean_gaps(cells, state).mean())
     inner = _means(state.temperature)
     return np.concatenate(
@@ -210,7 +216,7 @@ def _scales(cells: Cells, state: Background) -> Array:
     )
 
 
-def _mirror_basis(size: int, sign: int) -> Array:
+def mirror_basis(size: int, sign: int) -> Array:
     """Return the orthonormal basis of vectors whose mirror image is ``sign`` times themselves."""
     half = size // 2
     basis = np.zeros((size, half + (size % 2 if sign == 1 else 0)))

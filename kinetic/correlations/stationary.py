@@ -9,10 +9,11 @@ temperature that the kinetic equation has. Both are solved in turn until they ag
 
 No number is fitted, and nothing from a simulation goes in. At e = 1 all h vanish.
 
-f holds the rods within their neighbourhood, h_uu the motion of whole neighbourhoods. With y_i, q_i
-and w_i the mean, width and velocity width of the i-th of L independent points,
+f holds the rods within their neighbourhood, h_uu the motion of whole neighbourhoods, and h'_uu of
+:mod:`.displacements` their displacement. With y_i, q_i and w_i the mean, width and velocity width
+of the i-th of L independent points,
 
-    <y_i> = y_i,      W_x(i)^2 = q_i^2 + h_uu(i),      W_v(i)^2 = w_i^2 + h_uu(i).
+    <y_i> = y_i,      W_x(i)^2 = q_i^2 + h'_uu(i),      W_v(i)^2 = w_i^2 + h_uu(i).
 """
 
 from __future__ import annotations
@@ -26,6 +27,7 @@ from numpy.typing import NDArray
 from crazybilliards.kinetic.correlations.cells import make_cells
 from crazybilliards.kinetic.correlations.closure import Closure, background, implied
 from crazybilliards.kinetic.correlations.collision_moments import moments_of_collisions
+from crazybilliards.kinetic.correlations.displacements import relaxing_pairs
 from crazybilliards.kinetic.correlations.fixed_point import NoFixedPointError, find_fixed_point
 from crazybilliards.kinetic.correlations.one_rod import profiles_of_one_rod
 from crazybilliards.kinetic.correlations.pair_covariance import linear_response, solve_pairs
@@ -176,7 +178,7 @@ def _agreed(state: State, closure: Closure, agreement: float) -> Correlated:
         rod = profiles_of_one_rod(cells, state)
         around = background(rod, closure, chain.restitution)
         pairs = solve_pairs(cells, around, of_collisions, _damping(chain))
-        known[:] = [Correlated(state, closure, around, pairs, np.nan, 0)]
+        known[:] = [Correlated(state, closure, around, pairs, pairs, np.nan, 0)]
         return implied(chain.size, cells, rod, around, pairs).packed()
 
     end = find_fixed_point(image, closure.packed(), agreement, _MOST_ITERATIONS)
@@ -184,19 +186,16 @@ def _agreed(state: State, closure: Closure, agreement: float) -> Correlated:
 
 
 def _checked(found: Correlated) -> Correlated:
-    """Raise if the agreement is at a bound, or not stable."""
+    """Add the displacements; raise if the agreement is at a bound, or not stable."""
     if not found.closure.is_possible:
         raise NoFixedPointError("the correlations are too large for a linear theory of them")
-    chain = found.state.chain
-    response = linear_response(
-        make_cells(chain.size),
-        found.background,
-        moments_of_collisions(chain.restitution),
-        _damping(chain),
-    )
-    if (growth := response.largest_growth()) > 0:
+    chain, around = found.state.chain, found.background
+    rest = moments_of_collisions(chain.restitution), _damping(chain)
+    relaxing, displaced = relaxing_pairs(chain.size, around, found.closure.collective, *rest)
+    responses = linear_response(make_cells(chain.size), around, *rest), relaxing
+    if (growth := max(each.largest_growth() for each in responses)) > 0:
         raise NoFixedPointError(f"the state is not stable: deviations grow at the rate {growth:g}")
-    return found
+    return found._replace(displaced=displaced)
 
 
 def _damping(chain: Chain) -> float:

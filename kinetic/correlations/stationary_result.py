@@ -33,6 +33,7 @@ class Correlated(NamedTuple):
     closure: Closure
     background: Background
     pairs: PairCovariance
+    displaced: PairCovariance  # h', of whole cells
     residual: float
     iterations: int
 
@@ -42,10 +43,11 @@ def rods(found: Correlated) -> Rods:
 
     A rod moves in its neighbourhood, and with it.
     """
-    state, collective = found.state, _collective(found)
+    state, whole = found.state, make_cells(found.state.chain.size, whole=True)
     own = points(state.chain.size, mirrored(moments(state.space, state.f)))
-    position, velocity = own.position_variance + collective, own.velocity_variance + collective
-    return Rods(own.position, position, velocity)
+    displaced = collective_variance(whole, found.displaced, np.arange(0.5, state.chain.size))
+    velocity = own.velocity_variance + _collective(found)
+    return Rods(own.position, own.position_variance + displaced, velocity)
 
 
 def assemble(found: Correlated, of_rods: Rods, mesh_error: float) -> xr.Dataset:

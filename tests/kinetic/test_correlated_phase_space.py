@@ -211,7 +211,7 @@ def test_wrong_settings_are_named(settings, reason):
 def test_no_agreement_is_an_error_with_a_reason(monkeypatch):
 
     monkeypatch.setattr(stationary, "_MOST_ITERATIONS", 2)
-    with pytest.raises(ValueError, match=r"do not agree after 2 iterations.*phase_space and sim"):
+    with pytest.raises(ValueError, match=r"no agreement after 2 iterations.*phase_space and sim"):
         correlated_phase_space(CHAIN)
 
 

@@ -5,14 +5,15 @@ What is tested here stands on the page on correlations, with what is wrong.
 
 import numpy as np
 import pytest
-from first_order import hermite, mode_variances
+from first_order import displacement_source, hermite, mode_variances
 from scipy.stats import norm
 
-from crazybilliards.kinetic.correlations import pair_covariance
-from crazybilliards.kinetic.correlations.cells import make_cells, of_cells
+from crazybilliards.kinetic.correlations.cells import make_cells
 from crazybilliards.kinetic.correlations.closure import Closure, background
 from crazybilliards.kinetic.correlations.collision_moments import moments_of_collisions
+from crazybilliards.kinetic.correlations.displacements import relaxing_pairs
 from crazybilliards.kinetic.correlations.one_rod import profiles_of_one_rod
+from crazybilliards.kinetic.correlations.pair_covariance import parts, scales, solve_pairs
 from crazybilliards.kinetic.kinetic_equation.continuation import elastic_state
 from crazybilliards.model import Chain
 
@@ -28,23 +29,36 @@ def exact():
     return mode_variances(CHAIN.restitution, DAMPING, NUMBER) / (1 - CHAIN.restitution)
 
 
-def of_theory():
-    """Return the same of the theory, about the state of equilibrium."""
-    cells = make_cells(CHAIN.size)
-    rod = profiles_of_one_rod(cells, elastic_state(CHAIN, 2, 24))
-    around = background(rod, Closure.independent(cells), CHAIN.restitution)
-    pairs = pair_covariance.solve_pairs(
-        cells, around, moments_of_collisions(CHAIN.restitution), DAMPING
-    )
-    found = []
-    for field, labels, rods in (
-        (pairs.displacement, cells.centres, cells.rods),
-        (pairs.velocity, cells.centres, cells.rods),
-        (pairs.temperature, cells.contacts, cells.distances),
-    ):
-        y = norm.ppf(labels / CHAIN.size)
-        waves = np.array([hermite(n, y) for n in range(NUMBER)]) * rods / CHAIN.size
-        found.append(np.diag(waves @ field @ waves.T))
+def around_equilibrium(size=CHAIN.size):
+    """Return what the pair equations need: cells, background, moments and damping."""
+    chain, cells = CHAIN.replace(size=size), make_cells(size)
+    rod = profiles_of_one_rod(cells, elastic_state(chain, 2, 24))
+    around = background(rod, Closure.independent(cells), chain.restitution)
+    return cells, around, moments_of_collisions(chain.restitution), DAMPING
+
+
+def relaxing(size=CHAIN.size):
+    """Return the response and the covariances of which displacement widths are made."""
+    _, around, *rest = around_equilibrium(size)
+    return relaxing_pairs(size, around, 0 * around.shared, *rest)
+
+
+def modes(cells):
+    """Return the waves of cells and of contacts."""
+    size = cells.rods.sum()
+    places = (cells.centres, cells.rods), (cells.contacts, cells.distances)
+    return [
+        np.array([hermite(n, norm.ppf(labels / size)) for n in range(NUMBER)]) * rods / size
+        for labels, rods in places
+    ]
+
+
+def of_theory(pairs):
+    """Return the variances of modes over 1 - e of the theory."""
+    of_cells, of_contacts = modes(make_cells(CHAIN.size))
+    fields = (pairs.displacement, of_cells), (pairs.velocity, of_cells)
+    fields = *fields, (pairs.temperature, of_contacts)
+    found = [np.diag(waves @ field @ waves.T) for field, waves in fields]
     return np.array(found) / (1 - CHAIN.restitution)
 
 
@@ -62,7 +76,7 @@ def test_it_is_of_first_order():
 
 def test_the_theory_is_wrong_where_the_page_says_so(exact):
     """The longest waves but one: displacements 3.3 times too large, velocities of wrong sign."""
-    found = of_theory()
+    found = of_theory(solve_pairs(*around_equilibrium()))
     assert found[DISPLACEMENT, 0] == pytest.approx(exact[DISPLACEMENT, 0], rel=0.02)
     assert found[VELOCITY, 0] == pytest.approx(exact[VELOCITY, 0], rel=0.02)
     assert found[DISPLACEMENT, 1] / exact[DISPLACEMENT, 1] == pytest.approx(3.3, abs=0.1)
@@ -70,21 +84,21 @@ def test_the_theory_is_wrong_where_the_page_says_so(exact):
     assert exact[VELOCITY, 1] == pytest.approx(0.0497, abs=0.0005)
 
 
-def test_with_the_right_source_it_is_right_to_a_tenth(exact, monkeypatch):
-    """Two rods that are close are one more at their place, and 1/L fewer everywhere else."""
-    noise = pair_covariance._noise
+def test_displacements_have_the_right_source():
+    """What collisions make of displacement and temperature, against the exact integrals."""
+    cells, around = make_cells(1000, whole=True), around_equilibrium(1000)[1]
+    at = make_cells(1000).contacts
+    around = around._make(np.interp(cells.contacts, at, each) for each in around)
+    u, _, Th, _ = parts(cells.rods.size)
+    size, (of_cells, of_contacts) = scales(cells, around), modes(cells)
+    noise = relaxing(1000)[0].noise[u, Th] * np.outer(size[u], size[Th])
+    found = (of_cells @ noise @ of_contacts.T)[:3, :4]
+    exact = displacement_source(CHAIN.restitution, 4)[:3]
+    np.testing.assert_allclose(found, exact, atol=0.005 * np.abs(exact).max())
 
-    def repaired(cells, state, moments, damping):
-        Q = noise(cells, state, moments, damping)
-        u, _, Th, _ = pair_covariance._parts(cells.rods.size)
-        beyond = np.tril(np.ones((cells.rods.size, cells.rods.size - 1)), -1)
-        moved = of_cells(state.gap)[:, None] * (beyond - cells.centres[:, None] / cells.rods.sum())
-        Q[u, Th] = moved * pair_covariance.dissipation(state, moments)
-        Q[Th, u] = Q[u, Th].T
-        return Q
 
-    monkeypatch.setattr(pair_covariance, "_noise", repaired)
-    found = of_theory()
+def test_displacements_are_right_to_first_order(exact):
+    found = of_theory(relaxing()[1])
     np.testing.assert_allclose(found[DISPLACEMENT, :3], exact[DISPLACEMENT, :3], rtol=0.07)
     np.testing.assert_allclose(found[VELOCITY, :4], exact[VELOCITY, :4], rtol=0.12)
     np.testing.assert_allclose(found[TEMPERATURE, 0], exact[TEMPERATURE, 0], rtol=0.03)

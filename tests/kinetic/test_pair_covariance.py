@@ -262,7 +262,7 @@ def test_the_fixed_point_is_found_or_refused():
     found = find_fixed_point(lambda x: matrix @ x + 1, np.zeros(2), 1e-10, 40)
     np.testing.assert_allclose(found.x, np.linalg.solve(np.eye(2) - matrix, [1, 1]), rtol=1e-8)
     assert found.residual < 1e-10
-    with pytest.raises(NoFixedPointError, match="do not agree after 5 iterations"):
+    with pytest.raises(NoFixedPointError, match="no agreement after 5 iterations"):
         find_fixed_point(lambda x: x + 1, np.zeros(2), 1e-3, 5)
 
 

@@ -43,6 +43,13 @@ def mode_variances(restitution, damping, number):
     )
 
 
+def displacement_source(restitution, number):
+    """Return what collisions make between displacement and temperature, shape (number, number)."""
+    modes = [(n + 1, 0) for n in range(number)] + [(n, 2) for n in range(number)]
+    made = _source(modes, restitution)[:number, number:]
+    return made * math.sqrt(2) / np.sqrt(np.arange(1, number + 1))[:, None]
+
+
 def _kramers(at, damping):
     """d_t f = -v d_y f + y d_v f + friction and noise, between the orders (n, m) of y and v."""
     A = np.zeros((len(at), len(at)))

@@ -1,0 +1,90 @@
+"""The covariance that displacement widths are made of: the centre of mass, and waves in time."""
+
+import numpy as np
+import pytest
+from scipy.linalg import expm
+from scipy.optimize import curve_fit
+
+from crazybilliards.kinetic.correlations.cells import make_cells
+from crazybilliards.kinetic.correlations.collision_moments import moments_of_collisions
+from crazybilliards.kinetic.correlations.displacements import relaxing_pairs
+from crazybilliards.kinetic.correlations.pair_covariance import scales
+from crazybilliards.kinetic.correlations.stationary import _agree, _damping
+from crazybilliards.kinetic.kinetic_equation.order_statistics import mirrored, points
+from crazybilliards.kinetic.kinetic_equation.velocity_moments import moments
+from crazybilliards.model import Chain
+from crazybilliards.particles import simulate
+
+STEP = 0.2  # T, between two values of a correlation function
+NUMBER = 40
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize(("size", "restitution"), [(30, 0.9), (140, 0.6)])
+def test_the_centre_of_mass_is_displaced_as_if_alone(size, restitution):
+    """The variance of independent points, and what neighbourhoods have in common: W^2/L."""
+    found = _agree(Chain(size=size, restitution=restitution), 2e-3)
+    of_points = moments(found.state.space, found.state.f)
+    own = (of_points.weights * of_points.density) @ of_points.y**2
+    rods = make_cells(size, whole=True).rods
+    assert own + rods @ found.displaced.displacement @ rods / size == pytest.approx(1, abs=0.015)
+
+
+def waves_of(values):
+    """Return the waves 1 and 2 of values of rods, which are along the last axis."""
+    size = values.shape[-1]
+    q = np.array([[1], [2]])
+    return values @ (np.sqrt(2 / size) * np.cos(np.pi * q * (np.arange(size) + 0.5) / size)).T
+
+
+def damping(correlation):
+    """Return the rate at which a correlation function decays, in units of the springs' rate."""
+
+    def oscillation(t, rate, frequency, sine):
+        return np.exp(-rate * t) * (np.cos(frequency * t) + sine * np.sin(frequency * t))
+
+    times = STEP * np.arange(NUMBER) * np.sqrt(Chain().stiffness / Chain().mass)
+    return curve_fit(oscillation, times, correlation / correlation[0], p0=(0.3, 1, 0.3))[0][0]
+
+
+def predicted(chain):
+    """Return the damping of the waves 1 and 2 in the linear equation with the stress."""
+    found, size, cells = _agree(chain, 2e-3), chain.size, make_cells(chain.size)
+    around = found.background
+    own = points(size, mirrored(moments(found.state.space, found.state.f)))
+    response, _ = relaxing_pairs(
+        size,
+        around,
+        found.closure.collective,
+        moments_of_collisions(chain.restitution),
+        _damping(chain),
+    )
+    T_f = around.temperature + around.shared - found.closure.collective
+    scale = np.append(scales(cells, around._replace(temperature=T_f)), np.ones(size - 1))
+    h = response.stationary() * np.outer(scale, scale)
+    # Of independent points in their order, as evenly distributed ones have it.
+    i = np.arange(1, size + 1)
+    bridge = np.minimum.outer(i, i) * (size + 1 - np.maximum.outer(i, i))
+    local = np.sqrt(own.position_variance / np.diag(bridge))
+    h[:size, :size] += bridge * np.outer(local, local)
+    step = expm(
+        response.generator * scale[:, None] / scale * STEP * np.sqrt(chain.stiffness / chain.mass)
+    )
+    states = [waves_of(h[:, :size])]
+    for _ in range(NUMBER - 1):
+        states.append(step @ states[-1])
+    return [damping(np.array([waves_of(each[:size].T)[q, q] for each in states])) for q in (0, 1)]
+
+
+@pytest.mark.compiled
+@pytest.mark.validate
+def test_long_waves_are_damped_as_in_a_simulation():
+    """Without the relaxing stress the damping is too small by a quarter."""
+    chain = Chain(size=100, restitution=0.4)
+    run = simulate(
+        chain, duration=12_000, every=STEP, seed=3, observe="snapshots", threads=1, progress=False
+    )
+    moved = waves_of(run.position.values[0] - run.position.values[0].mean(axis=0))
+    lagged = [(moved[: len(moved) - lag] * moved[lag:]).mean(axis=0) for lag in range(NUMBER)]
+    simulated = [damping(each) for each in np.transpose(lagged)]
+    np.testing.assert_allclose(predicted(chain), simulated, rtol=0.15)
