@@ -14,7 +14,6 @@ import sys
 from collections.abc import Iterator
 
 import numpy as np
-from studies.stationary_errors import largest, pooled, simulated_widths
 
 import crazybilliards as cb
 from crazybilliards.kinetic import accuracy
@@ -22,6 +21,7 @@ from crazybilliards.kinetic.correlations.cells import make_cells
 from crazybilliards.kinetic.correlations.closure import collective_variance
 from crazybilliards.kinetic.correlations.stationary import _agree
 from crazybilliards.kinetic.correlations.stationary_result import rods
+from studies.stationary_errors import largest, pooled, simulated_widths
 
 NUMBER = 24
 ACCURACY, LIMIT = 0.0029, 0.01
