@@ -1,12 +1,13 @@
 /* The chain: hard rods on springs, kicked by noise, that collide. One step is that of the package
-   (particles/stepping.py): half a kick, free flight with collisions, half a kick.
+   (particles/stepping.py): half a kick, free flight with collisions, half a kick. Elastic rods on
+   linear springs with one common anchor are flown exactly (particles/laws/exact_flight.py).
 
-   Units: R half a rod's length, M mass, T time. Everything is computed in the reduced coordinate
-   y_i = x_i - 2R (i - (L+1)/2), in which rods are points that may touch but not pass. */
+   Everything is computed in the reduced coordinate y_i = x_i - 2R (i - (L+1)/2), in which rods are
+   points that may touch but not pass. */
 "use strict";
 
 const ChainPhysics = (() => {
-  const RADIUS = 1, MASS = (4 * Math.PI) / 3, STIFFNESS = 1;
+  const { RADIUS, MASS, STIFFNESS, exponent, pull, freeWidth, timeStep, propagator } = ChainScales;
   // At e = 0 one kick a step leaves rods in contact too long. Stronger kicks of rods in contact make
   // up for it, up to the restitution at which contacts still collapse (docs/particles.md).
   const CLOSED_KICK = 1.224, CRITICAL_RESTITUTION = Math.exp(-Math.PI / Math.sqrt(3));
@@ -37,40 +38,14 @@ const ChainPhysics = (() => {
     };
   }
 
-  // -- scales of a chain {size, restitution, amplitude, damping, gap} ---------------------------
-
-  /* W = A/sqrt(2 m gamma), the velocity width of a rod that meets no other. */
-  const freeWidth = (chain) => chain.amplitude / Math.sqrt(2 * MASS * chain.damping);
-
-  /* s = sqrt(T/k), the standard deviation of the displacement of a rod that meets no other. */
-  const thermalLength = (chain) => freeWidth(chain) * Math.sqrt(MASS / STIFFNESS);
-
-  /* The time in which a rod that meets no other forgets where it was and how fast. */
-  function relaxationTime(chain) {
-    const half = chain.damping / (2 * MASS), stiff = STIFFNESS / MASS;
-    return half * half <= stiff ? 1 / half : (half + Math.sqrt(half * half - stiff)) / stiff;
-  }
-
-  /* The package's default step: it resolves spring and damping and, for e != 1, the noise. */
-  function timeStep(chain) {
-    const e = chain.restitution, rate = Math.sqrt(STIFFNESS / MASS);
-    const step = 0.05 / Math.max(rate, chain.damping / MASS);
-    if (e === 1 || chain.amplitude === 0) return step;
-    let cooling = 0; // an estimate of how much collisions cool the centre
-    if (e < 1) {
-      const span = (chain.gap * chain.size) / (2.5 * thermalLength(chain));
-      const neighbours = chain.size / (1 + span);
-      cooling = (0.1 + 0.14 * e ** 4) * (1 - e * e) * neighbours * ((rate * MASS) / chain.damping);
-    }
-    return Math.min(step, (0.09 * MASS) / (2 * chain.damping * (1 + cooling)));
-  }
-
-  /* Rods at rest at their anchors. `held`: the rod that a hand holds, -1 if none. */
+  /* Rods at rest at their anchors. `held`: the rod that a hand holds, -1 if none. `met`: where rods
+     have met; whoever reads it clears it. */
   function makeState(chain, seed) {
     const size = chain.size;
     const state = {
       y: new Float64Array(size), v: new Float64Array(size), anchors: new Float64Array(size),
       kicks: new Float64Array(size), due: new Float64Array(size), joined: new Uint8Array(size),
+      met: new Uint8Array(size),
       held: -1, time: 0, collisions: 0, diverged: false, normal: makeNoise(seed),
     };
     setChain(state, chain);
@@ -84,6 +59,10 @@ const ChainPhysics = (() => {
     const middle = (chain.size - 1) / 2;
     for (let i = 0; i < chain.size; i++) state.anchors[i] = chain.gap * (i - middle);
   }
+
+  /* Whether the rods are independent oscillators that swap names when they meet. */
+  const independent = ({ chain, held }) =>
+    chain.restitution === 1 && chain.gap === 0 && exponent(chain) === 2 && held < 0;
 
   const position = (state, i) => state.y[i] + 2 * RADIUS * (i - (state.y.length - 1) / 2);
 
@@ -116,13 +95,14 @@ const ChainPhysics = (() => {
     const { y, v, anchors, kicks } = state;
     const { decay, noise } = part === WHOLE ? step.whole : step.half;
     const before = part === FIRST ? 0 : step.pull, after = part === LAST ? 0 : step.pull;
+    const n = exponent(state.chain);
     for (let i = 0; i < y.length; i++) kicks[i] = state.normal();
     if (part !== LAST && step.closed > 1)
       strengthen(y, kicks, part === FIRST ? step.closedHalf : step.closed);
     for (let i = 0; i < y.length; i++) {
       if (i === state.held) continue;
-      const displacement = y[i] - anchors[i];
-      v[i] = decay * (v[i] - before * displacement) - after * displacement + noise * kicks[i];
+      const force = pull(y[i] - anchors[i], n);
+      v[i] = decay * (v[i] - before * force) - after * force + noise * kicks[i];
     }
   }
 
@@ -143,17 +123,35 @@ const ChainPhysics = (() => {
      exchanged their names. So all fly freely, and pairs (y, v) are sorted by y. */
   function driftBySorting(state, duration) {
     const { y, v } = state;
-    for (let i = 0; i < y.length; i++) {
-      const here = y[i] + duration * v[i], speed = v[i];
+    for (let i = 0; i < y.length; i++) y[i] += duration * v[i];
+    sort(state);
+  }
+
+  function sort(state) {
+    const { y, v, met } = state;
+    for (let i = 1; i < y.length; i++) {
+      const here = y[i], speed = v[i];
       let j = i;
       for (; j > 0 && y[j - 1] > here; j--) {
         y[j] = y[j - 1];
         v[j] = v[j - 1];
+        met[j - 1] = 1;
         state.collisions++;
       }
       y[j] = here;
       v[j] = speed;
     }
+  }
+
+  /* Fly independent rods over any time, exactly. */
+  function flyExactly(state, { yy, yv, vy, vv, noise, shared, own }) {
+    const { y, v, normal } = state;
+    for (let i = 0; i < y.length; i++) {
+      const kick = normal(), here = y[i], speed = v[i];
+      y[i] = yy * here + yv * speed + shared * kick + own * normal();
+      v[i] = vy * here + vv * speed + noise * kick;
+    }
+    sort(state);
   }
 
   /* Any e: the contact that closes first, then the next. y holds where a point with its present
@@ -203,7 +201,8 @@ const ChainPhysics = (() => {
   /* Let the rods left and right of a contact collide, with all that stick to them: momentum stays,
      and the relative velocity changes by -e. Return the outermost rods of the two clusters. */
   function collide(state, contact, now, step) {
-    const { v, joined, held, chain } = state;
+    const { y, v, joined, met, held, chain } = state;
+    met[contact] = 1;
     let a = contact, b = contact + 1;
     while (a > 0 && joined[a - 1]) a--;
     while (joined[b]) b++;
@@ -220,16 +219,23 @@ const ChainPhysics = (() => {
     // much more from them than by the half kick at the beginning, and the one at the end takes it
     // back. So the true relative velocity rebounds.
     const alone = a === contact && b === contact + 1 && held !== a && held !== b;
-    const ahead = alone ? (STIFFNESS / MASS) * chain.gap * (now - step.duration / 2) : 0;
+    const ahead = alone && chain.gap > 0
+      ? springsAhead(state, contact, y[contact] + vLeft * now, now - step.duration / 2) : 0;
     const rebound = e * (vLeft - vRight - ahead), merges = rebound <= step.mergeSpeed;
     const apart = merges ? 0 : Math.max(rebound - ahead, 0);
     setVelocities(state, a, contact, common - apart * share, now);
     setVelocities(state, contact + 1, b, common + apart * (1 - share), now);
     if (merges) {
       joined[contact] = 1;
-      for (let i = a; i <= b; i++) state.y[i] = state.y[contact];
+      for (let i = a; i <= b; i++) y[i] = y[contact];
     }
     return [a, b];
+  }
+
+  /* How much more the springs of two rods that meet `here` give one of them in this time. */
+  function springsAhead({ anchors, chain }, contact, here, time) {
+    const n = exponent(chain), force = (i) => pull(here - anchors[i], n);
+    return (STIFFNESS / MASS) * (force(contact) - force(contact + 1)) * time;
   }
 
   /* From `now` on the rods `from` to `to` have this velocity. */
@@ -244,6 +250,12 @@ const ChainPhysics = (() => {
 
   /* Take so many steps of this duration. The state is that in the middle of a kick. */
   function advance(state, duration, steps) {
+    state.time += duration * steps;
+    if (independent(state)) {
+      const step = propagator(state.chain, duration);
+      for (let taken = 0; taken < steps; taken++) flyExactly(state, step);
+      return;
+    }
     const step = makeStep(state.chain, duration);
     const sorting = state.chain.restitution === 1 && state.chain.gap === 0 && state.held < 0;
     for (let taken = 0; taken < steps && !state.diverged; taken++) {
@@ -252,19 +264,25 @@ const ChainPhysics = (() => {
       else driftInOrder(state, step);
     }
     kick(state, step, LAST);
-    state.time += duration * steps;
+  }
+
+  /* Go on for a time, in as few steps as are good. */
+  function go(state, duration) {
+    const steps = independent(state) ? 1 : Math.ceil(duration / timeStep(state.chain) - 1e-9);
+    advance(state, duration / steps, steps);
   }
 
   /* Kinetic and spring energy of all rods [M R^2/T^2]. */
   function energy(state) {
+    const n = exponent(state.chain);
     let total = 0;
     for (let i = 0; i < state.y.length; i++)
-      total += MASS * state.v[i] ** 2 + STIFFNESS * (state.y[i] - state.anchors[i]) ** 2;
-    return total / 2;
+      total += (MASS * state.v[i] ** 2) / 2 + (STIFFNESS * Math.abs(state.y[i] - state.anchors[i]) ** n) / n;
+    return total;
   }
 
   return {
-    RADIUS, MASS, STIFFNESS, makeNoise, freeWidth, thermalLength, relaxationTime, timeStep,
-    makeState, setChain, position, makeStep, driftBySorting, driftInOrder, advance, energy,
+    ...ChainScales, makeNoise, makeState, setChain, position, makeStep, driftBySorting, driftInOrder, advance, go,
+    energy,
   };
 })();
