@@ -3,9 +3,11 @@
 import importlib
 import re
 import runpy
+from html import escape
 from pathlib import Path
 
 import pytest
+import qr_code
 
 DOCS = Path(__file__).parent.parent / "docs"
 REFERENCE = DOCS / "api"
@@ -68,3 +70,9 @@ def test_a_power_of_a_modulus_is_of_all_of_it(power):
 
     written = runpy.run_path(str(DOCS / "conf.py"))["mathml"](math("", power))
     assert re.search(r"<msup>\s*<mrow>.*\|.*\|.*</mrow>", written, re.DOTALL)
+
+
+def test_the_qr_code_leads_to_the_documentation_that_the_project_names():
+    """If it does not, draw it again: python docs/figures/qr_code.py."""
+    picture = (DOCS / "figures" / "qr_code.svg").read_text(encoding="utf-8")
+    assert f"<title>{escape(qr_code.address())}</title>" in picture

@@ -4,7 +4,6 @@ import csv
 import inspect
 import pickle
 import re
-import sys
 from dataclasses import FrozenInstanceError
 from importlib import import_module
 from pathlib import Path
@@ -148,11 +147,3 @@ def test_an_option_that_is_a_symbol(option, said, capsys, monkeypatch):
     line = capsys.readouterr().err
     assert said in line
     assert line.count("\n") == 1
-
-
-def test_without_panel_the_python_to_install_it_with_is_named(capsys, monkeypatch):
-    monkeypatch.setitem(sys.modules, "panel", None)
-    monkeypatch.setattr("sys.argv", ["crazybilliards", "explore"])
-    with pytest.raises(SystemExit):
-        main()
-    assert f"{sys.executable} -m pip install" in capsys.readouterr().err

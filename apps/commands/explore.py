@@ -5,7 +5,6 @@ Only the standard library and typer are imported up here, so that ``--help`` ans
 
 from __future__ import annotations
 
-import sys
 from typing import Annotated
 
 import typer
@@ -18,6 +17,10 @@ def command(
     address: Annotated[
         str, typer.Option(help="Address to serve it at; the default is this machine only.")
     ] = "127.0.0.1",
+    allow_host: Annotated[
+        list[str] | None,
+        typer.Option(help="Name of a hub that forwards to the page; may be repeated."),
+    ] = None,
     open_to_network: Annotated[
         bool, typer.Option("--open-to-network", help="Allow an address that other machines reach.")
     ] = False,
@@ -27,21 +30,15 @@ def command(
 ) -> None:
     """Watch a chain move in the browser and turn its knobs, theory beside it.
 
-    Sliders for the parameters, rods in motion, density and velocity widths building up over the
-    theories, presets for figures of the paper. The address of the page restores its setting.
-    Runs until Ctrl-C. Needs Panel: python -m pip install 'crazybilliards[explore]'.
+    Sliders for the parameters, rods in motion, density, velocity widths and energy as they are
+    measured, challenges, presets for figures of the paper, and the best theory on request. The
+    address of the page restores its setting. Runs until Ctrl-C.
 
     Example: crazybilliards explore --port 5007
     """
-    try:
-        import panel  # noqa: F401
-    except ImportError as error:
-        raise ValueError(
-            f"Panel is not installed: {sys.executable} -m pip install 'crazybilliards[explore]'"
-        ) from error
     from crazybilliards.apps.explore.server import serve
 
     try:
-        serve(port, address, open_browser=browser, open_to_network=open_to_network)
+        serve(port, address, browser, open_to_network, allow_host or ())
     except KeyboardInterrupt as error:
         raise typer.Exit(INTERRUPTED) from error

@@ -1,5 +1,1 @@
-"""The page of ``crazybilliards explore``.
-
-``session``, ``sums`` and ``presets`` need only this package. The other modules may need Panel, the
-extra ``explore``, so this file imports nothing.
-"""
+"""The page in the browser, ``crazybilliards explore``: its files in ``page``, server and theory."""

@@ -1,38 +1,155 @@
-"""Serve the page on the loopback address.
+"""Serve the page of ``crazybilliards explore``, and the theory of its chain on request.
 
-Other machines and other sites in the browser could reach an open port. The server therefore
-listens on the loopback address unless a flag allows another one, accepts websockets only from
-pages it served, and answers requests under another host name with the right address.
+Other machines, and other sites in the same browser, could reach an open port. The server therefore
+listens on the loopback address unless a flag allows another one, and answers only under names of
+this machine and those that it was given, under any port, which may have been forwarded. Theories
+are solved for the page alone: a page of another site cannot send its header. A fixed list of files
+is served, nothing is written, and nothing is kept of a visitor.
 """
 
 from __future__ import annotations
 
 import ipaddress
-import logging
-import os
+import json
 import re
+import select
 import socket
 import sys
 import webbrowser
-from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
-from threading import Lock
+from collections.abc import Collection
+from functools import cache, partial
+from http import HTTPStatus
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from importlib.resources import files
+from typing import Any
+from urllib.parse import parse_qsl, urlsplit
 
-import panel as pn
-from bokeh.server.server import Server
-from bokeh.settings import settings
-from tornado.web import RequestHandler
-from tornado.websocket import WebSocketClosedError
+from crazybilliards.apps.explore.theory import solve
+from crazybilliards.model.checks import shown
 
-from crazybilliards.apps.explore.layout import NOTEBOOKS, prepare
-from crazybilliards.apps.explore.page import make_page
-from crazybilliards.apps.explore.session import Session
-from crazybilliards.model import Chain
-from crazybilliards.model.process import announced
+_PAGE = files("crazybilliards.apps.explore") / "page"
+_KINDS = {"css": "text/css", "js": "text/javascript"}
+_LOCAL = frozenset({"localhost", "127.0.0.1", "[::1]"})
+_NAME = re.compile(r"(\[[0-9a-f:.]+\]|[a-z0-9._-]+)(:\d{1,5})?")
+_HEADERS = {
+    "Content-Security-Policy": "default-src 'self'; img-src 'self' data:; base-uri 'none'; "
+    "form-action 'none'; frame-ancestors 'none'; object-src 'none'",
+    "X-Content-Type-Options": "nosniff",
+    "Cross-Origin-Resource-Policy": "same-origin",
+    "Referrer-Policy": "no-referrer",
+    "Cache-Control": "no-store",
+}
+
+
+@cache
+def _content(path: str) -> tuple[str, bytes] | None:
+    """Return the kind and the content of what is served at a path, if anything is."""
+    if path == "/":
+        chain = (_PAGE / "chain.html").read_text("utf-8")
+        chain = chain.replace('id="chain"', 'id="chain" data-theory="theory"')
+        page = (_PAGE / "around.html").read_text("utf-8").replace("<!-- chain -->", chain)
+        return "text/html; charset=utf-8", page.encode()
+    for each in _PAGE.iterdir():
+        kind = _KINDS.get(each.name.rpartition(".")[2])
+        if kind and path == f"/_static/{each.name}":
+            return f"{kind}; charset=utf-8", each.read_bytes()
+    return None
+
+
+class _Handler(BaseHTTPRequestHandler):
+    """Answer one visitor; ``names`` are the hosts under which it answers."""
+
+    protocol_version = "HTTP/1.1"
+    timeout = 30  # s that a visitor may be silent
+    server_version, sys_version = "crazybilliards", ""
+
+    def __init__(self, names: Collection[str], *arguments: Any) -> None:
+        self._names = names
+        super().__init__(*arguments)
+
+    def do_GET(self) -> None:
+        """Send the page, a file of it, or a theory."""
+        if not self._is_named_rightly():
+            return
+        try:
+            path, query = urlsplit(self.path)[2:4]
+        except ValueError:
+            path = query = ""
+        if path == "/theory":
+            self._send_theory(query)
+        elif (found := _content(path)) is not None:
+            self._send(HTTPStatus.OK, *found)
+        else:
+            self._say(HTTPStatus.NOT_FOUND, "Nothing is here.")
+
+    def _is_named_rightly(self) -> bool:
+        """Return whether the request names a host that is answered; otherwise say which ones."""
+        named = _NAME.fullmatch(",".join(self.headers.get_all("Host", [])).lower())
+        if named is None:
+            self._say(HTTPStatus.BAD_REQUEST, "The request does not name one host.")
+        elif named[1] not in self._names:
+            self._say(
+                HTTPStatus.MISDIRECTED_REQUEST,
+                f"The page answers at http://localhost{named[2] or ''}/ and not under the name "
+                f"{named[1]}. If that is the name of your hub, start it with: crazybilliards "
+                f"explore --allow-host {named[1]}",
+            )
+        return named is not None and named[1] in self._names
+
+    def _send_theory(self, query: str) -> None:
+        sender = self.headers.get("X-Requested-With"), self.headers.get("Sec-Fetch-Site")
+        if sender not in (("chain", "same-origin"), ("chain", None)):
+            self._say(HTTPStatus.FORBIDDEN, "Theories are solved for the page only.")
+            return
+        answer = solve(dict(parse_qsl(query, keep_blank_values=True)), self._is_gone)
+        if answer is None:
+            self.close_connection = True  # nobody waits for it
+        else:
+            busy = answer.pop("busy", False)
+            status = HTTPStatus.SERVICE_UNAVAILABLE if busy else HTTPStatus.OK
+            self._send(status, "application/json", json.dumps(answer).encode())
+
+    def _is_gone(self) -> bool:
+        """Return whether the browser has closed the connection."""
+        readable = select.select([self.connection], [], [], 0)[0]
+        return bool(readable) and not self.connection.recv(1, socket.MSG_PEEK)
+
+    def _say(self, status: HTTPStatus, text: str) -> None:
+        self._send(status, "text/plain", f"{text}\n".encode())
+
+    def _send(self, status: HTTPStatus, kind: str, content: bytes) -> None:
+        self.send_response(status)
+        self.send_header("Content-Type", kind)
+        self.send_header("Content-Length", str(len(content)))
+        self.end_headers()
+        self.wfile.write(content)
+
+    def end_headers(self) -> None:
+        """Send the headers that every answer has, errors too."""
+        for name, value in _HEADERS.items():
+            self.send_header(name, value)
+        super().end_headers()
+
+    def log_message(self, *_: object) -> None:
+        """Print nothing."""
+
+
+class _Server(ThreadingHTTPServer):
+    daemon_threads = True
+    request_queue_size = 128
+
+    def handle_error(self, request: Any, client_address: Any) -> None:
+        """Print nothing of visitors that have gone; other errors are shown."""
+        if not isinstance(sys.exception(), OSError):
+            super().handle_error(request, client_address)
 
 
 def serve(
-    port: int, address: str, *, open_browser: bool = False, open_to_network: bool = False
+    port: int,
+    address: str,
+    open_browser: bool = False,
+    open_to_network: bool = False,
+    hosts: Collection[str] = (),
 ) -> None:
     """Serve the page until Ctrl-C.
 
@@ -41,99 +158,43 @@ def serve(
     port
         0 to 65535; 0: any that is free.
     address
-        An IPv4 address or a name of this machine. Only pages loaded from this very address may
-        open the websocket, so that no other site in the same browser can.
+        An IPv4 address or a name of this machine.
     open_browser
         Whether to open the page.
     open_to_network
         Whether the address may be one that other machines reach.
+    hosts
+        More names under which it answers, such as that of a hub that forwards requests to it.
 
-    Raises
-    ------
-    KeyboardInterrupt
-        On Ctrl-C.
-    ValueError
-        If the address is not one of this machine, if it stands for all addresses, if it needs
-        ``open_to_network``, or if the port is taken. The port is not opened in these cases.
+    Raises ValueError if one of them is impossible, and KeyboardInterrupt on Ctrl-C.
     """
-    address = address.lower()  # as browsers name it
     number = _look_up(address)
+    if not 0 <= port <= 65535:
+        raise ValueError(f"port must be between 0 and 65535, got {port}")
+    for host in hosts:
+        if not re.fullmatch(r"[a-zA-Z0-9._-]+", host):
+            raise ValueError(f"allow-host must be a name without a port, got {shown(host)}")
     if not number.is_loopback and not open_to_network:
         raise ValueError(
-            f"other machines reach address {address}, and the page asks for no password: if that "
-            "is meant, add --open-to-network"
+            f"other machines reach {address}, and the page asks for no password: if that is meant, "
+            "add --open-to-network"
         )
-    port = _free_port(address, str(number), port)
+    names = _LOCAL | {name.lower() for name in (address, str(number), *hosts)}
+    try:
+        server = _Server((str(number), port), partial(_Handler, names))
+    except OSError as error:
+        raise ValueError(f"cannot serve at {address}:{port}: {error.strerror}") from error
     if not number.is_loopback:
-        print(
-            f"crazybilliards: warning: anybody who can reach {address} can open the page and use "
-            "this machine's processor; the page asks for no password",
-            file=sys.stderr,
+        warning = (
+            f"whoever reaches {address} can use this machine's processor; there is no password"
         )
-    with announced(True):
-        Session(Chain(size=2)).advance(1.0)
-    prepare()
-    _expect_closed_pages()
-    turn = Lock()
-    with ThreadPoolExecutor(1) as threads:
-
-        def new_page() -> pn.viewable.Viewable:  # Panel calls functions only, no partial()
-            return make_page(threads, turn)
-
-        server = _make_server(new_page, address, str(number), port)
-        server.start()
-        url = f"http://{address}:{port}/"
+        print(f"crazybilliards: warning: {warning}", file=sys.stderr)
+    with server:
+        url = f"http://{address.lower()}:{server.server_port}/"
         print(f"{url}  (Ctrl-C ends it)", flush=True)
         if open_browser:
             webbrowser.open(url)
-        server.io_loop.start()  # until Ctrl-C, which Panel has made stop it
-        raise KeyboardInterrupt
-
-
-def _make_server(
-    new_page: Callable[[], pn.viewable.Viewable], address: str, number: str, port: int
-) -> Server:
-    """Return a server that answers only under these two names of its address."""
-    origins = [f"{name}:{port}" for name in (address, number)]
-    settings.allowed_ws_origin.set_value(origins)  # whatever BOKEH_ALLOW_WS_ORIGIN says
-    server = pn.serve(
-        {"/": new_page},
-        port=port,
-        address=number,
-        websocket_origin=origins,
-        title="crazybilliards explore",
-        show=False,
-        start=False,
-        verbose=False,
-        static_dirs={"notebooks": str(NOTEBOOKS)} if NOTEBOOKS.is_dir() else {},
-    )
-    others = f"(?!({re.escape(address)}|{re.escape(number)})$).*"
-    refusal = (".*", _WrongName, {"url": f"http://{address}:{port}/"})
-    # Neither Panel nor Bokeh has a public way to their tornado application.
-    server._tornado.add_handlers(others, [refusal])
-    return server
-
-
-def _expect_closed_pages() -> None:
-    """Silence errors about frames that were sent to a closed page."""
-
-    def worth_saying(record: logging.LogRecord) -> bool:
-        return not (record.exc_info and isinstance(record.exc_info[1], WebSocketClosedError))
-
-    logging.getLogger("asyncio").addFilter(worth_saying)
-    logging.getLogger("bokeh.server.views.ws").setLevel(logging.ERROR)
-
-
-class _WrongName(RequestHandler):
-    """Tell a client that used another host name where the page is."""
-
-    def initialize(self, url: str) -> None:
-        self._url = url
-
-    def prepare(self) -> None:
-        self.set_status(421)
-        self.set_header("Content-Type", "text/plain")
-        self.finish(f"The page answers only at {self._url}\n")
+        server.serve_forever()
 
 
 def _look_up(address: str) -> ipaddress.IPv4Address:
@@ -141,26 +202,8 @@ def _look_up(address: str) -> ipaddress.IPv4Address:
     try:
         number = ipaddress.IPv4Address(socket.gethostbyname(address))
     except (OSError, UnicodeError) as error:
-        raise ValueError(
-            f"cannot serve at {address} (an IPv4 address or a name is needed): {error}"
-        ) from error
+        needed = "an IPv4 address or a name is needed"
+        raise ValueError(f"cannot serve at {address} ({needed}): {error}") from error
     if number.is_unspecified:
-        raise ValueError(
-            f"address must be one address of this machine, got {address!r}, which is all of them"
-        )
+        raise ValueError(f"address must be one of this machine, got {address!r}: all of them")
     return number
-
-
-def _free_port(address: str, number: str, port: int) -> int:
-    """Return the port, or a free one for 0; raise if it cannot be bound."""
-    if not 0 <= port <= 65535:
-        raise ValueError(f"port must be between 0 and 65535, got {port}")
-    with socket.socket(socket.AF_INET, socket.SOCK_STREAM) as probe:
-        if os.name == "posix":
-            # As the server does: a port that was served a minute ago is not taken.
-            probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        try:
-            probe.bind((number, port))
-        except OSError as error:
-            raise ValueError(f"cannot serve at {address}:{port}: {error.strerror}") from error
-        return int(probe.getsockname()[1])

@@ -17,19 +17,6 @@ FLAGS = (
     "--window-size=1400,1040 --hide-scrollbars"
 )
 COMMAND = [sys.executable, "-c", "from crazybilliards.apps.commands.line import main; main()"]
-SOURCE = "Bokeh.documents[0].get_model_by_name(arguments[0])"
-DEEP = """
-const found = [];
-const unsaid = ['STYLE', 'LINK'];
-const said = each => each.shadowRoot ? [...each.shadowRoot.children]
-  .filter(child => !unsaid.includes(child.tagName)).map(said).join(' ') : each.innerText;
-const walk = root => root.querySelectorAll('*').forEach(each => {
-  if (each.matches(arguments[0])) found.push(each);
-  if (each.shadowRoot) walk(each.shadowRoot);
-});
-walk(document);
-return found;
-"""
 
 
 class Server(str):
@@ -90,49 +77,6 @@ def show_as(browser: Any, width: int, height: int, *, dark: bool = False) -> Non
     browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [scheme]})
     metrics = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 500}
     browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", metrics)
-
-
-def visit(browser: Any, address: str, query: str = "") -> None:
-    """Open the page and wait until it moves."""
-    browser.get("about:blank")
-    browser.get(address + query)
-    ready = f"return !!(window.Bokeh && Bokeh.documents.length && {SOURCE})"
-    until(lambda: browser.execute_script(ready, "rods"))
-    until(lambda: len(column(browser, "rods", "x")) > 0)
-
-
-def column(browser: Any, source: str, name: str) -> list[float]:
-    """Return a column of one of the page's sources."""
-    script = f"return Array.from({SOURCE}.data[arguments[1]])"
-    return list(browser.execute_script(script, source, name))
-
-
-def has(browser: Any, source: str) -> bool:
-    """Whether one of the pictures shown has this source."""
-    return bool(browser.execute_script(f"return !!{SOURCE}", source))
-
-
-def elements(browser: Any, selector: str) -> list[Any]:
-    """Return the elements of the page that match, shadow trees included."""
-    return list(browser.execute_script(DEEP, selector))
-
-
-def texts(browser: Any, selector: str) -> list[str]:
-    """Return what the elements that match say, all at one moment."""
-    return list(browser.execute_script(_with_found("found.map(said)"), selector))
-
-
-def press(browser: Any, *names: str) -> None:
-    """Press the buttons of these names, or whose names begin like these, one after another."""
-    script = """[...arguments].slice(1).forEach(name => (
-      found.find(each => each.innerText.trim() === name) ??
-      found.find(each => each.innerText.trim().startsWith(name))
-    ).click())"""
-    browser.execute_script(_with_found(script), "button", *names)
-
-
-def _with_found(expression: str) -> str:
-    return DEEP.replace("return found;", f"return {expression};")
 
 
 def errors(browser: Any) -> list[str]:

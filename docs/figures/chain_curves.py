@@ -1,6 +1,6 @@
-"""Compute the theory's velocity widths that the page docs/chain.md draws over its chain.
+"""Compute the theory's velocity widths that the chain's page draws without a server.
 
-Run it to write docs/chain/curves.js. It solves the best theory for the chains of the page's
+Run it to write apps/explore/page/curves.js. It solves the best theory for the chains of the page's
 challenges, and finds the damping at which the profile of the last one turns. It takes a minute.
 """
 
@@ -14,13 +14,14 @@ from crazybilliards.comparison.stationary_theories import best_theory
 from crazybilliards.comparison.widths import border_width, central_width
 from crazybilliards.model import Chain
 
-CURVES = Path(__file__).parent.parent / "chain" / "curves.js"
-SHOWN = ("size", "restitution", "amplitude", "damping", "gap")
+CURVES = Path(__file__).parents[2] / "apps" / "explore" / "page" / "curves.js"
+SHOWN = ("size", "restitution", "damping", "gap")  # all have A = 1 and linear springs
 TURNING = Chain(size=60, restitution=1.05)  # at which damping is it as hot outside as inside?
-DAMPINGS = (2.5, 3.0, 3.5, 4.0, 4.5, 5.0)
+DAMPINGS = (2.5, 3.0, 3.5, 4.0, 5.0)
 PUSHED = Chain(size=20, restitution=0.9, damping=0.3, gap=0.5)
-DISSIPATIVE = tuple(
-    Chain(size=size, restitution=e) for size in (20, 40, 60) for e in (0.0, 0.5, 0.8, 0.9)
+DISSIPATIVE = (
+    Chain(size=20, restitution=0.9),
+    *(Chain(size=60, restitution=e) for e in (0.0, 0.5, 0.8, 0.9)),
 )
 
 
@@ -30,10 +31,17 @@ def solve(chain: Chain) -> xr.Dataset:
 
 
 def stored(chain: Chain, theory: xr.Dataset) -> dict[str, object]:
-    """Return a chain and the widths of the rods of its left half, in free widths."""
+    """Return a chain, the errors of its theory and the widths of its left half, in free widths."""
     widths = theory.velocity_width.values / chain.free_velocity_width
     half = widths[: (chain.size + 1) // 2]
-    return {name: getattr(chain, name) for name in SHOWN} | {"half": [round(w, 3) for w in half]}
+    best = best_theory(chain)
+    errors = best.accuracy(chain)
+    return {name: getattr(chain, name) for name in SHOWN} | {
+        "title": best.title,
+        "error": None if np.isnan(errors.velocity_width) else round(errors.velocity_width, 4),
+        "border": None if np.isnan(errors.border) else round(errors.border, 4),
+        "half": [round(w, 3) for w in half],
+    }
 
 
 def turning(theories: dict[float, xr.Dataset]) -> float:
@@ -47,7 +55,7 @@ def main() -> None:
     theories = {damping: solve(TURNING.replace(damping=damping)) for damping in DAMPINGS}
     curves = [stored(TURNING.replace(damping=g), each) for g, each in theories.items()]
     curves += [stored(chain, solve(chain)) for chain in (PUSHED, *DISSIPATIVE)]
-    lines = ",\n".join(f"    {json.dumps(each)}" for each in curves)
+    lines = ",\n".join(f"    {json.dumps(each, separators=(',', ':'))}" for each in curves)
     CURVES.write_text(
         "/* Velocity widths by the best theory, of the rods of the left half, in free widths.\n"
         "   Written by docs/figures/chain_curves.py. */\n"

@@ -1,49 +1,20 @@
-"""Take pictures of the page docs/chain.md in a headless Chromium.
+"""Take pictures of the chain to play with in a headless Chromium.
 
     python docs/figures/chain_pictures.py FOLDER
 
 writes the page at two widths, light and dark, in its first second and after ten, and the push,
-which is ``chain.png`` of this folder. No built pages are needed: the page is made of the block of
-HTML in docs/chain.md and the files of docs/chain/.
+which is ``chain.png`` of this folder. ``crazybilliards explore`` serves the page.
 """
 
 import argparse
 import base64
-import re
-import tempfile
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from browser import chromium, show_as
+from browser import chromium, served, show_as
 
-DOCS = Path(__file__).parent.parent
 SCREENS = {"desktop": (1280, 900), "phone": (390, 844)}
-AROUND = """<!doctype html><html lang="en"><head>
-<meta charset="utf-8"><title>A chain to push</title>
-<meta name="viewport" content="width=device-width"><style>
-body {{ max-width: 736px; margin: 8px auto; }}
-body[data-theme=dark] {{ background: #131416; }}
-@media (prefers-color-scheme: dark) {{ body:not([data-theme=light]) {{ background: #131416; }} }}
-</style></head><body><main><h1 hidden>A chain to push</h1>{}</main></body></html>"""
-
-
-def page() -> str:
-    """Return the chain's page, without the documentation around it."""
-    text = (DOCS / "chain.md").read_text(encoding="utf-8")
-    [block] = re.findall(r"```\{raw\} html\n(.*?)```", text, re.DOTALL)
-    return AROUND.format(block.replace("_static/", f"{(DOCS / 'chain').as_uri()}/"))
-
-
-@contextmanager
-def written() -> Iterator[str]:
-    """Write the page; yield its address."""
-    with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / "page.html"
-        file.write_text(page(), encoding="utf-8")
-        yield file.as_uri()
 
 
 def keep(browser: Any, file: Path, clip: dict[str, float] | None = None) -> None:
@@ -63,9 +34,11 @@ def push(browser: Any, file: Path) -> None:
     browser.refresh()
     # Time runs here and not in the page, so that every picture is the same.
     browser.execute_script(
-        "const chain = ChainControls; chain.pause(); chain.choose(ChainChallenges.list[0]);"
-        "for (let row = 0; row < 60; row++) chain.goOn(); chain.push(0);"
-        "for (let row = 0; row < 95; row++) chain.goOn(); chain.draw();"
+        "const chain = ChainControls, { goOn, push } = ChainRunning;"
+        "document.querySelector('.stage').style.height = '264px';"
+        "chain.pause(); chain.choose(ChainChallenges.list[0]);"
+        "for (let row = 0; row < 60; row++) goOn(); push(0);"
+        "for (let row = 0; row < 95; row++) goOn(); chain.draw();"
     )
     box = "const box = document.querySelector('.stage').getBoundingClientRect();"
     x, y, width, height = browser.execute_script(
@@ -77,7 +50,7 @@ def push(browser: Any, file: Path) -> None:
 def main(folder: Path) -> None:
     """Take the pictures."""
     folder.mkdir(parents=True, exist_ok=True)
-    with written() as address, chromium() as browser:
+    with served() as address, chromium() as browser:
         for name, screen in SCREENS.items():
             for dark in (False, True):
                 show_as(browser, *screen, dark=dark)
@@ -85,7 +58,7 @@ def main(folder: Path) -> None:
                 time.sleep(1)
                 shade = "dark" if dark else "light"
                 keep(browser, folder / f"{name}-{shade}-1s.png")
-                browser.execute_script("ChainControls.push(0)")
+                browser.execute_script("ChainRunning.push(0)")
                 time.sleep(9)
                 keep(browser, folder / f"{name}-{shade}-10s.png")
         show_as(browser, *SCREENS["desktop"])

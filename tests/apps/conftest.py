@@ -6,7 +6,7 @@ import pytest
 from browser import CHROMIUM, DRIVER, chromium, served
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="package")
 def address():
     if os.name == "nt":
         pytest.skip("sends a POSIX signal")

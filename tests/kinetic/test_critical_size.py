@@ -3,16 +3,14 @@
 import numpy as np
 import pytest
 
-from crazybilliards.apps.explore.session import Session
-from crazybilliards.apps.explore.times import Times
 from crazybilliards.comparison.fits import fit_growth
 from crazybilliards.kinetic import critical_damping, critical_restitution, critical_size
 from crazybilliards.kinetic.kinetic_equation.weak_damping import (
     weak_damping_critical_size,
-    weak_damping_growth_holds,
     weak_damping_growth_rate,
 )
 from crazybilliards.model import Chain
+from crazybilliards.particles import simulate
 
 # gamma/sqrt(k m) = 0.1: weakly damped, where the answer is known.
 WEAK = Chain(restitution=1.05, damping=0.1 * np.sqrt(4 * np.pi / 3))
@@ -34,12 +32,6 @@ def test_the_closed_form_is_one_number_everywhere():
     weak = WEAK.replace(damping=1e-4)
     assert weak_damping_critical_size(weak) == pytest.approx(critical_size(weak).value, rel=1e-12)
     driven = Chain(size=100, restitution=1.01, damping=0.4)
-    critical = weak_damping_critical_size(driven)
-    times = Times()
-    times.begin(driven)
-    words = times.explain_divergence([(t, 1e4 * np.exp(0.1 * t)) for t in range(20)])
-    assert f"critical size is {critical:.3g} rods" in words
-    assert f"exp({weak_damping_growth_rate(driven):.2g} t)" in words
     nearly_elastic = driven.replace(restitution=1 + 1e-6)
     below, above = (
         nearly_elastic.replace(size=round(share * weak_damping_critical_size(nearly_elastic)))
@@ -51,7 +43,7 @@ def test_the_closed_form_is_one_number_everywhere():
 # Chains at the borders of where the rate holds.
 GROWING = [
     Chain(size=30, restitution=1.03, damping=0.3),
-    Chain(size=50, restitution=1.02, damping=0.5),
+    Chain(size=50, restitution=1.02, damping=0.43),
     Chain(size=100, restitution=1.01, damping=0.1),
     Chain(size=200, restitution=1.005, damping=0.4),
 ]
@@ -60,30 +52,13 @@ GROWING = [
 @pytest.mark.compiled
 @pytest.mark.parametrize("chain", GROWING, ids=lambda chain: f"{chain.size}")
 def test_energies_grow_at_the_rate_of_weak_damping_where_it_holds(chain):
-    assert weak_damping_growth_holds(chain)
+    rate = weak_damping_growth_rate(chain)
     rates = []
     for seed in range(4):
-        session = Session(chain, seed)
-        session.advance(5000.0)
-        assert session.diverged
-        time, energy = np.array(session.energies).T
-        hot = energy > 10 * chain.size * chain.temperature / 2
-        rates.append(fit_growth(time[hot], energy[hot]).rate)
-    assert np.mean(rates) == pytest.approx(weak_damping_growth_rate(chain), rel=0.05)
-
-
-@pytest.mark.parametrize(
-    "beyond",
-    [{"gap": 0.5}, {"spring": "quadratic"}, {"damping": 0.6}, {"restitution": 1.02}, {"size": 61}],
-)
-def test_the_rate_is_not_compared_with_chains_it_is_not_meant_for(beyond):
-    chain = Chain(size=100, restitution=1.01, damping=0.4).replace(**beyond)
-    assert not weak_damping_growth_holds(chain)
-    times = Times()
-    times.begin(chain)
-    words = times.explain_divergence([(t, 1e4 * np.exp(0.1 * t)) for t in range(20)])
-    assert "Theory" not in words
-    assert ("not meant for this chain" in words) == (chain.spring == "linear")
+        run = simulate(chain, duration=25 / rate, average="ensemble", observe="energy", seed=seed)
+        hot = run.kinetic_energy.values > 10 * chain.size * chain.temperature / 2
+        rates.append(fit_growth(run.time.values[hot], run.kinetic_energy.values[hot]).rate)
+    assert np.mean(rates) == pytest.approx(rate, rel=0.05)
 
 
 def test_restitution_and_size_are_one_number():

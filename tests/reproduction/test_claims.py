@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from scipy.stats import norm, t
 
-from crazybilliards.apps.explore.sums import Sums
 from crazybilliards.comparison.distances import distances_in_plot
 from crazybilliards.comparison.widths import border_width, central_width, width_deviation
 from crazybilliards.model import Chain
@@ -143,9 +142,3 @@ def test_the_centre_is_the_same_rods_everywhere():
     double = limit.assign(velocity_width=2 * limit.velocity_width)
     double.velocity_width[:13], double.velocity_width[17:] = 7.0, 7.0
     assert width_deviation(limit, double).centre == pytest.approx(1.0)
-    sums = Sums(chain)
-    v = np.zeros(30)
-    v[13:17] = 3.0
-    sums.add(chain.anchors, v)
-    found = sums.distributions()
-    assert found.middle[np.abs(found.v) < 1].sum() == 0

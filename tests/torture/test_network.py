@@ -249,5 +249,5 @@ assert page.wait(600) == -{int(signal.SIGINT)}
 print(json.dumps(answer))
 """
     answer = json.loads(run(guarded, "-c", reader))
-    assert "static/js/bokeh" in answer
+    assert "_static/controls.js" in answer
     assert loaded(answer) == set()

@@ -25,7 +25,7 @@ def test_help_shows_an_example_and_loads_nothing_heavy(arguments):
         "from crazybilliards.apps.commands.line import main\n"
         "try:\n    main()\n"
         "finally:\n"
-        "    heavy = {'numpy', 'numba', 'scipy', 'matplotlib', 'xarray', 'panel'}\n"
+        "    heavy = {'numpy', 'numba', 'scipy', 'matplotlib', 'xarray'}\n"
         "    heavy &= set(sys.modules)\n"
         "    assert not heavy, heavy\n"
     )

@@ -1,0 +1,171 @@
+/* What moves: rods on their springs, and a strip of where they were. */
+"use strict";
+
+const ChainDrawing = (() => {
+  const P = ChainPhysics;
+  const ROWS = 220; // of the strip
+  const BAND = 62; // height of the rods above the strip, in pixels
+  const AXIS = 30; // height of the axis below it
+  const LEAST = 6; // length of a rod in pixels at which bars mark collisions
+  const FAST = 3; // free velocity widths at which a colour is full
+
+  /* The colours of the page as it is now, light or dark. */
+  function colours(place) {
+    const style = getComputedStyle(place), read = (name) => style.getPropertyValue(name).trim();
+    const rgb = (name) => read(name).split(" ").map(Number);
+    return {
+      ink: read("--ink"), faint: read("--faint"), grey: read("--grey"), exact: read("--exact"),
+      dots: `rgb(${rgb("--left")})`, left: rgb("--left"), rest: rgb("--rest"), right: rgb("--right"),
+      sans: style.fontFamily,
+    };
+  }
+
+  /* Blue for a rod that moves left, orange to the right, pale at rest; v in free widths. */
+  function shade(v, colour) {
+    const share = Math.min(Math.abs(v) / FAST, 1), full = v < 0 ? colour.left : colour.right;
+    return `rgb(${colour.rest.map((rest, k) => Math.round(rest + share * (full[k] - rest)))})`;
+  }
+
+  /* Half of the line that is shown [R]: the anchors and room for some thermal lengths. */
+  function reach(chain) {
+    const anchors = ((2 * P.RADIUS + chain.gap) * (chain.size - 1)) / 2;
+    return anchors + 3 * P.RADIUS + 3.5 * P.thermalLength(chain);
+  }
+
+  class Stage {
+    constructor(canvas) {
+      this.canvas = canvas;
+      this.strip = document.createElement("canvas");
+      this.rows = []; // the last ones, newest first: [positions, velocities in free widths, contacts]
+      this.half = 1;
+    }
+
+    /* Colours or sizes have changed: everything is drawn again. */
+    refresh() {
+      this.colour = colours(this.canvas);
+      const { width } = ChainPlots.fit(this.canvas);
+      this.ratio = window.devicePixelRatio || 1;
+      this.strip.width = Math.round(width * this.ratio);
+      this.strip.height = ROWS;
+      this.rows.forEach((row, age) => this.drawRow(row, age));
+    }
+
+    /* Another chain, or other units: the strip begins anew. */
+    restart(chain) {
+      this.half = reach(chain);
+      this.rows = [];
+      this.refresh();
+    }
+
+    /* Add the present state to the strip, and the contacts where rods have met. */
+    add(state, unit, met) {
+      const x = Float32Array.from(state.y, (_, i) => P.position(state, i));
+      const row = [x, Float32Array.from(state.v, (v) => v / unit), met];
+      this.rows.unshift(row);
+      this.rows.length = Math.min(this.rows.length, ROWS);
+      const outermost = Math.max(-x[0], x[x.length - 1]) + P.RADIUS;
+      if (outermost > this.half && Number.isFinite(outermost)) {
+        this.half = 1.3 * outermost;
+        this.refresh();
+        return;
+      }
+      const pen = this.strip.getContext("2d");
+      pen.globalCompositeOperation = "copy";
+      pen.drawImage(this.strip, 0, 1);
+      pen.globalCompositeOperation = "source-over";
+      this.drawRow(row, 0);
+    }
+
+    drawRow([x, v, met], age) {
+      const pen = this.strip.getContext("2d"), scale = this.strip.width / (2 * this.half);
+      const length = Math.max(2 * P.RADIUS * scale - this.ratio, 1);
+      for (let i = 0; i < x.length; i++) {
+        pen.fillStyle = shade(v[i], this.colour);
+        pen.fillRect((x[i] + this.half) * scale - length / 2, age, length, 1);
+      }
+      if (length < LEAST * this.ratio) return; // bars would hide the rods
+      pen.fillStyle = this.colour.ink;
+      const bar = Math.min(length, 8 * this.ratio);
+      for (const c of met) pen.fillRect(((x[c] + x[c + 1]) / 2 + this.half) * scale - bar / 2, age, bar, 1);
+    }
+
+    /* Draw rods, springs and strip. `age`: the time that the strip spans [T]. */
+    draw(state, unit, age) {
+      const { pen, width, height } = ChainPlots.fit(this.canvas), { colour } = this;
+      const scale = width / (2 * this.half), place = (x) => (x + this.half) * scale;
+      pen.clearRect(0, 0, width, height);
+      pen.imageSmoothingEnabled = false;
+      pen.drawImage(this.strip, 0, BAND, width, height - BAND - AXIS);
+      const length = Math.max(2 * P.RADIUS * scale - 1, 1), rank = (state.y.length - 1) / 2;
+      for (let i = 0; i < state.y.length; i++) {
+        const x = place(P.position(state, i));
+        drawSpring(pen, place((2 * P.RADIUS + state.chain.gap) * (i - rank)), x, length, colour);
+        pen.fillStyle = shade(state.v[i] / unit, colour);
+        pen.fillRect(x - length / 2, 28, length, 24);
+        if (length < 3) continue;
+        pen.strokeStyle = i === state.held ? colour.exact : colour.ink;
+        pen.lineWidth = i === state.held ? 3 : 1;
+        pen.strokeRect(x - length / 2, 28, length, 24);
+      }
+      pen.font = `12px ${colour.sans}`;
+      this.drawAxis(pen, place, width, height);
+      pen.textAlign = "left";
+      label(pen, "now", 4, BAND + 13, colour);
+      label(pen, `${Number(age.toPrecision(2))} T ago`, 4, height - AXIS - 5, colour);
+    }
+
+    drawAxis(pen, place, width, height) {
+      pen.fillStyle = this.colour.ink;
+      pen.textAlign = "center";
+      for (const x of ChainPlots.ticks(-this.half, this.half, width / 70)) {
+        const at = place(x);
+        if (at < 12 || at > width - 12) continue;
+        pen.fillRect(at - 0.5, height - AXIS, 1, 4);
+        pen.fillText(ChainPlots.number(x), at, height - AXIS + 15);
+      }
+      pen.fillText("position x [R]", width / 2, height - 3);
+    }
+
+    /* The rods and the strip as a picture, with the words below them. */
+    save(words, done) {
+      const { canvas, colour } = this, copy = document.createElement("canvas"), pen = copy.getContext("2d");
+      copy.width = canvas.width;
+      copy.height = canvas.height + 24 * this.ratio;
+      pen.fillStyle = colour.faint;
+      pen.fillRect(0, 0, copy.width, copy.height);
+      pen.drawImage(canvas, 0, 0);
+      pen.scale(this.ratio, this.ratio);
+      pen.fillStyle = colour.ink;
+      pen.font = `13px ${colour.sans}`;
+      pen.fillText(words, 4, copy.height / this.ratio - 8);
+      copy.toBlob(done);
+    }
+  }
+
+  /* A spring from its anchor, a tick at the top, to the middle of its rod. */
+  function drawSpring(pen, anchor, x, length, colour) {
+    pen.strokeStyle = colour.grey;
+    pen.lineWidth = 1;
+    pen.beginPath();
+    pen.moveTo(anchor - Math.min(length / 3, 5), 3);
+    pen.lineTo(anchor + Math.min(length / 3, 5), 3);
+    pen.moveTo(anchor, 3);
+    const coils = 6, across = length > 8 ? 3 : 0; // narrow springs are straight lines
+    for (let k = 1; k < coils; k++)
+      pen.lineTo(anchor + ((x - anchor) * k) / coils + (k % 2 ? across : -across), 3 + (25 * k) / coils);
+    pen.lineTo(x, 28);
+    pen.stroke();
+  }
+
+  /* Text with the page's colour behind, to be read on top of the strip. */
+  function label(pen, text, x, y, colour) {
+    pen.lineWidth = 4;
+    pen.lineJoin = "round";
+    pen.strokeStyle = colour.faint;
+    pen.strokeText(text, x, y);
+    pen.fillStyle = colour.ink;
+    pen.fillText(text, x, y);
+  }
+
+  return { Stage, colours, reach, BAND, ROWS };
+})();

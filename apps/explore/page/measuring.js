@@ -1,0 +1,183 @@
+/* What is measured of the running chain, and the exact density at e = 1 to compare with. */
+"use strict";
+
+const ChainMeasuring = (() => {
+  const P = ChainPhysics;
+  const BINS = 8; // bins of the density per R
+  const SETTLING = 3; // relaxation times before a measurement begins
+  const CELL = 0.25, FASTEST = 15; // of the velocity distributions, in free widths
+  const REACH = { 2: 7, 3: 4.5 }; // thermal lengths that a rod is followed in the exact density
+
+  /* Averages over time: of v^2 of every rod, of the share of time that a place is covered, and of
+     the velocities in the middle and, outward, at the ends. */
+  class Measurement {
+    constructor(state, half) {
+      this.half = Math.ceil(half); // places from -half to half [R]
+      this.counts = new Float64Array(2 * this.half * BINS);
+      this.squares = new Float64Array(state.y.length);
+      this.middle = new Float64Array((2 * FASTEST) / CELL + 1);
+      this.ends = new Float64Array(this.middle.length);
+      this.restart(state);
+    }
+
+    /* Begin again: the chain was changed or touched, and has to settle. */
+    restart(state) {
+      this.settling = SETTLING * P.relaxationTime(state.chain);
+      // Energies are forgotten in m/(2 gamma), so that the averages of such blocks are independent.
+      this.blockTime = Math.max((4 * P.MASS) / state.chain.damping, P.relaxationTime(state.chain));
+      this.clear();
+    }
+
+    clear() {
+      for (const each of [this.counts, this.squares, this.middle, this.ends]) each.fill(0);
+      this.samples = this.time = 0;
+      this.blocks = []; // of [mean v^2 at the border, mean v^2 in the centre]
+      this.block = [0, 0, 0, 0]; // sums of both, samples and time of the present block
+    }
+
+    /* Take the present state into the averages; it was `elapsed` ago that one was taken. Velocities
+       are counted in the `unit`. */
+    add(state, elapsed, unit) {
+      if (this.settling > 0 && (this.settling -= elapsed) <= 0) this.clear();
+      for (let i = 0; i < state.y.length; i++) {
+        this.squares[i] += state.v[i] ** 2;
+        const bin = Math.floor((P.position(state, i) + this.half) * BINS);
+        if (bin >= 0 && bin < this.counts.length) this.counts[bin]++;
+      }
+      const size = state.v.length, count = (cells, v) => cells[Math.round((v / unit + FASTEST) / CELL)]++;
+      for (const i of centreOf(size)) count(this.middle, state.v[i]);
+      count(this.ends, -state.v[0]);
+      count(this.ends, state.v[size - 1]);
+      this.samples++;
+      this.time += elapsed;
+      const block = this.block;
+      block[0] += meanSquare(state.v, borderOf(size));
+      block[1] += meanSquare(state.v, centreOf(size));
+      block[2]++;
+      block[3] += elapsed;
+      if (block[3] < this.blockTime) return;
+      this.blocks.push([block[0] / block[2], block[1] / block[2]]);
+      this.block = [0, 0, 0, 0];
+    }
+
+    get settled() {
+      return this.settling <= 0;
+    }
+
+    /* The velocity widths sqrt(<v^2>) of all rods. */
+    widths() {
+      return Array.from(this.squares, (sum) => Math.sqrt(sum / Math.max(this.samples, 1)));
+    }
+
+    /* [[velocity, its probability density], ...] in the middle or at the "ends", where any was seen. */
+    velocities(where) {
+      const total = this[where].reduce((sum, n) => sum + n, 0) * CELL;
+      return Array.from(this[where], (n, k) => [k * CELL - FASTEST, n / total]).filter(([, p]) => p > 0);
+    }
+
+    /* [[place, share of time that a rod covers it], ...], at the edges of the bins. */
+    coverage() {
+      const width = 2 * P.RADIUS * BINS, found = [];
+      let sum = 0;
+      for (let k = 0; k < this.counts.length + width; k++) {
+        sum += (this.counts[k] || 0) - (this.counts[k - width] || 0);
+        found.push([(k + 1) / BINS - this.half - P.RADIUS, sum / Math.max(this.samples, 1)]);
+      }
+      return found;
+    }
+
+    /* Kinetic energy at the border over that in the centre, with its standard error. */
+    ratio() {
+      const n = this.blocks.length;
+      if (n < 2) return null;
+      const mean = (k) => this.blocks.reduce((sum, block) => sum + block[k], 0) / n;
+      const border = mean(0), centre = mean(1);
+      let scatter = 0;
+      for (const block of this.blocks) scatter += (block[0] / border - block[1] / centre) ** 2;
+      const value = border / centre;
+      return { value, error: value * Math.sqrt(scatter / (n * (n - 1))), blocks: n };
+    }
+  }
+
+  /* The running average over a rod's length of points that are a bin apart, as the paper draws it. */
+  function averaged(points) {
+    const half = P.RADIUS * BINS, share = (k) => (points[k] ? points[k][1] : 0);
+    return points.map(([x], k) => {
+      let sum = (share(k - half) + share(k + half)) / 2; // trapezoids
+      for (let j = k - half + 1; j < k + half; j++) sum += share(j);
+      return [x, sum / (2 * half)];
+    });
+  }
+
+  /* The first and the last rod; the middle tenth, at least the one or two in the middle. */
+  const borderOf = (size) => [0, size - 1];
+  function centreOf(size) {
+    const from = Math.min(Math.floor((9 * size + 9) / 20), Math.floor((size - 1) / 2));
+    return Array.from({ length: size - 2 * from }, (_, k) => from + k);
+  }
+
+  const meanSquare = (v, rods) => rods.reduce((sum, i) => sum + v[i] ** 2, 0) / rods.length;
+
+  /* The exact equilibrium at e = 1. Each point has the weight exp(-k |d|^n/nT), and points stay
+     in their order. With F_i(y), the weight of all arrangements of the points 1..i left of y,
+
+         F_i(y) = int_-inf^y F_(i-1)(y') exp(-k |d_i(y')|^n/nT) dy'.
+
+     The points right of i are the mirror image of those left of L + 1 - i. Point i has therefore
+     the density F_(i-1)(y) exp(-k |d_i|^n/nT) F_(L-i)(-y). Return the density's integrals, one array
+     for each rod, on grids of spacing `h` that begin at `starts` times h. */
+  function exactDistributions(chain) {
+    const s = P.thermalLength(chain), size = chain.size, n = P.exponent(chain);
+    // Points per thermal length: without a gap F_i grows by its own size within s/i.
+    const points = Math.max(40, 3 * size), h = s / points, reach = Math.round(REACH[n] * points);
+    const starts = [], weights = [], sums = [];
+    for (let i = 0; i < size; i++) {
+      const anchor = chain.gap * (i - (size - 1) / 2);
+      starts.push(Math.round(anchor / h) - reach);
+      weights.push(
+        Float64Array.from({ length: 2 * reach + 1 }, (_, k) =>
+          Math.exp(-(Math.abs(((starts[i] + k) * h - anchor) / s) ** n) / n)),
+      );
+    }
+    // F_i at place j h: 0 left of its grid, its last value right of it; 1 without points.
+    function left(i, j) {
+      if (i < 0) return 1;
+      const k = j - starts[i];
+      return k < 0 ? 0 : sums[i][Math.min(k, 2 * reach)];
+    }
+    for (let i = 0; i < size; i++)
+      sums.push(integral(weights[i].map((w, k) => w * left(i - 1, starts[i] + k))));
+    const distributions = weights.map((weight, i) =>
+      integral(weight.map((w, k) => {
+        const j = starts[i] + k;
+        return w * left(i - 1, j) * left(size - 2 - i, -j);
+      })));
+    return { h, starts, distributions };
+  }
+
+  /* The integral from the first point on, by trapezoids, with the last value 1. */
+  function integral(values) {
+    const sums = new Float64Array(values.length);
+    for (let k = 1; k < values.length; k++) sums[k] = sums[k - 1] + values[k] + values[k - 1];
+    return sums.map((sum) => sum / sums[sums.length - 1]);
+  }
+
+  /* The share of time that a rod covers each of the places, exactly, at e = 1. */
+  function exactCoverage(chain, places) {
+    const { h, starts, distributions } = exactDistributions(chain), covered = places.map(() => 0);
+    distributions.forEach((distribution, i) => {
+      const shift = 2 * P.RADIUS * (i - (chain.size - 1) / 2), last = distribution.length - 1;
+      const below = (x) => {
+        const k = Math.min(Math.max((x - shift) / h - starts[i], 0), last), low = Math.floor(k);
+        const high = Math.min(low + 1, last);
+        return distribution[low] + (k - low) * (distribution[high] - distribution[low]);
+      };
+      places.forEach((x, at) => {
+        covered[at] += below(x + P.RADIUS) - below(x - P.RADIUS);
+      });
+    });
+    return covered;
+  }
+
+  return { Measurement, averaged, exactCoverage };
+})();

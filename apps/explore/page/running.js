@@ -1,0 +1,172 @@
+/* The chain in time: it is begun, changed, pushed, held, and goes on row by row of its strip. */
+"use strict";
+
+const ChainRunning = (() => {
+  const P = ChainPhysics;
+  const ROWS_A_SECOND = 60; // of the strip
+  const PATIENCE = 250; // milliseconds in which a new chain may settle before it is shown
+  const KICK = 8; // free velocity widths that a push adds
+  const FASTEST_HAND = 16; // free velocity widths
+  const RUN_AWAY = 1000; // times the energy after the last touch
+  const SEEN = 3; // the largest speed [T/s] at which a push and single collisions can be followed
+  const SLOW = 0.3; // T/s
+  const KEPT = 800; // energies of the history
+  const GROWN = 10; // times the energy of free rods: beyond, noise hardly counts
+
+  // `touched`: the energy after the last touch. `met`: the contacts that have closed in the last row.
+  const world = {
+    state: null, measurement: null, speed: SEEN, pushes: [], pushed: null, ranAway: false, growth: 1, touched: 0,
+    history: [], met: [],
+  };
+  let stage = null, seed = 0, stride = 1, skipped = 0, before = new Set();
+
+  // The unit of velocities. Without noise it is that of the weakest usual noise.
+  const unit = () => P.freeWidth(world.state.chain) || P.freeWidth({ ...world.state.chain, amplitude: 1 });
+  const freeEnergy = () => {
+    const { chain } = world.state; // <k |d|^n/n> of a free rod is T/n
+    return chain.size * P.MASS * unit() ** 2 * (1 / 2 + 1 / P.exponent(chain));
+  };
+
+  /* A new chain. Up to e = 1 it has settled before it is shown; above it might run away. */
+  function begin(chain) {
+    world.state = P.makeState(chain, ++seed);
+    const settles = chain.restitution <= 1, time = P.relaxationTime(chain), begun = performance.now();
+    let due = settles ? 4 * time : 0;
+    for (; due > 0 && performance.now() - begun < PATIENCE; due -= time / 4) P.go(world.state, time / 4);
+    world.measurement = new ChainMeasuring.Measurement(world.state, 1.5 * ChainDrawing.reach(chain));
+    changed();
+    if (settles) world.measurement.settling = due;
+    // The strip is full from the beginning, unless this would take long or show nothing.
+    if (settles && world.speed <= SEEN) for (let row = 0; row < ChainDrawing.ROWS; row++) goOn();
+  }
+
+  /* Go on with other parameters, but as many rods. */
+  function change(chain) {
+    P.setChain(world.state, chain);
+    changed();
+  }
+
+  /* The chain was touched or changed: averages, the push under way and the growth begin anew. */
+  function changed(sameChain = false) {
+    world.pushed = null;
+    world.ranAway = false;
+    world.measurement.restart(world.state);
+    world.touched = Math.max(P.energy(world.state), freeEnergy());
+    world.growth = P.energy(world.state) / freeEnergy();
+    world.history = [[world.state.time, world.growth]];
+    stride = 1;
+    if (!sameChain) stage.restart(world.state.chain);
+  }
+
+  /* Go on for one row of the strip. */
+  function goOn() {
+    const { state, measurement, pushed } = world, duration = world.speed / ROWS_A_SECOND;
+    if (world.hand) follow(duration);
+    state.met.fill(0);
+    P.go(state, duration);
+    measurement.add(state, duration, unit());
+    const met = new Set();
+    state.met.forEach((closed, contact) => closed && met.add(contact));
+    world.met = [...met].filter((contact) => !before.has(contact)); // others are still in contact
+    before = met;
+    stage.add(state, unit(), world.speed <= SEEN ? world.met : []);
+    const energy = P.energy(state);
+    world.growth = energy / freeEnergy();
+    remember();
+    if (state.diverged || (state.chain.restitution > 1 && energy > RUN_AWAY * world.touched)) world.ranAway = true;
+    if (!pushed) return;
+    pushed.fastest = Math.max(pushed.fastest, state.v[state.v.length - 1] / unit());
+    if (state.time < pushed.until) return;
+    world.pushes.push(pushed);
+    world.pushed = null;
+  }
+
+  /* Keep the energy; of a long time every second, fourth, ... one. */
+  function remember() {
+    if (++skipped < stride) return;
+    skipped = 0;
+    world.history.push([world.state.time, world.growth]);
+    if (world.history.length <= KEPT) return;
+    world.history = world.history.filter((_, k) => k % 2 === 0);
+    stride *= 2;
+  }
+
+  /* Go on in slow motion until rods meet, and return the contacts where they do. */
+  function step() {
+    setSpeed(SLOW);
+    for (let row = 0; row < 4000 && !world.ranAway; row++) {
+      goOn();
+      if (world.met.length) return world.met;
+    }
+    return [];
+  }
+
+  /* Add a velocity to a rod, to the right. */
+  function push(rod) {
+    if (world.ranAway) return;
+    const { state } = world, { chain } = state, speedUp = KICK * unit();
+    state.v[rod] += speedUp;
+    changed(true);
+    // Twice the time in which a rod of this speed would cross the free space.
+    const space = chain.gap * (chain.size - 1) + 4 * P.thermalLength(chain);
+    const until = state.time + (2 * space) / speedUp;
+    world.pushed = { rod, size: chain.size, restitution: chain.restitution, fastest: 0, until };
+    if (world.speed > SEEN) setSpeed(SEEN);
+  }
+
+  function setSpeed(value) {
+    if (value === world.speed) return;
+    world.speed = value;
+    if (world.state) stage.restart(world.state.chain); // its rows are apart by another time
+  }
+
+  /* Hold the rod nearest to a place, at most so far from it; time: of the event [ms]. */
+  function take(x, away, time) {
+    const { state } = world, distance = (i) => Math.abs(P.position(state, i) - x);
+    let rod = 0;
+    for (let i = 1; i < state.y.length; i++) if (distance(i) < distance(rod)) rod = i;
+    if (world.ranAway || distance(rod) > away) return false;
+    world.hand = { rod, offset: P.position(state, rod) - x, x: P.position(state, rod), since: time };
+    state.held = rod;
+    return true;
+  }
+
+  /* Let the held rod move towards the hand, no faster than a hand may. */
+  function follow(duration) {
+    const { state, hand } = world, most = FASTEST_HAND * unit();
+    const speedUp = (hand.x - P.position(state, hand.rod)) / duration;
+    state.v[hand.rod] = Math.min(Math.max(speedUp, -most), most);
+  }
+
+  /* Let the rod go; a short touch of it was a push. */
+  function letGo(short) {
+    const { rod } = world.hand;
+    world.hand = null;
+    world.state.held = -1;
+    if (short) push(rod);
+    else changed(true);
+  }
+
+  /* Above e = 1: the rate at which the energy has grown, by least squares, and that of the theory for
+     weak damping where simulations confirm it to 5 % (kinetic_equation/weak_damping.py). */
+  function growthRates() {
+    const points = world.history.filter(([, growth]) => growth > GROWN), n = points.length, { chain } = world.state;
+    if (n < 5 || chain.spring !== "linear") return null;
+    const mean = (of) => points.reduce((sum, point) => sum + of(point), 0) / n;
+    const t = mean(([time]) => time), log = mean(([, growth]) => Math.log(growth));
+    const found = mean(([time, growth]) => (time - t) * (Math.log(growth) - log)) / mean(([time]) => (time - t) ** 2);
+    const { restitution: e, damping, size } = chain, root = Math.sqrt(P.STIFFNESS * P.MASS);
+    const gain = ((e * e - 1) * size) / 2, weak = damping <= root / 4 && size >= 1.5 * criticalSize(chain);
+    const holds = weak && chain.gap === 0 && size >= 30 && gain <= 1.05;
+    return { found, theory: holds ? (gain / Math.PI) * Math.sqrt(P.STIFFNESS / P.MASS) - damping / P.MASS : null };
+  }
+
+  /* The number of rods above which a weakly damped chain runs away, to first order in e - 1. */
+  const criticalSize = ({ restitution, damping }) =>
+    (Math.PI * damping) / (Math.sqrt(P.STIFFNESS * P.MASS) * (restitution - 1));
+
+  return {
+    world, unit, begin, change, goOn, step, push, setSpeed, take, letGo, growthRates, criticalSize,
+    ROWS_A_SECOND, RUN_AWAY, showOn: (shown) => { stage = shown; },
+  };
+})();

@@ -1,0 +1,134 @@
+"""The best theory of a chain for the page, solved in a process of its own, one at a time."""
+
+from __future__ import annotations
+
+import math
+import multiprocessing
+import signal
+import time
+from collections.abc import Callable, Mapping
+from contextlib import closing
+from multiprocessing.connection import Connection
+from threading import BoundedSemaphore, Lock
+from typing import Any
+
+from crazybilliards.model.checks import shown
+from crazybilliards.model.parameters import Parameters
+
+_TURN = Lock()  # one computes at a time, for all pages
+_PLACES = BoundedSemaphore(10)  # that compute or wait
+_LOOK = 0.2  # s between two looks whether somebody still waits
+_PATIENCE = 120  # s
+_MOST_RODS = 200  # of the page
+_MOST_POINTS = 500  # of a curve
+_NUMBERS = {"size": int, "restitution": float, "amplitude": float, "damping": float, "gap": float}
+
+Answer = dict[str, Any]
+
+
+def solve(query: Mapping[str, str], is_gone: Callable[[], bool]) -> Answer | None:
+    """Solve the best theory of the chain in a query; None as soon as nobody waits for it.
+
+    Returns ``best`` and, at e = 1, the force balance as ``other``: each with its ``title``, the
+    errors that it states (null: not measured) of W_v inside (``error``), at the ``border`` and of
+    the density (``density_error``), ``widths`` in free widths, and the ``density`` as pairs of x
+    and the share of time that a rod covers x, smoothed as in the paper. Or why there is none,
+    ``refused``, with ``busy`` if too many wait.
+    """
+    try:
+        parameters = _read(query)
+    except ValueError as error:
+        return {"refused": str(error)}
+    if not _PLACES.acquire(blocking=False):
+        return {"refused": "too many theories are waiting", "busy": True}
+    try:
+        while not _TURN.acquire(timeout=_LOOK):
+            if is_gone():
+                return None
+        try:
+            return _solve_in_process(parameters, is_gone)
+        finally:
+            _TURN.release()
+    finally:
+        _PLACES.release()
+
+
+def _read(query: Mapping[str, str]) -> Parameters:
+    """Return the chain of a query."""
+    values: dict[str, Any] = dict(query)
+    for name, text in query.items():
+        if name not in (*_NUMBERS, "spring"):
+            raise ValueError(f"{shown(name)} is none of {', '.join(_NUMBERS)}, spring")
+        try:
+            values[name] = _NUMBERS.get(name, str)(text)
+        except ValueError:
+            raise ValueError(f"{name} must be a number, got {shown(text)}") from None
+    parameters = Parameters(**values)
+    if parameters.size > _MOST_RODS:
+        raise ValueError(f"size must be at most {_MOST_RODS}, got {parameters.size}")
+    return parameters
+
+
+def _solve_in_process(parameters: Parameters, is_gone: Callable[[], bool]) -> Answer | None:
+    """Solve in a process, which is killed when nobody waits or it takes too long."""
+    context = multiprocessing.get_context("spawn")
+    answer, there = context.Pipe(duplex=False)
+    process = context.Process(target=_compute, args=(parameters, there), daemon=True)
+    process.start()
+    there.close()
+    until = time.monotonic() + _PATIENCE
+    with closing(answer):
+        try:
+            while not answer.poll(_LOOK):
+                if is_gone():
+                    return None
+                if time.monotonic() > until:
+                    return {"refused": f"it takes longer than {_PATIENCE} s"}
+            found: Answer = answer.recv()
+        except (EOFError, OSError):
+            found = {"refused": "the computation was ended from outside"}
+        finally:
+            process.kill()
+            process.join()
+    return found
+
+
+def _compute(parameters: Parameters, there: Connection) -> None:
+    """Send the theories of the chain, or why there is none."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the server ends this process
+    from dataclasses import asdict
+
+    from crazybilliards.comparison.stationary_theories import THEORIES, best_theory
+    from crazybilliards.model import Chain
+
+    chain = Chain(**asdict(parameters))
+    refusals = dict.fromkeys(theory.refusal(chain) for theory in THEORIES.values())
+    try:
+        if "" not in refusals:
+            raise ValueError("; ".join(refusals))
+        answer = {"best": _result(best_theory(chain), chain)}
+        if not THEORIES["force_balance"].refusal(chain):
+            answer["other"] = _result(THEORIES["force_balance"], chain)
+        there.send(answer)
+    except ValueError as error:
+        there.send({"refused": str(error)})
+
+
+def _result(theory: Any, chain: Any) -> Answer:
+    """Solve a theory; return what the page draws and says of it."""
+    from crazybilliards.comparison.coverage import smooth
+
+    solved, accuracy = theory.solve(chain), theory.accuracy(chain)
+    density = smooth(solved).density
+    points = density[:: -(-density.x.size // _MOST_POINTS)] * 2 * chain.radius
+    widths = solved.velocity_width.values / chain.free_velocity_width
+    errors = {"error": accuracy.velocity_width, "border": accuracy.border}
+    errors["density_error"] = accuracy.density
+    return {
+        "title": theory.title,
+        **{name: None if math.isnan(error) else error for name, error in errors.items()},
+        "widths": widths.round(4).tolist(),
+        "density": list(
+            zip(points.x.values.tolist(), points.values.round(5).tolist(), strict=True)
+        ),
+    }
