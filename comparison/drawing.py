@@ -113,12 +113,10 @@ def overlay(
 def _curves(results: Mapping[str, xr.Dataset], quantity: str, along: str) -> dict[str, Curve]:
     """Return what is drawn of every result, or raise before anything is drawn."""
     # A Dataset and a tree of them are mappings, too.
-    by_labels = isinstance(results, Mapping) and not isinstance(results, xr.Dataset | xr.DataTree)
-    if not by_labels or not results:
-        got_this = "nothing" if by_labels else f"a {type(results).__name__}"
+    if not isinstance(results, Mapping) or isinstance(results, xr.Dataset | xr.DataTree):
         raise ValueError(
             "overlay takes results by their labels, e.g. {'simulation': run, 'theory': theory}, "
-            f"got {got_this}"
+            f"got a {type(results).__name__}"
         )
     check_choice("along", along, get_args(Along))
     if not isinstance(quantity, str):

@@ -146,7 +146,6 @@ cb.fit_border_power_law(3) | source must be a result
 cb.fit_border_power_law(foreign) | the result has no 'velocity_width'
 cb.overlay([run]) | overlay takes results by their labels...got a list
 cb.overlay(run) | overlay takes results by their labels...got a Dataset
-cb.overlay({}) | overlay takes results by their labels...got nothing
 cb.overlay({"a": 3}) | a: not a crazybilliards result: 3
 cb.overlay({"a": tree}) | a: not a crazybilliards result: a DataTree
 cb.overlay({"a": run}, 3) | quantity must be the name of a variable, got 3
