@@ -33,11 +33,11 @@ def room_fingerprint(*rooms: str) -> str:
 
 
 def _sources(folder: Traversable) -> Iterator[Traversable]:
-    """Yield the modules in a folder, which may lie in a zip archive."""
+    """Yield modules and tables in a folder, which may lie in a zip archive."""
     for each in folder.iterdir():
         if each.is_dir():
             yield from _sources(each)
-        elif each.name.endswith(".py"):
+        elif each.name.endswith((".py", ".csv")):  # measured errors stand in tables
             yield each
 
 

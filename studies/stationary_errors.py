@@ -1,15 +1,13 @@
 """How far the stationary theories are from simulations, and at e = 1 from the exact equilibrium.
 
-    python -m studies.stationary_errors FOLDER [--held-out] [--displacements]
+    python -m studies.stationary_errors FOLDER [--chains drawn]
 
 Prints kinetic/measured/stationary.csv, from which the theories read the errors that they state, or
 docs/tables/stationary_held_out.csv: chains drawn at random before any of them was looked at. Every
 chain is simulated in the limit of a vanishing time step, with three radii, because only its density
-depends on the radius. Chains that are done are kept in FOLDER, and several processes may share it.
-On two cores the first table takes about an hour, and the second one five minutes.
-
-With --displacements only the rows of W_x in ``correlated_phase_space`` without a gap are printed,
-each from a run of its own at one radius, long enough for W_x.
+depends on the radius. For W_x in ``correlated_phase_space`` there is a run of its own at one
+radius, which is long enough for it. The rows of a chain are kept in FOLDER when they are done. On
+two cores the first table takes about an hour and a half, and the second one ten minutes.
 """
 
 import csv
@@ -17,7 +15,8 @@ import itertools
 import json
 import math
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -25,7 +24,10 @@ import xarray as xr
 from scipy.interpolate import PchipInterpolator
 
 import crazybilliards as cb
+from crazybilliards.comparison.sweeps import process_pool
 from crazybilliards.kinetic import accuracy
+from crazybilliards.model.storage import write_atomically
+from studies.common import options
 
 LENGTHS = (0.7, 2.1, 7.0)  # s/R; s: thermal length
 OTHER_LENGTHS = (0.9, 3.0, 10.0)  # of the chains drawn at random
@@ -33,6 +35,7 @@ COLUMNS = ("theory", "quantity", "g L/s", "L", "e", "Gamma", "s/R", "error", "st
 # Relative accuracy of W_v in the centre of each of the three runs, by size.
 ACCURACY = {10: 0.004, 30: 0.004, 100: 0.006, 300: 0.012, 1000: 0.03}
 HELD_OUT = 40
+OF_DISPLACEMENTS = "correlated_phase_space", "displacement_width"
 
 Row = tuple[str | float, ...]
 Place = tuple[int, float, float, float]  # L, e, Gamma = gamma/sqrt(k m), g L/s
@@ -70,15 +73,19 @@ def chain_at(place: Place, length: float) -> cb.Chain:
     return chain.replace(gap=lattice * s / size, radius=s / length)
 
 
+def accuracy_of(size: int) -> float:
+    """Return that of the next larger size."""
+    return ACCURACY[min(each for each in ACCURACY if each >= size)]
+
+
 def simulated(place: Place, length: float, seed: int) -> xr.Dataset:
     """Return what a theory is compared with."""
     chain = chain_at(place, length)
     if chain.restitution == 1:
         return cb.equilibrium(chain)
-    accuracy = ACCURACY[min(each for each in ACCURACY if each >= chain.size)]
     return cb.simulate_limit(
         chain,
-        accuracy=accuracy,
+        accuracy=accuracy_of(chain.size),
         observe=("widths", "density"),
         seed=seed,
         threads=1,
@@ -111,14 +118,11 @@ def of_radius(theory: xr.Dataset, run: xr.Dataset) -> xr.Dataset:
     chain, other = cb.chain_of(theory), cb.chain_of(run)
     longer = 2 * (other.radius - chain.radius)
     x = theory.x.values + longer * (theory.label.values - chain.size / 2)
-    fine = np.unique(np.concatenate([run.x.values, [2 * run.x.values[0], 2 * run.x.values[-1]]]))
     spacing = run.x.values[1] - run.x.values[0]
-    fine = spacing * np.arange(np.rint(fine[0] / spacing), np.rint(fine[-1] / spacing) + 1)
+    fine = spacing * np.arange(-run.x.size, run.x.size + 1.0)  # twice as far as the simulation
     kept = np.concatenate([[True], np.diff(x) > 0])
     label = PchipInterpolator(x[kept], theory.label.values[kept], extrapolate=False)
-    ends = {"left": 0.0, "right": float(chain.size)}
-    labels = label(fine)
-    labels = np.where(fine < x[0], ends["left"], np.where(fine > x[-1], ends["right"], labels))
+    labels = np.where(fine < x[0], 0.0, np.where(fine > x[-1], chain.size, label(fine)))
     density = np.nan_to_num(label.derivative()(fine))
     return xr.Dataset({"density": ("x", density), "label": ("x", labels)}, {"x": fine}, run.attrs)
 
@@ -202,15 +206,11 @@ def measured(place: Place, lengths: Sequence[float]) -> list[Row]:
 
 def measured_displacements(place: Place) -> list[Row]:
     """Return the error of W_x in the theory with pair correlations, if it takes the chain."""
-    theory, name, chain = (
-        "correlated_phase_space",
-        "displacement_width",
-        chain_at(place, LENGTHS[0]),
-    )
+    (theory, name), chain = OF_DISPLACEMENTS, chain_at(place, LENGTHS[0])
     if place[-1] or not cb.theories(chain).takes.sel(theory=theory):
         return []
     found = cb.correlated_phase_space(chain)
-    one = ACCURACY[min(each for each in ACCURACY if each >= chain.size)]
+    one = accuracy_of(chain.size)
     run = simulated_widths(chain, one / math.sqrt(3), 2 * one)
     value, error = pooled([run], name, 1)
     return [(theory, *place, "", name, *largest(found[name].values / value - 1, error / value))]
@@ -222,39 +222,45 @@ def stated(theory: str, place: Place, length: float, quantity: str) -> float:
     return float(getattr(expected, quantity))
 
 
-def main(folder: Path, *, held: bool, displacements: bool) -> None:
-    folder.mkdir(parents=True, exist_ok=True)
-    table: list[Row] = []
-    missing = False
-    lengths = OTHER_LENGTHS if held else LENGTHS
-    for place in held_out() if held else places():
-        file = folder / f"{'_'.join(f'{each:g}' for each in place)}.json"
-        try:
-            with file.open("x") as mine:  # another process leaves it alone
-                found = measured_displacements(place) if displacements else measured(place, lengths)
-                json.dump(found, mine)
-        except FileExistsError:
-            pass
-        try:
-            table += json.loads(file.read_text())
-        except json.JSONDecodeError:
-            missing = True  # another process is at it
-    if missing:
-        return
+def kept(file: Path, compute: Callable[[], list[Row]]) -> list[Row]:
+    """Return rows from a file, and compute them first if there is none."""
+    if not file.exists():
+        write_atomically(file, json.dumps(compute()).encode())
+    found: list[Row] = json.loads(file.read_text())
+    return found
+
+
+def rows_of(folder: Path, lengths: Sequence[float], place: Place) -> list[Row]:
+    """Return all rows of a place, computed now or before."""
+    name = f"{'_'.join(f'{each:g}' for each in place)}.json"
+    found = kept(folder / "all" / name, partial(measured, place, lengths))
+    own = kept(folder / "displacements" / name, partial(measured_displacements, place))
+    # The theory is the first of a row, the quantity the seventh.
+    others = [row for row in found if not own or (row[0], row[6]) != OF_DISPLACEMENTS]
+    return others + own
+
+
+def main(folder: Path, *, drawn: bool) -> None:
+    for each in ("all", "displacements"):
+        (folder / each).mkdir(parents=True, exist_ok=True)
+    lengths = OTHER_LENGTHS if drawn else LENGTHS
+    with process_pool() as workers:
+        chains = list(held_out() if drawn else places())
+        table = [
+            row for rows in workers.map(partial(rows_of, folder, lengths), chains) for row in rows
+        ]
     writer = csv.writer(sys.stdout, lineterminator="\n")
-    writer.writerow([*COLUMNS, "stated", "beyond it, standard errors"] if held else COLUMNS)
+    writer.writerow([*COLUMNS, "stated", "beyond it, standard errors"] if drawn else COLUMNS)
     for theory, *place, length, quantity, error, own in table:
         size, e, damping, lattice = place
         coordinates = (f"{each:.3g}" for each in (lattice, size, e, damping))
         row = [theory, quantity, *coordinates, length, f"{error:.4f}", f"{own:.4f}"]
-        if held:
+        if drawn:
             limit = stated(theory, tuple(place), length or lengths[0], quantity)
             row += [f"{limit:.4f}", f"{max(error - limit, 0) / own if own else 0:.1f}"]
         writer.writerow(row)
 
 
 if __name__ == "__main__":
-    options = sys.argv[2:]
-    main(
-        Path(sys.argv[1]), held="--held-out" in options, displacements="--displacements" in options
-    )
+    given = options(__doc__, folder=Path, chains="all")
+    main(given.folder, drawn=given.chains == "drawn")

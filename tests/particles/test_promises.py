@@ -13,15 +13,7 @@ from crazybilliards.particles.laws.avalanche import make_tally
 from crazybilliards.particles.laws.contact_dynamics import bound
 from crazybilliards.particles.laws.exact_flight import make_propagator
 from crazybilliards.particles.laws.impacts import make_impacts
-from crazybilliards.particles.laws.law import (
-    CONTACTS,
-    EVENTS,
-    ISOTONIC,
-    SORT,
-    Law,
-    drift,
-    make_scratch,
-)
+from crazybilliards.particles.laws.law import EVENTS, SORT, Law, drift, make_scratch
 from crazybilliards.particles.noise import make_noise
 from crazybilliards.particles.schedule import make_schedule
 from crazybilliards.particles.stepping import advance
