@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from crazybilliards.comparison.coverage import require_same_smoothing
 from crazybilliards.model import Chain, chain_of
+from crazybilliards.model.calls import warn_user
 from crazybilliards.model.checks import check_real
 from crazybilliards.model.vocabulary import require
 
@@ -129,7 +129,7 @@ def _say_what_differs(ours: Chain, theirs: Chain) -> None:
         f"{name} {mine[name]} and {others[name]}" for name in mine if mine[name] != others[name]
     ]
     if differ:
-        warnings.warn(f"the two results are of different chains: {', '.join(differ)}", stacklevel=3)
+        warn_user(f"the two results are of different chains: {', '.join(differ)}")
 
 
 def _squared_error(dataset: xr.Dataset, like: xr.DataArray) -> xr.DataArray:

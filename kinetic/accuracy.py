@@ -16,13 +16,13 @@ from __future__ import annotations
 
 import csv
 import math
-import warnings
 from collections.abc import Iterator, Mapping
 from functools import cache
 from importlib.resources import files
 from typing import Any, NamedTuple
 
 from crazybilliards.model import Chain
+from crazybilliards.model.calls import warn_user
 
 # Coordinates in the tables, in order. The density of shorter rods is less wrong, so that of the
 # largest s/R counts beyond it, too.
@@ -60,11 +60,10 @@ class UnmeasuredWarning(UserWarning):
 def warn_if_unmeasured(theory: str, error: float) -> None:
     """Tell the caller of a theory, once, that its error is not known for this chain."""
     if math.isnan(error):
-        warnings.warn(
+        warn_user(
             f"the error of {theory} was not measured for chains like this one (model_error is "
             "NaN); crazybilliards.theories(chain) lists what is known",
             UnmeasuredWarning,
-            stacklevel=4,  # the theory, and what hands it out
         )
 
 

@@ -8,6 +8,8 @@ wrong type are refused by the annotation of the argument. A right call takes a m
 from __future__ import annotations
 
 import inspect
+import sys
+import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import FrozenInstanceError
 from functools import cache, wraps
@@ -65,15 +67,35 @@ def checked(item: Any, room: str) -> Any:
     return item
 
 
+def warn_user(message: str, category: type[Warning] = UserWarning) -> None:
+    """Warn at the line outside of the package that led here."""
+    level, frame = 2, sys._getframe(1)
+    while frame.f_back and str(frame.f_globals.get("__name__")).startswith("crazybilliards"):
+        level, frame = level + 1, frame.f_back
+    warnings.warn(message, category, stacklevel=level)
+
+
 def _check_class(owner: Any) -> None:
     signature = inspect.signature(owner)
     itself = inspect.Parameter("self", inspect.Parameter.POSITIONAL_ONLY)
-    start: Any = _checked(owner.__init__, signature, owner.__name__)
+    start: Any = _checked(_start_of(owner), signature, owner.__name__)
     start.__signature__ = signature.replace(parameters=[itself, *signature.parameters.values()])
     owner.__init__ = start
     if "__dataclass_fields__" in vars(owner):  # all of them are frozen
         owner.__setattr__ = _explained(owner.__setattr__)
         owner.__delattr__ = _explained(owner.__delattr__)
+
+
+def _start_of(owner: Any) -> Callable[..., None]:
+    """Return ``__init__`` of a class; of one without its own what calls the next one of a base."""
+    if "__init__" in vars(owner):
+        own: Callable[..., None] = owner.__init__
+        return own
+
+    def inherited(self: Any, *arguments: Any, **keywords: Any) -> None:
+        super(owner, self).__init__(*arguments, **keywords)
+
+    return inherited
 
 
 def _checked(
@@ -89,16 +111,16 @@ def _checked(
 
     @wraps(function)
     def public(*arguments: Any, **keywords: Any) -> Any:
+        given = arguments[1:] if owner else arguments
         for place, argument, kind in objects:
-            if place < len(arguments):
-                _require(argument, arguments[place], kind)
+            if place < len(given):
+                _require(argument, given[place], kind)
             elif argument in keywords:
                 _require(argument, keywords[argument], kind)
         try:
             with np.errstate(**_NUMPY):
                 return function(*arguments, **keywords)
         except TypeError:
-            given = arguments[1:] if owner else arguments
             if problem := _problem(name, signature, given, keywords):
                 raise TypeError(problem) from None
             raise

@@ -46,6 +46,21 @@ def _quota(group: Path, version: int) -> float:
         return math.inf
 
 
+def end_with_parent() -> None:
+    """End this process when the one that started it ends, even if that one was killed."""
+    from multiprocessing import parent_process  # here, because most commands start none
+
+    parent = parent_process()
+    if parent is None:
+        return
+
+    def follow() -> None:
+        parent.join()
+        os._exit(1)
+
+    threading.Thread(target=follow, daemon=True).start()
+
+
 def bar_hidden(progress: bool | str) -> bool | None:
     """Return tqdm's ``disable``: a bar is shown if asked for, and on a terminal only (None).
 

@@ -12,7 +12,10 @@ import os
 import sys
 from collections.abc import Callable
 from importlib import import_module
+from threading import RLock
 from typing import Any
+
+_ONE_BY_ONE = RLock()  # a class is changed where it is, and must be so once
 
 
 def hand_out(room: str) -> tuple[Callable[[str], Any], Callable[[], list[str]], list[str]]:
@@ -32,8 +35,10 @@ def hand_out(room: str) -> tuple[Callable[[str], Any], Callable[[], list[str]], 
             raise AttributeError(f"module {room!r} has no attribute {name!r}")
         from crazybilliards.model.calls import checked
 
-        value = checked(getattr(import_module(module_of[name]), name), room)
-        # Another thread may have been quicker: there is one object of a name.
-        return vars(module).setdefault(name, value)
+        found = getattr(import_module(module_of[name]), name)
+        with _ONE_BY_ONE:  # another thread may have been quicker
+            if name not in vars(module):
+                setattr(module, name, checked(found, room))
+        return vars(module)[name]
 
     return __getattr__, lambda: list(module_of), list(module_of)

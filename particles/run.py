@@ -131,9 +131,10 @@ class Run:
 
         Otherwise a run that continues another one would repeat its noise.
         """
-        given = [] if self.start is None else list(self._digest_of_starts())
+        given = [] if self.start is None else list(self._digest_of_starts)
         return np.random.SeedSequence([self.seed, *given]).spawn(self.replicas)
 
+    @cached_property
     def _digest_of_starts(self) -> bytes:
         states = (state.tobytes() for start in self.starts for state in start)
         return hashlib.sha256(b"".join(states)).digest()
@@ -170,8 +171,8 @@ class Run:
         if self.average != "time" or all(observer.shares_time for observer in self.observers):
             return ""
         at_rest = self.start is None or self.start.attrs.get("source") == "start"
-        warmup = self.schedule.warmup if self.warmup is None else self.warmup
-        return too_short(self.chain, self.duration, warmup, self.replicas, at_rest)
+        warmup = self.schedule.warmup if self.warmup is None else float(self.warmup)
+        return too_short(self.chain, float(self.duration), warmup, self.replicas, at_rest)
 
     def dynamics(self) -> Dynamics:
         """Return the numbers and arrays that the kernels need."""
@@ -196,9 +197,7 @@ class Run:
             "replicas": self.replicas,
             "observe": [str(observer) for observer in self.observers],
             "particles": "all" if self.particles is None else (self.chosen + 1).tolist(),
-            "start": "at rest"
-            if self.start is None
-            else f"sha256 {self._digest_of_starts().hex()}",
+            "start": "at rest" if self.start is None else f"sha256 {self._digest_of_starts.hex()}",
             "schedule": asdict(self.schedule),
         }
 

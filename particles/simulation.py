@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import warnings
 from collections.abc import Sequence
 from contextlib import nullcontext
 from typing import Any
@@ -12,6 +11,7 @@ import numpy as np
 import xarray as xr
 
 from crazybilliards.model import Chain
+from crazybilliards.model.calls import warn_user
 from crazybilliards.model.checks import check_integer, check_path, check_real
 from crazybilliards.model.grid import deposit
 from crazybilliards.model.process import announced, cores
@@ -170,9 +170,9 @@ def simulate(
     threads = check_integer("threads", cores() if threads is None else threads, least=1)
     run = make_run(**asked)
     if run.too_short:
-        warnings.warn(run.too_short, ShortRunWarning, stacklevel=3)
+        warn_user(run.too_short, ShortRunWarning)
     if _stays_at_rest(run):
-        warnings.warn("amplitude=0 and a start at rest: nothing will move", stacklevel=3)
+        warn_user("amplitude=0 and a start at rest: nothing will move")
     copies = _replicas(run)
     with announced(bool(progress)):
         compile_kernels()

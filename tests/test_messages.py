@@ -147,3 +147,22 @@ def test_an_option_that_is_a_symbol(option, said, capsys, monkeypatch):
     line = capsys.readouterr().err
     assert said in line
     assert line.count("\n") == 1
+
+
+def test_a_class_without_a_start_of_its_own_runs_that_of_a_base():
+    class Second:
+        def __init__(self):
+            self.started = True
+
+    class Mine(cb.Widths, Second):
+        """Reports widths."""
+
+    assert Mine().started
+    with pytest.raises(TypeError, match="no argument 'x'"):
+        cb.Widths(x=1)
+
+
+def test_a_warning_names_the_line_of_the_user():
+    with pytest.warns(UserWarning) as caught:
+        cb.compare_restitutions(cb.Chain(size=3), [0.9], duration=20, progress=False)
+    assert {each.filename for each in caught} == {__file__}

@@ -82,7 +82,7 @@ def test_it_is_imported_from_a_zip_archive(tmp_path):
     with zipfile.ZipFile(archive, "w") as file:
         for folder in ("api", *cb._ROOMS):
             inside = Path("crazybilliards", "" if folder == "api" else folder)
-            for path in (ROOT / folder).rglob("*.py*"):
+            for path in [*(ROOT / folder).rglob("*.py*"), *(ROOT / folder).rglob("*.csv")]:
                 if "__pycache__" not in path.parts:
                     file.write(path, inside / path.relative_to(ROOT / folder))
     quiet = {**os.environ, "PYTHONWARNINGS": "ignore"}

@@ -54,6 +54,9 @@ cb.given_start(chain) | given_start needs position
 cb.given_start(chain, chain.anchors, 0.0, 3) | write replicas=3
 cb.given_start(chain, positions=chain.anchors) | did you mean 'position'?
 cb.Density(-3) | reach must be positive, got -3
+cb.simulate(chain, observe=cb.Density(reach=1e12)) | reach=1e+12 is too large for a grid
+cb.simulate_limit(chain, accuracy=0.1, replicas=10**400) | replicas must be an integer from 1 to
+cb.simulate_limit(chain, accuracy=0.1, checkpoint=3) | checkpoint must be a text or a Path, got 3
 cb.Density(bins=3) | Density has no argument 'bins'; it takes reach
 cb.Velocities(bin=3) | did you mean 'bins'?
 cb.Velocities(3, 4) | Velocities takes bins without a name, got 4

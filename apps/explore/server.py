@@ -12,7 +12,7 @@ from __future__ import annotations
 import ipaddress
 import json
 import re
-import select
+import selectors
 import socket
 import sys
 import webbrowser
@@ -21,6 +21,7 @@ from functools import cache, partial
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from importlib.resources import files
+from threading import Thread
 from typing import Any
 from urllib.parse import parse_qsl, urlsplit
 
@@ -42,18 +43,16 @@ _HEADERS = {
 
 
 @cache
-def _content(path: str) -> tuple[str, bytes] | None:
-    """Return the kind and the content of what is served at a path, if anything is."""
-    if path == "/":
-        chain = (_PAGE / "chain.html").read_text("utf-8")
-        chain = chain.replace('id="chain"', 'id="chain" data-theory="theory"')
-        page = (_PAGE / "around.html").read_text("utf-8").replace("<!-- chain -->", chain)
-        return "text/html; charset=utf-8", page.encode()
+def _contents() -> dict[str, tuple[str, bytes]]:
+    """Return the kind and the content of everything that is served, by its path."""
+    chain = (_PAGE / "chain.html").read_text("utf-8")
+    chain = chain.replace('id="chain"', 'id="chain" data-theory="theory"')
+    page = (_PAGE / "around.html").read_text("utf-8").replace("<!-- chain -->", chain)
+    served = {"/": ("text/html; charset=utf-8", page.encode())}
     for each in _PAGE.iterdir():
-        kind = _KINDS.get(each.name.rpartition(".")[2])
-        if kind and path == f"/_static/{each.name}":
-            return f"{kind}; charset=utf-8", each.read_bytes()
-    return None
+        if kind := _KINDS.get(each.name.rpartition(".")[2]):
+            served[f"/_static/{each.name}"] = f"{kind}; charset=utf-8", each.read_bytes()
+    return served
 
 
 class _Handler(BaseHTTPRequestHandler):
@@ -69,6 +68,8 @@ class _Handler(BaseHTTPRequestHandler):
 
     def do_GET(self) -> None:
         """Send the page, a file of it, or a theory."""
+        if "Content-Length" in self.headers or "Transfer-Encoding" in self.headers:
+            self.close_connection = True  # nobody reads a body, which is no second request
         if not self._is_named_rightly():
             return
         try:
@@ -77,8 +78,8 @@ class _Handler(BaseHTTPRequestHandler):
             path = query = ""
         if path == "/theory":
             self._send_theory(query)
-        elif (found := _content(path)) is not None:
-            self._send(HTTPStatus.OK, *found)
+        elif path in _contents():
+            self._send(HTTPStatus.OK, *_contents()[path])
         else:
             self._say(HTTPStatus.NOT_FOUND, "Nothing is here.")
 
@@ -87,14 +88,16 @@ class _Handler(BaseHTTPRequestHandler):
         named = _NAME.fullmatch(",".join(self.headers.get_all("Host", [])).lower())
         if named is None:
             self._say(HTTPStatus.BAD_REQUEST, "The request does not name one host.")
-        elif named[1] not in self._names:
-            self._say(
-                HTTPStatus.MISDIRECTED_REQUEST,
-                f"The page answers at http://localhost{named[2] or ''}/ and not under the name "
-                f"{named[1]}. If that is the name of your hub, start it with: crazybilliards "
-                f"explore --allow-host {named[1]}",
-            )
-        return named is not None and named[1] in self._names
+            return False
+        if named[1] in self._names:
+            return True
+        self._say(
+            HTTPStatus.MISDIRECTED_REQUEST,
+            f"The page answers at http://localhost{named[2] or ''}/ and not under the name "
+            f"{named[1]}. If that is the name of your hub, start it with: crazybilliards "
+            f"explore --allow-host {named[1]}",
+        )
+        return False
 
     def _send_theory(self, query: str) -> None:
         sender = self.headers.get("X-Requested-With"), self.headers.get("Sec-Fetch-Site")
@@ -111,8 +114,9 @@ class _Handler(BaseHTTPRequestHandler):
 
     def _is_gone(self) -> bool:
         """Return whether the browser has closed the connection."""
-        readable = select.select([self.connection], [], [], 0)[0]
-        return bool(readable) and not self.connection.recv(1, socket.MSG_PEEK)
+        with selectors.DefaultSelector() as looking:
+            looking.register(self.connection, selectors.EVENT_READ)
+            return bool(looking.select(0)) and not self.connection.recv(1, socket.MSG_PEEK)
 
     def _say(self, status: HTTPStatus, text: str) -> None:
         self._send(status, "text/plain", f"{text}\n".encode())
@@ -193,7 +197,8 @@ def serve(
         url = f"http://{address.lower()}:{server.server_port}/"
         print(f"{url}  (Ctrl-C ends it)", flush=True)
         if open_browser:
-            webbrowser.open(url)
+            # Some browsers return when they are closed, and the page must be served before.
+            Thread(target=webbrowser.open, args=(url,), daemon=True).start()
         server.serve_forever()
 
 

@@ -6,6 +6,7 @@ import math
 import multiprocessing
 import signal
 import time
+import warnings
 from collections.abc import Callable, Mapping
 from contextlib import closing
 from multiprocessing.connection import Connection
@@ -14,6 +15,7 @@ from typing import Any
 
 from crazybilliards.model.checks import shown
 from crazybilliards.model.parameters import Parameters
+from crazybilliards.model.process import end_with_parent
 
 _TURN = Lock()  # one computes at a time, for all pages
 _PLACES = BoundedSemaphore(10)  # that compute or wait
@@ -96,11 +98,14 @@ def _solve_in_process(parameters: Parameters, is_gone: Callable[[], bool]) -> An
 def _compute(parameters: Parameters, there: Connection) -> None:
     """Send the theories of the chain, or why there is none."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the server ends this process
+    end_with_parent()
     from dataclasses import asdict
 
     from crazybilliards.comparison.stationary_theories import THEORIES, best_theory
+    from crazybilliards.kinetic.accuracy import UnmeasuredWarning
     from crazybilliards.model import Chain
 
+    warnings.simplefilter("ignore", UnmeasuredWarning)  # the page shows what is not known
     chain = Chain(**asdict(parameters))
     refusals = dict.fromkeys(theory.refusal(chain) for theory in THEORIES.values())
     try:

@@ -7,7 +7,6 @@ the simulated displacements, as in the paper.
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Sequence
 
 import numpy as np
@@ -23,6 +22,7 @@ from crazybilliards.comparison.side_by_side.parameter_series import (
 )
 from crazybilliards.kinetic import equilibrium, force_balance
 from crazybilliards.model import Chain, chain_of
+from crazybilliards.model.calls import warn_user
 from crazybilliards.model.randomness import Randomness, seed_of
 
 LEGEND = {
@@ -104,7 +104,7 @@ def elastic_theories(chain: Chain, run: xr.Dataset) -> dict[str, xr.Dataset]:
         arctanh = force_balance(chain, displacement=fit)
     except ValueError as error:
         # This happens for rods that hardly touch. The simulation must not be lost.
-        warnings.warn(f"A = {chain.amplitude:g} has no arctanh fit: {error}", stacklevel=2)
+        warn_user(f"A = {chain.amplitude:g} has no arctanh fit: {error}")
         return theories
     # The fit at the simulated mean positions, to be drawn beside the displacements.
     fitted = fit(chain.anchors + run.mean_displacement)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Mapping, Sequence
 
 import xarray as xr
@@ -15,6 +14,7 @@ from crazybilliards.comparison.side_by_side.parameter_series import (
 from crazybilliards.comparison.stationary_theories import THEORIES
 from crazybilliards.comparison.widths import WidthDeviation, width_deviation
 from crazybilliards.model import Chain
+from crazybilliards.model.calls import warn_user
 from crazybilliards.model.randomness import Randomness, seed_of
 
 THEORY = "kinetic_equation"
@@ -83,7 +83,7 @@ def _kinetic_equations(chain: Chain, run: xr.Dataset) -> dict[str, xr.Dataset]:
             found[key] = theory.solve(chain)
         except ValueError as error:
             # For example, there is no steady state. The simulation must not be lost.
-            warnings.warn(f"e = {chain.restitution:g} has no {theory.title}: {error}", stacklevel=2)
+            warn_user(f"e = {chain.restitution:g} has no {theory.title}: {error}")
     return found
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import logging
 import multiprocessing
-import os
 import signal
 import sys
 import threading
@@ -16,7 +15,7 @@ from multiprocessing.synchronize import Event
 
 from tqdm import tqdm
 
-from crazybilliards.model.process import cores
+from crazybilliards.model.process import cores, end_with_parent
 
 _UNGUARDED = (
     "no worker process could start: each of them imports the script, which must therefore start "
@@ -55,14 +54,7 @@ def _prepare_worker(started: Event) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     # The default lock of tqdm works across processes, and a killed worker would leave it behind.
     tqdm.set_lock(threading.RLock())
-    threading.Thread(target=_follow_parent, daemon=True).start()
-
-
-def _follow_parent() -> None:
-    parent = multiprocessing.parent_process()
-    if parent is not None:
-        parent.join()
-        os._exit(1)
+    end_with_parent()
 
 
 @contextmanager

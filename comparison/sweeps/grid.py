@@ -22,7 +22,6 @@ import math
 import numbers
 import os
 import tomllib
-import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from pathlib import Path
@@ -35,6 +34,7 @@ import xarray as xr
 from crazybilliards.comparison.sweeps.case import Case, plain, stored_parameters
 from crazybilliards.comparison.sweeps.jobs import JOBS
 from crazybilliards.model import Chain, load
+from crazybilliards.model.calls import warn_user
 from crazybilliards.model.checks import check_arguments, check_choice, check_path, got, shown
 from crazybilliards.model.vocabulary import ATTRIBUTES, described
 
@@ -169,7 +169,7 @@ def load_sweep(folder: str | os.PathLike[str]) -> xr.Dataset:
     points, results = zip(*map(_read_case, paths), strict=True)
     _check_points(paths, points)
     if len({result.attrs.get("source_fingerprint") for result in results}) > 1:
-        warnings.warn(f"{folder}: different source code computed these cases", stacklevel=3)
+        warn_user(f"{folder}: different source code computed these cases")
     table = pd.DataFrame([{k: _scalar(v) for k, v in point.items()} for point in points])
     names = [*_CHAIN, *(name for name in points[0] if name not in _CHAIN)]
     varied = [name for name in names if table[name].nunique(dropna=False) > 1]

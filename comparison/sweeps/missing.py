@@ -7,7 +7,6 @@ again when it is computed.
 from __future__ import annotations
 
 import sys
-import warnings
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -19,6 +18,7 @@ from tqdm import tqdm
 
 from crazybilliards.comparison.sweeps.case import Case, OutdatedError
 from crazybilliards.comparison.sweeps.grid import Sweep
+from crazybilliards.model.calls import warn_user
 from crazybilliards.model.process import bar_hidden
 from crazybilliards.particles import ShortRunWarning
 
@@ -128,7 +128,7 @@ def _check_sweep(sweep: Sweep, progress: bool) -> NDArray[np.float64]:
         short += [case.too_short] if case.too_short else []
     if short:
         many = f"{len(short)} of {len(work)} cases; the first: " if len(work) > 1 else ""
-        warnings.warn(many + short[0], ShortRunWarning, stacklevel=4)
+        warn_user(many + short[0], ShortRunWarning)
     sizes = [*map(len, chains.values())]
     return np.broadcast_to(np.array(work).reshape(sizes), [*map(len, sweep.grid.values())]).ravel()
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Sequence
 from typing import Self
 
 import numpy as np
 
+from crazybilliards.model.calls import warn_user
 from crazybilliards.model.checks import check_real
 from crazybilliards.model.grid import deposit, position_grid, thermal_reach
 from crazybilliards.particles.observers.base import Array, Averaged, Integers, Snapshots, Variables
@@ -41,8 +41,8 @@ class Density(Averaged):
     Parameters
     ----------
     reach
-        Distance from the outer anchors to the ends of the grid [R]. None: as far as noise and the
-        start can move rods.
+        Distance from the outer anchors that rods may reach [R]; the grid goes 4R further, which
+        smoothing needs. None: as far as noise and the start can move rods.
     """
 
     name = "density"
@@ -54,7 +54,12 @@ class Density(Averaged):
         self.reach = None if reach is None else check_real("reach", reach, positive=True)
 
     def _grid(self, run: Run) -> Array:
-        return position_grid(run.chain, _reach(run) if self.reach is None else self.reach)
+        if self.reach is None:
+            return position_grid(run.chain, _reach(run))
+        try:
+            return position_grid(run.chain, self.reach)
+        except ValueError as error:
+            raise ValueError(f"reach={self.reach:g} is too large for a grid: {error}") from error
 
     def shape(self, run: Run) -> tuple[int, ...]:
         """Return the shape of the sums of one block: one number a node of the grid."""
@@ -82,10 +87,9 @@ class Density(Averaged):
         """Return density, density_error, density_block over x, and the rods outside x."""
         if self.outside:
             share = self.outside / counts.sum()
-            warnings.warn(
+            warn_user(
                 f"density: {share:.3g} rods per snapshot lay outside the grid and are missing; "
-                "observe=cb.Density(reach=...) makes the grid wider",
-                stacklevel=2,
+                "observe=cb.Density(reach=...) makes the grid wider"
             )
         spacing = self.spacing
         variables = self.averages({"density": lambda average: average / spacing}, counts, "x")

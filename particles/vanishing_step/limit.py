@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import os
 import sys
-import warnings
 from collections.abc import Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
@@ -16,6 +15,7 @@ import numpy as np
 import xarray as xr
 
 from crazybilliards.model import Chain
+from crazybilliards.model.calls import warn_user
 from crazybilliards.model.checks import check_integer, check_path, check_real
 from crazybilliards.model.memory import require_memory
 from crazybilliards.model.process import announced, cores, interrupts_noted
@@ -29,6 +29,7 @@ from crazybilliards.particles.running.threads import run_all
 from crazybilliards.particles.scales import relaxation_time
 from crazybilliards.particles.schedule import Schedule, too_short
 from crazybilliards.particles.simulation import ShortRunWarning, compile_kernels
+from crazybilliards.particles.start import MOST_REPLICAS
 from crazybilliards.particles.vanishing_step.level_steps import GROUPS, Steps, plan_steps
 from crazybilliards.particles.vanishing_step.level_terms import CENTRAL
 from crazybilliards.particles.vanishing_step.multilevel import Levels
@@ -135,6 +136,7 @@ def simulate_limit(
     """
     threads = check_integer("threads", cores() if threads is None else threads, least=1)
     checkpoint_interval = check_real("checkpoint_interval", checkpoint_interval)
+    kept = None if checkpoint is None else check_path("checkpoint", checkpoint)
     seed = seed_of(seed, rng)
     steps, runs = make_runs(
         chain,
@@ -148,7 +150,7 @@ def simulate_limit(
     )
     given = math.inf if warmup is None else warmup
     if short := too_short(chain, math.inf, given, replicas, at_rest=True):
-        warnings.warn(short, ShortRunWarning, stacklevel=3)
+        warn_user(short, ShortRunWarning)
     groups = -(-GROUPS // replicas)
     by_level = [
         [
@@ -163,10 +165,9 @@ def simulate_limit(
         compile_kernels()
         compile_pair()
     keeper = None
-    if checkpoint is not None:
+    if kept is not None:
         own = {"accuracy": levels.accuracy, "replicas": replicas, "levels": levels.steps}
-        path = check_path("checkpoint", checkpoint)
-        keeper = Checkpoint(path, identity(samplers[0].finer) | own, checkpoint_interval)
+        keeper = Checkpoint(kept, identity(samplers[0].finer) | own, checkpoint_interval)
     with (
         interrupts_noted() as signals,  # between two rounds as well
         nullcontext() if keeper is None else keeper.resumed(samplers),
@@ -201,7 +202,7 @@ def make_runs(
         raise ValueError(f"accuracy must lie between 1e-4 and 0.1, got {accuracy:g}")
     if warmup is not None:
         warmup = check_real("warmup", warmup)
-    replicas = check_integer("replicas", replicas, least=1)
+    replicas = check_integer("replicas", replicas, least=1, most=MOST_REPLICAS)
     if chain.damping == 0 or chain.amplitude == 0:
         raise ValueError("the limit of a steady state needs damping and amplitude above 0")
     observers = find_observers(observe)

@@ -1,6 +1,8 @@
 """Who may open the page of ``crazybilliards explore``, and what is refused."""
 
 import socket
+import subprocess
+import sys
 from concurrent.futures import ThreadPoolExecutor
 from http.client import HTTPConnection
 from select import select
@@ -20,9 +22,7 @@ def port_of(address):
 
 def get(address, path="/", host="localhost", method="GET", **headers):
     """Return status and text of the answer to a request under a host's name."""
-    connection = HTTPConnection(
-        "127.0.0.1", int(address.rstrip("/").rpartition(":")[2]), timeout=300
-    )
+    connection = HTTPConnection("127.0.0.1", port_of(address), timeout=300)
     connection.putrequest(method, path, skip_host=True)
     for name, value in {"Host": host, **headers}.items():
         connection.putheader(name, value)
@@ -106,3 +106,26 @@ def test_a_hundred_at_once_wait_or_are_refused_and_leave_nothing_behind(address)
     children = psutil.Process(address.process.pid).children
     until(lambda: not [each for each in children() if "spawn_main" in str(each.cmdline())], 10)
     assert get(address)[0] == 200
+
+
+def test_a_body_is_no_second_request(address):
+    with socket.create_connection(("127.0.0.1", port_of(address))) as visitor:
+        visitor.sendall(b"GET / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 9\r\n\r\nGET / HT\n")
+        answer = b"".join(iter(lambda: visitor.recv(65536), b""))
+    assert answer.count(b"HTTP/1.1 ") == 1
+
+
+@pytest.mark.validate
+def test_a_killed_server_takes_its_solver_along():
+    """Nobody is left who could end it."""
+    command = [sys.executable, "-m", "crazybilliards", "explore", "--no-browser", "--port", "0"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as server:
+        address = server.stdout.readline().split()[0]
+        wanted = b"GET /theory?size=200&restitution=0 HTTP/1.1\r\nHost: localhost\r\n"
+        with socket.create_connection(("127.0.0.1", port_of(address))) as visitor:
+            visitor.sendall(wanted + b"X-Requested-With: chain\r\n\r\n")
+            children = psutil.Process(server.pid).children
+            until(lambda: any("spawn_main" in str(each.cmdline()) for each in children()), 60)
+            solvers = children()
+            server.kill()
+            until(lambda: not any(each.is_running() for each in solvers), 30)

@@ -13,13 +13,20 @@ from crazybilliards.particles.laws.avalanche import make_tally
 from crazybilliards.particles.laws.contact_dynamics import bound
 from crazybilliards.particles.laws.exact_flight import make_propagator
 from crazybilliards.particles.laws.impacts import make_impacts
-from crazybilliards.particles.laws.law import EVENTS, SORT, Law, drift, make_scratch
+from crazybilliards.particles.laws.law import (
+    CONTACTS,
+    EVENTS,
+    ISOTONIC,
+    SORT,
+    Law,
+    drift,
+    make_scratch,
+)
 from crazybilliards.particles.noise import make_noise
 from crazybilliards.particles.schedule import make_schedule
 from crazybilliards.particles.stepping import advance
 
 RESTITUTIONS = [0.0, 0.05, 0.16, 0.17, 0.5, 0.9999, 1.0, 1.05]
-OPERATORS = {"sort": SORT, "isotonic": ISOTONIC, "events": EVENTS, "contacts": CONTACTS}
 GAPS = [0.0, 0.3]
 SPRINGS = ["linear", "quadratic"]
 METHODS = ["event-driven", "contact-dynamics"]

@@ -175,8 +175,9 @@ def test_the_density_holds_every_rod_wherever_it_started(chain, spread, speed):
 
 
 def test_the_grid_of_the_density_can_be_chosen():
-    with pytest.warns(UserWarning, match=r"Density\(reach=...\) makes the grid wider"):
+    with pytest.warns(UserWarning, match=r"Density\(reach=...\) makes the grid wider") as caught:
         run = ensemble(Chain(size=5, amplitude=20.0), observe=Density(reach=0.1))
+    assert caught[0].filename == __file__
     assert run.outside > 0
     wide = ensemble(Chain(size=5), observe=Density(reach=200.0))
     assert wide.x[-1] > 200

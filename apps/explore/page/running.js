@@ -30,6 +30,7 @@ const ChainRunning = (() => {
   /* A new chain. Up to e = 1 it has settled before it is shown; above it might run away. */
   function begin(chain) {
     world.state = P.makeState(chain, ++seed);
+    world.hand = null; // it held a rod of the chain before
     const settles = chain.restitution <= 1, time = P.relaxationTime(chain), begun = performance.now();
     let due = settles ? 4 * time : 0;
     for (; due > 0 && performance.now() - begun < PATIENCE; due -= time / 4) P.go(world.state, time / 4);
