@@ -77,19 +77,6 @@ def deviation(result: xr.Dataset, reference: xr.Dataset, floor: float = 1e-3) ->
     )
 
 
-def density_differences(
-    result: xr.Dataset, reference: xr.Dataset, floor: float = 1e-3
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the differences of two densities and their standard errors, bin by bin.
-
-    Both are in units of close packing, and of the bins where both densities exceed ``floor`` and
-    an error is known. Arguments and exceptions as in :func:`deviation`.
-    """
-    difference, error, _ = _differences(result, reference, floor)
-    known = np.isfinite(error)
-    return difference[known], error[known]
-
-
 def _differences(
     result: xr.Dataset, reference: xr.Dataset, floor: float
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.bool_]]:
@@ -104,9 +91,12 @@ def _differences(
     spacing = float(reference.x[1] - reference.x[0])
     if not np.isclose(float(result.x[1] - result.x[0]), spacing, rtol=1e-9):
         raise ValueError("the two densities lie on grids of different spacing")
-    rods = [float(each.density.sum("x").max() * spacing) for each in (result, reference)]
-    if abs(rods[0] - rods[1]) > _SAME_RODS * max(rods):
-        raise ValueError(f"the two densities hold {rods[0]:.4g} and {rods[1]:.4g} rods")
+    ours, theirs = (each.density.sum("x") * spacing for each in (result, reference))
+    if ours.dims != theirs.dims or (ours.dims and not ours.time.equals(theirs.time)):
+        raise ValueError("the densities are of several times; choose one of each: .isel(time=...)")
+    if (np.abs(ours.values - theirs.values) > _SAME_RODS * np.maximum(ours, theirs).values).any():
+        held = (f"{float(each.max()):.4g}" for each in (ours, theirs))
+        raise ValueError(f"the two densities hold {' and '.join(held)} rods")
     unit = chain_of(reference).close_packed_density
     # Nodes are whole multiples of the spacing, so their numbers align the grids exactly.
     ours, theirs = (

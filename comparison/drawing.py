@@ -104,6 +104,8 @@ def overlay(
                 look |= {"zorder": 2} | next(lines) | own
                 ax.plot(abscissa, values, **look)
         except (AttributeError, TypeError, ValueError) as problem:  # of matplotlib, for a keyword
+            if not own:
+                raise
             raise ValueError(f"style of {label!r}: {problem}") from problem
         ax.set_xlabel(axis_label(abscissa))
         ax.set_ylabel(axis_label(values))

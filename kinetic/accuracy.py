@@ -29,7 +29,7 @@ from crazybilliards.model.calls import warn_user
 _PLACE = ("g L/s", "L", "e", "Gamma")
 _OF_FORCE_BALANCE = ("g/s", "L")
 _LENGTH = "s/R"
-_CONTINUOUS, _SAME = ("Gamma", "g L/s", "g/s"), 5e-3  # relative
+_CONTINUOUS, _SAME = ("Gamma", "g L/s", "g/s", _LENGTH), 5e-3  # relative
 _ANY = 0.49  # Gamma of a measured chain
 
 

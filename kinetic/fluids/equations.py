@@ -111,7 +111,8 @@ def hydrodynamics(
     cells
         Number of cells; None: chosen from the chain's scales. In the eulerian frame a cell may be
         at most half a thermal length wide, which gives errors of up to 3 % of this length in
-        positions. The default is a tenth of the thermal length.
+        positions. The default is a tenth of it. Both are less on springs that are so soft that
+        the rods, or the waves of a steep start, are short against the thermal length.
     progress
         Show a progress bar, if standard error is a terminal.
 

@@ -51,7 +51,6 @@ _MOST_BY_DEFAULT = 50_000
 MOST_CELLS = 100_000
 _POPULATED = 1e-12  # of the largest density; how far thinner places swing does not matter
 _JUST_INSIDE = 1 - 1e-9  # an arctanh is infinite at its end
-_CELLS_OF_RODS = 200  # cells in the length that the rods of a start take, by default
 _ROOM = 9.5  # beyond the lattice of anchors, in thermal lengths
 _MARGIN = 3.0  # beyond the farthest swing
 _AT_THE_WALL = 1e-4  # of the density L/s
@@ -187,11 +186,11 @@ def _finest(chain: Chain, start: Start, duration: float, there: NDArray[np.bool_
     It is the thermal length, or less if the spring is so soft that the rods, or the waves that a
     steep place of the start sends out, are short against it.
     """
-    rods = float(np.ptp(start.x[there])) / _CELLS_OF_RODS
+    rods = float(np.ptp(start.x[there]))
     density, slope = (np.abs(start.label(start.x[there], order)).max() for order in (1, 2))
     steep = float(density / slope) if slope > 0 else math.inf
     waves = chain.free_velocity_width * duration
-    return min(chain.thermal_length, rods / _CELL, max(waves, steep))
+    return min(chain.thermal_length, rods / 20, max(waves, steep, rods / 100))
 
 
 def starting_fields(chain: Chain, start: Start, faces: Array, *, thermal: bool) -> dict[str, Array]:

@@ -21,6 +21,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 from scipy.sparse import csc_matrix
+from scipy.stats import norm
 from tqdm import tqdm
 
 from crazybilliards.kinetic.accuracy import expected_relax_phase_space, warn_if_unmeasured
@@ -68,7 +69,7 @@ _LOST = 2e-4  # share of the points on a line of the outermost cells at which th
 _NEGATIVE = 0.1
 _DIVERGED = 1e3  # times the energy of the start or the free rod
 _ENLARGED = 1.4
-_LIKE = 0.01  # of a start: how far it may be from an equilibrium, relatively
+_LIKE = 0.1  # share of the points that a start may have in other places than an equilibrium
 
 
 @one_thread
@@ -182,14 +183,13 @@ def relax_phase_space(
 
 def _compression(chain: Chain, start: Mapping[str, Any]) -> float:
     """Return what y of the equilibrium at e = 1 was multiplied by; NaN for any other start."""
-    s, energy = chain.thermal_length, chain.size * chain.temperature / 2
-    unlike = (
-        start["kinetic_energy"] / energy - 1,
-        start["centre"] / s,
-        start["covariance"] / (s * chain.free_velocity_width),
-    )
-    known = chain.gap == 0 and max(map(abs, unlike)) < _LIKE
-    return round(start["cloud_width"] / s, 2) if known else math.nan
+    if chain.gap > 0:
+        return math.nan
+    y, v, width = start["y"], start["v"], start["cloud_width"]
+    released = norm.pdf(y, scale=width)[:, None] * norm.pdf(v, scale=chain.free_velocity_width)
+    off = np.abs(start["phase_space_density"] / chain.size - released)
+    share = np.trapezoid(np.trapezoid(off, v), y) / 2
+    return round(width / chain.thermal_length, 2) if share < _LIKE else math.nan
 
 
 def _unresolved(time: float, cells: int) -> str:

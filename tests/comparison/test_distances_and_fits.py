@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from crazybilliards.comparison import deviation, fit_arctanh, fit_border_power_law
 from crazybilliards.kinetic import equilibrium, force_balance
@@ -42,6 +43,16 @@ def test_deviation_refuses_what_it_cannot_align():
         deviation(flat(chain, 0.3, 4), flat(chain, 0.3, 4, spacing=0.4))
     with pytest.raises(ValueError, match="no 'density'"):
         deviation(flat(chain, 0.3, 4).drop_vars("density"), flat(chain, 0.3, 4))
+
+
+def test_densities_over_other_times_are_not_compared():
+    chain = Chain(size=10)
+    times = [flat(chain, 0.3, 4).assign_coords(time=t) for t in (0.0, 1.0, 2.0)]
+    one, other = (xr.concat([times[0], each], "time") for each in times[1:])
+    assert deviation(one, one).maximum == 0
+    for reference in (other, times[0]):
+        with pytest.raises(ValueError, match="choose one of each"):
+            deviation(one, reference)
 
 
 def test_a_vanishing_density_deviates_by_nothing():

@@ -40,7 +40,7 @@ def test_the_closed_form_is_one_number_everywhere():
     assert weak_damping_growth_rate(below) < 0 < weak_damping_growth_rate(above)
 
 
-# Chains at the borders of where the rate holds.
+# Chains at the borders of where the rate holds, in size, gain and 1.5 critical sizes.
 GROWING = [
     Chain(size=30, restitution=1.03, damping=0.3),
     Chain(size=50, restitution=1.02, damping=0.43),

@@ -13,6 +13,7 @@ from crazybilliards.kinetic import (
 )
 from crazybilliards.kinetic.exact.breathing import breathing_cloud
 from crazybilliards.model import Chain
+from crazybilliards.model.vocabulary import result
 
 QUIET = {"progress": False}
 # What hydrodynamics takes as velocity_variance for its two fluids.
@@ -215,3 +216,38 @@ def test_a_number_is_the_velocity_variance_of_the_isothermal_fluid(frame):
     assert np.abs(expected.cloud_width / chain.thermal_length - 1)[-1] > 0.1
     with pytest.raises(ValueError, match="damping=0"):
         hydrodynamics(chain.replace(damping=0), start, velocity_variance=0.1, **arguments)
+
+
+def shock_tube(chain):
+    """Return rods of the density 0.6 to the left of 0, and 0.2 to the right of it."""
+    ends = -chain.size / 2 / 0.6, chain.size / 2 / 0.2
+    x = np.linspace(ends[0] - 5, ends[1] + 5, 20_001)
+    left, middle, right = (np.tanh((x - place) / 0.5) for place in (ends[0], 0.0, ends[1]))
+    density = 0.3 * (left - middle) + 0.1 * (middle - right)
+    density *= chain.size / np.trapezoid(density, x)
+    return result(
+        chain, {"density": ("x", density)}, source="theory", method={}, coordinates={"x": x}
+    )
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("stiffness", [1e-4, 1e-6, 1e-8])
+def test_a_shock_does_not_depend_on_a_very_soft_spring(stiffness):
+    """The cells resolve the rods and the waves, which are short against the thermal length."""
+    damping = 1e-4
+    chain = Chain(size=400, radius=0.5, mass=1.0, stiffness=stiffness, damping=damping)
+    chain = chain.replace(amplitude=np.sqrt(2 * damping))
+    flow = hydrodynamics(
+        chain, shock_tube(chain), 20, every=20, velocity_variance=1.0, frame="eulerian", **QUIET
+    ).isel(time=-1)
+    behind = (flow.x > 2) & (flow.x < 8)
+    assert float(flow.flow_velocity[behind].median()) == pytest.approx(0.908, abs=0.01)
+    assert float(flow.density[behind].median()) == pytest.approx(0.378, abs=0.005)
+
+
+@pytest.mark.compiled
+def test_a_short_time_does_not_need_narrower_cells_than_the_rods():
+    chain = Chain(size=1000)
+    start = two_clumps(chain, 3.0, 0.5)
+    flow = hydrodynamics(chain, start, 0.01, every=0.01, frame="eulerian", **QUIET)
+    assert flow.attrs["status"] == "completed"

@@ -163,13 +163,13 @@ def test_contact_dynamics_solves_every_contact(name, e):
         np.testing.assert_allclose(above * impulse, 0, atol=1e-12)
 
 
-@pytest.mark.parametrize("e", RESTITUTIONS)
-@pytest.mark.parametrize("size", [1, 2, 3, 8])
+@pytest.mark.parametrize(
+    ("size", "e"),
+    # A collapse of many rods has a test of its own.
+    [(L, e) for L in (1, 2, 3, 8) for e in RESTITUTIONS if L < 8 or not 0 < e < 0.5],
+)
 @pytest.mark.parametrize("gap", GAPS)
 def test_one_long_step_is_many_short_ones_without_noise_and_springs(gap, size, e):
-    """But for a collapse of many rods, see the next test."""
-    if size == 8 and 0 < e < 0.5:
-        return
     chain = Chain(size=size, restitution=e, gap=gap, amplitude=0, damping=0, stiffness=0)
     first, some = np.eye(1, size)[0], np.sin(9.0 * np.arange(size) + 1)
     # Where a lattice with a gap meets at one point, rounding decides who is first.
@@ -206,18 +206,18 @@ def test_three_rods_stick_up_to_a_little_more_than_the_exact_restitution(ratio, 
     assert least <= stuck <= most
 
 
-@pytest.mark.parametrize("size", [1, 2, 3])
 @pytest.mark.parametrize("damping", [0.0, 1.0])
-@pytest.mark.parametrize("e", RESTITUTIONS)
-def test_exact_flight_takes_any_step(e, damping, size):
+@pytest.mark.parametrize(("size", "e"), [*((1, e) for e in RESTITUTIONS), (2, 1.0), (3, 1.0)])
+def test_exact_flight_takes_any_step(size, e, damping):
     chain = Chain(size=size, restitution=e, damping=damping, amplitude=0)
-    if e != 1 and size > 1:
-        return
     y, v = np.arange(size) / 2 - 0.3, np.arange(size) * -1.0 + 1
     one, other = moved(chain, y, v, 500.0, 1), moved(chain, y, v, 0.1, 5000)
     np.testing.assert_allclose(other, one, rtol=0, atol=1e-9)
-    # A step is right with strong damping too, to rounding; at 1e7 this is 1e-3.
-    strong = Chain(damping=10 ** (1 + 6 * damping), stiffness=1.0, mass=1.0)
+
+
+@pytest.mark.parametrize("damping", [10.0, 1e4, 1e7])
+def test_a_step_of_exact_flight_is_right_with_strong_damping_but_for_rounding(damping):
+    strong = Chain(damping=damping, stiffness=1.0, mass=1.0)
     half, time = strong.damping / 2, strong.damping
     quick = half + np.sqrt(half**2 - 1)
     slow = 1 / quick
