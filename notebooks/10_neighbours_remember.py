@@ -294,13 +294,14 @@ assert abs(of_neighbours) < 0.04
 # at, so the agreement alone proves little. The page on pair correlations in the documentation
 # compares it with other chains, and says where it fails.
 #
-# **Positions remember, too.** If neighbours move together, they are also displaced together, so
+# **Displacements of neighbours are correlated, too.** If neighbours move together, they are also displaced together, so
 # the displacement width $W_x$ of a rod is larger than that of strangers. The long waves that
 # displace rods are hardly damped by collisions themselves. They are damped because the distances
 # of neighbours fluctuate by as much as their mean: a chain that is strained suddenly pushes back
 # harder than one that has had time to rearrange, and this delay costs energy, as in a viscous
-# fluid. With this damping the second theory has $W_x$ within a few per cent; without it, $W_x$ is
-# 5 to 20 % too large. The same page derives it.
+# fluid. The second theory has an equation for displacements, with this damping as one of three
+# changes, and its $W_x$ is right within a few per cent. Before, it was up to 21 % too large. The
+# same page derives it.
 #
 # </details>
 #

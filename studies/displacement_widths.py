@@ -5,7 +5,8 @@
 Prints docs/tables/displacement_widths.csv: the largest error of W_x of any rod against simulations
 in the limit of a vanishing time step, in which W_x has errors of 0.4 to 0.9 % in the mean of rods.
 "Before" is W_x with the covariance h of the velocities in place of h'. The chains were drawn after
-the theory was final, and before any of them was simulated. On one core it takes about an hour.
+the equation was final, and before any of them was simulated. Its cells in chains of 131 to 260 rods
+were changed after the first results (docs/tables.md). On one core it takes about an hour.
 """
 
 import csv
