@@ -2,7 +2,7 @@
 
 import re
 import shutil
-from dataclasses import is_dataclass
+import sys
 from html import escape
 from importlib import import_module
 from importlib.metadata import version as version_of
@@ -28,7 +28,9 @@ author = "The crazybilliards developers"
 project_copyright = "The crazybilliards developers"
 release = version = version_of(project)
 
+sys.path.insert(0, str(HERE))
 extensions = [
+    "reference",  # docs/reference.py
     "myst_nb",
     "sphinx.ext.autodoc",
     "sphinx.ext.autosummary",
@@ -76,52 +78,6 @@ autodoc_preserve_defaults = True
 napoleon_google_docstring = False
 napoleon_use_rtype = False
 napoleon_use_ivar = True
-
-
-_NAMES = re.compile(r"^```\{names\} (\S+)\n```$", re.MULTILINE)
-_MODULE = re.compile(r"^```\{module\} (\S+)\n```$", re.MULTILINE)
-
-
-def write_reference(app, page, source) -> None:
-    """Fill the blocks ``{names} ROOM`` and ``{module} MODULE`` of a page of the reference.
-
-    The second becomes the docstring of the module and the public names of the room that come from
-    it. The first lists all public names in the order of the page. A name on no page is a warning.
-    """
-    if not (found := _NAMES.search(source[0])):
-        return
-    room, text = found[1], source[0]
-    homes = {name: unwrap(getattr(import_module(room), name)).__module__ for name in _public(room)}
-    shown: list[str] = []
-
-    def module(match: re.Match[str]) -> str:
-        names = [each for each in homes if f"{homes[each]}.".startswith(f"{match[1]}.")]
-        shown.extend(names)
-        lines = [f".. automodule:: {match[1]}", "   :no-index:", "   :no-members:"]
-        for name in names:
-            thing = getattr(import_module(room), name)
-            kind = "class" if isinstance(thing, type) else "function"
-            lines += ["", f".. auto{kind}:: {room}.{name}"]
-            lines += ["   :members:"] * is_dataclass(thing)
-        return _as_block(lines)
-
-    text = _MODULE.sub(module, text)
-    if sorted(shown) != sorted(homes):
-        logger.warning("names on no page or twice: %s", set(homes) ^ set(shown), location=page)
-    head = [f".. currentmodule:: {room}", "", ".. autosummary::", "   :nosignatures:", ""]
-    source[0] = _NAMES.sub(_as_block([*head, *(f"   {name}" for name in shown)]), text)
-
-
-def _public(room: str) -> list[str]:
-    """Return the names of a room, without those of sweeps, which have a page of their own."""
-    names = import_module(room).__all__
-    if room != "crazybilliards.comparison":
-        return names
-    return [name for name in names if name not in import_module(f"{room}.sweeps").__all__]
-
-
-def _as_block(lines: list[str]) -> str:
-    return "\n".join(["```{eval-rst}", *lines, "```"])
 
 
 def copy_notebooks() -> None:
@@ -318,7 +274,6 @@ def setup(app) -> None:
     copy_notebooks()
     pack_lessons()
     app.connect("source-read", point_to_copies)
-    app.connect("source-read", write_reference)
     app.connect("viewcode-follow-imported", defining_module)
     app.add_html_math_renderer("mathml", (write_inline_formula, None), (write_formula, None))
     app.connect("doctree-resolved", mark_pictures)
