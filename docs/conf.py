@@ -2,6 +2,7 @@
 
 import re
 import shutil
+import sys
 from html import escape
 from importlib import import_module
 from importlib.metadata import version as version_of
@@ -27,7 +28,9 @@ author = "The crazybilliards developers"
 project_copyright = "The crazybilliards developers"
 release = version = version_of(project)
 
+sys.path.insert(0, str(HERE))
 extensions = [
+    "reference",  # docs/reference.py
     "myst_nb",
     "sphinx.ext.autodoc",
     "sphinx.ext.autosummary",

@@ -3,7 +3,7 @@ r"""How much stronger the kicks of closed contacts must be: the constant of ``cl
     python -m studies.closed_contact [--millions 40]
 
 The relative motion of two rods with e = 0: a position x >= 0 and a velocity u, a kick of variance 1
-a step, then x + u; whoever would end below 0 is at rest at 0. The continuous counterpart is the
+a step, then x + u; a rod that would end below 0 is at rest at 0. The continuous counterpart is the
 randomly accelerated particle, dx = u dt, du = dW, that sticks at 0. A cycle, from closing to
 closing, takes a time with infinite mean, tail C t^(-1/4). Its renormalised mean,
 

@@ -57,11 +57,6 @@ def test_a_variable_stands_in_the_vocabulary(variable):
     assert variable in VOCABULARY
 
 
-@pytest.mark.parametrize("target", sorted(set(re.findall(r"\]\((?!http)([^)#]+)", TEXT))))
-def test_a_link_leads_somewhere(target):
-    assert (PAGE.parent / target).is_file()
-
-
 def test_every_equation_has_a_row():
     numbers = []
     for cell in first_cells("Equations"):

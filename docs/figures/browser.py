@@ -1,4 +1,4 @@
-"""A headless Chromium and the page of ``crazybilliards explore``, for whoever looks at it."""
+"""A headless Chromium that opens the page of ``crazybilliards explore``, for pictures and tests."""
 
 import signal
 import subprocess

@@ -68,7 +68,7 @@ class Closure(NamedTuple):
 
     @property
     def is_possible(self) -> bool:
-        """Whether it is off the bounds that ``implied`` keeps an iteration within."""
+        """True if no unknown lies on one of the bounds to which ``implied`` keeps an iteration."""
         bounded = 1 - self.shared, 1 - self.collective, np.exp(self.log_clustering)
         return min(float(each.min()) for each in bounded) > 2 * _LEAST
 

@@ -36,7 +36,7 @@ from crazybilliards.particles.vanishing_step.multilevel import Levels
 from crazybilliards.particles.vanishing_step.sampler import Sampler, compile_pair
 
 # The parameters that the coupled runs and the planning of the levels know. Another one is refused
-# until it was looked at here: noise with a memory, say, needs another sum of kicks.
+# until it was looked at here: for example noise with memory needs another sum of kicks.
 _KNOWN = frozenset(
     ("size", "restitution", "amplitude", "damping", "stiffness", "gap", "radius", "mass", "spring")
 )

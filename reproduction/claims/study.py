@@ -18,7 +18,7 @@ Results = Mapping[str, xr.Dataset]
 
 
 class Needed(Protocol):
-    """What a study needs and names itself: runs of a chain, a theory."""
+    """A part of a study that names its cases: runs of a chain, or a theory."""
 
     def cases(self, quality: Quality) -> Cases:
         """Return its cases by their names."""

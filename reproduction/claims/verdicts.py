@@ -169,7 +169,7 @@ class Claim:
                 for choice, found in self.elsewhere.items()
             ),
             "why": "" if self.verdict in ("reproduced", "confirmed") else self.reason,
-            "and yet, exactly": self.exactly,
+            "exactly": self.exactly,
         }
         return {name: text for name, text in told.items() if text}
 

@@ -154,7 +154,7 @@ def test_a_label_that_is_not_found_is_an_error(monkeypatch):
 
 
 def test_a_plain_density_profile_is_a_start():
-    """Any profile of one's own: no label, no velocity, no provenance."""
+    """Any profile of the user: no label, no velocity, no provenance."""
     chain = Chain(size=20, amplitude=5)
     own = displaced(chain, 3.0)[["density"]].drop_attrs()
     flow = hydrodynamics(chain, own, 5, every=1, **QUIET)

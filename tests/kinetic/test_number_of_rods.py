@@ -43,7 +43,7 @@ def test_all_rods_are_held_at_wide_gaps(solver, size, gap):
     require_all_rods(SOLVERS[solver].solve(chain, given), size)
 
 
-def test_the_gap_of_a_single_rod_is_none():
+def test_one_rod_has_no_gap():
     """It has no neighbour to be apart from."""
     for spring in ("linear", "quadratic"):
         chain = Chain(size=1, spring=spring)

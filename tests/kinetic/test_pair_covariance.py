@@ -133,7 +133,7 @@ def test_a_collision_takes_its_share_of_the_force(restitution):
     assert abs(taken.mean() - loss[0]) < 5 * taken.std() / np.sqrt(w.size)
 
 
-def test_strangers_collide_as_in_the_kinetic_equation():
+def test_uncorrelated_rods_collide_as_in_the_kinetic_equation():
     """Without correlations the factor is that of L - 1 partners that meet more slowly by K."""
     cells, rod, none = a_gas(12)
     for restitution in (0.99, 0.9):

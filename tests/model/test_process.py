@@ -47,7 +47,7 @@ NOTED = """
 import signal
 from crazybilliards.model.process import interrupts_noted
 number = {number}
-signal.signal(number, signal.SIG_DFL)  # nohup, say, ignores SIGHUP
+signal.signal(number, signal.SIG_DFL)  # for example nohup ignores SIGHUP
 with interrupts_noted():
     signal.raise_signal(number)
     print("went on", flush=True)

@@ -83,7 +83,7 @@ def test_two_writers_of_one_file_do_not_meet(dataset, tmp_path):
     assert sorted(each.name for each in tmp_path.iterdir()) == [".run.nc.part", "run.nc"]
 
 
-def test_a_place_that_is_none_is_named(dataset, tmp_path):
+def test_an_unknown_place_is_named_in_the_error(dataset, tmp_path):
     (tmp_path / "file").write_text("")
     for path in (tmp_path / "file" / "run.nc", tmp_path / "file" / "deep" / "run.nc"):
         with pytest.raises(NotADirectoryError, match=str(path)):

@@ -198,7 +198,7 @@ def test_what_the_eye_sees(deviation, verdict):
     seen = in_plot("all rods", deviation, 22.4)
     claim = Claim("fits", **seen, source="fig.2", exactly="no arctanh")
     assert claim.verdict == verdict
-    assert claim.details["and yet, exactly"] == "no arctanh"
+    assert claim.details["exactly"] == "no arctanh"
     assert "22.4 standard errors" in claim.details["found here"]
 
 

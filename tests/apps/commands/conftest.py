@@ -67,7 +67,7 @@ def and_interrupt(self, *arguments):
 
 number = int(sys.argv.pop(1))
 if number != signal.SIGINT:
-    signal.signal(number, signal.SIG_DFL)  # nohup, say, ignores SIGHUP
+    signal.signal(number, signal.SIG_DFL)  # for example nohup ignores SIGHUP
 Widths.observe = and_interrupt
 main()
 """
