@@ -1,5 +1,8 @@
 """A calendar of the contacts that are due: the time of a step in equal parts, a list for each part.
 
+The contact that closes first is in the first list that is not empty. There are as many lists as
+contacts that are due, so a list holds about one, and a collision costs O(1).
+
 The lists are doubly linked. Of L rods, contact c is node c, and the list of part k has its head at
 node L + k. A node that is linked to itself is an empty list, or a contact in no list.
 """
