@@ -5,29 +5,8 @@ scheme then has W_x right to 3e-4 (linear springs, no gap). For e != 1 the veloc
 is at most 0.3 W_v in the centre, as :func:`centre_width` estimates it, and the error of W_v at most
 1 %. docs/particles.md says why.
 
-**Relaxation time.** A rod on a linear spring k' relaxes with its slowest mode,
-
-    1/tau = Re [b - sqrt(b^2 - k'/m)],      b = gamma/2m:
-
-so tau is 2m/gamma for weak damping and gamma/k' for strong damping. A quadratic spring has no
-constant stiffness. With strong damping its rod diffuses in the potential k |d|^3/3. The slowest
-mode of this diffusion decays at the rate 1.241 k s/gamma, s = (T/k)^(1/3), which is the smallest
-eigenvalue above 0 of the Fokker-Planck operator -d^2/dz^2 + z|z| d/dz, z = d/s. So k' = 1.241 k s
-is right in this limit. With weak damping 2m/gamma is an upper estimate for quadratic springs: the
-energy relaxes at the rate 6 gamma/5m (virial theorem), and the phases mix faster. At gamma s/m W =
-0.2 the estimate is twice too long.
-
-In a chain, rods that collide move together. The stiffness that holds a group is the mean of 2 k |d|
-over its rods, whose displacements are smaller than those of a free rod, s. The displacements have
-two causes. (1) Fluctuations: neighbours a gap g apart are coupled by T/g^2, the stiffness of a gas
-of points, so that <d^2> = (g/2) sqrt(T/k'). With k' = 2 k <|d|> this is <d^2> = 0.78 s^2 z^2 with z
-= (0.54 g/s)^(2/5). (2) Pressure: it pushes rods from their anchors within some s of the ends of a
-lattice of length g L, on average by about s/(1 + g L/2s). Together
-
-    k' = 1.241 k s min[1, sqrt(z^2 + 1/(1 + g L/2s)^2)],
-
-The minimum is 1 without a gap, where relabelled rods are free, and less in a long, dense lattice.
-The estimate is right to a third for 1 to 300 rods with gaps from 0.03 s to s, at restitution 1.
+**Relaxation time.** It is that of a rod on a linear spring, whose stiffness is estimated for
+quadratic springs. docs/particles.md derives it.
 """
 
 from __future__ import annotations
@@ -147,8 +126,8 @@ def relaxation_time(chain: Chain) -> float:
     the centre of mass, on which collisions do not act: exactly 2m/gamma for weak damping, and about
     gamma/k for strong damping, at every restitution. All other modes are as fast at e = 1, and not
     slower in simulations with e < 1. For quadratic springs the time is an estimate, which is right
-    to a third (the module ``scales``). For e > 1 it is a lower bound: near the critical size, where
-    the noise is amplified without limit, the energy takes longer.
+    to a third (docs/particles.md derives it). For e > 1 it is a lower bound: near the critical
+    size, where the noise is amplified without limit, the energy takes longer.
 
     Take a warm-up of at least five times it (the default is 12), and durations of hundreds.
 
@@ -187,7 +166,10 @@ def correlation_time(chain: Chain) -> float:
 
 
 def _relaxing_stiffness(chain: Chain) -> float:
-    """Stiffness k' of the linear spring that relaxes as slowly as the chain's own [M/T^2]."""
+    """Stiffness k' of the linear spring that relaxes as slowly as the chain's own [M/T^2].
+
+    It is 1.241 k s min[1, sqrt(z^2 + 1/(1 + g L/2s)^2)], z = (0.54 g/s)^(2/5), for quadratic ones.
+    """
     if chain.spring == "linear":
         return chain.stiffness
     if chain.stiffness == 0 or chain.temperature == 0:

@@ -95,9 +95,7 @@ def _fly(y, v, noise, dynamics, scratch, steps):  # type: ignore[no-untyped-def]
 
 @inlined
 def _step(y, v, noise, dynamics, scratch, tally, steps):  # type: ignore[no-untyped-def]
-    """Take steps of kicks and drifts."""
-    if steps == 0:
-        return 0
+    """Take steps of kicks and drifts, at least one."""
     step, size = dynamics.step, y.size
     if step.closed != 1.0:
         find_clusters(y, scratch.clusters)

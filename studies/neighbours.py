@@ -40,7 +40,6 @@ HEADS = ["L", "$W_v/W$", r"$\sqrt{\Theta}/W$", r"$\sqrt{h_c}/W$", "$P/ks$", r"$\
 
 
 def cases() -> dict[str, Case]:
-    """Return simulations and theories."""
     found = {}
     chains = [(e, *of_size) for e, of_size in product(RESTITUTIONS, DURATIONS.items())]
     for e, size, duration in [*chains, (0.0, LONGEST, ITS_DURATION)]:
@@ -80,7 +79,6 @@ def correlation_length(result: xr.Dataset) -> Estimate:
 
 
 def length_of(result: xr.Dataset, spectrum: np.ndarray) -> float:
-    """Return the correlation length of one spectrum."""
     chain = chain_of(result)
     wave = np.pi * result.mode.values / chain.size
     short = spectrum[-max(3, spectrum.size // 10) :].mean()
@@ -125,7 +123,6 @@ def force(result: xr.Dataset) -> Estimate:
 
 
 def quantities(result: xr.Dataset) -> list[Estimate]:
-    """Return what the columns of ``HEADS`` have."""
     powers = {"velocity_width": 2, "relative_temperature": 1, "neighbour_covariance": 1}
     roots = [root(result, *each) for each in powers.items()]
     return [*roots, force(result), correlation_length(result)]
@@ -158,7 +155,6 @@ def guess(run: xr.Dataset) -> str:
 
 
 def tables(results: Results) -> dict[str, Table]:
-    """Give correlation lengths and covariances, then what grows with the length at e = 0."""
     sources = "simulation", "theory"
     names = [f"{of}, {which}" for of in ("xi", "h_c/T centre") for which in sources]
     rows = [["e", "L", *names, "W^2/<v^2>, simulation"]]
@@ -187,7 +183,6 @@ def tables(results: Results) -> dict[str, Table]:
 
 
 def draw(results: Results) -> Figure:
-    """Draw correlation lengths, covariances of neighbours, and covariances against distance."""
     figure, axes = panels(1, 3, height=2.6)
     sizes = list(DURATIONS)
     for number, e in enumerate(RESTITUTIONS):
