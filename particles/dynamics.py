@@ -101,8 +101,8 @@ def make_step(
     # Contact Dynamics has no stronger noise for closed contacts, as in the paper.
     sticking = chain.restitution < CRITICAL_RESTITUTION and method == "event-driven"
     strength = CLOSED_KICK if sticking else 1.0
-    # A snapshot lies between two half kicks. The first is not stronger, the second so much that
-    # both together have strength^2 times the variance (1 + decay^2) of theirs.
+    # The half kick before a snapshot is left as it is. The one after it is so much stronger that
+    # both together have strength^2 times the variance, which is 1 + decay^2 times that of one.
     outer_strength = math.sqrt(strength**2 + outer[0] ** 2 * (strength**2 - 1))
     return Step(time_step, *inner, *outer, full_kick / 2, exponent, True, strength, outer_strength)
 

@@ -51,8 +51,7 @@ def open_calendar(dt, due, waiting, count, size, following, preceding):  # type:
     scale, parts = (float(count) + 1) * (1 - 1e-9) / dt, float(count)
     for k in range(count):
         contact = INDEX(waiting[k])
-        node = list_of(contact, due[contact], scale, size, parts)
-        move(contact, node, following, preceding)
+        move(contact, list_of(contact, due[contact], scale, size, parts), following, preceding)
     return scale, parts
 
 

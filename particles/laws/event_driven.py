@@ -252,11 +252,9 @@ def drift(y, v, anchors, dt, law, scratch, tally):  # type: ignore[no-untyped-de
         low, high = _meet_again(contact, a, b, now, y, v, dt, due)
         move(contact, contact, following, preceding)
         if low != contact:
-            to = list_of(low, due[low], scale, size, parts)
-            move(low, to, following, preceding)
+            move(low, list_of(low, due[low], scale, size, parts), following, preceding)
         if high != contact:
-            to = list_of(high, due[high], scale, size, parts)
-            move(high, to, following, preceding)
+            move(high, list_of(high, due[high], scale, size, parts), following, preceding)
     if tree or collisions > law.most:
         for each in range(following.size):
             following[each] = preceding[each] = each
