@@ -95,7 +95,9 @@ def _fly(y, v, noise, dynamics, scratch, steps):  # type: ignore[no-untyped-def]
 
 @inlined
 def _step(y, v, noise, dynamics, scratch, tally, steps):  # type: ignore[no-untyped-def]
-    """Take steps of kicks and drifts, at least one."""
+    """Take steps of kicks and drifts."""
+    if steps == 0:
+        return 0
     step, size = dynamics.step, y.size
     if step.closed != 1.0:
         find_clusters(y, scratch.clusters)

@@ -31,11 +31,13 @@ from crazybilliards.particles.stepping import FIRST, LAST, WHOLE, bounded, draw_
 def advance_pair(  # type: ignore[no-untyped-def]
     y, v, noise, dynamics, ratio, scratch, tally, steps
 ):
-    """Take ``steps`` >= 1 coarser steps of ``ratio`` finer ones; return -1 if a chain diverged.
+    """Take ``steps`` coarser steps of ``ratio`` finer ones each; return -1 if a chain diverged.
 
     ``y`` and ``v`` have the shape (2, L), with the finer chain first. ``dynamics`` and ``scratch``
     are pairs in the same order. The other arguments are those of ``stepping.advance``.
     """
+    if steps == 0:
+        return 0
     finer, coarser = dynamics
     if finer.step.closed != 1.0:
         find_clusters(y[0], scratch[0].clusters)
