@@ -9,11 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crazybilliards.model import Chain
-from crazybilliards.particles.laws.closed_contacts import (
-    CLOSED_KICK,
-    CRITICAL_RESTITUTION,
-    second_half,
-)
+from crazybilliards.particles.laws.closed_contacts import CLOSED_KICK, CRITICAL_RESTITUTION
 from crazybilliards.particles.laws.exact_flight import Propagator, make_propagator
 from crazybilliards.particles.laws.law import Law, Method, make_law
 from crazybilliards.particles.noise import Noise, make_noise
@@ -22,6 +18,8 @@ from crazybilliards.particles.scales import spring_rate
 # In velocity kicks of one step: rods that separate more slowly move as one. Below the critical
 # restitution a larger threshold adds energy, because the noise of closed contacts is stronger.
 _MERGING, _MERGING_OF_CLOSED = 0.1, 0.03
+# In typical speeds. In the steady states for e > 1 rods reach some tens of them.
+_DIVERGED = 1e6
 
 Stepper = Literal["splitting", "euler"]
 
@@ -60,21 +58,11 @@ def make_dynamics(
     stepper: Stepper = "splitting",
     merging: float | None = None,
     counted: bool = False,
-    diverged: float = 1e6,
 ) -> Dynamics:
-    """Return the numbers and arrays that the kernels need of a chain.
+    """Return the numbers and arrays that the kernels need of a chain; see ``simulate``.
 
-    Parameters
-    ----------
-    chain, time_step, method, stepper, merging
-        As in ``simulate``.
-    speed
-        A typical speed of the rods [R/T].
-    counted
-        Whether every collision is to be recorded at its contact.
-    diverged
-        Speed, in typical speeds, from which on the chain counts as diverged. In the steady
-        states for e > 1 rods reach some tens of typical speeds.
+    ``speed`` is typical of the rods [R/T]. ``counted``: every collision is to be recorded at its
+    contact.
     """
     return Dynamics(
         chain.reduced_anchors,
@@ -89,7 +77,7 @@ def make_dynamics(
             halves=stepper == "splitting",
         ),
         make_propagator(chain, time_step),
-        diverged * speed if speed > 0 else math.inf,
+        _DIVERGED * speed if speed > 0 else math.inf,
     )
 
 
@@ -113,7 +101,9 @@ def make_step(
     # Contact Dynamics has no stronger noise for closed contacts, as in the paper.
     sticking = chain.restitution < CRITICAL_RESTITUTION and method == "event-driven"
     strength = CLOSED_KICK if sticking else 1.0
-    outer_strength = second_half(strength, outer[0])
+    # The half kick before a snapshot is left as it is. The one after it is so much stronger that
+    # both together have strength^2 times the variance, which is 1 + decay^2 times that of one.
+    outer_strength = math.sqrt(strength**2 + outer[0] ** 2 * (strength**2 - 1))
     return Step(time_step, *inner, *outer, full_kick / 2, exponent, True, strength, outer_strength)
 
 

@@ -161,21 +161,14 @@ def _rotate(bits, radii, first, second):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _draw_block(noise):  # type: ignore[no-untyped-def]
-    """Draw the next block of normal numbers."""
-    half = noise.radii.size
-    _draw_bits(noise.lanes, noise.bits)
-    _radii(noise.numbers, noise.reals, noise.radii)
-    _rotate(noise.bits[half:], noise.radii, noise.normals[:half], noise.normals[half:])
-
-
-@kernel
 def fill(noise, values):  # type: ignore[no-untyped-def]
     """Fill a float array with the next normal numbers of mean 0 and variance 1."""
-    done, taken = 0, noise.taken[0]
+    done, taken, half = 0, noise.taken[0], noise.radii.size
     while done < values.size:
         if taken == BLOCK:
-            _draw_block(noise)
+            _draw_bits(noise.lanes, noise.bits)
+            _radii(noise.numbers, noise.reals, noise.radii)
+            _rotate(noise.bits[half:], noise.radii, noise.normals[:half], noise.normals[half:])
             taken = 0
         number = min(values.size - done, BLOCK - taken)
         # Two slices and a loop: copied as a vector, with indices that begin at 0.

@@ -1,35 +1,12 @@
 r"""The physical scales of a chain, from which a run is planned.
 
 **Time step.** The step is 0.05 / max(w0, gamma/m), w0 from :func:`spring_rate`. The splitting
-scheme then has W_x right to 3e-4 (linear springs, no gap). For e != 1 the step must also be short
-enough to resolve the noise, most of all in the centre, where the chain is coldest. What matters is
-r = (A sqrt(dt)/m)/W_v, the ratio of the velocity kick of one step to W_v. It is held at 0.3, with
-the estimate of W_v by :func:`centre_width`. The error of W_v is then at most 1 %. For every step
-the result states the expected error (:func:`time_step_error`).
+scheme then has W_x right to 3e-4 (linear springs, no gap). For e != 1 the velocity kick of one step
+is at most 0.3 W_v in the centre, as :func:`centre_width` estimates it, and the error of W_v at most
+1 %. docs/particles.md says why.
 
-**Relaxation time.** A rod on a linear spring k' relaxes with its slowest mode,
-
-    1/tau = Re [b - sqrt(b^2 - k'/m)],      b = gamma/2m:
-
-so tau is 2m/gamma for weak damping and gamma/k' for strong damping. A quadratic spring has no
-constant stiffness. With strong damping its rod diffuses in the potential k |d|^3/3. The slowest
-mode of this diffusion decays at the rate 1.241 k s/gamma, s = (T/k)^(1/3), which is the smallest
-eigenvalue above 0 of the Fokker-Planck operator -d^2/dz^2 + z|z| d/dz, z = d/s. So k' = 1.241 k s
-is right in this limit. With weak damping 2m/gamma is an upper estimate for quadratic springs: the
-energy relaxes at the rate 6 gamma/5m (virial theorem), and the phases mix faster. At gamma s/m W =
-0.2 the estimate is twice too long.
-
-In a chain, rods that collide move together. The stiffness that holds a group is the mean of 2 k |d|
-over its rods, whose displacements are smaller than those of a free rod, s. The displacements have
-two causes. (1) Fluctuations: neighbours a gap g apart are coupled by T/g^2, the stiffness of a gas
-of points, so that <d^2> = (g/2) sqrt(T/k'). With k' = 2 k <|d|> this is <d^2> = 0.78 s^2 z^2 with z
-= (0.54 g/s)^(2/5). (2) Pressure: it pushes rods from their anchors within some s of the ends of a
-lattice of length g L, on average by about s/(1 + g L/2s). Together
-
-    k' = 1.241 k s min[1, sqrt(z^2 + 1/(1 + g L/2s)^2)],
-
-The minimum is 1 without a gap, where relabelled rods are free, and less in a long, dense lattice.
-The estimate is right to a third for 1 to 300 rods with gaps from 0.03 s to s, at restitution 1.
+**Relaxation time.** It is that of a rod on a linear spring, whose stiffness is estimated for
+quadratic springs. docs/particles.md derives it.
 """
 
 from __future__ import annotations
@@ -109,25 +86,13 @@ def time_step_error(
 ) -> float:
     """Relative error of a ``velocity_width`` above 0 that is due to the time step; NaN: not known.
 
-    It is that of the noise, for e != 1, and that of the springs. With r = (A sqrt(dt)/m)/W_v the
-    noise causes, in simulations of 10 to 100 rods:
-
-    * 0.1 r^3 below the critical restitution, with the correction for closed contacts
-      (``laws/closed_contacts.py``), r = 0.2 to 0.6;
-    * 0.24 r^(3/2) in the Euler scheme, and with Contact Dynamics below the critical restitution,
-      which have no correction;
-    * the larger of 0.1 |1 - e| r^(3/2) and 0.05 r^4 at higher restitutions, r = 0.06 to 1.3.
-
-    The last one is an empirical law, an upper estimate of the paired differences that
-    ``studies/time_step_law.py`` measures (docs/particles.md). The relative errors of
-    mean displacements are of the same size, for e = 0.1 up to three times as large.
-
-    The springs cause an error of (w0 dt)^2/8 if they are quadratic, and none if they are linear.
-    With a gap collisions heat the chain a little (``laws/spring_correction.py``), by the fraction
-    3e-3 w0 (w0 dt)^4 of the energy per time, measured at dt = 0.1 and 0.5 for gaps of one and two
-    radii. Damping limits this to 1.5e-3 (m w0/gamma) (w0 dt)^4 of a width. In the Euler scheme
-    W_v^2 of a linear spring is larger by 1/(1 - gamma dt/2m - (w0 dt)^2/4). Its errors with a gap,
-    and those of Contact Dynamics where rods rebound, are not known.
+    It is the sum of those of the noise and of the springs in the table of docs/particles.md. Errors
+    of the noise were measured in simulations of 10 to 100 rods, for r = (A sqrt(dt)/m)/W_v from 0.2
+    to 0.6 below the critical restitution, and from 0.06 to 1.3 above it
+    (``studies/time_step_law.py``). The relative errors of mean displacements are of the same size,
+    for e = 0.1 up to three times as large. With a gap collisions heat the chain by the fraction
+    3e-3 w0 (w0 dt)^4 of its energy per time, measured at dt = 0.1 and 0.5 for gaps of one and two
+    radii, which damping limits.
     """
     e, gap = chain.restitution, chain.lattice_gap
     if not 0 < velocity_width < math.inf or (chain.amplitude == 0 and e != 1):
@@ -161,8 +126,8 @@ def relaxation_time(chain: Chain) -> float:
     the centre of mass, on which collisions do not act: exactly 2m/gamma for weak damping, and about
     gamma/k for strong damping, at every restitution. All other modes are as fast at e = 1, and not
     slower in simulations with e < 1. For quadratic springs the time is an estimate, which is right
-    to a third (the module ``scales``). For e > 1 it is a lower bound: near the critical size, where
-    the noise is amplified without limit, the energy takes longer.
+    to a third (docs/particles.md derives it). For e > 1 it is a lower bound: near the critical
+    size, where the noise is amplified without limit, the energy takes longer.
 
     Take a warm-up of at least five times it (the default is 12), and durations of hundreds.
 
@@ -201,7 +166,10 @@ def correlation_time(chain: Chain) -> float:
 
 
 def _relaxing_stiffness(chain: Chain) -> float:
-    """Stiffness k' of the linear spring that relaxes as slowly as the chain's own [M/T^2]."""
+    """Stiffness k' of the linear spring that relaxes as slowly as the chain's own [M/T^2].
+
+    It is 1.241 k s min[1, sqrt(z^2 + 1/(1 + g L/2s)^2)], z = (0.54 g/s)^(2/5), for quadratic ones.
+    """
     if chain.spring == "linear":
         return chain.stiffness
     if chain.stiffness == 0 or chain.temperature == 0:

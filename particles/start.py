@@ -69,8 +69,7 @@ def replica_starts(
 ) -> list[tuple[Array, Array]]:
     """Return each replica's own reduced positions and velocities, checked."""
     if start is None:
-        rest = (chain.reduced_anchors, np.zeros(chain.size))
-        return [(rest[0].copy(), rest[1].copy()) for _ in range(replicas)]
+        return [(chain.reduced_anchors, np.zeros(chain.size))] * replicas
     x, v = _states(start)
     if x.shape[1] != chain.size:
         raise ValueError(f"start has {x.shape[1]} rods, the chain {chain.size}")
@@ -83,8 +82,7 @@ def replica_starts(
     tolerance = 1e-12 * max(float(np.abs(x).max()), chain.radius)
     if (np.diff(y, axis=1) < -tolerance).any():
         raise ValueError("start must hold rods in order that do not overlap")
-    y = np.maximum.accumulate(y, axis=1)
-    return [(np.array(y[i]), np.array(v[i], dtype=float)) for i in range(replicas)]
+    return list(zip(np.maximum.accumulate(y, axis=1), v, strict=True))
 
 
 def _states(start: xr.Dataset) -> list[Array]:

@@ -122,13 +122,6 @@ def _step(y, v, noise, dynamics, scratch, tally, steps):  # type: ignore[no-unty
     return collisions
 
 
-@inlined
-def _advance(y, v, noise, dynamics, scratch, tally, steps):  # type: ignore[no-untyped-def]
-    if dynamics.law.operator == EXACT:
-        return _fly(y, v, noise, dynamics, scratch, steps)
-    return _step(y, v, noise, dynamics, scratch, tally, steps)
-
-
 @kernel
 def advance(y, v, noise, dynamics, scratch, tally, steps):  # type: ignore[no-untyped-def]
     """Take ``steps`` steps of the chain in place; return the collisions, or -1 if diverged.
@@ -137,7 +130,9 @@ def advance(y, v, noise, dynamics, scratch, tally, steps):  # type: ignore[no-un
     for this thread alone (``noise.py``). For ``scratch`` see ``laws/law.py``, for ``tally``
     ``laws/avalanche.py``.
     """
-    return _advance(y, v, noise, dynamics, scratch, tally, steps)
+    if dynamics.law.operator == EXACT:
+        return _fly(y, v, noise, dynamics, scratch, steps)
+    return _step(y, v, noise, dynamics, scratch, tally, steps)
 
 
 @kernel
@@ -171,7 +166,7 @@ def record(  # type: ignore[no-untyped-def]
     """
     _keep(tally, scratch, tally)
     for snapshot in range(y_buffer.shape[0]):
-        met = _advance(y, v, noise, dynamics, scratch, tally, stride)
+        met = advance(y, v, noise, dynamics, scratch, tally, stride)
         if met < 0 or not bounded(y, v, dynamics.fastest):
             _keep(scratch, tally, tally)
             return snapshot

@@ -1,12 +1,14 @@
-"""What studies share: results that are kept in a folder, options, and how numbers are written."""
+"""What studies share: results that are kept in a folder, options, and how tables are written."""
 
 from __future__ import annotations
 
 import argparse
 import csv
+import math
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import matplotlib as mpl
 import xarray as xr
@@ -14,15 +16,17 @@ from matplotlib.figure import Figure
 
 from crazybilliards.comparison.layout import house_style
 from crazybilliards.comparison.sweeps import Case, process_pool, run_cases
+from crazybilliards.model import Chain
 
 Results = Mapping[str, xr.Dataset]
-Table = Sequence[Sequence[object]]
+Table = Iterable[Sequence[object]]
 
 
 def options(description: str | None, **defaults: object) -> argparse.Namespace:
     """Read ``--name value`` for each of the defaults; one that is a list takes several values.
 
-    An option whose default is a type has to be given, without its name.
+    An option whose default is a type has to be given, without its name. One whose default is False
+    takes no value.
     """
     parser = argparse.ArgumentParser(
         description=description, formatter_class=argparse.RawDescriptionHelpFormatter
@@ -32,6 +36,8 @@ def options(description: str | None, **defaults: object) -> argparse.Namespace:
             parser.add_argument(name, type=default, metavar=name.upper())
         elif isinstance(default, list):
             parser.add_argument(f"--{name}", type=type(default[0]), nargs="*", default=default)
+        elif default is False:
+            parser.add_argument(f"--{name.replace('_', '-')}", action="store_true")
         else:
             parser.add_argument(f"--{name}", type=type(default), default=default)
     return parser.parse_args()
@@ -55,18 +61,27 @@ def carry_out(
         raise SystemExit(f"{len(failed)} cases failed, the first, {case.title}: {reason}")
     results = {name: case.load(folder / "cases") for name, case in cases.items()}
     for name, table in tables(results).items():
-        write_table(folder / f"{name}.csv", table)
+        path = folder / f"{name}.csv"
+        with path.open("w", encoding="utf-8", newline="") as file:
+            csv.writer(file, lineterminator="\n").writerows(table)
+        print(f"wrote {path}")
     if draw is not None:
-        mpl.use("Agg")
-        with house_style():
-            draw(results).savefig(folder / f"{Path(sys.argv[0]).stem}.png")
+        save_picture(folder / f"{Path(sys.argv[0]).stem}.png", draw, results)
 
 
-def write_table(path: Path, table: Table) -> None:
-    """Write rows, the first one with the heads of the columns."""
-    with path.open("w", encoding="utf-8", newline="") as file:
-        csv.writer(file, lineterminator="\n").writerows(table)
-    print(f"wrote {path}")
+def save_picture(path: Path, draw: Callable[[Any], Figure], of: Any) -> None:
+    """Draw ``of`` in the style of the documentation."""
+    mpl.use("Agg")
+    with house_style():
+        draw(of).savefig(path)
+
+
+def print_table(rows: Table) -> None:
+    """Print rows as CSV, each one when it is there; the first one has the heads."""
+    writer = csv.writer(sys.stdout, lineterminator="\n")
+    for row in rows:
+        writer.writerow(row)
+        sys.stdout.flush()
 
 
 def print_row(*cells: object) -> None:
@@ -83,3 +98,9 @@ def print_heads(*heads: str) -> None:
 def percents(values: Iterable[float], errors: Iterable[float]) -> list[str]:
     """Return deviations in per cent with their signs and standard errors."""
     return [f"{d:+.2f} ± {s:.2f}" for d, s in zip(values, errors, strict=True)]
+
+
+def damped(size: int, restitution: float, damping: float) -> Chain:
+    """Return a chain with this Gamma = gamma/sqrt(k m)."""
+    chain = Chain(size=size, restitution=restitution)
+    return chain.replace(damping=damping * math.sqrt(chain.stiffness * chain.mass))

@@ -55,7 +55,6 @@ class Solution(NamedTuple):
 
     @property
     def ratio(self) -> float:
-        """K^2."""
         return float(np.pi / 8 * (self.energy / self.impulse) ** 2 / self.square)
 
 
@@ -123,7 +122,6 @@ def stationary(mesh: Mesh, e: float, a: float) -> Array:
 
 
 def solve(mesh: Mesh, e: float, a: float) -> Solution:
-    """Return the moments."""
     density = stationary(mesh, e, a)
     shares = mesh.lengths @ density * mesh.widths
     arriving = density[0] * np.maximum(-mesh.w, 0) * mesh.widths
@@ -132,7 +130,6 @@ def solve(mesh: Mesh, e: float, a: float) -> Solution:
 
 
 def square_on(mesh: Mesh, e: float) -> float:
-    """Return K^2 on a mesh."""
     found: dict[float, Solution] = {}
 
     def excess(a: float) -> float:

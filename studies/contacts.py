@@ -19,13 +19,12 @@ The time step is a quarter of the default one. Takes three minutes on one core.
 from functools import cache
 from pathlib import Path
 
-import matplotlib as mpl
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
 from crazybilliards.comparison.drawing import COLOURS, draw_points
-from crazybilliards.comparison.layout import house_style, legend_above, panels
+from crazybilliards.comparison.layout import legend_above, panels
 from crazybilliards.kinetic import correlated_phase_space
 from crazybilliards.kinetic.correlations.contact_speeds import contact_speed
 from crazybilliards.kinetic.correlations.stationary import _agree
@@ -33,7 +32,7 @@ from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
 from crazybilliards.particles.observers import Covariances
 from crazybilliards.particles.scales import default_time_step
-from studies.common import options, print_heads, print_row
+from studies.common import Table, options, print_heads, print_row, print_table, save_picture
 
 CHAINS = (
     Chain(size=30, restitution=0.9),
@@ -89,22 +88,19 @@ def next_contacts(run: xr.Dataset, chain: Chain) -> Values:
 def simulated(chain: Chain, duration: float) -> list[tuple[Values, Values]]:
     """Return values and errors along the chain of the five quantities."""
     run = measured(chain, duration)
-    force, speed, square = (
-        chain.stiffness * chain.thermal_length,
-        chain.free_velocity_width,
-        chain.free_velocity_width**2,
-    )
+    speed = chain.free_velocity_width
     root = np.sqrt(run.contact_temperature.values)
     two_apart = run.sel(separation=2).isel(particle=slice(0, -2))
     blocks = next_contacts(run, chain)
     values, errors = blocks.mean(axis=0), blocks.std(axis=0, ddof=1) / np.sqrt(BLOCKS)
+
+    def of(found: xr.Dataset, name: str, unit: float) -> tuple[Values, Values]:
+        return found[name].values / unit, found[f"{name}_error"].values / unit
+
     return [
-        (run.contact_force.values / force, run.contact_force_error.values / force),
+        of(run, "contact_force", chain.stiffness * chain.thermal_length),
         (root / speed, run.contact_temperature_error.values / (2 * root) / speed),
-        (
-            two_apart.velocity_covariance.values / square,
-            two_apart.velocity_covariance_error.values / square,
-        ),
+        of(two_apart, "velocity_covariance", speed**2),
         *zip(values, errors, strict=True),
     ]
 
@@ -124,9 +120,9 @@ def theoretical(chain: Chain) -> list[Values]:
     ]
 
 
-def tabulate_contacts(duration: float) -> None:
+def at_contacts(duration: float) -> Table:
     names = "P", "speed before a collision", "<v_i v_(i+2)>", "h_gTheta", "h_gg"
-    print("L,e,quantity,contact 1,contact 4,contact 10,centre")
+    yield "L", "e", "quantity", *(f"contact {number}" for number in CONTACTS), "centre"
     for chain in CHAINS:
         rows = zip(names, simulated(chain, duration), theoretical(chain), strict=True)
         for name, (values, errors), theory in rows:
@@ -135,27 +131,26 @@ def tabulate_contacts(duration: float) -> None:
                 f"{even[at]:.3f} ± {errors[at] / np.sqrt(2):.1g} / {theory[at]:.3f}"
                 for at in (*(contact - 1 for contact in CONTACTS), (even.size - 1) // 2)
             ]
-            print(f"{chain.size},{chain.restitution:g},{name},{','.join(shown)}")
+            yield chain.size, f"{chain.restitution:g}", name, *shown
 
 
-def tabulate_places(duration: float) -> None:
+def at_places(duration: float) -> Table:
+    yield "rod", "<v_i^2>", "mean of T(y) over the places of the rod"
     y, v = snapshots(measured(PLACES, duration), PLACES)
     place = np.floor(y / BIN).astype(int)
     place -= place.min()
     rods = np.bincount(place.ravel())
     squares = np.bincount(place.ravel(), weights=(v**2).ravel())
     there = squares / np.maximum(rods, 1)
-    print("\nrod,<v_i^2>,mean of T(y) over the places of the rod")
     for rod in RODS:
         mirrored = [rod - 1, PLACES.size - rod]
         own, seen = v[:, mirrored] ** 2, there[place[:, mirrored]]
         blocks = [part.mean() for part in np.array_split(own, BLOCKS)]
         error = np.std(blocks, ddof=1) / np.sqrt(BLOCKS)
-        print(f"{rod},{own.mean():.3f} ± {error:.1g},{seen.mean():.3f}")
+        yield rod, f"{own.mean():.3f} ± {error:.1g}", f"{seen.mean():.3f}"
 
 
 def tabulate_short(duration: float) -> None:
-    print()
     print_heads("rods", "e", "contact temperature over relative temperature, centre")
     for chain in SHORT:
         centre = measured(chain, duration).sel(contact=slice(9, 11))
@@ -175,13 +170,10 @@ def ingredients(found: xr.Dataset, chain: Chain) -> dict[str, tuple[Values, Valu
     The last is the root of ``contact_temperature``, for which the theory has K F sqrt(Theta).
     """
     square, own = chain.free_velocity_width**2, found.velocity_width.values**2
+    root_of_pi = np.sqrt(np.pi)
     found = found.assign(
         temperature=found.velocity_width**2,
-        before=np.sqrt(np.pi)
-        / 2
-        / (1 - chain.restitution)
-        * found.contact_loss
-        / found.contact_force,
+        before=root_of_pi / 2 / (1 - chain.restitution) * found.contact_loss / found.contact_force,
     )
     if "contact_temperature" in found:
         found["temperature_error"] = 2 * found.velocity_width * found.velocity_width_error
@@ -205,7 +197,6 @@ def ingredients(found: xr.Dataset, chain: Chain) -> dict[str, tuple[Values, Valu
 
 
 def draw(duration: float) -> Figure:
-    """Draw six panels of two chains, their simulations and their theories."""
     figure, axes = panels(2, 3, height=2.3)
     for number, chain in enumerate(CHAINS[1:]):
         runs = ingredients(measured(chain, duration), chain)
@@ -229,13 +220,13 @@ def draw(duration: float) -> Figure:
 
 
 def main() -> None:
-    mpl.use("Agg")
     asked = options(__doc__, folder=Path, duration=12_000.0)  # time units of each run
-    tabulate_contacts(asked.duration)
-    tabulate_places(asked.duration)
+    print_table(at_contacts(asked.duration))
+    print()
+    print_table(at_places(asked.duration))
+    print()
     tabulate_short(asked.duration)
-    with house_style():
-        draw(asked.duration).savefig(asked.folder / "ingredients.png")
+    save_picture(asked.folder / "ingredients.png", draw, asked.duration)
 
 
 if __name__ == "__main__":

@@ -33,7 +33,6 @@ DAMPINGS = (0.2, 0.5, 1.0, 2.0, 3.0, 4.0, 5.0)  # of the lines
 
 
 def cases() -> dict[str, Case]:
-    """Return runs of five sizes just below the critical one."""
     found = {}
     for restitution, damping in SIMULATED:
         chain = Chain(restitution=restitution, damping=damping)
@@ -74,7 +73,6 @@ def zero_of_tau(runs: list[xr.Dataset]) -> tuple[float, float]:
 
 
 def tables(results: Results) -> dict[str, Table]:
-    """Give the critical sizes of both theories and of the simulation."""
     rows = [["e", "gamma", "kinetic equation", "closed form", "simulation"]]
     for (restitution, damping), found in simulated(results).items():
         chain = Chain(restitution=restitution, damping=damping)
@@ -85,7 +83,6 @@ def tables(results: Results) -> dict[str, Table]:
 
 
 def draw(results: Results) -> Figure:
-    """Draw the critical size against the damping."""
     figure, [ax] = panels(1, 1, height=2.9, wanted=1)
     for number, (e, line) in enumerate(LINES.items()):
         chains = [Chain(restitution=e, damping=damping) for damping in DAMPINGS]

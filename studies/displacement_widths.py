@@ -9,43 +9,39 @@ the equation was final, and before any of them was simulated. Its cells in chain
 were changed after the first results (docs/tables.md). On one core it takes about an hour.
 """
 
-import csv
 import math
-import sys
-from collections.abc import Iterator
 
 import numpy as np
 
-import crazybilliards as cb
 from crazybilliards.kinetic import accuracy
 from crazybilliards.kinetic.correlations.cells import make_cells
 from crazybilliards.kinetic.correlations.closure import collective_variance
 from crazybilliards.kinetic.correlations.stationary import _agree
 from crazybilliards.kinetic.correlations.stationary_result import rods
+from studies.common import Table, damped, print_table
 from studies.stationary_errors import largest, pooled, simulated_widths
 
 NUMBER = 24
 ACCURACY, LIMIT = 0.0029, 0.01
-COLUMNS = ("L", "e", "Gamma", "before, %", "now, %", "rod", "its error, %", "stated, %")
 
 
-def drawn() -> Iterator[cb.Chain]:
-    """Draw 24 chains: size and damping with an even logarithm, restitution evenly."""
+def table() -> Table:
+    """Draw chains: size and damping with an even logarithm, restitution evenly."""
+    yield "L", "e", "Gamma", "before, %", "now, %", "rod", "its error, %", "stated, %"
     draw = np.random.default_rng(20261126)
     for _ in range(NUMBER):
         size = round(math.exp(draw.uniform(math.log(10), math.log(300))))
         e = round(draw.uniform(0, 0.97), 3)
         Gamma = round(math.exp(draw.uniform(math.log(0.25), math.log(1.3))), 3)
-        chain = cb.Chain(size=size, restitution=e)
-        yield chain.replace(damping=Gamma * math.sqrt(chain.stiffness * chain.mass))
+        yield f"{size}", f"{e:g}", f"{Gamma:g}", *row(size, e, Gamma)
 
 
-def row(chain: cb.Chain) -> list[str]:
-    """Return a line of the table."""
+def row(size: int, e: float, Gamma: float) -> list[str]:
+    chain = damped(size, e, Gamma)
     value, error = pooled([simulated_widths(chain, ACCURACY, LIMIT)], "displacement_width", 1)
     found = _agree(chain, 2e-3)
     of_velocities, of_displacements = (
-        collective_variance(make_cells(chain.size, whole=whole), pairs, np.arange(0.5, chain.size))
+        collective_variance(make_cells(size, whole=whole), pairs, np.arange(0.5, size))
         for whole, pairs in ((False, found.pairs), (True, found.displaced))
     )
     variance = rods(found).position_variance
@@ -53,11 +49,9 @@ def row(chain: cb.Chain) -> list[str]:
         chain.thermal_length * np.sqrt(each) / value - 1
         for each in (variance + of_velocities - of_displacements, variance)
     )
-    worst = int(np.argmax(np.abs(now[: (chain.size + 1) // 2])))
+    worst = int(np.argmax(np.abs(now[: (size + 1) // 2])))
     stated = accuracy.expected_correlated_phase_space(chain).displacement_width
-    Gamma = chain.damping / math.sqrt(chain.stiffness * chain.mass)
     return [
-        *(f"{each:g}" for each in (chain.size, chain.restitution, round(Gamma, 3))),
         f"{100 * largest(before, error)[0]:.1f}",
         f"{100 * now[worst]:+.1f}",
         f"{worst + 1}",
@@ -67,6 +61,4 @@ def row(chain: cb.Chain) -> list[str]:
 
 
 if __name__ == "__main__":
-    writer = csv.writer(sys.stdout, lineterminator="\n")
-    writer.writerow(COLUMNS)
-    writer.writerows(map(row, drawn()))
+    print_table(table())

@@ -6,18 +6,16 @@ Prints kinetic/measured/force_balance.csv: the largest error of the smoothed den
 close packing, and of the mean displacement, in thermal lengths s.
 """
 
-import csv
 import itertools
-import sys
 
 import numpy as np
 
 from crazybilliards import Chain, equilibrium, force_balance, smooth
+from studies.common import Table, print_table
 
 GAPS = (0.0, 0.1, 0.2, 0.3, 0.6, 1.0, 1.5, 2.0, 3.0, 5.0, 7.0, 10.0)
 SIZES = (2, 3, 5, 10, 30, 100, 300, 1000)
 LENGTHS = (0.7, 0.8, 0.9, 1.0, 1.2, 1.5, 2.1, 3.0, 5.0, 7.0, 21.0)  # s/R
-COLUMNS = ("theory", "quantity", "g/s", "L", "s/R", "error", "standard error")
 
 
 def errors(chain: Chain) -> tuple[float, float]:
@@ -29,20 +27,16 @@ def errors(chain: Chain) -> tuple[float, float]:
     return float(off.max()) / chain.close_packed_density, float(moved.max()) / chain.thermal_length
 
 
-def main() -> None:
-    writer = csv.writer(sys.stdout, lineterminator="\n")
-    writer.writerow(COLUMNS)
-    chain = Chain()
-    s = chain.thermal_length
+def table() -> Table:
+    yield "theory", "quantity", "g/s", "L", "s/R", "error", "standard error"
+    s = Chain().thermal_length
     for gap, size in itertools.product(GAPS, SIZES):
-        placed = chain.replace(size=size, gap=gap * s)
-        found = [errors(placed.replace(radius=s / length)) for length in LENGTHS]
-        place = ("force_balance", "mean_displacement", gap, size)
-        writer.writerow([*place, "", f"{found[0][1]:.4f}", 0])
+        chain = Chain(size=size, gap=gap * s)
+        found = [errors(chain.replace(radius=s / length)) for length in LENGTHS]
+        yield "force_balance", "mean_displacement", gap, size, "", f"{found[0][1]:.4f}", 0
         for length, (density, _) in zip(LENGTHS, found, strict=True):
-            place = ("force_balance", "density", gap, size, length)
-            writer.writerow([*place, f"{density:.4f}", 0])
+            yield "force_balance", "density", gap, size, length, f"{density:.4f}", 0
 
 
 if __name__ == "__main__":
-    main()
+    print_table(table())

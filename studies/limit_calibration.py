@@ -29,7 +29,6 @@ OBSERVE = ("widths", "density", "velocities", "energy", "covariances", "modes")
 
 
 def exact_values(chain: Chain) -> dict[str, np.ndarray]:
-    """Return what is known exactly of an elastic chain."""
     if chain.restitution != 1:
         return {}
     exact, free = equilibrium(chain), np.array(chain.free_velocity_width)

@@ -81,7 +81,6 @@ def measured(
 
 
 def deviations(sums: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the deviations from the first threshold in % and their errors."""
     without = sums.sum(axis=0) - sums
     each = 50 * np.log(without[:, 1:] / without[:, :1])
     whole = 50 * np.log(sums.sum(axis=0)[1:] / sums.sum(axis=0)[:1])

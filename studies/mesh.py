@@ -14,7 +14,7 @@ import numpy as np
 
 from crazybilliards.kinetic import correlated_phase_space, phase_space
 from crazybilliards.model import Chain
-from studies.common import print_heads, print_row
+from studies.common import Table, print_heads, print_row, print_table
 
 CASES = ((0.95, 1.0), (1.05, 4.0))
 CELLS = (8, 12, 16, 22, 33, 44)
@@ -26,8 +26,9 @@ LONG = 1000
 RESTITUTIONS = (0.95, 0.9, 0.75, 0.5, 0.0)
 
 
-def tabulate_without_correlations() -> None:
-    print('e,gamma,cells,"W_v, largest error, %","displacement, largest error / s",seconds')
+def without_correlations() -> Table:
+    width, place = "W_v, largest error, %", "displacement, largest error / s"
+    yield "e", "gamma", "cells", width, place, "seconds"
     for restitution, damping in CASES:
         chain = Chain(restitution=restitution, damping=damping)
         finest = phase_space(chain, cells=FINEST)
@@ -35,14 +36,11 @@ def tabulate_without_correlations() -> None:
             begin = time.perf_counter()
             theory = phase_space(chain, cells=cells)
             seconds = time.perf_counter() - begin
-            width = 100 * np.abs(theory.velocity_width / finest.velocity_width - 1).max()
-            place = np.abs(theory.mean_displacement - finest.mean_displacement).max()
+            off = np.abs(theory.velocity_width / finest.velocity_width - 1).max()
+            moved = np.abs(theory.mean_displacement - finest.mean_displacement).max()
             name = cells or f"default ({theory.attrs['cells']})"
-            print(
-                f"{restitution:g},{damping:g},{name},{float(width):.3f},"
-                f"{float(place) / chain.thermal_length:.1e},{seconds:.1f}",
-                flush=True,
-            )
+            errors = f"{100 * float(off):.3f}", f"{float(moved) / chain.thermal_length:.1e}"
+            yield f"{restitution:g}", f"{damping:g}", name, *errors, f"{seconds:.1f}"
 
 
 def tabulate_with_correlations() -> None:
@@ -67,6 +65,6 @@ def tabulate_cost() -> None:
 
 
 if __name__ == "__main__":
-    tabulate_without_correlations()
+    print_table(without_correlations())
     tabulate_with_correlations()
     tabulate_cost()

@@ -40,7 +40,6 @@ HEADS = ["L", "$W_v/W$", r"$\sqrt{\Theta}/W$", r"$\sqrt{h_c}/W$", "$P/ks$", r"$\
 
 
 def cases() -> dict[str, Case]:
-    """Return simulations and theories."""
     found = {}
     chains = [(e, *of_size) for e, of_size in product(RESTITUTIONS, DURATIONS.items())]
     for e, size, duration in [*chains, (0.0, LONGEST, ITS_DURATION)]:
@@ -53,13 +52,13 @@ def cases() -> dict[str, Case]:
     return found
 
 
-def pairs(results: Results) -> dict[tuple[float, int], tuple[xr.Dataset, xr.Dataset]]:
-    """Return simulation and theory by restitution and length."""
-    return {
-        (e, size): (results[f"rods {e} {size}"], results[f"theory {e} {size}"])
-        for e, size in product(RESTITUTIONS, DURATIONS)
-        if f"theory {e} {size}" in results
-    }
+def by_place(results: Results) -> list[dict[tuple[float, int], xr.Dataset]]:
+    """Return the simulations and the theories by restitution and length."""
+    places = list(product(RESTITUTIONS, (*DURATIONS, LONGEST)))
+    return [
+        {(e, size): results[name] for e, size in places if (name := f"{of} {e} {size}") in results}
+        for of in ("rods", "theory")
+    ]
 
 
 def correlation_length(result: xr.Dataset) -> Estimate:
@@ -80,7 +79,6 @@ def correlation_length(result: xr.Dataset) -> Estimate:
 
 
 def length_of(result: xr.Dataset, spectrum: np.ndarray) -> float:
-    """Return the correlation length of one spectrum."""
     chain = chain_of(result)
     wave = np.pi * result.mode.values / chain.size
     short = spectrum[-max(3, spectrum.size // 10) :].mean()
@@ -125,7 +123,6 @@ def force(result: xr.Dataset) -> Estimate:
 
 
 def quantities(result: xr.Dataset) -> list[Estimate]:
-    """Return what the columns of ``HEADS`` have."""
     powers = {"velocity_width": 2, "relative_temperature": 1, "neighbour_covariance": 1}
     roots = [root(result, *each) for each in powers.items()]
     return [*roots, force(result), correlation_length(result)]
@@ -158,11 +155,12 @@ def guess(run: xr.Dataset) -> str:
 
 
 def tables(results: Results) -> dict[str, Table]:
-    """Give correlation lengths and covariances, then what grows with the length at e = 0."""
     sources = "simulation", "theory"
     names = [f"{of}, {which}" for of in ("xi", "h_c/T centre") for which in sources]
     rows = [["e", "L", *names, "W^2/<v^2>, simulation"]]
-    for (e, size), (run, theory) in pairs(results).items():
+    runs, theories = by_place(results)
+    for (e, size), theory in theories.items():
+        run = runs[e, size]
         length, shared = correlation_length(run), covariance(run)
         together = chain_of(run).free_velocity_width ** 2 / float((run.velocity_width**2).mean())
         lengths = [
@@ -171,31 +169,28 @@ def tables(results: Results) -> dict[str, Table]:
         ]
         shares = [f"{shared.value:.3f} ± {shared.error:.3f}", f"{covariance(theory).value:.3f}"]
         rows.append([f"{e:g}", f"{size}", *lengths, *shares, f"{together:.2f}"])
-    zero = [result for result in results.values() if chain_of(result).restitution == 0]
-    runs, theories = (
-        {chain_of(each).size: each for each in zero if ("velocity_width_error" in each) is of_rods}
-        for of_rods in (True, False)
+    sticky, theory = (
+        {size: each for (e, size), each in found.items() if e == 0} for found in (runs, theories)
     )
-    guesses = {size: guess(run) for size, run in runs.items()}
-    fits = {size: fit_border_power_law(theory) for size, theory in theories.items()}
+    guesses = {size: guess(run) for size, run in sticky.items()}
+    fits = {size: fit_border_power_law(each) for size, each in theory.items()}
     powers = {size: f"{fit.exponent:.3f} ± {fit.exponent_error:.3f}" for size, fit in fits.items()}
     return {
         "correlation_lengths": rows,
-        "long_chains_simulation": along_lengths(runs, r"$\sqrt{2/3}\,P/\Gamma$", guesses),
-        "long_chains_theory": along_lengths(theories, r"$\nu$", powers),
+        "long_chains_simulation": along_lengths(sticky, r"$\sqrt{2/3}\,P/\Gamma$", guesses),
+        "long_chains_theory": along_lengths(theory, r"$\nu$", powers),
     }
 
 
 def draw(results: Results) -> Figure:
-    """Draw correlation lengths, covariances of neighbours, and covariances against distance."""
     figure, axes = panels(1, 3, height=2.6)
-    sizes = list(DURATIONS)
+    sizes, (runs, theories) = list(DURATIONS), by_place(results)
     for number, e in enumerate(RESTITUTIONS):
-        both = [pairs(results)[e, size] for size in sizes]
         for ax, value in zip(axes, (correlation_length, covariance), strict=False):
-            values, errors = np.transpose([value(run) for run, _ in both])
+            values, errors = np.transpose([value(runs[e, size]) for size in sizes])
             draw_points(ax, sizes, values, errors, number=number, label=f"$e = {e:g}$")
-            ax.plot(sizes, [value(theory).value for _, theory in both], color=COLOURS[number])
+            lines = [value(theories[e, size]).value for size in sizes]
+            ax.plot(sizes, lines, color=COLOURS[number])
         draw_covariances(axes[2], results[f"rods {e} {SNAPPED}"], number)
     for ax in axes[:2]:
         ax.set(xscale="log", xlabel="rods $L$")

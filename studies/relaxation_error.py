@@ -10,8 +10,7 @@ multiplied by 0.4. Simulations are kept in FOLDER. Takes about half an hour on o
 quarter with ``--held-out``.
 """
 
-import csv
-import math
+import itertools
 import sys
 from pathlib import Path
 
@@ -21,6 +20,7 @@ import xarray as xr
 from crazybilliards.kinetic import compressed, equilibrium_states, relax_phase_space
 from crazybilliards.model import Chain, load, save
 from crazybilliards.particles import simulate
+from studies.common import Table, damped, options, print_table
 
 DURATION, EVERY = 40.0, 0.5  # three times m/gamma of the weakest damping, until it is stationary
 FACTORS = (1.0, 0.4)  # of y, at the release
@@ -33,7 +33,6 @@ MEASURED = (  # size, restitution, Gamma; 100 rods at e = 0.8 are too concentrat
     *((size, 1.0, G) for size in (10, 30) for G in (1.95, 4.0)),
 )
 HELD_OUT = ((20, 0.85, 0.4), (15, 0.92, 0.32), (50, 0.9, 0.45), (60, 0.93, 0.3), (20, 1.04, 2.5))
-COLUMNS = ("theory", "quantity", "L", "e", "Gamma", "y times", "error", "standard error")
 
 
 def simulated(chain: Chain, factor: float, folder: Path) -> xr.Dataset:
@@ -75,28 +74,27 @@ def errors(chain: Chain, factor: float, folder: Path) -> tuple[float, float, flo
     return float(error[worst]), noise, float(run.time[worst]), flow.attrs["model_error"]
 
 
-def main(folder: Path, *, held_out: bool) -> None:
+def table(folder: Path, held_out: bool) -> Table:
     folder.mkdir(parents=True, exist_ok=True)
-    writer = csv.writer(sys.stdout, lineterminator="\n")
-    last = ["largest error, %", "at t [T]", "stated, %"]
-    writer.writerow(["e", "L", "Gamma", "y times", *last] if held_out else COLUMNS)
-    for size, e, damping in HELD_OUT if held_out else MEASURED:
-        chain = Chain(size=size, restitution=e)
-        chain = chain.replace(damping=damping * math.sqrt(chain.stiffness * chain.mass))
-        for factor in FACTORS:
-            try:
-                error, noise, time, stated = errors(chain, factor, folder)
-            except ValueError as problem:  # rods that cool are narrower than the mesh resolves
-                print(f"{size} {e} {damping} {factor}: {problem}", file=sys.stderr)
-                continue
-            if held_out:
-                found = [f"{100 * error:+.1f} ± {100 * noise:.1f}", time, f"{100 * stated:.1f}"]
-                writer.writerow([e, size, damping, factor, *found])
-            else:
-                place = ("relax_phase_space", "kinetic_energy", size, e, damping, factor)
-                writer.writerow([*place, f"{abs(error):.4f}", f"{noise:.4f}"])
-            sys.stdout.flush()
+    if held_out:
+        yield "e", "L", "Gamma", "y times", "largest error, %", "at t [T]", "stated, %"
+    else:
+        yield "theory", "quantity", "L", "e", "Gamma", "y times", "error", "standard error"
+    for place, factor in itertools.product(HELD_OUT if held_out else MEASURED, FACTORS):
+        size, e, damping = place
+        try:
+            error, noise, time, stated = errors(damped(*place), factor, folder)
+        except ValueError as problem:  # rods that cool are narrower than the mesh resolves
+            print(f"{size} {e} {damping} {factor}: {problem}", file=sys.stderr)
+            continue
+        if held_out:
+            found = f"{100 * error:+.1f} ± {100 * noise:.1f}", time, f"{100 * stated:.1f}"
+            yield e, size, damping, factor, *found
+        else:
+            found = f"{abs(error):.4f}", f"{noise:.4f}"
+            yield "relax_phase_space", "kinetic_energy", *place, factor, *found
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]), held_out="--held-out" in sys.argv)
+    asked = options(__doc__, folder=Path, held_out=False)
+    print_table(table(asked.folder, asked.held_out))

@@ -10,12 +10,11 @@ radius, which is long enough for it. The rows of a chain are kept in FOLDER when
 two cores the first table takes about an hour and a half, and the second one ten minutes.
 """
 
-import csv
 import itertools
 import json
 import math
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from functools import partial
 from pathlib import Path
 
@@ -27,11 +26,10 @@ import crazybilliards as cb
 from crazybilliards.comparison.sweeps import process_pool
 from crazybilliards.kinetic import accuracy
 from crazybilliards.model.storage import write_atomically
-from studies.common import options
+from studies.common import Table, damped, options, print_table
 
 LENGTHS = (0.7, 2.1, 7.0)  # s/R; s: thermal length
 OTHER_LENGTHS = (0.9, 3.0, 10.0)  # of the chains drawn at random
-COLUMNS = ("theory", "quantity", "g L/s", "L", "e", "Gamma", "s/R", "error", "standard error")
 # Relative accuracy of W_v in the centre of each of the three runs, by size.
 ACCURACY = {10: 0.004, 30: 0.004, 100: 0.006, 300: 0.012, 1000: 0.03}
 WIDTHS = {300: 0.012}  # relative error of W_x; others: twice the accuracy
@@ -68,29 +66,22 @@ def held_out() -> Iterator[Place]:
 def chain_at(place: Place, length: float) -> cb.Chain:
     """Return the chain at a place whose thermal length is so many radii."""
     size, e, damping, lattice = place
-    chain = cb.Chain(size=size, restitution=e)
-    chain = chain.replace(damping=damping * math.sqrt(chain.stiffness * chain.mass))
+    chain = damped(size, e, damping)
     s = chain.thermal_length
     return chain.replace(gap=lattice * s / size, radius=s / length)
 
 
 def accuracy_of(size: int) -> float:
-    """Return that of the next larger size."""
     return ACCURACY[min(each for each in ACCURACY if each >= size)]
 
 
-def simulated(place: Place, length: float, seed: int) -> xr.Dataset:
-    """Return what a theory is compared with."""
-    chain = chain_at(place, length)
+def simulated(chain: cb.Chain, accuracy: float, seed: int, *more: str) -> xr.Dataset:
+    """Return what a theory is compared with: widths, and what else is to be observed."""
     if chain.restitution == 1:
         return cb.equilibrium(chain)
+    observe = ("widths", *more)
     return cb.simulate_limit(
-        chain,
-        accuracy=accuracy_of(chain.size),
-        observe=("widths", "density"),
-        seed=seed,
-        threads=1,
-        progress=False,
+        chain, accuracy=accuracy, observe=observe, seed=seed, threads=1, progress=False
     )
 
 
@@ -100,18 +91,12 @@ def simulated_widths(chain: cb.Chain, accuracy: float, limit: float) -> xr.Datas
     If they are not, with W_v in the centre to ``accuracy``, W_x to the relative error ``limit``,
     another run is as much more accurate.
     """
+    run = simulated(chain, accuracy, 0)
     if chain.restitution == 1:
-        return cb.equilibrium(chain)
-    for seed in range(2):
-        run = cb.simulate_limit(
-            chain, accuracy=accuracy, observe="widths", seed=seed, threads=1, progress=False
-        )
-        relative = run.displacement_width_error / run.displacement_width
-        error = math.sqrt(float((relative**2).mean()))
-        if error < 1.1 * limit:
-            break
-        accuracy *= limit / error
-    return run
+        return run
+    relative = run.displacement_width_error / run.displacement_width
+    error = math.sqrt(float((relative**2).mean()))
+    return run if error < 1.1 * limit else simulated(chain, accuracy * limit / error, 1)
 
 
 def of_radius(theory: xr.Dataset, run: xr.Dataset) -> xr.Dataset:
@@ -141,7 +126,6 @@ def pooled(runs: list[xr.Dataset], name: str, sign: int) -> tuple[np.ndarray, np
 
 
 def largest(off: np.ndarray, error: np.ndarray) -> tuple[float, float]:
-    """Return the largest difference and its standard error."""
     worst = int(np.argmax(np.abs(off)))
     return abs(float(off[worst])), float(error[worst])
 
@@ -188,7 +172,11 @@ def rows(
 
 def measured(place: Place, lengths: Sequence[float]) -> list[Row]:
     """Return the errors of all theories that take the chain at this place."""
-    runs = [simulated(place, length, seed) for seed, length in enumerate(lengths)]
+    own = measured_displacements(place)
+    runs = [
+        simulated(chain_at(place, length), accuracy_of(place[0]), seed, "density")
+        for seed, length in enumerate(lengths)
+    ]
     table = []
     for theory in ("phase_space", "correlated_phase_space"):
         chain = chain_at(place, lengths[0])
@@ -202,7 +190,8 @@ def measured(place: Place, lengths: Sequence[float]) -> list[Row]:
             else:
                 table += rows(place, theory, found, runs, lengths)
                 break
-    return table
+    # The theory is the first of a row, the quantity the seventh.
+    return [row for row in table if not own or (row[0], row[6]) != OF_DISPLACEMENTS] + own
 
 
 def measured_displacements(place: Place) -> list[Row]:
@@ -223,45 +212,33 @@ def stated(theory: str, place: Place, length: float, quantity: str) -> float:
     return float(getattr(expected, quantity))
 
 
-def kept(file: Path, compute: Callable[[], list[Row]]) -> list[Row]:
-    """Return rows from a file, and compute them first if there is none."""
+def rows_of(folder: Path, lengths: Sequence[float], place: Place) -> list[Row]:
+    """Return all rows of a place, computed now or before."""
+    file = folder / f"{'_'.join(f'{each:g}' for each in place)}.json"
     if not file.exists():
-        write_atomically(file, json.dumps(compute()).encode())
+        write_atomically(file, json.dumps(measured(place, lengths)).encode())
     found: list[Row] = json.loads(file.read_text())
     return found
 
 
-def rows_of(folder: Path, lengths: Sequence[float], place: Place) -> list[Row]:
-    """Return all rows of a place, computed now or before."""
-    name = f"{'_'.join(f'{each:g}' for each in place)}.json"
-    found = kept(folder / "all" / name, partial(measured, place, lengths))
-    own = kept(folder / "displacements" / name, partial(measured_displacements, place))
-    # The theory is the first of a row, the quantity the seventh.
-    others = [row for row in found if not own or (row[0], row[6]) != OF_DISPLACEMENTS]
-    return others + own
-
-
-def main(folder: Path, *, drawn: bool) -> None:
-    for each in ("all", "displacements"):
-        (folder / each).mkdir(parents=True, exist_ok=True)
+def table(folder: Path, drawn: bool) -> Table:
+    folder.mkdir(parents=True, exist_ok=True)
     lengths = OTHER_LENGTHS if drawn else LENGTHS
     with process_pool() as workers:
         chains = list(held_out() if drawn else places())
-        table = [
-            row for rows in workers.map(partial(rows_of, folder, lengths), chains) for row in rows
-        ]
-    writer = csv.writer(sys.stdout, lineterminator="\n")
-    writer.writerow([*COLUMNS, "stated", "beyond it, standard errors"] if drawn else COLUMNS)
-    for theory, *place, length, quantity, error, own in table:
+        found = list(itertools.chain(*workers.map(partial(rows_of, folder, lengths), chains)))
+    heads = "theory", "quantity", "g L/s", "L", "e", "Gamma", "s/R", "error", "standard error"
+    yield *heads, *(["stated", "beyond it, standard errors"] if drawn else [])
+    for theory, *place, length, quantity, error, own in found:
         size, e, damping, lattice = place
         coordinates = (f"{each:.4g}" for each in (lattice, size, e, damping))
         row = [theory, quantity, *coordinates, length, f"{error:.4f}", f"{own:.4f}"]
         if drawn:
             limit = stated(theory, tuple(place), length or lengths[0], quantity)
             row += [f"{limit:.4f}", f"{max(error - limit, 0) / own if own else 0:.1f}"]
-        writer.writerow(row)
+        yield row
 
 
 if __name__ == "__main__":
-    given = options(__doc__, folder=Path, chains="all")
-    main(given.folder, drawn=given.chains == "drawn")
+    asked = options(__doc__, folder=Path, chains="all")
+    print_table(table(asked.folder, asked.chains == "drawn"))

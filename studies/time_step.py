@@ -13,9 +13,7 @@ times as strong at the longer step. 1 is no correction, as in version 0.1. The d
 finer step, which has the default strength, is then given as it is below the critical restitution.
 """
 
-import csv
 import math
-import sys
 from typing import NamedTuple
 
 import numpy as np
@@ -23,14 +21,14 @@ import numpy as np
 from crazybilliards.model import Chain
 from crazybilliards.model.chain import middle_tenth
 from crazybilliards.model.kernels import kernel
-from crazybilliards.particles.dynamics import Step, default_merging, make_step
+from crazybilliards.particles.dynamics import Dynamics, make_dynamics
 from crazybilliards.particles.laws.avalanche import make_tally
 from crazybilliards.particles.laws.closed_contacts import CRITICAL_RESTITUTION, strengthen
-from crazybilliards.particles.laws.law import Law, Scratch, drift, make_law, make_scratch
+from crazybilliards.particles.laws.law import Scratch, drift, make_scratch
 from crazybilliards.particles.noise import fill, make_noise
 from crazybilliards.particles.scales import default_time_step
 from crazybilliards.reproduction.claims.repetition import error_of_mean
-from studies.common import options, percents
+from studies.common import Table, options, percents, print_table
 
 WARM_UP = 60.0
 FINER = 4
@@ -64,39 +62,33 @@ class Copy(NamedTuple):
 
     y: np.ndarray
     v: np.ndarray
-    step: Step
-    law: Law
+    dynamics: Dynamics
     scratch: Scratch
     kicks: np.ndarray  # (L,)
     sums: np.ndarray  # of d, d^2, v^2, v^4, (4, L)
 
 
 def make_copy(chain: Chain, time_step: float) -> Copy:
-    y = chain.reduced_anchors.copy()
-    law = make_law(
-        chain, time_step, "event-driven", default_merging(chain), chain.free_velocity_width
-    )
-    step = make_step(chain, time_step, "splitting")
-    scratch = make_scratch(chain.size)
-    zeros = np.zeros((2, chain.size))
-    return Copy(y, zeros[0], step, law, scratch, zeros[1], np.zeros((4, chain.size)))
+    dynamics = make_dynamics(chain, time_step, speed=chain.free_velocity_width)
+    v, kicks = np.zeros((2, chain.size))
+    scratch, sums = make_scratch(chain.size), np.zeros((4, chain.size))
+    return Copy(chain.reduced_anchors.copy(), v, dynamics, scratch, kicks, sums)
 
 
 @kernel(allocates=True)
-def advance(copy, anchors, tally):
+def advance(copy, tally):
     """One step: kick by the noise in ``copy.kicks`` and the spring, drift, half a spring kick."""
-    y, v, step = copy.y, copy.v, copy.step
+    y, v, step, anchors = copy.y, copy.v, copy.dynamics.step, copy.dynamics.anchors
     if step.closed != 1.0:
         strengthen(copy.kicks, copy.scratch.clusters, step.closed)
     v[:] = step.decay * v + step.noise * copy.kicks - step.kick * (y - anchors)
-    drift(y, v, anchors, step.time_step, copy.law, copy.scratch, tally)
+    drift(y, v, anchors, step.time_step, copy.dynamics.law, copy.scratch, tally)
     v -= step.kick * (y - anchors)
 
 
 @kernel(allocates=True)
-def measure(copy, anchors):
-    """Add the state after the drift to the sums."""
-    d, squares = copy.y - anchors, copy.v**2
+def measure(copy):
+    d, squares = copy.y - copy.dynamics.anchors, copy.v**2
     copy.sums[0] += d
     copy.sums[1] += d * d
     copy.sums[2] += squares
@@ -104,53 +96,50 @@ def measure(copy, anchors):
 
 
 @kernel(allocates=True)
-def run(copies, anchors, noise, tally, steps, measured, finer):
+def run(copies, noise, tally, steps, measured, finer):
     """Take steps, each ``finer`` times as long as that of the copy before it, under one noise.
 
     All copies are measured after each of the longest steps, whose number is given.
     """
-    xi = np.empty(anchors.size)
     finest, longest = copies[0], finer ** (len(copies) - 1)
+    xi, step = np.empty(finest.y.size), finest.dynamics.step
     for taken in range(1, steps * longest + 1):
         fill(noise, xi)
         finest.kicks[:] = xi
-        advance(finest, anchors, tally)
+        advance(finest, tally)
         ratio = 1
         for number in range(1, len(copies)):
             copy, ratio = copies[number], ratio * finer
             # The Ornstein-Uhlenbeck noise of all finest steps in one of this copy.
             for i in range(xi.size):
-                copy.kicks[i] = finest.step.decay * copy.kicks[i] + finest.step.noise * xi[i]
+                copy.kicks[i] = step.decay * copy.kicks[i] + step.noise * xi[i]
             if taken % ratio == 0:
-                copy.kicks[:] /= copy.step.noise
-                advance(copy, anchors, tally)
+                copy.kicks[:] /= copy.dynamics.step.noise
+                advance(copy, tally)
                 copy.kicks[:] = 0.0
         if measured and taken % longest == 0:
             for copy in copies:
-                measure(copy, anchors)
+                measure(copy)
 
 
-def measure_all(
-    chain: Chain, copies: tuple[Copy, ...], finer: int, duration: float, seed: int
-) -> int:
+def measure_all(copies: tuple[Copy, ...], finer: int, duration: float, seed: int) -> int:
     """Run the copies, the finest one first, and return the number of the longest steps."""
     noise = make_noise(np.random.SeedSequence(seed))
-    tally, longest = make_tally(chain.size, contacts=False), copies[-1].step.time_step
+    tally = make_tally(copies[0].y.size, contacts=False)
+    longest = copies[-1].dynamics.step.time_step
     steps = math.ceil(duration / longest)
     for taken, measured in ((math.ceil(WARM_UP / longest), False), (steps, True)):
-        run(copies, chain.reduced_anchors, noise, tally, taken, measured, finer)
+        run(copies, noise, tally, taken, measured, finer)
     return steps
 
 
 def reported(copy: Copy, steps: int) -> np.ndarray:
     """Work out the quantities as ``simulate`` takes them: half a step of noise later."""
     mean, square, v2, v4 = copy.sums / steps
-    c, h = copy.step.outer_decay, copy.step.outer_noise
+    c, h = copy.dynamics.step.outer_decay, copy.dynamics.step.outer_noise
     second = c**2 * v2 + h**2
     fourth = c**4 * v4 + 6 * c**2 * h**2 * v2 + 3 * h**4
-    size = mean.size
-    middle = middle_tenth(size)
-    tenth = max(size // 10, 1)
+    middle, tenth = middle_tenth(mean.size), max(mean.size // 10, 1)
     return np.array(
         [
             math.sqrt(second[middle].mean()),
@@ -168,23 +157,24 @@ def compared(
     """Coarse over fine - 1 for every quantity, of one run; NaN: with the default strength."""
     fine, coarse = (make_copy(chain, dt) for dt in (time_step / FINER, time_step))
     if not math.isnan(strength):
-        coarse = coarse._replace(step=coarse.step._replace(closed=strength))
-    steps = measure_all(chain, (fine, coarse), FINER, duration, seed)
+        step = coarse.dynamics.step._replace(closed=strength)
+        coarse = coarse._replace(dynamics=coarse.dynamics._replace(step=step))
+    steps = measure_all((fine, coarse), FINER, duration, seed)
     return reported(coarse, steps) / reported(fine, steps) - 1
 
 
-def main() -> None:
+def table() -> Table:
+    sizes, restitutions = (sorted({case[place] for case in CASES}) for place in (2, 0))
     asked = options(
         __doc__,
-        size=[10, 100, 1000, 10_000],
-        restitution=sorted({case[0] for case in CASES}),
+        size=sizes,
+        restitution=restitutions,
         longer=1.0,
         share=1.0,
         runs=8,
         strength=math.nan,
     )
-    table = csv.writer(sys.stdout, lineterminator="\n")
-    table.writerow(("e", "L", "gamma", "time step", *(f"{name}, %" for name in QUANTITIES)))
+    yield "e", "L", "gamma", "time step", *(f"{name}, %" for name in QUANTITIES)
     for e, damping, size, duration in CASES:
         if size not in asked.size or e not in asked.restitution:
             continue
@@ -197,9 +187,8 @@ def main() -> None:
         rest = 0.0 if corrected and not math.isnan(asked.strength) else FINER**-order
         deviation = 100 / (1 - rest) * np.array(found)
         shown = percents(deviation.mean(axis=0), error_of_mean(deviation))
-        table.writerow((f"{e:g}", size, f"{damping:g}", f"{step:.1e}", *shown))
-        sys.stdout.flush()
+        yield f"{e:g}", size, f"{damping:g}", f"{step:.1e}", *shown
 
 
 if __name__ == "__main__":
-    main()
+    print_table(table())

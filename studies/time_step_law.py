@@ -29,7 +29,8 @@ def quantities(copy: Copy, steps: int) -> np.ndarray:
     centre, _, _, displacement, _ = reported(copy, steps)
     size = copy.y.size
     squares = (copy.sums[2] / steps)[size // 3 : size - size // 3].mean()
-    later = copy.step.outer_decay**2 * squares + copy.step.outer_noise**2
+    step = copy.dynamics.step
+    later = step.outer_decay**2 * squares + step.outer_noise**2
     return np.array([centre, math.sqrt(later), displacement, math.sqrt(squares)])
 
 
@@ -51,7 +52,7 @@ def main() -> None:
     found = []
     for seed in range(asked.runs):
         copies = tuple(make_copy(chain, step) for step in steps)
-        number = measure_all(chain, copies, RATIO, asked.duration / asked.runs, seed)
+        number = measure_all(copies, RATIO, asked.duration / asked.runs, seed)
         found.append([quantities(copy, number) for copy in copies])
     values = np.array(found)
     deviation = 100 * np.log(values[:, 1:] / values[:, :1])

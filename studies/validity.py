@@ -49,7 +49,6 @@ class Checked(NamedTuple):
 
     @property
     def runs(self) -> Runs:
-        """Its simulation."""
         chain = self.chain
         if self.group == OF_FIGURES:
             return dissipative(chain.size, chain.restitution)
@@ -62,7 +61,6 @@ class Checked(NamedTuple):
 
     @property
     def theories(self) -> dict[str, Case]:
-        """The theories that it checks: without correlations, with them."""
         chain = self.chain
         cases = {f"without, {chain}": Case("phase_space", chain, {"tolerance": TOLERANCE})}
         if self.group != INDEPENDENT:
@@ -122,12 +120,10 @@ def held_out() -> Iterator[Checked]:
 
 
 def checked() -> list[Checked]:
-    """Return all of them."""
     return [*independent(), *derived_with(), *held_out_earlier(), *held_out()]
 
 
 def cases() -> dict[str, Case]:
-    """Return their simulations and theories."""
     return {name: case for each in checked() for name, case in each.theories.items()} | {
         name: case for each in checked() for name, case in each.runs.cases("full").items()
     }
@@ -180,7 +176,6 @@ def temperatures(theory: xr.Dataset, run: xr.Dataset) -> list[str]:
 
 
 def percent(share: float) -> str:
-    """Return a deviation in per cent with its sign."""
     return f"{100 * share:+.1f}"
 
 
@@ -190,7 +185,6 @@ def even(values: np.ndarray) -> np.ndarray:
 
 
 def tables(results: Results) -> dict[str, Table]:
-    """Give the errors without correlations, then both theories' for every group of chains."""
     errors = ["centre, %", "border, %", "largest, %", "error of a rod, %"]
     alone = [each for each in checked() if each.group == INDEPENDENT]
     heads = ["L", "e", "gamma"]

@@ -10,15 +10,14 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import matplotlib as mpl
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from crazybilliards.comparison.drawing import COLOURS, draw_points
-from crazybilliards.comparison.layout import entitle, house_style, legend_above, panels
-from studies.common import options
+from crazybilliards.comparison.layout import entitle, legend_above, panels
+from studies.common import options, save_picture
 
 EARLIER = (45, 180, 600)  # rods of the chains held out earlier
 LEAST_DRAWN = 30  # rods, if not held out: chains of 10 are in the tables only
@@ -65,30 +64,16 @@ def draw_errors(ax: Axes, found: pd.DataFrame, which: str, sizes: list[int]) -> 
         if not len(group):
             continue
         shown = group.sort_values("place")
-        full = label == "held out"
-        draw_points(
-            ax,
-            shown.place,
-            shown[which],
-            shown[f"{which}_error"],
-            number=number,
-            label=label,
-            markerfacecolor=COLOURS[number] if full else "none",
-            linestyle="none" if full else "-",
-            linewidth=0.8,
-        )
+        points = shown.place, shown[which], shown[f"{which}_error"]
+        look = {"markerfacecolor": "none", "linestyle": "-", "linewidth": 0.8}
+        if label == "held out":
+            look |= {"markerfacecolor": COLOURS[number], "linestyle": "none"}
+        draw_points(ax, *points, number=number, label=label, **look)
     for _, each in found[driven].iterrows():
-        ax.errorbar(
-            each.place,
-            each[which],
-            each[f"{which}_error"],
-            marker=MARKERS_OF_DRIVEN[each.L],
-            markersize=5,
-            label=rf"$L = {each.L}$, $\gamma = {each.gamma:g}$",
-            color="0.45",
-            markerfacecolor="none",
-            linestyle="none",
-        )
+        look = {"marker": MARKERS_OF_DRIVEN[each.L], "markersize": 5, "markerfacecolor": "none"}
+        look |= {"color": "0.45", "linestyle": "none"}
+        label = rf"$L = {each.L}$, $\gamma = {each.gamma:g}$"
+        ax.errorbar(each.place, each[which], each[f"{which}_error"], label=label, **look)
 
 
 def finish(ax: Axes) -> None:
@@ -113,7 +98,6 @@ def finish(ax: Axes) -> None:
 
 
 def draw(folder: Path) -> Figure:
-    """Draw the errors of both theories in the centre and at the border."""
     figure, axes = panels(2, 2, height=2.6, sharex=True, sharey=True)
     both = {name: errors(folder, pairs=name == "with") for name in ("without", "with")}
     every = pd.concat(both.values())
@@ -132,7 +116,5 @@ def draw(folder: Path) -> Figure:
 
 
 if __name__ == "__main__":
-    mpl.use("Agg")
     folder = options(__doc__, folder=Path).folder
-    with house_style():
-        draw(folder).savefig(folder / "validity.png")
+    save_picture(folder / "validity.png", draw, folder)

@@ -24,7 +24,6 @@ APART = 2  # places in the list of lengths between the ends of a slope
 
 
 def cases() -> dict[str, Case]:
-    """Return the limits."""
     return {
         f"L={size}": Case(
             "simulate_limit",
@@ -36,12 +35,10 @@ def cases() -> dict[str, Case]:
 
 
 def central(limit: xr.Dataset) -> tuple[float, float]:
-    """Return W_v in the centre and its error."""
     return limit.central_velocity_width.item(), limit.central_velocity_width_error.item()
 
 
 def of_limit(size: int, limit: xr.Dataset) -> list[str]:
-    """Return a row of the first table."""
     levels = json.loads(limit.attrs["provenance"])["levels"]
     width, error = central(limit)
     return [
@@ -55,7 +52,6 @@ def of_limit(size: int, limit: xr.Dataset) -> list[str]:
 
 
 def slope(one: xr.Dataset, other: xr.Dataset) -> list[str]:
-    """Return the slope of ln W_v over ln L between two lengths."""
     sizes = [chain_of(limit).size for limit in (one, other)]
     (first, first_error), (last, last_error) = central(one), central(other)
     span = math.log(sizes[1] / sizes[0])
@@ -64,7 +60,6 @@ def slope(one: xr.Dataset, other: xr.Dataset) -> list[str]:
 
 
 def tables(results: Results) -> dict[str, Table]:
-    """Give W_v in the centre with the cost of its limit, slopes, and fits along the chain."""
     limits = list(results.values())
     by_size = {chain_of(limit).size: limit for limit in limits}
     fits = {size: fit_border_power_law(by_size[size]) for size in by_size if size in FITTED}

@@ -1,5 +1,8 @@
 """A calendar of the contacts that are due: the time of a step in equal parts, a list for each part.
 
+The contact that closes first is in the first list that is not empty. There are as many lists as
+contacts that are due, so a list holds about one, and a collision costs O(1).
+
 The lists are doubly linked. Of L rods, contact c is node c, and the list of part k has its head at
 node L + k. A node that is linked to itself is an empty list, or a contact in no list.
 """
@@ -48,8 +51,7 @@ def open_calendar(dt, due, waiting, count, size, following, preceding):  # type:
     scale, parts = (float(count) + 1) * (1 - 1e-9) / dt, float(count)
     for k in range(count):
         contact = INDEX(waiting[k])
-        node = list_of(contact, due[contact], scale, size, parts)
-        move(contact, node, following, preceding)
+        move(contact, list_of(contact, due[contact], scale, size, parts), following, preceding)
     return scale, parts
 
 

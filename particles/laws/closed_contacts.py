@@ -1,15 +1,10 @@
 """Contacts that are closed after a drift, and a correction of the noise that opens them.
 
-At e = 0 two rods that have met stay in contact until a kick of the noise separates them. In the
-limit dt -> 0 they separate at once. With one kick per step they stay in contact longer, by D steps
-on average, which causes an error ~ dt^(3/4) of the velocity widths. D vanishes if the relative kick
-of a closed contact is ``CLOSED_KICK`` times as strong. The number follows from a single contact and
-holds for every chain at e = 0. ``studies/closed_contact.py`` computes it, and
-docs/particles.md defines D and has the sources and the measured errors.
-
-The same factor is taken up to the critical restitution exp(-pi/sqrt 3) = 0.163 (Cornell, Swift and
-Bray, Phys. Rev. Lett. 81, 1142, 1998), below which two rods that meet still come to rest in
-contact. D was not worked out there, but the factor removes the error in chains at e = 0.1.
+At e = 0 two rods that have met stay in contact until a kick of the noise separates them, with one
+kick per step longer than in the limit dt -> 0. The excess vanishes if the relative kick of a closed
+contact is ``CLOSED_KICK`` times as strong. ``studies/closed_contact.py`` computes the number, and
+docs/particles.md has the sources, the measured errors, and why the same factor is taken up to the
+critical restitution, below which two rods that meet still come to rest in contact.
 
 Only the deviations of kicks from the mean of their cluster grow, which keeps the momentum.
 """
@@ -40,16 +35,6 @@ def make_clusters(size: int) -> Clusters:
     """Return arrays for the clusters of ``size`` rods."""
     firsts, lasts = np.zeros((2, size), dtype=np.int64)
     return Clusters(firsts, lasts, np.zeros(1, dtype=np.int64))
-
-
-def second_half(strength: float, decay: float) -> float:
-    """Strength of a half kick so that both halves make a whole one of ``strength``.
-
-    The velocity decays by c = ``decay`` in every half, so a whole kick has the variance
-    c^2 h^2 + h^2. The two halves must add up to strength^2 times this. The first half keeps its
-    share, c^2 h^2, and the second half has the rest.
-    """
-    return math.sqrt(strength**2 + decay**2 * (strength**2 - 1))
 
 
 @kernel

@@ -8,10 +8,7 @@ with b_i = e (v_i - v_{i+1}) for a contact that would close within the step and 
 b_i = -gap_i/dt for every other contact, which then does not overlap. (With the splitting the
 velocities are corrected for what the springs have not given yet, see ``spring_correction.py``.)
 With B_i the sum of the b_j left of i, u_i - B_i is the isotonic regression of v_i - B_i.
-docs/physics/collisions.md derives this and compares the law with others. Other programs usually
-iterate to the solution (M. Jean, Comput. Methods Appl. Mech. Engrg. 177, 235, 1999).
-
-The law is the position form, in which rods never overlap beyond rounding.
+docs/physics/collisions.md derives this and compares the law with others.
 """
 
 import numpy as np

@@ -9,24 +9,19 @@ and at most three contacts get a new time. If contacts close at the same time, t
 larger closing speed is taken first, and of equal speeds the left one. The operator is symmetric
 under reflection, unless neighbouring contacts tie in both, or rounding decides which comes first.
 
-**A calendar** (``calendar.py``) finds the contact that closes first, in the first list that is not
-empty. A collision costs O(1), because a list holds about one contact. **Rods that touch** at the
+**A calendar** (``calendar.py``) finds the contact that closes first. **Rods that touch** at the
 beginning collide at time 0, row by row, because rows do not know of each other. Where a row or a
-list is long, **a tournament** (``tournament.py``) takes over until the end of the step, and a
-collision costs O(log L).
+list of the calendar is long, **a tournament** (``tournament.py``) takes over until the end of the
+step.
 
 **Inelastic collapse.** For e < 1 neighbours may collide infinitely often in a finite time. If the
 speed of separation e |v - v'| would be below ``merge_speed``, the two become a *cluster* that
 moves as one until the end of the drift, with the mean velocity of its members and as many masses.
-Without a gap every other collision takes energy, so the number of events is finite. Others that hit
-a cluster rebound as from a rigid rod, so that without noise the result of a collapse depends on the
-step; docs/physics/collisions.md has numbers.
+Its state is stored at its outermost members. docs/physics/collisions.md has the consequences.
 
 **Positions at the beginning of the step.** y holds the position that a point with its present
 velocity would have had at t = 0. A collision at t changes y by (v_before - v_after) t, and no point
 has to be moved before the end of the step.
-
-The state of a cluster is stored at its outermost members.
 
 **Springs that differ.** With a gap the velocities of two rods that meet, but not of clusters, are
 corrected for what their springs have not given them yet (``spring_correction.py``).
@@ -257,11 +252,9 @@ def drift(y, v, anchors, dt, law, scratch, tally):  # type: ignore[no-untyped-de
         low, high = _meet_again(contact, a, b, now, y, v, dt, due)
         move(contact, contact, following, preceding)
         if low != contact:
-            to = list_of(low, due[low], scale, size, parts)
-            move(low, to, following, preceding)
+            move(low, list_of(low, due[low], scale, size, parts), following, preceding)
         if high != contact:
-            to = list_of(high, due[high], scale, size, parts)
-            move(high, to, following, preceding)
+            move(high, list_of(high, due[high], scale, size, parts), following, preceding)
     if tree or collisions > law.most:
         for each in range(following.size):
             following[each] = preceding[each] = each

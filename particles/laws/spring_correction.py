@@ -1,13 +1,9 @@
 r"""What the springs of two rods are ahead of their kicks when the rods collide.
 
-The splitting (``stepping.py``) gives half of a step's spring kick before the drift and half after
-it. At the time t of a step the springs should have given a rod the velocity a t, and the scheme has
-given a dt/2. The true relative velocity of two rods therefore differs from that of the drift by
-
-    ahead = (a' - a) (t - dt/2).
-
-A collision at t has to reverse the true one, or it would add energy on average. The drift goes on
-with that less ``ahead``, because the second half kick adds it:
+The true relative velocity of two rods at the time t of a step differs from that of the drift by
+``ahead`` = (a' - a)(t - dt/2), see docs/physics/collisions.md. A collision has to reverse the true
+one. The drift goes on with that less ``ahead``, because the second half kick of the springs adds
+it:
 
     v' - v -> -e (v' - v + ahead) - ahead.
 

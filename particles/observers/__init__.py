@@ -41,13 +41,7 @@ OBSERVERS: dict[str, type[Observer]] = {
 
 
 def find_observers(observe: str | Observer | Collection[str | Observer]) -> tuple[Observer, ...]:
-    """Return the observers for the argument ``observe``, each name once.
-
-    Raises
-    ------
-    ValueError
-        If there are none, or one of them is not known.
-    """
+    """Return the observers for the argument ``observe``, each name once."""
     if isinstance(observe, str | Observer):
         observe = [observe]
     elif not isinstance(observe, Collection):

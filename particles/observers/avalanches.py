@@ -22,32 +22,26 @@ class _CountedWaves(Observer):
     record: ClassVar[str]  # name of the waves in the tally
 
     def prepare(self, run: Run, copies: int) -> None:
-        """Make the sums."""
         waves = make_waves(run.chain.size)
         self.heads, self.following, self.origins, self.unused, self.sizes = waves
 
     def tally(self, tally: Tally) -> Tally:
-        """Return the tally with the waves of this observer."""
         waves: Any = Waves(self.heads, self.following, self.origins, self.unused, self.sizes)
         return tally._replace(**{self.record: waves})
 
     def memory(self, run: Run) -> float:
-        """Return the bytes it keeps."""
         return 16.0 * run.chain.size**2
 
     def observe(self, snapshots: Snapshots) -> None:
         """Do nothing, because the kernel has counted already."""
 
     def join(self, others: Sequence[Self]) -> None:
-        """Add the counts of other replicas."""
         self.sizes = self.sizes + sum(other.sizes for other in others)
 
     def report(self, counts: Integers) -> Variables:
-        """Return the counts."""
         return {self.gives[0]: (("particle", self.along[0]), self.sizes)}
 
     def coordinates(self) -> dict[str, Array]:
-        """Return the sizes N_c."""
         return {self.along[0]: np.arange(len(self.sizes), dtype=np.float64) + self.smallest}
 
 

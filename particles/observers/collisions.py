@@ -20,11 +20,9 @@ class Collisions(Averaged):
     limit = False
 
     def observe(self, snapshots: Snapshots) -> None:
-        """Add the collisions since the last snapshots."""
         self.sums[snapshots.block, :-1] += snapshots.collisions
 
     def report(self, counts: Integers) -> Variables:
-        """Return the rate and its standard error."""
         interval = self.schedule.stride * self.schedule.time_step
         rate = {"collision_rate": lambda average: average / interval}
         return self.averages(rate, counts, "particle")

@@ -45,11 +45,10 @@ class Covariances(Averaged):
         self.separations = check_integer("separations", separations, least=1, most=_MOST)
 
     def shape(self, run: Run) -> tuple[int, ...]:
-        """Return the shape of the sums of one block: two products by separation, and the gaps."""
+        # The products of velocities and those of gaps by separation, and the gaps.
         return 2 * self._furthest(run) + 3, run.chain.size
 
     def prepare(self, run: Run, copies: int) -> None:
-        """Make the sums."""
         super().prepare(run, copies)
         self.anchors = run.chain.reduced_anchors
         self.furthest = self._furthest(run)
@@ -58,7 +57,6 @@ class Covariances(Averaged):
         return min(self.separations, run.chain.size - 1)
 
     def observe(self, snapshots: Snapshots) -> None:
-        """Add the products of velocities, those of gaps, and the gaps, to their block."""
         # Gaps minus those between the anchors: less is lost when the square of a mean is taken off.
         gaps = np.diff(snapshots.y - self.anchors, axis=1)
         sums = self.sums[snapshots.block]
@@ -71,7 +69,6 @@ class Covariances(Averaged):
         sums[-1, :-1] += gaps.sum(axis=0)
 
     def report(self, counts: Integers) -> Variables:
-        """Return all covariances and their standard errors."""
         last = self.furthest + 1
         at_anchors = np.diff(self.anchors)
         of_velocities = {"velocity_covariance": lambda average: _known(average[..., :last, :])}
@@ -98,7 +95,6 @@ class Covariances(Averaged):
         }
 
     def coordinates(self) -> dict[str, Array]:
-        """Return the separations."""
         return {"separation": np.arange(self.furthest + 1, dtype=np.float64)}
 
 

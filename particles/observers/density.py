@@ -62,11 +62,9 @@ class Density(Averaged):
             raise ValueError(f"reach={self.reach:g} is too large for a grid: {error}") from error
 
     def shape(self, run: Run) -> tuple[int, ...]:
-        """Return the shape of the sums of one block: one number a node of the grid."""
         return (self._grid(run).size,)
 
     def prepare(self, run: Run, copies: int) -> None:
-        """Make the sums."""
         super().prepare(run, copies)
         self.x = self._grid(run)
         self.first, self.spacing = self.x[0], self.x[1] - self.x[0]
@@ -74,17 +72,14 @@ class Density(Averaged):
         self.outside = 0
 
     def observe(self, snapshots: Snapshots) -> None:
-        """Put every rod of every snapshot on the grid."""
         points = (snapshots.y + self.offsets).ravel()
         self.outside += deposit(points, self.first, self.spacing, self.sums[snapshots.block])
 
     def join(self, others: Sequence[Self]) -> None:
-        """Append the measurements of others."""
         super().join(others)
         self.outside += sum(other.outside for other in others)
 
     def report(self, counts: Integers) -> Variables:
-        """Return density, density_error, density_block over x, and the rods outside x."""
         if self.outside:
             share = self.outside / counts.sum()
             warn_user(
@@ -106,5 +101,4 @@ class Density(Averaged):
         return variables
 
     def coordinates(self) -> dict[str, Array]:
-        """Return the position grid."""
         return {"x": self.x}

@@ -30,7 +30,6 @@ class Energy(Observer):
     shares_time = True
 
     def prepare(self, run: Run, copies: int) -> None:
-        """Make the sums."""
         self.schedule = run.schedule
         self.every = self._keeps_every(run)
         self.together = 1 if self.every else -(-run.schedule.snapshots // _MOST_TIMES)
@@ -40,23 +39,19 @@ class Energy(Observer):
         self.counts = np.zeros((1, times), dtype=np.int64)
 
     def memory(self, run: Run) -> float:
-        """Return the bytes it keeps."""
         return 16.0 * (run.schedule.snapshots if self._keeps_every(run) else _MOST_TIMES)
 
     def observe(self, snapshots: Snapshots) -> None:
-        """Add the energies of snapshots to their times."""
         energies = self.mass / 2 * np.einsum("sp,sp->s", snapshots.v, snapshots.v)
         place = (snapshots.first + np.arange(energies.size)) // self.together
         np.add.at(self.sums[0], place, energies)
         np.add.at(self.counts[0], place, 1)
 
     def join(self, others: Sequence[Self]) -> None:
-        """Append other replicas."""
         self.sums = np.concatenate([self.sums, *(other.sums for other in others)])
         self.counts = np.concatenate([self.counts, *(other.counts for other in others)])
 
     def report(self, counts: Integers) -> Variables:
-        """Return kinetic_energy and, with replicas, its error."""
         if self.schedule.ensemble:
             energies, numbers = self.sums[:, : counts.shape[1]], counts
         else:
@@ -72,7 +67,6 @@ class Energy(Observer):
         return variables
 
     def coordinates(self) -> dict[str, Array]:
-        """Return the mean time of the snapshots in each average."""
         if self.schedule.ensemble:
             return {}
         first = np.arange(self.counts.shape[1]) * self.together

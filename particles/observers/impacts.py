@@ -55,30 +55,24 @@ class Impacts(Averaged):
     ensemble = False
 
     def shape(self, run: Run) -> tuple[int, ...]:
-        """Return the shape of the sums of one block: the four rows of every contact."""
         return ROWS, run.chain.size - 1
 
     def memory(self, run: Run) -> float:
-        """Return the bytes of the sums, and of those since the last snapshots."""
         return super().memory(run) + 8.0 * math.prod(self.shape(run))
 
     def prepare(self, run: Run, copies: int) -> None:
-        """Make the sums."""
         super().prepare(run, copies)
         self.mass = run.chain.mass
         self.current = make_impacts(run.chain.size)
 
     def tally(self, tally: Tally) -> Tally:
-        """Return the tally with the sums since the last snapshots."""
         return tally._replace(impacts=self.current)
 
     def observe(self, snapshots: Snapshots) -> None:
-        """Add what was summed since the last snapshots to their block."""
         self.sums[snapshots.block] += self.current
         self.current[...] = 0  # in place: kernels write into the same array
 
     def report(self, counts: Integers) -> Variables:
-        """Return the four quantities and their standard errors."""
         per_time = self.mass / (self.schedule.stride * self.schedule.time_step)
 
         def rebound(average: Array) -> Array:

@@ -24,16 +24,13 @@ class Modes(Averaged):
     along = ("mode",)
 
     def observe(self, snapshots: Snapshots) -> None:
-        """Add the squares of the modes of snapshots to their block."""
         from scipy.fft import dct  # takes half a second, and few runs observe modes
 
         waves = dct(snapshots.v, axis=1, norm="ortho")
         self.sums[snapshots.block] += np.einsum("sq,sq->q", waves, waves)
 
     def report(self, counts: Integers) -> Variables:
-        """Return the spectrum and its standard error."""
         return self.averages({"mode_velocity_variance": lambda average: average}, counts, "mode")
 
     def coordinates(self) -> dict[str, Array]:
-        """Return the numbers of the modes."""
         return {"mode": np.arange(self.sums.shape[-1], dtype=np.float64)}

@@ -30,29 +30,24 @@ class Raw(Observer):
     shares_time = True
 
     def prepare(self, run: Run, copies: int) -> None:
-        """Make the sums."""
         self.schedule = run.schedule
         self.chosen = run.chosen
         self.offsets = run.chain.physical(np.zeros(run.chain.size))[run.chosen]
         self.y, self.v = np.full((2, copies, run.schedule.times.size, run.chosen.size), np.nan)
 
     def memory(self, run: Run) -> float:
-        """Return the bytes it keeps."""
         return 16.0 * run.chosen.size * run.schedule.snapshots * run.copies
 
     def observe(self, snapshots: Snapshots) -> None:
-        """Put the snapshots in their places."""
         place = slice(snapshots.first, snapshots.first + len(snapshots.y))
         self.y[snapshots.copy, place] = snapshots.y[:, self.chosen]
         self.v[snapshots.copy, place] = snapshots.v[:, self.chosen]
 
     def join(self, others: Sequence[Self]) -> None:
-        """Append other replicas."""
         self.y = np.concatenate([self.y, *(other.y for other in others)])
         self.v = np.concatenate([self.v, *(other.v for other in others)])
 
     def report(self, counts: Integers) -> Variables:
-        """Return position and velocity."""
         dimensions = ("replica", "time", "particle")
         reached = slice(counts.shape[1]) if self.schedule.ensemble else self._reached()
         return {
@@ -61,7 +56,6 @@ class Raw(Observer):
         }
 
     def coordinates(self) -> dict[str, Array]:
-        """Return the times of the snapshots."""
         if self.schedule.ensemble:
             return {}
         return {"time": self.schedule.times[self._reached()]}

@@ -59,11 +59,9 @@ class Velocities(Averaged):
         self.bins = check_integer("bins", bins, least=1, most=_MOST_BINS)
 
     def shape(self, run: Run) -> tuple[int, ...]:
-        """Return the shape of the sums of one block: v, v^2, v^3 and v^4 of every chosen rod."""
-        return 4, run.chosen.size
+        return 4, run.chosen.size  # sums of v, v^2, v^3 and v^4
 
     def prepare(self, run: Run, copies: int) -> None:
-        """Make the sums."""
         super().prepare(run, copies)
         scale = run.chain.free_velocity_width
         if not 0 < scale < np.inf:
@@ -78,11 +76,9 @@ class Velocities(Averaged):
         self.outside = 0
 
     def memory(self, run: Run) -> float:
-        """Return the bytes it keeps."""
         return 8.0 * self.bins * run.chosen.size + super().memory(run)
 
     def observe(self, snapshots: Snapshots) -> None:
-        """Count every velocity in its bin, and add up its powers."""
         v = snapshots.v[:, self.chosen]
         square, sums = v * v, self.sums[snapshots.block]
         sums[0] += v.sum(axis=0)
@@ -96,14 +92,12 @@ class Velocities(Averaged):
         self.counts += np.bincount(cells, minlength=self.counts.size)
 
     def join(self, others: Sequence[Self]) -> None:
-        """Add the counts of other replicas, and append their blocks."""
         super().join(others)
         for other in others:
             self.counts += other.counts
             self.outside += other.outside
 
     def report(self, counts: Integers) -> Variables:
-        """Return velocity_density, the share of velocities beyond all bins, and the shape."""
         snapshots = counts.sum()
         density = self.counts.reshape(-1, self.bins) / (snapshots * np.diff(self.edges))
         return {
@@ -113,5 +107,4 @@ class Velocities(Averaged):
         }
 
     def coordinates(self) -> dict[str, Array]:
-        """Return the centres of the bins."""
         return {"velocity_bin": (self.edges[1:] + self.edges[:-1]) / 2}

@@ -33,16 +33,13 @@ class Widths(Averaged):
     gives = (*_QUANTITIES, "autocorrelation_time")
 
     def shape(self, run: Run) -> tuple[int, ...]:
-        """Return the shape of the sums of one block: those of d, d^2, v and v^2 of every rod."""
-        return 4, run.chain.size
+        return 4, run.chain.size  # sums of d, d^2, v and v^2
 
     def prepare(self, run: Run, copies: int) -> None:
-        """Make the sums."""
         super().prepare(run, copies)
         self.anchors = run.chain.reduced_anchors
 
     def observe(self, snapshots: Snapshots) -> None:
-        """Add snapshots to the sums of their block."""
         d = snapshots.y - self.anchors
         sums = self.sums[snapshots.block]
         sums[0] += d.sum(axis=0)
@@ -51,7 +48,6 @@ class Widths(Averaged):
         sums[3] += np.einsum("sp,sp->p", snapshots.v, snapshots.v)
 
     def report(self, counts: Integers) -> Variables:
-        """Return the quantities, their standard errors and the autocorrelation time."""
         variables = self.averages(_QUANTITIES, counts, "particle")
         if self.schedule.ensemble:
             return variables

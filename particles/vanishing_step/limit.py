@@ -189,13 +189,7 @@ def make_runs(
     replicas: int,
     **arguments: Any,
 ) -> tuple[Steps, list[LevelRun]]:
-    """Check all arguments of :func:`simulate_limit` and plan its levels, without any work.
-
-    Raises
-    ------
-    ValueError
-        For a wrong argument, or if the levels would not fit into memory.
-    """
+    """Check all arguments of :func:`simulate_limit` and plan its levels, without any work."""
     chain.require_known(_KNOWN, "simulate_limit")
     accuracy = check_real("accuracy", accuracy, positive=True)
     if not 1e-4 <= accuracy <= 0.1:
