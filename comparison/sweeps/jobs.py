@@ -93,14 +93,14 @@ def _theory_work(theory: Theory, chain: Chain, **settings: Any) -> float:
 
 JOBS: dict[str, Job] = {
     "simulate": Job(
-        function=partial(simulate, threads=1, progress=False),
+        function=partial(simulate, progress=False),
         work=_steps,
         too_short=_too_short,
         settings=_settings(simulate),
         source=room_fingerprint("model", "particles"),
     ),
     "simulate_limit": Job(
-        function=partial(simulate_limit, threads=1, progress=False),
+        function=partial(simulate_limit, progress=False),
         work=_limit_steps,
         settings=_settings(simulate_limit),
         source=room_fingerprint("model", "particles"),

@@ -8,13 +8,9 @@ from matplotlib.figure import Figure
 
 from crazybilliards.comparison.coverage import smooth
 from crazybilliards.comparison.distances import Deviation, distances_in_plot
-from crazybilliards.comparison.side_by_side.elastic_chain import (
-    LEGEND,
-    deviations,
-    elastic_theories,
-)
-from crazybilliards.comparison.side_by_side.elastic_figures import draw_density
-from crazybilliards.comparison.side_by_side.parameter_series import SIMULATION
+from crazybilliards.comparison.side_by_side.grid import ELASTIC, SIMULATION, elastic_tree
+from crazybilliards.comparison.side_by_side.grid_deviations import deviations
+from crazybilliards.comparison.side_by_side.grid_figures import draw_density
 from crazybilliards.comparison.sweeps import Case
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.reproduction.claims.study import Cases, Quality, Results, Study
@@ -41,18 +37,9 @@ def cases(quality: Quality) -> Cases:
     return {f"amplitude_{a:g}": simulation(a) for a in _AMPLITUDES}
 
 
-def _tree(results: Results) -> xr.DataTree:
-    every: dict[str, xr.Dataset] = {}
-    for name, run in results.items():
-        every[f"{name}/{SIMULATION}"] = run
-        theories = elastic_theories(chain_of(run), run)
-        every |= {f"{name}/{key}": theory for key, theory in theories.items()}
-    return xr.DataTree.from_dict(every)
-
-
 def claims(results: Results) -> list[Claim]:
     """Check: simulation and theory agree."""
-    tree = _tree(results)
+    tree = elastic_tree(results)
     groups = tree.children
     claims = []
     for name, by_theory in deviations(tree).items():
@@ -96,7 +83,7 @@ def _off_in_plot(run: xr.Dataset, theory: xr.Dataset) -> tuple[float, float]:
 
 def draw(results: Results) -> Figure:
     """Draw rho(x) and the differences from the exact density."""
-    return draw_density(_tree(results))
+    return draw_density(elastic_tree(results))
 
 
 FIGURE = Study(
@@ -105,7 +92,7 @@ FIGURE = Study(
     title="Density at e = 1: simulation and theory",
     caption="L = 100, e = 1, four driving amplitudes. Circles: simulation, smoothed as in the "
     "paper; a thin line where circles would hide steps. Other lines: "
-    f"{'; '.join(LEGEND.values())}. Insets: the right edge, every bin. Below each: the difference "
+    f"{'; '.join(ELASTIC.values())}. Insets: the right edge, every bin. Below each: the difference "
     "from the exact density in units of close packing.",
     cases=cases,
     draw=draw,

@@ -12,7 +12,7 @@ import pytest
 from rich.table import Table
 
 from crazybilliards.apps.commands.answers import print_table
-from crazybilliards.comparison.side_by_side.elastic_chain import deviations
+from crazybilliards.comparison.side_by_side.grid_deviations import deviations
 from crazybilliards.comparison.side_by_side.relaxation import label_distances
 from crazybilliards.model import load
 from crazybilliards.model.locks import locked
