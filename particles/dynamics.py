@@ -25,6 +25,9 @@ _MERGING, _MERGING_OF_CLOSED = 0.1, 0.03
 
 Stepper = Literal["splitting", "euler"]
 
+# Parameters beside the known ones that the springs, the damping or the noise take from the chain.
+knows: frozenset[str] = frozenset()
+
 
 class Step(NamedTuple):
     """The plain numbers of the chain and the scheme that a kernel needs."""

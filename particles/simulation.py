@@ -161,14 +161,26 @@ def simulate(
     >>> run.velocity_width.dims, run.attrs["status"]
     (('particle',), 'completed')
     """
-    asked = dict(locals())  # the arguments
-    for name in ("threads", "checkpoint", "checkpoint_interval", "progress"):
-        del asked[name]  # no number depends on these
-    asked["seed"] = seed_of(seed, asked.pop("rng"))
+    seed = seed_of(seed, rng)
     checkpoint_interval = check_real("checkpoint_interval", checkpoint_interval)
     kept = None if checkpoint is None else check_path("checkpoint", checkpoint)
     threads = check_integer("threads", cores() if threads is None else threads, least=1)
-    run = make_run(**asked)
+    run = make_run(
+        chain,
+        duration=duration,
+        warmup=warmup,
+        time_step=time_step,
+        method=method,
+        stepper=stepper,
+        merging=merging,
+        seed=seed,
+        observe=observe,
+        start=start,
+        particles=particles,
+        replicas=replicas,
+        average=average,
+        every=every,
+    )
     if run.too_short:
         warn_user(run.too_short, ShortRunWarning)
     if _stays_at_rest(run):

@@ -35,11 +35,6 @@ from crazybilliards.particles.vanishing_step.level_terms import CENTRAL
 from crazybilliards.particles.vanishing_step.multilevel import Levels
 from crazybilliards.particles.vanishing_step.sampler import Sampler, compile_pair
 
-# The parameters that the coupled runs and the planning of the levels know. Another one is refused
-# until it was looked at here: noise with a memory, say, needs another sum of kicks.
-_KNOWN = frozenset(
-    ("size", "restitution", "amplitude", "damping", "stiffness", "gap", "radius", "mass", "spring")
-)
 _OPEN = 2**40  # snapshots: how many a group gets turns out later
 _JOINED = 3  # copies of what observers keep, while they are joined
 
@@ -196,7 +191,8 @@ def make_runs(
     ValueError
         For a wrong argument, or if the levels would not fit into memory.
     """
-    chain.require_known(_KNOWN, "simulate_limit")
+    # A new parameter is refused: noise with a memory, for example, needs another sum of kicks.
+    chain.require_known("simulate_limit")
     accuracy = check_real("accuracy", accuracy, positive=True)
     if not 1e-4 <= accuracy <= 0.1:
         raise ValueError(f"accuracy must lie between 1e-4 and 0.1, got {accuracy:g}")
