@@ -30,7 +30,7 @@ from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.calls import warn_user
 from crazybilliards.model.checks import check_integer, check_path, check_real, shown
 from crazybilliards.model.process import announced, cores, waiting_for
-from crazybilliards.model.randomness import Randomness, seed_of
+from crazybilliards.model.randomness import Seed, seed_of
 from crazybilliards.particles.simulation import compile_kernels
 
 Folder = str | os.PathLike[str]
@@ -57,8 +57,7 @@ def compare_elastic(
     *,
     folder: Folder | None = None,
     duration: float = 100_000.0,
-    seed: int = 0,
-    rng: Randomness | None = None,
+    seed: Seed = 0,
     processes: int | None = None,
     threads: int | None = None,
     keep_old: bool = False,
@@ -76,7 +75,7 @@ def compare_elastic(
         is removed at the end.
     duration
         Simulated time of each of two replicas [T]; 100 000 takes 2 s for 100 rods.
-    seed, rng
+    seed
         As in ``simulate``. Every amplitude has its own random numbers.
     processes
         Processes to compute in. They are started anew, so a script must call this under
@@ -104,7 +103,7 @@ def compare_elastic(
     """
     if chain.restitution != 1:
         raise ValueError(f"the comparison is of elastic chains, got e={chain.restitution:g}")
-    cases = _simulations(chain, "amplitude", amplitudes, duration, seed_of(seed, rng))
+    cases = _simulations(chain, "amplitude", amplitudes, duration, seed_of(seed))
     results, status = _computed(cases, folder, processes, threads, keep_old, progress)
     with waiting_for("theories", progress):
         return elastic_tree({name: found[SIMULATION] for name, found in results.items()}, status)
@@ -116,8 +115,7 @@ def compare_restitutions(
     *,
     folder: Folder | None = None,
     duration: float = 5_000.0,
-    seed: int = 0,
-    rng: Randomness | None = None,
+    seed: Seed = 0,
     processes: int | None = None,
     threads: int | None = None,
     keep_old: bool = False,
@@ -133,7 +131,7 @@ def compare_restitutions(
         Different values of e. ``theories`` tells how good the kinetic equations are there.
     duration
         Simulated time of each of two replicas [T].
-    folder, seed, rng, processes, threads, keep_old, progress
+    folder, seed, processes, threads, keep_old, progress
         As in :func:`compare_elastic`. The folder holds the theories, too.
 
     Returns
@@ -150,7 +148,7 @@ def compare_restitutions(
     ValueError
         For a wrong argument, before any work.
     """
-    cases = _simulations(chain, "restitution", restitutions, duration, seed_of(seed, rng))
+    cases = _simulations(chain, "restitution", restitutions, duration, seed_of(seed))
     for found in cases.values():
         here = found[SIMULATION].chain
         for key, job in KINETIC.items():

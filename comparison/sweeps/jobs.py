@@ -23,9 +23,7 @@ from crazybilliards.particles.vanishing_step.level_steps import GROUPS
 from crazybilliards.particles.vanishing_step.limit import make_runs
 
 # Arguments that do not change the numbers, and arguments that are not plain values.
-_NO_SETTINGS = {"chain", "rng", "start", "threads", "checkpoint", "checkpoint_interval"} | {
-    "progress"
-}
+_NO_SETTINGS = {"chain", "start", "threads", "checkpoint", "checkpoint_interval"} | {"progress"}
 
 _STEPS_A_SECOND = 1e8  # particle steps, to compare the work of theories with that of simulations
 

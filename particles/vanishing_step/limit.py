@@ -19,7 +19,7 @@ from crazybilliards.model.calls import warn_user
 from crazybilliards.model.checks import check_integer, check_path, check_real
 from crazybilliards.model.memory import require_memory
 from crazybilliards.model.process import announced, cores, interrupts_noted
-from crazybilliards.model.randomness import Randomness, seed_of
+from crazybilliards.model.randomness import Seed, seed_of
 from crazybilliards.model.vocabulary import result
 from crazybilliards.particles.observers import Observer, find_observers
 from crazybilliards.particles.run import Run
@@ -59,8 +59,7 @@ def simulate_limit(
     accuracy: float = 0.01,
     warmup: float | None = None,
     merging: float | None = None,
-    seed: int = 0,
-    rng: Randomness | None = None,
+    seed: Seed = 0,
     observe: str | Observer | Sequence[str | Observer] = ("widths", "density"),
     particles: Sequence[int] | None = None,
     replicas: int = 1,
@@ -85,7 +84,7 @@ def simulate_limit(
         a little faster than 1/accuracy^2.
     warmup
         Time before measuring [T], at every level; None: 12 relaxation times.
-    merging, seed, rng, particles
+    merging, seed, particles
         As in :func:`simulate`.
     observe
         As in :func:`simulate`, with ``"widths"``. Refused are ``"snapshots"``, which are no
@@ -132,7 +131,7 @@ def simulate_limit(
     threads = check_integer("threads", cores() if threads is None else threads, least=1)
     checkpoint_interval = check_real("checkpoint_interval", checkpoint_interval)
     kept = None if checkpoint is None else check_path("checkpoint", checkpoint)
-    seed = seed_of(seed, rng)
+    seed = seed_of(seed)
     steps, runs = make_runs(
         chain,
         accuracy=accuracy,
