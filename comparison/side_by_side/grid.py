@@ -13,7 +13,8 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Mapping, Sequence
-from contextlib import ExitStack
+from concurrent.futures import Executor
+from contextlib import AbstractContextManager, ExitStack
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -206,7 +207,9 @@ def _computed(
     with ExitStack() as stack:
         place = stack.enter_context(TemporaryDirectory()) if folder is None else folder
         place = check_path("folder", place)
-        workers = ThisProcess(threads) if processes is None else process_pool(processes)
+        workers: AbstractContextManager[Executor] = ThisProcess(threads)
+        if processes is not None:
+            workers = process_pool(min(processes, len(every)))
         if not all(case.file(place).exists() for case in every):
             with announced(progress):
                 compile_kernels()
