@@ -138,10 +138,9 @@ def test_a_chain_that_diverges_is_told_and_drawn_as_far_as_it_can_be(run, tmp_pa
 
 @pytest.mark.compiled
 @pytest.mark.posix
-def test_ctrl_c_leaves_a_finished_result_and_the_chains_that_are_done(interrupted, run, tmp_path):
+def test_ctrl_c_in_the_first_chain_leaves_a_finished_result(interrupted, tmp_path):
     (tmp_path / "comparison.nc").write_text("finished")
-    short = [*QUICK[:3], "--duration", "100", "--amplitudes", "1"]
-    done = interrupted(*short[:3], "--duration", "1e9", "--output", tmp_path)
+    done = interrupted(*QUICK[:3], "--duration", "1e9", "--output", tmp_path)
     assert done.returncode == -signal.SIGINT, done.stderr
     assert "Traceback" not in done.stderr
     assert (tmp_path / "comparison.nc").read_text() == "finished"
