@@ -31,7 +31,10 @@ SYMBOLS = {
 _OWNERS = dict.fromkeys((*SYMBOLS.values(), "spring"), "Chain") | {"time_step": "simulate"}
 
 # What replaces the arguments that 0.4.0 does not have any more; 0.5.0 says no more of them.
-_GONE = {"rng": "seed takes what rng took"}
+_GONE = {
+    "rng": "seed takes what rng took",
+    "finished": "folder keeps every result as soon as it is there",
+}
 
 _SHORTLY = reprlib.Repr()
 _SHORTLY.maxstring = _SHORTLY.maxother = _SHORTLY.maxlong = 80
