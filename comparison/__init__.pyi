@@ -19,12 +19,12 @@ from .fits import (
     tail_length as tail_length,
 )
 from .side_by_side.animation_page import standalone_page as standalone_page
-from .side_by_side.elastic_chain import compare_elastic as compare_elastic
+from .side_by_side.grid import (
+    compare_elastic as compare_elastic,
+    compare_restitutions as compare_restitutions,
+)
+from .side_by_side.grid_deviations import width_deviations as width_deviations
 from .side_by_side.relaxation import compare_relaxation as compare_relaxation
 from .side_by_side.relaxation_figures import animate as animate
-from .side_by_side.restitutions import (
-    compare_restitutions as compare_restitutions,
-    width_deviations as width_deviations,
-)
 from .stationary_theories import theories as theories
 from .sweeps import load_sweep as load_sweep

@@ -4,12 +4,6 @@ from __future__ import annotations
 
 from crazybilliards.model import Chain
 
-# Parameters that the theories' equations contain, or that `require_chain` can refuse by name. A new
-# parameter of the chain is refused by every theory until it is added here.
-_KNOWN = frozenset(
-    {"size", "restitution", "amplitude", "damping", "stiffness", "gap", "radius", "mass", "spring"}
-)
-
 
 def require_chain(
     chain: Chain,
@@ -39,7 +33,7 @@ def require_chain(
     remedy
         What to do for a restitution other than 1; the end of that error.
     """
-    chain.require_known(_KNOWN, theory)
+    chain.require_known(theory)
     if elastic and chain.restitution != 1:
         raise ValueError(
             f"{theory} holds for elastic collisions only: restitution must be 1, got "

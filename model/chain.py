@@ -31,7 +31,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from crazybilliards.model import spring
 from crazybilliards.model.checks import check_arguments, shown
-from crazybilliards.model.parameters import Parameters
+from crazybilliards.model.parameters import KNOWN, Parameters
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -80,15 +80,16 @@ class Chain(Parameters):
         """Return all parameters as a plain dictionary; ``Chain(**parameters)`` is the inverse."""
         return {field.name: getattr(self, field.name) for field in fields(self)}
 
-    def require_known(self, known: Collection[str], by: str) -> None:
-        """Raise a ValueError unless all parameters outside ``known`` have their default values.
+    def require_known(self, by: str, also: Collection[str] = ()) -> None:
+        """Raise a ValueError unless all parameters but the known ones have their default values.
 
-        ``by`` names the method that knows these parameters only, for the error. A new parameter is
-        then refused wherever nobody has thought of it yet, and never ignored.
+        ``by`` names the method, for the error, and ``also`` what it knows beside the parameters
+        that everybody knows. A new parameter is then refused wherever nobody has thought of it yet,
+        and never ignored.
         """
         for each in fields(self):
             value = getattr(self, each.name)
-            if each.name not in known and value != each.default:
+            if each.name not in KNOWN and each.name not in also and value != each.default:
                 raise ValueError(
                     f"{by} does not know the chain's {each.name}: it must be "
                     f"{shown(each.default)}, got {shown(value)}"

@@ -30,6 +30,12 @@ SYMBOLS = {
 # Arguments that are often given to another function than this one.
 _OWNERS = dict.fromkeys((*SYMBOLS.values(), "spring"), "Chain") | {"time_step": "simulate"}
 
+# What replaces the arguments that 0.4.0 does not have any more; 0.5.0 says no more of them.
+_GONE = {
+    "rng": "seed takes what rng took",
+    "finished": "folder keeps every result as soon as it is there",
+}
+
 _SHORTLY = reprlib.Repr()
 _SHORTLY.maxstring = _SHORTLY.maxother = _SHORTLY.maxlong = 80
 
@@ -128,6 +134,8 @@ def meant_argument(name: str, known: Iterable[str]) -> str:
 
     One that ``known`` lacks, because another function takes it, is named with this function.
     """
+    if name in _GONE:
+        return f"; {_GONE[name]}"
     argument = SYMBOLS.get(name, name)
     near = "" if name in SYMBOLS else meant(name, known)
     if near or argument not in _OWNERS:

@@ -6,24 +6,19 @@ from collections.abc import Iterator
 from pathlib import Path
 
 
-def limiting_groups(root: Path, controller: str) -> Iterator[tuple[Path, int]]:
-    """Yield the groups with a controller, ``"memory"`` or ``"cpu"``, and their version, 1 or 2.
+def limiting_groups(root: Path) -> Iterator[Path]:
+    """Yield the group of this process and all around it, whose limits hold as well.
 
-    The group of this process and all around it, whose limits hold as well. ``root`` is ``/``, and
-    another folder in tests.
+    ``root`` is ``/``, and another folder in tests. Groups of version 1, which systems before 2022
+    have, are not read.
     """
     try:
         lines = (root / "proc/self/cgroup").read_text().splitlines()
     except OSError:
         return  # not Linux
-    for line in lines:  # number:controllers:path, with number 0 and no controllers in version 2
-        _, controllers, path = line.split(":", 2)
-        if controllers == "":
-            top, version = root / "sys/fs/cgroup", 2
-        elif controller in controllers.split(","):
-            top, version = root / "sys/fs/cgroup" / controller, 1
-        else:
-            continue
-        group = top / path.lstrip("/")
+    top = root / "sys/fs/cgroup"
+    for path in [line.removeprefix("0::/") for line in lines if line.startswith("0::/")]:
         # In a container the path may be that of the host, of which only the top exists here.
-        yield from ((each, version) for each in (group, *group.parents) if each.is_relative_to(top))
+        yield from (
+            each for each in (top / path, *(top / path).parents) if each.is_relative_to(top)
+        )

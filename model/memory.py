@@ -19,12 +19,6 @@ from crazybilliards.model.control_groups import limiting_groups
 _GIB = 2**30
 _LATELY = 0.1  # seconds; a look-up takes half a millisecond, and a sweep makes one for every case
 
-# Names of the limit, the usage, and the reclaimable part, in the two versions of control groups.
-_NAMES = {
-    1: ("memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file"),
-    2: ("memory.max", "memory.current", "inactive_file"),
-}
-
 
 def require_memory(wanted: str, needed: float) -> None:
     """Raise a ValueError with both numbers unless ``needed`` bytes are available.
@@ -62,20 +56,17 @@ def _of_the_machine() -> float:
 
 def _of_the_groups(root: Path) -> float:
     """Return the bytes that the control groups of this process leave; ``root`` is for tests."""
-    groups = limiting_groups(root, "memory")
-    return min((_left(group, *_NAMES[version]) for group, version in groups), default=math.inf)
+    return min(map(_left, limiting_groups(root)), default=math.inf)
 
 
-def _left(group: Path, limit: str, usage: str, reclaimable: str) -> float:
+def _left(group: Path) -> float:
     """Return the limit of a group minus its usage, without the cached files it can drop."""
     try:
-        text = (group / limit).read_text().strip()
-        if text == "max":
-            return math.inf
-        left = int(text) - int((group / usage).read_text())
-    except (OSError, ValueError):
-        return math.inf  # the outermost group has no limit
+        limit, used = ((group / f"memory.{name}").read_text() for name in ("max", "current"))
+        left = int(limit) - int(used)
+    except (OSError, ValueError):  # the outermost group has none; "max" is no number
+        return math.inf
     with suppress(OSError, ValueError, KeyError):
         statistics = dict(line.split() for line in (group / "memory.stat").read_text().splitlines())
-        left += int(statistics[reclaimable])
+        left += int(statistics["inactive_file"])
     return max(float(left), 0.0)

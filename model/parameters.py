@@ -16,6 +16,11 @@ from crazybilliards.model.checks import check_choice, check_integer, check_real
 
 Spring = Literal["linear", "quadratic"]
 
+# The parameters that simulations and theories know. A new one is refused by each of them, unless it
+# says that it knows it.
+KNOWN = frozenset(
+    {"size", "restitution", "amplitude", "damping", "stiffness", "gap", "radius", "mass", "spring"}
+)
 _MOST_RODS = 10**9  # 8 GB an array
 
 

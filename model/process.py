@@ -29,19 +29,18 @@ def cores(root: Path = Path("/")) -> int:
     """
     affinity = getattr(os, "sched_getaffinity", None)
     allowed: list[float] = [len(affinity(0)) if affinity else os.cpu_count() or 1]
-    allowed += [_quota(*group) for group in limiting_groups(root, "cpu")]
+    allowed += [_quota(group) for group in limiting_groups(root)]
     task = os.environ.get("SLURM_CPUS_PER_TASK", "")
     if task.isdecimal():
         allowed.append(int(task))
     return max(math.ceil(min(allowed)), 1)
 
 
-def _quota(group: Path, version: int) -> float:
+def _quota(group: Path) -> float:
     """Return how many cores a control group may use at a time; inf if there is no limit."""
-    names = ("cpu.max",) if version == 2 else ("cpu.cfs_quota_us", "cpu.cfs_period_us")
     try:
-        quota, period = " ".join((group / name).read_text() for name in names).split()
-        return int(quota) / int(period) if int(quota) > 0 else math.inf
+        quota, period = (group / "cpu.max").read_text().split()
+        return int(quota) / int(period)
     except (OSError, ValueError):  # the outermost group has none; "max" is no number
         return math.inf
 

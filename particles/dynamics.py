@@ -23,6 +23,9 @@ _DIVERGED = 1e6
 
 Stepper = Literal["splitting", "euler"]
 
+# Parameters beside the known ones that the springs, the damping or the noise take from the chain.
+knows: frozenset[str] = frozenset()
+
 
 class Step(NamedTuple):
     """The plain numbers of the chain and the scheme that a kernel needs."""

@@ -21,7 +21,9 @@ from crazybilliards.model.checks import check_choice, check_integer, check_real,
 from crazybilliards.model.grid import require_resolved
 from crazybilliards.model.memory import require_memory
 from crazybilliards.model.vocabulary import VOCABULARY
+from crazybilliards.particles import dynamics
 from crazybilliards.particles.dynamics import Dynamics, Stepper, default_merging, make_dynamics
+from crazybilliards.particles.laws import law
 from crazybilliards.particles.laws.law import EXACT, Method, choose_operator
 from crazybilliards.particles.scales import start_swing, typical_speed
 from crazybilliards.particles.schedule import Average, Schedule, make_schedule, too_short
@@ -66,6 +68,8 @@ class Run:
     every: float | None = None
 
     def __post_init__(self) -> None:
+        read = (observer.knows for observer in self.observers)
+        self.chain.require_known("simulate", frozenset().union(law.knows, dynamics.knows, *read))
         for name, kinds in (("method", Method), ("stepper", Stepper), ("average", Average)):
             check_choice(name, getattr(self, name), get_args(kinds))
         merging = default_merging(self.chain) if self.merging is None else self.merging

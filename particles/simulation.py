@@ -15,7 +15,7 @@ from crazybilliards.model.calls import warn_user
 from crazybilliards.model.checks import check_integer, check_path, check_real
 from crazybilliards.model.grid import deposit
 from crazybilliards.model.process import announced, cores
-from crazybilliards.model.randomness import Randomness, seed_of
+from crazybilliards.model.randomness import Seed, seed_of
 from crazybilliards.particles.dynamics import Stepper, make_dynamics
 from crazybilliards.particles.laws.avalanche import make_tally
 from crazybilliards.particles.laws.law import Method, make_scratch
@@ -43,8 +43,7 @@ def simulate(
     method: Method = "event-driven",
     stepper: Stepper = "splitting",
     merging: float | None = None,
-    seed: int = 0,
-    rng: Randomness | None = None,
+    seed: Seed = 0,
     observe: str | Observer | Sequence[str | Observer] = ("widths", "density"),
     start: xr.Dataset | None = None,
     particles: Sequence[int] | None = None,
@@ -85,12 +84,10 @@ def simulate(
         step's noise (at least 1e-9 of a typical speed) move as one until the end of the step.
         None: 0.1, and 0.03 for e < 0.163, where 0.1 would make W_v 0.2 % larger.
     seed
-        Integer >= 0. The same seed gives the same result to the last bit for all ``threads``.
-        A ``start`` belongs to the seed: a run that continues another one has new random numbers.
-    rng
-        Instead of ``seed``: a seed, a ``SeedSequence`` or a numpy ``Generator``. A seed is drawn
-        from a Generator and stands in the provenance: a resumed run must have the same bits, and
-        a Generator's state cannot be split among replicas reproducibly.
+        Integer >= 0, a ``SeedSequence`` or a ``Generator`` of numpy, from which a number is drawn;
+        the number stands in the provenance. The same one gives the same result to the last bit for
+        all ``threads``. A ``start`` belongs to the seed: a run that continues another one has new
+        random numbers.
     observe
         Any of ``"widths"`` (velocity_width, mean_velocity, mean_displacement, displacement_width
         and autocorrelation_time),
@@ -161,14 +158,26 @@ def simulate(
     >>> run.velocity_width.dims, run.attrs["status"]
     (('particle',), 'completed')
     """
-    asked = dict(locals())  # the arguments
-    for name in ("threads", "checkpoint", "checkpoint_interval", "progress"):
-        del asked[name]  # no number depends on these
-    asked["seed"] = seed_of(seed, asked.pop("rng"))
+    seed = seed_of(seed)
     checkpoint_interval = check_real("checkpoint_interval", checkpoint_interval)
     kept = None if checkpoint is None else check_path("checkpoint", checkpoint)
     threads = check_integer("threads", cores() if threads is None else threads, least=1)
-    run = make_run(**asked)
+    run = make_run(
+        chain,
+        duration=duration,
+        warmup=warmup,
+        time_step=time_step,
+        method=method,
+        stepper=stepper,
+        merging=merging,
+        seed=seed,
+        observe=observe,
+        start=start,
+        particles=particles,
+        replicas=replicas,
+        average=average,
+        every=every,
+    )
     if run.too_short:
         warn_user(run.too_short, ShortRunWarning)
     if _stays_at_rest(run):

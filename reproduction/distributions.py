@@ -18,6 +18,11 @@ from crazybilliards.model import chain_of
 from crazybilliards.model.vocabulary import require
 from crazybilliards.reproduction.claims.repetition import error_of_mean
 
+# Counts of avalanches: their names, and their coordinates.
+COUNTS = {
+    "triggered_count": ("the paper's count", "triggered_collisions"),
+    "avalanche_count": ("pushes", "avalanche_size"),
+}
 _LEAST = 1e-5  # of the largest density: below, counts are too few to draw
 _SYMBOLS_DRAWN = 41
 
@@ -112,6 +117,15 @@ def draw_distributions(ax: Axes, runs: Sequence[xr.Dataset], particles: Sequence
     top = ax.get_ylim()[1]
     ax.set(ylim=(3e-6, top), xlim=(-1.05 * reach, 1.05 * reach))
     ax.set(xlabel="velocity $v/W$", ylabel="probability density $W p(v)$")
+
+
+def waves(
+    run: xr.Dataset, count: str, particles: slice
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return sizes of avalanches from 1 on, and how many of a count began at some rods."""
+    sizes = run[COUNTS[count][1]].values
+    counts = run[count].sel(particle=particles).sum("particle").values.astype(float)
+    return sizes[sizes >= 1], counts[sizes >= 1]
 
 
 def draw_sizes(

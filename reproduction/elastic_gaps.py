@@ -51,7 +51,6 @@ def claims(results: Results) -> list[Claim]:
                         map(Estimate, difference.values, error.values),
                         EYE,
                     ),
-                    theory="exact",
                 )
             )
     return claims

@@ -108,14 +108,3 @@ def draw_flippers(
     ax.plot([], [], color="0.4", label="kinetic equation")
     legend_above(figure, ax)
     return figure
-
-
-def listed(found: Theories, value: Callable[[xr.Dataset], float], *restitutions: float) -> str:
-    """List ``value(theory)`` of every theory at the restitutions, for a claim."""
-    texts = []
-    for name, theories in found.items():
-        there = {e: value(theories[e]) for e in restitutions if e in theories}
-        if there:
-            values = ", ".join(f"{e:g}: {each:.3f}" for e, each in there.items())
-            texts.append(values if name == INDEPENDENT else f"{name} {values}")
-    return "; ".join(texts)

@@ -14,7 +14,7 @@ def a_run(chain, **changes):
     arguments = {
         name: parameter.default
         for name, parameter in inspect.signature(simulate).parameters.items()
-        if name not in ("chain", "rng", "threads", "checkpoint", "checkpoint_interval", "progress")
+        if name not in ("chain", "threads", "checkpoint", "checkpoint_interval", "progress")
     }
     return make_run(chain, **arguments | changes)
 

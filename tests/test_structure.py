@@ -42,7 +42,8 @@ FLOORS = {
     "comparison": (
         {"coverage", "distances", "drawing", "fits", "layout", "widths"}
         | {"curves", "stationary_theories", "symbols"},
-        {"side_by_side", "sweeps"},
+        {"sweeps"},
+        {"side_by_side"},
     ),
     "reproduction": (
         {"claims"},

@@ -75,7 +75,7 @@ cb.critical_size(chain, 3) | critical_size takes chain without a name, got 3
 cb.critical_damping() | critical_damping needs chain
 cb.equilibrium(chain, gap=1) | gap is an argument of Chain
 cb.equilibrium_states(chain) | equilibrium_states needs replicas
-cb.equilibrium_states(chain, 1, 2, 3) | write rng=3
+cb.equilibrium_states(chain, 1, 2, 3) | it takes chain, replicas, seed
 cb.force_balance(chain, displacment=np.tanh) | did you mean 'displacement'?
 cb.hydrodynamics(chain, exact, 1, frames="label") | did you mean 'frame'?
 cb.phase_space(chain, 2) | write order=2
@@ -233,9 +233,9 @@ cb.Chain(gap=np.array([1.0])) | gap must be a number, got array([1.])
 cb.Chain(gap=np.array(-1.0)) | gap must be 0 or more
 cb.Chain(size=2.5) | size must be an integer
 cb.Chain(size=np.array([3])) | size must be an integer
-cb.simulate(chain, rng=np.random.RandomState(0)) | rng must be an integer...a Generator
-cb.simulate(chain, rng=[1, 2]) | a Generator of numpy...got [1, 2]
-cb.equilibrium_states(chain, 3, rng="a") | a Generator of numpy...got 'a'
+cb.simulate(chain, seed=np.random.RandomState(0)) | seed must be an integer >= 0
+cb.simulate(chain, rng=1) | seed takes what rng took
+cb.equilibrium_states(chain, 3, seed="a") | seed must be an integer >= 0, got 'a'
 cb.simulate(chain, observe=Unknown()) | observe: 'unknown' gives 'my_variable', which has no
 """
 

@@ -5,8 +5,7 @@ Only the standard library and typer are imported up here, so that ``--help`` ans
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from contextlib import suppress
+from collections.abc import Callable
 from dataclasses import asdict
 from functools import partial
 from pathlib import Path
@@ -21,13 +20,14 @@ from crazybilliards.apps.commands.output import (
     conclude,
     numbers,
     place,
-    write_figure,
     write_figures,
     writing_to,
 )
+from crazybilliards.apps.commands.sweep import KeepOld
 
 if TYPE_CHECKING:
     import xarray as xr
+    from matplotlib.figure import Figure
 
     from crazybilliards.model import Chain
 
@@ -38,8 +38,8 @@ def command(
     output: Annotated[
         Path | None,
         typer.Option(
-            help="Folder for the figures and comparison.nc, made if missing; without it nothing is "
-            "written.",
+            help="Folder for the figures, comparison.nc and what was computed, made if missing; "
+            "without it nothing is written.",
             parser=place,
             metavar="FOLDER",
         ),
@@ -61,9 +61,13 @@ def command(
         ),
     ] = None,
     seed: Annotated[int, typer.Option(help="Seed of the random numbers.")] = 0,
+    processes: Annotated[
+        int | None, typer.Option(help="Processes to compute in; default: this one, in threads.")
+    ] = None,
     threads: Annotated[
         int | None, typer.Option(help="Threads to simulate in; default: one per core.")
     ] = None,
+    keep_old: KeepOld = False,
 ) -> None:
     """Compare simulated chains with their theories.
 
@@ -74,70 +78,78 @@ def command(
 
     Draws everything over one another and prints how far apart it is.
 
-    Ctrl-C or SIGTERM stops early: what has been computed is written under names with
-    "-interrupted". The picture of a restitution is written under such a name as soon as it can be
-    drawn, and gets its own name at the end.
+    Each chain is written to FOLDER/cases when it is computed. After Ctrl-C, a crash, or with more
+    chains, the same command computes what is missing. Ctrl-C or SIGTERM stops early: pictures of
+    the chains that are done are written under names with "-interrupted".
 
     Example: crazybilliards compare --output results --amplitudes 1,10 --gap 0.2
 
     Example: crazybilliards compare --output results --restitution 0.9,0.95,0.98
     """
-    settings: dict[str, Any] = {"seed": seed, "threads": threads}
-    if duration is not None:
-        settings["duration"] = duration
+    if amplitudes is not None and restitution is not None:
+        raise ValueError("give restitution or amplitudes, not both")
+    how: dict[str, Any] = {"seed": seed, "processes": processes, "threads": threads}
+    how |= {"folder": output and output / "cases", "keep_old": keep_old}
+    how |= {} if duration is None else {"duration": duration}
     with writing_to(output):
-        if restitution is None:
-            tree = _elastic(chain, amplitudes, **settings)
-            write: Callable[..., None] = _write_comparison
-            show = _print_deviations
-        else:
-            if amplitudes is not None:
-                raise ValueError("give restitution or amplitudes, not both")
-            drawn: dict[str, Path] = {}
-            early = None if output is None else partial(_draw_early, output, drawn)
-            tree = _inelastic(chain, restitution, finished=early, **settings)
-            write, show = partial(_write_restitutions, drawn), _print_widths
+        tree = _compare(chain, amplitudes, restitution, **how)
         status = tree.attrs["status"]
         note(status=status)
-        conclude(output, status, partial(write, tree), partial(show, tree))
+        show = _print_deviations if restitution is None else _print_widths
+        conclude(output, status, partial(_write, tree), partial(show, tree))
 
 
-def _elastic(chain: Chain, amplitudes: str | None, **settings: Any) -> xr.DataTree:
-    if chain.size < 3:
+def _compare(
+    chain: Chain, amplitudes: str | None, restitution: str | None, **how: Any
+) -> xr.DataTree:
+    from crazybilliards.comparison.side_by_side.grid import compare_elastic, compare_restitutions
+
+    if restitution is None and chain.size < 3:
         raise ValueError(
             f"size must be at least 3 to compare with an arctanh fit, got {chain.size}"
         )
-    from crazybilliards.comparison.side_by_side.elastic_chain import compare_elastic
-
-    values = numbers("amplitudes", "1,3,10,30" if amplitudes is None else amplitudes, float)
-    return compare_elastic(chain, values, **settings)
-
-
-def _inelastic(chain: Chain, restitution: str, **settings: Any) -> xr.DataTree:
-    from crazybilliards.comparison.side_by_side.restitutions import compare_restitutions
-
-    values = numbers("restitution", restitution, float)
-    return compare_restitutions(chain, values, **settings)
+    try:
+        if restitution is not None:
+            return compare_restitutions(chain, numbers("restitution", restitution, float), **how)
+        values = numbers("amplitudes", "1,3,10,30" if amplitudes is None else amplitudes, float)
+        return compare_elastic(chain, values, **how)
+    except RuntimeError as error:  # a worker process died
+        raise ValueError(str(error)) from error
 
 
-def _write_comparison(tree: xr.DataTree, folder: Path, suffix: str) -> None:
-    from crazybilliards.comparison.side_by_side.elastic_figures import (
-        draw_density,
-        draw_displacement,
-    )
+def _write(tree: xr.DataTree, folder: Path, suffix: str) -> None:
+    from xarray import DataTree
+
+    from crazybilliards.comparison.side_by_side import grid_figures
     from crazybilliards.model import save
 
     # The data first: a failing picture must not cost the computation.
     wrote(save(tree, folder / f"comparison{suffix}.nc"))
-    drawings = {"density": draw_density, "displacement": draw_displacement}
-    write_figures(folder, suffix, {name: partial(draw, tree) for name, draw in drawings.items()})
+    groups = dict(tree.children)
+    drawings: dict[str, Callable[[], Figure]] = {}
+    # A chain that diverged before anything was measured cannot be drawn.
+    measured = {
+        name: each for name, each in groups.items() if "particle" in each["simulation"].dims
+    }
+    if measured:
+        drawn = DataTree(children=measured)
+        drawings["density"] = partial(grid_figures.draw_density, drawn)
+        if "exact" in next(iter(measured.values())):
+            drawings["displacement"] = partial(grid_figures.draw_displacement, drawn)
+        else:
+            drawings["widths"] = partial(grid_figures.draw_widths, drawn)
+    for name, group in groups.items():
+        if "kinetic_equation" in group:
+            theory = group["kinetic_equation"].to_dataset()
+            drawings[f"phase_space_{name}"] = partial(grid_figures.draw_phase_space, theory)
+    write_figures(folder, suffix, drawings)
 
 
 def _print_deviations(tree: xr.DataTree) -> None:
     from rich.table import Table
 
-    from crazybilliards.comparison.side_by_side.elastic_chain import (
-        LEGEND,
+    from crazybilliards.comparison.side_by_side.grid import ELASTIC
+    from crazybilliards.comparison.side_by_side.grid_deviations import (
         deviations,
         largest_width_error,
     )
@@ -150,7 +162,7 @@ def _print_deviations(tree: xr.DataTree) -> None:
         "M R/T^(3/2).",
     )
     table.add_column("A", justify="right")
-    for name in LEGEND.values():
+    for name in ELASTIC.values():
         table.add_column("\n".join((*name.split(", "), "max / rms [%]")), justify="right")
     table.add_column("exact\n[sigma]", justify="right")
     table.add_column("W_v\n[sigma]", justify="right")
@@ -164,7 +176,7 @@ def _print_deviations(tree: xr.DataTree) -> None:
                 f"{100 * by_theory[key].maximum:.2f} / {100 * by_theory[key].rms:.2f}"
                 if key in by_theory
                 else "-"
-                for key in LEGEND
+                for key in ELASTIC
             ),
             "-" if exact is None else f"{exact.maximum_in_errors or 0:.1f}",
             f"{widths:.1f}",
@@ -177,47 +189,11 @@ def _print_deviations(tree: xr.DataTree) -> None:
     print_table(table)
 
 
-def _draw_early(
-    folder: Path, drawn: dict[str, Path], name: str, results: Mapping[str, xr.Dataset]
-) -> None:
-    """Draw what shows one chain only, while the others are still to be computed."""
-    from crazybilliards.comparison.side_by_side.restitution_figures import draw_phase_space
-    from crazybilliards.comparison.side_by_side.restitutions import THEORY
-
-    if THEORY not in results:
-        return
-    path = folder / f"phase_space_{name}-interrupted.png"
-    # A picture that fails here is drawn once more at the end, when the data have been written.
-    with suppress(Exception):
-        write_figure(path, partial(draw_phase_space, results[THEORY]))
-        drawn[name] = path
-
-
-def _write_restitutions(
-    drawn: Mapping[str, Path], tree: xr.DataTree, folder: Path, suffix: str
-) -> None:
-    from crazybilliards.comparison.side_by_side.restitution_figures import (
-        draw_phase_space,
-        draw_widths,
-    )
-    from crazybilliards.comparison.side_by_side.restitutions import THEORY
-    from crazybilliards.model import save
-
-    wrote(save(tree, folder / f"comparison{suffix}.nc"))
-    for name, path in drawn.items():
-        wrote(path.replace(folder / f"phase_space_{name}{suffix}.png"))
-    drawings = {"widths": partial(draw_widths, tree)}
-    for name, group in tree.children.items():
-        if THEORY in group and name not in drawn:
-            theory = group[THEORY].to_dataset()
-            drawings[f"phase_space_{name}"] = partial(draw_phase_space, theory)
-    write_figures(folder, suffix, drawings)
-
-
 def _print_widths(tree: xr.DataTree) -> None:
     from rich.table import Table
 
-    from crazybilliards.comparison.side_by_side.restitutions import LEGEND, width_deviations
+    from crazybilliards.comparison.side_by_side.grid import KINETIC
+    from crazybilliards.comparison.side_by_side.grid_deviations import width_deviations
 
     table = Table(
         title="Velocity widths W_v: theory minus simulation, in %",
@@ -245,7 +221,7 @@ def _print_widths(tree: xr.DataTree) -> None:
         for key, found in by_theory.items():
             stated = tree[name][key].attrs["model_error"]
             values = (f"{100 * value:.2f}" for value in (found[0], stated, *found[1:]))
-            table.add_row(shown, LEGEND[key].name, *(each.replace("nan", "-") for each in values))
+            table.add_row(shown, KINETIC[key], *(each.replace("nan", "-") for each in values))
         if not by_theory:
             table.add_row(shown, *["-"] * 7)
         here = {key: found._asdict() for key, found in by_theory.items()}

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 
 # Of what there is to say about a claim.
-_PRINTED = ("its number", "found here", "at other choices", "theory", "why")
+_PRINTED = ("its number", "found here", "at other choices", "why")
 # By what is asked for: names of the page with everything and of the table of claims.
 _REPORTS = {"all": ("report.html", "claims.md"), "analytics": ("analytics.html", "analytics.md")}
 

@@ -119,7 +119,7 @@ def compute_cases(
         outcome, reason, status = Outcome(), "", 0
         try:
             with executor as workers:
-                compute_missing(missing, workers, outcome)
+                compute_missing(missing, folder, workers, outcome)
         except KeyboardInterrupt:
             status = INTERRUPTED  # which says so itself
         except RuntimeError as error:

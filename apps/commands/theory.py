@@ -176,10 +176,7 @@ def _caveat(stated: Mapping[str, float]) -> str:
 
 
 def _write(theory: Theory, result: xr.Dataset, folder: Path, suffix: str) -> None:
-    from crazybilliards.comparison.side_by_side.restitution_figures import (
-        draw_phase_space,
-        draw_profile,
-    )
+    from crazybilliards.comparison.side_by_side.grid_figures import draw_phase_space, draw_profile
     from crazybilliards.model import save
 
     wrote(save(result, folder / f"theory{suffix}.nc"))

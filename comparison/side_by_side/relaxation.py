@@ -26,7 +26,7 @@ from crazybilliards.kinetic.exact.breathing import breathing_cloud
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.checks import check_choice, check_integer, check_real
 from crazybilliards.model.process import waiting_for
-from crazybilliards.model.randomness import Randomness, seed_of
+from crazybilliards.model.randomness import Seed, seed_of
 from crazybilliards.particles import simulate
 
 Array = NDArray[np.float64]
@@ -46,8 +46,7 @@ def compare_relaxation(
     duration: float = 40.0,
     every: float = 0.5,
     replicas: int = 300,
-    seed: int = 0,
-    rng: Randomness | None = None,
+    seed: Seed = 0,
     threads: int | None = None,
     progress: bool = True,
 ) -> xr.DataTree:
@@ -63,7 +62,7 @@ def compare_relaxation(
         the chain driven with ``by`` times its amplitude.
     duration, every
         Time, and time between outputs [T].
-    replicas, seed, rng, threads
+    replicas, seed, threads
         Those of the ensemble of simulated chains, as in ``simulate``.
 
     Returns
@@ -84,7 +83,7 @@ def compare_relaxation(
     chain.require_steady_state()
     by = check_real("by", by, positive=release != "displaced", signed=release == "displaced")
     replicas = check_integer("replicas", replicas, least=2)
-    seed = seed_of(seed, rng)
+    seed = seed_of(seed)
     start = _states(chain, release, by, replicas, seed)
     fluid = _fluid(chain, release, by)
     # The fluids take a second and are computed first, to find a wrong duration before the long run.

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from crazybilliards.comparison.coverage import smooth
 from crazybilliards.comparison.drawing import overlay
 from crazybilliards.comparison.layout import at_the_left, entitle, legend_above, panels
-from crazybilliards.comparison.side_by_side.parameter_series import SIMULATION
+from crazybilliards.comparison.side_by_side.grid import SIMULATION
 from crazybilliards.comparison.side_by_side.relaxation import LEGEND, PARTICLES, cloud
 from crazybilliards.model import Chain, chain_of
 

@@ -181,18 +181,20 @@ class Case:
         return result
 
 
-def compute(case: Case, source: str) -> bytes:
-    """Compute a case in one thread of a worker, and return its result as a NetCDF file.
+def compute(case: Case, source: str, threads: int = 1) -> bytes:
+    """Compute a case in a worker, and return its result as a NetCDF file.
 
     ``source`` is the fingerprint of the sender's source code. A worker with other source code
-    refuses, because its result would count as one of the sender's code.
+    refuses, because its result would count as one of the sender's code. A simulation uses
+    ``threads``, on which no number depends.
     """
     if case.source != source:
         raise ValueError(
             f"the worker runs other source code of crazybilliards (version {_version()})"
         )
     begin = time.perf_counter()
-    own = {"seed": case.own_seed} if "seed" in case.settings else {}
+    own: dict[str, int] = {"seed": case.own_seed} if "seed" in case.settings else {}
+    own |= {"threads": threads} if case.job.startswith("simulate") else {}
     # Linear algebra in threads sums in another order, and it would make other workers wait.
     with _libraries(len(sys.modules)).limit(limits=1), warnings.catch_warnings():
         # The result states that its error is unknown; a line per process would not say of which.

@@ -1,4 +1,4 @@
-"""Executors of cases: processes of this machine, or a dask cluster."""
+"""Executors of cases: this process, processes of this machine, or a dask cluster."""
 
 from __future__ import annotations
 
@@ -7,11 +7,13 @@ import multiprocessing
 import signal
 import sys
 import threading
-from collections.abc import Iterator
-from concurrent.futures import Executor, ProcessPoolExecutor
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
+from functools import partial
 from multiprocessing.synchronize import Event
+from typing import Any
 
 from tqdm import tqdm
 
@@ -22,6 +24,29 @@ _UNGUARDED = (
     "them under if __name__ == '__main__': only"
 )
 _PATIENCE = "20s"  # to wait for the answer of a scheduler
+
+
+class ThisProcess(Executor):
+    """Computes a case here when its result is asked for, a simulation in several threads."""
+
+    def __init__(self, threads: int) -> None:
+        self.threads = threads
+
+    def submit(self, function: Callable[..., Any], /, *arguments: Any, **how: Any) -> Future[Any]:
+        """Return what calls the function."""
+        return _Later(partial(function, *arguments, threads=self.threads, **how))
+
+
+class _Later(Future[Any]):
+    """Done from the start, so that it can be asked: Ctrl-C then stops the computation itself."""
+
+    def __init__(self, call: Callable[[], Any]) -> None:
+        super().__init__()
+        self.call = call
+        self.set_result(None)
+
+    def result(self, timeout: float | None = None) -> Any:
+        return self.call()
 
 
 @contextmanager

@@ -23,9 +23,7 @@ from crazybilliards.particles.vanishing_step.level_steps import GROUPS
 from crazybilliards.particles.vanishing_step.limit import make_runs
 
 # Arguments that do not change the numbers, and arguments that are not plain values.
-_NO_SETTINGS = {"chain", "rng", "start", "threads", "checkpoint", "checkpoint_interval"} | {
-    "progress"
-}
+_NO_SETTINGS = {"chain", "start", "threads", "checkpoint", "checkpoint_interval"} | {"progress"}
 
 _STEPS_A_SECOND = 1e8  # particle steps, to compare the work of theories with that of simulations
 
@@ -93,14 +91,14 @@ def _theory_work(theory: Theory, chain: Chain, **settings: Any) -> float:
 
 JOBS: dict[str, Job] = {
     "simulate": Job(
-        function=partial(simulate, threads=1, progress=False),
+        function=partial(simulate, progress=False),
         work=_steps,
         too_short=_too_short,
         settings=_settings(simulate),
         source=room_fingerprint("model", "particles"),
     ),
     "simulate_limit": Job(
-        function=partial(simulate_limit, threads=1, progress=False),
+        function=partial(simulate_limit, progress=False),
         work=_limit_steps,
         settings=_settings(simulate_limit),
         source=room_fingerprint("model", "particles"),

@@ -1,16 +1,10 @@
-"""The missing cases of a sweep in a folder, and the order of their computation.
-
-A sweep may have a million cases. Only two numbers of each case are kept. The case itself is made
-again when it is computed.
-"""
+"""The cases of a sweep, checked, and those of them that a folder lacks."""
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,77 +16,34 @@ from crazybilliards.model.calls import warn_user
 from crazybilliards.model.process import bar_hidden
 from crazybilliards.particles import ShortRunWarning
 
-_Item = TypeVar("_Item")
-
 
 @dataclass(frozen=True)
 class Cases:
-    """Checked cases, all different.
+    """Checked cases, all different. A sweep may have a million: each is made when it is needed.
 
     Attributes
     ----------
     source
-        The sweep or collection that the cases come from.
+        The sweep or the list that they come from.
+    numbers
+        Their numbers there, shape (cases,).
     work
         The particle steps of each, shape (cases,).
+    replaced
+        What to say of the files that their results replace.
     """
 
     source: Sweep | list[Case]
+    numbers: NDArray[np.int64]
     work: NDArray[np.float64]
+    replaced: Sequence[str] = ()
 
     def __len__(self) -> int:
         return self.work.size
 
-    def __getitem__(self, number: int) -> Case:
-        return self.source.case(number) if isinstance(self.source, Sweep) else self.source[number]
-
-
-@dataclass(frozen=True)
-class Missing:
-    """The cases that have no valid file in a folder, the longest first.
-
-    Attributes
-    ----------
-    cases
-        All cases.
-    numbers
-        The numbers of the missing ones.
-    folder
-        The folder.
-    damaged
-        Descriptions of the damaged files.
-    outdated
-        Number of files that other source code computed.
-    """
-
-    cases: Cases
-    numbers: NDArray[np.int64]
-    folder: Path
-    damaged: list[str]
-    outdated: int
-
-    @property
-    def work(self) -> float:
-        """Particle steps of all of them."""
-        return float(self.cases.work[self.numbers].sum())
-
-    def __len__(self) -> int:
-        return self.numbers.size
-
     def __iter__(self) -> Iterator[Case]:
-        return (self.cases[number] for number in self.numbers.tolist())
-
-    def report(self) -> None:
-        """Print on standard error which existing files are replaced, and why."""
-        for problem in self.damaged:
-            print(f"crazybilliards: {problem}; computing it anew", file=sys.stderr)
-        if self.outdated:
-            print(
-                f"crazybilliards: other source code of crazybilliards computed {self.outdated} "
-                f"cases in {self.folder}; computing them anew (keep_old=True or --keep-old: take "
-                "them as they are)",
-                file=sys.stderr,
-            )
+        made = self.source.case if isinstance(self.source, Sweep) else self.source.__getitem__
+        return map(made, self.numbers.tolist())
 
 
 def check_cases(cases: Iterable[Case], *, progress: bool = True) -> Cases:
@@ -103,10 +54,13 @@ def check_cases(cases: Iterable[Case], *, progress: bool = True) -> Cases:
     ValueError
         For the first case that is wrong.
     """
+    source: Sweep | list[Case]
     if isinstance(cases, Sweep):
-        return Cases(cases, _check_sweep(cases, progress))
-    source = list(dict.fromkeys(cases))
-    return Cases(source, np.array([case.work for case in source], dtype=float))
+        source, work = cases, _check_sweep(cases, progress)
+    else:
+        source = list(dict.fromkeys(cases))
+        work = np.array([case.work for case in source], dtype=float)
+    return Cases(source, np.arange(work.size), work)
 
 
 def _check_sweep(sweep: Sweep, progress: bool) -> NDArray[np.float64]:
@@ -121,48 +75,54 @@ def _check_sweep(sweep: Sweep, progress: bool) -> NDArray[np.float64]:
         for _ in replace(sweep, grid=first | {"seed": chains["seed"]}):
             pass
         chains["seed"] = first["seed"]
-    bar = _bar(replace(sweep, grid=chains), f"checking {len(sweep)} cases", progress)
     work, short = [], []
-    for case in bar:
+    for case in _bar(replace(sweep, grid=chains), f"checking {len(sweep)} cases", progress):
         work.append(case.work)
         short += [case.too_short] if case.too_short else []
-    if short:
-        many = f"{len(short)} of {len(work)} cases; the first: " if len(work) > 1 else ""
-        warn_user(many + short[0], ShortRunWarning)
+    warn_of_short_runs(short, len(work))
     sizes = [*map(len, chains.values())]
     return np.broadcast_to(np.array(work).reshape(sizes), [*map(len, sweep.grid.values())]).ravel()
 
 
+def warn_of_short_runs(short: Sequence[str], number: int) -> None:
+    """Warn of the simulations, of ``number`` cases, that are too short, and say in what."""
+    if short:
+        many = f"{len(short)} of {number} cases; the first: " if number > 1 else ""
+        warn_user(many + short[0], ShortRunWarning)
+
+
 def find_missing(
     cases: Cases, folder: Path, *, keep_old: bool = False, progress: bool = True
-) -> Missing:
-    """Return the cases that have no valid file in ``folder``.
+) -> Cases:
+    """Return the cases that have no valid file in ``folder``, the longest first.
 
     A file is valid if it is undamaged, holds the case, and was computed by the current source code
     (or, with ``keep_old``, by other source code).
     """
-    numbers = np.arange(len(cases))
-    damaged: list[str] = []
-    outdated = 0
+    is_missing, outdated = np.ones(len(cases), dtype=bool), 0
+    replaced: list[str] = []
     if any(folder.glob("*.nc")):
-        missing = []
-        for number in _bar(numbers.tolist(), f"checking {len(cases)} cases", progress):
+        for place, case in enumerate(_bar(cases, f"checking {len(cases)} cases", progress)):
             try:
-                cases[number].check_file(folder, keep_old=keep_old)
+                case.check_file(folder, keep_old=keep_old)
             except OutdatedError:
                 outdated += 1
             except ValueError as error:
-                damaged.append(str(error))
+                replaced.append(f"{error}; computing it anew")
             except FileNotFoundError:
                 pass
             else:
-                continue
-            missing.append(number)
-        numbers = np.array(missing, dtype=np.int64)
-    longest_first = np.argsort(-cases.work[numbers], kind="stable")
-    return Missing(cases, numbers[longest_first], folder, damaged, outdated)
+                is_missing[place] = False
+    if outdated:
+        replaced.append(
+            f"other source code of crazybilliards computed {outdated} cases in {folder}; "
+            "computing them anew (keep_old=True or --keep-old: take them as they are)"
+        )
+    numbers, work = cases.numbers[is_missing], cases.work[is_missing]
+    longest_first = np.argsort(-work, kind="stable")
+    return Cases(cases.source, numbers[longest_first], work[longest_first], replaced)
 
 
-def _bar(items: Iterable[_Item], title: str, progress: bool) -> Iterable[_Item]:
+def _bar(cases: Sweep | Cases, title: str, progress: bool) -> Iterable[Case]:
     """Show the progress of a loop that takes longer than a second."""
-    return tqdm(items, desc=title, unit="", delay=1, disable=bar_hidden(progress))
+    return tqdm(cases, desc=title, unit="", delay=1, disable=bar_hidden(progress))

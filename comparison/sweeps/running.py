@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import shutil
 import signal
+import sys
 import textwrap
 from collections.abc import Iterable, Iterator
 from concurrent.futures import CancelledError, Executor, Future
@@ -22,7 +23,7 @@ from typing import Any
 from tqdm import tqdm
 
 from crazybilliards.comparison.sweeps.case import Case, compute
-from crazybilliards.comparison.sweeps.missing import Missing, check_cases, find_missing
+from crazybilliards.comparison.sweeps.missing import Cases, check_cases, find_missing
 from crazybilliards.model.checks import check_path
 from crazybilliards.model.locks import locked
 from crazybilliards.model.process import bar_hidden, interrupts_held_back
@@ -93,12 +94,12 @@ def run_cases(
     with locked(folder):
         missing = find_missing(checked, folder, keep_old=keep_old, progress=progress)
         outcome = Outcome()
-        compute_missing(missing, executor, outcome, progress=progress)
+        compute_missing(missing, folder, executor, outcome, progress=progress)
     return outcome.failed
 
 
 def compute_missing(
-    missing: Missing, executor: Executor, outcome: Outcome, *, progress: bool = True
+    missing: Cases, folder: Path, executor: Executor, outcome: Outcome, *, progress: bool = True
 ) -> None:
     """Compute cases and write each when it arrives.
 
@@ -111,14 +112,15 @@ def compute_missing(
     OSError
         If a file cannot be written.
     """
-    missing.report()
+    for what in missing.replaced:
+        print(f"crazybilliards: {what}", file=sys.stderr)
     with tqdm(
-        total=missing.work,
+        total=float(missing.work.sum()),
         desc=f"0 of {len(missing)} cases",
         bar_format="{l_bar}{bar:10}| {elapsed}<{remaining}{postfix}",
         disable=bar_hidden(progress),
     ) as bar:
-        under_way = _UnderWay(executor, missing, outcome, bar)
+        under_way = _UnderWay(executor, folder, len(missing), outcome, bar)
         for case in missing:
             try:
                 under_way.submit(case)
@@ -146,10 +148,10 @@ class _UnderWay:
     """Submitted cases that have not returned; each is written when it is taken back."""
 
     def __init__(
-        self, executor: Executor, missing: Missing, outcome: Outcome, bar: tqdm[Any]
+        self, executor: Executor, folder: Path, number: int, outcome: Outcome, bar: tqdm[Any]
     ) -> None:
         self.executor, self.outcome, self.bar = executor, outcome, bar
-        self.folder, self.number = missing.folder, len(missing)
+        self.folder, self.number = folder, number
         self.cases: dict[Future[bytes], Case] = {}
         self.back: SimpleQueue[Future[bytes]] = SimpleQueue()
         self.lost: Exception | None = None  # why the executor cannot be used any more

@@ -36,7 +36,7 @@ from crazybilliards.model import Chain
 from crazybilliards.model.checks import check_integer
 from crazybilliards.model.grid import position_grid, require_resolved, thermal_reach
 from crazybilliards.model.memory import require_memory
-from crazybilliards.model.randomness import Randomness, seed_of
+from crazybilliards.model.randomness import Seed, seed_of
 from crazybilliards.model.vocabulary import result
 
 Array = NDArray[np.float64]
@@ -103,14 +103,12 @@ def equilibrium(chain: Chain) -> xr.Dataset:
     return dataset
 
 
-def equilibrium_states(
-    chain: Chain, replicas: int, seed: int = 0, *, rng: Randomness | None = None
-) -> xr.Dataset:
+def equilibrium_states(chain: Chain, replicas: int, seed: Seed = 0) -> xr.Dataset:
     """Draw ``replicas`` independent states of the elastic chain in its stationary state.
 
     The recursion is sampled backwards: the last rod from Z_L, then each rod from Z_i, up to the
-    position of its right neighbour. Velocities are independent Gaussians of width W. ``rng`` can
-    stand for ``seed``, as in ``simulate``.
+    position of its right neighbour. Velocities are independent Gaussians of width W. ``seed``
+    is as in ``simulate``.
 
     Returns
     -------
@@ -121,10 +119,10 @@ def equilibrium_states(
     Raises
     ------
     ValueError
-        As :func:`equilibrium`, and for a wrong ``replicas``, ``seed`` or ``rng``.
+        As :func:`equilibrium`, and for a wrong ``replicas`` or ``seed``.
     """
     replicas = check_integer("replicas", replicas, least=1, most=_MOST_STATES)
-    seed = seed_of(seed, rng)
+    seed = seed_of(seed)
     generator = np.random.default_rng(seed)
     require_memory(f"replicas={replicas} of {chain.size} rods", 40.0 * replicas * chain.size)
     recursion = _recursion(chain)

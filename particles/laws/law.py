@@ -27,6 +27,9 @@ from crazybilliards.particles.noise import BLOCK
 
 Method = Literal["event-driven", "contact-dynamics"]
 
+# Parameters beside the known ones that a law of collisions takes from the chain.
+knows: frozenset[str] = frozenset()
+
 SORT, ISOTONIC, EVENTS, CONTACTS, EXACT = range(5)
 
 

@@ -70,6 +70,8 @@ class Observer(ABC):
         place that was hardly ever visited is unknown.
     shares_time
         Whether it has the times of all snapshots if another observer has them too.
+    knows
+        Parameters of a chain of your own that it reads; see ``add_a_chain_parameter``.
     """
 
     name: ClassVar[str]
@@ -81,6 +83,7 @@ class Observer(ABC):
     limit: ClassVar[bool] = True
     histograms: ClassVar[tuple[str, ...]] = ()
     shares_time: ClassVar[bool] = False
+    knows: ClassVar[frozenset[str]] = frozenset()
 
     def __str__(self) -> str:
         """Return the name and, if there are any, the parameters."""

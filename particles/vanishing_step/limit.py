@@ -19,7 +19,7 @@ from crazybilliards.model.calls import warn_user
 from crazybilliards.model.checks import check_integer, check_path, check_real
 from crazybilliards.model.memory import require_memory
 from crazybilliards.model.process import announced, cores, interrupts_noted
-from crazybilliards.model.randomness import Randomness, seed_of
+from crazybilliards.model.randomness import Seed, seed_of
 from crazybilliards.model.vocabulary import result
 from crazybilliards.particles.observers import Observer, find_observers
 from crazybilliards.particles.run import Run
@@ -35,11 +35,6 @@ from crazybilliards.particles.vanishing_step.level_terms import CENTRAL
 from crazybilliards.particles.vanishing_step.multilevel import Levels
 from crazybilliards.particles.vanishing_step.sampler import Sampler, compile_pair
 
-# The parameters that the coupled runs and the planning of the levels know. Another one is refused
-# until it was looked at here: for example noise with memory needs another sum of kicks.
-_KNOWN = frozenset(
-    ("size", "restitution", "amplitude", "damping", "stiffness", "gap", "radius", "mass", "spring")
-)
 _OPEN = 2**40  # snapshots: how many a group gets turns out later
 _JOINED = 3  # copies of what observers keep, while they are joined
 
@@ -64,8 +59,7 @@ def simulate_limit(
     accuracy: float = 0.01,
     warmup: float | None = None,
     merging: float | None = None,
-    seed: int = 0,
-    rng: Randomness | None = None,
+    seed: Seed = 0,
     observe: str | Observer | Sequence[str | Observer] = ("widths", "density"),
     particles: Sequence[int] | None = None,
     replicas: int = 1,
@@ -90,7 +84,7 @@ def simulate_limit(
         a little faster than 1/accuracy^2.
     warmup
         Time before measuring [T], at every level; None: 12 relaxation times.
-    merging, seed, rng, particles
+    merging, seed, particles
         As in :func:`simulate`.
     observe
         As in :func:`simulate`, with ``"widths"``. Refused are ``"snapshots"``, which are no
@@ -137,7 +131,7 @@ def simulate_limit(
     threads = check_integer("threads", cores() if threads is None else threads, least=1)
     checkpoint_interval = check_real("checkpoint_interval", checkpoint_interval)
     kept = None if checkpoint is None else check_path("checkpoint", checkpoint)
-    seed = seed_of(seed, rng)
+    seed = seed_of(seed)
     steps, runs = make_runs(
         chain,
         accuracy=accuracy,
@@ -190,7 +184,8 @@ def make_runs(
     **arguments: Any,
 ) -> tuple[Steps, list[LevelRun]]:
     """Check all arguments of :func:`simulate_limit` and plan its levels, without any work."""
-    chain.require_known(_KNOWN, "simulate_limit")
+    # A new parameter is refused: noise with a memory, for example, needs another sum of kicks.
+    chain.require_known("simulate_limit")
     accuracy = check_real("accuracy", accuracy, positive=True)
     if not 1e-4 <= accuracy <= 0.1:
         raise ValueError(f"accuracy must lie between 1e-4 and 0.1, got {accuracy:g}")

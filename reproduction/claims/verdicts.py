@@ -114,12 +114,8 @@ class Claim:
         The same number at other choices, by what was chosen.
     ours
         Parameters that the paper does not give and that we chose. They are listed only.
-    theory
-        What theory predicts.
     reason
         Why it does not hold, if it does not.
-    exactly
-        What is true beyond what an eye can see, whatever the verdict.
     """
 
     statement: str
@@ -131,9 +127,7 @@ class Claim:
     words: str = ""
     elsewhere: Mapping[str, Estimate] = field(default_factory=dict)
     ours: str = ""
-    theory: str = ""
     reason: str = ""
-    exactly: str = ""
 
     @property
     def verdict(self) -> Verdict:
@@ -162,14 +156,12 @@ class Claim:
             "in the paper": self.source,
             "its number": f"{(low + high) / 2:g}" if number else "",
             "found here": self.words or f"{self.quantity} {self.found}{limit}".strip(),
-            "theory": self.theory,
             "our choice, not given in the paper": self.ours,
             "at other choices": "; ".join(
                 f"{choice}: {found}, {self._named(found)}"
                 for choice, found in self.elsewhere.items()
             ),
             "why": "" if self.verdict in ("reproduced", "confirmed") else self.reason,
-            "exactly": self.exactly,
         }
         return {name: text for name, text in told.items() if text}
 

@@ -51,9 +51,6 @@ def claims(results: Results) -> list[Claim]:
             source=_SOURCE,
             ours="the time step, and whether the axes are linear",
             reason="the distribution is more peaked than a Gaussian, with longer tails",
-            exactly=f"no Gaussian: the excess kurtosis is {kurtosis}. It is a mixture: a rod that "
-            "has room is up to twice as fast as one in a crowd, and among rods with equal room the "
-            "excess is about a third of that",
         ),
         Claim(
             "close to the border the distributions are slightly skewed",

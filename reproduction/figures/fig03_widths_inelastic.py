@@ -104,8 +104,6 @@ def _fit_claim(runs: dict[int, xr.Dataset]) -> Claim:
         **in_plot("four chains and their fits, both axes logarithmic", off, significance),
         source=_SOURCE,
         ours="the sizes below 1000 and the time step",
-        exactly="the profile is no sum of two power laws: the residuals are systematic, so that nu "
-        "depends on how the rods are weighed, and c on the size",
     )
 
 

@@ -6,7 +6,6 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from crazybilliards.comparison.fits import fit_avalanches
 from crazybilliards.comparison.layout import at_the_left, entitle, panels
@@ -15,7 +14,7 @@ from crazybilliards.reproduction.chains import LARGE
 from crazybilliards.reproduction.claims.repetition import Granted, Runs
 from crazybilliards.reproduction.claims.study import Cases, Quality, Results, Study, all_of
 from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, around
-from crazybilliards.reproduction.distributions import draw_sizes
+from crazybilliards.reproduction.distributions import COUNTS, draw_sizes, waves
 
 _STEPS = (1e-1, 2.3e-2, 1e-2, 1e-3)
 _BETWEEN, _MIDDLE = _STEPS[1:3]
@@ -38,12 +37,9 @@ _RUNS = {
 }
 _ORIGINS = {"centre": slice(451, 550), "quarter": slice(201, 300), "border": slice(51, 150)}
 _PAPER, _PRECISION = -2.2, 0.05  # "around -2.2": half a unit of the last digit
-# By count: its name, its sizes, and those fitted: all of the paper's count that are not rare;
-# of pushes those beyond the clusters of one step and below the length of the chain.
-_COUNTS = {
-    "triggered_count": ("the paper's count", "triggered_collisions", (3, 20)),
-    "avalanche_count": ("pushes", "avalanche_size", (20, 150)),
-}
+# By count, the sizes fitted: all of the paper's count that are not rare; of pushes those beyond the
+# clusters of one step and below the length of the chain.
+_SIZES = {"triggered_count": (3, 20), "avalanche_count": (20, 150)}
 _OTHER_SIZES = {"triggered_count": (2, 10), "avalanche_count": (10, 100)}
 _SOURCE = "section seq:e_0, fig:trigger"
 _OURS = "the time step, the sizes fitted, and what counts as a collision among rods in contact"
@@ -54,20 +50,13 @@ def cases(quality: Quality) -> Cases:
     return all_of(_RUNS.values(), quality)
 
 
-def _counts(run: xr.Dataset, origin: str, count: str) -> NDArray[np.float64]:
-    """Return the numbers of waves of size 1, 2, 3, ..."""
-    chosen = run[count].sel(particle=_ORIGINS[origin])
-    sizes = run[_COUNTS[count][1]].values
-    return np.asarray(chosen.sum("particle").values[sizes >= 1], dtype=float)
-
-
 def _exponent(
     results: Results, origin: str, step: float, count: str, sizes: tuple[int, int] | None = None
 ) -> Estimate:
-    smallest, largest = sizes or _COUNTS[count][2]
+    smallest, largest = sizes or _SIZES[count]
 
     def fitted(run: xr.Dataset) -> float:
-        counts = _counts(run, origin, count)
+        _, counts = waves(run, count, _ORIGINS[origin])
         return -fit_avalanches(counts, smallest=smallest, largest=largest).exponent
 
     return _RUNS[step].estimate(results, fitted)
@@ -77,7 +66,7 @@ def claims(results: Results) -> list[Claim]:
     """Check: a power law near -2.2, in both counts."""
     found = {
         count: {step: _exponent(results, "centre", step, count) for step in _STEPS}
-        for count in _COUNTS
+        for count in _SIZES
     }
     return [
         *(
@@ -103,8 +92,8 @@ def _same_slope_claim(results: Results) -> Claim:
         source=_SOURCE,
         ours=f"the rods, and {_OURS}",
         elsewhere={
-            f"{_COUNTS[count][0]} at dt = {step:g}": less_the_border(step, count)
-            for count in _COUNTS
+            f"{COUNTS[count][0]} at dt = {step:g}": less_the_border(step, count)
+            for count in _SIZES
             for step in _STEPS
             if (count, step) != ("avalanche_count", _MIDDLE)
         },
@@ -115,7 +104,7 @@ def _same_slope_claim(results: Results) -> Claim:
 def _power_law_claim(
     results: Results, count: str, step: float, by_step: dict[float, Estimate]
 ) -> Claim:
-    name, _, (smallest, largest) = _COUNTS[count]
+    smallest, largest = _SIZES[count]
     ours = _OURS
     reason = "every collision passes the momentum on with nearly the same probability"
     if count == "avalanche_count":
@@ -128,7 +117,7 @@ def _power_law_claim(
     elsewhere = {f"dt = {other:g}": by_step[other] for other in _STEPS if other != step}
     elsewhere[f"N_c = {sizes[0]} to {sizes[1]}"] = _exponent(results, "centre", step, count, sizes)
     return Claim(
-        f"p(N_c) falls off with an exponent near -2.2 ({name}, dt = {step:g}, "
+        f"p(N_c) falls off with an exponent near -2.2 ({COUNTS[count][0]}, dt = {step:g}, "
         f"N_c = {smallest} to {largest})",
         found=by_step[step],
         within=around(_PAPER, _PRECISION),
@@ -142,7 +131,7 @@ def _power_law_claim(
 def draw(results: Results) -> Figure:
     """Draw p(N_c) of the centre in both counts for every step, and by origin for one."""
     figure, axes = panels(1, 3, height=2.6, sharey=True)
-    for ax, (count, (name, *_)) in zip(axes, _COUNTS.items(), strict=False):
+    for ax, (count, (name, _)) in zip(axes, COUNTS.items(), strict=False):
         for number, step in enumerate(_STEPS):
             run = _RUNS[step].pooled(results)
             _draw(ax, run, "centre", count, number=number, label=f"$dt = {step:g}$")
@@ -166,7 +155,7 @@ def draw(results: Results) -> Figure:
 
 def _draw(ax: Axes, run: xr.Dataset, origin: str, count: str, *, number: int, label: str) -> None:
     """Draw p(N_c), N_c >= 1, in logarithmic bins."""
-    counts = _counts(run, origin, count)
+    _, counts = waves(run, count, _ORIGINS[origin])
     edges = np.unique(np.round(np.geomspace(1, LARGE, 28)).astype(int))
     edges = edges[edges <= counts.size + 1]
     total = np.add.reduceat(counts, edges[:-1] - 1)

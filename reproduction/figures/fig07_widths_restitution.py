@@ -23,7 +23,6 @@ from crazybilliards.reproduction.predictions import (
     CROSSES,
     LINES,
     by_restitution,
-    listed,
     minus_nu,
     predicted,
 )
@@ -89,7 +88,6 @@ def claims(results: Results) -> list[Claim]:
             source=f"{_SOURCE}, eq:power_law",
             ours=_OURS,
             reason="the two power laws leave systematic residuals",
-            exactly="the profile is no sum of two power laws: the residuals are systematic",
         ),
         _exponential_claim(results),
     ]
@@ -112,7 +110,6 @@ def _exponential_claim(results: Results) -> Claim:
         ),
         source=f"{_SOURCE}, inset",
         ours=_OURS,
-        theory=listed(predicted(results), minus_nu, *RESTITUTIONS),
         reason="the errors of the exponents are about as large as the limit",
     )
 

@@ -4,25 +4,19 @@ from __future__ import annotations
 
 import functools
 
-import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from crazybilliards.comparison.layout import at_the_left, entitle, panels
 from crazybilliards.reproduction.chains import flippers
 from crazybilliards.reproduction.claims.study import Cases, Quality, Results, Study, all_of
 from crazybilliards.reproduction.claims.verdicts import POSITIVE, Claim
-from crazybilliards.reproduction.distributions import draw_sizes
+from crazybilliards.reproduction.distributions import COUNTS, draw_sizes, waves
 
 _SIZE = 100
 _RUNS = {damping: flippers(_SIZE, damping) for damping in (4.0, 10.0)}
 _ORIGINS = slice(1, 10)
 _SPANNING = 80  # collisions of a wave that began at one of those origins
-_COUNTS = {
-    "triggered_count": ("the paper's count", "triggered_collisions"),
-    "avalanche_count": ("pushes", "avalanche_size"),
-}
 _SOURCE = "section Anti-Dissipation, fig:antidiss_trigger"
 _OURS = "the origins (1 to 10) and what spans the system (80 collisions)"
 
@@ -32,23 +26,16 @@ def cases(quality: Quality) -> Cases:
     return all_of(_RUNS.values(), quality)
 
 
-def _counts(run: xr.Dataset, count: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return sizes from 1 on and the numbers of waves."""
-    sizes = run[_COUNTS[count][1]].values
-    counts = run[count].sel(particle=_ORIGINS).sum("particle").values.astype(float)
-    return sizes[sizes >= 1], counts[sizes >= 1]
-
-
 def _spanning(run: xr.Dataset, count: str) -> float:
     """Return how many of 10^4 waves span the system."""
-    sizes, counts = _counts(run, count)
+    sizes, counts = waves(run, count, _ORIGINS)
     return float(1e4 * counts[sizes >= _SPANNING].sum() / counts.sum())
 
 
 def claims(results: Results) -> list[Claim]:
     """Check: system-spanning avalanches at gamma = 4, more than at gamma = 10, in both counts."""
     claims = []
-    for count, (name, _) in _COUNTS.items():
+    for count, (name, _) in COUNTS.items():
         weak, strong = (
             runs.estimate(results, functools.partial(_spanning, count=count))
             for runs in _RUNS.values()
@@ -73,9 +60,9 @@ def claims(results: Results) -> list[Claim]:
 def draw(results: Results) -> Figure:
     """Draw p(N_c) for both dampings in both counts."""
     figure, axes = panels(1, 2, height=2.7, sharey=True)
-    for ax, (count, (name, _)) in zip(axes, _COUNTS.items(), strict=True):
+    for ax, (count, (name, _)) in zip(axes, COUNTS.items(), strict=True):
         for number, (damping, runs) in enumerate(_RUNS.items()):
-            sizes, counts = _counts(runs.pooled(results), count)
+            sizes, counts = waves(runs.pooled(results), count, _ORIGINS)
             label = rf"$\gamma = {damping:g}$"
             draw_sizes(ax, sizes, counts / counts.sum(), counts, number=number, label=label)
         ax.axvspan(_SPANNING, _SIZE, color="0.9", zorder=0, label="spans the system")

@@ -7,15 +7,12 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from crazybilliards.comparison.coverage import smooth
-from crazybilliards.comparison.distances import Deviation, distances_in_plot
-from crazybilliards.comparison.side_by_side.elastic_chain import (
-    LEGEND,
-    deviations,
-    elastic_theories,
-)
-from crazybilliards.comparison.side_by_side.elastic_figures import draw_density
-from crazybilliards.comparison.side_by_side.parameter_series import SIMULATION
+from crazybilliards.comparison.distances import deviation, distances_in_plot
+from crazybilliards.comparison.fits import fit_arctanh
+from crazybilliards.comparison.side_by_side.grid import ELASTIC, elastic_tree
+from crazybilliards.comparison.side_by_side.grid_figures import draw_density
 from crazybilliards.comparison.sweeps import Case
+from crazybilliards.kinetic import force_balance
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.reproduction.claims.study import Cases, Quality, Results, Study
 from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, in_plot
@@ -41,44 +38,28 @@ def cases(quality: Quality) -> Cases:
     return {f"amplitude_{a:g}": simulation(a) for a in _AMPLITUDES}
 
 
-def _tree(results: Results) -> xr.DataTree:
-    every: dict[str, xr.Dataset] = {}
-    for name, run in results.items():
-        every[f"{name}/{SIMULATION}"] = run
-        theories = elastic_theories(chain_of(run), run)
-        every |= {f"{name}/{key}": theory for key, theory in theories.items()}
-    return xr.DataTree.from_dict(every)
-
-
 def claims(results: Results) -> list[Claim]:
     """Check: simulation and theory agree."""
-    tree = _tree(results)
-    groups = tree.children
-    claims = []
-    for name, by_theory in deviations(tree).items():
-        amplitude = float(name.removeprefix("amplitude_"))
-        claims.append(_match(groups[name], amplitude, by_theory))
-    return claims
+    return [_match(run) for run in results.values()]
 
 
-def _match(group: xr.DataTree, amplitude: float, by_theory: dict[str, Deviation]) -> Claim:
+def _match(run: xr.Dataset) -> Claim:
     """Compare the theory fed with the fitted displacement with the simulated density."""
-    run, theory = (smooth(group[key].to_dataset()) for key in (SIMULATION, "arctanh"))
+    chain = chain_of(run)
+    fed = force_balance(chain, displacement=fit_arctanh(run))
+    run, theory = smooth(run), smooth(fed)
     off, error = _off_in_plot(run, theory)
-    arctanh, labels = by_theory["arctanh"], by_theory["labels"]
     return Claim(
-        f"simulated and integrated densities match perfectly, A = {amplitude:g}",
+        f"simulated and integrated densities match perfectly, A = {chain.amplitude:g}",
         **in_plot(
             "rho(x) of simulation and theory, fed with the fitted displacement, both axes linear",
             Estimate(off, error),
-            arctanh.maximum_in_errors or 0.0,
+            deviation(run, theory).maximum_in_errors or 0.0,
         ),
         source=_SOURCE,
-        ours="the amplitude" + (", which is that of fig:atan" if amplitude == _ARCTANH else ""),
-        theory=f"closed by labels, nothing fitted, off by {labels.maximum:.3f} of close packing",
+        ours="the amplitude"
+        + (", which is that of fig:atan" if chain.amplitude == _ARCTANH else ""),
         reason="the outermost rod or two make a step in the exact density, and a fluid has none",
-        exactly=f"at equal x the largest difference is {arctanh.maximum:.3f} of close packing, at "
-        "the outermost rods",
     )
 
 
@@ -96,7 +77,7 @@ def _off_in_plot(run: xr.Dataset, theory: xr.Dataset) -> tuple[float, float]:
 
 def draw(results: Results) -> Figure:
     """Draw rho(x) and the differences from the exact density."""
-    return draw_density(_tree(results))
+    return draw_density(elastic_tree(results))
 
 
 FIGURE = Study(
@@ -105,7 +86,7 @@ FIGURE = Study(
     title="Density at e = 1: simulation and theory",
     caption="L = 100, e = 1, four driving amplitudes. Circles: simulation, smoothed as in the "
     "paper; a thin line where circles would hide steps. Other lines: "
-    f"{'; '.join(LEGEND.values())}. Insets: the right edge, every bin. Below each: the difference "
+    f"{'; '.join(ELASTIC.values())}. Insets: the right edge, every bin. Below each: the difference "
     "from the exact density in units of close packing.",
     cases=cases,
     draw=draw,

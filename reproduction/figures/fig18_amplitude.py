@@ -69,7 +69,6 @@ def claims(results: Results) -> list[Claim]:
                     ),
                     source="appendix, fig:amp_influence",
                     ours="the amplitudes and restitutions",
-                    theory="exact for linear springs without gap: A can be scaled away",
                 )
             )
     return claims

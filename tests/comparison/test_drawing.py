@@ -8,7 +8,7 @@ from drawn_pictures import WAVES, X, drawn, simulated
 
 from crazybilliards.comparison import compare_elastic, overlay, smooth
 from crazybilliards.comparison.drawing import draw_rods, mark_clipped
-from crazybilliards.comparison.side_by_side.elastic_figures import draw_density, draw_displacement
+from crazybilliards.comparison.side_by_side.grid_figures import draw_density, draw_displacement
 from crazybilliards.kinetic import equilibrium, equilibrium_states, force_balance
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate

@@ -2,6 +2,7 @@
 
 import os
 import signal
+from dataclasses import replace
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -9,12 +10,10 @@ import pytest
 import xarray as xr
 
 from crazybilliards.comparison import compare_elastic, smooth
-from crazybilliards.comparison.side_by_side.elastic_chain import (
-    deviations,
-    elastic_theories,
-    largest_width_error,
-)
-from crazybilliards.comparison.side_by_side.elastic_figures import draw_density, draw_displacement
+from crazybilliards.comparison.side_by_side import grid
+from crazybilliards.comparison.side_by_side.grid_deviations import deviations, largest_width_error
+from crazybilliards.comparison.side_by_side.grid_figures import draw_density, draw_displacement
+from crazybilliards.comparison.sweeps import case, running
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.process import terminated_like_interrupted
 
@@ -80,7 +79,7 @@ def test_the_tree_holds_everything_with_its_chain(tree):
 
 def test_rods_that_hardly_touch_go_without_the_arctanh_but_lose_nothing():
     with pytest.warns(UserWarning, match="has no arctanh fit: no arctanh fits"):
-        tree = compare_elastic(Chain(size=20, gap=5), (1.0,), duration=5000, progress=False)
+        tree = compare_elastic(Chain(size=20, gap=5), (1.0,), duration=5000, seed=1, progress=False)
     assert list(tree["amplitude_1"].children) == ["simulation", "exact", "labels"]
     assert set(deviations(tree)["amplitude_1"]) == {"exact", "labels"}
 
@@ -106,25 +105,65 @@ def test_wrong_arguments_are_refused(chain, amplitudes, message):
         compare_elastic(chain, amplitudes, progress=False)
 
 
-def test_sigterm_between_simulations_keeps_what_was_computed(monkeypatch):
-    """In a command. A program that calls this has the handlers that it sets."""
+@pytest.fixture
+def computed(monkeypatch):
+    """Note the amplitudes of the chains that are computed, in this process."""
+    seen, job = [], case.JOBS["simulate"]
 
-    def theories(chain, run):
-        os.kill(os.getpid(), signal.SIGTERM)
-        return elastic_theories(chain, run)
+    def simulate(chain, **settings):
+        seen.append(chain.amplitude)
+        return job.function(chain, **settings)
 
-    monkeypatch.setattr(
-        "crazybilliards.comparison.side_by_side.elastic_chain.elastic_theories", theories
+    monkeypatch.setitem(case.JOBS, "simulate", replace(job, function=simulate))
+    return seen
+
+
+def test_what_the_folder_holds_is_not_computed_again(computed, tmp_path):
+    """A larger comparison computes what is new; other settings and random numbers are new."""
+    how = {"folder": tmp_path, "progress": False, "duration": 500}
+    first = compare_elastic(Chain(size=5), (1.0, 2.0), **how)
+    assert compare_elastic(Chain(size=5), (1.0, 2.0), **how).identical(first)
+    assert computed == [1, 2]
+    assert compare_elastic(Chain(size=5), (2.0,), **how, processes=1).equals(
+        first.filter(lambda node: "amplitude_1" not in node.path)
     )
-    with terminated_like_interrupted() as signals:
-        tree = compare_elastic(Chain(size=5), (1.0, 2.0), duration=500, progress=False)
-    assert signals == [signal.SIGTERM]
-    assert tree.attrs["status"] == "interrupted"
-    assert tree["amplitude_1/simulation"].attrs["status"] == "completed"
-    assert "amplitude_2" not in tree
+    compare_elastic(Chain(size=5), (1.0, 3.0), **how)
+    compare_elastic(Chain(size=5), (1.0,), seed=1, **how)
+    assert computed == [1, 2, 3, 1]
 
 
-def test_what_ctrl_c_left_without_theories_can_be_drawn(tree):
+@pytest.mark.posix
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_keeps_what_was_computed(number, monkeypatch, tmp_path):
+    """In a command. A program that calls this has the handlers that it sets."""
+    write = running._write
+
+    def stop(path, content):
+        write(path, content)
+        os.kill(os.getpid(), number)
+
+    how = {"folder": tmp_path, "progress": False, "duration": 500}
+    with monkeypatch.context() as patch, terminated_like_interrupted():
+        patch.setattr(running, "_write", stop)
+        cut = compare_elastic(Chain(size=5), (1.0, 2.0), **how)
+    assert cut.attrs["status"] == "interrupted"
+    assert list(cut.children) == ["amplitude_1"]
+    assert list(cut["amplitude_1"].children) == ["simulation", "exact", "labels", "arctanh"]
+    whole = compare_elastic(Chain(size=5), (1.0, 2.0), **how)
+    assert whole.attrs["status"] == "completed"
+    assert whole["amplitude_1/simulation"].identical(cut["amplitude_1/simulation"])
+
+
+def test_ctrl_c_before_anything_is_computed_is_ctrl_c(monkeypatch):
+    def stop(*arguments, **settings):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(grid, "run_cases", stop)
+    with pytest.raises(KeyboardInterrupt):
+        compare_elastic(Chain(size=5), (1.0,), duration=500, progress=False)
+
+
+def test_a_simulation_without_theories_can_be_drawn(tree):
     """The rods are drawn, and nothing in the panel of differences from the exact solution."""
     run = xr.DataTree.from_dict({"amplitude_3/simulation": tree["amplitude_3/simulation"]})
     for draw in (draw_density, draw_displacement):

@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 
 from crazybilliards.comparison import compare_restitutions, width_deviations
-from crazybilliards.comparison.side_by_side.parameter_series import SIMULATION
-from crazybilliards.comparison.side_by_side.restitution_figures import (
+from crazybilliards.comparison.side_by_side.grid import KINETIC, SIMULATION, TITLES
+from crazybilliards.comparison.side_by_side.grid_figures import (
+    draw_density,
     draw_phase_space,
     draw_profile,
     draw_widths,
 )
-from crazybilliards.comparison.side_by_side.restitutions import LEGEND, THEORY
 from crazybilliards.comparison.widths import width_deviation
 from crazybilliards.kinetic import equilibrium, phase_space
 from crazybilliards.model import Chain
@@ -34,7 +34,7 @@ def test_tree_holds_both(tree):
     assert list(tree.children) == ["restitution_0.9", "restitution_1"]
     assert tree.attrs["status"] == "completed"
     for group in tree.children.values():
-        assert set(group.children) == {SIMULATION, *LEGEND}
+        assert set(group.children) == {SIMULATION, *KINETIC}
 
 
 def test_deviations(tree):
@@ -71,7 +71,13 @@ def test_without_a_steady_state_there_is_a_warning_and_no_theory():
 def test_pictures(tree):
     widths = draw_widths(tree)
     assert widths.axes[0].get_ylabel() == "velocity width $W_v/W$"
-    theory = tree[f"restitution_0.9/{THEORY}"].to_dataset()
+    theory = tree["restitution_0.9/kinetic_equation"].to_dataset()
+    density = draw_density(tree)
+    above, below = density.get_axes()[:2]
+    assert "e = 0.9" in above.get_title(loc="left")
+    labels = above.get_legend_handles_labels()[1]
+    assert sorted(labels) == sorted(TITLES[name] for name in (SIMULATION, *KINETIC))
+    assert below.has_data()  # the differences from the simulation
     image = draw_phase_space(theory)
     assert "e = 0.9" in image.axes[0].get_title()
     assert len(draw_profile(theory, "kinetic equation").axes) == 2

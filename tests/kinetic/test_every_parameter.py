@@ -5,6 +5,7 @@ call is refused with a ValueError, or the pair stands in ``MEANINGLESS`` with th
 are read from the class, and another value of each follows from its declaration.
 """
 
+import json
 from dataclasses import dataclass, field, fields
 from functools import cache
 
@@ -19,6 +20,8 @@ from crazybilliards.kinetic import displaced
 from crazybilliards.kinetic.kinetic_equation import criticality
 from crazybilliards.model import Chain
 from crazybilliards.model.checks import check_real
+from crazybilliards.particles import Widths, dynamics, simulate
+from crazybilliards.particles.laws import law
 
 CHAIN = Chain(size=4)
 START = displaced(CHAIN, 0.3)[["density", "label", "flow_velocity", "velocity_variance"]]
@@ -161,17 +164,35 @@ def test_a_parameter_changes_the_result_or_is_refused(solver, name):
 
 @dataclass(frozen=True, kw_only=True)
 class Tilted(Chain):
-    """A chain with a parameter that no theory knows."""
+    """A chain with a parameter that nobody knows."""
 
     tilt: float = field(default=0.0, metadata={"check": check_real})
 
 
-# A law of collisions or a driving of one's own may know it.
-SIMULATIONS = [name for name in SOLVERS if name.split(",")[0] == "simulate"]
-
-
-@pytest.mark.parametrize("solver", [name for name in SOLVERS if name not in SIMULATIONS])
-def test_a_parameter_that_no_theory_knows_is_refused(solver):
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_a_parameter_that_nobody_knows_is_refused(solver):
     parameters = start_chain(solver).parameters()
     with pytest.raises(ValueError, match="does not know the chain's tilt: it must be 0"):
         SOLVERS[solver].solve(Tilted(**parameters, tilt=1.0), GIVEN)
+
+
+class Slopes(Widths):
+    """An observer that reads it."""
+
+    knows = frozenset({"tilt"})
+
+
+@pytest.mark.parametrize("owner", [law, dynamics, None])
+def test_a_simulation_takes_what_its_law_its_driving_or_an_observer_knows(owner, monkeypatch):
+    chain, how = Tilted(size=3, tilt=1.0), {"duration": 100, "progress": False}
+    if owner is None:
+        how["observe"] = ["density", Slopes()]
+    else:
+        monkeypatch.setattr(owner, "knows", frozenset({"tilt"}))
+    assert (
+        chain.parameters().items()
+        <= json.loads(simulate(chain, **how).attrs["provenance"])["chain"].items()
+    )
+    assert (
+        simulate(chain.replace(tilt=0), duration=100, progress=False).attrs["status"] == "completed"
+    )

@@ -31,16 +31,10 @@ def groups(tmp_path):
     return read
 
 
-def group(path, limit, used, cached, version=2):
+def group(path, limit, used, cached):
     """Return the three files of a group."""
-    names = ["memory.max", "memory.current"]
-    if version == 1:
-        names = ["memory.limit_in_bytes", "memory.usage_in_bytes"]
-    statistics = f"file 1\n{'total_' if version == 1 else ''}inactive_file {cached}\n"
-    values = dict(
-        zip([*names, "memory.stat"], (f"{limit}\n", f"{used}\n", statistics), strict=True)
-    )
-    return {f"{path}/{name}": value for name, value in values.items()}
+    values = {"max": limit, "current": used, "stat": f"file 1\ninactive_file {cached}"}
+    return {f"{path}/memory.{name}": f"{value}\n" for name, value in values.items()}
 
 
 def test_the_limit_of_a_group_counts_without_what_can_be_dropped(groups):
@@ -55,12 +49,6 @@ def test_the_tightest_of_the_groups_around_counts(groups):
 def test_a_container_sees_its_own_group_at_the_top(groups):
     files = group(".", 1000, 400, 0)
     assert groups("0::/docker/abc\n", **files) == 600
-
-
-def test_groups_of_version_1(groups):
-    own = group("memory/job", 1000, 400, 50, version=1)
-    around = group("memory", 2**63 - 4096, 900, 0, version=1)
-    assert groups("9:cpu:/x\n4:hugetlb,memory:/job\n0::/x\n", **own, **around) == 650
 
 
 def test_a_group_over_its_limit_has_nothing_left(groups):

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from crazybilliards.comparison import compare_elastic, compare_relaxation, compare_restitutions
-from crazybilliards.comparison.sweeps.jobs import JOBS
 from crazybilliards.kinetic import equilibrium_states
 from crazybilliards.model import Chain
 from crazybilliards.model.randomness import seed_of
@@ -30,32 +29,29 @@ FUNCTIONS = {
 
 @pytest.mark.compiled
 @pytest.mark.parametrize("name", FUNCTIONS)
-def test_a_number_means_the_same_in_both_arguments(name):
+def test_a_sequence_means_its_number(name):
     function = FUNCTIONS[name]
-    by_seed, by_rng, other = function(seed=5), function(rng=5), function(rng=6)
-    assert by_seed.identical(by_rng)
-    assert not by_seed.equals(other)
+    five, six = (function(seed=np.random.SeedSequence(number)) for number in (5, 6))
+    assert five.identical(function(seed=5))
+    assert not five.equals(six)
 
 
 @pytest.mark.parametrize("name", FUNCTIONS)
-@pytest.mark.parametrize(
-    ("how", "message"),
-    [
-        ({"seed": 1, "rng": 2}, "give seed or rng, not both, got seed=1 and rng=2"),
-        ({"rng": -1}, "rng must be an integer >= 0"),
-        ({"rng": "5"}, "rng must be an integer"),
-        ({"rng": np.random.RandomState(1)}, "rng must be an integer"),
-        ({"seed": -1}, "seed must be an integer"),
-    ],
-)
-def test_what_is_no_seed_is_refused(name, how, message):
-    with pytest.raises(ValueError, match=message):
-        FUNCTIONS[name](**how)
+@pytest.mark.parametrize("seed", [-1, "5", None, np.random.RandomState(1)])
+def test_what_is_no_seed_is_refused(name, seed):
+    with pytest.raises(ValueError, match="seed must be an integer >= 0"):
+        FUNCTIONS[name](seed=seed)
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_the_former_name_says_what_replaces_it(name):
+    with pytest.raises(TypeError, match="no argument 'rng'; seed takes what rng took"):
+        FUNCTIONS[name](rng=5)
 
 
 def test_a_generator_gives_a_seed_that_the_provenance_tells():
     generator = np.random.default_rng(1)
-    first, second = (simulate(CHAIN, rng=generator, **SHORT) for _ in range(2))
+    first, second = (simulate(CHAIN, seed=generator, **SHORT) for _ in range(2))
     assert not first.equals(second)
     seeds = [json.loads(run.attrs["provenance"])["seed"] for run in (first, second)]
     again = np.random.default_rng(1)
@@ -65,22 +61,17 @@ def test_a_generator_gives_a_seed_that_the_provenance_tells():
 
 def test_a_checkpoint_continues_a_run_that_began_with_an_equal_generator(tmp_path):
     file = tmp_path / "run.checkpoint"
-    whole = simulate(CHAIN, rng=np.random.default_rng(1), checkpoint=file, **SHORT)
-    again = simulate(CHAIN, rng=np.random.default_rng(1), checkpoint=file, **SHORT)
+    whole = simulate(CHAIN, seed=np.random.default_rng(1), checkpoint=file, **SHORT)
+    again = simulate(CHAIN, seed=np.random.default_rng(1), checkpoint=file, **SHORT)
     assert whole.equals(again)
 
 
 def test_streams_of_one_sequence_differ():
     sequence = np.random.SeedSequence(5)
-    assert seed_of(0, sequence) == 5
-    assert seed_of(0, np.int64(5)) == 5
-    children = [seed_of(0, child) for child in sequence.spawn(3)]
+    assert seed_of(sequence) == 5
+    assert seed_of(np.int64(5)) == 5
+    children = [seed_of(child) for child in sequence.spawn(3)]
     assert len({5, *children}) == 4
     again = np.random.SeedSequence(5).spawn(1)[0]
-    assert seed_of(0, again) == children[0] < 2**128
-    assert seed_of(0, np.random.SeedSequence([1, 2])) != seed_of(0, np.random.SeedSequence([2, 1]))
-
-
-def test_a_case_of_a_sweep_has_a_seed_only():
-    for job in JOBS.values():
-        assert "rng" not in job.settings
+    assert seed_of(again) == children[0] < 2**128
+    assert seed_of(np.random.SeedSequence([1, 2])) != seed_of(np.random.SeedSequence([2, 1]))

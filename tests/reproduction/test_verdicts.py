@@ -196,9 +196,8 @@ def test_sameness():
 def test_what_the_eye_sees(deviation, verdict):
     """However significant a deviation is: below 2 % of the plot it is not seen."""
     seen = in_plot("all rods", deviation, 22.4)
-    claim = Claim("fits", **seen, source="fig.2", exactly="no arctanh")
+    claim = Claim("fits", **seen, source="fig.2")
     assert claim.verdict == verdict
-    assert claim.details["exactly"] == "no arctanh"
     assert "22.4 standard errors" in claim.details["found here"]
 
 

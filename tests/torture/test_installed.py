@@ -21,7 +21,7 @@ pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="us
 ROOT = Path(__file__).parents[2]
 # `make run`, smaller. Kernels, a theory, pictures and a file.
 RUN = ["compare", "--size", "4", "--duration", "300", "--amplitudes", "10", "--output", "results"]
-WRITTEN = {"comparison.nc", "density.png", "displacement.png"}
+WRITTEN = {"cases", "comparison.nc", "density.png", "displacement.png"}
 NOBODY = 12345
 # A user that no list of users knows. Such a user could not even start a Python that lies in root's
 # home, so this one may read everything.

@@ -65,7 +65,7 @@ CHOSEN = {
 }
 OTHER = other_values()
 TAKES_IT = {
-    "compare": "crazybilliards.comparison.side_by_side.elastic_chain.compare_elastic",
+    "compare": "crazybilliards.comparison.side_by_side.grid.compare_elastic",
     "relax": "crazybilliards.comparison.side_by_side.relaxation.compare_relaxation",
     "simulate": "crazybilliards.particles.simulation.simulate",
     "theory": "crazybilliards.kinetic.kinetic_equation.stationary.phase_space",

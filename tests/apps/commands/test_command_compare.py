@@ -1,13 +1,12 @@
 """The command ``compare``: writes all or nothing, refuses in one line, keeps on Ctrl-C."""
 
 import signal
-from pathlib import Path
+import warnings
 
 import pytest
 
-from crazybilliards.comparison.side_by_side import parameter_series, restitution_figures
-from crazybilliards.model import chain_of, load
-from crazybilliards.particles import simulate
+from crazybilliards.comparison.side_by_side import grid_figures
+from crazybilliards.model import load
 
 QUICK = ["compare", "--size", "10", "--duration", "1000", "--amplitudes", "1,5"]
 
@@ -18,6 +17,7 @@ def test_compare_writes_both_figures_and_the_data(run, tmp_path):
     done = run(*QUICK, "--output", str(folder))
     assert done.returncode == 0, done.stderr
     assert sorted(path.name for path in folder.iterdir()) == [
+        "cases",
         "comparison.nc",
         "density.png",
         "displacement.png",
@@ -29,10 +29,14 @@ def test_compare_writes_both_figures_and_the_data(run, tmp_path):
     # Not a terminal: no progress bar, no colours.
     assert "simulating" not in done.stderr
     assert "\x1b" not in done.stdout
-    # A second run with the same seed gives the same data.
-    again = run(*QUICK, "--output", str(folder), "--threads", "1")
-    assert again.returncode == 0
+    # A second run takes the chains from the folder; elsewhere it gives the same data.
+    before = {path: path.stat().st_mtime_ns for path in (folder / "cases").iterdir()}
+    assert run(*QUICK, "--output", str(folder)).returncode == 0
+    assert {path: path.stat().st_mtime_ns for path in (folder / "cases").iterdir()} == before
     assert load(folder / "comparison.nc").identical(tree)
+    other = ["--output", str(tmp_path / "other"), "--processes", "2"]
+    assert run(*QUICK, *other).returncode == 0
+    assert load(tmp_path / "other" / "comparison.nc").identical(tree)
 
 
 def test_what_cannot_be_written_is_shown_at_least(run, tmp_path):
@@ -42,7 +46,7 @@ def test_what_cannot_be_written_is_shown_at_least(run, tmp_path):
     assert "close packing" in done.stdout
     [error] = [line for line in done.stderr.splitlines() if "compiling" not in line]
     assert f"{tmp_path / 'comparison.nc'}: Is a directory" in error
-    assert [path.name for path in tmp_path.iterdir()] == ["comparison.nc"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["cases", "comparison.nc"]
 
 
 def test_without_output_nothing_is_written(run, tmp_path, monkeypatch):
@@ -74,6 +78,7 @@ def test_without_output_nothing_is_written(run, tmp_path, monkeypatch):
         (["--restitution", "0.9", "--damping", "0"], "no steady state"),
         (["--seed", "-5"], "seed"),
         (["--threads", "0"], "threads must be"),
+        (["--processes", "0"], "processes must be"),
         (["--colour"], "No such option"),
         (["extra"], "unexpected extra argument"),
     ],
@@ -90,7 +95,9 @@ def test_compare_restitutions(run, tmp_path):
     done = run("compare", *arguments, "--output", str(tmp_path))
     assert done.returncode == 0, done.stderr
     assert sorted(path.name for path in tmp_path.iterdir()) == [
+        "cases",
         "comparison.nc",
+        "density.png",
         "phase_space_restitution_0.9.png",
         "phase_space_restitution_1.png",
         "widths.png",
@@ -104,55 +111,38 @@ def test_ctrl_c_while_a_picture_is_drawn_keeps_those_before(run, tmp_path, monke
     def stopped(theory):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(restitution_figures, "draw_phase_space", stopped)
+    monkeypatch.setattr(grid_figures, "draw_phase_space", stopped)
     arguments = ["--restitution", "0.9", "--size", "10", "--duration", "200"]
     done = run("compare", *arguments, "--output", str(tmp_path))
     assert done.returncode == 130
-    names = sorted(path.name for path in tmp_path.iterdir())
-    assert names == ["comparison-interrupted.nc", "widths-interrupted.png"]
+    names = {path.name for path in tmp_path.iterdir()}
+    assert names == {"cases", "comparison.nc", "density.png", "widths.png"}
     assert "theory minus simulation" in " ".join(done.stdout.split())
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("fails", [False, True])
-def test_a_picture_of_one_chain_is_there_while_the_next_is_computed(
-    fails, run, tmp_path, monkeypatch
-):
-    """One that fails costs no computation, and is drawn once more at the end."""
-    draw, drawn, seen = restitution_figures.draw_phase_space, [], []
-
-    def drawing(theory):
-        drawn.append(chain_of(theory).restitution)
-        if fails and len(drawn) == 1:
-            raise OSError("no room")
-        return draw(theory)
-
-    def simulating(*arguments, **settings):
-        seen.append(sorted(path.name for path in tmp_path.glob("*.png")))
-        return simulate(*arguments, **settings)
-
-    monkeypatch.setattr(restitution_figures, "draw_phase_space", drawing)
-    monkeypatch.setattr(parameter_series, "simulate", simulating)
-    arguments = ["--restitution", "0.9,1", "--size", "10", "--duration", "200"]
-    done = run("compare", *arguments, "--output", str(tmp_path))
-    assert done.returncode == 0, done.stderr
-    assert seen == [[], [] if fails else ["phase_space_restitution_0.9-interrupted.png"]]
-    assert drawn == ([0.9, 1.0, 0.9] if fails else [0.9, 1.0])
-    names = ["phase_space_restitution_0.9.png", "phase_space_restitution_1.png", "widths.png"]
-    assert sorted(path.name for path in tmp_path.glob("*.png")) == names
+def test_a_chain_that_diverges_is_told_and_drawn_as_far_as_it_can_be(run, tmp_path):
+    arguments = ["--restitution", "1.5,0.9", "--size", "30", "--damping", "0.1"]
+    with warnings.catch_warnings():
+        warnings.simplefilter("default")
+        done = run("compare", *arguments, "--duration", "300", "--output", str(tmp_path))
+    assert done.returncode == 1
+    assert "warning: e = 1.5 has no kinetic equation: no steady state" in done.stderr
+    assert "e = 1.5: the simulation diverged" in done.stderr
+    assert {path.name for path in tmp_path.glob("*.png")} == {
+        "density-diverged.png",
+        "phase_space_restitution_0.9-diverged.png",
+        "widths-diverged.png",
+    }
 
 
 @pytest.mark.compiled
 @pytest.mark.posix
-def test_ctrl_c_saves_what_was_computed_beside_a_finished_result(interrupted, tmp_path):
+def test_ctrl_c_in_the_first_chain_leaves_a_finished_result(interrupted, tmp_path):
     (tmp_path / "comparison.nc").write_text("finished")
     done = interrupted(*QUICK[:3], "--duration", "1e9", "--output", tmp_path)
     assert done.returncode == -signal.SIGINT, done.stderr
     assert "Traceback" not in done.stderr
-    tree = load(tmp_path / "comparison-interrupted.nc")
-    assert tree.attrs["status"] == "interrupted"
-    assert tree["amplitude_1/simulation"].attrs["status"] == "interrupted"
-    assert (tmp_path / "density-interrupted.png").exists()
     assert (tmp_path / "comparison.nc").read_text() == "finished"
-    assert "close packing" in done.stdout
-    assert not [path for path in Path(tmp_path).iterdir() if path.suffix == ".part"]
+    assert {path.name for path in tmp_path.iterdir()} == {"cases", "comparison.nc"}
+    assert list((tmp_path / "cases").iterdir()) == []

@@ -1,0 +1,228 @@
+"""Pictures of chains side by side: densities, displacements, widths, and f(y, v) as an image.
+
+The panels of densities and displacements have the differences from the exact equilibrium below
+them, which are too small to be seen above; at e != 1 those from the simulation.
+"""
+
+from __future__ import annotations
+
+import math
+
+import matplotlib.pyplot as plt
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.colors import LogNorm
+from matplotlib.figure import Figure
+
+from crazybilliards.comparison.coverage import smooth
+from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_rods, overlay
+from crazybilliards.comparison.layout import entitle, legend_above, letter, panels, picture_width
+from crazybilliards.comparison.side_by_side.grid import ELASTIC, KINETIC, SIMULATION, TITLES
+from crazybilliards.model import Chain, chain_of
+from crazybilliards.model.vocabulary import require
+
+_DECADES = 5  # of f in the image
+_VARIED = {"amplitude": "A", "restitution": "e"}
+_STYLES = dict(zip(KINETIC, ("--", "-"), strict=True))
+
+
+def draw_density(tree: xr.DataTree) -> Figure:
+    """rho(x) of simulation and theories for each chain, all smoothed as the paper does.
+
+    The insets show the right edge, where the theories differ most, with every bin.
+    """
+    figure, axes_of_all = _panels(len(tree.children))
+    for axes, group in zip(axes_of_all, tree.children.values(), strict=True):
+        results = {name: smooth(result) for name, result in _results(group).items()}
+        chain = chain_of(results[SIMULATION])
+        _draw(axes, results, "density", unit=chain.close_packed_density)
+        entitle(axes[0], _title(group, chain))
+        axes[0].set(ylabel=r"density $\rho$ [1/R]")
+        axes[1].set(xlabel="position $x$ [R]", ylabel=r"diff. $\times\, 2R$")
+        reference = results[_reference(results)]
+        inside = reference.density.values > 1e-4 * chain.close_packed_density
+        ends = reference.x.values[inside][[0, -1]]
+        axes[1].set_xlim(*ends)
+        _draw_edge(axes[0], results, float(ends[1]))
+    legend_above(figure, axes_of_all[0][0])
+    return figure
+
+
+def _draw_edge(ax: Axes, results: dict[str, xr.Dataset], end: float) -> None:
+    """Draw the outermost three thermal lengths, at least ten radii, into an inset."""
+    chain = chain_of(results[SIMULATION])
+    begin = end - max(3 * chain.thermal_length, 10 * chain.radius)
+    inset = ax.inset_axes((0.29, 0.13, 0.42, 0.56))
+    run = results[SIMULATION].sel(x=slice(begin, end))
+    inset.errorbar(
+        run.x,
+        run.density,
+        run.get("density_error"),
+        linestyle="none",
+        marker=".",
+        markersize=1.5,
+        color="black",
+        linewidth=0.5,
+    )
+    theories = {
+        name: result.sel(x=slice(begin, end))
+        for name, result in results.items()
+        if name != SIMULATION
+    }
+    overlay(theories, ax=inset)
+    inset.set(xlabel="", ylabel="", xlim=(begin, end))
+    inset.tick_params(labelsize=6)
+    inset.locator_params(nbins=3)
+    ax.indicate_inset_zoom(inset, edgecolor="0.5")
+
+
+def draw_displacement(tree: xr.DataTree) -> Figure:
+    """<dx> at the rods' mean positions, with the paper's arctanh fit, for each amplitude."""
+    figure, axes_of_all = _panels(len(tree.children))
+    for axes, group in zip(axes_of_all, tree.children.values(), strict=True):
+        results = _results(group)
+        chain = chain_of(results[SIMULATION])
+        _draw(axes, results, "mean_displacement", unit=chain.thermal_length)
+        entitle(axes[0], _title(group, chain))
+        axes[0].set(ylabel=r"displacement $\langle\Delta x\rangle$ [R]")
+        axes[1].set(xlabel=r"mean position $\langle x_i\rangle$ [R]", ylabel="diff. / $s$")
+    legend_above(figure, axes_of_all[0][0])
+    return figure
+
+
+def _results(group: xr.DataTree) -> dict[str, xr.Dataset]:
+    """Return the results of one chain by their titles, in drawing order."""
+    return {title: group[key].to_dataset() for key, title in TITLES.items() if key in group}
+
+
+def _title(group: xr.DataTree, chain: Chain) -> str:
+    name, _, value = str(group.name).rpartition("_")
+    return rf"${_VARIED[name]} = {value}$,  $s = {chain.thermal_length:.3g}\,R$"
+
+
+def _reference(results: dict[str, xr.Dataset]) -> str:
+    """Return the title of the result from which the others differ."""
+    return ELASTIC["exact"] if ELASTIC["exact"] in results else SIMULATION
+
+
+def _draw(axes: list[Axes], results: dict[str, xr.Dataset], quantity: str, unit: float) -> None:
+    """Draw the quantity, and its differences from the reference divided by ``unit``.
+
+    Without a theory there are no differences.
+    """
+    overlay(results, quantity, along="mean_position", ax=axes[0])
+    axes[0].set_xlabel("")
+    if len(results) == 1:
+        return
+    reference = results[_reference(results)][quantity]
+    differences = {}
+    for name, result in results.items():
+        difference = ((result[quantity] - reference) / unit).assign_attrs(reference.attrs)
+        differences[name] = result.assign({quantity: difference})
+        if f"{quantity}_error" in result:
+            differences[name][f"{quantity}_error"] = result[f"{quantity}_error"] / unit
+    overlay(differences, quantity, along="mean_position", ax=axes[1])
+
+
+def _panels(number: int) -> tuple[Figure, list[list[Axes]]]:
+    """Make a lettered panel for each chain, with one for differences below it."""
+    width = picture_width(2 if number > 1 else 1)
+    columns = min(number, 2 if width > picture_width(1) else 1)
+    rows = math.ceil(number / columns)
+    figure = plt.figure(figsize=(width, 2.7 * rows + 0.3), layout="constrained")
+    parts = figure.subfigures(rows, columns, squeeze=False).ravel()[:number]
+    made = [list(part.subplots(2, 1, sharex=True, height_ratios=(3, 1.3))) for part in parts]
+    if number > 1:
+        letter([above for above, _ in made])
+    return figure, made
+
+
+def draw_widths(tree: xr.DataTree) -> Figure:
+    """W_v(i) and <dx_i> for every restitution, in units of the free rod; lines are theories."""
+    figure, axes = panels(1, 2, height=2.5)
+    for number, group in enumerate(tree.children.values()):
+        run = group[SIMULATION].to_dataset()
+        chain = chain_of(run)
+        colour = COLOURS[number % len(COLOURS)]
+        units = (chain.free_velocity_width, chain.thermal_length)
+        for ax, name, unit in zip(
+            axes, ("velocity_width", "mean_displacement"), units, strict=True
+        ):
+            draw_rods(ax, run, name, number=number, unit=unit, label=f"$e = {chain.restitution:g}$")
+            for key, style in _STYLES.items():
+                if key in group:
+                    theory = group[key].to_dataset()
+                    values = theory[name] / unit
+                    ax.plot(theory.normalized_particle, values, style, color=colour, zorder=3)
+    along_the_chain(axes[0])
+    axes[0].set(ylabel="velocity width $W_v/W$")
+    axes[0].set_ylim(bottom=0)
+    along_the_chain(axes[1])
+    axes[1].set(ylabel=r"displacement $\langle\Delta x\rangle/s$")
+    for key, style in _STYLES.items():
+        if any(key in group for group in tree.children.values()):
+            axes[0].plot([], [], style, color="0.4", label=TITLES[key])
+    legend_above(figure, axes[0])
+    return figure
+
+
+def draw_phase_space(theory: xr.Dataset) -> Figure:
+    """f(y, v) over five decades, in units of the free rod, with the width of v at each y."""
+    require(theory, ("phase_space_density",))
+    chain = chain_of(theory)
+    s, W = chain.thermal_length, chain.free_velocity_width
+    f = theory.phase_space_density * (s * W / chain.size)
+    y, v = theory.y / s, theory.velocity / W
+    floor = float(f.max()) * 10.0**-_DECADES
+    figure, [ax] = panels(1, 1, height=2.7, wanted=1)
+    image = ax.pcolormesh(
+        y,
+        v,
+        np.maximum(f.values.T, floor),
+        norm=LogNorm(floor, float(f.max())),
+        shading="gouraud",
+        rasterized=True,
+    )
+    density = f.integrate("velocity")
+    alive = density.values > 1e-4 * float(density.max())
+    square = (f * theory.velocity**2).integrate("velocity") / density
+    width = np.sqrt(square[alive]) / W
+    for sign in (1, -1):
+        ax.plot(
+            y[alive],
+            sign * width,
+            color="white",
+            label=r"$\pm\langle v^2\rangle^{1/2}$ at $y$" if sign > 0 else None,
+        )
+    # The region above the floor, with a margin around it.
+    reach = [np.abs(axis[(f.values > floor).any(axis=1 - k)]).max() for k, axis in ((0, y), (1, v))]
+    ax.set(
+        xlim=(-reach[0], reach[0]),
+        ylim=(-reach[1], reach[1]),
+        xlabel="reduced position $y/s$",
+        ylabel="velocity $v/W$",
+        title=rf"$L = {chain.size}$, $e = {chain.restitution:g}$, $\gamma = {chain.damping:g}$",
+    )
+    ax.legend(loc="upper right", labelcolor="white")
+    figure.colorbar(image, ax=ax, label=r"$f(y, v)\; s W/L$")
+    return figure
+
+
+def draw_profile(theory: xr.Dataset, name: str) -> Figure:
+    """W_v(i) and <dx_i> of a theory alone, called ``name`` in the legend."""
+    chain = chain_of(theory)
+    figure, axes = panels(1, 2)
+    for ax, quantity, label in (
+        (axes[0], "velocity_width", "velocity width $W_v$ [R/T]"),
+        (axes[1], "mean_displacement", r"displacement $\langle\Delta x\rangle$ [R]"),
+    ):
+        ax.plot(theory.normalized_particle, theory[quantity], color=COLOURS[0], label=name)
+        along_the_chain(ax)
+        ax.set(ylabel=label)
+    axes[0].axhline(
+        chain.free_velocity_width, color="0.4", linestyle=":", label="free rod (and e = 1)"
+    )
+    axes[0].legend()
+    axes[0].set_ylim(bottom=0)
+    return figure
