@@ -91,7 +91,7 @@ def hydrodynamics(
     start
         A result with ``density`` over x and optionally ``label``, ``flow_velocity`` and
         ``velocity_variance``, such as ``force_balance`` of another chain (a quench), or
-        ``displaced``, ``compressed`` and ``two_clumps`` of this one.
+        ``displaced`` and ``compressed`` of this one.
     duration
         Time to solve for [T]; 12 relaxation times 2m/gamma come within 1e-5 of the steady state.
     displacement

@@ -200,6 +200,11 @@ class Equation:
 
         return change
 
+    def by_drag(self, f: Array, mean: Mean) -> Array:
+        """Return the derivative of the weak form by the drag."""
+        table = self.space.table(self.space.interpolate(f)[0])
+        return -self.space.against_slopes(self.space.field(table * mean.I1))
+
     def _collisions(self, f: Array, slope: Array, integrals: list[Array]) -> Array:
         """Return the flux along v that collisions cause, drag and diffusion."""
         I1, I3, I3v = integrals
@@ -211,10 +216,11 @@ class NotSolvedError(ValueError):
 
 
 class Solution(NamedTuple):
-    """A stationary distribution, and the size of the last Newton step relative to max f."""
+    """A stationary distribution, the last Newton step relative to max f, and the drag."""
 
     f: Array
     residual: float
+    drag: float
 
 
 @one_thread
@@ -224,25 +230,33 @@ def stationary_state(
     guess: Array,
     tolerance: float = 1e-10,
     factors: Factors | None = None,
+    *,
+    of_unit_energy: bool = False,
 ) -> Solution:
     """Solve the stationary equation with int f = 1 by Newton's method.
 
     ``tolerance`` is that of the last step, relative to max f. ``factors`` are those of the terms,
-    see ``Equation``.
+    see ``Equation``. ``of_unit_energy``: with <v^2> = 1, the drag being an unknown.
     """
-    f, equation, jacobian = guess, Equation(space, numbers, factors), Jacobian()
+    f, jacobian = guess, Jacobian()
+    conditions = [space.whole_mass, space.whole_energy][: 2 if of_unit_energy else 1]
     for _ in range(_MOST_STEPS):
-        matrix = equation.matrix(equation.mean(f))
-        residual = np.append(-(matrix @ f), 1 - space.whole_mass @ f)
+        equation = Equation(space, numbers, factors)
+        mean = equation.mean(f)
+        matrix = equation.matrix(mean)
+        columns = [space.whole_mass, equation.by_drag(f, mean)][: len(conditions)]
+        residual = np.concatenate([-(matrix @ f), [1 - row @ f for row in conditions]])
         step = jacobian.solve(
-            matrix, space.whole_mass[:, None], [space.whole_mass], equation.variation(f), residual
+            matrix, np.column_stack(columns), conditions, equation.variation(f), residual
         )
         f = f + step[: f.size]
+        if of_unit_energy:
+            numbers = numbers._replace(drag=numbers.drag + float(step[-1]))
         size = float(np.abs(step[: f.size]).max() / np.abs(f).max())
         if not math.isfinite(size):
             break
         if size < tolerance:
-            return Solution(f, size)
+            return Solution(f, size, numbers.drag)
     raise NotSolvedError(f"the kinetic equation did not converge in {_MOST_STEPS} Newton steps")
 
 

@@ -2,15 +2,9 @@
 
 import numpy as np
 import pytest
+from clumps import two_clumps
 
-from crazybilliards.kinetic import (
-    compressed,
-    displaced,
-    equilibrium,
-    force_balance,
-    hydrodynamics,
-    two_clumps,
-)
+from crazybilliards.kinetic import compressed, displaced, equilibrium, force_balance, hydrodynamics
 from crazybilliards.kinetic.exact.breathing import breathing_cloud
 from crazybilliards.model import Chain
 from crazybilliards.model.vocabulary import result

@@ -13,7 +13,6 @@ from crazybilliards.kinetic import (
     force_balance,
     hydrodynamics,
     relax_phase_space,
-    two_clumps,
 )
 from crazybilliards.kinetic.exact.breathing import breathing_cloud
 from crazybilliards.kinetic.fluids.pde_solver import make_state, solve
@@ -89,7 +88,7 @@ def test_a_missing_start_is_explained(theory, call):
     """A duration in its place is the usual mistake."""
     with pytest.raises(ValueError, match="start must be a result with density over x") as caught:
         theory(Chain(size=5), *call, **QUIET)
-    for name in ("displaced(", "compressed(", "two_clumps(", "force_balance"):
+    for name in ("displaced(", "compressed(", "force_balance"):
         assert name in str(caught.value)
     with pytest.raises(ValueError, match="duration must be a number, got None"):
         theory(Chain(size=5), displaced(Chain(size=5), 1.0), **QUIET)
@@ -115,7 +114,7 @@ def test_wrong_starts_are_refused():
     with pytest.raises(ValueError, match="no steady state"):
         hydrodynamics(chain.replace(damping=0), start, 10, **QUIET)
     with pytest.raises(ValueError, match="no steady state"):
-        two_clumps(chain.replace(damping=0), 1.0, 1.0)
+        displaced(chain.replace(damping=0), 1.0)
     with pytest.raises(ValueError, match="breathing cloud holds without gap only"):
         breathing_cloud(Chain(gap=1), 1)
 

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from clumps import two_clumps
 
 from crazybilliards.comparison import smooth
 from crazybilliards.kinetic import (
@@ -18,7 +19,6 @@ from crazybilliards.kinetic import (
     force_balance,
     phase_space,
     relax_phase_space,
-    two_clumps,
 )
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
