@@ -120,14 +120,10 @@ def _place(chain: Chain) -> dict[str, float]:
         "L": chain.size,
         "e": chain.restitution,
         # At e = 1 no distribution in space depends on the damping.
-        "Gamma": _ANY if chain.restitution == 1 else _damping(chain),
+        "Gamma": _ANY if chain.restitution == 1 else chain.relative_damping,
         "g L/s": chain.lattice_gap * chain.size / s,
         _LENGTH: s / chain.radius,
     }
-
-
-def _damping(chain: Chain) -> float:
-    return chain.damping / math.sqrt(chain.stiffness * chain.mass)
 
 
 def _expected(theory: str, place: Mapping[str, float], axes: tuple[str, ...]) -> Accuracy:

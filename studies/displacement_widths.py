@@ -20,7 +20,7 @@ import crazybilliards as cb
 from crazybilliards.kinetic import accuracy
 from crazybilliards.kinetic.correlations.cells import make_cells
 from crazybilliards.kinetic.correlations.closure import collective_variance
-from crazybilliards.kinetic.correlations.stationary import _agree
+from crazybilliards.kinetic.correlations.stationary import in_agreement
 from crazybilliards.kinetic.correlations.stationary_result import rods
 from studies.stationary_errors import largest, pooled, simulated_widths
 
@@ -43,7 +43,7 @@ def drawn() -> Iterator[cb.Chain]:
 def row(chain: cb.Chain) -> list[str]:
     """Return a line of the table."""
     value, error = pooled([simulated_widths(chain, ACCURACY, LIMIT)], "displacement_width", 1)
-    found = _agree(chain, 2e-3)
+    found = in_agreement(chain, 2e-3)
     of_velocities, of_displacements = (
         collective_variance(make_cells(chain.size, whole=whole), pairs, np.arange(0.5, chain.size))
         for whole, pairs in ((False, found.pairs), (True, found.displaced))
@@ -55,9 +55,11 @@ def row(chain: cb.Chain) -> list[str]:
     )
     worst = int(np.argmax(np.abs(now[: (chain.size + 1) // 2])))
     stated = accuracy.expected_correlated_phase_space(chain).displacement_width
-    Gamma = chain.damping / math.sqrt(chain.stiffness * chain.mass)
     return [
-        *(f"{each:g}" for each in (chain.size, chain.restitution, round(Gamma, 3))),
+        *(
+            f"{each:g}"
+            for each in (chain.size, chain.restitution, round(chain.relative_damping, 3))
+        ),
         f"{100 * largest(before, error)[0]:.1f}",
         f"{100 * now[worst]:+.1f}",
         f"{worst + 1}",

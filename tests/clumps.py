@@ -7,10 +7,8 @@ from crazybilliards.kinetic import displaced
 
 def two_clumps(chain, distance, speed):
     """Return clumps that are ``distance`` apart and approach one another, each with ``speed``."""
-    whole, start = (
-        displaced(chain, 0.0),
-        displaced(chain, distance / 2),
-    )  # on a grid that holds both
+    whole = displaced(chain, 0.0)
+    start = displaced(chain, distance / 2)  # its grid holds both
     x, half = start.x.values, chain.size / 2
     inside = np.maximum(np.abs(x) - distance / 2, 0.0)
     density = np.where(np.abs(x) < distance / 2, 0.0, np.interp(inside, whole.x, whole.density))

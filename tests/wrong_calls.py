@@ -70,6 +70,7 @@ cb.compressed(chain) | compressed needs factor
 cb.compressed(chain, factr=2) | did you mean 'factor'?
 cb.displaced(chain, 1, 2) | displaced takes chain, shift without a name, got 2
 cb.two_clumps | has no attribute 'two_clumps' any more: displaced(chain, 0).assign(flow_velocity
+cb.GrowthFit | has no attribute 'GrowthFit' any more: every fit is a Fit
 cb.kinetic.critical_damping | any more: critical_size(chain.replace(damping=...))
 cb.correlated_phase_space(chain, 0.1) | write tolerance=0.1
 cb.critical_size(chain, 3) | critical_size takes chain without a name, got 3

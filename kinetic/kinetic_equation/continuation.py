@@ -15,16 +15,11 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from crazybilliards.kinetic.kinetic_equation.newton import NotSolvedError, stationary_state
 from crazybilliards.kinetic.kinetic_equation.order_statistics import Rods
 from crazybilliards.kinetic.kinetic_equation.velocity_moments import fitting_box
 from crazybilliards.kinetic.kinetic_equation.velocity_space import Box, VelocitySpace
-from crazybilliards.kinetic.kinetic_equation.weak_form import (
-    Factors,
-    NotSolvedError,
-    Units,
-    coefficients,
-    stationary_state,
-)
+from crazybilliards.kinetic.kinetic_equation.weak_form import Factors, Units, coefficients
 from crazybilliards.kinetic.statics.label_closure import stationary
 from crazybilliards.model import Chain
 from crazybilliards.model.checks import check_integer, check_real

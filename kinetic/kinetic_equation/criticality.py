@@ -21,7 +21,6 @@ used. For strong damping Newton's method finds no critical state beyond Gamma = 
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import pairwise
@@ -31,9 +30,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crazybilliards.kinetic.kinetic_equation.continuation import OnMesh, followed, on_fitting_mesh
+from crazybilliards.kinetic.kinetic_equation.newton import stationary_state
 from crazybilliards.kinetic.kinetic_equation.velocity_space import Box, VelocitySpace, one_thread
 from crazybilliards.kinetic.kinetic_equation.weak_damping import weak_damping_drag
-from crazybilliards.kinetic.kinetic_equation.weak_form import Coefficients, stationary_state
+from crazybilliards.kinetic.kinetic_equation.weak_form import Coefficients
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain
 
@@ -101,7 +101,7 @@ def _require_drive(chain: Chain) -> float:
     for name in ("damping", "stiffness"):
         if getattr(chain, name) == 0:
             raise ValueError(f"{name}=0: no size has a steady state with e > 1")
-    return chain.damping / math.sqrt(chain.stiffness * chain.mass)
+    return chain.relative_damping
 
 
 @lru_cache(maxsize=256)

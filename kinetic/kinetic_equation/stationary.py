@@ -32,10 +32,11 @@ from crazybilliards.kinetic.kinetic_equation.continuation import (
     on_fine_mesh,
     refined,
 )
+from crazybilliards.kinetic.kinetic_equation.newton import NotSolvedError
 from crazybilliards.kinetic.kinetic_equation.order_statistics import Rods, rods
 from crazybilliards.kinetic.kinetic_equation.stationary_result import in_vocabulary
 from crazybilliards.kinetic.kinetic_equation.velocity_moments import moments
-from crazybilliards.kinetic.kinetic_equation.weak_form import NotSolvedError, coefficients
+from crazybilliards.kinetic.kinetic_equation.weak_form import coefficients
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain
 from crazybilliards.model.checks import check_integer

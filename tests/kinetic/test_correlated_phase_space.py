@@ -10,14 +10,10 @@ from crazybilliards.kinetic import correlated_phase_space, equilibrium, phase_sp
 from crazybilliards.kinetic.correlations import stationary
 from crazybilliards.kinetic.correlations.collective_motion import as_seen_in_place
 from crazybilliards.kinetic.kinetic_equation.continuation import elastic_state, free_units, solved
+from crazybilliards.kinetic.kinetic_equation.newton import stationary_state
 from crazybilliards.kinetic.kinetic_equation.velocity_moments import moments
 from crazybilliards.kinetic.kinetic_equation.velocity_space import Box, VelocitySpace
-from crazybilliards.kinetic.kinetic_equation.weak_form import (
-    Equation,
-    Factors,
-    coefficients,
-    stationary_state,
-)
+from crazybilliards.kinetic.kinetic_equation.weak_form import Equation, Factors, coefficients
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
 
