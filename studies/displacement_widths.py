@@ -18,7 +18,6 @@ import numpy as np
 
 import crazybilliards as cb
 from crazybilliards.kinetic import accuracy
-from crazybilliards.kinetic.correlations.cells import make_cells
 from crazybilliards.kinetic.correlations.closure import collective_variance
 from crazybilliards.kinetic.correlations.stationary import in_agreement
 from crazybilliards.kinetic.correlations.stationary_result import rods
@@ -45,8 +44,11 @@ def row(chain: cb.Chain) -> list[str]:
     value, error = pooled([simulated_widths(chain, ACCURACY, LIMIT)], "displacement_width", 1)
     found = in_agreement(chain, 2e-3)
     of_velocities, of_displacements = (
-        collective_variance(make_cells(chain.size, whole=whole), pairs, np.arange(0.5, chain.size))
-        for whole, pairs in ((False, found.pairs), (True, found.displaced))
+        collective_variance(problem.cells, pairs, np.arange(0.5, chain.size))
+        for problem, pairs in (
+            (found.problem, found.pairs),
+            (found.problem.on_whole_cells(), found.displaced),
+        )
     )
     variance = rods(found).position_variance
     before, now = (
@@ -54,12 +56,10 @@ def row(chain: cb.Chain) -> list[str]:
         for each in (variance + of_velocities - of_displacements, variance)
     )
     worst = int(np.argmax(np.abs(now[: (chain.size + 1) // 2])))
-    stated = accuracy.expected_correlated_phase_space(chain).displacement_width
+    stated = accuracy.expected("correlated_phase_space", chain).displacement_width
+    Gamma = round(chain.relative_damping, 3)
     return [
-        *(
-            f"{each:g}"
-            for each in (chain.size, chain.restitution, round(chain.relative_damping, 3))
-        ),
+        *(f"{each:g}" for each in (chain.size, chain.restitution, Gamma)),
         f"{100 * largest(before, error)[0]:.1f}",
         f"{100 * now[worst]:+.1f}",
         f"{worst + 1}",

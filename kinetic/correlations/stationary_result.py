@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from crazybilliards.kinetic.accuracy import expected_correlated_phase_space
+from crazybilliards.kinetic.accuracy import expected
 from crazybilliards.kinetic.correlations.cells import of_cells, of_rods
 from crazybilliards.kinetic.correlations.closure import Closure, collective_variance
 from crazybilliards.kinetic.correlations.collective_motion import as_seen_in_place
@@ -69,7 +69,7 @@ def assemble(found: Correlated, of_rods: Rods, mesh_error: float) -> xr.Dataset:
         method={"theory": "kinetic equation with pair correlations"},
         residual=found.residual,
         mesh_error=mesh_error,
-        expected=expected_correlated_phase_space(chain),
+        expected=expected("correlated_phase_space", chain),
     ).assign_attrs(iterations=found.iterations)
 
 

@@ -21,7 +21,7 @@ from typing import Literal
 import numpy as np
 import xarray as xr
 
-from crazybilliards.kinetic.accuracy import expected_phase_space, warn_if_unmeasured
+from crazybilliards.kinetic.accuracy import expected, warn_if_unmeasured
 from crazybilliards.kinetic.kinetic_equation.continuation import (
     CELLS,
     State,
@@ -176,5 +176,5 @@ def _assemble(state: State, of_rods: Rods, mesh_error: float) -> xr.Dataset:
         method={"theory": "kinetic equation", "order": state.order},
         residual=state.residual,
         mesh_error=mesh_error,
-        expected=expected_phase_space(chain),
+        expected=expected("phase_space", chain),
     )

@@ -177,35 +177,7 @@ def test_the_coldest_place_is_warmer_than_the_coldest_rods(theory):
     assert place > 1.05 * rod
 
 
-@pytest.mark.parametrize(
-    ("changes", "reason"),
-    [
-        ({"restitution": 1.05}, "restitution from 0 to 1 only, got 1.05; phase_space"),
-        ({"size": 9}, "size from 10 to 1000 only, got 9"),
-        ({"size": 1001}, "size from 10 to 1000 only"),
-        ({"damping": 0.2}, r"damping/sqrt\(k m\) from 0.14 to 1.5 only"),
-        ({"damping": 4}, r"damping/sqrt\(k m\) from 0.14 to 1.5 only"),
-        ({"gap": 0.1}, "without gap only"),
-        ({"spring": "quadratic"}, "linear springs only"),
-        ({"amplitude": 0}, "no steady state"),
-    ],
-)
-def test_what_is_not_derived_is_refused(changes, reason):
-    with pytest.raises(ValueError, match=reason):
-        correlated_phase_space(CHAIN.replace(**changes))
-
-
-@pytest.mark.parametrize(
-    ("settings", "reason"),
-    [({"tolerance": 0}, "tolerance"), ({"cells": 3}, "cells"), ({"cells": 151}, "cells")],
-)
-def test_wrong_settings_are_named(settings, reason):
-    with pytest.raises(ValueError, match=reason):
-        correlated_phase_space(CHAIN, **settings)
-
-
 def test_no_agreement_is_an_error_with_a_reason(monkeypatch):
-
     monkeypatch.setattr(stationary, "_MOST_ITERATIONS", 2)
     with pytest.raises(ValueError, match=r"no agreement after 2 iterations.*phase_space and sim"):
         correlated_phase_space(CHAIN)

@@ -90,19 +90,3 @@ def test_the_mesh_reaches_as_far_as_hot_rods():
     require_all_rods(force_balance(chain, velocity_variance=grown(20, 1)), chain.size)
     with pytest.raises(ValueError, match="rods are found beyond x = "):
         force_balance(chain, velocity_variance=grown(300, 2))
-
-
-def test_bad_profiles_are_refused_in_one_line():
-    chain = Chain(size=10)
-    for wrong, message in (
-        (lambda x: -1.0, "finite and positive"),
-        (lambda x: x * np.nan, "finite and positive"),
-        (([0, 1], [1, 2, 3]), "equally long"),
-        (([1, 0], [1, 2]), "ascending"),
-        ("abc", "velocity_variance takes"),
-        (force_balance(Chain(size=9)), "9 particles"),
-    ):
-        with pytest.raises(ValueError, match=message):
-            force_balance(chain, velocity_variance=wrong)
-    with pytest.raises(ValueError, match="linear springs"):
-        force_balance(chain.replace(spring="quadratic"), velocity_variance=lambda x: 1.0)
