@@ -1,7 +1,5 @@
 """The kinetic equation with pair correlations: exact at e = 1, its balances, simulations."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from scipy.interpolate import PchipInterpolator
@@ -9,7 +7,7 @@ from scipy.interpolate import PchipInterpolator
 from crazybilliards.kinetic import correlated_phase_space, equilibrium, phase_space
 from crazybilliards.kinetic.correlations import stationary
 from crazybilliards.kinetic.correlations.collective_motion import as_seen_in_place
-from crazybilliards.kinetic.kinetic_equation.continuation import elastic_state, free_units, solved
+from crazybilliards.kinetic.kinetic_equation.continuation import elastic_state, free_units
 from crazybilliards.kinetic.kinetic_equation.newton import stationary_state
 from crazybilliards.kinetic.kinetic_equation.velocity_moments import moments
 from crazybilliards.kinetic.kinetic_equation.velocity_space import Box, VelocitySpace
@@ -143,12 +141,6 @@ def test_the_variation_knows_the_factors(symmetric):
     expected = (shifted[0] @ f - shifted[1] @ f) / (2 * step)
     found = equation.variation(f)(change)
     np.testing.assert_allclose(found, expected, atol=1e-5 * np.abs(frozen @ f).max())
-
-
-def test_factors_of_one_change_nothing():
-    state = solved(elastic_state(CHAIN.replace(restitution=0.95), 2, 8))
-    with_ones = solved(replace(state, factors=along(1, 1)))
-    np.testing.assert_allclose(with_ones.f, state.f, atol=1e-9 * state.f.max())
 
 
 def test_collective_motion_widens_what_is_seen():
