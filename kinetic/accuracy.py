@@ -74,11 +74,12 @@ def warn_if_unmeasured(theory: str, error: float) -> None:
 def expected(theory: str, chain: Chain) -> Accuracy:
     """Return the errors of a stationary theory: the largest of the measured chains around this one.
 
-    At e = 1 every theory has the exact velocities. ``force_balance`` was measured there alone.
+    At e = 1 these theories have the exact velocities. ``force_balance`` was measured there alone.
+    A theory that was never measured has no errors to state.
     """
     if theory == "equilibrium":
         return Accuracy(0.0, 0.0, 0.0, 0.0, 0.0)
-    if theory == "force_balance" and chain.restitution != 1:
+    if theory not in _AXES or (theory == "force_balance" and chain.restitution != 1):
         return Accuracy()
     axes, place = _AXES[theory], _place(chain)
     errors = {

@@ -95,12 +95,6 @@ def transport(f, p, w):  # type: ignore[no-untyped-def]
     return v * f * grad(p)[0] - (through + spread) * grad(p)[1]
 
 
-@BilinearForm
-def mass(f, p, w):  # type: ignore[no-untyped-def]
-    """Scalar product, for the equation in time."""
-    return f * p
-
-
 class Mean(NamedTuple):
     """Fields that depend on f as a whole, tables over the quadrature points."""
 

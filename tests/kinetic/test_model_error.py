@@ -78,6 +78,10 @@ def test_what_was_not_measured_is_unknown(chain):
     assert np.isnan(accuracy.expected("phase_space", chain)).all()
 
 
+def test_a_theory_that_was_never_measured_states_nothing():
+    assert np.isnan(accuracy.expected("one of your own", Chain())).all()
+
+
 @pytest.mark.parametrize("changes", [{"gap": 20.0}, {"spring": "quadratic"}, {"size": 5000}])
 @pytest.mark.parametrize("name", ["force_balance", *STATIONARY])
 def test_velocities_of_elastic_chains_are_exact_everywhere(name, changes):
