@@ -2,13 +2,7 @@ from .coverage import coverage_density as coverage_density, smooth as smooth
 from .distances import Deviation as Deviation, deviation as deviation
 from .drawing import overlay as overlay
 from .fits import (
-    ArctanhFit as ArctanhFit,
-    AvalancheFit as AvalancheFit,
-    ExponentialFit as ExponentialFit,
-    GrowthFit as GrowthFit,
-    PowerLawFit as PowerLawFit,
-    ScalingFit as ScalingFit,
-    SingularityFit as SingularityFit,
+    Fit as Fit,
     fit_arctanh as fit_arctanh,
     fit_avalanches as fit_avalanches,
     fit_border_power_law as fit_border_power_law,

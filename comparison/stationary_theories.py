@@ -53,9 +53,9 @@ class Theory:
 
     def accuracy(self, chain: Chain) -> Accuracy:
         """Return the errors that the theory states for a chain that it takes."""
-        accuracy = import_module("crazybilliards.kinetic.accuracy")
-        found: Accuracy = getattr(accuracy, f"expected_{self.name}")(chain)
-        return found
+        from crazybilliards.kinetic.accuracy import expected
+
+        return expected(self.name, chain)
 
     def refusal(self, chain: Chain, settings: Mapping[str, Any] | None = None) -> str:
         """Return why the theory does not take the chain and these settings, or nothing."""

@@ -6,12 +6,8 @@ from .exact.gibbs_measure import (
     equilibrium_states as equilibrium_states,
 )
 from .fluids.equations import hydrodynamics as hydrodynamics
-from .kinetic_equation.criticality import (
-    critical_damping as critical_damping,
-    critical_restitution as critical_restitution,
-    critical_size as critical_size,
-)
+from .kinetic_equation.criticality import critical_size as critical_size
 from .kinetic_equation.relaxation import relax_phase_space as relax_phase_space
 from .kinetic_equation.stationary import phase_space as phase_space
-from .starts import compressed as compressed, displaced as displaced, two_clumps as two_clumps
+from .starts import compressed as compressed, displaced as displaced
 from .statics.balance import force_balance as force_balance

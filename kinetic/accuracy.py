@@ -8,8 +8,7 @@ tables in ``kinetic/measured``, which
     python -m studies.relaxation_error FOLDER
 
 have written. A stated error is the measured one plus two of its standard errors: the largest of the
-measured chains on all sides of a chain. It is NaN beyond them. ``expected_NAME(chain)`` states
-those of the theory NAME.
+measured chains on all sides of a chain. It is NaN beyond them.
 """
 
 from __future__ import annotations
@@ -27,7 +26,12 @@ from crazybilliards.model.calls import warn_user
 # Coordinates in the tables, in order. The density of shorter rods is less wrong, so that of the
 # largest s/R counts beyond it, too.
 _PLACE = ("g L/s", "L", "e", "Gamma")
-_OF_FORCE_BALANCE = ("g/s", "L")
+_AXES = {
+    "force_balance": ("g/s", "L"),
+    "phase_space": _PLACE,
+    "correlated_phase_space": _PLACE,
+    "relax_phase_space": ("L", "e", "Gamma", "y times"),
+}
 _LENGTH = "s/R"
 _CONTINUOUS, _SAME = ("Gamma", "g L/s", "g/s", _LENGTH), 5e-3  # relative
 _ANY = 0.49  # Gamma of a measured chain
@@ -67,28 +71,23 @@ def warn_if_unmeasured(theory: str, error: float) -> None:
         )
 
 
-def expected_equilibrium(chain: Chain) -> Accuracy:
-    """Return the errors of ``equilibrium``, which is exact."""
-    return Accuracy(0.0, 0.0, 0.0, 0.0, 0.0)
+def expected(theory: str, chain: Chain) -> Accuracy:
+    """Return the errors of a stationary theory: the largest of the measured chains around this one.
 
-
-def expected_force_balance(chain: Chain) -> Accuracy:
-    """Return the errors of ``force_balance`` at e = 1, where it has the exact velocity width."""
-    if chain.restitution != 1:
+    At e = 1 these theories have the exact velocities. ``force_balance`` was measured there alone.
+    A theory that was never measured has no errors to state.
+    """
+    if theory == "equilibrium":
+        return Accuracy(0.0, 0.0, 0.0, 0.0, 0.0)
+    if theory not in _AXES or (theory == "force_balance" and chain.restitution != 1):
         return Accuracy()
-    s = chain.thermal_length if chain.spring == "linear" else math.nan
-    place = {"L": chain.size, "g/s": chain.lattice_gap / s, _LENGTH: s / chain.radius}
-    return _maxwellian(chain, _expected("force_balance", place, _OF_FORCE_BALANCE))
-
-
-def expected_phase_space(chain: Chain) -> Accuracy:
-    """Return the largest errors of ``phase_space`` on the measured chains around this one."""
-    return _maxwellian(chain, _expected("phase_space", _place(chain), _PLACE))
-
-
-def expected_correlated_phase_space(chain: Chain) -> Accuracy:
-    """Return those of ``correlated_phase_space``."""
-    return _maxwellian(chain, _expected("correlated_phase_space", _place(chain), _PLACE))
+    axes, place = _AXES[theory], _place(chain)
+    errors = {
+        quantity: _around(theory, quantity, axes + (_LENGTH,) * (quantity == "density"), place)
+        for quantity in Accuracy._fields
+    }
+    exact = {"velocity_width": 0.0, "border": 0.0} if chain.restitution == 1 else {}
+    return Accuracy(**errors | exact)
 
 
 def expected_relax_phase_space(chain: Chain, compression: float) -> float:
@@ -101,42 +100,27 @@ def expected_relax_phase_space(chain: Chain, compression: float) -> float:
         return math.nan
     if chain.restitution == 1:
         return 0.0
-    place = _place(chain) | {"y times": compression}
-    return _around("relax_phase_space", "kinetic_energy", place, ("L", "e", "Gamma", "y times"))
-
-
-def _maxwellian(chain: Chain, expected: Accuracy) -> Accuracy:
-    """Return the errors, without any of velocities at e = 1, where all theories are exact."""
-    exact = {"velocity_width": 0.0, "border": 0.0} if chain.restitution == 1 else {}
-    return expected._replace(**exact)
+    place, theory = _place(chain) | {"y times": compression}, "relax_phase_space"
+    return _around(theory, "kinetic_energy", _AXES[theory], place)
 
 
 def _place(chain: Chain) -> dict[str, float]:
     """Return where a chain lies in the tables; NaN for quadratic springs, which are in none."""
     if chain.spring != "linear" or min(chain.stiffness, chain.damping, chain.amplitude) == 0:
-        return dict.fromkeys((*_PLACE, _LENGTH), math.nan)
+        return dict.fromkeys((*_PLACE, "g/s", _LENGTH), math.nan)
     s = chain.thermal_length
     return {
         "L": chain.size,
         "e": chain.restitution,
         # At e = 1 no distribution in space depends on the damping.
-        "Gamma": _ANY if chain.restitution == 1 else _damping(chain),
+        "Gamma": _ANY if chain.restitution == 1 else chain.relative_damping,
         "g L/s": chain.lattice_gap * chain.size / s,
+        "g/s": chain.lattice_gap / s,
         _LENGTH: s / chain.radius,
     }
 
 
-def _damping(chain: Chain) -> float:
-    return chain.damping / math.sqrt(chain.stiffness * chain.mass)
-
-
-def _expected(theory: str, place: Mapping[str, float], axes: tuple[str, ...]) -> Accuracy:
-    """Return the errors of all quantities at a place."""
-    coordinates = dict.fromkeys(Accuracy._fields, axes) | {"density": (*axes, _LENGTH)}
-    return Accuracy(**{q: _around(theory, q, place, own) for q, own in coordinates.items()})
-
-
-def _around(theory: str, quantity: str, place: Mapping[str, float], axes: tuple[str, ...]) -> float:
+def _around(theory: str, quantity: str, axes: tuple[str, ...], place: Mapping[str, float]) -> float:
     """Return the largest error of the measured chains on all sides of a place; NaN beyond them."""
     return _largest(_tables().get((theory, quantity), {}), [(axis, place[axis]) for axis in axes])
 

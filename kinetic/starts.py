@@ -47,44 +47,23 @@ def compressed(chain: Chain, factor: float) -> xr.Dataset:
     return _stationary_image(chain, stretch=check_real("factor", factor, positive=True))
 
 
-def two_clumps(chain: Chain, distance: float, speed: float) -> xr.Dataset:
-    """Return the stationary state at restitution 1 cut in half: clumps ``distance`` [R] apart.
-
-    Each approaches the other with ``speed`` [R/T].
-    """
-    distance = check_real("distance", distance, positive=True)
-    speed = check_real("speed", speed)
-    require_chain(chain, "a start from the stationary state")
-    grid = position_grid(chain, fluid_reach(chain) + distance / 2)
-    apart = np.maximum(np.abs(grid) - distance / 2, 0.0)
-    outside = np.abs(grid) >= distance / 2
-    density, label = stationary(chain).fields(chain, apart)
-    label = chain.size / 2 + np.sign(grid) * (label - chain.size / 2)
-    velocity = -np.sign(grid) * speed
-    return _start(chain, grid, np.where(outside, density, 0.0), label, velocity)
-
-
 def _stationary_image(chain: Chain, stretch: float = 1.0, shift: float = 0.0) -> xr.Dataset:
     require_chain(chain, "a start from the stationary state")
     # Stretching widens the lattice of anchors as well as the tails beyond it.
     wider = max(stretch - 1, 0.0) * (chain.lattice_gap * chain.size / 2 + thermal_reach(chain))
     grid = position_grid(chain, fluid_reach(chain) + abs(shift) + wider)
     density, label = stationary(chain).fields(chain, grid - shift, stretch)
-    return _start(chain, grid, density, label, np.zeros(grid.size))
-
-
-def _start(chain: Chain, x: Array, density: Array, label: Array, velocity: Array) -> xr.Dataset:
     return result(
         chain,
         {
             "density": ("x", density),
             "label": ("x", label),
-            "flow_velocity": ("x", velocity),
-            "velocity_variance": ("x", np.full(x.size, chain.free_velocity_width**2)),
+            "flow_velocity": ("x", np.zeros(grid.size)),
+            "velocity_variance": ("x", np.full(grid.size, chain.free_velocity_width**2)),
         },
         source="start",
         method={"start": "hydrodynamics"},
-        coordinates={"x": x},
+        coordinates={"x": grid},
     )
 
 
@@ -94,9 +73,8 @@ def check_start(start: xr.Dataset | None, more: str = "") -> xr.Dataset:
         return start
     came = "none" if start is None else shown(start)
     raise ValueError(
-        "start must be a result with density over x: displaced(chain, shift), compressed(chain, "
-        "factor) or two_clumps(chain, distance, speed) make one of this chain, force_balance one "
-        f"of another{more}; got {came}"
+        "start must be a result with density over x: displaced(chain, shift) or compressed(chain, "
+        f"factor) make one of this chain, force_balance one of another{more}; got {came}"
     )
 
 

@@ -153,6 +153,11 @@ class Chain(Parameters):
             return math.inf if energy > 0 else 0.0
         return float(spring.reach(energy / self.stiffness, self.potential_exponent))
 
+    @property
+    def relative_damping(self) -> float:
+        """Gamma/sqrt(k m) of linear springs; beyond 2 a free rod does not oscillate."""
+        return self.damping / math.sqrt(self.stiffness * self.mass) if self.stiffness else math.inf
+
     # -- heat -------------------------------------------------------------------------------
 
     @property

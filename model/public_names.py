@@ -10,12 +10,21 @@ from __future__ import annotations
 import ast
 import os
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from importlib import import_module
 from threading import RLock
 from typing import Any
 
 _ONE_BY_ONE = RLock()  # a class is changed where it is, and must be so once
+# What replaces the names that 0.4.0 does not have any more; 0.5.0 says no more of them.
+_GONE = {
+    "critical_damping": "critical_size(chain.replace(damping=...)) has as many rods as the chain "
+    "at the critical damping",
+    "critical_restitution": "it is 1 + (e - 1) critical_size(chain).value/size, at any e > 1",
+    "two_clumps": "displaced(chain, 0).assign(flow_velocity=...) lets halves of a chain collide",
+}
+for _fit in ("Arctanh", "Avalanche", "Exponential", "Growth", "PowerLaw", "Scaling", "Singularity"):
+    _GONE[f"{_fit}Fit"] = "every fit is a Fit, with the same attributes"
 
 
 def hand_out(room: str) -> tuple[Callable[[str], Any], Callable[[], list[str]], list[str]]:
@@ -32,7 +41,7 @@ def hand_out(room: str) -> tuple[Callable[[str], Any], Callable[[], list[str]], 
 
     def __getattr__(name: str) -> Any:  # noqa: N807
         if name not in module_of:
-            raise AttributeError(f"module {room!r} has no attribute {name!r}")
+            raise missing(room, name, module_of)
         from crazybilliards.model.calls import checked
 
         found = getattr(import_module(module_of[name]), name)
@@ -42,3 +51,11 @@ def hand_out(room: str) -> tuple[Callable[[str], Any], Callable[[], list[str]], 
         return vars(module)[name]
 
     return __getattr__, lambda: list(module_of), list(module_of)
+
+
+def missing(module: str, name: str, known: Iterable[str]) -> AttributeError:
+    """Return the error for a name that a module does not have, with the one to use."""
+    from crazybilliards.model.checks import meant
+
+    hint = f" any more: {_GONE[name]}" if name in _GONE else meant(name, known)
+    return AttributeError(f"module {module!r} has no attribute {name!r}{hint}")

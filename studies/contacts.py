@@ -27,7 +27,7 @@ from crazybilliards.comparison.drawing import COLOURS, draw_points
 from crazybilliards.comparison.layout import legend_above, panels
 from crazybilliards.kinetic import correlated_phase_space
 from crazybilliards.kinetic.correlations.contact_speeds import contact_speed
-from crazybilliards.kinetic.correlations.stationary import _agree
+from crazybilliards.kinetic.correlations.stationary import in_agreement
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
 from crazybilliards.particles.observers import Covariances
@@ -107,7 +107,7 @@ def simulated(chain: Chain, duration: float) -> list[tuple[Values, Values]]:
 
 def theoretical(chain: Chain) -> list[Values]:
     """Return the same of the theory, whose cells are single rods for up to 130 rods."""
-    found = _agree(chain, TOLERANCE)
+    found = in_agreement(chain, TOLERANCE)
     around, pairs = found.background, found.pairs
     return [
         around.pressure,

@@ -14,15 +14,14 @@ import math
 import numpy as np
 
 from crazybilliards.kinetic import accuracy
-from crazybilliards.kinetic.correlations.cells import make_cells
 from crazybilliards.kinetic.correlations.closure import collective_variance
-from crazybilliards.kinetic.correlations.stationary import _agree
+from crazybilliards.kinetic.correlations.stationary import in_agreement
 from crazybilliards.kinetic.correlations.stationary_result import rods
 from studies.common import Table, damped, print_table
 from studies.stationary_errors import largest, pooled, simulated_widths
 
 NUMBER = 24
-ACCURACY, LIMIT = 0.0029, 0.01
+ACCURACY, LIMIT = 0.0015, 0.005
 
 
 def table() -> Table:
@@ -39,10 +38,13 @@ def table() -> Table:
 def row(size: int, e: float, Gamma: float) -> list[str]:
     chain = damped(size, e, Gamma)
     value, error = pooled([simulated_widths(chain, ACCURACY, LIMIT)], "displacement_width", 1)
-    found = _agree(chain, 2e-3)
+    found = in_agreement(chain, 2e-3)
     of_velocities, of_displacements = (
-        collective_variance(make_cells(size, whole=whole), pairs, np.arange(0.5, size))
-        for whole, pairs in ((False, found.pairs), (True, found.displaced))
+        collective_variance(problem.cells, pairs, np.arange(0.5, size))
+        for problem, pairs in (
+            (found.problem, found.pairs),
+            (found.problem.on_whole_cells(), found.displaced),
+        )
     )
     variance = rods(found).position_variance
     before, now = (
@@ -50,7 +52,7 @@ def row(size: int, e: float, Gamma: float) -> list[str]:
         for each in (variance + of_velocities - of_displacements, variance)
     )
     worst = int(np.argmax(np.abs(now[: (size + 1) // 2])))
-    stated = accuracy.expected_correlated_phase_space(chain).displacement_width
+    stated = accuracy.expected("correlated_phase_space", chain).displacement_width
     return [
         f"{100 * largest(before, error)[0]:.1f}",
         f"{100 * now[worst]:+.1f}",

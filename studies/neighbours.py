@@ -149,9 +149,7 @@ def along_lengths(found: dict[int, xr.Dataset], last: str, column: dict[int, str
 
 def guess(run: xr.Dataset) -> str:
     """Return what the correlation length would be if collisions took all energy."""
-    chain = chain_of(run)
-    unit = math.sqrt(chain.stiffness * chain.mass) / chain.damping
-    return f"{math.sqrt(2 / 3) * force(run).value * unit:.1f}"
+    return f"{math.sqrt(2 / 3) * force(run).value / chain_of(run).relative_damping:.1f}"
 
 
 def tables(results: Results) -> dict[str, Table]:

@@ -17,8 +17,6 @@ from crazybilliards.kinetic import (
     breathing_cloud,
     compressed,
     correlated_phase_space,
-    critical_damping,
-    critical_restitution,
     critical_size,
     displaced,
     equilibrium,
@@ -27,7 +25,6 @@ from crazybilliards.kinetic import (
     hydrodynamics,
     phase_space,
     relax_phase_space,
-    two_clumps,
 )
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate, simulate_limit
@@ -49,7 +46,6 @@ class Given:
     number: float  # a velocity variance that is the same everywhere
     displacement: Along = softly
     length: float = 1.0
-    velocity: float = 1.0
     stretch: float = 1.5
     times: Mapping[str, float]  # duration and every, of what is solved in time
     fluid: Mapping[str, Any] = field(default_factory=dict)
@@ -95,7 +91,6 @@ SOLVERS = {
     "equilibrium_states": Solver(lambda chain, _: equilibrium_states(chain, 2), ELASTIC),
     "displaced": Solver(lambda chain, given: displaced(chain, given.length)),
     "compressed": Solver(lambda chain, given: compressed(chain, given.stretch)),
-    "two_clumps": Solver(lambda chain, given: two_clumps(chain, given.length, given.velocity)),
     "force_balance": Solver(lambda chain, _: force_balance(chain), ELASTIC),
     "force_balance, variance": Solver(
         lambda chain, given: force_balance(chain, velocity_variance=given.variance), LINEAR
@@ -107,7 +102,7 @@ SOLVERS = {
         lambda chain, given: force_balance(chain, given.displacement), ELASTIC
     ),
     "force_balance, both": Solver(
-        lambda chain, given: force_balance(chain, given.displacement, given.variance)
+        lambda chain, given: force_balance(chain, given.displacement, given.number)
     ),
     "hydrodynamics, label": _flow(),
     "hydrodynamics, label, evolving": _flow(velocity_variance="evolving"),
@@ -138,8 +133,6 @@ SOLVERS = {
         )
     ),
     "critical_size": Solver(lambda chain, _: critical_size(chain), DRIVEN),
-    "critical_restitution": Solver(lambda chain, _: critical_restitution(chain), DRIVEN),
-    "critical_damping": Solver(lambda chain, _: critical_damping(chain), DRIVEN),
     "simulate": _run(),
     "simulate, contact dynamics": _run(method="contact-dynamics"),
     "simulate, euler": _run(stepper="euler"),

@@ -69,10 +69,12 @@ cb.breathing_cloud(chain, 3, strech=1.0) | did you mean 'stretch'?
 cb.compressed(chain) | compressed needs factor
 cb.compressed(chain, factr=2) | did you mean 'factor'?
 cb.displaced(chain, 1, 2) | displaced takes chain, shift without a name, got 2
-cb.two_clumps(chain) | two_clumps needs distance and speed
+cb.two_clumps | has no attribute 'two_clumps' any more: displaced(chain, 0).assign(flow_velocity
+cb.GrowthFit | has no attribute 'GrowthFit' any more: every fit is a Fit
+cb.kinetic.critical_damping | any more: critical_size(chain.replace(damping=...))
 cb.correlated_phase_space(chain, 0.1) | write tolerance=0.1
 cb.critical_size(chain, 3) | critical_size takes chain without a name, got 3
-cb.critical_damping() | critical_damping needs chain
+cb.critical_size() | critical_size needs chain
 cb.equilibrium(chain, gap=1) | gap is an argument of Chain
 cb.equilibrium_states(chain) | equilibrium_states needs replicas
 cb.equilibrium_states(chain, 1, 2, 3) | it takes chain, replicas, seed
@@ -120,10 +122,8 @@ cb.relax_phase_space(1.05) | chain must be a Chain
 cb.breathing_cloud({}, 1) | chain must be a Chain
 cb.compressed(None, 2) | chain must be a Chain
 cb.displaced(tree, 2) | chain must be a Chain...got a DataTree
-cb.two_clumps(exact, 2, 2) | chain must be a Chain
 cb.critical_size(1.05) | chain must be a Chain...got 1.05
-cb.critical_restitution(1.05) | chain must be a Chain
-cb.critical_damping(None) | chain must be a Chain
+cb.critical_size(None) | chain must be a Chain
 cb.theories(None) | chain must be a Chain...got None
 cb.compare_elastic(5) | chain must be a Chain
 cb.compare_relaxation({}) | chain must be a Chain

@@ -1,67 +1,88 @@
-"""The paper's fit of the velocity widths of a dissipative chain: power laws from both borders."""
+"""The paper's fits along the chain: mean displacements, and widths that fall from both borders."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from functools import partial
 
 import numpy as np
 import xarray as xr
-from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import curve_fit
 
+from crazybilliards.comparison.fits.fit import Array, Fit, least_squares, root_mean_square
 from crazybilliards.model import chain_of
 from crazybilliards.model.vocabulary import require
-
-Array = NDArray[np.float64]
 
 _STEEPEST = -5.0  # of the exponents that are tried
 _STARTS = ((-0.5, 0.0), (-0.5, 0.8), (-1.0, -5.0), (-0.1, 0.0))  # of nu and c
 _LEAST_RODS = 5
 
 
-@dataclass(frozen=True)
-class PowerLawFit:
-    """W_v(i) = a [(i - c)^nu + (L + 1 - c - i)^nu], the paper's sum of two power laws.
+def fit_arctanh(source: xr.Dataset) -> Fit:
+    """Fit <dx>(x) = B arctanh(C x) to the mean displacements at the mean positions.
 
-    It is equation ``eq:power_law`` of arXiv:1404.7460, and callable on particle numbers.
+    It is the fit of the paper's figure ``fig:atan``. Every rod has the same weight, because the
+    misfit is systematic and far above the error bars. The fit is defined on |x| < 1/C and can be
+    the ``displacement`` of ``force_balance``.
 
-    Attributes
+    Parameters
     ----------
-    size
-        L.
-    scale, exponent, origin
-        a [R/T], nu and c. The power laws begin at the particle numbers c and L + 1 - c, beyond
-        the outermost rods: c < 1.
-    scale_error, exponent_error, origin_error
-        Their standard errors, from the scatter about the fit. Neighbouring rods move together, so
-        the scatter between independent runs is larger. It is the better measure.
-    correlation
-        Correlation of the errors of c and nu, typically 0.8: a larger c goes with a flatter law.
-        It is 0 if c was not fitted.
-    misfit
-        Root mean square of the relative residuals.
+    source
+        A result with ``mean_displacement``.
+
+    Returns
+    -------
+    Fit
+        ``scale`` and ``steepness``, B [R] and C [1/R], and their standard errors from the scatter
+        about the fit. ``misfit``: root mean square of the residuals [R]. ``support``: the interval
+        (-1/C, 1/C).
+
+    Raises
+    ------
+    ValueError
+        If the chain has fewer than 3 rods, or if no arctanh fits because the rods are not
+        displaced outward (they do not touch).
     """
+    require(source, ("mean_displacement",))
+    chain = chain_of(source)
+    displacement = source.mean_displacement.values
+    x = chain.anchors + displacement
+    if chain.size < 3:
+        raise ValueError(f"an arctanh fit needs at least 3 rods, got {chain.size}")
+    outward = float(np.sum(displacement * x))
+    if outward <= 0:
+        raise ValueError("no arctanh fits: the rods are not displaced outward")
+    edge = float(np.abs(x).max())
 
-    size: int
-    scale: float
-    exponent: float
-    origin: float
-    scale_error: float
-    exponent_error: float
-    origin_error: float
-    correlation: float
-    misfit: float
+    # C = 1/(edge (1 + exp(q))) keeps every rod inside the support, for every q.
+    def model(position: Array, scale: float, q: float) -> Array:
+        return scale * np.arctanh(position / (edge * (1 + math.exp(q))))
 
-    def __call__(self, particle: ArrayLike) -> Array:
-        """Return a [(i - c)^nu + (L + 1 - c - i)^nu]."""
-        i = np.asarray(particle, dtype=float)
-        return _sum_of_powers(i, self.size, self.scale, self.exponent, self.origin)
+    start = (outward / float(x @ x) * edge, -2.0)
+    (scale, q), covariance, quality = least_squares("arctanh", model, (x, displacement), start)
+    steepness = float(1 / (edge * (1 + math.exp(q))))
+    scale_error, q_error = np.sqrt(np.diag(covariance))
+    return Fit(
+        {"scale": float(scale), "steepness": steepness},
+        {
+            "scale": float(scale_error),
+            "steepness": float(steepness * math.exp(q) / (1 + math.exp(q)) * q_error),
+        },
+        _arctanh,
+        {**quality, "support": (-1 / steepness, 1 / steepness)},
+    )
+
+
+def _arctanh(x: Array, scale: float, steepness: float) -> Array:
+    return scale * np.arctanh(steepness * x)
 
 
 def fit_border_power_law(
     source: xr.Dataset, *, shifted: bool = True, weighted: bool = False
-) -> PowerLawFit:
+) -> Fit:
     """Fit the paper's sum of two power laws to the velocity widths of all rods.
+
+    W_v(i) = a [(i - c)^nu + (L + 1 - c - i)^nu], equation ``eq:power_law`` of arXiv:1404.7460.
 
     Parameters
     ----------
@@ -75,6 +96,16 @@ def fit_border_power_law(
         no errors. The narrow interior then counts more. False: ordinary least squares. The paper
         does not say which. At L = 300, e = 0 the exponent is -0.460 without weights and -0.473
         with weights.
+
+    Returns
+    -------
+    Fit
+        ``scale``, ``exponent`` and ``origin``: a [R/T], nu and c. The power laws begin at the
+        particle numbers c and L + 1 - c, beyond the outermost rods: c < 1. The errors are standard
+        errors from the scatter about the fit. Neighbouring rods move together, so the scatter
+        between independent runs is larger. It is the better measure.
+        ``correlation``: of the errors of c and nu, typically 0.8, as a larger c goes with a flatter
+        law; 0 if c was not fitted. ``misfit``: root mean square of the relative residuals.
 
     Raises
     ------
@@ -101,31 +132,26 @@ def fit_border_power_law(
     if not (np.min([width, weight]) > 0 and np.isfinite([width, weight]).all()):
         raise ValueError("the fit needs positive widths and errors")
     i = np.arange(1.0, size + 1)
-    values, errors, correlation = _best_fit(i, width, weight, size, shifted)
-    fitted = _sum_of_powers(i, size, *values)
-    return PowerLawFit(
-        size=size,
-        scale=float(values[0]),
-        exponent=float(values[1]),
-        origin=float(values[2]),
-        scale_error=float(errors[0]),
-        exponent_error=float(errors[1]),
-        origin_error=float(errors[2]),
-        correlation=correlation,
-        misfit=float(np.sqrt(np.mean((fitted / width - 1) ** 2))),
+    values, errors, correlation = _best_fit(i, width, weight, shifted)
+    curve = partial(_sum_of_powers, size=size)
+    parameters, of_errors = (
+        dict(zip(("scale", "exponent", "origin"), map(float, each), strict=True))
+        for each in (values, errors)
+    )
+    misfit = root_mean_square(curve(i, *values) / width - 1)
+    return Fit(
+        parameters, of_errors, curve, {"correlation": correlation, "misfit": misfit, "size": size}
     )
 
 
-def _best_fit(
-    i: Array, width: Array, weight: Array, size: int, shifted: bool
-) -> tuple[Array, Array, float]:
+def _best_fit(i: Array, width: Array, weight: Array, shifted: bool) -> tuple[Array, Array, float]:
     """Return a, nu and c, their errors, and the correlation of the last two."""
 
     def model(i: Array, scale: float, nu: float, c: float = 0.0) -> Array:
-        return _sum_of_powers(i, size, scale, nu, c)
+        return _sum_of_powers(i, scale, nu, c, size=i.size)
 
     number = 3 if shifted else 2
-    bounds = ([0.0, _STEEPEST, -float(size)][:number], [np.inf, 0.0, 1.0][:number])
+    bounds = ([0.0, _STEEPEST, -float(i.size)][:number], [np.inf, 0.0, 1.0][:number])
     best: tuple[float, Array, Array] | None = None
     for nu, c in _STARTS if shifted else _STARTS[:1]:
         # The best scale for these two.
@@ -167,5 +193,6 @@ def _inside(values: Array, bounds: tuple[list[float], list[float]]) -> bool:
     return all(low + 1e-3 < value < high - 1e-3 for value, low, high in triples)
 
 
-def _sum_of_powers(i: Array, size: int, scale: float, nu: float, c: float) -> Array:
-    return np.asarray(scale * ((i - c) ** nu + (size + 1 - c - i) ** nu))
+def _sum_of_powers(i: Array, scale: float, exponent: float, origin: float, *, size: int) -> Array:
+    laws = (i - origin) ** exponent + (size + 1 - origin - i) ** exponent
+    return np.asarray(scale * laws)

@@ -2,49 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.optimize import minimize_scalar
 
-from crazybilliards.comparison.fits.points import check_points
+from crazybilliards.comparison.fits.fit import Array, Fit, check_points
 from crazybilliards.model.checks import check_integer, check_real
 
-Array = NDArray[np.float64]
 
-
-@dataclass(frozen=True)
-class AvalancheFit:
-    """p(N) ~ N^-exponent for smallest <= N <= largest.
-
-    Attributes
-    ----------
-    exponent, exponent_error
-        Estimate by maximum likelihood, and its standard error for independent avalanches. The
-        avalanches of one run are not independent, and the scatter between runs is about three
-        times larger.
-    smallest, largest
-        The range of sizes of the fit.
-    count
-        Number of avalanches in this range.
-    distance
-        Kolmogorov-Smirnov distance, the largest difference between the measured and the fitted
-        distribution function. Compare it with 1/sqrt(count).
-    """
-
-    exponent: float
-    exponent_error: float
-    smallest: int
-    largest: int
-    count: int
-    distance: float
-
-
-def fit_avalanches(
-    count: ArrayLike, *, smallest: int = 1, largest: int | None = None
-) -> AvalancheFit:
-    """Fit a power law to avalanche counts by maximum likelihood.
+def fit_avalanches(count: ArrayLike, *, smallest: int = 1, largest: int | None = None) -> Fit:
+    """Fit a power law p(N) ~ N^-exponent to avalanche counts by maximum likelihood.
 
     Parameters
     ----------
@@ -52,6 +21,16 @@ def fit_avalanches(
         Number of avalanches of size 1, 2, 3, ..., shape (sizes,).
     smallest, largest
         Sizes to fit, inclusive; ``largest`` None: all.
+
+    Returns
+    -------
+    Fit
+        ``exponent``, and ``exponent_error``, its standard error for independent avalanches. The
+        avalanches of one run are not independent, and the scatter between runs is about three times
+        larger. The curve is the probability of a size among those that are fitted, ``smallest`` to
+        ``largest``. ``count``: number of avalanches of these sizes. ``distance``: of Kolmogorov and
+        Smirnov, the largest difference between the measured and the fitted distribution function.
+        Compare it with 1/sqrt(count).
 
     Raises
     ------
@@ -79,19 +58,25 @@ def fit_avalanches(
         return exponent * mean + float(np.log(np.sum(sizes**-exponent)))
 
     exponent = float(minimize_scalar(cost, bracket=(1.0, 3.0)).x)
-    p = sizes**-exponent
-    p /= p.sum()
+    curve = partial(_probability, sizes=sizes)
+    p = curve(sizes, exponent)
     # Fisher's information of one avalanche is the variance of ln N.
     information = float(p @ logs**2 - (p @ logs) ** 2)
-    distance = float(np.abs(np.cumsum(counts) / total - np.cumsum(p)).max())
-    return AvalancheFit(
-        exponent,
-        1 / float(np.sqrt(total * information)),
-        smallest,
-        int(sizes[-1]),
-        int(total),
-        distance,
+    return Fit(
+        {"exponent": exponent},
+        {"exponent": 1 / float(np.sqrt(total * information))},
+        curve,
+        {
+            "smallest": smallest,
+            "largest": int(sizes[-1]),
+            "count": int(total),
+            "distance": float(np.abs(np.cumsum(counts) / total - np.cumsum(p)).max()),
+        },
     )
+
+
+def _probability(size: Array, exponent: float, *, sizes: Array) -> Array:
+    return np.asarray(size**-exponent / np.sum(sizes**-exponent))
 
 
 def tail_length(velocity: ArrayLike, density: ArrayLike, beyond: float) -> float:

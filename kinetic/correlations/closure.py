@@ -49,6 +49,7 @@ from crazybilliards.kinetic.correlations.cells import Cells, at_distance
 from crazybilliards.kinetic.correlations.contact_speeds import contact_speed
 from crazybilliards.kinetic.correlations.one_rod import OneRod
 from crazybilliards.kinetic.correlations.pair_covariance import Background, PairCovariance
+from crazybilliards.kinetic.correlations.problem import Problem
 from crazybilliards.kinetic.kinetic_equation.weak_form import Factors
 
 Array = NDArray[np.float64]
@@ -86,15 +87,16 @@ class Closure(NamedTuple):
         """Return those of independent points."""
         return cls(*np.zeros((4, cells.contacts.size)))
 
-    def factors(self, cells: Cells, size: int) -> Factors:
+    def factors(self, problem: Problem) -> Factors:
         """Return the factors of the kinetic equation."""
-        labels = cells.contacts / size - 0.5
+        labels = problem.cells.contacts / problem.chain.size - 0.5
         values = np.exp(self.log_factor), np.maximum(1 - self.collective, _LEAST)
         return Factors(*(PchipInterpolator(labels, each) for each in values))
 
 
-def background(rod: OneRod, closure: Closure, restitution: float) -> Background:
+def background(problem: Problem, rod: OneRod, closure: Closure) -> Background:
     """Return what pairs fluctuate about."""
+    restitution = problem.chain.restitution
     variance = rod.temperature + closure.collective
     temperature = variance * np.maximum(1 - closure.shared, _LEAST)
     return Background(
@@ -115,10 +117,9 @@ def collective_variance(cells: Cells, pairs: PairCovariance, labels: Array) -> A
     return at_distance(pairs.displacement, cells.centres, labels, 0.0)
 
 
-def implied(
-    size: int, cells: Cells, rod: OneRod, around: Background, pairs: PairCovariance
-) -> Closure:
+def implied(problem: Problem, rod: OneRod, around: Background, pairs: PairCovariance) -> Closure:
     """Return the unknowns that follow from the distributions."""
+    cells = problem.cells
     leaving, approaching = (
         at_distance(pairs.velocity, cells.centres, cells.contacts, _NEIGHBOUR, nearest)
         for nearest in (1, _BEYOND)
@@ -131,7 +132,7 @@ def implied(
     clustering = 1 + 0.375 * temperature - 0.5 * mixed
     loss = around.strength * around.density * around.temperature**1.5
     return Closure(
-        np.log(_even((1 - 1 / size) * loss / rod.cubes)),
+        np.log(_even((1 - 1 / problem.chain.size) * loss / rod.cubes)),
         np.minimum(_even(shared / (around.temperature + around.shared)), 1 - _LEAST),
         np.minimum(_even(collective_variance(cells, pairs, cells.contacts)), 1 - _LEAST),
         np.log(np.maximum(_even(clustering), _LEAST)),

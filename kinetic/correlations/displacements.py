@@ -21,8 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import block_diag
 
-from crazybilliards.kinetic.correlations.cells import Cells, at_distance, make_cells, of_cells
-from crazybilliards.kinetic.correlations.collision_moments import CollisionMoments
+from crazybilliards.kinetic.correlations.cells import Cells, at_distance, of_cells
 from crazybilliards.kinetic.correlations.fixed_point import find_fixed_point
 from crazybilliards.kinetic.correlations.pair_covariance import (
     Background,
@@ -36,6 +35,7 @@ from crazybilliards.kinetic.correlations.pair_covariance import (
     scales,
     steps,
 )
+from crazybilliards.kinetic.correlations.problem import Problem
 
 Array = NDArray[np.float64]
 
@@ -44,21 +44,22 @@ _MOST_ITERATIONS = 40
 
 
 def relaxing_pairs(
-    size: int, around: Background, collective: Array, moments: CollisionMoments, damping: float
+    problem: Problem, around: Background, collective: Array
 ) -> tuple[LinearResponse, PairCovariance]:
-    """Return the linear response with the stress, and h', in free units.
+    """Return the linear response with the stress, and h', between whole cells, in free units.
 
     ``collective``: h_uu at the contacts, the variance of the collective velocities.
     """
-    cells, contacts = make_cells(size, whole=True), make_cells(size).contacts
+    contacts, problem = problem.cells.contacts, problem.on_whole_cells()
+    cells, damping = problem.cells, problem.damping
     _, gap, Theta, P, b, shared, collective = (
         np.interp(cells.contacts, contacts, each) for each in (*around, collective)
     )
     T_f = Theta + shared - collective
     state = Background(P / T_f, gap, T_f, P, b * np.sqrt(Theta / T_f), collective)
-    loss, cooling = dissipation(state, moments), 2 * damping * T_f
+    loss, cooling = dissipation(problem, state), 2 * damping * T_f
     alpha = (loss / 2 + cooling) / (1.5 * loss + cooling)
-    plain = linear_response(cells, state, moments, damping)
+    plain = linear_response(problem, state)
     known: list[tuple[LinearResponse, PairCovariance]] = []
 
     def image(unknown: Array) -> Array:

@@ -48,7 +48,7 @@ from numpy.typing import NDArray
 from scipy.linalg import block_diag, eigvals, solve_continuous_lyapunov
 
 from crazybilliards.kinetic.correlations.cells import Cells, of_cells
-from crazybilliards.kinetic.correlations.collision_moments import CollisionMoments
+from crazybilliards.kinetic.correlations.problem import Problem
 
 Array = NDArray[np.float64]
 
@@ -95,16 +95,15 @@ class LinearResponse(NamedTuple):
         return max(float(eigvals(b.T @ self.generator @ b).real.max()) for b in self.bases)
 
 
-def dissipation(state: Background, moments: CollisionMoments) -> Array:
+def dissipation(problem: Problem, state: Background) -> Array:
     """Return Lambda at the contacts."""
-    return np.asarray(state.strength * moments.energy * state.density * state.temperature**1.5)
+    energy = problem.moments.energy
+    return np.asarray(state.strength * energy * state.density * state.temperature**1.5)
 
 
-def solve_pairs(
-    cells: Cells, state: Background, moments: CollisionMoments, damping: float
-) -> PairCovariance:
+def solve_pairs(problem: Problem, state: Background) -> PairCovariance:
     """Solve the Lyapunov equation of this module."""
-    return covariances(cells, state, linear_response(cells, state, moments, damping))
+    return covariances(problem.cells, state, linear_response(problem, state))
 
 
 def covariances(cells: Cells, state: Background, response: LinearResponse) -> PairCovariance:
@@ -122,13 +121,11 @@ def covariances(cells: Cells, state: Background, response: LinearResponse) -> Pa
     )
 
 
-def linear_response(
-    cells: Cells, state: Background, moments: CollisionMoments, damping: float
-) -> LinearResponse:
+def linear_response(problem: Problem, state: Background) -> LinearResponse:
     """Return M and Q, every field in units of its own size, which keeps them well conditioned."""
-    M, scale = cells.rods.size, scales(cells, state)
-    generator = _generator(cells, state, moments, damping) * scale / scale[:, None]
-    noise = _noise(cells, state, moments, damping) / np.outer(scale, scale)
+    M, scale = problem.cells.rods.size, scales(problem.cells, state)
+    generator = _generator(problem, state) * scale / scale[:, None]
+    noise = _noise(problem, state) / np.outer(scale, scale)
     fields = ((M, -1), (M, -1), (M - 1, 1), (M - 2, -1))  # u, V and q change sign in the mirror
     even, odd = (
         block_diag(*(mirror_basis(size, parity * sign) for size, sign in fields))
@@ -137,10 +134,11 @@ def linear_response(
     return LinearResponse(generator, noise, (even, odd))
 
 
-def _generator(cells: Cells, state: Background, moments: CollisionMoments, damping: float) -> Array:
+def _generator(problem: Problem, state: Background) -> Array:
+    _, cells, moments, damping = problem
     M, N, apart, step = cells.rods.size, cells.rods, cells.distances, steps(cells)
     n, Theta, P, gaps = state.density, state.temperature, state.pressure, _mean_gaps(cells, state)
-    energy = dissipation(state, moments)
+    energy = dissipation(problem, state)
     u, V, Th, q = parts(M)
     A = np.zeros((4 * M - 3, 4 * M - 3))
     force = step.T / N[:, None]  # minus the difference of the pressures on both sides
@@ -159,10 +157,11 @@ def _generator(cells: Cells, state: Background, moments: CollisionMoments, dampi
     return A
 
 
-def _noise(cells: Cells, state: Background, moments: CollisionMoments, damping: float) -> Array:
+def _noise(problem: Problem, state: Background) -> Array:
+    _, cells, moments, damping = problem
     M, N = cells.rods.size, cells.rods
     n, Theta, b = state.density, state.temperature, state.strength
-    energy = dissipation(state, moments)
+    energy = dissipation(problem, state)
     u, V, Th, q = parts(M)
     Q = np.zeros((4 * M - 3, 4 * M - 3))
     kept = 2 * damping * of_cells(state.shared) / N

@@ -24,13 +24,12 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from crazybilliards.kinetic.correlations.cells import make_cells
 from crazybilliards.kinetic.correlations.closure import Closure, background, implied
-from crazybilliards.kinetic.correlations.collision_moments import moments_of_collisions
 from crazybilliards.kinetic.correlations.displacements import relaxing_pairs
 from crazybilliards.kinetic.correlations.fixed_point import NoFixedPointError, find_fixed_point
 from crazybilliards.kinetic.correlations.one_rod import profiles_of_one_rod
 from crazybilliards.kinetic.correlations.pair_covariance import linear_response, solve_pairs
+from crazybilliards.kinetic.correlations.problem import Problem
 from crazybilliards.kinetic.correlations.stationary_result import Correlated, assemble, rods
 from crazybilliards.kinetic.kinetic_equation.continuation import (
     CELLS,
@@ -39,14 +38,13 @@ from crazybilliards.kinetic.kinetic_equation.continuation import (
     continued,
     elastic_state,
     fitted,
-    free_units,
     on_fine_mesh,
     refined,
     solved,
 )
+from crazybilliards.kinetic.kinetic_equation.newton import NotSolvedError
 from crazybilliards.kinetic.kinetic_equation.order_statistics import Rods
 from crazybilliards.kinetic.kinetic_equation.velocity_space import one_thread
-from crazybilliards.kinetic.kinetic_equation.weak_form import NotSolvedError, coefficients
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain
 
@@ -126,7 +124,7 @@ def check_correlated_phase_space(chain: Chain, *, tolerance: float, cells: int |
     for name, value, (low, high) in (
         ("restitution", chain.restitution, (0.0, 1.0)),
         ("size", chain.size, _SIZES),
-        ("damping/sqrt(k m)", _damping(chain), _DAMPINGS),
+        ("damping/sqrt(k m)", chain.relative_damping, _DAMPINGS),
     ):
         if not low <= value <= high:
             raise ValueError(
@@ -138,7 +136,7 @@ def check_correlated_phase_space(chain: Chain, *, tolerance: float, cells: int |
 @one_thread
 def _solve(chain: Chain, tolerance: float, cells: int | None) -> tuple[Correlated, Rods, float]:
     """Return the solution on a mesh that is fine enough, its rods, and the error of the mesh."""
-    found = _agree(chain, tolerance)
+    found = in_agreement(chain, tolerance)
 
     def rods_of(state: State) -> Rods:
         return rods(found._replace(state=state))
@@ -147,39 +145,39 @@ def _solve(chain: Chain, tolerance: float, cells: int | None) -> tuple[Correlate
     return found._replace(state=state), of_rods, error
 
 
-def _agree(chain: Chain, tolerance: float) -> Correlated:
+def in_agreement(chain: Chain, tolerance: float) -> Correlated:
     """Bring one rod and pairs to agreement, from the state of independent points.
 
     Independent points are too far from long chains at small restitutions: the iteration fails
     there. It goes by way of larger restitutions, from each to the next.
     """
-    larger = [e for e in _WAY if e > chain.restitution]
-    first = chain.replace(restitution=larger[0]) if larger else chain
-    state = refined(continued(first, elastic_state(first, 2, CELLS)), CELLS)
-    closure, iterations = Closure.independent(make_cells(chain.size)), 0
-    for restitution in larger:
-        on_the_way = chain.replace(restitution=restitution)
-        found = _agreed(replace(state, chain=on_the_way), closure, _AGREEMENT_ON_THE_WAY)
+    way = [chain.replace(restitution=e) for e in _WAY if e > chain.restitution]
+    problems = [Problem.of(each) for each in (*way, chain)]
+    state = elastic_state(problems[0].chain, 2, CELLS)
+    state = refined(continued(problems[0].chain, state), CELLS)
+    closure, iterations = Closure.independent(problems[0].cells), 0
+    for problem in problems:
+        last = problem.chain is chain
+        agreement = _AGREEMENT * tolerance if last else _AGREEMENT_ON_THE_WAY
+        found = _agreed(problem, state, closure, agreement)
         state, closure, iterations = found.state, found.closure, iterations + found.iterations
-    found = _agreed(replace(state, chain=chain), closure, _AGREEMENT * tolerance)
-    return _checked(found._replace(iterations=iterations + found.iterations))
+    return _checked(found._replace(iterations=iterations))
 
 
-def _agreed(state: State, closure: Closure, agreement: float) -> Correlated:
-    """Find the state and closure of the chain of ``state`` that agree, from these two."""
-    chain, known = state.chain, list[Correlated]()
-    cells, of_collisions = make_cells(chain.size), moments_of_collisions(chain.restitution)
+def _agreed(problem: Problem, state: State, closure: Closure, agreement: float) -> Correlated:
+    """Find the state and closure that agree, from these two, which may be of other restitutions."""
+    chain, known = problem.chain, list[Correlated]()
 
     def image(vector: Array) -> Array:
         nonlocal state
         closure = Closure.unpacked(vector)
-        factors = closure.factors(cells, chain.size)
-        state = fitted(solved(replace(state, factors=factors), _ROUGHLY))
-        rod = profiles_of_one_rod(cells, state)
-        around = background(rod, closure, chain.restitution)
-        pairs = solve_pairs(cells, around, of_collisions, _damping(chain))
-        known[:] = [Correlated(state, closure, around, pairs, pairs, np.nan, 0)]
-        return implied(chain.size, cells, rod, around, pairs).packed()
+        guess = replace(state, chain=chain, factors=closure.factors(problem))
+        state = fitted(solved(guess, _ROUGHLY))
+        rod = profiles_of_one_rod(problem.cells, state)
+        around = background(problem, rod, closure)
+        pairs = solve_pairs(problem, around)
+        known[:] = [Correlated(problem, state, closure, around, pairs, pairs, np.nan, 0)]
+        return implied(problem, rod, around, pairs).packed()
 
     end = find_fixed_point(image, closure.packed(), agreement, _MOST_ITERATIONS)
     return known[0]._replace(residual=end.residual, iterations=end.evaluations)
@@ -189,15 +187,9 @@ def _checked(found: Correlated) -> Correlated:
     """Add the displacements; raise if the agreement is at a bound, or not stable."""
     if not found.closure.is_possible:
         raise NoFixedPointError("the correlations are too large for a linear theory of them")
-    chain, around = found.state.chain, found.background
-    rest = moments_of_collisions(chain.restitution), _damping(chain)
-    relaxing, displaced = relaxing_pairs(chain.size, around, found.closure.collective, *rest)
-    responses = linear_response(make_cells(chain.size), around, *rest), relaxing
+    problem, around = found.problem, found.background
+    relaxing, displaced = relaxing_pairs(problem, around, found.closure.collective)
+    responses = linear_response(problem, around), relaxing
     if (growth := max(each.largest_growth() for each in responses)) > 0:
         raise NoFixedPointError(f"the state is not stable: deviations grow at the rate {growth:g}")
     return found._replace(displaced=displaced)
-
-
-def _damping(chain: Chain) -> float:
-    """Return gamma/sqrt(k m)."""
-    return coefficients(chain, free_units(chain), 2).damping

@@ -8,16 +8,16 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from crazybilliards.kinetic.accuracy import expected_correlated_phase_space
-from crazybilliards.kinetic.correlations.cells import Cells, make_cells, of_cells, of_rods
+from crazybilliards.kinetic.accuracy import expected
+from crazybilliards.kinetic.correlations.cells import of_cells, of_rods
 from crazybilliards.kinetic.correlations.closure import Closure, collective_variance
 from crazybilliards.kinetic.correlations.collective_motion import as_seen_in_place
-from crazybilliards.kinetic.correlations.collision_moments import moments_of_collisions
 from crazybilliards.kinetic.correlations.pair_covariance import (
     Background,
     PairCovariance,
     dissipation,
 )
+from crazybilliards.kinetic.correlations.problem import Problem
 from crazybilliards.kinetic.kinetic_equation.continuation import State, free_units
 from crazybilliards.kinetic.kinetic_equation.order_statistics import Rods, mirrored, points
 from crazybilliards.kinetic.kinetic_equation.stationary_result import in_vocabulary
@@ -29,6 +29,7 @@ Array = NDArray[np.float64]
 class Correlated(NamedTuple):
     """One rod and pairs in agreement."""
 
+    problem: Problem
     state: State
     closure: Closure
     background: Background
@@ -43,7 +44,7 @@ def rods(found: Correlated) -> Rods:
 
     A rod moves in its neighbourhood, and with it.
     """
-    state, whole = found.state, make_cells(found.state.chain.size, whole=True)
+    state, whole = found.state, found.problem.on_whole_cells().cells
     own = points(state.chain.size, mirrored(moments(state.space, state.f)))
     displaced = collective_variance(whole, found.displaced, np.arange(0.5, state.chain.size))
     velocity = own.velocity_variance + _collective(found)
@@ -53,40 +54,39 @@ def rods(found: Correlated) -> Rods:
 def assemble(found: Correlated, of_rods: Rods, mesh_error: float) -> xr.Dataset:
     """Put the solution into the common vocabulary."""
     chain, (length, velocity) = found.state.chain, free_units(found.state.chain)
-    cells = make_cells(chain.size)
     return in_vocabulary(
         as_seen_in_place(found.state, np.arange(0.5, chain.size), _collective(found)),
         {
             "velocity_width": ("particle", velocity * np.sqrt(of_rods.velocity_variance)),
             "mean_displacement": ("particle", length * of_rods.position),
             "displacement_width": ("particle", length * np.sqrt(of_rods.position_variance)),
-            **_of_pairs(found, cells, of_rods.velocity_variance),
+            **_of_pairs(found, of_rods.velocity_variance),
         },
         coordinates={
-            "mode": np.arange(float(cells.rods.size)),
+            "mode": np.arange(float(found.problem.cells.rods.size)),
             "separation": np.arange(float(chain.size)),
         },
         method={"theory": "kinetic equation with pair correlations"},
         residual=found.residual,
         mesh_error=mesh_error,
-        expected=expected_correlated_phase_space(chain),
+        expected=expected("correlated_phase_space", chain),
     ).assign_attrs(iterations=found.iterations)
 
 
 def _collective(found: Correlated) -> Array:
     """Return the variance of the motion of each rod's neighbourhood."""
-    size = found.state.chain.size
-    return collective_variance(make_cells(size), found.pairs, np.arange(0.5, size))
+    problem = found.problem
+    return collective_variance(problem.cells, found.pairs, np.arange(0.5, problem.chain.size))
 
 
 def _of_pairs(
-    found: Correlated, cells: Cells, velocity_variance: Array
+    found: Correlated, velocity_variance: Array
 ) -> dict[str, tuple[str | tuple[str, ...], Array]]:
     chain, (length, velocity) = found.state.chain, free_units(found.state.chain)
     around, contacts = found.background, np.arange(1.0, chain.size)
-    lost = dissipation(around, moments_of_collisions(chain.restitution))
+    lost = dissipation(found.problem, around)
     shared, pressure, loss = (
-        np.interp(contacts, cells.contacts, values)
+        np.interp(contacts, found.problem.cells.contacts, values)
         for values in (around.shared, around.pressure, lost)
     )
     own = (velocity_variance[1:] + velocity_variance[:-1]) / 2
@@ -96,8 +96,8 @@ def _of_pairs(
         "contact_force": chain.mass * velocity**2 / length * pressure,
         "contact_loss": chain.mass / 2 * velocity**3 / length * loss,
     }
-    modes = _mode_variances(found, cells, velocity_variance)
-    covariance = _velocity_covariance(found, cells, velocity_variance, shared)
+    modes = _mode_variances(found, velocity_variance)
+    covariance = _velocity_covariance(found, velocity_variance, shared)
     return {
         **{name: ("contact", values) for name, values in along.items()},
         "mode_velocity_variance": ("mode", velocity**2 * modes),
@@ -105,9 +105,7 @@ def _of_pairs(
     }
 
 
-def _velocity_covariance(
-    found: Correlated, cells: Cells, velocity_variance: Array, shared: Array
-) -> Array:
+def _velocity_covariance(found: Correlated, velocity_variance: Array, shared: Array) -> Array:
     """Return <v_i v_{i+r}> over i and r, in free units.
 
     The covariance of all rods is a local part, that of independent rods, plus h. Two different rods
@@ -116,15 +114,16 @@ def _velocity_covariance(
     sums over waves, sum_ij c_q(i) c_q(j) <v_i v_j>, are therefore close to ``_mode_variances`` for
     long waves, and differ from it in short ones, where these two separations count.
     """
-    covariance = of_rods(found.pairs.velocity, cells)
+    covariance = of_rods(found.pairs.velocity, found.problem.cells)
     covariance[:, 0] = velocity_variance
     covariance[:-1, 1] = shared
     return covariance
 
 
-def _mode_variances(found: Correlated, cells: Cells, velocity_variance: Array) -> Array:
+def _mode_variances(found: Correlated, velocity_variance: Array) -> Array:
     """Return <|v_q|^2>, v_q = sum_i sqrt((2 or, for q = 0, 1)/L) cos(pi q (i - 1/2)/L) v_i."""
-    size, M = found.state.chain.size, cells.rods.size
+    cells, size = found.problem.cells, found.problem.chain.size
+    M = cells.rods.size
     q = np.arange(M)[:, None]
     waves = np.sqrt(np.where(q == 0, 1, 2) / size) * np.cos(np.pi * q * cells.centres / size)
     own = np.interp(cells.centres, np.arange(size) + 0.5, velocity_variance)

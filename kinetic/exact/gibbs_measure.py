@@ -30,7 +30,7 @@ import xarray as xr
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from crazybilliards.kinetic.accuracy import expected_equilibrium
+from crazybilliards.kinetic.accuracy import expected
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain
 from crazybilliards.model.checks import check_integer
@@ -99,7 +99,7 @@ def equilibrium(chain: Chain) -> xr.Dataset:
         method={"theory": "exact equilibrium"},
         residual=float(np.ptp(log_z)),
     )
-    dataset.attrs |= expected_equilibrium(chain).attributes("density")
+    dataset.attrs |= expected("equilibrium", chain).attributes("density")
     return dataset
 
 

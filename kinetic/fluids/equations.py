@@ -35,7 +35,7 @@ them in time (:mod:`.pde_solver`).
 
 from __future__ import annotations
 
-from typing import Literal, NamedTuple, get_args
+from typing import Literal, get_args
 
 import numpy as np
 import xarray as xr
@@ -91,7 +91,7 @@ def hydrodynamics(
     start
         A result with ``density`` over x and optionally ``label``, ``flow_velocity`` and
         ``velocity_variance``, such as ``force_balance`` of another chain (a quench), or
-        ``displaced``, ``compressed`` and ``two_clumps`` of this one.
+        ``displaced`` and ``compressed`` of this one.
     duration
         Time to solve for [T]; 12 relaxation times 2m/gamma come within 1e-5 of the steady state.
     displacement
@@ -141,9 +141,8 @@ def hydrodynamics(
     """
     start = check_start(start)
     check_choice("frame", frame, get_args(Frame))
-    closure = _read_closure(chain, displacement, velocity_variance)
-    chain = closure.chain
-    if frame == "label" and (closure.variance or closure.displacement):
+    chain, frozen, variance, kind = _read_closure(chain, displacement, velocity_variance)
+    if frame == "label" and (variance or frozen):
         raise ValueError(
             "a profile of displacement or velocity_variance needs frame='eulerian'; a number as "
             "velocity_variance does not"
@@ -156,7 +155,7 @@ def hydrodynamics(
     known = read_start(chain, start)
     nodes = position_grid(chain, float(np.abs(known.x).max())).size + chain.size
     require_memory(f"every: {times.size} outputs", _BYTES_PER_NODE * float(nodes) * times.size)
-    thermal = closure.kind == "evolving"
+    thermal = kind == "evolving"
     if frame == "label":
         fields = solve_on_labels(chain, known, times, cells, thermal=thermal, progress=progress)
     else:
@@ -165,34 +164,29 @@ def hydrodynamics(
             known,
             times,
             cells,
-            variance=closure.variance,
-            displacement=closure.displacement,
+            variance=variance,
+            displacement=frozen,
             thermal=thermal,
             progress=progress,
         )
     method = {
         "frame": frame,
-        "displacement": "prescribed" if closure.displacement else "by labels",
-        "velocity_variance": closure.kind,
+        "displacement": "prescribed" if frozen else "by labels",
+        "velocity_variance": kind,
         "cells": fields.cells,
     }
     return _result(chain, fields, times, method)
-
-
-class _Closure(NamedTuple):
-    """The inputs of the solvers; a profile is None if the equations determine it."""
-
-    chain: Chain  # for a number W^2 the elastic chain with that temperature
-    displacement: Profile | None
-    variance: Profile | None
-    kind: str  # of the velocity variance
 
 
 def _read_closure(
     chain: Chain,
     displacement: Prescribed | None,
     velocity_variance: Evolving | float | Prescribed | None,
-) -> _Closure:
+) -> tuple[Chain, Profile | None, Profile | None, str]:
+    """Return the chain, <dx>(x) and W^2(x) if they are prescribed, and the kind of W^2.
+
+    For a number W^2 it is the elastic chain with that temperature.
+    """
     frozen = read_displacement(chain, displacement)
     variance, kind = None, "isothermal"
     if isinstance(velocity_variance, str):
@@ -211,7 +205,7 @@ def _read_closure(
         elastic=kind != "prescribed",
         remedy="; give a number or a profile as velocity_variance for others",
     )
-    return _Closure(chain, frozen, variance, kind)
+    return chain, frozen, variance, kind
 
 
 def _result(

@@ -76,7 +76,7 @@ def make_cells(state: Stationary, exponent: int, number: int | None) -> Cells:
     pressure = np.concatenate([[0.0], density, [0.0]])
     # The mean force on a cell balances the pressures at its faces: u |u|^(n-2) = -dp/dnu.
     force = -np.diff(pressure) / shares
-    eta = state.edge.lam * labels + spring.displacement(force, exponent)
+    eta = state.lam * labels + spring.displacement(force, exponent)
     distance = np.diff(eta)
     return Cells(labels, shares, faces, eta, density * distance, (eta_faces - eta[:-1]) / distance)
 
@@ -85,7 +85,7 @@ def _faces(state: Stationary, number: int | None) -> Array:
     """Return the stationary eta of the inner faces: even at the edges, wider in a plateau."""
     end = float(state.at(np.array([0.5 - _LAST_SHARE]))[0][0])
     fine = np.linspace(0, end, 20_001)
-    depth = state.edge.lam / 2 - fine
+    depth = state.lam / 2 - fine
     cells_up_to = cumulative_trapezoid(1 / np.clip(1 + (depth - 6) / 3, 1, 8), fine, initial=0)
     if number is None:
         number = int(np.clip(2 * cells_up_to[-1] / _EDGE_CELL, _FEWEST_CELLS, _MOST_CELLS))
@@ -142,7 +142,7 @@ def solve_on_labels(
     s, W = chain.thermal_length, chain.free_velocity_width
     state = stationary(chain)
     cells = make_cells(state, chain.potential_exponent, number)
-    lam, gamma = state.edge.lam, chain.damping * s / (chain.mass * W)
+    lam, gamma = state.lam, chain.damping * s / (chain.mass * W)
     constants = (cells.labels, cells.shares, cells.kappa, np.diff(cells.eta), lam, gamma)
     # In the unit of time of `solve`: py-pde drops outputs that are less than 1e-8 units apart.
     interval = times[1] * W / s
@@ -223,7 +223,7 @@ def _on_positions(
     flow = solution[:, 1, :-1] + weights * np.diff(solution[:, 1], axis=1)
     theta = solution[:, 2, :-1] / distance**2 if solution.shape[1] == 3 else np.ones_like(distance)
     # Stay just inside: at the end itself rounding may put a node into the vacuum.
-    nodes = _refined(rest, (state.edge.right + state.edge.lam / 2) * (1 - 1e-12))
+    nodes = _refined(rest, (state.right + state.lam / 2) * (1 - 1e-12))
     labels, log_density = state.profile(nodes)
     rod_nodes = state.at(chain.rank / L)[0]
 

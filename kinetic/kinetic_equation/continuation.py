@@ -8,22 +8,18 @@ states this reason. At the end the mesh is refined until the widths no longer ch
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from crazybilliards.kinetic.kinetic_equation.newton import NotSolvedError, stationary_state
 from crazybilliards.kinetic.kinetic_equation.order_statistics import Rods
 from crazybilliards.kinetic.kinetic_equation.velocity_moments import fitting_box
 from crazybilliards.kinetic.kinetic_equation.velocity_space import Box, VelocitySpace
-from crazybilliards.kinetic.kinetic_equation.weak_form import (
-    Factors,
-    NotSolvedError,
-    Units,
-    coefficients,
-    stationary_state,
-)
+from crazybilliards.kinetic.kinetic_equation.weak_form import Factors, Units, coefficients
 from crazybilliards.kinetic.statics.label_closure import stationary
 from crazybilliards.model import Chain
 from crazybilliards.model.checks import check_integer, check_real
@@ -42,13 +38,22 @@ _MOST_HALVINGS = 6
 
 
 @dataclass(frozen=True)
-class State:
+class OnMesh:
+    """A distribution on its mesh."""
+
+    space: VelocitySpace
+    f: Array
+
+
+S = TypeVar("S", bound=OnMesh)
+
+
+@dataclass(frozen=True)
+class State(OnMesh):
     """A steady state on its mesh, in the free rod's thermal length and velocity width."""
 
     chain: Chain
     order: int  # of the collision operator in lambda
-    space: VelocitySpace
-    f: Array
     residual: float
     factors: Factors | None = None  # of collisions and noise along the label
 
@@ -80,33 +85,56 @@ def elastic_state(chain: Chain, order: int, cells: int) -> State:
     y, v = space.axes
     log_density = stationary(elastic).profile(y)[1]
     maxwellian = space.nodal(np.exp(log_density[:, None] - v**2 / 2))
-    return solved(State(elastic, order, space, maxwellian, np.nan))
+    return solved(State(space, maxwellian, elastic, order, np.nan))
 
 
 def continued(chain: Chain, state: State) -> State:
     """Follow the steady state from ``state`` to the restitution of ``chain``."""
     goal = (1 - chain.restitution) / 2 * chain.size
+    reached = (1 - state.chain.restitution) / 2 * chain.size
+
+    def step(state: State, drag: float) -> State:
+        # The last step goes exactly to the goal and not to a rounded neighbour.
+        e = chain.restitution if drag == goal else 1 - 2 * drag / chain.size
+        found = solved(replace(state, chain=chain.replace(restitution=e)), _ROUGHLY)
+        _require_physical(found, state)
+        return fitted(found)
+
+    def refused(drag: float) -> ValueError:
+        return _no_steady_state(chain, drag)
+
+    for found in followed(state, step, reached, _path(goal), _MOST_HALVINGS, refused):
+        if chain.restitution > 1 and abs(goal) > (limit := _limit(state, found)):
+            raise _no_steady_state(chain, limit)
+        state = found
+    return state
+
+
+def followed(
+    state: S,
+    step: Callable[[S, float], S],
+    reached: float,
+    goals: Iterable[float],
+    most_halvings: int,
+    refused: Callable[[float], ValueError],
+) -> Iterator[S]:
+    """Change a parameter from ``reached`` to each goal in turn; give out the state of every step.
+
+    ``step`` returns the state at another value. Where it raises a ValueError, the way is halved.
+    """
     halvings = 0
-    for now in _path(goal):
-        drag = (1 - state.chain.restitution) / 2 * chain.size
-        while drag != now:
-            trial = drag + (now - drag) / 2**halvings
-            # The last step goes exactly to the goal and not to a rounded neighbour.
-            e = chain.restitution if trial == goal else 1 - 2 * trial / chain.size
+    for goal in goals:
+        while reached != goal:
+            trial = reached + (goal - reached) / 2**halvings
             try:
-                found = solved(replace(state, chain=chain.replace(restitution=e)), _ROUGHLY)
-                _require_physical(found, state)
-                found = fitted(found)
+                state = step(state, trial)
             except ValueError as error:
                 halvings += 1
-                if halvings > _MOST_HALVINGS:
-                    raise _no_steady_state(chain, trial) from error
+                if halvings > most_halvings:
+                    raise refused(trial) from error
                 continue
-            if chain.restitution > 1 and abs(goal) > (limit := _limit(state, found)):
-                raise _no_steady_state(chain, limit)
-            state, drag = found, trial
-            halvings = max(halvings - 1, 0)
-    return state
+            reached, halvings = trial, max(halvings - 1, 0)
+            yield state
 
 
 def _limit(before: State, after: State) -> float:
@@ -129,11 +157,16 @@ def _path(goal: float) -> Iterator[float]:
 
 def fitted(state: State) -> State:
     """Move the state to a mesh that fits it, unless the present mesh does."""
-    for _ in range(5):
+    return on_fitting_mesh(state, lambda guess: solved(guess, _ROUGHLY), 5)
+
+
+def on_fitting_mesh(state: S, solve: Callable[[S], S], most: int) -> S:
+    """Move the state to a mesh that fits it, in as many steps at ``most``; ``solve`` it on each."""
+    for _ in range(most):
         wanted = fitting_box(state.space, state.f)
         if wanted.fits(state.space.box):
-            return state
-        state = solved(_moved(state, VelocitySpace(wanted, state.space.cells)), _ROUGHLY)
+            break
+        state = solve(_moved(state, VelocitySpace(wanted, state.space.cells)))
     return state
 
 
@@ -179,7 +212,7 @@ def _require_mesh(cells: int) -> None:
     require_memory(f"cells={cells}", _BYTES_PER_CELL * cells**2)
 
 
-def _moved(state: State, space: VelocitySpace) -> State:
+def _moved(state: S, space: VelocitySpace) -> S:
     return replace(state, space=space, f=space.take_over(state.space, state.f))
 
 
@@ -188,7 +221,7 @@ def solved(guess: State, tolerance: float = 1e-10) -> State:
     space = guess.space
     f = guess.f / (space.whole_mass @ guess.f)
     numbers = coefficients(guess.chain, free_units(guess.chain), guess.order)
-    f, residual = stationary_state(space, numbers, f, tolerance, guess.factors)
+    f, residual, _ = stationary_state(space, numbers, f, tolerance, guess.factors)
     return replace(guess, f=f, residual=residual)
 
 

@@ -21,18 +21,19 @@ used. For strong damping Newton's method finds no critical state beyond Gamma = 
 
 from __future__ import annotations
 
-import math
+from dataclasses import dataclass, replace
 from functools import lru_cache
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import root_scalar
 
-from crazybilliards.kinetic.kinetic_equation.velocity_moments import fitting_box
+from crazybilliards.kinetic.kinetic_equation.continuation import OnMesh, followed, on_fitting_mesh
+from crazybilliards.kinetic.kinetic_equation.newton import stationary_state
 from crazybilliards.kinetic.kinetic_equation.velocity_space import Box, VelocitySpace, one_thread
 from crazybilliards.kinetic.kinetic_equation.weak_damping import weak_damping_drag
-from crazybilliards.kinetic.kinetic_equation.weak_form import Coefficients, Equation, Jacobian
+from crazybilliards.kinetic.kinetic_equation.weak_form import Coefficients
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain
 
@@ -42,15 +43,13 @@ _CELLS = 24
 _NOISE = (0.85, 0.7, 0.4, 0.2, 0.1, 0.05, 0.025)  # values of tau
 _FITTED = 4  # the last ones, for the limit
 _TOLERANCE = 1e-6
-_MOST_STEPS = 12
 _MOST_HALVINGS = 4
 _WEAK, _STRONG = 1e-3, 3.5  # Gamma: the closed form below, nothing beyond
 _EXTRAPOLATED = 0.2  # the error, as a share of the way to the limit
 
 
-class _State(NamedTuple):
-    space: VelocitySpace
-    f: Array
+@dataclass(frozen=True)
+class _State(OnMesh):
     drag: float
 
 
@@ -86,38 +85,6 @@ def critical_size(chain: Chain) -> CriticalValue:
     return CriticalValue(drag / share, error / share)
 
 
-def critical_restitution(chain: Chain) -> CriticalValue:
-    """Return the restitution at which a chain of this size and damping loses its steady state.
-
-    See :func:`critical_size`; ``chain.restitution`` does not matter.
-    """
-    drag, error = _critical_drag(_require_drive(chain.replace(restitution=2.0)))
-    return CriticalValue(1 + 2 * drag / chain.size, 2 * error / chain.size)
-
-
-def critical_damping(chain: Chain) -> CriticalValue:
-    """Return the smallest damping with which a chain of this size and e > 1 has a steady state.
-
-    See :func:`critical_size`; ``chain.damping`` does not matter.
-    """
-    _require_drive(chain.replace(damping=1.0))
-    wanted = (chain.restitution - 1) / 2 * chain.size
-
-    def excess(log_damping: float) -> float:
-        return math.log(_critical_drag(math.exp(log_damping))[0] / wanted)
-
-    damping = wanted / weak_damping_drag(1.0)
-    if damping >= _WEAK:
-        # About proportional to the damping for strong damping too.
-        weak = math.log(damping)
-        found = root_scalar(excess, method="secant", x0=weak, x1=weak - excess(weak), xtol=1e-3)
-        if not found.converged:
-            raise ValueError(f"no damping found at which {chain.size} rods become critical")
-        damping = math.exp(found.root)
-    damping *= math.sqrt(chain.stiffness * chain.mass)
-    return CriticalValue(damping, 2e-3 * damping)
-
-
 def _require_drive(chain: Chain) -> float:
     """Return the damping gamma/sqrt(k m), or raise if the chain has no critical size."""
     if chain.restitution <= 1:
@@ -134,7 +101,7 @@ def _require_drive(chain: Chain) -> float:
     for name in ("damping", "stiffness"):
         if getattr(chain, name) == 0:
             raise ValueError(f"{name}=0: no size has a steady state with e > 1")
-    return chain.damping / math.sqrt(chain.stiffness * chain.mass)
+    return chain.relative_damping
 
 
 @lru_cache(maxsize=256)
@@ -158,56 +125,26 @@ def _critical_drag(damping: float) -> tuple[float, float]:
 def drag_at_noise(damping: float, noise: tuple[float, ...], cells: int = _CELLS) -> Array:
     """Return |lambda| L of the steady states whose energy is 1/tau of the free one.
 
-    ``noise``: values of tau, descending from below 1. A step too long for Newton's method is
-    halved.
+    ``noise``: values of tau, descending from below 1.
     """
     space = VelocitySpace(Box(6.5, 6.5, 1.5, 1.5), cells)
     y, v = space.axes
     maxwellian = space.nodal(np.exp(-(y[:, None] ** 2 + v**2) / 2))
     state = _State(space, maxwellian / (space.whole_mass @ maxwellian), 0.0)
-    reached, drags = 1.0, []
-    for goal in noise:
-        halvings = 0
-        while reached != goal:
-            tau = reached + (goal - reached) / 2**halvings
-            try:
-                state = _fitted(_state_of_unit_energy(state, damping, tau), damping, tau)
-                reached, halvings = tau, max(halvings - 1, 0)
-            except ValueError:
-                halvings += 1
-                if halvings > _MOST_HALVINGS:
-                    raise
+
+    def step(state: _State, tau: float) -> _State:
+        def solve(guess: _State) -> _State:
+            numbers = Coefficients(1.0, 2, 0.0, damping, tau * damping, guess.drag, 0.0)
+            found = stationary_state(guess.space, numbers, guess.f, _TOLERANCE, of_unit_energy=True)
+            return replace(guess, f=found.f, drag=found.drag)
+
+        return on_fitting_mesh(solve(state), solve, 2)
+
+    def refused(tau: float) -> ValueError:
+        return ValueError(f"no critical state found at damping gamma/sqrt(k m) = {damping:.3g}")
+
+    drags = []
+    for reached, goal in pairwise((1.0, *noise)):
+        *_, state = followed(state, step, reached, (goal,), _MOST_HALVINGS, refused)
         drags.append(-state.drag)
     return np.array(drags)
-
-
-def _fitted(state: _State, damping: float, tau: float) -> _State:
-    """Move a state to a mesh that fits it, unless the present mesh does."""
-    for _ in range(2):
-        box = fitting_box(state.space, state.f)
-        if box.fits(state.space.box):
-            break
-        space = VelocitySpace(box, state.space.cells)
-        moved = _State(space, space.take_over(state.space, state.f), state.drag)
-        state = _state_of_unit_energy(moved, damping, tau)
-    return state
-
-
-def _state_of_unit_energy(state: _State, damping: float, tau: float) -> _State:
-    """Solve for f with <v^2> = 1, and for the drag, by Newton's method."""
-    space, f, drag = state
-    conditions, jacobian = [space.whole_mass, space.whole_energy], Jacobian()
-    for _ in range(_MOST_STEPS):
-        numbers = Coefficients(1.0, 2, 0.0, damping, tau * damping, drag, 0.0)
-        equation = Equation(space, numbers)
-        mean = equation.mean(f)
-        matrix = equation.matrix(mean)
-        table = space.table(space.interpolate(f)[0])
-        by_drag = -space.against_slopes(space.field(table * mean.I1))
-        residual = np.concatenate([-(matrix @ f), [1 - row @ f for row in conditions]])
-        columns = np.column_stack([space.whole_mass, by_drag])
-        step = jacobian.solve(matrix, columns, conditions, equation.variation(f), residual)
-        f, drag = f + step[: f.size], drag + float(step[-1])
-        if np.abs(step[: f.size]).max() < _TOLERANCE * np.abs(f).max():
-            return _State(space, f, drag)
-    raise ValueError(f"no critical state found at damping gamma/sqrt(k m) = {damping:.3g}")

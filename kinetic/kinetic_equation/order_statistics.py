@@ -37,6 +37,7 @@ Array = NDArray[np.float64]
 
 _NODES = 40  # of Gauss-Hermite quadrature over an order statistic's normal score
 _FARTHEST = 1e-8  # labels closer to the end than this are numerical noise
+_PARITY = (-1, 1, 1, -1, 1, -1, -1)  # of the fields of Moments
 
 
 class Points(NamedTuple):
@@ -125,19 +126,8 @@ def rods(chain: Chain, profiles: Moments, length: float, velocity: float) -> Rod
 
 def mirrored(half: Moments) -> Moments:
     """Return both halves of a symmetric state."""
-
-    def both(values: Array, parity: int) -> Array:
-        return np.concatenate([parity * values[::-1], values])
-
-    return Moments(
-        both(half.y, -1),
-        both(half.weights / 2, 1),
-        both(half.density, 1),
-        both(half.flux, -1),
-        both(half.variance, 1),
-        both(half.heat_flux, -1),
-        both(half.label, -1),
-    )
+    half = half._replace(weights=half.weights / 2)
+    return Moments(*(np.append(sign * v[::-1], v) for sign, v in zip(_PARITY, half, strict=True)))
 
 
 def _cumulated(shares: Array) -> Array:

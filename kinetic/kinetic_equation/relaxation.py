@@ -45,7 +45,6 @@ from crazybilliards.kinetic.kinetic_equation.weak_form import (
     Mean,
     Units,
     coefficients,
-    mass,
 )
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.kinetic.starts import check_start
@@ -224,7 +223,7 @@ class _Flow:
         flow, step = self._enlarged(), None
         linear = self.numbers.drag == self.numbers.diffusion == self.numbers.gap == 0
         equation = Equation(flow.space, flow.numbers)
-        inertia = mass.assemble(flow.space.basis).tocsc()
+        inertia = flow.space.gram.tocsc()
         f, before = flow.f, flow.before
         for _ in range(steps):
             if step is None or not linear:

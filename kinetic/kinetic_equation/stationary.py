@@ -21,7 +21,7 @@ from typing import Literal
 import numpy as np
 import xarray as xr
 
-from crazybilliards.kinetic.accuracy import expected_phase_space, warn_if_unmeasured
+from crazybilliards.kinetic.accuracy import expected, warn_if_unmeasured
 from crazybilliards.kinetic.kinetic_equation.continuation import (
     CELLS,
     State,
@@ -32,10 +32,11 @@ from crazybilliards.kinetic.kinetic_equation.continuation import (
     on_fine_mesh,
     refined,
 )
+from crazybilliards.kinetic.kinetic_equation.newton import NotSolvedError
 from crazybilliards.kinetic.kinetic_equation.order_statistics import Rods, rods
 from crazybilliards.kinetic.kinetic_equation.stationary_result import in_vocabulary
 from crazybilliards.kinetic.kinetic_equation.velocity_moments import moments
-from crazybilliards.kinetic.kinetic_equation.weak_form import NotSolvedError, coefficients
+from crazybilliards.kinetic.kinetic_equation.weak_form import coefficients
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain
 from crazybilliards.model.checks import check_integer
@@ -175,5 +176,5 @@ def _assemble(state: State, of_rods: Rods, mesh_error: float) -> xr.Dataset:
         method={"theory": "kinetic equation", "order": state.order},
         residual=state.residual,
         mesh_error=mesh_error,
-        expected=expected_phase_space(chain),
+        expected=expected("phase_space", chain),
     )

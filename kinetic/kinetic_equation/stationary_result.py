@@ -15,6 +15,7 @@ from scipy.interpolate import PchipInterpolator
 
 from crazybilliards.kinetic.accuracy import Accuracy
 from crazybilliards.kinetic.kinetic_equation.continuation import State, free_units
+from crazybilliards.kinetic.kinetic_equation.order_statistics import mirrored
 from crazybilliards.kinetic.kinetic_equation.velocity_moments import moments
 from crazybilliards.model import Chain
 from crazybilliards.model.grid import position_grid
@@ -59,38 +60,29 @@ def in_vocabulary(
 def _profiles_over_x(state: State) -> dict[str, Array]:
     """Return the positions x, and density and velocity moments over them."""
     chain, (length, velocity) = state.chain, free_units(state.chain)
-    profiles = moments(state.space, state.f)
+    profiles = mirrored(moments(state.space, state.f))
     L, R = chain.size, chain.radius
     reach = length * state.space.box.length - float(chain.reduced_anchors[-1])
     x = position_grid(chain, max(reach, length))
     places = length * profiles.y + 2 * R * L * profiles.label
 
-    def over_x(values: Array, parity: int) -> Array:
-        both = np.concatenate([parity * values[::-1], values])
-        curve = PchipInterpolator(np.concatenate([-places[::-1], places]), both, extrapolate=False)
-        return np.asarray(curve(x))
+    def over_x(values: Array) -> Array:
+        return np.asarray(PchipInterpolator(places, values, extrapolate=False)(x))
 
-    y, points = length * profiles.y, L / length * np.maximum(profiles.density, 0.0)
+    points = L / length * np.maximum(profiles.density, 0.0)
     density, label = density_and_label(
-        chain,
-        x,
-        np.concatenate([-y[::-1], y]),
-        np.concatenate([points[::-1], points]),
-        L / 2 + L * np.concatenate([-profiles.label[::-1], profiles.label]),
+        chain, x, length * profiles.y, points, L / 2 + L * profiles.label
     )
     alive = np.maximum(profiles.density, profiles.density.max() * 1e-6)
+    heat = chain.mass * velocity**3 * L / length
     return {
         "x": x,
         "density": density,
         "label": label,
         "displacement": x - (2 * R + chain.lattice_gap) * (label - L / 2),
-        "velocity_variance": velocity**2 * _continued_flat(over_x(profiles.variance, 1)),
-        "flow_velocity": velocity * np.nan_to_num(over_x(profiles.flux / alive, -1)),
-        "heat_flux": chain.mass
-        * velocity**3
-        * L
-        / length
-        * np.nan_to_num(over_x(profiles.heat_flux, -1)),
+        "velocity_variance": velocity**2 * _continued_flat(over_x(profiles.variance)),
+        "flow_velocity": velocity * np.nan_to_num(over_x(profiles.flux / alive)),
+        "heat_flux": heat * np.nan_to_num(over_x(profiles.heat_flux)),
     }
 
 

@@ -179,15 +179,11 @@ class VelocitySpace:
         shares = self.unknowns.T
         return np.asarray(shares @ values[self._grid]) / np.asarray(shares.sum(axis=1)).ravel()
 
-    def values(self, f: Array) -> Array:
-        """Return the values of f on the axes, shape (y, v)."""
-        values = np.empty([x.size for x in self.axes])
-        values[self._grid] = self.unknowns @ f
-        return values
-
     def whole(self, f: Array) -> tuple[Array, Array, Array]:
         """Return y, v and the values of f on the whole plane, both halves."""
-        (y, v), values = self.axes, self.values(f)
+        y, v = self.axes
+        values = np.empty((y.size, v.size))
+        values[self._grid] = self.unknowns @ f
         if not self.symmetric:
             return y, v, values
         return (np.concatenate([-y[:0:-1], y]), v, np.concatenate([values[:0:-1, ::-1], values]))
@@ -218,8 +214,7 @@ class VelocitySpace:
         """Return the unknowns of the function nearest to one of (y, v), in the mean square."""
         table = function(self.y, self.v)
         right = self.assemble(LinearForm(lambda p, w: w.f * p), f=self.field(table))
-        gram = BilinearForm(lambda f, p, w: f * p).assemble(self.basis)
-        return np.asarray(factorised(self.unknowns.T @ gram @ self.unknowns).solve(right))
+        return np.asarray(factorised(self.unknowns.T @ self.gram @ self.unknowns).solve(right))
 
     def assemble(self, form: LinearForm, **fields: Any) -> Array:
         """Assemble a linear form on the unknowns."""
@@ -262,6 +257,11 @@ class VelocitySpace:
         weighted = (signed, signed * difference, 3 * signed)
         first, second, slope = (kernel * self.v_weights for kernel in weighted)
         return first, second, slope
+
+    @cached_property
+    def gram(self) -> csr_matrix:
+        """Matrix of the scalar products of the elements."""
+        return BilinearForm(lambda f, p, w: f * p).assemble(self.basis)
 
     @cached_property
     def whole_mass(self) -> Array:

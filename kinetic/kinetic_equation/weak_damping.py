@@ -35,8 +35,7 @@ def weak_damping_critical_size(chain: Chain) -> float:
 
     ``critical_size`` solves the kinetic equation for it, for dampings up to 3.5 sqrt(k m).
     """
-    damping = chain.damping / math.sqrt(chain.stiffness * chain.mass)
-    return 2 * weak_damping_drag(damping) / (chain.restitution - 1)
+    return 2 * weak_damping_drag(chain.relative_damping) / (chain.restitution - 1)
 
 
 def weak_damping_growth_rate(chain: Chain) -> float:

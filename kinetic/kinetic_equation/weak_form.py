@@ -1,4 +1,4 @@
-r"""The kinetic equation of the chain for restitution near 1, in weak form, and Newton's method.
+r"""The kinetic equation of the chain for restitution near 1, in weak form.
 
 If colliding points are relabelled, they pass through each other, and each of the two loses the
 fraction lambda = (1 - e)/2 of their relative velocity. For small lambda, and if points that meet
@@ -35,30 +35,20 @@ with the noise that feeds it, is left out of f.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
-from scipy.sparse import csc_matrix, hstack, vstack
-from scipy.sparse.linalg import LinearOperator, SuperLU, gmres
+from scipy.sparse import csc_matrix
 from skfem import BilinearForm
 from skfem.helpers import grad
 
-from crazybilliards.kinetic.kinetic_equation.velocity_space import (
-    VelocitySpace,
-    factorised,
-    one_thread,
-)
+from crazybilliards.kinetic.kinetic_equation.velocity_space import VelocitySpace
 from crazybilliards.model import Chain, spring
 
 Array = NDArray[np.float64]
-
-_MOST_STEPS = 12
-_GMRES = 40  # Krylov vectors; 5 to 15 are needed
-_SOLVED, _KEPT = 2e-2, 3  # relative residual of a Newton step, and steps with the same factors
 
 
 class Units(NamedTuple):
@@ -103,12 +93,6 @@ def transport(f, p, w):  # type: ignore[no-untyped-def]
     through = (w.force + w.damping * v + w.drag * w.I1) * f + w.noise * grad(f)[1]
     spread = w.diffusion * (w.I3 * grad(f)[1] + w.I3v * f)
     return v * f * grad(p)[0] - (through + spread) * grad(p)[1]
-
-
-@BilinearForm
-def mass(f, p, w):  # type: ignore[no-untyped-def]
-    """Scalar product, for the equation in time."""
-    return f * p
 
 
 class Mean(NamedTuple):
@@ -200,100 +184,12 @@ class Equation:
 
         return change
 
+    def by_drag(self, f: Array, mean: Mean) -> Array:
+        """Return the derivative of the weak form by the drag."""
+        table = self.space.table(self.space.interpolate(f)[0])
+        return -self.space.against_slopes(self.space.field(table * mean.I1))
+
     def _collisions(self, f: Array, slope: Array, integrals: list[Array]) -> Array:
         """Return the flux along v that collisions cause, drag and diffusion."""
         I1, I3, I3v = integrals
         return self.numbers.drag * f * I1 + self.numbers.diffusion * (slope * I3 + f * I3v)
-
-
-class NotSolvedError(ValueError):
-    """Newton's method found no solution, although there may be one."""
-
-
-class Solution(NamedTuple):
-    """A stationary distribution, and the size of the last Newton step relative to max f."""
-
-    f: Array
-    residual: float
-
-
-@one_thread
-def stationary_state(
-    space: VelocitySpace,
-    numbers: Coefficients,
-    guess: Array,
-    tolerance: float = 1e-10,
-    factors: Factors | None = None,
-) -> Solution:
-    """Solve the stationary equation with int f = 1 by Newton's method.
-
-    ``tolerance`` is that of the last step, relative to max f. ``factors`` are those of the terms,
-    see ``Equation``.
-    """
-    f, equation, jacobian = guess, Equation(space, numbers, factors), Jacobian()
-    for _ in range(_MOST_STEPS):
-        matrix = equation.matrix(equation.mean(f))
-        residual = np.append(-(matrix @ f), 1 - space.whole_mass @ f)
-        step = jacobian.solve(
-            matrix, space.whole_mass[:, None], [space.whole_mass], equation.variation(f), residual
-        )
-        f = f + step[: f.size]
-        size = float(np.abs(step[: f.size]).max() / np.abs(f).max())
-        if not math.isfinite(size):
-            break
-        if size < tolerance:
-            return Solution(f, size)
-    raise NotSolvedError(f"the kinetic equation did not converge in {_MOST_STEPS} Newton steps")
-
-
-class Jacobian:
-    """The linear equations of Newton's steps on one mesh.
-
-    The sparse part of the Jacobian (with frozen integrals) is factorised. It preconditions GMRES
-    for the whole Jacobian, which the integrals make dense, in the next steps as well.
-    """
-
-    def __init__(self) -> None:
-        self._factors: SuperLU | None = None
-        self._uses = 0
-
-    def solve(
-        self,
-        matrix: csc_matrix,
-        columns: Array,
-        rows: list[Array],
-        variation: Callable[[Array], Array],
-        right: Array,
-    ) -> Array:
-        """Solve [matrix + variation, columns; rows, 0] step = right.
-
-        Unknowns besides f have ``columns``, as many conditions on f have ``rows``. If GMRES fails,
-        it raises NotSolvedError: with a wrong step Newton's method may end where no solution is.
-        """
-        borders = csc_matrix(columns), csc_matrix(np.array(rows))
-        corner = csc_matrix((len(rows), len(rows)))
-        bordered = vstack([hstack([matrix, borders[0]]), hstack([borders[1], corner])]).tocsc()
-        size = matrix.shape[0]
-
-        def step_with(factors: SuperLU, cycles: int) -> tuple[Array, int]:
-            def apply(x: Array) -> Array:
-                image = bordered @ x
-                image[:size] += variation(x[:size])
-                return np.asarray(factors.solve(image))
-
-            operator = LinearOperator(bordered.shape, matvec=apply, dtype=float)
-            found: tuple[Array, int] = gmres(
-                operator, factors.solve(right), rtol=_SOLVED, restart=_GMRES, maxiter=cycles
-            )
-            return found
-
-        if self._factors is not None and self._uses < _KEPT:
-            self._uses += 1
-            step, failed = step_with(self._factors, 1)
-            if not failed:
-                return step
-        self._factors, self._uses = factorised(bordered), 1
-        step, failed = step_with(self._factors, 2)
-        if failed:
-            raise NotSolvedError(f"GMRES did not converge in {2 * _GMRES} iterations")
-        return step

@@ -26,8 +26,7 @@ see :mod:`crazybilliards.kinetic.statics.wright_closure`.
     (1/rho) d/dx [rho W^2/(1 - 2 R rho)] = -F(<dx>)/m,                                  (***)
 
 the paper's ``modeleq`` at V = 0. It is closed by labels in
-:mod:`crazybilliards.kinetic.statics.variable_temperature` (scikit-fem), and by a prescribed
-displacement in :mod:`crazybilliards.kinetic.statics.prescribed_closure` (``solve_ivp``).
+:mod:`crazybilliards.kinetic.statics.variable_temperature` (scikit-fem).
 
 **Boundary conditions.** The paper gives none. By labels there are L rods, and the density falls to
 zero on both sides: N(-inf) = 0, N(+inf) = L. With a prescribed displacement there are L rods in the
@@ -41,7 +40,6 @@ import xarray as xr
 from crazybilliards.kinetic.accuracy import Accuracy, warn_if_unmeasured
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.kinetic.statics.label_closure import solve_label_closure
-from crazybilliards.kinetic.statics.prescribed_closure import solve_prescribed_closure
 from crazybilliards.kinetic.statics.profiles import (
     Prescribed,
     Profile,
@@ -70,7 +68,7 @@ def force_balance(
     velocity_variance
         W^2 [R^2/T^2]. None: the free value, which is right for restitution 1 only. Otherwise a
         number, or a profile W^2(x) in any form of the displacement (the ``velocity_width`` of a
-        simulation is squared). A profile closed by labels needs linear springs.
+        simulation is squared). A profile needs linear springs and the closure by labels.
 
     Returns
     -------
@@ -89,7 +87,8 @@ def force_balance(
     ------
     ValueError
         If there is no steady state; if the restitution is not 1 and no variance is given; if the
-        displacement has a wrong form or does not hold the rods together.
+        displacement has a wrong form or does not hold the rods together; if a displacement and a
+        profile W^2(x) are given.
 
     Examples
     --------
@@ -98,8 +97,6 @@ def force_balance(
     0.4593
     """
     chain, given, variance = check_force_balance(chain, displacement, velocity_variance)
-    if given is not None and variance is not None:
-        return solve_prescribed_closure(chain, given, variance)
     if given is not None:
         return solve_wright_closure(chain, given)
     if variance is not None:
@@ -126,11 +123,16 @@ def check_force_balance(
     """
     given = read_displacement(chain, displacement)
     chain, variance = read_velocity_variance(chain, velocity_variance)
+    if given is not None and variance is not None:
+        raise ValueError(
+            "displacement and a profile of velocity_variance cannot be given together: leave out "
+            "displacement, which then follows by labels, or give a number as velocity_variance"
+        )
     require_chain(
         chain,
         "the force balance",
         elastic=velocity_variance is None,
-        linear=variance is not None and given is None,
+        linear=variance is not None,
         remedy="; give velocity_variance for others",
     )
     if given is not None and not given.left < 0 < given.right:

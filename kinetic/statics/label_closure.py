@@ -33,7 +33,7 @@ from scipy.integrate import solve_bvp
 from scipy.special import gamma, gammaincc
 from scipy.stats import gennorm
 
-from crazybilliards.kinetic.accuracy import expected_force_balance
+from crazybilliards.kinetic.accuracy import expected
 from crazybilliards.model import Chain, spring
 from crazybilliards.model.grid import position_grid, thermal_reach
 from crazybilliards.model.vocabulary import result
@@ -64,15 +64,18 @@ def solve_label_closure(chain: Chain) -> xr.Dataset:
         coordinates={"x": x},
         source="theory",
         method={"theory": "force balance, by labels"},
-        residual=state.edge.residual,
+        residual=state.residual,
     )
-    dataset.attrs |= expected_force_balance(chain).attributes("density")
+    dataset.attrs |= expected("force_balance", chain).attributes("density")
     return dataset
 
 
 @dataclass(frozen=True)
-class Edge:
-    """The solution on zeta: a plateau up to ``left``, computed up to ``right``, then vacuum."""
+class Stationary:
+    """The scaled stationary state: a plateau up to zeta = left, computed up to right, then vacuum.
+
+    Labels are nu = N/L - 1/2 in (-1/2, 1/2), eta = y/s, and densities rho_y are in L/s.
+    """
 
     lam: float
     left: float
@@ -81,7 +84,7 @@ class Edge:
     curve: Callable[[Array], Array]
     residual: float
 
-    def evaluate(self, zeta: Array) -> tuple[Array, Array]:
+    def _evaluate(self, zeta: Array) -> tuple[Array, Array]:
         """Return P and t at zeta."""
         log_density, scaled = self.curve(np.clip(zeta, self.left, self.right))
         share = np.clip(scaled / self.scale, 0.0, 1.0)
@@ -91,7 +94,7 @@ class Edge:
             share = np.where(inside, -zeta / self.lam, share)
         return np.where(outside, -np.inf, log_density), np.where(outside, 0.0, share)
 
-    def invert(self, function: Callable[[Array], tuple[Array, Array]], target: Array) -> Array:
+    def _invert(self, function: Callable[[Array], tuple[Array, Array]], target: Array) -> Array:
         """Solve function(zeta) = target for an ascending function that returns (value, slope)."""
         far = self.right + 1e3 * max(self.right, 1.0)
         table = np.concatenate([[-self.lam / 2], np.linspace(self.left, self.right, 40_001), [far]])
@@ -101,9 +104,40 @@ class Edge:
             zeta = zeta - (value - target) / slope
         return zeta
 
+    def at(self, labels: Array) -> tuple[Array, Array]:
+        """Return eta and the density at labels."""
 
-def solve_edge(n: int, lam: float) -> Edge:
-    """Solve the boundary-value problem of this module for the exponent n and Lam."""
+        def inside(zeta: Array) -> tuple[Array, Array]:
+            log_density, share = self._evaluate(zeta)
+            return 1 - share, np.exp(log_density)
+
+        zeta = self._invert(inside, 0.5 + np.abs(labels))
+        density = np.exp(self._evaluate(zeta)[0])
+        return np.sign(labels) * (zeta + self.lam / 2), density
+
+    def profile(self, eta: Array) -> tuple[Array, Array]:
+        """Return label and log density at eta."""
+        log_density, share = self._evaluate(np.abs(eta) - self.lam / 2)
+        return np.sign(eta) * (0.5 - share), log_density
+
+    def fields(self, chain: Chain, x: Array, stretch: float = 1.0) -> tuple[Array, Array]:
+        """Return density and label at positions x, of the state stretched in y."""
+        s, L, R = stretch * chain.thermal_length, chain.size, chain.radius
+
+        def position(zeta: Array) -> tuple[Array, Array]:
+            log_density, share = self._evaluate(zeta)
+            place = s * (zeta + self.lam / 2) + 2 * R * L * (0.5 - share)
+            return place, s + 2 * R * L * np.exp(log_density)
+
+        log_density, share = self._evaluate(self._invert(position, np.abs(x)))
+        reduced_density = L / s * np.exp(log_density)
+        density = reduced_density / (1 + 2 * R * reduced_density)
+        return density, L / 2 + np.sign(x) * L * (0.5 - share)
+
+
+def stationary(chain: Chain) -> Stationary:
+    """Solve the boundary-value problem of this module for a chain at its temperature."""
+    n, lam = chain.potential_exponent, chain.lattice_gap * chain.size / chain.thermal_length
     depth = _EDGE_DEPTH[n]
     left, right = -min(lam / 2, depth), (n * _TAIL) ** (1 / n)
     share_left = 0.5 if lam <= 2 * depth else depth / lam
@@ -127,7 +161,7 @@ def solve_edge(n: int, lam: float) -> Edge:
         raise ValueError(f"the force balance found no solution: {solution.message}")
     P, u = solution.y[0], solution.x + lam / scale * solution.y[1]
     conserved = (lam * np.exp(P) - P - spring.potential(u, n))[P.max() - 30 < P]
-    return Edge(lam, left, right, scale, solution.sol, float(np.ptp(conserved)))
+    return Stationary(lam, left, right, scale, solution.sol, float(np.ptp(conserved)))
 
 
 def _free_lattice(n: int, lam: float, zeta: Array) -> tuple[Array, Array]:
@@ -147,55 +181,9 @@ def _free_lattice(n: int, lam: float, zeta: Array) -> tuple[Array, Array]:
     return np.maximum(density, 1e-17 / lam), (beyond(zeta) - beyond(zeta + lam)) / lam
 
 
-@dataclass(frozen=True)
-class Stationary:
-    """The scaled stationary state as a function of the label nu = N/L - 1/2 in (-1/2, 1/2).
-
-    eta = y/s; densities rho_y in L/s.
-    """
-
-    edge: Edge
-
-    def at(self, labels: Array) -> tuple[Array, Array]:
-        """Return eta and the density at labels."""
-
-        def inside(zeta: Array) -> tuple[Array, Array]:
-            log_density, share = self.edge.evaluate(zeta)
-            return 1 - share, np.exp(log_density)
-
-        zeta = self.edge.invert(inside, 0.5 + np.abs(labels))
-        density = np.exp(self.edge.evaluate(zeta)[0])
-        return np.sign(labels) * (zeta + self.edge.lam / 2), density
-
-    def profile(self, eta: Array) -> tuple[Array, Array]:
-        """Return label and log density at eta."""
-        log_density, share = self.edge.evaluate(np.abs(eta) - self.edge.lam / 2)
-        return np.sign(eta) * (0.5 - share), log_density
-
-    def fields(self, chain: Chain, x: Array, stretch: float = 1.0) -> tuple[Array, Array]:
-        """Return density and label at positions x, of the state stretched in y."""
-        s, L, R = stretch * chain.thermal_length, chain.size, chain.radius
-
-        def position(zeta: Array) -> tuple[Array, Array]:
-            log_density, share = self.edge.evaluate(zeta)
-            place = s * (zeta + self.edge.lam / 2) + 2 * R * L * (0.5 - share)
-            return place, s + 2 * R * L * np.exp(log_density)
-
-        log_density, share = self.edge.evaluate(self.edge.invert(position, np.abs(x)))
-        reduced_density = L / s * np.exp(log_density)
-        density = reduced_density / (1 + 2 * R * reduced_density)
-        return density, L / 2 + np.sign(x) * L * (0.5 - share)
-
-
 def fluid_reach(chain: Chain) -> float:
     """Distance from the outer anchor beyond which the fluid at rest has no density [R].
 
     The fluid's lattice of anchors ends half a cell, R + g/2, beyond the outermost anchor.
     """
     return thermal_reach(chain) + chain.radius + chain.lattice_gap / 2
-
-
-def stationary(chain: Chain) -> Stationary:
-    """Solve for the stationary state of ``chain`` at its temperature."""
-    lam = chain.lattice_gap * chain.size / chain.thermal_length
-    return Stationary(solve_edge(chain.potential_exponent, lam))

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from crazybilliards.comparison.drawing import COLOURS, SYMBOLS, mark_clipped
-from crazybilliards.comparison.fits import ScalingFit, fit_scaling
+from crazybilliards.comparison.fits import Fit, fit_scaling
 from crazybilliards.comparison.layout import legend_above, panels
 from crazybilliards.comparison.widths import central_width
 from crazybilliards.model import Chain
@@ -59,7 +59,7 @@ def _at_step(step: float | None) -> list[Runs]:
     return [at_step(size, step) for size in SIZES]
 
 
-def _fit(widths: dict[int, Estimate], least: int = 1) -> ScalingFit:
+def _fit(widths: dict[int, Estimate], least: int = 1) -> Fit:
     chosen = {size: each for size, each in widths.items() if least <= size}
     values, errors = zip(*chosen.values(), strict=True)
     return fit_scaling(list(chosen), values, errors)
@@ -88,7 +88,7 @@ def claims(results: Results) -> list[Claim]:
     ]
 
 
-def _exponent(fit: ScalingFit) -> Estimate:
+def _exponent(fit: Fit) -> Estimate:
     return Estimate(fit.exponent, fit.exponent_error)
 
 

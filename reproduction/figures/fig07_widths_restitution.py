@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 
 from crazybilliards.comparison.drawing import COLOURS, SYMBOLS, along_the_chain, draw_rods
-from crazybilliards.comparison.fits import ExponentialFit, fit_exponential
+from crazybilliards.comparison.fits import Fit, fit_exponential
 from crazybilliards.comparison.layout import legend_above, mosaic
 from crazybilliards.comparison.widths import central_width
 from crazybilliards.model import chain_of
@@ -60,7 +60,7 @@ def _exponents(results: Results) -> dict[float, Estimate]:
     return {e: runs.estimate(results, minus_nu) for e, runs in _RUNS.items()}
 
 
-def _fit(found: dict[float, Estimate]) -> ExponentialFit:
+def _fit(found: dict[float, Estimate]) -> Fit:
     values, errors = zip(*found.values(), strict=True)
     return fit_exponential(list(found), values, errors)
 

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from crazybilliards.comparison.distances import distances_in_plot
-from crazybilliards.comparison.fits import PowerLawFit, fit_border_power_law
+from crazybilliards.comparison.fits import Fit, fit_border_power_law
 from crazybilliards.comparison.widths import border_width, central_width
 from crazybilliards.model.chain import middle_tenth
 from crazybilliards.reproduction.chains import flippers, kinetic_equation
@@ -112,7 +112,7 @@ def _unchanged(values: NDArray[np.float64]) -> NDArray[np.float64]:
 def _beyond_the_eye(
     results: Results,
     run: xr.Dataset,
-    fit: PowerLawFit,
+    fit: Fit,
     axes: Callable[[NDArray[np.float64]], NDArray[np.float64]],
 ) -> Estimate:
     """Return the largest distance of a symbol from the fit, as a share of the plot, less EYE."""

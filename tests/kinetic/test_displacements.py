@@ -5,11 +5,9 @@ import pytest
 from scipy.linalg import expm
 from scipy.optimize import curve_fit
 
-from crazybilliards.kinetic.correlations.cells import make_cells
-from crazybilliards.kinetic.correlations.collision_moments import moments_of_collisions
 from crazybilliards.kinetic.correlations.displacements import relaxing_pairs
 from crazybilliards.kinetic.correlations.pair_covariance import scales
-from crazybilliards.kinetic.correlations.stationary import _agree, _damping
+from crazybilliards.kinetic.correlations.stationary import in_agreement
 from crazybilliards.kinetic.kinetic_equation.order_statistics import mirrored, points
 from crazybilliards.kinetic.kinetic_equation.velocity_moments import moments
 from crazybilliards.model import Chain
@@ -23,10 +21,10 @@ NUMBER = 40
 @pytest.mark.parametrize(("size", "restitution"), [(30, 0.9), (140, 0.6)])
 def test_the_centre_of_mass_is_displaced_as_if_alone(size, restitution):
     """The variance of independent points, and what neighbourhoods have in common: W^2/L."""
-    found = _agree(Chain(size=size, restitution=restitution), 2e-3)
+    found = in_agreement(Chain(size=size, restitution=restitution), 2e-3)
     of_points = moments(found.state.space, found.state.f)
     own = (of_points.weights * of_points.density) @ of_points.y**2
-    rods = make_cells(size, whole=True).rods
+    rods = found.problem.on_whole_cells().cells.rods
     assert own + rods @ found.displaced.displacement @ rods / size == pytest.approx(1, abs=0.015)
 
 
@@ -49,16 +47,10 @@ def damping(correlation):
 
 def predicted(chain):
     """Return the damping of the waves 1 and 2 in the linear equation with the stress."""
-    found, size, cells = _agree(chain, 2e-3), chain.size, make_cells(chain.size)
-    around = found.background
+    found, size = in_agreement(chain, 2e-3), chain.size
+    around, cells = found.background, found.problem.cells
     own = points(size, mirrored(moments(found.state.space, found.state.f)))
-    response, _ = relaxing_pairs(
-        size,
-        around,
-        found.closure.collective,
-        moments_of_collisions(chain.restitution),
-        _damping(chain),
-    )
+    response, _ = relaxing_pairs(found.problem, around, found.closure.collective)
     T_f = around.temperature + around.shared - found.closure.collective
     scale = np.append(scales(cells, around._replace(temperature=T_f)), np.ones(size - 1))
     h = response.stationary() * np.outer(scale, scale)

@@ -116,26 +116,3 @@ def test_sampled_states_have_the_exact_statistics(gap, spring):
     velocity = states.velocity / chain.free_velocity_width
     assert abs(float((velocity**2).mean()) - 1) < 5 * math.sqrt(2 / velocity.size)
     assert equilibrium_states(chain, 3, seed=11).identical(equilibrium_states(chain, 3, seed=11))
-
-
-@pytest.mark.parametrize(
-    ("chain", "message"),
-    [
-        (Chain(restitution=0.9), "restitution must be 1"),
-        (Chain(amplitude=0), "no steady state: amplitude=0"),
-        (Chain(damping=0), "no steady state: damping=0"),
-        (Chain(stiffness=0), "no steady state: stiffness=0"),
-        (Chain(size=10**6), "would take .* GiB"),
-    ],
-)
-def test_what_has_no_exact_equilibrium_is_refused(chain, message):
-    with pytest.raises(ValueError, match=message):
-        equilibrium(chain)
-    with pytest.raises(ValueError, match=message):
-        equilibrium_states(chain, 1)
-
-
-def test_the_number_of_states_is_checked():
-    for wrong in (0, 10**400):
-        with pytest.raises(ValueError, match="replicas must be"):
-            equilibrium_states(Chain(), wrong)

@@ -75,16 +75,10 @@ MEANINGLESS = {
         )
         for name, reason in {"restitution": _GIVEN_LOSS, "amplitude": _GIVEN_NOISE}.items()
     },
-    **{
-        (solver, name): _SCALE_FREE
-        for solver in ("critical_size", "critical_restitution", "critical_damping")
-        for name in ("amplitude", "gap", "radius")
-    },
+    **{("critical_size", name): _SCALE_FREE for name in ("amplitude", "gap", "radius")},
     ("critical_size", "size"): "it is what is computed",
-    ("critical_restitution", "restitution"): "it is what is computed",
-    ("critical_damping", "damping"): "it is what is computed",
     ("breathing_cloud", "radius"): _POINTS,
-    **{(start, "restitution"): _STARTS for start in ("displaced", "compressed", "two_clumps")},
+    **{(start, "restitution"): _STARTS for start in ("displaced", "compressed")},
 }
 
 

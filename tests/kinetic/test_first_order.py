@@ -10,16 +10,16 @@ from scipy.stats import norm
 
 from crazybilliards.kinetic.correlations.cells import make_cells
 from crazybilliards.kinetic.correlations.closure import Closure, background
-from crazybilliards.kinetic.correlations.collision_moments import moments_of_collisions
 from crazybilliards.kinetic.correlations.displacements import relaxing_pairs
 from crazybilliards.kinetic.correlations.one_rod import profiles_of_one_rod
 from crazybilliards.kinetic.correlations.pair_covariance import parts, scales, solve_pairs
+from crazybilliards.kinetic.correlations.problem import Problem
 from crazybilliards.kinetic.kinetic_equation.continuation import elastic_state
 from crazybilliards.model import Chain
 
 CHAIN = Chain(size=100, restitution=0.999)
 NUMBER = 6
-DAMPING = CHAIN.damping / np.sqrt(CHAIN.stiffness * CHAIN.mass)
+DAMPING = CHAIN.relative_damping
 DISPLACEMENT, VELOCITY, TEMPERATURE = range(3)
 
 
@@ -30,17 +30,16 @@ def exact():
 
 
 def around_equilibrium(size=CHAIN.size):
-    """Return what the pair equations need: cells, background, moments and damping."""
-    chain, cells = CHAIN.replace(size=size), make_cells(size)
-    rod = profiles_of_one_rod(cells, elastic_state(chain, 2, 24))
-    around = background(rod, Closure.independent(cells), chain.restitution)
-    return cells, around, moments_of_collisions(chain.restitution), DAMPING
+    """Return the problem and what its pairs fluctuate about."""
+    problem = Problem.of(CHAIN.replace(size=size))
+    rod = profiles_of_one_rod(problem.cells, elastic_state(problem.chain, 2, 24))
+    return problem, background(problem, rod, Closure.independent(problem.cells))
 
 
 def relaxing(size=CHAIN.size):
     """Return the response and the covariances of which displacement widths are made."""
-    _, around, *rest = around_equilibrium(size)
-    return relaxing_pairs(size, around, 0 * around.shared, *rest)
+    problem, around = around_equilibrium(size)
+    return relaxing_pairs(problem, around, 0 * around.shared)
 
 
 def modes(cells):
@@ -86,8 +85,8 @@ def test_the_theory_is_wrong_where_the_page_says_so(exact):
 
 def test_displacements_have_the_right_source():
     """What collisions make of displacement and temperature, against the exact integrals."""
-    cells, around = make_cells(1000, whole=True), around_equilibrium(1000)[1]
-    at = make_cells(1000).contacts
+    problem, around = around_equilibrium(1000)
+    at, cells = problem.cells.contacts, problem.on_whole_cells().cells
     around = around._make(np.interp(cells.contacts, at, each) for each in around)
     u, _, Th, _ = parts(cells.rods.size)
     size, (of_cells, of_contacts) = scales(cells, around), modes(cells)

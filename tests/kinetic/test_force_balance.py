@@ -4,13 +4,11 @@ import math
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
 from scipy.special import wrightomega
 from scipy.stats import gennorm
 
 from crazybilliards.kinetic import equilibrium, force_balance
-from crazybilliards.kinetic.statics import prescribed_closure
 from crazybilliards.model import Chain
 
 
@@ -138,33 +136,6 @@ def test_the_arctanh_closure_is_a_wright_omega_function(amplitude):
     assert (theory.density.values[~inside] <= rho.min() + 1e-3).all()
 
 
-@pytest.mark.parametrize("amplitude", [0.3, 3.0, 30.0])
-def test_the_closed_form_is_what_integrating_outward_gives(amplitude):
-    """The Wright omega function against solve_ivp, which takes any W^2(x), also a constant one."""
-    chain = Chain(amplitude=amplitude, gap=0.1)
-    exact = equilibrium(chain)
-    free = chain.free_velocity_width**2
-    closed = force_balance(chain, exact)
-    integrated = force_balance(chain, exact, velocity_variance=lambda x: free + 0 * np.asarray(x))
-    # The curvature of the interpolated displacements jumps at every rod.
-    np.testing.assert_allclose(closed.density, integrated.density, atol=1e-5)
-    np.testing.assert_allclose(closed.label, integrated.label, atol=5e-5)
-
-
-def test_an_integration_that_fails_is_an_error(monkeypatch):
-    """The flag stands in the result only; half of an integral would look like a density."""
-
-    def fails(*arguments, **options):
-        found = solve_ivp(*arguments, **options)
-        found.success, found.message = False, "too many steps"
-        return found
-
-    monkeypatch.setattr(prescribed_closure, "solve_ivp", fails)
-    table = ([-100.0, 100.0], [-100.0, 100.0])
-    with pytest.raises(ValueError, match="could not be solved: too many steps"):
-        force_balance(Chain(size=10), displacement=table, velocity_variance=lambda x: 1.0 + 0 * x)
-
-
 def test_a_result_or_a_table_can_be_prescribed():
     chain = Chain(amplitude=30)
     exact = equilibrium(chain)
@@ -181,33 +152,3 @@ def test_a_velocity_variance_replaces_the_temperature():
     hot = Chain(size=30, gap=0.1, amplitude=2)
     theory = force_balance(chain, velocity_variance=hot.free_velocity_width**2)
     np.testing.assert_allclose(theory.density, force_balance(hot).density, rtol=1e-12)
-
-
-@pytest.mark.parametrize(
-    ("chain", "arguments", "message"),
-    [
-        (Chain(restitution=0.5), {}, "restitution must be 1, got 0.5; give velocity_variance"),
-        (Chain(amplitude=0), {}, "no steady state"),
-        (Chain(damping=0), {}, "no steady state"),
-        (Chain(), {"velocity_variance": -1}, "velocity_variance must be"),
-        (Chain(), {"displacement": 3}, "displacement takes"),
-        (Chain(), {"displacement": ([0, 1], [1])}, "equally long"),
-        (Chain(), {"displacement": ([1, 0], [1, 2])}, "ascending"),
-        (Chain(), {"displacement": ([0, 1], [1, np.nan])}, "finite"),
-        (Chain(), {"displacement": lambda x: -x}, "does not hold the rods together"),
-        (Chain(), {"displacement": lambda x: 0 * x}, "displacement"),
-        (Chain(), {"displacement": lambda x: np.arctanh(x)}, "not finite at x = "),
-        (Chain(size=3), {"displacement": equilibrium(Chain(size=4))}, "4 particles"),
-    ],
-)
-def test_bad_input_is_refused_in_one_line(chain, arguments, message):
-    with pytest.raises(ValueError, match=message) as caught:
-        force_balance(chain, **arguments)
-    assert "\n" not in str(caught.value)
-
-
-@pytest.mark.parametrize("function", [lambda x: "one", lambda x: [1.0, 2.0]])
-@pytest.mark.parametrize("name", ["displacement", "velocity_variance"])
-def test_a_function_that_gives_no_numbers_is_refused(name, function):
-    with pytest.raises(ValueError, match=f"{name}: the callable must return a number for each x"):
-        force_balance(Chain(size=10), **{name: function})

@@ -23,7 +23,6 @@ from crazybilliards.model.vocabulary import result
 AT_WIDE_GAPS = [
     "equilibrium",
     "compressed",
-    "two_clumps",
     "hydrodynamics, label",
     *(name for name in SOLVERS if name.startswith("force_balance")),
 ]

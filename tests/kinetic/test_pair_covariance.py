@@ -17,6 +17,8 @@ from crazybilliards.kinetic.correlations.pair_covariance import (
     linear_response,
     solve_pairs,
 )
+from crazybilliards.kinetic.correlations.problem import Problem
+from crazybilliards.model import Chain
 
 
 def gaussian(v, u):
@@ -108,23 +110,22 @@ def test_covariances_are_continued_linearly_to_a_short_distance(size):
     np.testing.assert_allclose(found, 3 - 0.01 + 0.002 * cells.contacts, rtol=2e-3)
 
 
-def a_gas(size):
-    """Return cells, one rod and no pair correlations, for the closure."""
-    cells = make_cells(size)
+def a_gas(size, restitution):
+    """Return a problem, one rod and no pair correlations, for the closure."""
     one = np.ones(size - 1)
     rod = OneRod(0.3 * one, 7 * one, 0.05 * one, 7 * 0.3**0.5 * one)
     nothing = np.zeros((size, size))
     contacts = np.zeros((size - 1, size - 1))
-    return cells, rod, PairCovariance(nothing, nothing, contacts, contacts, contacts)
+    problem = Problem.of(Chain(size=size, restitution=restitution))
+    return problem, rod, PairCovariance(nothing, nothing, contacts, contacts, contacts)
 
 
 @pytest.mark.parametrize("restitution", [0.0, 0.5, 0.9])
 def test_a_collision_takes_its_share_of_the_force(restitution):
     """Lambda = (1 - e) P <w^2>/<w>, by sampling the pairs that meet: Gaussians, slower by K."""
-    cells, rod, _ = a_gas(12)
-    shared = Closure.independent(cells)._replace(shared=np.full(11, 0.2))
-    state = background(rod, shared, restitution)
-    loss = dissipation(state, moments_of_collisions(restitution))
+    problem, rod, _ = a_gas(12, restitution)
+    shared = Closure.independent(problem.cells)._replace(shared=np.full(11, 0.2))
+    loss = dissipation(problem, background(problem, rod, shared))
     rng = np.random.default_rng(2)
     # Of approaching neighbours.
     w = np.abs(rng.normal(size=400_000)) * np.sqrt(2 * 0.3 * 0.8) * contact_speed(restitution)
@@ -135,17 +136,17 @@ def test_a_collision_takes_its_share_of_the_force(restitution):
 
 def test_uncorrelated_rods_collide_as_in_the_kinetic_equation():
     """Without correlations the factor is that of L - 1 partners that meet more slowly by K."""
-    cells, rod, none = a_gas(12)
     for restitution in (0.99, 0.9):
-        state = background(rod, Closure.independent(cells), restitution)
-        factor = np.exp(implied(12, cells, rod, state, none).log_factor)
+        problem, rod, none = a_gas(12, restitution)
+        state = background(problem, rod, Closure.independent(problem.cells))
+        factor = np.exp(implied(problem, rod, state, none).log_factor)
         expected = (1 - 1 / 12) * 2 / (1 + restitution) * contact_speed(restitution)
         np.testing.assert_allclose(factor, expected, rtol=1e-12)
 
 
 def test_the_closure_of_known_covariances():
     """Clustering to second order, and the bounds of an iteration."""
-    cells, rod, none = a_gas(12)
+    problem, rod, none = a_gas(12, 0.5)
     last = np.diag(np.full(11, 0.02), 1) + np.diag(np.full(11, 0.02), -1)  # their own collision's
     pairs = none._replace(
         velocity=none.velocity + 0.06 + last,
@@ -153,12 +154,11 @@ def test_the_closure_of_known_covariances():
         gap_temperature=none.gap_temperature + 0.3,
         temperature=none.temperature + 0.2,
     )
-    start = Closure.independent(cells)._replace(collective=np.full(11, 0.02))
-    state = background(rod, start, 0.5)
-    found = implied(12, cells, rod, state, pairs)
+    start = Closure.independent(problem.cells)._replace(collective=np.full(11, 0.02))
+    found = implied(problem, rod, background(problem, rod, start), pairs)
     np.testing.assert_allclose(found.shared, 0.07 / 0.32)  # half of the neighbours leave
     np.testing.assert_allclose(found.collective, 0.02)
-    np.testing.assert_allclose(found.factors(cells, 12).noise(0.1), 0.98)
+    np.testing.assert_allclose(found.factors(problem).noise(0.1), 0.98)
     # The same fluctuations, a hundred times smaller: their mean is that of second order.
     size, (nodes, weights) = 1e-2, np.polynomial.hermite_e.hermegauss(8)
     spread = np.linalg.cholesky(size**2 * np.array([[0.5, 0.3], [0.3, 0.2]]))
@@ -172,12 +172,14 @@ def test_the_closure_of_known_covariances():
     np.testing.assert_array_equal(Closure.unpacked(found.packed()).shared, found.shared)
 
 
-def some_background(size):
-    cells = make_cells(size, most=60)
+def some_problem(size, restitution=0.7, damping=0.3):
+    """Return a problem of 60 cells at most, and what its pairs fluctuate about."""
+    chain, cells = Chain(size=size, restitution=restitution), make_cells(size, most=60)
+    problem = Problem(chain, cells, moments_of_collisions(restitution), damping)
     place = 2 * cells.contacts / size - 1
     density = 40 * (1 - 0.8 * place**2)
     temperature = 0.1 + 0.3 * place**2
-    return cells, Background(
+    return problem, Background(
         density=density,
         gap=1.1 / density,
         temperature=temperature,
@@ -190,25 +192,23 @@ def some_background(size):
 @pytest.mark.parametrize("size", [11, 60, 200])
 def test_the_centre_of_mass_gets_what_collisions_take(size):
     """It is an oscillator of its own, which collisions cannot cool."""
-    cells, state = some_background(size)
-    moments, damping = moments_of_collisions(0.7), 0.3
-    pairs = solve_pairs(cells, state, moments, damping)
-    N = cells.rods
-    fed = cells.distances @ dissipation(state, moments)
+    problem, state = some_problem(size)
+    pairs, N = solve_pairs(problem, state), problem.cells.rods
+    fed = problem.cells.distances @ dissipation(problem, state)
     edges = np.concatenate([[state.shared[0]], state.shared, [state.shared[-1]]])
-    held = 2 * damping * (N @ ((edges[1:] + edges[:-1]) / 2))
-    assert N @ pairs.velocity @ N == pytest.approx((fed + held) / (2 * damping), rel=1e-9)
+    held = 2 * 0.3 * (N @ ((edges[1:] + edges[:-1]) / 2))
+    assert N @ pairs.velocity @ N == pytest.approx((fed + held) / (2 * 0.3), rel=1e-9)
     assert N @ pairs.displacement @ N == pytest.approx(N @ pairs.velocity @ N, rel=1e-9)
 
 
 @pytest.mark.parametrize("size", [11, 60])
 def test_covariances_are_stationary_symmetric_and_possible(size):
-    cells, state = some_background(size)
-    response = linear_response(cells, state, moments_of_collisions(0.7), 0.3)
+    problem, state = some_problem(size)
+    response, cells = linear_response(problem, state), problem.cells
     h, M, Q = response.stationary(), response.generator, response.noise
     np.testing.assert_allclose(M @ h + h @ M.T, -Q, atol=1e-9 * np.abs(M @ h).max())
     assert response.largest_growth() < 0
-    pairs = solve_pairs(cells, state, moments_of_collisions(0.7), 0.3)
+    pairs = solve_pairs(problem, state)
     for each in (pairs.velocity, pairs.displacement, pairs.gap, pairs.temperature):
         np.testing.assert_allclose(each, each.T, atol=1e-9 * np.abs(each).max())
         np.testing.assert_allclose(each, each[::-1, ::-1], atol=1e-9 * np.abs(each).max())
@@ -218,13 +218,12 @@ def test_covariances_are_stationary_symmetric_and_possible(size):
 
 def test_a_collision_correlates_the_two_that_meet():
     """Not each with itself: beside the diagonal stands what a contact takes, one half each."""
-    cells, state = some_background(30)
-    state = state._replace(shared=0 * state.shared)
-    moments = moments_of_collisions(0.7)
-    response = linear_response(cells, state, moments, 0.3)
+    problem, state = some_problem(30)
+    state, cells = state._replace(shared=0 * state.shared), problem.cells
+    response = linear_response(problem, state)
     warmth = np.sqrt(np.interp(cells.centres, cells.contacts, state.temperature))
     noise = response.noise[30:60, 30:60] * np.outer(warmth, warmth)
-    taken = dissipation(state, moments)
+    taken = dissipation(problem, state)
     assert noise.sum() == pytest.approx(taken.sum(), rel=0.02)
     np.testing.assert_array_equal(np.diag(noise), 0)
     assert np.diag(noise, 1).sum() == pytest.approx(noise.sum() / 2)
@@ -232,9 +231,7 @@ def test_a_collision_correlates_the_two_that_meet():
 
 def test_free_rods_keep_what_they_have():
     """Without damping and collisions waves neither grow nor decay."""
-    cells, state = some_background(40)
-    response = linear_response(cells, state, moments_of_collisions(1.0), 0.0)
-    rates = np.linalg.eigvals(response.generator)
+    rates = np.linalg.eigvals(linear_response(*some_problem(40, 1.0, damping=0.0)).generator)
     assert np.abs(rates.real).max() < 1e-6 * np.abs(rates.imag).max()
 
 
@@ -243,7 +240,8 @@ def test_free_rods_are_compressed_adiabatically():
     size, n, Theta = 20, 50.0, 0.3
     one = np.ones(size - 1)
     state = Background(n * one, one / n, Theta * one, n * Theta * one, one, 0 * one)
-    generator = linear_response(make_cells(size), state, moments_of_collisions(1.0), 0.0).generator
+    problem = Problem.of(Chain(size=size))._replace(damping=0.0)
+    generator = linear_response(problem, state).generator
     fields = np.zeros(4 * size - 3)
     fields[size : 2 * size] = np.arange(size) / np.sqrt(Theta)  # V, in units of sqrt(Theta)
     change = (generator @ fields)[2 * size : 3 * size - 1]  # of Theta, in units of Theta
@@ -251,9 +249,8 @@ def test_free_rods_are_compressed_adiabatically():
 
 
 def test_elastic_rods_are_not_correlated():
-    cells, state = some_background(40)
-    strangers = state._replace(shared=0 * state.shared)
-    for each in solve_pairs(cells, strangers, moments_of_collisions(1.0), 0.3):
+    problem, state = some_problem(40, restitution=1.0)
+    for each in solve_pairs(problem, state._replace(shared=0 * state.shared)):
         np.testing.assert_array_equal(each, 0)
 
 

@@ -134,32 +134,6 @@ def test_refinement_keeps_its_promise(solved):
     np.testing.assert_allclose(theory.velocity_width, finer.velocity_width, rtol=2e-3)
 
 
-def test_too_many_flippers_have_no_steady_state():
-    with pytest.raises(ValueError, match="no steady state: with 160 rods"):
-        phase_space(Chain(size=160, restitution=1.05, damping=4.0))
-
-
-@pytest.mark.parametrize(
-    ("changes", "options", "message"),
-    [
-        ({"amplitude": 0.0}, {}, "no steady state"),
-        ({"damping": 0.0}, {}, "no steady state"),
-        ({"stiffness": 0.0}, {}, "no steady state"),
-        ({}, {"tolerance": 0.0}, "tolerance"),
-        ({}, {"cells": 2}, "cells"),
-        ({}, {"cells": 100_000}, "cells must be"),
-        ({"size": 10**6}, {}, "size must be at most"),
-        ({}, {"order": 3}, "order"),
-        ({"restitution": 0.95}, {"tolerance": 1e-9}, "accurate to .* theory --cells 50 accepts"),
-        ({"damping": 1e-4, "restitution": 0.95}, {}, "multiple of m W/s, is 4.89e-05 .*0.01 to 25"),
-        ({"damping": 1000.0}, {}, "multiple of m W/s, is 489 .*0.01 to 25.*; simulate takes any"),
-    ],
-)
-def test_bad_input(changes, options, message):
-    with pytest.raises(ValueError, match=message):
-        phase_space(Chain(**changes), **options)
-
-
 def test_a_wide_gap_is_named_where_the_equation_cannot_be_solved():
     message = stationary._out_of_range(Chain(gap=2.0), 2)
     assert "gap * size, as a multiple of s, is 283 (solved for 0 to 80)" in message

@@ -135,38 +135,3 @@ def test_interrupt_keeps_what_there_is(monkeypatch):
     flow = relax_phase_space(CHAIN, displaced(CHAIN, 1.0), 5.0, cells=8, progress=False)
     assert flow.attrs["status"] == "interrupted"
     assert flow.time.size == 3
-
-
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        ({"duration": 0.0}, "duration"),
-        ({"every": 99.0}, "every"),
-        ({"every": 1e-9}, "every"),
-        ({"cells": 1}, "cells"),
-        ({"cells": 10**6}, "cells must be an integer from 4 to 80"),
-        ({"time_step": -1.0}, "time_step"),
-    ],
-)
-def test_bad_input(arguments, message):
-    start = displaced(CHAIN, 1.0)
-    with pytest.raises(ValueError, match=message):
-        relax_phase_space(CHAIN, start, **({"duration": 5.0, "progress": False} | arguments))
-
-
-def test_bad_starts():
-    theory = phase_space(CHAIN, cells=8)
-    with pytest.raises(ValueError, match="density"):
-        relax_phase_space(CHAIN, theory[["velocity_width"]], 5.0)
-    with pytest.raises(ValueError, match="over y and velocity"):
-        relax_phase_space(CHAIN, theory[["phase_space_density"]].transpose("velocity", "y"), 5.0)
-    with pytest.raises(ValueError, match="finite"):
-        relax_phase_space(CHAIN, theory[["phase_space_density"]] * np.nan, 5.0)
-    with pytest.raises(ValueError, match="add up to the chain's 31 rods"):
-        relax_phase_space(CHAIN.replace(size=31), theory, 5.0)
-    fast = displaced(CHAIN, 1.0)
-    fast = fast.assign(flow_velocity=fast.flow_velocity + 1e100)
-    with pytest.raises(ValueError, match="too far apart"):
-        relax_phase_space(CHAIN, fast, 5.0, cells=6)
-    with pytest.raises(ValueError, match="no steady state"):
-        relax_phase_space(CHAIN.replace(damping=0.0), theory, 5.0)

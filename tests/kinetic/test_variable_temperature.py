@@ -62,20 +62,6 @@ def test_steep_profiles_satisfy_the_integrated_balance(name, size, gap):
     assert theory.attrs["residual"] < 1e-11
 
 
-def test_a_prescribed_displacement_takes_a_profile_as_well():
-    """Both routes prescribed with what the other one found."""
-    chain = Chain(size=50, amplitude=10)
-    free = chain.free_velocity_width**2
-
-    def variance(x):
-        return free * (1 - 0.5 * np.exp(-((np.asarray(x) / 60) ** 2)))
-
-    by_labels = force_balance(chain, velocity_variance=variance)
-    table = (by_labels.x.values, by_labels.displacement.values)
-    prescribed = force_balance(chain, table, velocity_variance=variance)
-    assert close_packing(chain, prescribed, by_labels) < 1e-3
-
-
 @pytest.mark.compiled
 @pytest.mark.parametrize(("e", "off"), [(0.5, 0.042), (0.75, 0.033), (0.95, 0.018)])
 def test_the_measured_widths_give_nearly_the_measured_density(e, off):
@@ -104,19 +90,3 @@ def test_the_mesh_reaches_as_far_as_hot_rods():
     require_all_rods(force_balance(chain, velocity_variance=grown(20, 1)), chain.size)
     with pytest.raises(ValueError, match="rods are found beyond x = "):
         force_balance(chain, velocity_variance=grown(300, 2))
-
-
-def test_bad_profiles_are_refused_in_one_line():
-    chain = Chain(size=10)
-    for wrong, message in (
-        (lambda x: -1.0, "finite and positive"),
-        (lambda x: x * np.nan, "finite and positive"),
-        (([0, 1], [1, 2, 3]), "equally long"),
-        (([1, 0], [1, 2]), "ascending"),
-        ("abc", "velocity_variance takes"),
-        (force_balance(Chain(size=9)), "9 particles"),
-    ):
-        with pytest.raises(ValueError, match=message):
-            force_balance(chain, velocity_variance=wrong)
-    with pytest.raises(ValueError, match="linear springs"):
-        force_balance(chain.replace(spring="quadratic"), velocity_variance=lambda x: 1.0)

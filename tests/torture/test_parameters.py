@@ -39,8 +39,6 @@ from hypothesis import strategies as st
 from crazybilliards.kinetic import (
     breathing_cloud,
     compressed,
-    critical_damping,
-    critical_restitution,
     critical_size,
     displaced,
     equilibrium,
@@ -49,7 +47,6 @@ from crazybilliards.kinetic import (
     hydrodynamics,
     phase_space,
     relax_phase_space,
-    two_clumps,
 )
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
@@ -228,7 +225,7 @@ def test_a_phase_space_is_sound_or_refused(parameters, options):
 @explored()
 @given(
     chains(ELASTIC),
-    st.sampled_from(["displaced", "compressed", "two_clumps", "given_start"]),
+    st.sampled_from(["displaced", "compressed", "given_start"]),
     arguments(first=ORDINARY, second=ORDINARY, replicas=st.integers(1, 3)),
 )
 def test_a_start_is_sound_or_refused(parameters, kind, options):
@@ -239,21 +236,16 @@ def test_a_start_is_sound_or_refused(parameters, kind, options):
     if kind == "given_start":
         replicas = options.get("replicas", 1)
         start = outcome(given_start, chain, first, second, replicas=replicas)
-    elif kind == "two_clumps":
-        start = outcome(two_clumps, chain, first, second)
     else:
         start = outcome({"displaced": displaced, "compressed": compressed}[kind], chain, first)
     require_sound(start)
 
 
 @explored(30)
-@given(
-    chains(st.floats(1, 1.1)),
-    st.sampled_from([critical_size, critical_restitution, critical_damping]),
-)
-def test_a_critical_value_is_sound_or_refused(parameters, function):
+@given(chains(st.floats(1, 1.1)))
+def test_a_critical_size_is_sound_or_refused(parameters):
     chain = outcome(Chain, **parameters)
-    estimate = None if chain is None else outcome(function, chain)
+    estimate = None if chain is None else outcome(critical_size, chain)
     if estimate is not None:
         assert 0 < estimate.value < math.inf
         assert 0 <= estimate.error < math.inf
