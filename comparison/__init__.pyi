@@ -26,5 +26,5 @@ from .side_by_side.restitutions import (
     compare_restitutions as compare_restitutions,
     width_deviations as width_deviations,
 )
-from .stationary_theories import theories as theories
+from .stationary_theories import best_theory as best_theory, theories as theories
 from .sweeps import load_sweep as load_sweep

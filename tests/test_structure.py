@@ -33,7 +33,7 @@ FLOORS = {
         {"vanishing_step"},
     ),
     "kinetic": (
-        {"accuracy", "requirements", "times"},
+        {"accuracy", "computing_time", "requirements", "times"},
         {"statics", "exact"},
         {"starts"},
         {"fluids", "kinetic_equation"},

@@ -124,6 +124,7 @@ cb.two_clumps(exact, 2, 2) | chain must be a Chain
 cb.critical_size(1.05) | chain must be a Chain...got 1.05
 cb.critical_restitution(1.05) | chain must be a Chain
 cb.critical_damping(None) | chain must be a Chain
+cb.best_theory(cb.Chain(), "W_v") | quantity must be one of ...got 'W_v'
 cb.theories(None) | chain must be a Chain...got None
 cb.compare_elastic(5) | chain must be a Chain
 cb.compare_relaxation({}) | chain must be a Chain

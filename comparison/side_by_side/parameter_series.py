@@ -10,7 +10,7 @@ import xarray as xr
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain
 from crazybilliards.model.checks import check_integer, check_real, shown
-from crazybilliards.model.process import waiting_for
+from crazybilliards.model.progress import waiting_for
 from crazybilliards.particles import simulate
 from crazybilliards.particles.schedule import make_schedule
 

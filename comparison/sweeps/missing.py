@@ -14,12 +14,11 @@ from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
-from tqdm import tqdm
 
 from crazybilliards.comparison.sweeps.case import Case, OutdatedError
 from crazybilliards.comparison.sweeps.grid import Sweep
 from crazybilliards.model.calls import warn_user
-from crazybilliards.model.process import bar_hidden
+from crazybilliards.model.progress import progress_bar
 from crazybilliards.particles import ShortRunWarning
 
 _Item = TypeVar("_Item")
@@ -165,4 +164,4 @@ def find_missing(
 
 def _bar(items: Iterable[_Item], title: str, progress: bool) -> Iterable[_Item]:
     """Show the progress of a loop that takes longer than a second."""
-    return tqdm(items, desc=title, unit="", delay=1, disable=bar_hidden(progress))
+    return progress_bar(progress, items, desc=title, unit="", delay=1)
