@@ -1,6 +1,8 @@
 from .coverage import coverage_density as coverage_density, smooth as smooth
 from .distances import Deviation as Deviation, deviation as deviation
 from .drawing import overlay as overlay
+from .encoding import Player as Player
+from .rod_film import film as film
 from .fits import (
     ArctanhFit as ArctanhFit,
     AvalancheFit as AvalancheFit,

@@ -41,7 +41,7 @@ FLOORS = {
     ),
     "comparison": (
         {"coverage", "distances", "drawing", "fits", "layout", "widths"}
-        | {"curves", "stationary_theories", "symbols"},
+        | {"curves", "encoding", "rod_film", "stationary_theories", "symbols"},
         {"side_by_side", "sweeps"},
     ),
     "reproduction": (

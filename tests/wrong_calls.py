@@ -178,7 +178,11 @@ cb.hydrodynamics(chain, {}, 1) | start must be a result with density over x...go
 cb.hydrodynamics(chain, foreign, 1) | start: the density must add up to the chain's 5 rods
 cb.relax_phase_space(chain, "start", 1) | start must be a result...got 'start'
 cb.force_balance(chain, displacement=3) | displacement takes a table (x, values)...got 3
-cb.animate(run) | tree must be an xarray.DataTree, which...compare_relaxation...got a Dataset
+cb.animate(run) | tree must be what compare_relaxation returns; film(run) shows...got a Dataset
+cb.film(exact) | run has no snapshots in time, which simulate(chain, observe='snapshots') records
+cb.film(chain, "rods.avi") | path must end in .mp4, .gif or .html, got rods.avi
+cb.film(chain, "rods.gif", seconds=1e4) | seconds must be at most 600
+cb.film("run", "rods.gif") | run must be
 cb.animate(tree) | tree must be what compare_relaxation returns
 cb.width_deviations({}) | tree must be an xarray.DataTree
 cb.width_deviations(tree) | tree must be what compare_restitutions returns
