@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import io
-import shutil
-import subprocess
 import tempfile
 from base64 import b64encode
 from collections.abc import Iterator
-from contextlib import suppress
+from contextlib import closing
 from html import escape
 from importlib import import_module
+from itertools import chain
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,15 +51,13 @@ class Player:
 
 
 def kind_of_film(suffix: str) -> str:
-    """Return ``mp4`` or ``gif`` for the end of a file's name; a page has an mp4 if it can.
+    """Return ``mp4`` or ``gif`` for the end of a file's name; a page holds an mp4 if it can.
 
     Raises ValueError for an mp4 without ffmpeg.
     """
-    if suffix == ".gif":
-        return "gif"
-    if _ffmpeg() is None and suffix == ".mp4":
+    if suffix == ".mp4" and _ffmpeg() is None:
         raise ValueError(_NO_FFMPEG)
-    return "mp4" if _ffmpeg() else "gif"
+    return "gif" if suffix == ".gif" or _ffmpeg() is None else "mp4"
 
 
 def encoded(pictures: Iterator[Picture], kind: str) -> bytes:
@@ -67,46 +65,29 @@ def encoded(pictures: Iterator[Picture], kind: str) -> bytes:
     return _as_mp4(pictures) if kind == "mp4" else _as_gif(pictures)
 
 
-def _ffmpeg() -> str | None:
-    """Return where ffmpeg is: the one of imageio-ffmpeg, or that of the system."""
-    with suppress(ImportError, RuntimeError):
-        return str(import_module("imageio_ffmpeg").get_ffmpeg_exe())
-    return shutil.which("ffmpeg")
+def _ffmpeg() -> Any:
+    """Return the package that brings ffmpeg and calls it, or None."""
+    try:
+        package = import_module("imageio_ffmpeg")
+        package.get_ffmpeg_exe()
+    except (ImportError, RuntimeError):
+        return None
+    return package
 
 
 def _as_mp4(pictures: Iterator[Picture]) -> bytes:
     first = next(pictures)
-    size = f"{first.shape[1]}x{first.shape[0]}"
-    raw = ["-f", "rawvideo", "-pix_fmt", "rgba", "-s", size, "-r", str(PICTURES_A_SECOND)]
-    # Players take this kind of colours only, and begin before they have all of the file.
-    played = [
-        "-c:v",
-        "libx264",
-        "-preset",
-        "veryfast",
-        "-crf",
-        "20",
-        "-pix_fmt",
-        "yuv420p",
-        "-movflags",
-        "+faststart",
-    ]
+    height, width, _ = first.shape
+    # Players begin before they have all of the file.
+    how = {"pix_fmt_in": "rgba", "fps": PICTURES_A_SECOND, "macro_block_size": 2}
+    options = ["-preset", "veryfast", "-movflags", "+faststart"]
     with tempfile.TemporaryDirectory() as scratch:
-        film, said = Path(scratch, "film.mp4"), Path(scratch, "errors.txt")
-        command = [str(_ffmpeg()), "-v", "error", *raw, "-i", "-", *played, str(film)]
-        with said.open("wb") as errors:
-            process = subprocess.Popen(command, stdin=subprocess.PIPE, stderr=errors)
-            try:
-                with process, suppress(BrokenPipeError):
-                    assert process.stdin is not None
-                    for picture in (first, *pictures):
-                        process.stdin.write(picture.tobytes())
-            except BaseException:
-                process.kill()
-                raise
-        if process.returncode:
-            text = said.read_text(encoding="utf-8", errors="replace").strip()
-            raise OSError(f"ffmpeg made no film: {text or process.returncode}")
+        film = Path(scratch, "film.mp4")
+        writing = _ffmpeg().write_frames(film, (width, height), **how, output_params=options)
+        with closing(writing):
+            writing.send(None)
+            for picture in chain([first], pictures):
+                writing.send(picture)
         return film.read_bytes()
 
 

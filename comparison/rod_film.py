@@ -29,14 +29,14 @@ from crazybilliards.comparison.encoding import (
     kind_of_film,
 )
 from crazybilliards.model import Chain, chain_of
-from crazybilliards.model.checks import check_integer, check_path, check_real
+from crazybilliards.model.checks import check_path, check_real
 from crazybilliards.model.progress import progress_bar
 from crazybilliards.model.storage import make_folder, write_atomically
 from crazybilliards.particles import simulate
 
 Array = NDArray[np.float64]
 
-_LONGEST = 600.0  # s
+_LONGEST = 120.0  # s
 _FINER = 4  # snapshots for one picture, of a chain that is simulated
 _FADING = 0.7  # of a flash, from one picture to the next
 _FAINT = 0.1  # a flash that is not shown any more
@@ -55,7 +55,6 @@ def film(
     seconds: float = 10.0,
     duration: float = 20.0,
     springs: bool = False,
-    replica: int = 0,
     progress: bool = True,
 ) -> Path | Player:
     """Film the rods of a run, or of a chain that is simulated for it.
@@ -70,20 +69,19 @@ def film(
     ----------
     run
         A result with snapshots, e.g. ``simulate(chain, observe="snapshots", duration=20,
-        every=0.02)``. Or a chain: ``duration`` of its steady state is simulated.
+        every=0.02)``, of which the first replica is shown. Or a chain: ``duration`` of its steady
+        state is simulated.
     path
         The file, whose name ends in ``.mp4``, ``.gif`` or ``.html``. None: a player for a notebook.
         An mp4 needs ffmpeg, which ``pip install 'crazybilliards[film]'`` brings. A page and a
         player hold an mp4, or without ffmpeg a gif.
     seconds
-        Length of the film, up to 600. It is shorter if there are fewer snapshots than its 25
+        Length of the film, up to 120. It is shorter if there are fewer snapshots than its 25
         pictures a second.
     duration
         Time to simulate, of a chain [T].
     springs
         Also draw the anchors, and a line from each to its rod.
-    replica
-        Which replica, from 0.
     progress
         Show a progress bar, on a terminal or in a notebook.
 
@@ -110,7 +108,7 @@ def film(
     pictures = max(round(PICTURES_A_SECOND * seconds), 1)
     if isinstance(run, Chain):
         run = _short_run(run, duration, pictures, progress)
-    motion = _motion(run, replica, pictures)
+    motion = _motion(run, pictures)
     if file is not None:
         make_folder(file.parent)
     drawn = _pictures(motion, springs)
@@ -135,6 +133,8 @@ def _short_run(chain: Chain, duration: float, pictures: int, progress: bool) -> 
         observe="snapshots",
         progress=progress,
     )
+    if run.attrs["status"] == "interrupted":
+        raise KeyboardInterrupt
     return run.assign_coords(time=run.time - run.time[0]) if "time" in run else run
 
 
@@ -149,16 +149,17 @@ class _Motion(NamedTuple):
     anchors: Array  # over rod
 
 
-def _motion(run: xr.Dataset, replica: int, pictures: int) -> _Motion:
-    """Read the snapshots of a replica, and choose those that are shown."""
+def _motion(run: xr.Dataset, pictures: int) -> _Motion:
+    """Read the snapshots, and choose those that are shown."""
     if "position" not in run or "time" not in run.position.dims:
         raise ValueError(
             "run has no snapshots in time, which simulate(chain, observe='snapshots') records; it "
-            f"has {', '.join(map(str, run)) or 'nothing'}"
+            f"has {', '.join(map(str, run)) or 'nothing'} and is {run.attrs.get('status')}"
         )
     chain = chain_of(run)
-    replica = check_integer("replica", replica, least=0, most=run.sizes["replica"] - 1)
-    rods = run.isel(replica=replica).dropna("time", subset=["velocity"])
+    rods = (run.isel(replica=0) if "replica" in run.dims else run).dropna(
+        "time", subset=["velocity"]
+    )
     time, x, v = rods.time.values, rods.position.values, rods.velocity.values
     chosen = np.unique(np.linspace(0, time.size - 1, pictures).round().astype(int))
     number = rods.particle.values.astype(int)

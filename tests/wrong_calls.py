@@ -181,7 +181,7 @@ cb.force_balance(chain, displacement=3) | displacement takes a table (x, values)
 cb.animate(run) | tree must be what compare_relaxation returns; film(run) shows...got a Dataset
 cb.film(exact) | run has no snapshots in time, which simulate(chain, observe='snapshots') records
 cb.film(chain, "rods.avi") | path must end in .mp4, .gif or .html, got rods.avi
-cb.film(chain, "rods.gif", seconds=1e4) | seconds must be at most 600
+cb.film(chain, "rods.gif", seconds=1e4) | seconds must be at most 120
 cb.film("run", "rods.gif") | run must be
 cb.animate(tree) | tree must be what compare_relaxation returns
 cb.width_deviations({}) | tree must be an xarray.DataTree

@@ -22,7 +22,7 @@ def run():
 
 
 def test_rods_are_drawn_in_their_places_in_the_colours_of_their_velocities(run):
-    motion = rod_film._motion(run, 0, 5)
+    motion = rod_film._motion(run, 5)
     with plt.rc_context(rod_film._LOOK):
         pictures = list(rod_film._pictures(motion, False))
     for x, v, picture in zip(motion.x, motion.v, pictures, strict=True):
@@ -52,7 +52,7 @@ def test_stars_fade_and_rods_that_are_no_neighbours_have_none():
     run = simulate(
         chain, duration=4, every=0.05, observe="snapshots", particles=[1, 2, 5], progress=False
     )
-    flash = rod_film._motion(run, 0, 80).flash
+    flash = rod_film._motion(run, 80).flash
     assert flash.shape == (80, 2)
     assert not flash[:, 1].any()
     just = np.flatnonzero(flash[:-1, 0] == 1)
