@@ -195,7 +195,7 @@ def best_theory(
     Raises
     ------
     ValueError
-        For an unknown quantity, before any work; with all reasons, if no theory takes the chain.
+        For an unknown quantity, before any work; with the reasons, if no theory takes the chain.
 
     Examples
     --------
@@ -230,6 +230,8 @@ def choose_theory(
     check_choice("quantity", quantity, Accuracy._fields)
     refusals = {theory.name: theory.refusal(chain, settings) for theory in THEORIES.values()}
     if all(refusals.values()):
+        if len(set(refusals.values())) == 1:  # it has no steady state
+            raise ValueError(refusals.popitem()[1])
         reasons = "; ".join(f"{name}: {reason}" for name, reason in refusals.items())
         raise ValueError(f"no theory takes this chain: {reasons}")
     errors = {
