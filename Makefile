@@ -96,12 +96,12 @@ lessons: $(VENV)/installed-notebooks
 	@$(BIN)/python notebooks/without_outputs.py $(LESSONS)
 	@echo "open the lessons with: $(BIN)/jupyter lab $(LESSONS)"
 
-# Copies of the notebooks are executed, and the documentation shows their outputs.
+# No bars (TQDM_DISABLE) in what is kept. Copies of the notebooks are executed, and the documentation shows their outputs.
 notebooks: $(VENV)/installed-notebooks
 	mkdir -p build/notebooks
 	rm -f build/notebooks/$(LESSON)*.ipynb
 	cp notebooks/$(LESSON)*.ipynb notebooks/teaching.py build/notebooks
-	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --nbmake --nbmake-timeout=300 --timeout=1800 --overwrite \
+	TQDM_DISABLE=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --nbmake --nbmake-timeout=300 --timeout=1800 --overwrite \
 	  build/notebooks/$(LESSON)*.ipynb
 	test "$(LESSON)" != "[0-9]" || touch build/notebooks/executed
 
@@ -124,7 +124,7 @@ browser:
 
 # Warnings are errors, for example links that lead nowhere and examples that fail.
 docs: $(VENV)/installed-docs build/notebooks/executed
-	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m sphinx -W --keep-going -b html docs build/docs
+	TQDM_DISABLE=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m sphinx -W --keep-going -b html docs build/docs
 	@echo "open build/docs/index.html"
 
 linkcheck: $(VENV)/installed-docs build/notebooks/executed

@@ -1,6 +1,8 @@
 from .coverage import coverage_density as coverage_density, smooth as smooth
 from .distances import Deviation as Deviation, deviation as deviation
 from .drawing import overlay as overlay
+from .encoding import Player as Player
+from .rod_film import film as film
 from .fits import (
     Fit as Fit,
     fit_arctanh as fit_arctanh,
@@ -20,5 +22,5 @@ from .side_by_side.grid import (
 from .side_by_side.grid_deviations import width_deviations as width_deviations
 from .side_by_side.relaxation import compare_relaxation as compare_relaxation
 from .side_by_side.relaxation_figures import animate as animate
-from .stationary_theories import theories as theories
+from .stationary_theories import best_theory as best_theory, theories as theories
 from .sweeps import load_sweep as load_sweep

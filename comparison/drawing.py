@@ -2,21 +2,27 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
+from io import BytesIO
 from itertools import cycle
+from pathlib import Path
 from typing import Any, Literal, get_args
 
 import matplotlib.pyplot as plt
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.backend_bases import FigureCanvasBase
 from matplotlib.container import ErrorbarContainer
 from numpy.typing import ArrayLike
 
 from crazybilliards.comparison.coverage import require_same_smoothing
 from crazybilliards.comparison.curves import Curve, axis_label, find_curve, is_of_one_rod
+from crazybilliards.comparison.layout import house_style, panels
 from crazybilliards.comparison.symbols import draw_measured
-from crazybilliards.model.checks import check_choice, got, shown
+from crazybilliards.model.checks import check_choice, check_path, got, shown
+from crazybilliards.model.storage import write_atomically
 
 Along = Literal["normalized_particle", "mean_position"]
 
@@ -44,6 +50,7 @@ def overlay(
     along: Along = "normalized_particle",
     ax: Axes | None = None,
     style: Mapping[str, Mapping[str, Any]] | None = None,
+    paper: str | os.PathLike[str] | None = None,
 ) -> Axes:
     """Draw one quantity of several results in one picture.
 
@@ -67,19 +74,27 @@ def overlay(
     style
         ``{label: keywords}`` for matplotlib, of ``errorbar`` for a simulation and of ``plot`` for
         a theory, instead of those chosen here: ``{"run 2": {"color": "red", "alpha": 0.5}}``.
+    paper
+        A file for the picture, e.g. ``"density.pdf"``. It is drawn for print, with a legend: one
+        column of a journal wide (3.4 inches), in letters of 8 points, in a pdf as letters that can
+        be searched (Type 42).
 
     Raises
     ------
     ValueError
         If ``results`` are not given by labels, if one lacks the quantity, or has it over several
         dimensions: one time of a density over time and x must be chosen first. If ``style`` names
-        no result.
+        no result. If ``paper`` is no name of a picture, or stands beside ``ax``.
 
     Returns
     -------
     matplotlib.axes.Axes
-        The axes without a legend; call its ``legend()``.
+        The axes, without a legend unless drawn for print; call its ``legend()``.
     """
+    if paper is not None:
+        if ax is not None:
+            raise ValueError("paper: the picture has axes of its own, and ax must be None")
+        return _on_paper(check_path("paper", paper), results, quantity, along, style)
     curves = _curves(results, quantity, along)
     if not (ax is None or isinstance(ax, Axes)):
         raise ValueError(f"ax must be Axes of matplotlib, got {shown(ax)}")
@@ -109,6 +124,18 @@ def overlay(
             raise ValueError(f"style of {label!r}: {problem}") from problem
         ax.set_xlabel(axis_label(abscissa))
         ax.set_ylabel(axis_label(values))
+    return ax
+
+
+def _on_paper(file: Path, results: Any, quantity: str, along: Along, style: Any) -> Axes:
+    """Draw in the style of the package, which acts when the file is written, too."""
+    kind = check_choice("paper", file.suffix[1:], FigureCanvasBase.get_supported_filetypes())
+    picture = BytesIO()
+    with house_style():
+        figure, [ax] = panels(1, 1, wanted=1)
+        overlay(results, quantity, along=along, ax=ax, style=style).legend()
+        figure.savefig(picture, format=kind)
+    write_atomically(file, picture.getvalue())
     return ax
 
 

@@ -8,10 +8,15 @@ from __future__ import annotations
 
 import inspect
 import math
+import sys
 from collections.abc import Callable, Mapping
+from contextlib import nullcontext
 from dataclasses import dataclass
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from crazybilliards.model.checks import check_choice
+from crazybilliards.model.progress import silent, watched
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -32,14 +37,11 @@ class Theory:
         Its name in tables and legends.
     module
         The module below ``crazybilliards.kinetic`` that has the function and ``check_NAME``.
-    seconds
-        Computing time on one core, by the chain, within a factor of three.
     """
 
     name: str
     title: str
     module: str
-    seconds: Callable[[Chain], float]
 
     @property
     def solve(self) -> Callable[..., xr.Dataset]:
@@ -56,6 +58,11 @@ class Theory:
         from crazybilliards.kinetic.accuracy import expected
 
         return expected(self.name, chain)
+
+    def seconds(self, chain: Chain) -> float:
+        """Return the computing time on one core, within a factor of three."""
+        computing_time = import_module("crazybilliards.kinetic.computing_time")
+        return float(computing_time.expected_seconds(self.name, chain))
 
     def refusal(self, chain: Chain, settings: Mapping[str, Any] | None = None) -> str:
         """Return why the theory does not take the chain and these settings, or nothing."""
@@ -77,32 +84,16 @@ class Theory:
         return getattr(import_module(f"crazybilliards.kinetic.{self.module}"), name)
 
 
-def _steps(chain: Chain) -> float:
-    """Return about how many steps lead from e = 1 to the chain, each with 2.5 times the drag."""
-    return 1 + math.log1p(abs(1 - chain.restitution) * chain.size) / math.log(2.5)
-
-
 THEORIES = {
     theory.name: theory
     for theory in (
-        Theory(
-            "equilibrium",
-            "exact equilibrium",
-            "exact.gibbs_measure",
-            lambda chain: 1e-3 * chain.size,
-        ),
-        Theory("force_balance", "force balance", "statics.balance", lambda chain: 0.03),
-        Theory(
-            "phase_space",
-            "kinetic equation",
-            "kinetic_equation.stationary",
-            lambda chain: 0.4 * _steps(chain),
-        ),
+        Theory("equilibrium", "exact equilibrium", "exact.gibbs_measure"),
+        Theory("force_balance", "force balance", "statics.balance"),
+        Theory("phase_space", "kinetic equation", "kinetic_equation.stationary"),
         Theory(
             "correlated_phase_space",
             "kinetic equation with pair correlations",
             "correlations.stationary",
-            lambda chain: 1.0 * _steps(chain),
         ),
     )
 }
@@ -167,23 +158,93 @@ def theories(chain: Chain) -> xr.Dataset:
         name: ("theory", np.array(values), {"long_name": title, "units": unit})
         for (name, title, unit), values in zip(columns, zip(*rows, strict=True), strict=True)
     }
-    best = best_theory(chain) if any(takes for takes, *_ in rows) else None
-    return xr.Dataset(variables, {"theory": list(THEORIES)}, {"best": best.name if best else ""})
+    best = choose_theory(chain).theory.name if any(takes for takes, *_ in rows) else ""
+    return xr.Dataset(variables, {"theory": list(THEORIES)}, {"best": best})
 
 
-def best_theory(chain: Chain, settings: Mapping[str, Any] | None = None) -> Theory:
-    """Return the theory with the smallest expected error of W_v of those that take the chain.
+def best_theory(
+    chain: Chain,
+    quantity: str = "velocity_width",
+    *,
+    tolerance: float | None = None,
+    cells: int | None = None,
+    progress: bool = True,
+) -> xr.Dataset:
+    """Solve the theory with the smallest stated error of a quantity.
 
-    An error that was not measured counts as larger than any other. Raises ValueError, with all
-    reasons, if no theory takes the chain and the ``settings``.
+    Parameters
+    ----------
+    chain
+        The chain.
+    quantity
+        ``"velocity_width"`` (of the particles 3 to L - 2), ``"border"`` (the velocity width of the
+        first and the last), ``"displacement_width"``, ``"mean_displacement"`` or ``"density"``.
+    tolerance, cells
+        As ``phase_space`` takes them. Only a theory that knows them is then chosen.
+    progress
+        Print which theory was chosen and why, and show how long it takes, on a terminal or in a
+        notebook.
+
+    Returns
+    -------
+    xarray.Dataset
+        The result of the theory. ``attrs["best_theory"]`` is the name of its function, and
+        ``attrs["chosen"]`` says why: the stated errors of all theories that take the chain (see
+        :func:`theories`). An error that was not measured counts as larger than any other.
+
+    Raises
+    ------
+    ValueError
+        For an unknown quantity, before any work; with the reasons, if no theory takes the chain.
+
+    Examples
+    --------
+    >>> from crazybilliards import Chain
+    >>> theory = best_theory(Chain(size=30), "density")
+    >>> theory.attrs["chosen"].partition(":")[0]
+    'equilibrium has the smallest stated error of density'
     """
+    given = {"tolerance": tolerance, "cells": cells}
+    settings = {name: value for name, value in given.items() if value is not None}
+    theory, why = choose_theory(chain, quantity, settings)
+    if progress and watched():
+        print(f"crazybilliards: {why}", file=sys.stderr, flush=True)
+    with nullcontext() if progress else silent():
+        result = theory.solve(chain, **settings)
+    return result.assign_attrs(best_theory=theory.name, chosen=why)
+
+
+class Choice(NamedTuple):
+    """A theory, and why it was chosen in one sentence."""
+
+    theory: Theory
+    why: str
+
+
+def choose_theory(
+    chain: Chain, quantity: str = "velocity_width", settings: Mapping[str, Any] | None = None
+) -> Choice:
+    """Choose the theory for :func:`best_theory` without solving it."""
+    from crazybilliards.kinetic.accuracy import Accuracy
+
+    check_choice("quantity", quantity, Accuracy._fields)
     refusals = {theory.name: theory.refusal(chain, settings) for theory in THEORIES.values()}
-    taking = [theory for theory in THEORIES.values() if not refusals[theory.name]]
-    if not taking:
+    if all(refusals.values()):
+        if len(set(refusals.values())) == 1:  # it has no steady state
+            raise ValueError(refusals.popitem()[1])
         reasons = "; ".join(f"{name}: {reason}" for name, reason in refusals.items())
         raise ValueError(f"no theory takes this chain: {reasons}")
-    return min(taking, key=lambda theory: _or_infinite(theory.accuracy(chain).velocity_width))
-
-
-def _or_infinite(error: float) -> float:
-    return math.inf if math.isnan(error) else error
+    errors = {
+        name: getattr(THEORIES[name].accuracy(chain), quantity)
+        for name, refusal in refusals.items()
+        if not refusal
+    }
+    best = min(errors, key=lambda name: (math.isnan(errors[name]), errors[name]))
+    listed = ", ".join(
+        f"{name} " + ("not measured" if math.isnan(error) else f"{100 * error:.2g} %")
+        for name, error in errors.items()
+    )
+    if math.isnan(errors[best]):
+        return Choice(THEORIES[best], f"{best} comes first, no error of {quantity} is known here")
+    why = f"{best} has the smallest stated error of {quantity.replace('_', ' ')}: {listed}"
+    return Choice(THEORIES[best], why)

@@ -43,6 +43,14 @@ _OBJECTS = {
         ("xarray:Dataset", "xarray:DataTree"),
         "a result or a tree of results, an xarray.Dataset or xarray.DataTree",
     ),
+    "xr.Dataset | Chain": (
+        ("xarray:Dataset", "crazybilliards.model.chain:Chain"),
+        "a result with snapshots, of simulate(chain, observe='snapshots'), or a Chain",
+    ),
+    "Relaxation": (
+        ("xarray:DataTree",),
+        "what compare_relaxation returns; film(run) shows the rods of one run",
+    ),
     "bool": (("builtins:int", "numpy:bool"), "True or False"),
     "bool | str": (("builtins:int", "numpy:bool", "builtins:str"), "True, False or a text"),
     "FuncAnimation": (

@@ -1,4 +1,4 @@
-"""The running process: its cores, its signals, and what it shows on a terminal while it works."""
+"""The running process: its cores, its signals, and the announcement that it compiles."""
 
 from __future__ import annotations
 
@@ -58,27 +58,6 @@ def end_with_parent() -> None:
         os._exit(1)
 
     threading.Thread(target=follow, daemon=True).start()
-
-
-def bar_hidden(progress: bool | str) -> bool | None:
-    """Return tqdm's ``disable``: a bar is shown if asked for, and on a terminal only (None).
-
-    A program without a terminal may have closed its standard error, and tqdm cannot write then.
-    """
-    return None if progress and sys.stderr is not None else True
-
-
-@contextmanager
-def waiting_for(what: str, progress: bool = True) -> Iterator[None]:
-    """Show ``what`` until it is done; nothing where standard error is no terminal."""
-    if not progress:
-        yield
-        return
-    from rich.console import Console
-    from rich.markup import escape
-
-    with Console(stderr=True).status(escape(what)):
-        yield
 
 
 @contextmanager

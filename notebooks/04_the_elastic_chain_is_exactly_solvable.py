@@ -119,9 +119,9 @@ plt.show()
 # ## 2. The velocities
 #
 # A free rod has a Gaussian velocity of width $W = A/\sqrt{2m\gamma}$ and the temperature
-# $T = mW^2$. Consider the distribution
+# $mW^2$. Consider the distribution
 #
-# $$p(y, v) \propto \exp\Big[-\frac1T\sum_i\Big(\frac m2 v_i^2 + U(y_i - y^0_i)\Big)\Big]
+# $$p(y, v) \propto \exp\Big[-\frac1{mW^2}\sum_i\Big(\frac m2 v_i^2 + U(y_i - y^0_i)\Big)\Big]
 # \qquad\text{on}\quad y_1 \le \dots \le y_L .$$
 #
 # An elastic collision exchanges two velocities and conserves the energy, so it leaves $p$ unchanged.
@@ -176,7 +176,7 @@ plt.show()
 #
 # Without a gap the positions are $L$ *independent* Gaussian numbers of width
 #
-# $$s = \sqrt{T/k} = \frac{A}{\sqrt{2\gamma k}}$$
+# $$s = W\sqrt{m/k} = \frac{A}{\sqrt{2\gamma k}}$$
 #
 # (the thermal length), put in order. Statisticians call the $i$-th smallest of $L$ draws the $i$-th
 # **order statistic**.

@@ -38,7 +38,24 @@ from scipy.optimize import brentq
 from scipy.special import ndtri
 from teaching import GREEN, ORANGE, PINK, agree, check, panels, right
 
+# %%
+import crazybilliards as cb
+
+watch = {"duration": 40, "every": 0.1, "observe": "snapshots", "particles": range(46, 56)}
+seen = cb.simulate(cb.Chain(size=100, amplitude=10), **watch, seed=1, progress=False)
+time, middle = seen.time.values - seen.time.values[0], seen.position.values[0].T
+
+# %% tags=["hide-input"]
+ax = panels(height=3)
+for number, x in enumerate(middle):
+    ax.fill_between(time, x - 1, x + 1, color=(ORANGE, GREEN)[number % 2], linewidth=0)
+ax.set(xlabel="time t [T]", ylabel="x [R]", xlim=(0, time[-1]), title="ten rods in the middle")
+plt.show()
+
 # %% [markdown]
+# Each band is a rod, 2 R high. Where two bands touch, the rods collide and swap their velocities.
+# A theory of gases does not follow any of them. It knows a density and a pressure.
+#
 # ## The paper's calculation in one cell
 #
 # [Lesson 0](00_the_analytics_section_in_sixty_lines.ipynb) repeats the paper's section with scipy.
@@ -47,8 +64,6 @@ from teaching import GREEN, ORANGE, PINK, agree, check, panels, right
 # solution in closed form, and section 3 compares the two.
 
 # %%
-import crazybilliards as cb
-
 L, R, k, m = 100, 1.0, 1.0, 4 * np.pi / 3
 W2, B, C = 10**2 / (2 * m), 9.96, 1 / 123.52  # A = 10, gamma = 1
 half = np.linspace(0, 0.9999 / C, 2000)

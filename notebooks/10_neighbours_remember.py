@@ -131,8 +131,8 @@ check(my_change_of_product, change_of_product, at=pairs, hint=hint)
 # ## 3. The next collision
 #
 # A collision takes the energy $\frac{1-e^2}4m(v-u)^2$. For strangers of the temperature
-# $T = \langle v^2\rangle$ the mean of $\frac12(v-u)^2$ is $T$. For neighbours this mean is the *relative
-# temperature* $\Theta = T - \langle v_iv_{i+1}\rangle$.
+# $W_v^2 = \langle v^2\rangle$ the mean of $\frac12(v-u)^2$ is $W_v^2$. For neighbours this mean is the *relative
+# temperature* $\Theta = W_v^2 - \langle v_iv_{i+1}\rangle$.
 #
 # The observer `impacts` looks only at rods that collide. A pair that approaches with the speed
 # $w = \lvert v-u\rvert$ meets at a rate proportional to $w$, so a mean over collisions weights every pair
@@ -141,15 +141,15 @@ check(my_change_of_product, change_of_product, at=pairs, hint=hint)
 #
 # $$\langle w\rangle = \sqrt{\pi\Theta},\qquad \langle w^2\rangle = 4\Theta .$$
 #
-# For strangers $\Theta$ is $T$. The mean of $\frac12w^2$ over the collisions of strangers is therefore
-# $2T$, twice that of all pairs. To be compared with $T$, the observer gives the *contact temperature*
+# For strangers $\Theta$ is $W_v^2$. The mean of $\frac12w^2$ over the collisions of strangers is therefore
+# $2W_v^2$, twice that of all pairs. To be compared with $W_v^2$, the observer gives the *contact temperature*
 #
 # $$\Theta_c = \frac{\pi}{16}\left(\frac{\langle w^2\rangle}{\langle w\rangle}\right)^2 ,$$
 #
-# which is $T$ for strangers. Its name is `contact_temperature`. `rebound_temperature` is the same of
+# which is $W_v^2$ for strangers. Its name is `contact_temperature`. `rebound_temperature` is the same of
 # the speeds just after the collisions.
 #
-# **Predict.** Order the four at $e = 0.75$: $T$, $\Theta$ of all neighbours, $\Theta_c$ before a
+# **Predict.** Order the four at $e = 0.75$: $W_v^2$, $\Theta$ of all neighbours, $\Theta_c$ before a
 # collision, the same after it. Does a collision take more or less than one of strangers?
 #
 # **Run.**
@@ -163,7 +163,7 @@ for e, run in runs.items():
     for name in names:
         share[e, name] = centre[name].mean().item() / temperature
         error = centre[f"{name}_error"].mean().item() / temperature
-        print(f"e = {e}: {name} / T = {share[e, name]:.3f} +- {error:.3f}")
+        print(f"e = {e}: {name} / W_v^2 = {share[e, name]:.3f} +- {error:.3f}")
 
 # %% tags=["remove-cell"]
 for name in names:
@@ -178,10 +178,10 @@ assert np.allclose(run.contact_loss / run.contact_force, by_force, rtol=0.01)
 # %% [markdown]
 # <details><summary>Explain</summary>
 #
-# At $e = 1$ all four are $T$. At $e = 0.75$ neighbours have a relative temperature of 0.59 $T$,
-# because their covariance is the rest of $T$. Rods that are about to collide have a lower one, 0.44 $T$.
+# At $e = 1$ all four are $W_v^2$. At $e = 0.75$ neighbours have a relative temperature of 0.59 $W_v^2$,
+# because their covariance is the rest of $W_v^2$. Rods that are about to collide have a lower one, 0.44 $W_v^2$.
 # The reason is that rods which happen to be close collide often, and are cold. After the collision
-# $e^2 = 0.56$ of the 0.44 $T$ remains. Then noise and other neighbours make the two velocities
+# $e^2 = 0.56$ of the 0.44 $W_v^2$ remains. Then noise and other neighbours make the two velocities
 # different again.
 #
 # How much less is lost than among strangers? Collisions with the speed $w$ exchange the momentum
@@ -251,7 +251,7 @@ for e in runs:
 # `correlated_phase_space` computes the covariances as well, from what one collision does (section
 # 2) and from how sound carries covariances along the chain. No number is fitted in either theory.
 #
-# **Predict.** In a theory of strangers every collision takes the energy that belongs to $T$ and not to
+# **Predict.** In a theory of strangers every collision takes the energy that belongs to $W_v^2$ and not to
 # $\Theta$. Will its velocity width in the centre be too large or too small?
 #
 # **Run.**
@@ -322,7 +322,7 @@ assert abs(of_neighbours) < 0.04
 #
 # <details><summary>Solution</summary>
 #
-# Only change the list of restitutions. The documentation's table has $1 - \Theta/T$ for 100 rods in
+# Only change the list of restitutions. The documentation's table has $1 - \Theta/W_v^2$ for 100 rods in
 # the centre: 0.07 at $e = 0.95$, 0.18 at 0.9, 0.44 at 0.75 and 0.62 at 0.5. At first it grows in
 # proportion to $1 - e^2$, then more slowly: it cannot exceed 1.
 # </details>

@@ -46,27 +46,48 @@ def right(answer, expected, *, at=(), tolerance=1e-6):
 
     Functions are compared by their values for each of the tuples of arguments in ``at``.
     """
-    pairs = [(answer(*each), expected(*each)) for each in at] or [(answer, expected)]
-    for given, wanted in pairs:
-        given, wanted = np.asarray(given, dtype=float), np.asarray(wanted, dtype=float)
-        scale = abs(wanted).max() if wanted.size else 1.0
-        if given.shape != wanted.shape or not (abs(given - wanted) <= tolerance * scale).all():
-            return False
-    return True
+    return _first_wrong(answer, expected, at, tolerance) is None
 
 
-def check(answer, expected, *, at=(), hint, tolerance=1e-6):
+def check(answer, expected, *, at=(), hint, tolerance=1e-6, also=()):
     """Say whether an answer is missing, right, or wrong; a wrong one is given a hint.
 
-    A missing answer is ``...``, or a function that returns this or None.
+    A missing answer is ``...``, or a function that returns this. ``also`` are other right answers.
     """
     try:
         given = answer(*at[0]) if at else answer
-        if given is ... or given is None:
+        if given is ...:
             print("Your turn: replace the dots, and run the cell again.")
-        elif right(answer, expected, at=at, tolerance=tolerance):
+        elif given is None and at:
+            print("Your function returns nothing: write return in front of the answer.")
+        elif any(right(answer, each, at=at, tolerance=tolerance) for each in (expected, *also)):
             print("Right.")
         else:
-            print(f"Not yet. Hint: {hint}")
+            print(f"Not yet{_first_wrong(answer, expected, at, tolerance)}. Hint: {hint}")
     except Exception as error:  # whatever the student's code does, the lesson goes on
         print(f"Your code stops with {type(error).__name__}: {error}. Hint: {hint}")
+
+
+def _first_wrong(answer, expected, at, tolerance):
+    """Return the first numbers that are wrong in words, or None if all are right."""
+    for arguments in at or [None]:
+        given, wanted = (
+            np.asarray(each if arguments is None else each(*arguments), dtype=float)
+            for each in (answer, expected)
+        )
+        if given.shape != wanted.shape:
+            return f": an answer of the shape {given.shape} must have the shape {wanted.shape}"
+        scale = abs(wanted).max() if wanted.size else 1.0
+        if not (abs(given - wanted) <= tolerance * scale).all():
+            if arguments is None:  # the wanted number would be the solution
+                return f": you have {_shown(given)}"
+            where = ", ".join(_shown(each) for each in arguments)
+            return f": for ({where}) you have {_shown(given)}, and right is {_shown(wanted)}"
+    return None
+
+
+def _shown(value):
+    look = {"float_kind": "{:.4g}".format}
+    return np.array2string(
+        np.asarray(value, dtype=float), formatter=look, threshold=6, separator=", "
+    )

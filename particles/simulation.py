@@ -123,7 +123,7 @@ def simulate(
         Ctrl-C, SIGTERM or SIGHUP. The same call again continues from there and gives the same
         bits. A checkpoint of another run, or one that another process is using, is refused.
     progress
-        Show a progress bar with the time left, if standard error is a terminal. A text stands in
+        Show a progress bar with the time left, on a terminal or in a notebook. A text stands in
         front of it, to tell runs apart.
 
     Returns

@@ -145,7 +145,12 @@ def wrong(x):
     return x + 1
 
 
-def missing(x): ...
+def missing(x):
+    return ...
+
+
+def without_return(x):
+    abs(x)
 
 
 def broken(x):
@@ -154,10 +159,17 @@ def broken(x):
 
 @pytest.mark.parametrize(
     ("answer", "said"),
-    [(abs, "Right."), (wrong, "Not yet. Hint: sign"), (missing, "Your turn"), (broken, "no root")],
+    [
+        (abs, "Right."),
+        (lambda x: -abs(x), "Right."),
+        (wrong, "Not yet: for (-1) you have 0, and right is 1. Hint: sign"),
+        (missing, "Your turn"),
+        (without_return, "returns nothing: write return"),
+        (broken, "no root"),
+    ],
 )
 def test_an_answer_is_checked(answer, said, capsys):
-    check(answer, abs, at=[(-1.0,), (2.0,)], hint="sign")
+    check(answer, abs, at=[(-1.0,), (2.0,)], hint="sign", also=[lambda x: -abs(x)])
     assert said in capsys.readouterr().out
 
 
@@ -165,8 +177,12 @@ def test_numbers_are_checked(capsys):
     check(..., 2.0, hint="half")
     check([1, 2], [1, 2], hint="half")
     check([1, 2], 1, hint="half")
-    said = [line.split()[0] for line in capsys.readouterr().out.splitlines()]
-    assert said == ["Your", "Right.", "Not"]
+    check([0.599], [0.6], hint="half", tolerance=2e-3)
+    check([3, 4], [1, 2], hint="half")
+    said = capsys.readouterr().out.splitlines()
+    assert [line.split()[0] for line in said] == ["Your", "Right.", "Not", "Right.", "Not"]
+    assert "shape (2,)" in said[2]
+    assert "you have [3, 4]" in said[4]
     assert not right(float("nan"), 1.0)
     assert right(0.5004, 0.5, tolerance=1e-3)
 

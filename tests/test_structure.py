@@ -33,7 +33,7 @@ FLOORS = {
         {"vanishing_step"},
     ),
     "kinetic": (
-        {"accuracy", "requirements", "times"},
+        {"accuracy", "computing_time", "requirements", "times"},
         {"statics", "exact"},
         {"starts"},
         {"fluids", "kinetic_equation"},
@@ -41,7 +41,7 @@ FLOORS = {
     ),
     "comparison": (
         {"coverage", "distances", "drawing", "fits", "layout", "widths"}
-        | {"curves", "stationary_theories", "symbols"},
+        | {"curves", "encoding", "rod_film", "stationary_theories", "symbols"},
         {"sweeps"},
         {"side_by_side"},
     ),

@@ -124,6 +124,7 @@ cb.compressed(None, 2) | chain must be a Chain
 cb.displaced(tree, 2) | chain must be a Chain...got a DataTree
 cb.critical_size(1.05) | chain must be a Chain...got 1.05
 cb.critical_size(None) | chain must be a Chain
+cb.best_theory(cb.Chain(), "W_v") | quantity must be one of ...got 'W_v'
 cb.theories(None) | chain must be a Chain...got None
 cb.compare_elastic(5) | chain must be a Chain
 cb.compare_relaxation({}) | chain must be a Chain
@@ -177,7 +178,11 @@ cb.hydrodynamics(chain, {}, 1) | start must be a result with density over x...go
 cb.hydrodynamics(chain, foreign, 1) | start: the density must add up to the chain's 5 rods
 cb.relax_phase_space(chain, "start", 1) | start must be a result...got 'start'
 cb.force_balance(chain, displacement=3) | displacement takes a table (x, values)...got 3
-cb.animate(run) | tree must be an xarray.DataTree, which...compare_relaxation...got a Dataset
+cb.animate(run) | tree must be what compare_relaxation returns; film(run) shows...got a Dataset
+cb.film(exact) | run has no snapshots in time, which simulate(chain, observe='snapshots') records
+cb.film(chain, "rods.avi") | path must end in .mp4, .gif or .html, got rods.avi
+cb.film(chain, "rods.gif", seconds=1e4) | seconds must be at most 120
+cb.film("run", "rods.gif") | run must be
 cb.animate(tree) | tree must be what compare_relaxation returns
 cb.width_deviations({}) | tree must be an xarray.DataTree
 cb.width_deviations(tree) | tree must be what compare_restitutions returns

@@ -114,7 +114,7 @@ def write_figure(path: Path, draw: Callable[[], Figure], which: str = "") -> Non
     import matplotlib.pyplot as plt
 
     from crazybilliards.comparison.layout import house_style
-    from crazybilliards.model.process import waiting_for
+    from crazybilliards.model.progress import waiting_for
     from crazybilliards.model.storage import write_atomically
 
     with waiting_for(f"drawing {path.name}{which}"), house_style():

@@ -97,7 +97,7 @@ def _write(tree: xr.DataTree, folder: Path, suffix: str) -> None:
     from crazybilliards.comparison.side_by_side.animation_page import standalone_page
     from crazybilliards.comparison.side_by_side.relaxation import condensed
     from crazybilliards.model import save
-    from crazybilliards.model.process import waiting_for
+    from crazybilliards.model.progress import waiting_for
     from crazybilliards.model.storage import write_atomically
 
     tree = condensed(tree)

@@ -135,7 +135,7 @@ def _draw(studies: list[Study], quality: Quality, output: Path, **how: Any) -> l
     import matplotlib
 
     matplotlib.use("Agg")
-    from crazybilliards.model.process import waiting_for
+    from crazybilliards.model.progress import waiting_for
     from crazybilliards.model.storage import write_atomically
     from crazybilliards.reproduction.claims.report import reproduce as draw
 

@@ -16,7 +16,7 @@ import typer
 from crazybilliards.apps.commands.answers import answer_rods, note, print_table, say, wrote
 from crazybilliards.apps.commands.chain_options import with_chain_options
 from crazybilliards.apps.commands.output import conclude, place, write_figures, writing_to
-from crazybilliards.comparison.stationary_theories import THEORIES, best_theory
+from crazybilliards.comparison.stationary_theories import THEORIES, choose_theory
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -89,29 +89,27 @@ def command(
     """
     from crazybilliards.kinetic import critical_size
     from crazybilliards.model.checks import check_choice
-    from crazybilliards.model.process import waiting_for
 
     if listed:
         _list(chain)
         return
     given = {"tolerance": tolerance, "cells": cells}
     settings = {key: value for key, value in given.items() if value is not None}
+    why = ""
     if name is None:
-        theory = best_theory(chain, settings)
+        theory, why = choose_theory(chain, settings=settings)
     else:
         theory = THEORIES[check_choice("name", name, tuple(THEORIES))]
         if reason := theory.refusal(chain, settings):
             raise ValueError(reason)
     with writing_to(output):
         if critical:
-            with waiting_for("working out the critical size"):
-                value, error = critical_size(chain)
+            value, error = critical_size(chain)
             note(critical_size=value, critical_size_error=error)
             say(f"critical size: {value:.1f} +- {error:.1f} rods")
-        with waiting_for(f"solving: {theory.title}"):
-            result = theory.solve(chain, **settings)
-        if name is None:
-            say(f"{theory.name} has the smallest expected error for this chain (see --list).")
+        result = theory.solve(chain, **settings)
+        if why:
+            say(f"{why}.")
         write, show = partial(_write, theory, result), partial(_print, theory, result)
         conclude(output, result.attrs["status"], write, show)
 

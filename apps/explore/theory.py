@@ -107,23 +107,23 @@ def _compute(parameters: Parameters, there: Connection) -> None:
 
     warnings.simplefilter("ignore", UnmeasuredWarning)  # the page shows what is not known
     chain = Chain(**asdict(parameters))
-    refusals = dict.fromkeys(theory.refusal(chain) for theory in THEORIES.values())
     try:
-        if "" not in refusals:
-            raise ValueError("; ".join(refusals))
-        answer = {"best": _result(best_theory(chain), chain)}
-        if not THEORIES["force_balance"].refusal(chain):
-            answer["other"] = _result(THEORIES["force_balance"], chain)
+        best, other = best_theory(chain, progress=False), THEORIES["force_balance"]
+        answer = {"best": _result(THEORIES[best.attrs["best_theory"]], best)}
+        if not other.refusal(chain):
+            answer["other"] = _result(other, other.solve(chain))
         there.send(answer)
     except ValueError as error:
         there.send({"refused": str(error)})
 
 
-def _result(theory: Any, chain: Any) -> Answer:
-    """Solve a theory; return what the page draws and says of it."""
+def _result(theory: Any, solved: Any) -> Answer:
+    """Return what the page draws and says of a solved theory."""
     from crazybilliards.comparison.coverage import smooth
+    from crazybilliards.model import chain_of
 
-    solved, accuracy = theory.solve(chain), theory.accuracy(chain)
+    chain = chain_of(solved)
+    accuracy = theory.accuracy(chain)
     density = smooth(solved).density
     points = density[:: -(-density.x.size // _MOST_POINTS)] * 2 * chain.radius
     widths = solved.velocity_width.values / chain.free_velocity_width

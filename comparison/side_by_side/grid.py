@@ -30,7 +30,8 @@ from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.calls import warn_user
 from crazybilliards.model.checks import check_integer, check_path, check_real, shown
-from crazybilliards.model.process import announced, cores, waiting_for
+from crazybilliards.model.process import announced, cores
+from crazybilliards.model.progress import waiting_for
 from crazybilliards.model.randomness import Seed, seed_of
 from crazybilliards.particles.simulation import compile_kernels
 

@@ -25,7 +25,7 @@ from crazybilliards.kinetic import (
 from crazybilliards.kinetic.exact.breathing import breathing_cloud
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.checks import check_choice, check_integer, check_real
-from crazybilliards.model.process import waiting_for
+from crazybilliards.model.progress import waiting_for
 from crazybilliards.model.randomness import Seed, seed_of
 from crazybilliards.particles import simulate
 

@@ -20,6 +20,7 @@ from crazybilliards.comparison.side_by_side.relaxation import LEGEND, PARTICLES,
 from crazybilliards.model import Chain, chain_of
 
 Array = NDArray[np.float64]
+Relaxation = xr.DataTree
 
 _DENSITY = r"density $\rho$ [1/R]"
 _ON_A_SCREEN: Any = {
@@ -97,7 +98,7 @@ def draw_cloud(tree: xr.DataTree) -> Figure:
     return figure
 
 
-def animate(tree: xr.DataTree) -> FuncAnimation:
+def animate(tree: Relaxation) -> FuncAnimation:
     """rho(x, t) of the simulation and the fluids as an animation.
 
     ``standalone_page(animate(tree))`` plays in a notebook or a browser.
@@ -145,7 +146,10 @@ def _densities(tree: xr.DataTree) -> dict[str, xr.Dataset]:
     """Return the available smoothed densities by the names they are drawn with."""
     names = {PARTICLES: SIMULATION} | LEGEND
     if PARTICLES not in tree:
-        raise ValueError(f"tree must be what compare_relaxation returns, got {list(tree.children)}")
+        raise ValueError(
+            "tree must be what compare_relaxation returns; film(run) shows the rods of one run, "
+            f"got {list(tree.children)}"
+        )
     return {
         name: smooth(tree[key].to_dataset())
         for key, name in names.items()

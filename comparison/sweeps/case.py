@@ -31,6 +31,7 @@ from crazybilliards.comparison.sweeps.jobs import JOBS
 from crazybilliards.kinetic.accuracy import UnmeasuredWarning
 from crazybilliards.model import Chain, load
 from crazybilliards.model.checks import check_arguments, check_choice
+from crazybilliards.model.progress import silent
 from crazybilliards.model.storage import load_attributes, small_netcdf
 from crazybilliards.particles import ShortRunWarning
 
@@ -196,7 +197,7 @@ def compute(case: Case, source: str, threads: int = 1) -> bytes:
     own: dict[str, int] = {"seed": case.own_seed} if "seed" in case.settings else {}
     own |= {"threads": threads} if case.job.startswith("simulate") else {}
     # Linear algebra in threads sums in another order, and it would make other workers wait.
-    with _libraries(len(sys.modules)).limit(limits=1), warnings.catch_warnings():
+    with _libraries(len(sys.modules)).limit(limits=1), warnings.catch_warnings(), silent():
         # The result states that its error is unknown; a line per process would not say of which.
         warnings.simplefilter("ignore", UnmeasuredWarning)
         warnings.simplefilter("ignore", ShortRunWarning)  # said of the whole sweep

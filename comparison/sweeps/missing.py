@@ -8,12 +8,11 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from tqdm import tqdm
 
 from crazybilliards.comparison.sweeps.case import Case, OutdatedError
 from crazybilliards.comparison.sweeps.grid import Sweep
 from crazybilliards.model.calls import warn_user
-from crazybilliards.model.process import bar_hidden
+from crazybilliards.model.progress import progress_bar
 from crazybilliards.particles import ShortRunWarning
 
 
@@ -125,4 +124,4 @@ def find_missing(
 
 def _bar(cases: Sweep | Cases, title: str, progress: bool) -> Iterable[Case]:
     """Show the progress of a loop that takes longer than a second."""
-    return tqdm(cases, desc=title, unit="", delay=1, disable=bar_hidden(progress))
+    return progress_bar(progress, cases, desc=title, unit="", delay=1)

@@ -26,7 +26,8 @@ from crazybilliards.comparison.sweeps.case import Case, compute
 from crazybilliards.comparison.sweeps.missing import Cases, check_cases, find_missing
 from crazybilliards.model.checks import check_path
 from crazybilliards.model.locks import locked
-from crazybilliards.model.process import bar_hidden, interrupts_held_back
+from crazybilliards.model.process import interrupts_held_back
+from crazybilliards.model.progress import progress_bar
 from crazybilliards.model.storage import make_folder, write_sealed
 
 # Cases that are submitted and have not returned: enough for a cluster, few in memory.
@@ -76,7 +77,7 @@ def run_cases(
         Accept results that other source code of the package computed. Use it only if no number
         depends on the edits since.
     progress
-        Show progress bars, the last one with the time left, if standard error is a terminal.
+        Show progress bars, the last one with the time left, on a terminal or in a notebook.
 
     Raises
     ------
@@ -114,11 +115,11 @@ def compute_missing(
     """
     for what in missing.replaced:
         print(f"crazybilliards: {what}", file=sys.stderr)
-    with tqdm(
+    with progress_bar(
+        progress,
         total=float(missing.work.sum()),
         desc=f"0 of {len(missing)} cases",
         bar_format="{l_bar}{bar:10}| {elapsed}<{remaining}{postfix}",
-        disable=bar_hidden(progress),
     ) as bar:
         under_way = _UnderWay(executor, folder, len(missing), outcome, bar)
         for case in missing:

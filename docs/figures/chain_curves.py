@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from crazybilliards.comparison.stationary_theories import best_theory
+from crazybilliards.comparison.stationary_theories import THEORIES, best_theory
 from crazybilliards.comparison.widths import border_width, central_width
 from crazybilliards.model import Chain
 
@@ -25,16 +25,11 @@ DISSIPATIVE = (
 )
 
 
-def solve(chain: Chain) -> xr.Dataset:
-    """Solve the best theory for a chain."""
-    return best_theory(chain).solve(chain)
-
-
 def stored(chain: Chain, theory: xr.Dataset) -> dict[str, object]:
     """Return a chain, the errors of its theory and the widths of its left half, in free widths."""
     widths = theory.velocity_width.values / chain.free_velocity_width
     half = widths[: (chain.size + 1) // 2]
-    best = best_theory(chain)
+    best = THEORIES[theory.attrs["best_theory"]]
     errors = best.accuracy(chain)
     return {name: getattr(chain, name) for name in SHOWN} | {
         "title": best.title,
@@ -52,9 +47,9 @@ def turning(theories: dict[float, xr.Dataset]) -> float:
 
 def main() -> None:
     """Write the curves."""
-    theories = {damping: solve(TURNING.replace(damping=damping)) for damping in DAMPINGS}
+    theories = {damping: best_theory(TURNING.replace(damping=damping)) for damping in DAMPINGS}
     curves = [stored(TURNING.replace(damping=g), each) for g, each in theories.items()]
-    curves += [stored(chain, solve(chain)) for chain in (PUSHED, *DISSIPATIVE)]
+    curves += [stored(chain, best_theory(chain)) for chain in (PUSHED, *DISSIPATIVE)]
     lines = ",\n".join(f"    {json.dumps(each, separators=(',', ':'))}" for each in curves)
     CURVES.write_text(
         "/* Velocity widths by the best theory, of the rods of the left half, in free widths.\n"

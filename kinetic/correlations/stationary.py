@@ -24,6 +24,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from crazybilliards.kinetic.computing_time import expected_seconds
 from crazybilliards.kinetic.correlations.closure import Closure, background, implied
 from crazybilliards.kinetic.correlations.displacements import relaxing_pairs
 from crazybilliards.kinetic.correlations.fixed_point import NoFixedPointError, find_fixed_point
@@ -47,6 +48,7 @@ from crazybilliards.kinetic.kinetic_equation.order_statistics import Rods
 from crazybilliards.kinetic.kinetic_equation.velocity_space import one_thread
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain
+from crazybilliards.model.progress import waiting_for
 
 Array = NDArray[np.float64]
 
@@ -107,8 +109,10 @@ def correlated_phase_space(
     array([0.26 , 0.206, 0.194])
     """
     check_correlated_phase_space(chain, tolerance=tolerance, cells=cells)
+    seconds = expected_seconds("correlated_phase_space", chain)
     try:
-        return assemble(*_solve(chain, tolerance, cells))
+        with waiting_for("pair correlations", seconds=seconds):
+            return assemble(*_solve(chain, tolerance, cells))
     except (NotSolvedError, NoFixedPointError) as error:
         raise ValueError(
             f"the kinetic equation with pair correlations could not be solved: {error}; "

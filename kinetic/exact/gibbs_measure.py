@@ -31,11 +31,13 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from crazybilliards.kinetic.accuracy import expected
+from crazybilliards.kinetic.computing_time import expected_seconds
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain
 from crazybilliards.model.checks import check_integer
 from crazybilliards.model.grid import position_grid, require_resolved, thermal_reach
 from crazybilliards.model.memory import require_memory
+from crazybilliards.model.progress import waiting_for
 from crazybilliards.model.randomness import Seed, seed_of
 from crazybilliards.model.vocabulary import result
 
@@ -72,7 +74,11 @@ def equilibrium(chain: Chain) -> xr.Dataset:
     >>> (equilibrium(chain).mean_displacement / chain.thermal_length).values.round(6)
     array([-0.56419,  0.56419])
     """
-    recursion = _recursion(chain)
+    with waiting_for("exact equilibrium", seconds=expected_seconds("equilibrium", chain)):
+        return _in_vocabulary(chain, _recursion(chain))
+
+
+def _in_vocabulary(chain: Chain, recursion: _Recursion) -> xr.Dataset:
     x = position_grid(chain)
     density, label = np.zeros((2, x.size))
     mean, width, log_z = np.zeros((3, chain.size))
@@ -125,7 +131,8 @@ def equilibrium_states(chain: Chain, replicas: int, seed: Seed = 0) -> xr.Datase
     seed = seed_of(seed)
     generator = np.random.default_rng(seed)
     require_memory(f"replicas={replicas} of {chain.size} rods", 40.0 * replicas * chain.size)
-    recursion = _recursion(chain)
+    with waiting_for("exact equilibrium", seconds=expected_seconds("equilibrium", chain) / 2):
+        recursion = _recursion(chain)
     y = np.empty((replicas, chain.size))
     below = np.full(replicas, np.inf)
     for i in reversed(range(chain.size)):

@@ -8,13 +8,14 @@ interrupts are named too, because trackers that read the clock would make two eq
 from __future__ import annotations
 
 import logging
-import sys
 from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from pde import CartesianGrid, FieldCollection, MemoryStorage, PDEBase, ProgressTracker, ScalarField
+
+from crazybilliards.model.progress import watched
 
 # py-pde would warn that a short run spent more time on storing than on solving.
 logging.getLogger("pde.solvers.controller").setLevel(logging.ERROR)
@@ -64,7 +65,7 @@ def solve(
     """
     storage = MemoryStorage()
     trackers: list[Any] = [storage.tracker(list(times))]
-    if progress and sys.stderr is not None and sys.stderr.isatty():
+    if progress and watched():
         trackers.append(ProgressTracker(list(times), leave=False))
     flow = Flow(rate)
     try:

@@ -22,7 +22,6 @@ import xarray as xr
 from numpy.typing import NDArray
 from scipy.sparse import csc_matrix
 from scipy.stats import norm
-from tqdm import tqdm
 
 from crazybilliards.kinetic.accuracy import expected_relax_phase_space, warn_if_unmeasured
 from crazybilliards.kinetic.kinetic_equation.continuation import free_units
@@ -52,7 +51,7 @@ from crazybilliards.kinetic.times import output_times
 from crazybilliards.model import Chain
 from crazybilliards.model.checks import check_integer, check_real
 from crazybilliards.model.memory import require_memory
-from crazybilliards.model.process import bar_hidden
+from crazybilliards.model.progress import progress_bar
 
 Array = NDArray[np.float64]
 
@@ -104,7 +103,7 @@ def relax_phase_space(
         Number of cells from the centre to the end of the mesh in each direction. Its square
         times 110 kB, and 600 bytes for each output, are needed.
     progress
-        Show a progress bar, if standard error is a terminal.
+        Show a progress bar, on a terminal or in a notebook.
 
     Returns
     -------
@@ -160,9 +159,7 @@ def relax_phase_space(
     most = _DIVERGED * max(flow.energy(), 1.0)
     status = "completed"
     try:
-        for _ in tqdm(
-            range(count), desc="kinetic equation", unit=" outputs", disable=bar_hidden(progress)
-        ):
+        for _ in progress_bar(progress, range(count), desc="kinetic equation", unit=" outputs"):
             flow = flow.advanced(interval / unit_time / steps, steps)
             sound = flow.sound()
             if chain.restitution <= 1 and not sound:

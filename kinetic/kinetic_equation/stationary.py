@@ -22,6 +22,7 @@ import numpy as np
 import xarray as xr
 
 from crazybilliards.kinetic.accuracy import expected, warn_if_unmeasured
+from crazybilliards.kinetic.computing_time import expected_seconds
 from crazybilliards.kinetic.kinetic_equation.continuation import (
     CELLS,
     State,
@@ -40,6 +41,7 @@ from crazybilliards.kinetic.kinetic_equation.weak_form import coefficients
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain
 from crazybilliards.model.checks import check_integer
+from crazybilliards.model.progress import waiting_for
 
 _MOST_CELLS = 60  # of a mesh that is not asked for: 22, 33 and 50 cells are tried
 _MOST_RODS = 100_000
@@ -110,7 +112,8 @@ def phase_space(
     """
     order = check_phase_space(chain, order=order, tolerance=tolerance, cells=cells)
     try:
-        found = _assemble(*_solve(chain, order, tolerance, cells))
+        with waiting_for("kinetic equation", seconds=expected_seconds("phase_space", chain)):
+            found = _assemble(*_solve(chain, order, tolerance, cells))
     except NotSolvedError as error:
         raise ValueError(f"{error}: {_out_of_range(chain, order)}") from error
     warn_if_unmeasured("the kinetic equation", found.attrs["model_error"])

@@ -7,9 +7,8 @@ from concurrent.futures import FIRST_EXCEPTION, Future, ThreadPoolExecutor, wait
 from signal import SIGINT
 from threading import Event, Lock
 
-from tqdm import tqdm
-
-from crazybilliards.model.process import bar_hidden, interrupts_noted
+from crazybilliards.model.process import interrupts_noted
+from crazybilliards.model.progress import progress_bar
 from crazybilliards.particles.running.checkpoint import Checkpoint
 from crazybilliards.particles.running.replica import Replica
 
@@ -29,14 +28,14 @@ def run_all(
     total = sum(replica.total for replica in replicas)
     with (
         interrupts_noted() as signals,
-        tqdm(
+        progress_bar(
+            progress,
             total=total,
             initial=sum(replica.done for replica in replicas),
             desc=progress if isinstance(progress, str) else "simulating",
             unit=unit,
             unit_scale=True,
             bar_format="{l_bar}{bar}| {elapsed}<{remaining}, {rate_fmt}",
-            disable=bar_hidden(progress),
         ) as bar,
         ThreadPoolExecutor(min(threads, len(replicas))) as pool,
     ):

@@ -1,5 +1,7 @@
 """Overlays of what simulation and theory share, over whatever dimension it has."""
 
+import re
+
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
@@ -135,3 +137,19 @@ def test_results_without_labels_and_wrong_names_are_explained():
         overlay({"exact": exact}, "densities")
     with pytest.raises(ValueError, match=r"along must be one of .*'mean_position'"):
         overlay({"exact": exact}, "mean_displacement", along="mean_positions")
+
+
+def test_a_picture_for_print_is_one_column_wide_in_letters_of_type_42(tmp_path):
+    exact = equilibrium(Chain(size=5))
+    ax = overlay({"exact": exact}, "density", paper=tmp_path / "density.pdf")
+    pdf = (tmp_path / "density.pdf").read_bytes()
+    assert b"/FontFile2" in pdf  # TrueType: Type 42
+    assert b"/Type3" not in pdf
+    [width] = re.findall(rb"/MediaBox \[ 0 0 ([\d.]+) ", pdf)
+    assert float(width) == pytest.approx(3.4 * 72)
+    assert ax.get_legend() is not None
+    assert plt.rcParams["pdf.fonttype"] == 3  # the reader's own pictures stay as they are
+    with pytest.raises(ValueError, match="paper must be one of"):
+        overlay({"exact": exact}, paper=tmp_path / "density.doc")
+    with pytest.raises(ValueError, match="ax must be None"):
+        overlay({"exact": exact}, paper="density.pdf", ax=ax)

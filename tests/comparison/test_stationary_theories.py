@@ -6,9 +6,9 @@ import warnings
 import numpy as np
 import pytest
 
-from crazybilliards.comparison import theories
-from crazybilliards.comparison.stationary_theories import THEORIES, best_theory
-from crazybilliards.kinetic import UnmeasuredWarning, force_balance, phase_space
+from crazybilliards.comparison import best_theory, theories
+from crazybilliards.comparison.stationary_theories import THEORIES, choose_theory
+from crazybilliards.kinetic import UnmeasuredWarning, equilibrium, force_balance, phase_space
 from crazybilliards.model import Chain
 
 CHAINS = {
@@ -34,7 +34,7 @@ ERRORS = {  # columns, and attributes of results; velocity_width_error is model_
 def test_the_best_theory_of_a_chain(name):
     chain, best = CHAINS[name]
     table = theories(chain)
-    assert table.attrs["best"] == best == best_theory(chain).name
+    assert table.attrs["best"] == best == choose_theory(chain).theory.name
     assert table.takes.sel(theory=best)
     assert (table.expected_seconds.values[table.takes.values] > 0).all()
 
@@ -69,11 +69,41 @@ def test_expected_errors_are_those_that_results_state(chain):
         assert row[main] == pytest.approx(stated["model_error"], nan_ok=True)
 
 
+def test_the_best_theory_depends_on_the_quantity_and_says_why():
+    chain = Chain(size=100, restitution=0.95)
+    for quantity in ("velocity_width", "displacement_width", "mean_displacement", "density"):
+        column = theories(chain)[f"{quantity}_error"]
+        found = best_theory(chain, quantity, cells=16)
+        assert found.attrs["best_theory"] == column.idxmin("theory")
+        assert found.attrs["chosen"].startswith(
+            f"{found.attrs['best_theory']} has the smallest stated error of "
+        )
+    of_widths = [
+        choose_theory(chain, f"{each}_width").theory.name for each in ("velocity", "displacement")
+    ]
+    assert of_widths == ["phase_space", "correlated_phase_space"]
+
+
+def test_the_best_theory_is_the_solved_one():
+    chain = Chain(size=20, gap=0.5)
+    found = best_theory(chain)
+    assert found.drop_attrs(deep=False).identical(equilibrium(chain).drop_attrs(deep=False))
+    assert "force_balance" in found.attrs["chosen"]
+
+
+def test_without_a_known_error_the_first_theory_is_taken_and_that_is_said():
+    theory, why = choose_theory(Chain(size=30, restitution=0.9, spring="quadratic"))
+    assert theory.name == "phase_space"
+    assert why == "phase_space comes first, no error of velocity_width is known here"
+
+
 def test_a_chain_that_no_theory_takes_has_none():
     chain = Chain(size=5, damping=0.0)
     assert theories(chain).attrs["best"] == ""
-    with pytest.raises(ValueError, match="no theory takes this chain: equilibrium: ") as caught:
+    with pytest.raises(ValueError, match=r"^this chain has no steady state: damping=0"):
         best_theory(chain)
+    with pytest.raises(ValueError, match="no theory takes this chain: equilibrium: ") as caught:
+        best_theory(Chain(size=200_000, restitution=0.9))
     assert "\n" not in str(caught.value)
 
 

@@ -79,7 +79,7 @@ def test_theory_refuses_in_one_line(refused, arguments, message, tmp_path):
 def test_without_a_name_it_is_the_best_theory_and_says_so(run, solved):
     done = run("theory", "--size", 30, "--restitution", 0.5)
     assert done.returncode == 0
-    assert done.stdout.startswith("correlated_phase_space has the smallest expected error")
+    assert done.stdout.startswith("correlated_phase_space has the smallest stated error")
     [(_, _, result)] = solved
     assert f"{result.velocity_width[0]:.4g}" in done.stdout
 

@@ -1,0 +1,108 @@
+"""Films show every rod where it is, and collisions when they happen, in whole files only."""
+
+import io
+from base64 import b64decode
+
+import imageio_ffmpeg
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+from PIL import Image
+
+from crazybilliards.comparison import encoding, film, rod_film
+from crazybilliards.model import Chain
+from crazybilliards.particles import simulate
+
+CHAIN = Chain(size=6, restitution=0.9, gap=0.5)
+
+
+@pytest.fixture(scope="module")
+def run():
+    return simulate(CHAIN, duration=4, every=0.05, observe="snapshots", progress=False)
+
+
+def test_rods_are_drawn_in_their_places_in_the_colours_of_their_velocities(run):
+    motion = rod_film._motion(run, 5)
+    with plt.rc_context(rod_film._LOOK):
+        pictures = list(rod_film._pictures(motion, False))
+    for x, v, picture in zip(motion.x, motion.v, pictures, strict=True):
+        line = picture[130, :860, :3].astype(int)  # through the rods, left of the key
+        inside = np.flatnonzero((line != 255).any(axis=1))
+        left, right = inside[0], inside[-1]
+        a_pixel = (x[-1] - x[0] + 2 * CHAIN.radius) / (right - left)
+        for place, velocity in zip(x, v, strict=True):
+            red, _, blue = line[round(left + (place - x[0] + CHAIN.radius) / a_pixel)]
+            assert (blue > red) == (velocity > 0) or abs(velocity) < 0.05
+    assert motion.time[[0, -1]].tolist() == run.time.values[[0, -1]].tolist()
+
+
+def test_stars_are_the_collisions():
+    observe = ["snapshots", "collisions"]
+    chain = Chain(size=10, restitution=0.8, gap=0.2)
+    run = simulate(chain, duration=500, every=0.01, observe=observe, seed=3, progress=False)
+    x, v = (run[name].values[0] for name in ("position", "velocity"))
+    met = rod_film._met(chain, run.time.values, x, v).sum()
+    counted = run.collision_rate.sum().item() * 500
+    assert counted > 1000
+    assert met == pytest.approx(counted, rel=0.02)
+
+
+def test_stars_fade_and_rods_that_are_no_neighbours_have_none():
+    chain = CHAIN.replace(gap=0.0)
+    run = simulate(
+        chain, duration=4, every=0.05, observe="snapshots", particles=[1, 2, 5], progress=False
+    )
+    flash = rod_film._motion(run, 80).flash
+    assert flash.shape == (80, 2)
+    assert not flash[:, 1].any()
+    just = np.flatnonzero(flash[:-1, 0] == 1)
+    assert just.size
+    assert set(flash[just + 1, 0]) <= {1.0, rod_film._FADING}
+
+
+@pytest.mark.parametrize("kind", ["mp4", "gif", "html"])
+def test_a_film_has_all_its_pictures(run, kind, tmp_path):
+    path = film(run, tmp_path / f"rods.{kind}", seconds=0.8, springs=True, progress=False)
+    assert [path] == list(tmp_path.iterdir())
+    if kind == "gif":
+        with Image.open(path) as pictures:
+            assert pictures.n_frames == 20
+        return
+    if kind == "html":
+        data = path.read_text().partition("base64,")[2].partition('"')[0]
+        path = tmp_path / "rods.mp4"
+        path.write_bytes(b64decode(data))
+    assert imageio_ffmpeg.count_frames_and_secs(str(path)) == (20, pytest.approx(0.8, abs=0.01))
+
+
+def test_a_chain_is_simulated_and_a_notebook_gets_a_player():
+    player = film(CHAIN, seconds=0.2, duration=1.0, progress=False)
+    assert player._repr_html_().startswith("<video")
+
+
+def test_without_ffmpeg_an_mp4_is_refused_before_any_work_and_a_page_has_a_gif(monkeypatch, run):
+    monkeypatch.setattr(encoding, "_ffmpeg", lambda: None)
+    with pytest.raises(ValueError, match=r"needs ffmpeg.*crazybilliards\[film\]"):
+        film(CHAIN, "rods.mp4")
+    html = film(run, seconds=0.2, progress=False).html
+    data = b64decode(html.partition("base64,")[2].partition('"')[0])
+    assert Image.open(io.BytesIO(data)).n_frames == 5
+
+
+@pytest.mark.parametrize("kind", ["mp4", "gif"])
+def test_a_film_that_is_interrupted_leaves_the_former_file(run, kind, tmp_path, monkeypatch):
+    path = tmp_path / f"rods.{kind}"
+    path.write_text("former")
+    drawn = rod_film._pictures
+
+    def interrupted(*arguments):
+        pictures = drawn(*arguments)
+        yield next(pictures)
+        yield next(pictures)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(rod_film, "_pictures", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        film(run, path, progress=False)
+    assert [path] == list(tmp_path.iterdir())
+    assert path.read_text() == "former"
