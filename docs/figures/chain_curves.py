@@ -21,7 +21,7 @@ DAMPINGS = (2.5, 3.0, 3.5, 4.0, 5.0)
 PUSHED = Chain(size=20, restitution=0.9, damping=0.3, gap=0.5)
 DISSIPATIVE = (
     Chain(size=20, restitution=0.9),
-    *(Chain(size=60, restitution=e) for e in (0.0, 0.5, 0.8, 0.9)),
+    *(Chain(size=60, restitution=e) for e in (0.0, 0.5, 0.9)),
 )
 
 

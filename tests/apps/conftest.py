@@ -1,7 +1,9 @@
 """The page of ``crazybilliards explore`` and a browser, for the tests that look at it."""
 
 import os
+from contextlib import suppress
 
+import psutil
 import pytest
 from browser import CHROMIUM, DRIVER, chromium, served
 
@@ -12,6 +14,19 @@ def address():
         pytest.skip("sends a POSIX signal")
     with served() as address:
         yield address
+
+
+@pytest.fixture
+def solvers(address):
+    """Return a function that lists the processes in which the server solves theories."""
+
+    def found():
+        with suppress(psutil.NoSuchProcess):  # one has just ended: look again
+            children = psutil.Process(address.process.pid).children()
+            return [each for each in children if "spawn_main" in str(each.cmdline())]
+        return found()
+
+    return found
 
 
 @pytest.fixture(scope="module")

@@ -5,9 +5,9 @@ import pytest
 
 import crazybilliards as cb
 from crazybilliards.comparison.coverage import coverage_density
+from crazybilliards.kinetic.kinetic_equation.weak_damping import weak_damping_growth_rate
 from crazybilliards.particles.dynamics import make_dynamics, start_noise
 from crazybilliards.particles.laws.avalanche import make_tally
-from crazybilliards.particles.laws.exact_flight import make_propagator
 from crazybilliards.particles.laws.law import make_scratch
 from crazybilliards.particles.scales import default_time_step, relaxation_time
 from crazybilliards.particles.stepping import advance
@@ -22,6 +22,24 @@ state.y.set(y);
 state.v.set(v);
 ChainPhysics.advance(state, duration, steps);
 return [Array.from(state.y), Array.from(state.v), state.collisions];
+"""
+NUMBERS = """
+const [chain, duration] = arguments, P = ChainPhysics, step = P.makeStep(chain, duration);
+const { yy, yv, vy, vv, noise, shared, own } = P.propagator(chain, duration);
+return [[P.timeStep(chain), P.relaxationTime(chain), P.freeWidth(chain), P.thermalLength(chain),
+  step.whole.decay, step.whole.noise, step.half.decay, step.half.noise, step.pull, step.closed,
+  step.closedHalf, step.mergeSpeed], [yy, yv, vy, vv, noise, shared, own]];
+"""
+GROWTH = """
+const [chain, rate] = arguments, { world } = ChainRunning;
+ChainRunning.begin(chain);
+world.history = Array.from({length: 50}, (_, k) => [k, 5 * Math.exp(rate * k)]);
+return ChainRunning.growthRates();
+"""
+COVERED = "return ChainMeasuring.exactCoverage(...arguments)"
+AVERAGED = """
+const found = ChainMeasuring.exactCoverage(...arguments);
+return ChainMeasuring.averaged(found.map((share, k) => [k, share])).map(([, share]) => share);
 """
 MEASURE = """
 const [chain, seed, step, warm, every, samples, blocks] = arguments;
@@ -43,7 +61,7 @@ return [found, new ChainMeasuring.Measurement(state, 40).coverage().map(([x]) =>
 @pytest.fixture(scope="module")
 def page(browser, address):
     browser.get(address)
-    browser.execute_script("ChainControls.pause()")
+    browser.find_element("css selector", "[data-chain=play]").click()
     browser.set_script_timeout(300)
     return browser
 
@@ -87,35 +105,29 @@ def test_steps_without_noise_are_those_of_the_package(page, e, gap, spring):
     np.testing.assert_allclose(found_v, v, atol=1e-9)
 
 
-def test_scales_are_those_of_the_package(page):
-    chains = [
-        cb.Chain(size=20, restitution=e, damping=damping, gap=gap, amplitude=2.0, spring=spring)
-        for e in (0.0, 0.7, 1.0, 1.05)
-        for damping in (0.3, 3.0, 9.0)
-        for gap in (0.0, 0.5)
-        for spring in ("linear", "quadratic")
-    ]
-    for chain in chains:
-        found = page.execute_script(
-            "const P = ChainPhysics;"
-            "return [P.timeStep, P.relaxationTime, P.freeWidth, P.thermalLength]"
-            ".map((scale) => scale(arguments[0]));",
-            plain(chain),
-        )
-        scales = default_time_step(chain), relaxation_time(chain)
-        scales += chain.free_velocity_width, chain.thermal_length
-        assert found == pytest.approx(scales, rel=1e-12)
+@pytest.mark.parametrize("e", [0.0, 0.1, 0.7, 1.0, 1.05])
+@pytest.mark.parametrize("damping", [0.1, 3.0, 2 * (4 * np.pi / 3) ** 0.5, 10.0])
+@pytest.mark.parametrize("spring", ["linear", "quadratic"])
+@pytest.mark.parametrize(("gap", "duration"), [(0.0, 0.005), (0.5, 0.5), (0.5, 30.0)])
+def test_scales_and_steps_have_the_numbers_of_the_package(page, e, damping, spring, gap, duration):
+    """Weakly, critically and strongly damped, for short and long steps."""
+    others = {"amplitude": 2.0, "damping": damping, "gap": gap, "spring": spring}
+    chain = cb.Chain(size=20, restitution=e, **others)
+    found, flight = page.execute_script(NUMBERS, plain(chain), duration)
+    of = make_dynamics(chain, duration, speed=chain.free_velocity_width)
+    scales = default_time_step(chain), relaxation_time(chain)
+    scales += chain.free_velocity_width, chain.thermal_length
+    steps = *of.step[1:6], *of.step[8:], of.law.merge_speed
+    assert found == pytest.approx([*scales, *steps], rel=1e-12)
+    assert flight == pytest.approx(list(of.propagator), rel=1e-6, abs=1e-9)
 
 
-@pytest.mark.parametrize("damping", [0.1, 1.0, 2 * (4 * np.pi / 3) ** 0.5, 10.0])
-@pytest.mark.parametrize("duration", [0.005, 0.5, 30.0])
-def test_the_exact_flight_has_the_numbers_of_the_package(page, damping, duration):
-    """Weakly, critically and strongly damped."""
-    chain = cb.Chain(damping=damping, amplitude=2.0)
-    script = "const p = ChainPhysics.propagator(...arguments);"
-    script += "return [p.yy, p.yv, p.vy, p.vv, p.noise, p.shared, p.own];"
-    found = page.execute_script(script, plain(chain), duration)
-    assert found == pytest.approx(list(make_propagator(chain, duration)), rel=1e-6, abs=1e-9)
+@pytest.mark.parametrize("known", [{}, {"size": 29}, {"damping": 0.6}, {"gap": 0.1}])
+def test_the_growth_is_found_and_that_of_the_theory_where_it_holds(page, known):
+    chain = cb.Chain(**{"size": 60, "restitution": 1.015, "damping": 0.3} | known)
+    found = page.execute_script(GROWTH, plain(chain), 0.07)
+    theory = None if known else pytest.approx(weak_damping_growth_rate(chain))
+    assert found == {"found": pytest.approx(0.07), "theory": theory}
 
 
 def test_noise_is_normal_and_white(page):
@@ -133,13 +145,22 @@ def test_noise_is_normal_and_white(page):
 
 
 @pytest.mark.parametrize("spring", ["linear", "quadratic"])
+@pytest.mark.parametrize("amplitude", [1.0, 2.0, 4.0, 10.0])
 @pytest.mark.parametrize(("size", "gap"), [(10, 0.0), (20, 0.5), (60, 0.0), (30, 3.0)])
-def test_the_exact_density_is_that_of_equilibrium(page, size, gap, spring):
-    chain = cb.Chain(size=size, amplitude=4.0, damping=0.5, gap=gap, spring=spring)
-    expected = coverage_density(cb.equilibrium(chain))
-    script = "return ChainMeasuring.exactCoverage(arguments[0], arguments[1]);"
-    found = page.execute_script(script, plain(chain), expected.x.values.tolist())
-    assert np.abs(np.array(found) - 2 * chain.radius * expected.density.values).max() < 1e-3
+def test_the_exact_density_is_that_of_equilibrium(page, size, gap, amplitude, spring):
+    """The package's is the mean over each of its bins, and its average over 2R is smooth."""
+    chain = cb.Chain(size=size, amplitude=amplitude, damping=0.5, gap=gap, spring=spring)
+    theory = cb.equilibrium(chain)
+    places, weights = np.polynomial.legendre.leggauss(3)
+    x = theory.x.values
+    places = x[:, None] + places * (x[1] - x[0]) / 2
+    found = page.execute_script(COVERED, plain(chain), places.ravel().tolist())
+    density = coverage_density(theory).density * 2 * chain.radius
+    assert np.abs(np.reshape(found, places.shape) @ weights / 2 - density).max() < 2e-4
+    fine = np.arange(x[0], x[-1], 1 / 8)
+    found = page.execute_script(AVERAGED, plain(chain), fine.tolist())
+    density = cb.smooth(theory).density.interp(x=fine) * 2 * chain.radius
+    assert np.abs(np.array(found) - density).max() < 1e-3
 
 
 @pytest.mark.parametrize(
@@ -153,8 +174,7 @@ def test_widths_and_density_are_exact_at_restitution_one(page, size, gap, spring
     assert (np.abs(mean - chain.free_velocity_width**2) < 5 * error).all()
     mean, error = averaged(squares.mean(1))
     assert abs(mean - chain.free_velocity_width**2) < 5 * error
-    script = "return ChainMeasuring.exactCoverage(arguments[0], arguments[1]);"
-    exact = np.array(page.execute_script(script, plain(chain), places))
+    exact = np.array(page.execute_script(COVERED, plain(chain), places))
     mean, error = averaged(shares)
     seen = (exact > 0.01) & (exact < 0.99)
     assert seen.sum() > 150
