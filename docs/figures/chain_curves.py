@@ -50,20 +50,19 @@ def turning(theories: dict[float, xr.Dataset]) -> float:
     return float(np.interp(0.0, bulge[::-1], list(theories)[::-1]))
 
 
-def main() -> None:
-    """Write the curves."""
+def script() -> str:
+    """Solve the theories; return the page's script with their curves."""
     theories = {damping: solve(TURNING.replace(damping=damping)) for damping in DAMPINGS}
     curves = [stored(TURNING.replace(damping=g), each) for g, each in theories.items()]
     curves += [stored(chain, solve(chain)) for chain in (PUSHED, *DISSIPATIVE)]
     lines = ",\n".join(f"    {json.dumps(each, separators=(',', ':'))}" for each in curves)
-    CURVES.write_text(
+    return (
         "/* Velocity widths by the best theory, of the rods of the left half, in free widths.\n"
         "   Written by docs/figures/chain_curves.py. */\n"
         f'"use strict";\n\nconst ChainCurves = {{\n  widths: [\n{lines},\n  ],\n'
-        f"  turning: {{ damping: {turning(theories):.1f} }},\n}};\n",
-        encoding="utf-8",
+        f"  turning: {{ damping: {turning(theories):.1f} }},\n}};\n"
     )
 
 
 if __name__ == "__main__":
-    main()
+    CURVES.write_text(script(), encoding="utf-8")

@@ -1,7 +1,6 @@
 """The page of ``crazybilliards explore`` and a browser, for the tests that look at it."""
 
 import os
-from contextlib import suppress
 
 import psutil
 import pytest
@@ -18,15 +17,9 @@ def address():
 
 @pytest.fixture
 def solvers(address):
-    """Return a function that lists the processes in which the server solves theories."""
-
-    def found():
-        with suppress(psutil.NoSuchProcess):  # one has just ended: look again
-            children = psutil.Process(address.process.pid).children()
-            return [each for each in children if "spawn_main" in str(each.cmdline())]
-        return found()
-
-    return found
+    """Return a function that lists the processes that solve theories; one child is no such."""
+    children = psutil.Process(address.process.pid).children
+    return lambda: children()[1:]
 
 
 @pytest.fixture(scope="module")
