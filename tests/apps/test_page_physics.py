@@ -72,19 +72,19 @@ def test_steps_are_those_of_the_package_under_the_same_noise(page, e, amplitude,
     others = {"amplitude": amplitude, "damping": 0.5, "gap": gap, "spring": spring}
     chain = cb.Chain(size=20, restitution=e, **others)
     rng = np.random.default_rng(4)
-    y, v = np.sort(rng.uniform(-3, 3, 20)), rng.normal(size=20)
+    places, v = rng.uniform(-3, 3, 19), rng.normal(size=20)
+    y = np.sort([*places, places[0]])  # two rods touch
     dynamics = make_dynamics(chain, 0.5, speed=1.0)
     noises = [start_noise(np.random.SeedSequence(1), dynamics) for _ in range(2)]
     normals = np.empty((4, 2, 20))  # of which the exact flight takes two at once for each rod
     fill(noises[0], normals.ravel())
     if dynamics.law.operator == EXACT:
         normals = normals.swapaxes(1, 2)
-    arguments = list(y), list(v), normals.ravel().tolist(), 0.5, 4
-    found_y, found_v, met = page.execute_script(STEPS, asdict(chain), *arguments)
+    starts = list(y), list(v), normals.ravel().tolist()
+    found_y, found_v, met = page.execute_script(STEPS, asdict(chain), *starts, 0.5, 4)
     assert met > 12
     advance(y, v, noises[1], dynamics, make_scratch(20), make_tally(20, contacts=False), 4)
-    np.testing.assert_allclose(found_y, y, atol=1e-9)
-    np.testing.assert_allclose(found_v, v, atol=1e-9)
+    np.testing.assert_allclose([found_y, found_v], [y, v], atol=1e-9)
 
 
 @pytest.mark.parametrize("e", [0.0, 0.1, 0.7, 1.0, 1.05])
@@ -103,17 +103,17 @@ def test_scales_and_steps_have_the_numbers_of_the_package(page, e, damping, spri
     assert page.execute_script(NUMBERS, asdict(chain), duration) == expected
 
 
-@pytest.mark.parametrize("known", [{}, {"size": 29}, {"damping": 0.6}, {"gap": 0.1}])
+@pytest.mark.parametrize("known", [{}, {"size": 29}, {"size": 36}, {"damping": 0.6}, {"gap": 0.1}])
 def test_the_growth_is_found_and_that_of_the_theory_where_it_holds(page, known):
-    chain = cb.Chain(**{"size": 60, "restitution": 1.015, "damping": 0.3} | known)
+    """Not for few rods, fast growth, chains near the critical size, or with a gap."""
+    chain = cb.Chain(**{"size": 34, "restitution": 1.03, "damping": 0.3} | known)
     found = page.execute_script(GROWTH, asdict(chain), 0.07)
     theory = None if known else pytest.approx(weak_damping_growth_rate(chain))
     assert found == {"found": pytest.approx(0.07), "theory": theory}
 
 
 def test_noise_is_normal_and_white(page):
-    draw = "return Array.from({length: 200000}, ChainPhysics.makeNoise(5))"
-    x = np.array(page.execute_script(draw))
+    x = np.array(page.execute_script("return Array.from({length: 2e5}, ChainPhysics.makeNoise(5))"))
     for power, moment, variance in ((1, 0, 1), (2, 1, 2), (4, 3, 96)):
         assert abs((x**power).mean() - moment) < 5 * (variance / x.size) ** 0.5
     for lag in (1, 2, 3, 20):
