@@ -21,7 +21,7 @@ DAMPINGS = (2.5, 3.0, 3.5, 4.0, 5.0)
 PUSHED = Chain(size=20, restitution=0.9, damping=0.3, gap=0.5)
 DISSIPATIVE = (
     Chain(size=20, restitution=0.9),
-    *(Chain(size=60, restitution=e) for e in (0.0, 0.5, 0.8, 0.9)),
+    *(Chain(size=60, restitution=e) for e in (0.0, 0.5, 0.9)),
 )
 
 
@@ -45,20 +45,24 @@ def turning(theories: dict[float, xr.Dataset]) -> float:
     return float(np.interp(0.0, bulge[::-1], list(theories)[::-1]))
 
 
-def main() -> None:
-    """Write the curves."""
-    theories = {damping: best_theory(TURNING.replace(damping=damping)) for damping in DAMPINGS}
+def script() -> str:
+    """Solve the theories; return the page's script with their curves."""
+    theories = {
+        damping: best_theory(TURNING.replace(damping=damping), progress=False)
+        for damping in DAMPINGS
+    }
     curves = [stored(TURNING.replace(damping=g), each) for g, each in theories.items()]
-    curves += [stored(chain, best_theory(chain)) for chain in (PUSHED, *DISSIPATIVE)]
+    curves += [
+        stored(chain, best_theory(chain, progress=False)) for chain in (PUSHED, *DISSIPATIVE)
+    ]
     lines = ",\n".join(f"    {json.dumps(each, separators=(',', ':'))}" for each in curves)
-    CURVES.write_text(
+    return (
         "/* Velocity widths by the best theory, of the rods of the left half, in free widths.\n"
         "   Written by docs/figures/chain_curves.py. */\n"
         f'"use strict";\n\nconst ChainCurves = {{\n  widths: [\n{lines},\n  ],\n'
-        f"  turning: {{ damping: {turning(theories):.1f} }},\n}};\n",
-        encoding="utf-8",
+        f"  turning: {{ damping: {turning(theories):.1f} }},\n}};\n"
     )
 
 
 if __name__ == "__main__":
-    main()
+    CURVES.write_text(script(), encoding="utf-8")

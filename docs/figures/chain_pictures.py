@@ -7,44 +7,36 @@ which is ``chain.png`` of this folder. ``crazybilliards explore`` serves the pag
 """
 
 import argparse
-import base64
 import time
 from pathlib import Path
 from typing import Any
 
-from browser import chromium, served, show_as
+from browser import chromium, served, show_as, until
 
 SCREENS = {"desktop": (1280, 900), "phone": (390, 844)}
 
 
-def keep(browser: Any, file: Path, clip: dict[str, float] | None = None) -> None:
-    """Take a picture of the screen, or of a part of it at twice the resolution."""
-    if clip is None:
-        browser.get_screenshot_as_file(str(file))
-    else:
-        shot = browser.execute_cdp_cmd("Page.captureScreenshot", {"clip": clip | {"scale": 1}})
-        file.write_bytes(base64.b64decode(shot["data"]))
-    print(file, flush=True)
-
-
-def push(browser: Any, file: Path) -> None:
-    """Take the picture of a push that has arrived at the last rod."""
+def push(browser: Any, folder: Path) -> None:
+    """Save the picture of a push that has arrived at the last rod, as the page saves it."""
     metrics = {"width": 736, "height": 900, "deviceScaleFactor": 2, "mobile": False}
     browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", metrics)
-    browser.refresh()
     # Time runs here and not in the page, so that every picture is the same.
+    still = {"features": [{"name": "prefers-reduced-motion", "value": "reduce"}]}
+    browser.execute_cdp_cmd("Emulation.setEmulatedMedia", still)
+    allowed = {"behavior": "allow", "downloadPath": str(folder.resolve())}
+    browser.execute_cdp_cmd("Browser.setDownloadBehavior", allowed)
+    (folder / "chain.png").unlink(missing_ok=True)  # another name would be taken
+    browser.refresh()
     browser.execute_script(
-        "const chain = ChainControls, { goOn, push } = ChainRunning;"
-        "document.querySelector('.stage').style.height = '264px';"
-        "chain.pause(); chain.choose(ChainChallenges.list[0]);"
+        "const { goOn, push } = ChainRunning, [stage, picture, save] ="
+        "['stage', 'first-picture', 'save'].map((name) =>"
+        "document.querySelector(`[data-chain=${name}]`));"
+        "stage.style.height = '264px';"
         "for (let row = 0; row < 60; row++) goOn(); push(0);"
-        "for (let row = 0; row < 95; row++) goOn(); chain.draw();"
+        "for (let row = 0; row < 95; row++) goOn();"
+        "picture.dispatchEvent(new Event('change')); save.click();"
     )
-    box = "const box = document.querySelector('.stage').getBoundingClientRect();"
-    x, y, width, height = browser.execute_script(
-        f"{box} return [box.x, box.y, box.width, box.height]"
-    )
-    keep(browser, file, {"x": x, "y": y, "width": width, "height": height})
+    until((folder / "chain.png").exists, 60)
 
 
 def main(folder: Path) -> None:
@@ -57,12 +49,12 @@ def main(folder: Path) -> None:
                 browser.get(address)
                 time.sleep(1)
                 shade = "dark" if dark else "light"
-                keep(browser, folder / f"{name}-{shade}-1s.png")
+                browser.get_screenshot_as_file(str(folder / f"{name}-{shade}-1s.png"))
                 browser.execute_script("ChainRunning.push(0)")
                 time.sleep(9)
-                keep(browser, folder / f"{name}-{shade}-10s.png")
+                browser.get_screenshot_as_file(str(folder / f"{name}-{shade}-10s.png"))
         show_as(browser, *SCREENS["desktop"])
-        push(browser, folder / "chain.png")
+        push(browser, folder)
 
 
 if __name__ == "__main__":

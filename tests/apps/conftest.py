@@ -2,6 +2,7 @@
 
 import os
 
+import psutil
 import pytest
 from browser import CHROMIUM, DRIVER, chromium, served
 
@@ -12,6 +13,13 @@ def address():
         pytest.skip("sends a POSIX signal")
     with served() as address:
         yield address
+
+
+@pytest.fixture
+def solvers(address):
+    """Return a function that lists the processes that solve theories; one child is no such."""
+    children = psutil.Process(address.process.pid).children
+    return lambda: children()[1:]
 
 
 @pytest.fixture(scope="module")

@@ -2,14 +2,13 @@
 
 import socket
 import subprocess
-import sys
 from concurrent.futures import ThreadPoolExecutor
 from http.client import HTTPConnection
 from select import select
 
 import psutil
 import pytest
-from browser import until
+from browser import COMMAND, until
 
 from crazybilliards.apps.explore.server import serve
 
@@ -32,6 +31,14 @@ def get(address, path="/", host="localhost", method="GET", **headers):
     text = answer.read().decode()
     connection.close()
     return answer.status, text
+
+
+def ask(address):
+    """Return the connection of a visitor who waits for a theory that takes long."""
+    visitor = socket.create_connection(("127.0.0.1", port_of(address)))
+    visitor.sendall(b"GET /theory?size=200&restitution=0 HTTP/1.1\r\nHost: localhost\r\n")
+    visitor.sendall(b"X-Requested-With: chain\r\n\r\n")
+    return visitor
 
 
 @pytest.mark.parametrize(
@@ -89,13 +96,9 @@ def test_theories_are_for_the_page_alone(address, headers):
 
 
 @pytest.mark.validate
-def test_a_hundred_at_once_wait_or_are_refused_and_leave_nothing_behind(address):
+def test_a_hundred_at_once_wait_or_are_refused_and_leave_nothing_behind(address, solvers):
     """Visitors go before they are answered, and no process computes for them any more."""
-    wanted = b"GET /theory?size=200&restitution=0 HTTP/1.1\r\nHost: localhost\r\n"
-    wanted += b"X-Requested-With: chain\r\n\r\n"
-    waiting = [socket.create_connection(("127.0.0.1", port_of(address))) for _ in range(100)]
-    for each in waiting:
-        each.sendall(wanted)
+    waiting = [ask(address) for _ in range(100)]
     with ThreadPoolExecutor(20) as threads:
         assert set(threads.map(lambda _: get(address)[0], range(100))) == {200}
     answered = []
@@ -103,8 +106,7 @@ def test_a_hundred_at_once_wait_or_are_refused_and_leave_nothing_behind(address)
     assert all(each.recv(4096).startswith(b"HTTP/1.1 503 ") for each in set(answered))
     for each in waiting:
         each.close()
-    children = psutil.Process(address.process.pid).children
-    until(lambda: not [each for each in children() if "spawn_main" in str(each.cmdline())], 10)
+    until(lambda: not solvers(), 10)
     assert get(address)[0] == 200
 
 
@@ -118,14 +120,12 @@ def test_a_body_is_no_second_request(address):
 @pytest.mark.validate
 def test_a_killed_server_takes_its_solver_along():
     """Nobody is left who could end it."""
-    command = [sys.executable, "-m", "crazybilliards", "explore", "--no-browser", "--port", "0"]
+    command = [*COMMAND, "explore", "--no-browser", "--port", "0"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as server:
-        address = server.stdout.readline().split()[0]
-        wanted = b"GET /theory?size=200&restitution=0 HTTP/1.1\r\nHost: localhost\r\n"
-        with socket.create_connection(("127.0.0.1", port_of(address))) as visitor:
-            visitor.sendall(wanted + b"X-Requested-With: chain\r\n\r\n")
-            children = psutil.Process(server.pid).children
-            until(lambda: any("spawn_main" in str(each.cmdline()) for each in children()), 60)
-            solvers = children()
-            server.kill()
-            until(lambda: not any(each.is_running() for each in solvers), 30)
+        visitor = ask(server.stdout.readline().split()[0])
+        children = psutil.Process(server.pid).children
+        until(lambda: len(children()) > 1, 60)  # the solver, and one that tracks resources
+        solvers = children()
+        server.kill()
+        until(lambda: not any(each.is_running() for each in solvers), 30)
+        visitor.close()

@@ -1,7 +1,7 @@
 /* The controls: buttons, sliders, lists, mouse, finger and keys; what the page says; and the frames. */
 "use strict";
 
-const ChainControls = (() => {
+(() => {
   const { NAMES, told } = ChainAddress, R = ChainRunning, { world } = R;
   const BUDGET = 12; // milliseconds a frame that may be computed; slow machines show a slower chain
   const TAP = 300; // milliseconds: a shorter touch of a rod is a push
@@ -16,7 +16,7 @@ const ChainControls = (() => {
   let running = false, chosen = OWN, last = 0, plotted = 0, owed = 0, refusal = "";
   R.showOn(stage);
 
-  // -- time ----------------------------------------------------------------------------------------
+  // -- time -----------------------------
 
   function frame(now) {
     if (!running || document.hidden) return;
@@ -99,7 +99,7 @@ const ChainControls = (() => {
       : "No rods have met.";
   }
 
-  // -- challenges, presets, sliders ----------------------------------------------------------------
+  // -- challenges, presets, sliders -------
 
   /* Let the challenge look, and say what it found; what is new is read aloud only when it is done. */
   function judge() {
@@ -164,7 +164,7 @@ const ChainControls = (() => {
     else find("ask").textContent = `The address is not a setting: ${asked.refused}.`;
   }
 
-  // -- the hand ------------------------------------------------------------------------------------
+  // -- the hand -------------------------
 
   /* The place on the line below a pointer [R]. */
   function placeOf(event) {
@@ -186,7 +186,7 @@ const ChainControls = (() => {
     if (!running) draw();
   }
 
-  // -- what listens --------------------------------------------------------------------------------
+  // -- what listens ---------------------
 
   function push() {
     const rod = Math.round(Number(find("rod").value)) || 1;
@@ -234,13 +234,6 @@ const ChainControls = (() => {
       ChainAddress.write(world.state.chain);
     });
     for (const name of NAMES) sliders[name].addEventListener("input", () => slide(name));
-    for (const button of root.querySelectorAll("[data-step]"))
-      button.addEventListener("click", () => {
-        const control = sliders[button.dataset.of];
-        if (button.dataset.step === "-1") control.stepDown();
-        else control.stepUp();
-        slide(button.dataset.of);
-      });
     for (const name of ["first", "second"]) find(`${name}-picture`).addEventListener("change", draw);
     root.addEventListener("keydown", (event) => {
       if (event.key === "p" && !event.ctrlKey && !event.metaKey && !event.altKey) push();
@@ -253,17 +246,40 @@ const ChainControls = (() => {
     new MutationObserver(again).observe(document.body, { attributeFilter: ["data-theme"] });
   }
 
+  // -- what is built --------------------
+
+  function button(text, act) {
+    const made = document.createElement("button");
+    made.type = "button";
+    made.textContent = text;
+    made.addEventListener("click", act);
+    return made;
+  }
+
+  /* Show the value of a slider above it, and buttons for less and more beside it. */
+  function surround(name) {
+    const control = sliders[name], output = document.createElement("output");
+    output.dataset.value = name;
+    output.ariaHidden = "true"; // the slider itself says it
+    const stepping = (sign, steps, word) => {
+      const made = button(sign, () => (control.stepUp(steps), slide(name)));
+      made.ariaLabel = `${control.labels[0].textContent}, ${word}`;
+      return made;
+    };
+    control.before(output, stepping("−", -1, "less"));
+    control.after(stepping("+", 1, "more"));
+  }
+
   function fill() {
     ChainChallenges.list.forEach((each, k) => {
-      const button = document.createElement("button");
-      button.type = "button";
-      button.textContent = `${k + 1} ${each.title}`;
-      button.dataset.chain = `challenge-${each.title}`;
-      button.addEventListener("click", () => choose(each));
-      find("challenges").append(button);
+      const made = button(`${k + 1} ${each.title}`, () => choose(each));
+      made.dataset.chain = `challenge-${each.title}`;
+      find("challenges").append(made);
     });
+    NAMES.filter((name) => name !== "spring").forEach(surround);
     find("preset").append(new Option("The paper's figures", -1));
     ChainPresets.list.forEach(({ title }, k) => find("preset").append(new Option(title, k)));
+    find("second-picture").append(...find("first-picture").cloneNode(true).children);
     find("solve").hidden = !root.dataset.theory; // only a server can
   }
 
@@ -273,5 +289,4 @@ const ChainControls = (() => {
   obeyAddress();
   if (!matchMedia("(prefers-reduced-motion: reduce)").matches) play();
 
-  return { world, choose, play, pause, draw };
 })();

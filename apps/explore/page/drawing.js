@@ -6,18 +6,18 @@ const ChainDrawing = (() => {
   const ROWS = 220; // of the strip
   const BAND = 62; // height of the rods above the strip, in pixels
   const AXIS = 30; // height of the axis below it
-  const LEAST = 6; // length of a rod in pixels at which bars mark collisions
+  const LEAST = 12; // length of a rod in pixels at which bars mark collisions
   const FAST = 3; // free velocity widths at which a colour is full
 
   /* The colours of the page as it is now, light or dark. */
   function colours(place) {
-    const style = getComputedStyle(place), read = (name) => style.getPropertyValue(name).trim();
-    const rgb = (name) => read(name).split(" ").map(Number);
-    return {
-      ink: read("--ink"), faint: read("--faint"), grey: read("--grey"), exact: read("--exact"),
-      dots: `rgb(${rgb("--left")})`, left: rgb("--left"), rest: rgb("--rest"), right: rgb("--right"),
-      sans: style.fontFamily,
+    const style = getComputedStyle(place), read = (name) => {
+      place.style.color = `var(--${name})`;
+      return style.color;
     };
+    const [ink, faint, grey, exact, dots] = ["ink", "faint", "grey", "exact", "left"].map(read);
+    const [left, rest, right] = ["left", "rest", "right"].map((name) => read(name).match(/\d+/g).map(Number));
+    return { ink, faint, grey, exact, dots, left, rest, right, sans: style.fontFamily };
   }
 
   /* Blue for a rod that moves left, orange to the right, pale at rest; v in free widths. */
@@ -44,7 +44,7 @@ const ChainDrawing = (() => {
     refresh() {
       this.colour = colours(this.canvas);
       const { width } = ChainPlots.fit(this.canvas);
-      this.ratio = window.devicePixelRatio || 1;
+      this.ratio = devicePixelRatio;
       this.strip.width = Math.round(width * this.ratio);
       this.strip.height = ROWS;
       this.rows.forEach((row, age) => this.drawRow(row, age));
@@ -110,8 +110,11 @@ const ChainDrawing = (() => {
       pen.font = `12px ${colour.sans}`;
       this.drawAxis(pen, place, width, height);
       pen.textAlign = "left";
-      label(pen, "now", 4, BAND + 13, colour);
-      label(pen, `${Number(age.toPrecision(2))} T ago`, 4, height - AXIS - 5, colour);
+      for (const ago of ChainPlots.ticks(0, age, 3)) {
+        const at = BAND + (ago / age) * (height - BAND - AXIS);
+        label(pen, ago ? `${ago} T ago` : "now", 7, at + 4, colour);
+        pen.fillRect(0, at, 4, 1);
+      }
     }
 
     drawAxis(pen, place, width, height) {
@@ -126,18 +129,28 @@ const ChainDrawing = (() => {
       pen.fillText("position x [R]", width / 2, height - 3);
     }
 
-    /* The rods and the strip as a picture, with the words below them. */
+    /* The rods and the strip as a picture, with the words and a key below them. */
     save(words, done) {
-      const { canvas, colour } = this, copy = document.createElement("canvas"), pen = copy.getContext("2d");
+      const { canvas, colour, ratio } = this, copy = document.createElement("canvas"), pen = copy.getContext("2d");
       copy.width = canvas.width;
-      copy.height = canvas.height + 24 * this.ratio;
+      copy.height = canvas.height + 42 * ratio;
       pen.fillStyle = colour.faint;
       pen.fillRect(0, 0, copy.width, copy.height);
       pen.drawImage(canvas, 0, 0);
-      pen.scale(this.ratio, this.ratio);
-      pen.fillStyle = colour.ink;
-      pen.font = `13px ${colour.sans}`;
-      pen.fillText(words, 4, copy.height / this.ratio - 8);
+      pen.translate(4 * ratio, canvas.height);
+      pen.scale(ratio, ratio);
+      pen.font = `12px ${colour.sans}`;
+      const key = [
+        [shade(-FAST, colour), 10, "moves left"], [shade(FAST, colour), 10, "moves right"],
+        [colour.ink, 2, "two rods meet"],
+      ];
+      key.forEach(([fill, high, text], k) => {
+        pen.fillStyle = fill;
+        pen.fillRect(110 * k, 12 - high / 2, 10, high);
+        pen.fillStyle = colour.ink;
+        pen.fillText(text, 110 * k + 15, 16);
+      });
+      pen.fillText(words, 0, 34);
       copy.toBlob(done);
     }
   }
@@ -167,5 +180,5 @@ const ChainDrawing = (() => {
     pen.fillText(text, x, y);
   }
 
-  return { Stage, colours, reach, BAND, ROWS };
+  return { Stage, reach, BAND, ROWS };
 })();

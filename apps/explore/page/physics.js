@@ -66,7 +66,7 @@ const ChainPhysics = (() => {
 
   const position = (state, i) => state.y[i] + 2 * RADIUS * (i - (state.y.length - 1) / 2);
 
-  // -- kicks -------------------------------------------------------------------------------------
+  // -- kicks ----------------------------
 
   /* The exact decay and noise of a velocity under damping and noise alone. */
   function ornsteinUhlenbeck(chain, duration) {
@@ -87,7 +87,7 @@ const ChainPhysics = (() => {
       closedHalf: Math.sqrt(closed ** 2 + half.decay ** 2 * (closed ** 2 - 1)),
       pull: (STIFFNESS * duration) / (2 * MASS),
       // Rods that would separate more slowly than this stay together until the end of the step.
-      mergeSpeed: chain.restitution < 1 ? Math.max((sticking ? 0.03 : 0.1) * kick, 1e-9 * speed) : -1,
+      mergeSpeed: chain.restitution < 1 ? Math.max((sticking ? 0.03 : 0.1) * kick, 1e-9 * speed) : 0,
     };
   }
 
@@ -117,16 +117,10 @@ const ChainPhysics = (() => {
     }
   }
 
-  // -- flight with collisions ----------------------------------------------------------------------
+  // -- flight with collisions -----------
 
   /* e = 1: equal masses exchange their velocities, as if points passed through each other and
-     exchanged their names. So all fly freely, and pairs (y, v) are sorted by y. */
-  function driftBySorting(state, duration) {
-    const { y, v } = state;
-    for (let i = 0; i < y.length; i++) y[i] += duration * v[i];
-    sort(state);
-  }
-
+     exchanged their names. */
   function sort(state) {
     const { y, v, met } = state;
     for (let i = 1; i < y.length; i++) {
@@ -246,7 +240,7 @@ const ChainPhysics = (() => {
     }
   }
 
-  // -- in time -------------------------------------------------------------------------------------
+  // -- in time --------------------------
 
   /* Take so many steps of this duration. The state is that in the middle of a kick. */
   function advance(state, duration, steps) {
@@ -257,11 +251,9 @@ const ChainPhysics = (() => {
       return;
     }
     const step = makeStep(state.chain, duration);
-    const sorting = state.chain.restitution === 1 && state.chain.gap === 0 && state.held < 0;
     for (let taken = 0; taken < steps && !state.diverged; taken++) {
       kick(state, step, taken === 0 ? FIRST : WHOLE);
-      if (sorting) driftBySorting(state, duration);
-      else driftInOrder(state, step);
+      driftInOrder(state, step);
     }
     kick(state, step, LAST);
   }
@@ -282,7 +274,6 @@ const ChainPhysics = (() => {
   }
 
   return {
-    ...ChainScales, makeNoise, makeState, setChain, position, makeStep, driftBySorting, driftInOrder, advance, go,
-    energy,
+    ...ChainScales, makeNoise, makeState, setChain, position, makeStep, advance, go, energy,
   };
 })();

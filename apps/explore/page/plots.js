@@ -8,7 +8,7 @@ const ChainPlots = (() => {
 
   /* A canvas as wide as its place, drawn at the screen's own resolution. */
   function fit(canvas) {
-    const ratio = window.devicePixelRatio || 1, box = canvas.getBoundingClientRect();
+    const ratio = devicePixelRatio, box = canvas.getBoundingClientRect();
     const width = Math.round(box.width * ratio), height = Math.round(box.height * ratio);
     if (canvas.width !== width || canvas.height !== height) {
       canvas.width = width;

@@ -156,9 +156,8 @@ const ChainRunning = (() => {
     const mean = (of) => points.reduce((sum, point) => sum + of(point), 0) / n;
     const t = mean(([time]) => time), log = mean(([, growth]) => Math.log(growth));
     const found = mean(([time, growth]) => (time - t) * (Math.log(growth) - log)) / mean(([time]) => (time - t) ** 2);
-    const { restitution: e, damping, size } = chain, root = Math.sqrt(P.STIFFNESS * P.MASS);
-    const gain = ((e * e - 1) * size) / 2, weak = damping <= root / 4 && size >= 1.5 * criticalSize(chain);
-    const holds = weak && chain.gap === 0 && size >= 30 && gain <= 1.05;
+    const { restitution: e, damping, size } = chain, gain = ((e * e - 1) * size) / 2;
+    const holds = chain.gap === 0 && size >= Math.max(30, 1.5 * criticalSize(chain)) && gain <= 1.05;
     return { found, theory: holds ? (gain / Math.PI) * Math.sqrt(P.STIFFNESS / P.MASS) - damping / P.MASS : null };
   }
 

@@ -74,7 +74,6 @@ const ChainScales = (() => {
   }
 
   return {
-    RADIUS, MASS, STIFFNESS, exponent, pull, freeWidth, thermalLength, springRate, relaxationTime, timeStep,
-    propagator,
+    RADIUS, MASS, STIFFNESS, exponent, pull, freeWidth, thermalLength, relaxationTime, timeStep, propagator,
   };
 })();
