@@ -13,7 +13,6 @@ from matplotlib.image import imread
 from selenium.webdriver.common.actions.action_builder import ActionBuilder
 from selenium.webdriver.common.actions.pointer_input import PointerInput
 
-from crazybilliards.comparison import best_theory
 from crazybilliards.model import Chain
 
 ROOT = Path(__file__).parents[2]
