@@ -19,12 +19,25 @@ settings.load_profile("crazybilliards")
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
-def pytest_collection_modifyitems(items):
-    """Skip what Windows cannot do."""
+def pytest_collection_modifyitems(config, items):
+    """Leave out the torture unless it is asked for; skip what Windows cannot do."""
+    if "torture" not in " ".join([config.option.markexpr, *config.args]):
+        config.hook.pytest_deselected(items=[each for each in items if _is_torture(each)])
+        items[:] = [each for each in items if not _is_torture(each)]
     if os.name == "nt":
         for item in items:
             if item.get_closest_marker("posix"):
                 item.add_marker(pytest.mark.skip(reason="needs signals, streams, links of POSIX"))
+
+
+def pytest_itemcollected(item):
+    """Mark what lies in the folder of the torture."""
+    if item.path.parent.name == "torture":
+        item.add_marker("torture")
+
+
+def _is_torture(item):
+    return item.get_closest_marker("torture") is not None
 
 
 @pytest.fixture

@@ -3,15 +3,14 @@
 import json
 import logging
 import os
-import signal
 import subprocess
 import sys
 import threading
-import time
 from concurrent.futures import Executor
 
 import psutil
 import pytest
+from killed import until
 from missing_cases import missing_cases
 
 from crazybilliards.apps.commands.line import main
@@ -21,9 +20,7 @@ from crazybilliards.comparison.sweeps.case import compute
 from crazybilliards.model import Chain
 from crazybilliards.model.storage import write_sealed
 
-COMMAND = [sys.executable, "-c", "from crazybilliards.apps.commands.line import main; main()"]
 SCHEDULER = "distributed.cli.dask_scheduler"
-PATIENCE = 300
 GRID = """
 [grid]
 size = [3, 5]
@@ -43,23 +40,6 @@ def grid(tmp_path):
     path = tmp_path / "grid.toml"
     path.write_text(GRID.format(duration=100))
     return path
-
-
-@pytest.fixture
-def long_grid(tmp_path):
-    """Return a grid that takes a minute, of cases that take a third of a second each."""
-    path = tmp_path / "long.toml"
-    many = GRID.format(duration=5e4).replace("size = [3, 5]", f"seed = {list(range(200))}")
-    path.write_text(many.replace("[0.5, 1.0]", "[1.0]").replace("[chain]", "[chain]\nsize = 20"))
-    return path
-
-
-def until(condition):
-    """Wait for a condition to be true, for as long as a busy machine may take."""
-    deadline = time.monotonic() + PATIENCE
-    while not condition():
-        assert time.monotonic() < deadline, "waited for too long"
-        time.sleep(0.05)
 
 
 # -- engines ----------------------------------------------------------------------------------
@@ -215,43 +195,3 @@ def test_a_missing_file_and_a_wrong_grid_are_one_line(command, tmp_path):
     assert status == 2
     assert "size must be" in errors
     assert not (tmp_path / "results").exists()
-
-
-def workers_of(parent):
-    """Return the processes that it started."""
-    return [worker.pid for worker in psutil.Process(parent).children()]
-
-
-@pytest.mark.posix
-@pytest.mark.compiled
-@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGKILL"])
-def test_a_sweep_that_is_killed_keeps_what_is_finished_and_leaves_no_workers(
-    name, long_grid, tmp_path
-):
-    how = getattr(signal, name)
-    folder = tmp_path / "results"
-    process = subprocess.Popen(
-        [*COMMAND, "sweep", str(long_grid), "--output", str(folder), "--processes", "2"],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-    )
-    try:
-        until(lambda: list(folder.glob("*.nc")))
-        workers = workers_of(process.pid)
-        assert workers
-        process.send_signal(how)
-        _, errors = process.communicate(timeout=PATIENCE)
-    finally:
-        process.kill()
-    assert process.returncode == (143 if how == signal.SIGTERM else -how)
-    if how != signal.SIGKILL:
-        assert "interrupted" in errors
-        assert "Traceback" not in errors
-        assert "leaked" not in errors
-        assert errors.count("interrupted") == 1
-    cases = read_sweep(long_grid).cases()
-    missing = missing_cases(cases, folder)
-    assert 0 < len(missing) < len(cases)
-    until(lambda: not any(psutil.pid_exists(pid) for pid in workers))
-    assert load_sweep(folder).status.size >= 1

@@ -8,7 +8,6 @@ import signal
 import numpy as np
 import pytest
 import xarray as xr
-from killed import run_and_signal
 
 from crazybilliards.model import Chain, load, save
 from crazybilliards.model.locks import locked
@@ -16,41 +15,6 @@ from crazybilliards.model.storage import read_sealed, write_sealed
 from crazybilliards.particles import simulate
 from crazybilliards.particles.running import checkpoint
 from crazybilliards.particles.running.replica import Replica
-
-PATIENCE = 200  # for what must come to an end, in seconds
-
-SCRIPT = """
-import sys
-from crazybilliards.model import Chain, save
-from crazybilliards.particles import simulate
-checkpoint, output = sys.argv[1:]
-run = simulate(
-    Chain(size=40, restitution={e}, gap=0.1), duration={duration}, replicas=3, seed=4,
-    observe=("widths", "density", "energy", "velocities"), progress=False,
-    checkpoint=checkpoint or None, checkpoint_interval=0.05,
-)
-save(run, output)
-"""
-
-
-@pytest.mark.posix
-@pytest.mark.compiled
-@pytest.mark.parametrize("e", [1.0, pytest.param(0.7, marks=pytest.mark.validate)])
-def test_killed_at_random_moments_and_resumed_it_is_the_undisturbed_run(e, tmp_path):
-    script = SCRIPT.format(e=e, duration=100_000)
-    undisturbed, output = tmp_path / "undisturbed.nc", tmp_path / "run.nc"
-    checkpoint = tmp_path / "state"
-    assert run_and_signal(script, "", undisturbed) == 0
-    generator = np.random.default_rng(int(10 * e))
-    for how in (signal.SIGTERM, signal.SIGKILL, signal.SIGINT):
-        status = run_and_signal(script, checkpoint, output, how, after=generator.random() / 8)
-        assert status == (0 if how == signal.SIGINT else -how)
-    assert load(output).attrs["status"] == "interrupted"
-    # However far it came, now to the end.
-    assert run_and_signal(script, checkpoint, output) == 0
-    resumed = load(output)
-    assert resumed.attrs["status"] == "completed"
-    xr.testing.assert_identical(resumed, load(undisturbed))
 
 
 def test_a_finished_run_is_not_done_again(tmp_path):

@@ -1,15 +1,13 @@
 """The limit of a vanishing time step: right, with the errors it states, and nothing lost."""
 
 import json
-import signal
 
 import numpy as np
 import pytest
 import xarray as xr
-from killed import run_and_signal
 
 from crazybilliards.kinetic import equilibrium
-from crazybilliards.model import Chain, load
+from crazybilliards.model import Chain
 from crazybilliards.particles import simulate, simulate_limit
 from crazybilliards.particles.scales import default_time_step, time_step_error
 from crazybilliards.particles.vanishing_step.level_steps import plan_steps
@@ -194,37 +192,6 @@ def test_ctrl_c_before_every_level_was_measured_is_raised(ctrl_c):
     ctrl_c(Sampler, "_advance", bool)
     with pytest.raises(KeyboardInterrupt, match="not every level"):
         simulate_limit(Chain(size=50, restitution=0), warmup=1e6, progress=False)
-
-
-SCRIPT = """
-import sys
-from crazybilliards.model import Chain, save
-from crazybilliards.particles import simulate_limit
-checkpoint, output = sys.argv[1:]
-limit = simulate_limit(
-    Chain(size=50, restitution={e}), accuracy=0.01, replicas=2, threads=2, seed=4,
-    observe=("widths", "density", "energy", "velocities"), progress=False,
-    checkpoint=checkpoint or None, checkpoint_interval=0.05,
-)
-save(limit, output)
-"""
-
-
-@pytest.mark.posix
-@pytest.mark.compiled
-@pytest.mark.parametrize("e", [0.0, pytest.param(0.95, marks=pytest.mark.validate)])
-def test_killed_at_random_moments_and_resumed_it_is_the_undisturbed_run(e, tmp_path):
-    script = SCRIPT.format(e=e)
-    undisturbed, output = tmp_path / "undisturbed.nc", tmp_path / "run.nc"
-    checkpoint = tmp_path / "state"
-    assert run_and_signal(script, "", undisturbed) == 0
-    generator = np.random.default_rng(int(10 * e))
-    for how in (signal.SIGKILL, signal.SIGTERM):
-        run_and_signal(script, checkpoint, output, how, after=generator.random())
-    assert run_and_signal(script, checkpoint, output) == 0
-    resumed = load(output)
-    assert resumed.attrs["status"] == "completed"
-    xr.testing.assert_identical(resumed, load(undisturbed))
 
 
 @pytest.mark.compiled
