@@ -11,11 +11,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-from wrong_calls import GAMMA, WRONG_CALLS
+from wrong_calls import GAMMA, WRONG_CALLS, WRONG_SWEEPS
 
 import crazybilliards as cb
 from crazybilliards.apps.commands.line import main
+from crazybilliards.comparison.sweeps import Case, read_sweep
 from crazybilliards.model import checks
+from crazybilliards.particles.running.replica import Replica
 
 
 class Unknown(cb.Widths):
@@ -24,16 +26,8 @@ class Unknown(cb.Widths):
 
 
 @pytest.fixture(scope="module")
-def names(tmp_path_factory):
+def names():
     """Return what the calls name."""
-
-    def swept(text):
-        from crazybilliards.comparison.sweeps import read_sweep
-
-        path = tmp_path_factory.mktemp("sweep") / "grid.toml"
-        path.write_text(text, encoding="utf-8")
-        return read_sweep(path)
-
     chain, six = cb.Chain(size=5), cb.Chain(size=6)
     exact = cb.equilibrium(chain)
     raw = {"duration": 10, "average": "ensemble", "observe": "snapshots", "progress": False}
@@ -52,16 +46,33 @@ def names(tmp_path_factory):
         "start": cb.given_start(chain, chain.anchors),
         "tree": xr.DataTree.from_dict({"a": exact}),
         "foreign": xr.Dataset({"density": ("x", np.full(9, 0.1))}, {"x": np.arange(9.0)}),
-        "swept": swept,
+        "Case": Case,
+        "checks": checks,
+        "xr": xr,
     }
 
 
 @pytest.mark.parametrize(("call", "said"), WRONG_CALLS)
-def test_a_wrong_call_says_in_one_line_what_is_wanted(call, said, names):
+def test_a_wrong_call_says_in_one_line_what_is_wanted_before_any_work(
+    call, said, names, monkeypatch
+):
+    monkeypatch.setattr(Replica, "work", lambda *_: pytest.fail("it works"))
     with pytest.raises((ValueError, TypeError)) as caught:
         eval(call, dict(names))
-    message = str(caught.value)
-    assert len(message) < 400
+    require_said(said, str(caught.value))
+
+
+@pytest.mark.parametrize(("text", "said"), WRONG_SWEEPS)
+def test_a_wrong_sweep_says_in_one_line_what_is_wanted(text, said, tmp_path):
+    text, path = eval(text, {"GAMMA": GAMMA}), tmp_path / "grid.toml"
+    path.write_bytes(text if isinstance(text, bytes) else text.encode())
+    with pytest.raises(ValueError, match=r"\w") as caught:
+        read_sweep(path).cases()
+    require_said(said.strip(), str(caught.value))
+
+
+def require_said(said, message):
+    assert len(message) < 500
     assert "\n" not in message
     assert re.search(".*".join(map(re.escape, said.split("..."))), message), message
 

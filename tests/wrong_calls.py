@@ -3,6 +3,8 @@
 ``tests/test_messages.py`` says what the names stand for, and makes the calls.
 """
 
+from wrong_values import SWEEPS, VALUE_TABLES
+
 GAMMA = "\N{GREEK SMALL LETTER GAMMA}"
 
 SYMBOLS = """
@@ -28,11 +30,6 @@ cb.phase_space(chain, e=0.9) | restitution is e of the paper, an argument of Cha
 cb.force_balance(chain, k=2) | stiffness is k of the paper, an argument of Chain
 cb.hydrodynamics(chain, g=2) | gap is g of the paper, an argument of Chain
 cb.compare_relaxation(chain, L=2) | size is L of the paper, an argument of Chain
-swept("[grid]\\ne = [0.5, 0.9]") | [grid] takes any of ... got 'e'; restitution is e of the paper
-swept(f"[grid]\\n'{GAMMA}' = [0.5]") | damping is ... of the paper
-swept("[chain]\\ngamma = 1") | Chain takes any of ... damping is gamma of the paper
-swept("[simulate]\\ndt = 1") | [simulate] takes any of ... time_step is dt of the paper
-swept("[simulate]\\nL = 1") | takes any of ... size is L of the paper, an argument of Chain
 """
 
 NAMES = """
@@ -153,6 +150,8 @@ cb.overlay({"a": 3}) | a: not a crazybilliards result: 3
 cb.overlay({"a": tree}) | a: not a crazybilliards result: a DataTree
 cb.overlay({"a": run}, 3) | quantity must be the name of a variable, got 3
 cb.overlay({"a": run}, "widths") | has no 'widths'
+cb.overlay({"a": exact}, "densities") | no 'densities'; it has ... did you mean 'density'
+cb.overlay({"a": exact}, "mean_displacement", along="x") | along must be one of...'mean_position'
 cb.overlay({"a": run}, ax=3) | ax must be Axes of matplotlib, got 3
 cb.overlay({"a": run}, style=3) | style must be keywords...by label, got 3
 cb.overlay({"a": exact}, style={"a": {"colour": "red"}}) | style of 'a': ...'colour'
@@ -174,6 +173,8 @@ cb.simulate(chain, particles=3) | particles must be a list of numbers, got 3
 cb.simulate(chain, particles=["a"]) | particles must be an integer >= 1, got 'a'
 cb.simulate(chain, method=3) | method must be one of...got 3
 cb.hydrodynamics(chain, {}, 1) | start must be a result with density over x...got {}
+cb.hydrodynamics(chain, None, 1) | start must be a result...displaced
+cb.relax_phase_space(chain, xr.Dataset(), 1) | no 'density'
 cb.hydrodynamics(chain, foreign, 1) | start: the density must add up to the chain's 5 rods
 cb.relax_phase_space(chain, "start", 1) | start must be a result...got 'start'
 cb.force_balance(chain, displacement=3) | displacement takes a table (x, values)...got 3
@@ -211,36 +212,23 @@ cb.simulate(chain, start=snapshots) | start is over time; choose one time...isel
 cb.simulate(chain, start=start, replicas=3) | start is for replicas=1, got replicas=3
 cb.simulate(chain, start=start.isel(replica=0)) | start: position must be over replica and particle
 cb.simulate(chain, start=some.isel(time=-1)) | start has 2 rods, the chain 5
-cb.given_start(chain, six.anchors) | position must...5 rods
+cb.given_start(chain, six.anchors) | position must fit...5 rods
+cb.given_start(chain, [0, 1, 2, 3, 4]) | do not overlap
+cb.given_start(chain, [0, 3, np.nan, 6, 9]) | finite
+cb.given_start(chain, chain.anchors, [1, 2]) | velocity must fit
+cb.simulate(chain, start=start.drop_vars("velocity")) | position and velocity
+cb.simulate(chain, start=start.assign(position=-start.position)) | in order
+cb.simulate(chain, start=start * np.nan) | finite
 cb.given_start(chain, "a") | position must be numbers, got 'a'
 cb.given_start(chain, chain.anchors, {}) | velocity must be numbers, got {}
 cb.relax_phase_space(cb.Chain(size=20), crystal, 60) | spikes of a crystal...force_balance
 """
 
-VALUES = """
-cb.simulate(chain, duration=5, every=1.0) | duration must be at least...average='ensemble'
-cb.Chain(restitution=-0.1) | restitution must be 0 or more, got -0.1
-cb.Chain(restitution=np.nan) | restitution must be finite, got nan
-cb.Chain(amplitude=np.inf) | amplitude must be finite, got inf
-cb.Chain(amplitude=1e-80) | amplitude must be between 1e-60 and 1e60 in magnitude, or 0, got 1e-80
-cb.Chain(amplitude=10**400) | between 1e-60 and 1e60
-cb.Chain(mass=0) | mass must be positive, got 0
-cb.Chain(mass=-1) | mass must be positive, got -1
-cb.Chain(mass=1e70) | mass must be between 1e-60 and 1e60 in magnitude, got 1e+70
-cb.Chain(gap="1") | gap must be a number, got '1'
-cb.Chain(gap=True) | gap must be a number, got True
-cb.Chain(gap=np.array([1.0])) | gap must be a number, got array([1.])
-cb.Chain(gap=np.array(-1.0)) | gap must be 0 or more
-cb.Chain(size=2.5) | size must be an integer
-cb.Chain(size=np.array([3])) | size must be an integer
-cb.simulate(chain, rng=np.random.RandomState(0)) | rng must be an integer...a Generator
-cb.simulate(chain, rng=[1, 2]) | a Generator of numpy...got [1, 2]
-cb.equilibrium_states(chain, 3, rng="a") | a Generator of numpy...got 'a'
-cb.simulate(chain, observe=Unknown()) | observe: 'unknown' gives 'my_variable', which has no
-"""
-
 WRONG_CALLS = [
     line.split(" | ")
-    for table in (SYMBOLS, NAMES, TYPES, STARTS, VALUES)
+    for table in (SYMBOLS, NAMES, TYPES, STARTS, *VALUE_TABLES)
     for line in table.strip().splitlines()
 ]
+
+# A description of a sweep, and what the message says that refuses it.
+WRONG_SWEEPS = [line.split(" |") for line in SWEEPS.strip().splitlines()]

@@ -7,7 +7,7 @@ from drawn_pictures import WAVES, X, drawn, simulated
 from scipy.integrate import trapezoid
 
 from crazybilliards.comparison import overlay
-from crazybilliards.kinetic import correlated_phase_space, equilibrium
+from crazybilliards.kinetic import correlated_phase_space
 from crazybilliards.model import Chain
 from crazybilliards.particles import Covariances, simulate
 
@@ -123,15 +123,3 @@ def test_velocity_densities_of_one_rod_are_not_mixed_with_those_of_all(pair):
     few = pair["rods"].isel(particle=slice(3), contact=slice(3))
     with pytest.raises(ValueError, match="choose a particle"):
         overlay({"rods": few}, "velocity_density")
-
-
-def test_results_without_labels_and_wrong_names_are_explained():
-    exact = equilibrium(Chain(size=5))
-    with pytest.raises(ValueError, match=r"by their labels, e.g. \{.*got a list$"):
-        overlay([exact, exact])
-    with pytest.raises(ValueError, match=r"got a Dataset$"):
-        overlay(exact)
-    with pytest.raises(ValueError, match=r"no 'densities'; it has .* did you mean 'density'"):
-        overlay({"exact": exact}, "densities")
-    with pytest.raises(ValueError, match=r"along must be one of .*'mean_position'"):
-        overlay({"exact": exact}, "mean_displacement", along="mean_positions")

@@ -101,20 +101,3 @@ def test_the_animation_moves_lines_through_every_bin(tree):
     ]
     assert sum(moved) >= 3
     animation._draw_was_started = True  # it need not be shown
-
-
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        ({"release": "dropped"}, "release must be one of"),
-        ({"by": -1}, "by must be"),
-        ({"duration": -1}, "duration must be"),
-        ({"every": 1e3}, "every must be at most"),
-        ({"replicas": 1}, "replicas must be"),
-        ({"chain": Chain(restitution=0.5)}, "elastic chains"),
-    ],
-)
-def test_wrong_arguments_are_refused(arguments, message):
-    arguments = {"chain": Chain(size=5), "progress": False} | arguments
-    with pytest.raises(ValueError, match=message):
-        compare_relaxation(**arguments)

@@ -60,35 +60,6 @@ def test_every_theory_is_a_job():
     assert JOBS["simulate"].source == room_fingerprint("model", "particles")
 
 
-@pytest.mark.parametrize(
-    ("job", "settings", "message"),
-    [
-        ("simulation", {}, "job must be one of"),
-        ("simulate", {"length": 3}, "simulate takes any of"),
-        ("simulate", {"threads": 3}, "simulate takes any of"),
-        ("simulate", {"duration": -1}, "duration must be"),
-        ("simulate", {"duration": {"a": 1}}, "plain value"),
-        ("simulate", {"observe": ["heat"]}, "observe takes any of"),
-        ("simulate_limit", {"accuracy": 2}, "accuracy must lie between"),
-        ("simulate_limit", {"duration": 100}, "simulate_limit takes any of"),
-        ("phase_space", {"duration": 1}, "phase_space takes any of"),
-    ],
-)
-def test_a_wrong_case_is_refused_before_any_work(job, settings, message):
-    with pytest.raises(ValueError, match=message):
-        Case(job, Chain(size=3), settings)
-
-
-def test_settings_of_a_theory_are_checked_before_any_work():
-    for settings in ({"cells": "x"}, {"cells": 10**6}, {"tolerance": -1}, {"order": 3}):
-        with pytest.raises(ValueError, match=next(iter(settings))):
-            Case("phase_space", Chain(size=3), settings)
-    with pytest.raises(ValueError, match="restitution must be 1"):
-        Case("equilibrium", Chain(restitution=0.5), {})
-    with pytest.raises(ValueError, match="restitution must be 1"):
-        Case("force_balance", Chain(restitution=0.5), {})
-
-
 def test_a_worker_with_other_source_code_refuses():
     case = Case("simulate", Chain(size=2), {"duration": 100})
     with pytest.raises(ValueError, match="other source code"):

@@ -20,42 +20,33 @@ from crazybilliards.model.locks import locked
 # -- grids ------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ("changes", "message"),
-    [
-        ({"grid": {"size": []}}, "size must be a list"),
-        ({"grid": {"size": 3}}, "size must be a list"),
-        ({"grid": {"gap": [3, 3.0]}}, "twice"),
-        ({"grid": {"damping": [1.0, 2.0]}}, "given twice"),
-        ({"grid": {"length": [1, 2]}}, r"^\[grid\] takes .*'gap', .*'duration', .*got 'length'"),
-        ({"grid": {"size": [3, -1]}}, "size must be an integer"),
-        ({"grid": {"seed": range(2000), "gap": range(2000)}}, "must be a list"),
-        ({"grid": {"seed": [*range(2000)], "gap": [*range(2000)]}}, "4000000 cases"),
-        ({"chain": {"colour": 1}}, "Chain takes any of .*'size', .* got 'colour'"),
-        ({"chain": {"restituton": 1}}, "got 'restituton'; did you mean 'restitution'"),
-        ({"grid": {"restituton": [1]}}, "'size', .* got 'restituton'; did you mean 'restitution'"),
-        ({"settings": {"durations": 1}}, "simulate. takes any of .* did you mean 'duration'"),
-    ],
-)
-def test_wrong_grids(changes, message):
-    with pytest.raises(ValueError, match=message):
-        sweep(**changes).cases()
+SWEEP = b"""[grid]
+size = [3, 4]
+restitution = [0.5, 1.0]
+
+[simulate]
+duration = 200
+observe = ["widths"]
+"""
 
 
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        ("[grid", "not a TOML file"),
-        ("[grids]\nsize = [1]", "got 'grids'"),
-        ("grid = 3", "must be a table"),
-        ("[simulate]\n[phase_space]", "one job a sweep"),
-    ],
-)
-def test_wrong_files(text, message, tmp_path):
-    path = tmp_path / "grid.toml"
-    path.write_text(text)
-    with pytest.raises(ValueError, match=message):
-        read_sweep(path)
+@pytest.mark.parametrize("flips", [100, pytest.param(1000, marks=pytest.mark.torture)])
+def test_a_description_with_flipped_bits_or_cut_is_another_sweep_or_refused(flips, tmp_path):
+    """A text without checksum: what is still TOML and makes sense is a sweep."""
+    generator, refusals = np.random.default_rng(4), []
+    changed = [SWEEP[: cut * len(SWEEP) // 50] for cut in range(50)]
+    for _ in range(flips):
+        text = bytearray(SWEEP)
+        text[generator.integers(len(text))] ^= 1 << int(generator.integers(8))
+        changed.append(bytes(text))
+    for text in changed:
+        (tmp_path / "grid.toml").write_bytes(text)
+        try:
+            read_sweep(tmp_path / "grid.toml").cases()
+        except ValueError as error:
+            refusals.append(str(error))
+    assert not any("\n" in message for message in refusals)
+    assert flips / 2 < len(refusals) < flips + 50
 
 
 def test_a_folder_is_no_description_of_a_sweep(tmp_path):

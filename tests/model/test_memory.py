@@ -4,11 +4,9 @@ import math
 
 import pytest
 
-from crazybilliards.kinetic import equilibrium_states, phase_space
+from crazybilliards.kinetic import phase_space
 from crazybilliards.model import Chain, memory
 from crazybilliards.model.memory import _of_the_groups, available_memory, require_memory
-from crazybilliards.particles import simulate
-from crazybilliards.particles.start import given_start
 
 
 def test_available_memory_is_that_of_a_computer():
@@ -89,21 +87,6 @@ def test_the_error_has_both_numbers():
     require_memory("nothing", 0.0)
     with pytest.raises(ValueError, match=r"^size=3 would take 1e\+12 GiB of memory, .* available$"):
         require_memory("size=3", 1e12 * 2**30)
-
-
-@pytest.mark.parametrize(
-    "call",
-    [
-        lambda: simulate(Chain(size=10**9), replicas=10**9),
-        lambda: simulate(Chain(), replicas=10**12),
-        lambda: simulate(Chain(size=10**7), observe="avalanches"),
-        lambda: given_start(Chain(), 0.0, replicas=10**12),
-        lambda: equilibrium_states(Chain(size=3), 10**12),
-    ],
-)
-def test_what_a_user_asks_for_is_checked_before_it_is_allocated(call):
-    with pytest.raises(ValueError, match=r"would take .* GiB of memory"):
-        call()
 
 
 def test_the_mesh_is_checked(monkeypatch):

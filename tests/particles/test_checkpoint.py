@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from crazybilliards.model import Chain, load, save
+from crazybilliards.model import Chain
 from crazybilliards.model.locks import locked
 from crazybilliards.model.storage import read_sealed, write_sealed
 from crazybilliards.particles import simulate
@@ -23,37 +23,6 @@ def test_a_finished_run_is_not_done_again(tmp_path):
     first = simulate(chain, **arguments)
     xr.testing.assert_identical(simulate(chain, **arguments), first)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["state"]
-
-
-def test_the_checkpoint_of_another_run_is_refused_with_the_reason(tmp_path):
-    arguments = {"duration": 500, "progress": False, "checkpoint": tmp_path / "state"}
-    simulate(Chain(size=10), **arguments)
-    before = (tmp_path / "state").read_bytes()
-    for chain, change, reason in (
-        (Chain(size=11), {}, "size is 10 there and 11 here"),
-        (Chain(size=10, gap=1), {}, "gap is 0.0 there and 1.0 here"),
-        (Chain(size=10), {"seed": 5}, "seed is 0 there and 5 here"),
-        (Chain(size=10), {"duration": 900}, "blocks is 29 there and 53 here"),
-        (Chain(size=10), {"observe": "widths"}, "observe is"),
-        (Chain(size=10), {"replicas": 2}, "replicas is 1 there and 2 here"),
-    ):
-        with pytest.raises(ValueError, match=reason):
-            simulate(chain, **(arguments | change))
-    assert (tmp_path / "state").read_bytes() == before
-
-
-def test_a_damaged_or_foreign_checkpoint_is_refused(tmp_path):
-    path = tmp_path / "state"
-    arguments = {"duration": 500, "progress": False, "checkpoint": path}
-    simulate(Chain(size=10), **arguments)
-    whole = path.read_bytes()
-    for content in (whole[:-1], whole[:100], b"", bytes([whole[0] ^ 1]) + whole[1:]):
-        path.write_bytes(content)
-        with pytest.raises(ValueError, match=r"truncated|damaged"):
-            simulate(Chain(size=10), **arguments)
-    path.write_bytes(whole)
-    with pytest.raises(ValueError, match="not a result"):
-        load(path)
 
 
 def test_a_second_run_on_one_checkpoint_is_refused(tmp_path):
@@ -118,20 +87,6 @@ def test_a_checkpoint_that_cannot_be_written_is_an_error_before_any_work(tmp_pat
     monkeypatch.setattr(Replica, "work", lambda *_: pytest.fail("it works"))
     with pytest.raises(OSError, match="file"):
         simulate(Chain(size=100), duration=1e8, checkpoint=tmp_path / "file" / "state")
-
-
-def test_a_sealed_file_that_is_no_checkpoint_is_refused_and_kept(tmp_path):
-    """A result given by mistake, and what numpy would take for something else."""
-    chain, options = Chain(size=2), {"duration": 200.0, "progress": False}
-    path = save(simulate(chain, **options), tmp_path / "run.nc")
-    contents = [read_sealed(path), b"", b"PK\x03\x04", b"\x93NUMPY", b'{"identity": 3}']
-    for content in contents:
-        write_sealed(path, content)
-        with pytest.raises(ValueError, match=r"run\.nc: not a checkpoint"):
-            simulate(chain, checkpoint=path, **options)
-        assert read_sealed(path) == content
-    with pytest.raises(ValueError, match="a folder"):
-        simulate(chain, checkpoint=tmp_path, **options)
 
 
 def test_a_checkpoint_without_a_part_is_refused(tmp_path):

@@ -209,17 +209,3 @@ def test_steps_that_diverge_do_not_count():
     _, _, expected = recorded(number, np.inf)
     np.testing.assert_array_equal(kept, expected)
     assert (expected > 0).all()
-
-
-def test_what_they_cannot_do_is_refused():
-    with pytest.raises(ValueError, match="'impacts' needs single collisions, unrecorded here"):
-        simulate_limit(Chain(size=4), observe=("widths", "impacts"), progress=False)
-    with pytest.raises(ValueError, match="'impacts' is averaged over time only"):
-        simulate(Chain(size=4), observe="impacts", average="ensemble", progress=False)
-    with pytest.raises(ValueError, match="'impacts' needs single collisions, which only"):
-        simulate(Chain(size=4), observe="impacts", method="contact-dynamics", progress=False)
-    for name in ("impacts", "covariances"):
-        with pytest.raises(ValueError, match=f"'{name}' needs a chain of at least 2 rods"):
-            simulate(Chain(size=1), observe=name, progress=False)
-    with pytest.raises(ValueError, match="separations must be"):
-        Covariances(separations=0)

@@ -154,31 +154,6 @@ def test_only_chosen_particles_are_reported():
         xr.testing.assert_identical(
             some.drop_attrs(deep=False), whole.sel(particle=[1, 15]).drop_attrs(deep=False)
         )
-    for wrong in ((0,), (31,), (3, 2), (), (1.5,)):
-        with pytest.raises(ValueError, match="particles must"):
-            simulate(chain, particles=wrong, **arguments)
-
-
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        ({"observe": "velocities"}, "not over an ensemble"),
-        ({"every": 5}, "every must be at most the duration"),
-        ({"every": 0}, "every must be"),
-        ({"average": "both"}, "average must be one of"),
-        (
-            {"observe": "snapshots", "duration": 1e6, "every": 1e-3},
-            r"would take .* GiB of memory, .* GiB are available",
-        ),
-        ({"observe": "snapshots", "every": 1e-30}, "too small"),
-        ({"duration": 5.0, "every": 1e-9}, "every = 1e-09 is too small"),
-        ({"duration": 1e-9, "every": None, "warmup": 100.0}, "every = 1e-11 is too small"),
-    ],
-)
-def test_what_an_ensemble_cannot_be_is_refused(arguments, message):
-    with pytest.raises(ValueError, match=message) as caught:
-        simulate(Chain(size=7), **(SMALL | arguments))
-    assert "\n" not in str(caught.value)
 
 
 def test_a_far_start_fits_on_the_grid():

@@ -212,30 +212,6 @@ def test_the_checkpoint_of_another_run_is_refused(ctrl_c, tmp_path):
         simulate(chain, checkpoint=path, progress=False)
 
 
-@pytest.mark.parametrize(
-    ("change", "settings", "reason"),
-    [
-        ({}, {"accuracy": 0}, "accuracy must be"),
-        ({}, {"accuracy": 0.5}, "accuracy must lie between 1e-4 and 0.1"),
-        ({}, {"replicas": 0}, "replicas must be"),
-        ({}, {"warmup": -1.0}, "warmup must be"),
-        ({}, {"observe": "density"}, "observe must name 'widths'"),
-        ({}, {"observe": ("widths", "snapshots")}, "'snapshots' has no limit"),
-        ({}, {"observe": ("widths", "collisions")}, "'collisions' has no limit"),
-        ({}, {"observe": ("widths", "avalanches")}, "'avalanches' has no limit"),
-        ({}, {"observe": ("widths", "triggered-collisions")}, "has no limit"),
-        ({}, {"particles": [99]}, "particles must ascend"),
-        ({"amplitude": 0}, {}, "needs damping and amplitude"),
-        ({"damping": 0}, {}, "needs damping and amplitude"),
-        ({"size": 3_000_000}, {"observe": ("widths", "velocities")}, "GiB"),
-    ],
-)
-def test_wrong_arguments_are_refused_before_any_work(change, settings, reason, monkeypatch):
-    monkeypatch.setattr(Sampler, "run", lambda *_: pytest.fail("it works"))
-    with pytest.raises(ValueError, match=reason):
-        simulate_limit(Chain(size=4).replace(**change), progress=False, **settings)
-
-
 @pytest.mark.compiled
 def test_a_chain_without_a_steady_state_is_marked_diverged():
     chain = Chain(size=150, restitution=1.05, damping=4)

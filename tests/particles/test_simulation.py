@@ -198,35 +198,6 @@ def test_a_chain_that_blows_up_is_marked_diverged():
         assert np.isfinite(run[name]).all() or name.endswith("_error"), name
 
 
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        ({"duration": 0}, "duration must be"),
-        ({"duration": float("nan")}, "duration must be"),
-        ({"duration": 1}, "duration must be at least"),
-        ({"duration": 1e30}, "too small"),
-        ({"duration": 5.0, "warmup": 0.0, "every": 1e-9}, "every = 1e-09 is too small"),
-        ({"duration": 1e-3, "every": 1e-6}, "warm-up and duration would take 1e.08 steps"),
-        ({"warmup": -1}, "warmup must be"),
-        ({"time_step": 0}, "time_step must be"),
-        ({"time_step": 5, "method": "contact-dynamics"}, "time_step must be below"),
-        ({"stepper": "leapfrog"}, "stepper must be one of"),
-        ({"method": "magic"}, "method must be one of"),
-        ({"merging": -1}, "merging must be"),
-        ({"seed": -1}, "seed must be"),
-        ({"seed": 1.5}, "seed must be"),
-        ({"replicas": 0}, "replicas must be"),
-        ({"threads": 0}, "threads must be"),
-        ({"observe": ("widths", "colour")}, "observe takes any of"),
-        ({"observe": ()}, "observe must name"),
-    ],
-)
-def test_wrong_arguments_are_refused_in_one_line(arguments, message):
-    with pytest.raises(ValueError, match=message) as caught:
-        simulate(Chain(size=3), progress=False, **arguments)
-    assert "\n" not in str(caught.value)
-
-
 @pytest.mark.parametrize("average", ["time", "ensemble"])
 def test_a_short_run_may_have_short_steps(average):
     """A thousand steps of 1e-9 T cost nothing, and a thousand of them show how noise begins."""
@@ -237,54 +208,6 @@ def test_a_short_run_may_have_short_steps(average):
     last = float(run.kinetic_energy[-1])
     error = float(run.kinetic_energy_error[-1]) if average == "ensemble" else 0.2 * last
     assert abs(last - heating * float(run.time[-1])) < 5 * error
-
-
-def test_chains_without_a_scale_need_a_time_step():
-    with pytest.raises(ValueError, match="give time_step"):
-        simulate(Chain(stiffness=0, damping=0), observe="widths", progress=False)
-
-
-def test_wrong_starts_are_refused():
-    chain = Chain(size=4)
-    start = equilibrium_states(chain, 2)
-    with pytest.raises(ValueError, match="start is for replicas=2, got replicas=3"):
-        simulate(chain, start=start, replicas=3, progress=False)
-    with pytest.raises(ValueError, match="position and velocity"):
-        simulate(chain, start=start.drop_vars("velocity"), replicas=2, progress=False)
-    with pytest.raises(ValueError, match="in order"):
-        simulate(chain, start=start.assign(position=-start.position), replicas=2, progress=False)
-    with pytest.raises(ValueError, match="finite"):
-        simulate(chain, start=start * np.nan, replicas=2, progress=False)
-
-
-def test_a_displaced_start_swings_back_like_one_damped_oscillator():
-    """A rigid shift of the chain never notices the collisions."""
-    chain = Chain(size=20, gap=0.3, amplitude=0)
-    start = given_start(chain, chain.anchors + 4.0)
-    run = simulate(
-        chain, start=start, duration=30, time_step=0.02, observe="energy", progress=False
-    )
-    rate, half = chain.stiffness / chain.mass, chain.damping / (2 * chain.mass)
-    swing = np.sqrt(rate - half**2)
-    # x = 4 exp(-half t) (cos + half/swing sin), hence:
-    velocity = -4 * rate / swing * np.exp(-half * run.time) * np.sin(swing * run.time)
-    energy = chain.size * chain.mass / 2 * velocity**2
-    np.testing.assert_allclose(run.kinetic_energy, energy, atol=0.01 * float(energy.max()))
-
-
-@pytest.mark.parametrize(
-    ("position", "velocity", "message"),
-    [
-        ([0, 1, 2], 0, "do not overlap"),
-        ([0, 3], 0, "position must fit"),
-        ([0, 3, np.nan], 0, "finite"),
-        ([0, 3, 6], [1, 2], "velocity must fit"),
-        ("abc", 0, "position must be numbers"),
-    ],
-)
-def test_a_given_start_is_checked(position, velocity, message):
-    with pytest.raises(ValueError, match=message):
-        given_start(Chain(size=3), position, velocity)
 
 
 def test_schedule_rounds_up_to_whole_blocks():
