@@ -124,18 +124,6 @@ def test_ctrl_c_keeps_the_replicas_that_were_done_and_a_checkpoint_the_rest(tmp_
     assert partial.attrs["status"] in ("interrupted", "completed")
 
 
-@pytest.mark.compiled
-def test_times_after_the_first_replica_blew_up_are_left_out():
-    chain = Chain(size=150, restitution=1.05, damping=4)
-    start = equilibrium_states(chain.replace(restitution=1, amplitude=10), 3)
-    arguments = SMALL | {"duration": 50, "every": 0.5, "replicas": 3, "observe": "widths"}
-    run = simulate(chain, start=start, **arguments)
-    assert run.attrs["status"] == "diverged"
-    assert 0 < run.attrs["end_time"] < 50
-    assert run.time[-1] == run.attrs["end_time"]
-    assert np.isfinite(run.velocity_width).all()
-
-
 def test_snapshots_in_a_steady_state_are_what_the_averages_are_of():
     chain = Chain(size=6, gap=0.5)
     run = simulate(chain, duration=100, every=0.5, observe=("widths", "snapshots"), progress=False)

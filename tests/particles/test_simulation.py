@@ -33,28 +33,16 @@ def test_elastic_chain_is_in_its_exact_equilibrium(size, gap, spring):
         assert float(np.abs((run[name] - exact[name]) / error).max()) < 5, name
 
 
-def test_the_same_seed_gives_the_same_bits_whatever_the_threads():
-    chain = Chain(size=30, gap=0.1)
-    runs = [
-        simulate(chain, duration=200, replicas=3, threads=threads, seed=5, progress=False)
-        for threads in (1, 2, 3)
-    ]
-    for run in runs[1:]:
-        xr.testing.assert_identical(run, runs[0])
-    other = simulate(chain, duration=200, replicas=3, seed=6, progress=False)
-    assert (other.velocity_width != runs[0].velocity_width).all()
-
-
-def test_rescaling_the_amplitude_rescales_everything_exactly():
-    """Without gap, A is only a unit of length: a factor 4 is exact in binary arithmetic."""
-    one, four = (
-        simulate(
-            Chain(size=10, amplitude=amplitude), duration=200, observe="widths", progress=False
-        )
-        for amplitude in (1.0, 4.0)
-    )
-    for name in QUANTITIES:
-        np.testing.assert_array_equal(four[name], 4 * one[name])
+@pytest.mark.parametrize(("e", "damping"), [(0, 1), (0.9, 1), (1, 1), (1.05, 4)])
+def test_the_same_seed_gives_the_same_bits_whatever_the_threads(e, damping):
+    chain = Chain(size=30, gap=0.1, restitution=e, damping=damping)
+    options = {"duration": 200, "replicas": 3, "progress": False}
+    options["observe"] = ("widths", "density", "velocities", "energy")
+    one, *others = (simulate(chain, threads=threads, seed=5, **options) for threads in (1, 2, 3))
+    for run in others:
+        xr.testing.assert_identical(run, one)
+    other = simulate(chain, seed=6, **options)
+    assert (other.velocity_width != one.velocity_width).all()
 
 
 def test_a_single_rod_is_free():
@@ -184,18 +172,6 @@ def test_memory_does_not_grow_with_the_duration():
         tracemalloc.stop()
     # A full buffer of snapshots is 2 MB; storing the longer run would take 16 MB.
     assert peaks[2] < peaks[1] + 3e6
-
-
-@pytest.mark.compiled  # numpy warns of the overflow, kernels do not
-def test_a_chain_that_blows_up_is_marked_diverged():
-    """No step is short enough for quadratic springs without damping when the swings are wide."""
-    chain = Chain(size=5, damping=0, spring="quadratic")
-    run = simulate(chain, duration=10_000, time_step=1.0, observe="widths", progress=False)
-    assert run.attrs["status"] == "diverged"
-    assert 0 < run.attrs["end_time"] < 10_000
-    assert "velocity_width" in run
-    for name in run.data_vars:
-        assert np.isfinite(run[name]).all() or name.endswith("_error"), name
 
 
 @pytest.mark.parametrize("average", ["time", "ensemble"])

@@ -8,12 +8,11 @@ is exact, so the step does not matter.
 
 import os
 import threading
-from concurrent.futures import Executor, Future
 from contextlib import nullcontext
 
 import numpy as np
-import pytest
 from scipy import stats
+from small_sweeps import AtOnce
 
 from crazybilliards.comparison.sweeps import Case, dask_cluster, process_pool, run_cases
 from crazybilliards.model import Chain
@@ -104,15 +103,6 @@ CASES = [
 ]
 
 
-class AtOnce(Executor):
-    """Carries out what is submitted, here and now."""
-
-    def submit(self, function, /, *arguments):
-        future = Future()
-        future.set_result(function(*arguments))
-        return future
-
-
 def test_same_seed_same_result_in_one_process_in_a_pool_and_on_a_cluster(tmp_path):
     results = []
     for name, engine in {
@@ -126,20 +116,3 @@ def test_same_seed_same_result_in_one_process_in_a_pool_and_on_a_cluster(tmp_pat
     for here, *others in zip(*results, strict=True):
         for other in others:
             assert other.equals(here)
-
-
-@pytest.mark.parametrize(("restitution", "damping"), [(0, 1), (0.9, 1), (1, 1), (1.05, 4)])
-def test_same_seed_same_result_in_one_thread_and_in_two(restitution, damping):
-    chain = Chain(size=50, restitution=restitution, damping=damping)
-    runs = [
-        simulate(
-            chain,
-            duration=1000,
-            replicas=5,
-            threads=threads,
-            observe=("widths", "density", "velocities", "energy"),
-            progress=False,
-        )
-        for threads in (1, 2)
-    ]
-    assert runs[0].equals(runs[1])
