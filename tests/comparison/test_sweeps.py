@@ -98,15 +98,6 @@ def test_another_case_under_a_cases_name_is_found_out(tmp_path):
         one.load(tmp_path)
 
 
-def test_cases_that_fail_are_named_and_the_others_kept(tmp_path):
-    good = Case("equilibrium", Chain(size=3), {})
-    bad = Case("phase_space", Chain(size=1000, restitution=1.5), {"cells": 6})
-    failed = run_cases([bad, good], tmp_path, AtOnce(), progress=False)
-    assert list(failed) == [bad]
-    assert "no steady state" in failed[bad]
-    assert missing_cases([bad, good], tmp_path) == [bad]
-
-
 @pytest.mark.parametrize("columns", [1, 20, 57, 80, 200])
 def test_the_terminal_may_be_narrow(columns, tmp_path, monkeypatch):
     monkeypatch.setenv("COLUMNS", str(columns))

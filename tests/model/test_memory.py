@@ -41,39 +41,40 @@ def group(path, limit, used, cached, version=2):
     return {f"{path}/{name}": value for name, value in values.items()}
 
 
-def test_the_limit_of_a_group_counts_without_what_can_be_dropped(groups):
-    assert groups("0::/job\n", **group("job", 1000, 400, 150)) == 750
+LIMITED = {
+    "what can be dropped is left": ("0::/job\n", group("job", 1000, 400, 150), 750),
+    "the tightest of those around": (
+        "0::/a/b/c\n",
+        group("a", 1000, 900, 0)
+        | group("a/b", "max", 500, 0)
+        | group("a/b/c", 800, 300, 0)
+        | group("other", 10, 5, 0),
+        100,
+    ),
+    # A container sees its own group at the top.
+    "a container": ("0::/docker/abc\n", group(".", 1000, 400, 0), 600),
+    "version 1": (
+        "9:cpu:/x\n4:hugetlb,memory:/job\n0::/x\n",
+        group("memory/job", 1000, 400, 50, version=1)
+        | group("memory", 2**63 - 4096, 900, 0, version=1),
+        650,
+    ),
+    "over its limit": ("0::/job\n", group("job", 1000, 1001, 0), 0),
+    "no limit": ("0::/job\n3:cpuset:/job\n", group("job", "max", 400, 0), math.inf),
+}
 
 
-def test_the_tightest_of_the_groups_around_counts(groups):
-    around = group("a", 1000, 900, 0) | group("a/b", "max", 500, 0) | group("a/b/c", 800, 300, 0)
-    assert groups("0::/a/b/c\n", **around, **group("other", 10, 5, 0)) == 100
+@pytest.mark.parametrize("name", LIMITED)
+def test_the_limits_of_groups_count(name, groups):
+    membership, files, left = LIMITED[name]
+    assert groups(membership, **files) == left
 
 
-def test_a_container_sees_its_own_group_at_the_top(groups):
-    files = group(".", 1000, 400, 0)
-    assert groups("0::/docker/abc\n", **files) == 600
-
-
-def test_groups_of_version_1(groups):
-    own = group("memory/job", 1000, 400, 50, version=1)
-    around = group("memory", 2**63 - 4096, 900, 0, version=1)
-    assert groups("9:cpu:/x\n4:hugetlb,memory:/job\n0::/x\n", **own, **around) == 650
-
-
-def test_a_group_over_its_limit_has_nothing_left(groups):
-    assert groups("0::/job\n", **group("job", 1000, 1001, 0)) == 0
-
-
-def test_a_group_without_statistics(groups):
+def test_a_group_without_statistics_and_no_groups_at_all(groups, tmp_path):
     files = group("job", 1000, 400, 0)
     del files["job/memory.stat"]
     assert groups("0::/job\n", **files) == 600
-
-
-def test_groups_without_a_limit(groups, tmp_path):
     assert _of_the_groups(tmp_path / "not Linux") == math.inf
-    assert groups("0::/job\n3:cpuset:/job\n", **group("job", "max", 400, 0)) == math.inf
 
 
 def test_the_smallest_of_machine_and_groups_is_available(monkeypatch):

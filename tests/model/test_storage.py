@@ -94,10 +94,13 @@ def test_a_place_that_is_none_is_named(dataset, tmp_path):
 
 def test_foreign_files_are_refused(dataset, tmp_path):
     foreign = tmp_path / "foreign.nc"
-    dataset.to_netcdf(foreign, engine="h5netcdf")
-    for content in (foreign.read_bytes(), b"", b"not a NetCDF file" * 20):
+    for engine in ("h5netcdf", "scipy"):
+        dataset.to_netcdf(foreign, engine=engine)
+        with pytest.raises(ValueError, match=r"without the checksum of .*save; xarray.open_data"):
+            load(foreign)
+    for content in (b"", b"not a NetCDF file" * 20):
         foreign.write_bytes(content)
-        with pytest.raises(ValueError, match="not a file that crazybilliards saved"):
+        with pytest.raises(ValueError, match=r"not a file that crazybilliards saved$"):
             load(foreign)
     with pytest.raises(FileNotFoundError):
         load(tmp_path / "missing.nc")

@@ -78,21 +78,6 @@ def test_waves_are_counted_like_the_slow_twins(size, seed, number):
     np.testing.assert_array_equal(tally.triggered.sizes, triggered)
 
 
-def test_a_push_through_a_row_at_rest_is_one_wave_of_every_origin():
-    """Contacts closing one after another from the left: the wave from 0 runs to the end."""
-    tally = everything(6)
-    for contact in range(5):
-        record_collision(contact, contact, contact + 1, 1.0, 0.0, tally)
-    # The last front is thrown back: all waves end there.
-    record_collision(4, 4, 5, 0.0, -1.0, tally)
-    expected = np.zeros((6, 6), dtype=int)
-    for origin in range(5):
-        expected[origin, 5 - origin - 1] = 1
-    np.testing.assert_array_equal(tally.pushes.sizes, expected)
-    # The same waves, each without its first hit: N_c = 0 to 4.
-    np.testing.assert_array_equal(tally.triggered.sizes, expected)
-
-
 def test_the_papers_first_hit_needs_no_momentum_to_the_right():
     tally = everything(4)
     record_collision(0, 0, 1, 0.5, -1.0, tally)  # 0 hits 1, the momentum points left

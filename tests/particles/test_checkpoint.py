@@ -3,7 +3,6 @@
 import errno
 import io
 import os
-import signal
 
 import numpy as np
 import pytest
@@ -13,6 +12,7 @@ from crazybilliards.model import Chain
 from crazybilliards.model.locks import locked
 from crazybilliards.model.storage import read_sealed, write_sealed
 from crazybilliards.particles import simulate
+from crazybilliards.particles.observers.widths import Widths
 from crazybilliards.particles.running import checkpoint
 from crazybilliards.particles.running.replica import Replica
 
@@ -58,28 +58,38 @@ def test_a_disk_that_fills_up_costs_the_checkpoint_and_not_the_run(tmp_path, mon
     xr.testing.assert_identical(simulate(Chain(size=10), **arguments), undisturbed)
 
 
+INTERRUPTED = {  # the run, and what was called how often when Ctrl-C comes
+    "all that is summed": (
+        Chain(size=12, restitution=0.6),
+        {"duration": 400, "observe": ["widths", "covariances", "modes", "impacts"], "threads": 1},
+        (Replica, "_observe", 20),
+    ),
+    "replicas done and not": (
+        Chain(size=40),
+        {"duration": 200, "every": 20, "replicas": 200, "average": "ensemble"},
+        (Widths, "observe", 1000),  # of 2200
+    ),
+    "between snapshots far apart": (
+        Chain(size=50, spring="quadratic"),
+        {"duration": 4e4, "every": 2e4, "average": "ensemble", "observe": ("widths", "energy")},
+        (Replica, "_advance", 3),
+    ),
+}
+
+
 @pytest.mark.compiled
-def test_between_two_snapshots_far_apart_a_run_can_be_stopped_and_resumed(tmp_path, monkeypatch):
-    chain = Chain(size=50, spring="quadratic")
-    options = {"duration": 4e4, "every": 2e4, "average": "ensemble", "progress": False}
-    options |= {"observe": ("widths", "energy")}
+@pytest.mark.parametrize("name", INTERRUPTED)
+def test_an_interrupted_run_goes_on_as_if_it_had_not_been(name, ctrl_c, tmp_path):
+    chain, options, (owner, method, number) = INTERRUPTED[name]
+    options = options | {"progress": False}
     whole = simulate(chain, **options)
-    measure = Replica._measure
-
-    def stopped(replica, stop):
-        for number, steps in enumerate(measure(replica, stop)):
-            if number == 3:
-                os.kill(os.getpid(), signal.SIGINT)
-                assert stop.wait(120)
-            yield steps
-
-    monkeypatch.setattr(Replica, "_measure", stopped)
-    cut = simulate(chain, **options, checkpoint=tmp_path / "state")
+    ctrl_c(owner, method, lambda callers: len(callers) == number)
+    cut = simulate(chain, checkpoint=tmp_path / "state", **options)
     assert cut.attrs["status"] == "interrupted"
-    assert cut.time.values.tolist() == [0]
-    monkeypatch.undo()
-    resumed = simulate(chain, **options, checkpoint=tmp_path / "state")
-    xr.testing.assert_identical(resumed, whole)
+    assert np.isfinite(cut.velocity_width).all()
+    if "far apart" in name:
+        assert cut.time.values.tolist() == [0]
+    xr.testing.assert_identical(simulate(chain, checkpoint=tmp_path / "state", **options), whole)
 
 
 def test_a_checkpoint_that_cannot_be_written_is_an_error_before_any_work(tmp_path, monkeypatch):

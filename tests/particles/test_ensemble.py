@@ -9,7 +9,6 @@ from crazybilliards.comparison import smooth
 from crazybilliards.kinetic import equilibrium_states
 from crazybilliards.model import Chain
 from crazybilliards.particles import given_start, simulate
-from crazybilliards.particles.observers.widths import Widths
 
 
 def oscillator_covariance(chain, covariance, times):
@@ -107,21 +106,6 @@ def test_replicas_are_the_same_whatever_the_threads_and_however_cut(e, tmp_path)
     # The end of one is a start of another.
     again = simulate(chain, start=whole.isel(time=-1), observe=observe, **SMALL)
     np.testing.assert_allclose(again.position[:, 0], positions[:, -1], atol=1e-12)
-
-
-@pytest.mark.compiled
-def test_ctrl_c_keeps_the_replicas_that_were_done_and_a_checkpoint_the_rest(tmp_path, ctrl_c):
-    chain = Chain(size=40)
-    arguments = SMALL | {"replicas": 200, "duration": 200, "every": 20}
-    undisturbed = simulate(chain, **arguments)
-    ctrl_c(Widths, "observe", lambda observers: len(observers) == 1000)  # of 2200
-    checkpoint = tmp_path / "state"
-    partial = simulate(chain, checkpoint=checkpoint, **arguments)
-    for name in ("mean_displacement", "velocity_width", "density"):
-        assert np.isfinite(partial[name]).all()
-    finished = simulate(chain, checkpoint=checkpoint, **arguments)
-    xr.testing.assert_identical(finished, undisturbed)
-    assert partial.attrs["status"] in ("interrupted", "completed")
 
 
 def test_snapshots_in_a_steady_state_are_what_the_averages_are_of():

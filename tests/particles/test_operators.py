@@ -164,9 +164,3 @@ def test_inelastic_collapse_takes_a_bounded_number_of_collisions():
     # Without clusters the same drift does not end.
     endless = Law(EVENTS, 0.5, 0.0, 100_000)
     assert drift(y, v, np.zeros(100), 100.0, endless, make_scratch(100), UNSEEN) == -1
-
-
-def test_too_many_collisions_are_given_up_not_endured():
-    y, v = np.linspace(0, 1, 100), np.linspace(1, -1, 100)
-    law = Law(EVENTS, 0.99, 0.0, 50)
-    assert drift(y, v, np.zeros(100), 10.0, law, make_scratch(100), UNSEEN) == -1

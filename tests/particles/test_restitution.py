@@ -142,15 +142,6 @@ def test_rescaling_the_amplitude_rescales_everything_exactly(e):
         np.testing.assert_array_equal(four[name], 4 * one[name])
 
 
-def test_the_heap_and_the_sort_move_the_elastic_chain_alike():
-    chain = Chain(size=30, gap=0.1)
-    plain, counted = (
-        simulate(chain, duration=100, observe=observe, progress=False)
-        for observe in (("widths",), ("widths", "collisions"))
-    )
-    np.testing.assert_allclose(plain.velocity_width, counted.velocity_width, rtol=1e-9)
-
-
 def test_the_time_step_follows_what_has_to_be_resolved():
     assert default_time_step(Chain()) == pytest.approx(0.05 * np.sqrt(4 * np.pi / 3))
     steps = [default_time_step(Chain(size=size, restitution=0)) for size in (1, 10, 100, 1000)]

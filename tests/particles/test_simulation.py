@@ -21,7 +21,7 @@ QUANTITIES = ("velocity_width", "mean_displacement", "displacement_width")
 @pytest.mark.compiled
 @pytest.mark.parametrize("spring", ["linear", "quadratic"])
 @pytest.mark.parametrize("gap", [0.0, 0.2, 1.0])
-@pytest.mark.parametrize("size", [2, 3, 20, 100])
+@pytest.mark.parametrize("size", [1, 2, 3, 20, 100])
 def test_elastic_chain_is_in_its_exact_equilibrium(size, gap, spring):
     """Every particle's widths and displacement within 5 standard errors, t-distributed."""
     chain = Chain(size=size, gap=gap, spring=spring)
@@ -45,25 +45,6 @@ def test_the_same_seed_gives_the_same_bits_whatever_the_threads(e, damping):
     assert (other.velocity_width != one.velocity_width).all()
 
 
-def test_a_single_rod_is_free():
-    chain = Chain(size=1)
-    run = simulate(chain, duration=60_000, progress=False)
-    assert (
-        abs(run.velocity_width - chain.free_velocity_width).item()
-        < 5 * run.velocity_width_error.item()
-    )
-    assert abs(run.displacement_width - chain.thermal_length).item() < 0.03
-    assert run.normalized_particle.values.tolist() == [0]
-
-
-def test_without_noise_everything_stays_at_the_anchors():
-    with pytest.warns(UserWarning, match="amplitude=0 and a start at rest"):
-        run = simulate(Chain(size=5, amplitude=0, gap=1), duration=100, progress=False)
-    for name in QUANTITIES:
-        assert (run[name] == 0).all()
-        assert (run[f"{name}_error"] == 0).all()
-
-
 def test_density_holds_every_rod_and_its_blocks_average_to_it():
     run = simulate(Chain(size=7, gap=0.5), duration=1100, progress=False)
     spacing = run.x[1] - run.x[0]
@@ -81,14 +62,6 @@ def test_an_equilibrium_start_needs_no_warm_up():
     exact = equilibrium(chain)
     for name in QUANTITIES:
         assert float(np.abs((run[name] - exact[name]) / run[f"{name}_error"]).max()) < 5
-
-
-def test_the_error_bar_is_the_exact_one_of_a_free_rod():
-    """The time average of a free rod's displacement has the variance A^2/(k^2 duration)."""
-    duration = 20_000
-    run = simulate(Chain(size=1), duration=duration, observe="widths", progress=False)
-    # From 64 blocks an error bar is itself known to 9 %; uncorrelated snapshots would give 0.72.
-    assert run.mean_displacement_error.item() * np.sqrt(duration) == pytest.approx(1, abs=0.27)
 
 
 @pytest.mark.parametrize("stepper", ["splitting", "euler"])

@@ -1,8 +1,5 @@
 """The command ``compare``: writes all or nothing, refuses in one line, keeps on Ctrl-C."""
 
-import signal
-from pathlib import Path
-
 import pytest
 
 from crazybilliards.comparison.side_by_side import parameter_series, restitution_figures
@@ -51,37 +48,6 @@ def test_without_output_nothing_is_written(run, tmp_path, monkeypatch):
     assert done.returncode == 0
     assert "Nothing was written" in done.stdout
     assert list(tmp_path.iterdir()) == []
-
-
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (["--size", "2"], "size"),
-        (["--size", "ten"], "size"),
-        (["--size", "-1"], "size"),
-        (["--amplitudes", "1,x"], "amplitudes takes numbers"),
-        (["--amplitudes", ""], "amplitudes takes numbers"),
-        (["--amplitudes", "0"], "no steady state: amplitude=0"),
-        (["--amplitudes", "nan"], "amplitude must be"),
-        (["--amplitudes", "1,1"], "differ"),
-        (["--gap", "-1"], "gap must be"),
-        (["--gap", "inf"], "gap must be"),
-        (["--duration", "0"], "duration must be"),
-        (["--duration", "1"], "duration must be at least"),
-        (["--restitution", "0.9,x"], "restitution takes numbers"),
-        (["--restitution", "-1"], "restitution must be"),
-        (["--restitution", "0.9", "--amplitudes", "1"], "give restitution or amplitudes"),
-        (["--restitution", "0.9", "--damping", "0"], "no steady state"),
-        (["--seed", "-5"], "seed"),
-        (["--threads", "0"], "threads must be"),
-        (["--colour"], "No such option"),
-        (["extra"], "unexpected extra argument"),
-    ],
-)
-def test_bad_input_is_one_line_exit_two_and_nothing_written(refused, arguments, message, tmp_path):
-    folder = tmp_path / "results"
-    refused(message, "compare", *arguments, "--output", str(folder))
-    assert not folder.exists()
 
 
 @pytest.mark.compiled
@@ -140,19 +106,3 @@ def test_a_picture_of_one_chain_is_there_while_the_next_is_computed(
     assert drawn == ([0.9, 1.0, 0.9] if fails else [0.9, 1.0])
     names = ["phase_space_restitution_0.9.png", "phase_space_restitution_1.png", "widths.png"]
     assert sorted(path.name for path in tmp_path.glob("*.png")) == names
-
-
-@pytest.mark.compiled
-@pytest.mark.posix
-def test_ctrl_c_saves_what_was_computed_beside_a_finished_result(interrupted, tmp_path):
-    (tmp_path / "comparison.nc").write_text("finished")
-    done = interrupted(*QUICK[:3], "--duration", "1e9", "--output", tmp_path)
-    assert done.returncode == -signal.SIGINT, done.stderr
-    assert "Traceback" not in done.stderr
-    tree = load(tmp_path / "comparison-interrupted.nc")
-    assert tree.attrs["status"] == "interrupted"
-    assert tree["amplitude_1/simulation"].attrs["status"] == "interrupted"
-    assert (tmp_path / "density-interrupted.png").exists()
-    assert (tmp_path / "comparison.nc").read_text() == "finished"
-    assert "close packing" in done.stdout
-    assert not [path for path in Path(tmp_path).iterdir() if path.suffix == ".part"]
