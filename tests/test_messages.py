@@ -62,6 +62,41 @@ def test_a_wrong_call_says_in_one_line_what_is_wanted_before_any_work(
     require_said(said, str(caught.value))
 
 
+WANTED = {
+    "Chain": "a Chain: Chain",
+    "xr.Dataset": "a result, an",
+    "xr.DataTree": "an xarray.DataTree, which",
+    "xr.Dataset | xr.DataTree": "a result or a tree",
+    "FuncAnimation": "a FuncAnimation",
+}
+CALLS = [
+    name
+    for name in cb.__all__
+    if not (inspect.isclass(each := getattr(cb, name)) and issubclass(each, BaseException))
+]
+
+
+@pytest.mark.parametrize("name", CALLS)
+def test_every_public_call_is_checked(name):
+    """Names of arguments, those that are missing, and objects of another type."""
+    call = getattr(cb, name)
+    arguments = inspect.signature(call).parameters
+    last = next(reversed(arguments), "")
+    meant = f"; did you mean '{last}'" if last else "; it takes no arguments"
+    with pytest.raises(TypeError, match=f"^{name} has no argument '{last}x'{meant}"):
+        call(**{f"{last}x": 1})
+    needed = [each.name for each in arguments.values() if each.default is each.empty]
+    if needed:
+        with pytest.raises(TypeError, match=f"^{name} needs {' and '.join(needed)}; it takes "):
+            call()
+    for argument in arguments.values():
+        if argument.annotation in WANTED:
+            for wrong in (None, {}, "a.nc", np.zeros(3), cb.Widths):
+                said = f"^{argument.name} must be {WANTED[argument.annotation]}.*; got "
+                with pytest.raises(ValueError, match=said):
+                    call(**{argument.name: wrong})
+
+
 @pytest.mark.parametrize(("text", "said"), WRONG_SWEEPS)
 def test_a_wrong_sweep_says_in_one_line_what_is_wanted(text, said, tmp_path):
     text, path = eval(text, {"GAMMA": GAMMA}), tmp_path / "grid.toml"

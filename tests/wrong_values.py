@@ -121,26 +121,18 @@ CASES = """
 Case("simulation", chain, {}) | job must be one of
 Case("simulat", chain, {}) | did you mean 'simulate'?
 Case("simulate", chain, {"length": 3}) | simulate takes any of
-Case("simulate", chain, {"threads": 3}) | simulate takes any of
-Case("simulate", chain, {"durations": 1}) | did you mean 'duration'?
 Case("simulate", chain, {"duration": -1}) | duration must be
 Case("simulate", chain, {"duration": {"a": 1}}) | plain value
 Case("simulate", chain, {"observe": ["heat"]}) | observe takes any of
 Case("simulate_limit", chain, {"accuracy": 2}) | accuracy must lie between
 Case("simulate_limit", chain, {"duration": 100}) | simulate_limit takes any of
 Case("phase_space", chain, {"duration": 1}) | phase_space takes any of
-Case("phase_space", chain, {"cells": "x"}) | cells must be
 Case("phase_space", chain, {"cells": 10**6}) | cells
-Case("phase_space", chain, {"tolerance": -1}) | tolerance must be
-Case("phase_space", chain, {"order": 3}) | order must be
-Case("equilibrium", cb.Chain(restitution=0.5), {}) | restitution must be 1
-Case("force_balance", cb.Chain(restitution=0.5), {}) | restitution must be 1
 """
 
 # Descriptions of sweeps, as texts in quotes.
 SWEEPS = r"""
 "[grid" | not a TOML file
-"grid" | not a TOML file
 b"\xff\xfe" |
 b"\x00" |
 "grid = 3" | must be a table
@@ -150,9 +142,6 @@ b"\x00" |
 "[grid]\nsize = 3" | size must be a list
 "[grid]\nsize = []" | size must be a list
 "[grid]\nsize = [1979-05-27]" | size
-"[grid]\nsize = [[3]]" | size
-"[grid]\nsize = [{a = 1}]" | size
-"[grid]\nsize = [3, 3]" | twice
 "[grid]\ngap = [3, 3.0]" | twice
 "[grid]\nsize = ['3']" | size must be an integer
 "[grid]\nsize = [3, -1]" | size must be an integer
@@ -168,18 +157,15 @@ f"[grid]\namplitude = [{10**400}]" | amplitude must be
 "[grid]\nsizes = [3]" | [grid]...did you mean 'size'?
 "[grid]\nobserve = [5]" | observe
 "[grid]\nparticles = [5]" | particles
-"[grid]\nseed = [-1]" | seed must be
 f"[grid]\nseed = {[*range(2000)]}\ngap = {[*range(2000)]}" | 4000000 cases
 f"[grid]\nseed = {[*range(999)]}\ngap = {[*range(999)]}\nsize = {[*range(1, 999)]}" | cases
 "[chain]\nsize = 'x'" | size must be
 "[chain]\nname = 1" | Chain takes any of...'size'...got 'name'
 "[chain]\nrestituton = 1" | got 'restituton'; did you mean 'restitution'
-"[chain]\nsize = [3]" | size must be
 "[simulate]\ndurations = 1" | takes any of...did you mean 'duration'
 "[simulate]\nduration = 'long'" | duration must be
 "[simulate]\nduration = 1e300" |
 "[simulate]\nobserve = 3" | observe takes
-"[simulate]\nobserve = [[1]]" | observe takes
 "[simulate]\nstart = 1" | got 'start'
 "[simulate]\nthreads = 1" | got 'threads'
 "[simulate]\ncheckpoint = 'state'" | got 'checkpoint'

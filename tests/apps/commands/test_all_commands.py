@@ -61,49 +61,28 @@ def test_an_unknown_command_and_an_unusable_folder_are_one_line(run, tmp_path):
 REFUSED = """
 compare --size 2 | size
 compare --size ten | size
-compare --size -1 | size
 compare --amplitudes 1,x | amplitudes takes numbers
 compare --amplitudes '' | amplitudes takes numbers
 compare --amplitudes 0 | no steady state: amplitude=0
-compare --amplitudes nan | amplitude must be
 compare --amplitudes 1,1 | differ
-compare --gap -1 | gap must be
-compare --gap inf | gap must be
-compare --duration 0 | duration must be
 compare --duration 1 | duration must be at least
 compare --restitution 0.9,x | restitution takes numbers
-compare --restitution -1 | restitution must be
 compare --restitution 0.9 --amplitudes 1 | give restitution or amplitudes
-compare --restitution 0.9 --damping 0 | no steady state
 compare --seed -5 | seed
-compare --threads 0 | threads must be
 compare --colour | No such option
 compare extra | unexpected extra argument
 relax --release dropped | release must be one of
-relax --by -1 | by must be
-relax --by nan | by must be
-relax --every 100 | every must be at most
-relax --replicas 1 | replicas must be
-relax --amplitude 0 | no steady state
 relax --seed -1 | seed must be
 simulate --observe width | observe takes any of
 simulate --particles 1,x | particles takes numbers
 simulate --particles 1.0 | particles takes numbers
 simulate --particles 101 | particles must ascend within 1..100
-simulate --method guess | method must be one of
-simulate --stepper guess | stepper must be one of
 simulate --average median | average must be one of
-simulate --time-step -1 | time_step must be
-simulate --gap -1 | gap must be
-simulate --accuracy 2 | accuracy must lie between
 simulate --accuracy 0.01 --duration 50 | --duration has no meaning with --accuracy
 simulate --output run.txt | a file whose name ends in .nc
 simulate --output . | a file whose name ends in .nc
 theory --spring cubic | spring must be
-theory --size 0 | size must be
 theory --tolerance 0 | tolerance must be
-theory --amplitude 0 | no steady state
-theory --cells 1 | cells must be
 theory fluid | name must be one of ('equilibrium',
 theory equilibrium --tolerance 0.1 | tolerance: equilibrium has no such setting
 theory force_balance --cells 9 | cells: force_balance has no such setting
