@@ -1,11 +1,10 @@
 """How arguments are drawn, what a sound result is, and what becomes of a call that takes long."""
 
-from __future__ import annotations
-
 import faulthandler
 import math
 import resource
 import signal
+import sys
 from contextlib import contextmanager
 
 import numpy as np
@@ -99,7 +98,7 @@ def interrupted_when_long():
 
     before = signal.signal(signal.SIGALRM, interrupt)
     signal.setitimer(signal.ITIMER_REAL, PATIENCE)
-    faulthandler.dump_traceback_later(PATIENCE + HANG, exit=True)
+    faulthandler.dump_traceback_later(PATIENCE + HANG, exit=True, file=sys.__stderr__)
     try:
         yield
     finally:
