@@ -166,7 +166,7 @@ def test_the_checks_of_calls_leave_everything_else_as_it_was():
 
 
 def test_the_symbols_are_those_of_the_tables():
-    """``docs/tables`` says which parameter each symbol of the paper stands for."""
+    """``docs/tables`` says which parameter each symbol of the paper stands for; so do calls."""
     tables = Path(__file__).parents[1] / "docs" / "tables"
     names = ("symbols_chain.csv", "symbols_scales.csv")
     files = [(tables / name).read_text(encoding="utf-8").splitlines() for name in names]
@@ -174,6 +174,12 @@ def test_the_symbols_are_those_of_the_tables():
     for symbol, parameter in checks.SYMBOLS.items():
         written = "\\gamma" if symbol in ("gamma", GAMMA) else symbol
         assert any(f"${written}$" in row[0] and row[-1] == f"`{parameter}`" for row in rows), symbol
+        if parameter != "time_step":
+            said = f"{parameter} is {symbol} of the paper"
+            for call in (cb.Chain, cb.simulate, cb.phase_space, cb.compare_relaxation):
+                of_chain = "" if call is cb.Chain else ", an argument of Chain"
+                with pytest.raises(TypeError, match=said + of_chain):
+                    call(**{symbol: 2})
 
 
 @pytest.mark.parametrize(

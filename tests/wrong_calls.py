@@ -8,28 +8,14 @@ from wrong_values import SWEEPS, VALUE_TABLES
 GAMMA = "\N{GREEK SMALL LETTER GAMMA}"
 
 SYMBOLS = """
-cb.Chain(e=0.9) | 'e'; restitution is e of the paper
-cb.Chain(L=60) | size is L of the paper
-cb.Chain(R=2) | radius is R of the paper
-cb.Chain(m=2) | mass is m of the paper
-cb.Chain(k=2) | stiffness is k of the paper
-cb.Chain(gamma=2) | damping is gamma of the paper
 cb.Chain(**{GAMMA: 2}) | damping is ... of the paper
-cb.Chain(A=2) | amplitude is A of the paper
-cb.Chain(g=2) | gap is g of the paper
 cb.Chain(dt=2) | time_step is dt of the paper, an argument of simulate
 chain.replace(e=0.9) | restitution is e of the paper
 chain.replace(A=2) | amplitude is A of the paper
 cb.simulate(chain, dt=0.1) | 'dt'; time_step is dt of the paper
-cb.simulate(chain, e=0.9) | restitution is e of the paper, an argument of Chain
 cb.simulate(chain, restitution=0.9) | restitution is an argument of Chain
-cb.simulate_limit(chain, gamma=0.9) | damping is gamma of the paper, an argument of Chain
 cb.simulate_limit(chain, dt=0.9) | time_step is dt of the paper, an argument of simulate
 cb.relax_phase_space(chain, exact, 1, dt=0.1) | time_step is dt of the paper
-cb.phase_space(chain, e=0.9) | restitution is e of the paper, an argument of Chain
-cb.force_balance(chain, k=2) | stiffness is k of the paper, an argument of Chain
-cb.hydrodynamics(chain, g=2) | gap is g of the paper, an argument of Chain
-cb.compare_relaxation(chain, L=2) | size is L of the paper, an argument of Chain
 """
 
 NAMES = """

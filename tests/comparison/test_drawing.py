@@ -14,12 +14,6 @@ from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
 
 
-@pytest.fixture(autouse=True)
-def close_figures():
-    yield
-    plt.close("all")
-
-
 def test_overlay_draws_symbols_with_errors_and_lines():
     chain = Chain(size=10, amplitude=3)
     run, exact = simulate(chain, duration=300, progress=False), equilibrium(chain)

@@ -12,12 +12,6 @@ from crazybilliards.model import Chain
 from crazybilliards.particles import Covariances, simulate
 
 
-@pytest.fixture(autouse=True)
-def close_figures():
-    yield
-    plt.close("all")
-
-
 @pytest.fixture(scope="module")
 def pair():
     """Return a run with all that the theory with pair correlations gives, and the theory."""

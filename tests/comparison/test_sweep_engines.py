@@ -12,13 +12,12 @@ import psutil
 import pytest
 from killed import until
 from missing_cases import missing_cases
+from small_sweeps import AtOnce
 
 from crazybilliards.apps.commands.line import main
 from crazybilliards.comparison import load_sweep
 from crazybilliards.comparison.sweeps import Case, dask_cluster, process_pool, read_sweep, run_cases
-from crazybilliards.comparison.sweeps.case import compute
 from crazybilliards.model import Chain
-from crazybilliards.model.storage import write_sealed
 
 SCHEDULER = "distributed.cli.dask_scheduler"
 GRID = """
@@ -52,14 +51,29 @@ def cluster():
         yield executor
 
 
+EVERY = [
+    Case(
+        "simulate",
+        Chain(size=30, restitution=restitution, damping=damping),
+        {"duration": 500, "replicas": 2, "observe": ["widths", "density", "energy"], **settings},
+    )
+    for restitution, damping, settings in (
+        *((0, 1, {}), (0.9, 1, {}), (1, 1, {}), (1, 1, {"stepper": "euler"}), (1.05, 4, {})),
+        (0.5, 1, {"method": "contact-dynamics"}),
+    )
+] + [
+    Case("equilibrium", Chain(size=30, gap=0.2), {}),
+    Case("phase_space", Chain(size=30, restitution=0.95), {}),
+]
+
+
 @pytest.mark.compiled
-def test_processes_and_dask_give_the_same_results(grid, cluster, tmp_path):
-    cases = read_sweep(grid).cases()
-    for case in cases:
-        write_sealed(case.file(tmp_path / "here"), compute(case, case.source))
+@pytest.mark.parametrize("every", [False, pytest.param(True, marks=pytest.mark.torture)])
+def test_processes_and_dask_give_the_same_results(every, grid, cluster, tmp_path):
+    cases = EVERY if every else read_sweep(grid).cases()
     with process_pool(2) as pool:
-        assert run_cases(cases, tmp_path / "pool", pool, progress=False) == {}
-    assert run_cases(cases, tmp_path / "dask", cluster, progress=False) == {}
+        for name, executor in {"here": AtOnce(), "pool": pool, "dask": cluster}.items():
+            assert run_cases(cases, tmp_path / name, executor, progress=False) == {}
     for case in cases:
         here, pool, dask = (case.load(tmp_path / name) for name in ("here", "pool", "dask"))
         for other in (pool, dask):

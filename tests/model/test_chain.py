@@ -68,15 +68,6 @@ def test_reduced_and_physical_coordinates_are_inverse(size, gap, radius):
     np.testing.assert_allclose(chain.anchors, -chain.anchors[::-1])
 
 
-@pytest.mark.parametrize("spring", ["linear", "quadratic"])
-def test_the_force_is_odd_and_the_slope_of_the_potential(spring):
-    chain = Chain(stiffness=1.7, spring=spring)
-    d, h = np.linspace(-2, 2, 41), 1e-5
-    slope = (chain.potential(d + h) - chain.potential(d - h)) / (2 * h)
-    np.testing.assert_allclose(chain.force(d), slope, atol=1e-8)
-    np.testing.assert_array_equal(chain.force(-d), -chain.force(d))
-
-
 def test_parameters_round_trip():
     chain = Chain(size=3, gap=0.25, spring="quadratic")
     assert Chain(**chain.parameters()) == chain

@@ -1,8 +1,6 @@
 """Checkpoints: a run that is killed and resumed gives the bits of an undisturbed one."""
 
-import errno
 import io
-import os
 
 import numpy as np
 import pytest
@@ -34,28 +32,6 @@ def test_a_second_run_on_one_checkpoint_is_refused(tmp_path):
             simulate(Chain(size=10), **arguments)
         assert (tmp_path / "state").read_bytes() == before
     xr.testing.assert_identical(simulate(Chain(size=10), **arguments), first)
-
-
-def test_a_disk_that_fills_up_costs_the_checkpoint_and_not_the_run(tmp_path, monkeypatch):
-    arguments = {"duration": 500, "progress": False}
-    undisturbed = simulate(Chain(size=10), **arguments)
-    arguments |= {"checkpoint": tmp_path / "state", "checkpoint_interval": 0}
-    replace = os.replace
-
-    def once(source, target):
-        replace(source, target)
-        monkeypatch.setattr(os, "replace", full)
-
-    def full(source, target):
-        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-
-    monkeypatch.setattr(os, "replace", once)
-    with pytest.warns(RuntimeWarning, match=r"state: no checkpoint written: No space left"):
-        run = simulate(Chain(size=10), **arguments)
-    xr.testing.assert_identical(run, undisturbed)
-    assert [path.name for path in tmp_path.iterdir()] == ["state"]
-    monkeypatch.undo()
-    xr.testing.assert_identical(simulate(Chain(size=10), **arguments), undisturbed)
 
 
 INTERRUPTED = {  # the run, and what was called how often when Ctrl-C comes
@@ -90,13 +66,6 @@ def test_an_interrupted_run_goes_on_as_if_it_had_not_been(name, ctrl_c, tmp_path
     if "far apart" in name:
         assert cut.time.values.tolist() == [0]
     xr.testing.assert_identical(simulate(chain, checkpoint=tmp_path / "state", **options), whole)
-
-
-def test_a_checkpoint_that_cannot_be_written_is_an_error_before_any_work(tmp_path, monkeypatch):
-    (tmp_path / "file").write_text("")
-    monkeypatch.setattr(Replica, "work", lambda *_: pytest.fail("it works"))
-    with pytest.raises(OSError, match="file"):
-        simulate(Chain(size=100), duration=1e8, checkpoint=tmp_path / "file" / "state")
 
 
 def test_a_checkpoint_without_a_part_is_refused(tmp_path):

@@ -8,7 +8,7 @@ from scipy.linalg import expm
 from crazybilliards.comparison import smooth
 from crazybilliards.kinetic import equilibrium_states
 from crazybilliards.model import Chain
-from crazybilliards.particles import given_start, simulate
+from crazybilliards.particles import simulate
 
 
 def oscillator_covariance(chain, covariance, times):
@@ -126,10 +126,3 @@ def test_only_chosen_particles_are_reported():
         xr.testing.assert_identical(
             some.drop_attrs(deep=False), whole.sel(particle=[1, 15]).drop_attrs(deep=False)
         )
-
-
-def test_a_far_start_fits_on_the_grid():
-    chain = Chain(size=5, amplitude=0.1)
-    start = given_start(chain, chain.anchors + 40.0, replicas=2)
-    run = simulate(chain, start=start, **(SMALL | {"replicas": 2}))
-    assert run.outside == 0

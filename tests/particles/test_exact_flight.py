@@ -74,21 +74,6 @@ def test_two_steps_are_one_of_their_sum(one, other, damping, stiffness):
     assert np.abs(found - all_noise).max() <= 1e-9 * np.abs(all_noise).max()
 
 
-def followed(chain, times, *, copies, seed=1, **start):
-    """Return <x x(t)>, <v v(t)> and their errors over all rods, from the first snapshot on."""
-    run = simulate(
-        chain,
-        average="ensemble",
-        observe=Raw(),
-        replicas=copies,
-        seed=seed,
-        progress=False,
-        **times,
-        **start,
-    )
-    return run.position.values - chain.anchors, run.velocity.values
-
-
 @pytest.mark.compiled
 @pytest.mark.parametrize("step", STEPS)
 @pytest.mark.parametrize("damping", [0.1, 1.0, CRITICAL, 10.0])
@@ -118,7 +103,9 @@ def test_rods_forget_as_one_oscillator(stiffness, damping, step):
     v = generator.normal(0.5, 0.7, (copies, chain.size))
     start = given_start(chain, chain.physical(y), v, replicas=copies)
     times = {"duration": 3 * step, "every": step, "time_step": step}
-    x, u = followed(chain, times, copies=copies, start=start)
+    how = {"average": "ensemble", "observe": Raw(), "replicas": copies, "seed": 1}
+    run = simulate(chain, start=start, progress=False, **how, **times)
+    x, u = run.position.values - chain.anchors, run.velocity.values
     before = np.stack([x[:, 0].mean(1), u[:, 0].mean(1)])
     for k in (1, 2, 3):
         e, sigma = moves(chain, k * step), heats(chain, k * step)

@@ -39,30 +39,6 @@ def test_any_number_of_replicas_gives_a_limit(replicas):
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("damping", [1.0, 4.0, 10.0])
-def test_means_of_successive_groups_are_uncorrelated(damping, monkeypatch):
-    """Otherwise error bars are too small, most of all at the lowest accuracy.
-
-    Displacements remember longest. Of free rods their correlation is known: means over ten
-    correlation times are correlated by 0.06 at most.
-    """
-    found = []
-    monkeypatch.setattr(limit_module, "_collect", lambda levels, *_: found.append(levels))
-    chain = Chain(size=2, gap=20.0, damping=damping)
-    for seed in range(40):
-        simulate_limit(chain, accuracy=0.1, seed=seed, observe="widths", progress=False)
-    products, squares = 0.0, 0.0
-    for levels in found:
-        [[sampler]] = levels.samplers
-        means = np.array([widths.sums[0, 0] for [[widths]] in sampler.measured])
-        off = means - means.mean(axis=0)
-        products += (off[1:] * off[:-1]).mean()
-        squares += (off**2).mean()
-    correlation = products / squares + 1 / 32  # the mean is that of the same 32 groups
-    assert correlation < 0.06 + 5 / np.sqrt(40 * 31 * chain.size)
-
-
-@pytest.mark.compiled
 def test_a_density_that_hardly_any_rod_measured_has_no_error_bar():
     """A node without a visit had the error 0, also where the density is not small."""
     chain = Chain(size=5, restitution=0, damping=10.0, gap=0.3)
