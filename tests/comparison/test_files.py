@@ -7,6 +7,7 @@ content is not what it should be. Reading must give the same bits or one ValueEr
 Damage must be found before the NetCDF libraries see a byte. Nothing is ever unpickled.
 """
 
+import re
 import shutil
 import subprocess
 import sys
@@ -104,7 +105,8 @@ def test_a_damaged_file_is_refused_or_read_right(kind, flips, files, tmp_path, m
         assert refused(READERS[kind], broken)
 
     def unsealed(*arguments, **options):
-        raise AssertionError("a library was given the bytes of a damaged file")
+        # No Exception, which would become another error on its way.
+        pytest.fail("a library was given the bytes of a damaged file")
 
     for library in ("h5py.File", "numpy.load", "xarray.open_datatree", "xarray.open_dataset"):
         monkeypatch.setattr(library, unsealed)
@@ -114,7 +116,7 @@ def test_a_damaged_file_is_refused_or_read_right(kind, flips, files, tmp_path, m
         flipped = bytearray(whole)
         flipped[position] ^= 1 << int(generator.integers(8))
         broken.write_bytes(bytes(flipped))
-        assert refused(READERS[kind], broken)
+        assert re.search("truncated|damaged", what_is_wrong(READERS[kind], broken))
     monkeypatch.undo()
     broken.write_bytes(whole[:-1] + b"x")  # the newline at the very end seals nothing
     again = READERS[kind](broken)

@@ -90,12 +90,6 @@ def test_the_error_has_both_numbers():
         require_memory("size=3", 1e12 * 2**30)
 
 
-def test_the_mesh_is_checked(monkeypatch):
-    monkeypatch.setattr(memory, "_available_lately", lambda moment: 1e6)
-    with pytest.raises(ValueError, match=r"cells=22 would take"):
-        phase_space(Chain(size=3), cells=22)
-
-
 def test_only_the_meshes_that_are_used_are_checked(monkeypatch):
     """22 and 33 cells are enough for a small chain: 44 MB; the next mesh takes 100 MB."""
     monkeypatch.setattr("crazybilliards.model.memory.available_memory", lambda: 5e7)

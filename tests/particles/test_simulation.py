@@ -45,15 +45,6 @@ def test_the_same_seed_gives_the_same_bits_whatever_the_threads(e, damping):
     assert (other.velocity_width != one.velocity_width).all()
 
 
-def test_density_holds_every_rod_and_its_blocks_average_to_it():
-    run = simulate(Chain(size=7, gap=0.5), duration=1100, progress=False)
-    spacing = run.x[1] - run.x[0]
-    assert float(run.density.sum() * spacing) == pytest.approx(7)
-    np.testing.assert_allclose(run.density_block.mean("block"), run.density, atol=1e-14)
-    assert run.outside == 0
-    assert run.density_block.sizes["block"] == 64
-
-
 def test_an_equilibrium_start_needs_no_warm_up():
     chain = Chain(size=20, gap=0.3)
     start = equilibrium_states(chain, 64, seed=3)
