@@ -2,11 +2,15 @@
 
 import os
 import signal
+import sys
 import threading
+from typing import NamedTuple
 
 import matplotlib as mpl
 import pytest
 from hypothesis import settings
+
+from crazybilliards.apps.commands.line import main
 
 mpl.use("Agg")
 
@@ -62,3 +66,26 @@ def ctrl_c(monkeypatch):
         monkeypatch.setattr(owner, name, watched)
 
     return ctrl_c
+
+
+class Ended(NamedTuple):
+    """How a command ended."""
+
+    returncode: int
+    stdout: str
+    stderr: str
+
+
+@pytest.fixture
+def run(monkeypatch, capsys):
+    """Run a command in this process."""
+
+    def run(*arguments):
+        monkeypatch.setattr("sys.argv", ["crazybilliards", *map(str, arguments)])
+        monkeypatch.setattr("sys.excepthook", sys.excepthook)
+        with pytest.raises((SystemExit, KeyboardInterrupt)) as caught:
+            main()
+        return Ended(getattr(caught.value, "code", 130) or 0, *capsys.readouterr())
+
+    yield run
+    mpl.pyplot.close("all")

@@ -146,15 +146,11 @@ b"\x00" |
 "[grid]\nsize = ['3']" | size must be an integer
 "[grid]\nsize = [3, -1]" | size must be an integer
 "[grid]\nsize = [true]" | size must be an integer
-f"[grid]\nsize = [{10**400}]" | size
-"[grid]\nsize = [1000000000]" |
 "[grid]\ndamping = [1.0, 2.0]\n[chain]\ndamping = 2.0" | given twice
 "[grid]\namplitude = [nan]" | amplitude must be
-"[grid]\namplitude = [inf, 1e300]" | amplitude must be
 f"[grid]\namplitude = [{10**400}]" | amplitude must be
 "[grid]\nlength = [1, 2]" | [grid] takes...'gap'...'duration'...got 'length'
 "[grid]\nrestituton = [1]" | 'size'...got 'restituton'; did you mean 'restitution'
-"[grid]\nsizes = [3]" | [grid]...did you mean 'size'?
 "[grid]\nobserve = [5]" | observe
 "[grid]\nparticles = [5]" | particles
 f"[grid]\nseed = {[*range(2000)]}\ngap = {[*range(2000)]}" | 4000000 cases
@@ -164,17 +160,14 @@ f"[grid]\nseed = {[*range(999)]}\ngap = {[*range(999)]}\nsize = {[*range(1, 999)
 "[chain]\nrestituton = 1" | got 'restituton'; did you mean 'restitution'
 "[simulate]\ndurations = 1" | takes any of...did you mean 'duration'
 "[simulate]\nduration = 'long'" | duration must be
-"[simulate]\nduration = 1e300" |
 "[simulate]\nobserve = 3" | observe takes
 "[simulate]\nstart = 1" | got 'start'
 "[simulate]\nthreads = 1" | got 'threads'
 "[simulate]\ncheckpoint = 'state'" | got 'checkpoint'
-"[simulate]\nreplicas = 1000000000000" |
 "[simulate]\naverage = ['time']" | average must be
 "[phase_space]\ncell = 3" | [phase_space] takes any of...did you mean 'cells'?
 "[phase_space]\ncells = 'x'" | cells must be
 "[phase_space]\ntolerance = -1" | tolerance must be
-"[phase_space]\norder = 3" | order must be
 "[grid]\nrestitution = [0.5]\n[equilibrium]" | restitution must be 1
 "[grid]\nrestitution = [0.5]\n[force_balance]" | restitution must be 1
 "[grid]\nsize = " + "[" * 5000 | not a TOML file

@@ -14,7 +14,6 @@ from killed import until
 from missing_cases import missing_cases
 from small_sweeps import AtOnce
 
-from crazybilliards.apps.commands.line import main
 from crazybilliards.comparison import load_sweep
 from crazybilliards.comparison.sweeps import Case, dask_cluster, process_pool, read_sweep, run_cases
 from crazybilliards.model import Chain
@@ -157,26 +156,13 @@ def test_no_scheduler_at_the_address():
 # -- the command ------------------------------------------------------------------------------
 
 
-@pytest.fixture
-def command(monkeypatch, capsys):
-    """Return what calls the command and gives its status and what it printed."""
-
-    def call(*arguments):
-        monkeypatch.setattr(sys, "argv", ["crazybilliards", "sweep", *map(str, arguments)])
-        with pytest.raises(SystemExit) as done:
-            main()
-        return done.value.code or 0, *capsys.readouterr()
-
-    return call
-
-
-def test_the_command_computes_what_is_missing(command, grid, tmp_path):
+def test_the_command_computes_what_is_missing(run, grid, tmp_path):
     folder = tmp_path / "results"
-    status, printed, errors = command(grid, "--output", folder)
+    status, printed, errors = run("sweep", grid, "--output", folder)
     assert status == 0, errors
     assert "4 cases, 0 of them" in printed
     assert "computed 4 cases" in printed
-    status, printed, _ = command(grid, "--output", folder)
+    status, printed, _ = run("sweep", grid, "--output", folder)
     assert status == 0
     assert "4 cases, 4 of them" in printed
     assert "computed" not in printed
@@ -191,21 +177,21 @@ def test_the_command_computes_what_is_missing(command, grid, tmp_path):
         (["--scheduler", "nowhere"], "no dask scheduler"),
     ],
 )
-def test_wrong_options(arguments, message, command, grid, tmp_path):
-    status, _, errors = command(grid, "--output", tmp_path / "results", *arguments)
+def test_wrong_options(arguments, message, run, grid, tmp_path):
+    status, _, errors = run("sweep", grid, "--output", tmp_path / "results", *arguments)
     assert status == 2
     assert message in errors
     assert errors.count("\n") == 1
 
 
-def test_a_missing_file_and_a_wrong_grid_are_one_line(command, tmp_path):
-    status, _, errors = command(tmp_path / "none.toml", "--output", tmp_path / "results")
+def test_a_missing_file_and_a_wrong_grid_are_one_line(run, tmp_path):
+    status, _, errors = run("sweep", tmp_path / "none.toml", "--output", tmp_path / "results")
     assert status == 2
     assert "none.toml" in errors
     assert errors.count("\n") == 1
     wrong = tmp_path / "wrong.toml"
     wrong.write_text("[grid]\nsize = [3, 0]\n")
-    status, _, errors = command(wrong, "--output", tmp_path / "results")
+    status, _, errors = run("sweep", wrong, "--output", tmp_path / "results")
     assert status == 2
     assert "size must be" in errors
     assert not (tmp_path / "results").exists()

@@ -2,10 +2,10 @@
 
 import json
 import re
-import sys
 from collections import Counter
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import get_args
 
@@ -13,7 +13,6 @@ import matplotlib.pyplot as plt
 import pytest
 
 from crazybilliards.apps.commands import reproduce as reproduce_command
-from crazybilliards.apps.commands.line import main
 from crazybilliards.comparison.sweeps import Case, run_cases
 from crazybilliards.comparison.sweeps.jobs import JOBS
 from crazybilliards.model import Chain
@@ -91,17 +90,10 @@ def test_parameters_are_described_by_what_is_not_the_default():
 
 
 @pytest.fixture
-def command(tmp_path, monkeypatch, capsys):
-    """Return what calls the command in an empty folder and gives its status and what it printed."""
+def command(run, tmp_path, monkeypatch):
+    """Call the command in an empty folder."""
     monkeypatch.chdir(tmp_path)
-
-    def call(*arguments):
-        monkeypatch.setattr(sys, "argv", ["crazybilliards", "reproduce", *arguments])
-        with pytest.raises(SystemExit) as done:
-            main()
-        return done.value.code or 0, *capsys.readouterr()
-
-    return call
+    return partial(run, "reproduce")
 
 
 def test_list_needs_no_folder(command, tmp_path):

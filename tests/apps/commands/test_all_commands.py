@@ -126,7 +126,7 @@ def test_ctrl_c_saves_what_was_computed_beside_a_finished_result(command, interr
         assert tree["amplitude_1/simulation"].attrs["status"] == "interrupted"
     assert (tmp_path / f"{picture}-interrupted.png").exists()
     assert (tmp_path / f"{data}.nc").read_text() == "finished"
-    assert "%" in done.stdout
+    assert "minus" in done.stdout
     assert not [path for path in tmp_path.iterdir() if path.suffix == ".part"]
 
 
