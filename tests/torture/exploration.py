@@ -2,7 +2,6 @@
 
 import faulthandler
 import math
-import resource
 import signal
 import sys
 from contextlib import contextmanager
@@ -16,6 +15,8 @@ from hypothesis import strategies as st
 from crazybilliards.kinetic import displaced, hydrodynamics
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.particles import simulate
+
+resource = pytest.importorskip("resource")  # not on Windows
 
 EXAMPLES = 300
 PATIENCE = 2.0  # seconds until Ctrl-C
