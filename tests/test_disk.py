@@ -144,7 +144,7 @@ def test_a_disk_full_in_the_middle_of_a_run(squeeze, e, monkeypatch):
 
 @torture
 def test_a_sweep_on_a_full_disk_keeps_what_fits_and_goes_on_with_more_room(small, tmp_path):
-    (small / "filler").write_bytes(b"x" * 500_000)
+    (small / "filler").write_bytes(b"x" * 800_000)
     grid = tmp_path / "grid.toml"
     grid.write_text(GRID.format(duration=300))
     full = run("sweep", grid, "--output", small)
