@@ -67,7 +67,7 @@ test-lowest: $(OLDEST)/installed
 
 # Three processes for two cores: these tests wait a lot for others that they kill.
 torture: $(VENV)/installed-test
-	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n 3 --dist worksteal --timeout=3600 tests/torture
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n 3 --dist worksteal --timeout=3600 -m torture
 
 # Coverage cannot be measured in compiled kernels. Tests that are quick enough run them as Python.
 coverage: $(VENV)/installed-coverage

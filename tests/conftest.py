@@ -2,11 +2,15 @@
 
 import os
 import signal
+import sys
 import threading
+from typing import NamedTuple
 
 import matplotlib as mpl
 import pytest
 from hypothesis import settings
+
+from crazybilliards.apps.commands.line import main
 
 mpl.use("Agg")
 
@@ -19,12 +23,25 @@ settings.load_profile("crazybilliards")
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
-def pytest_collection_modifyitems(items):
-    """Skip what Windows cannot do."""
+def pytest_collection_modifyitems(config, items):
+    """Leave out the torture unless it is asked for; skip what Windows cannot do."""
+    if "torture" not in " ".join([config.option.markexpr, *config.args]):
+        config.hook.pytest_deselected(items=[each for each in items if _is_torture(each)])
+        items[:] = [each for each in items if not _is_torture(each)]
     if os.name == "nt":
         for item in items:
             if item.get_closest_marker("posix"):
                 item.add_marker(pytest.mark.skip(reason="needs signals, streams, links of POSIX"))
+
+
+def pytest_itemcollected(item):
+    """Mark what lies in the folder of the torture."""
+    if item.path.parent.name == "torture":
+        item.add_marker("torture")
+
+
+def _is_torture(item):
+    return item.get_closest_marker("torture") is not None
 
 
 @pytest.fixture
@@ -49,3 +66,26 @@ def ctrl_c(monkeypatch):
         monkeypatch.setattr(owner, name, watched)
 
     return ctrl_c
+
+
+class Ended(NamedTuple):
+    """How a command ended."""
+
+    returncode: int
+    stdout: str
+    stderr: str
+
+
+@pytest.fixture
+def run(monkeypatch, capsys):
+    """Run a command in this process."""
+
+    def run(*arguments):
+        monkeypatch.setattr("sys.argv", ["crazybilliards", *map(str, arguments)])
+        monkeypatch.setattr("sys.excepthook", sys.excepthook)
+        with pytest.raises((SystemExit, KeyboardInterrupt)) as caught:
+            main()
+        return Ended(getattr(caught.value, "code", 130) or 0, *capsys.readouterr())
+
+    yield run
+    mpl.pyplot.close("all")

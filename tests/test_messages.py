@@ -11,11 +11,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-from wrong_calls import GAMMA, WRONG_CALLS
+from wrong_calls import GAMMA, WRONG_CALLS, WRONG_SWEEPS
 
 import crazybilliards as cb
 from crazybilliards.apps.commands.line import main
+from crazybilliards.comparison.sweeps import Case, read_sweep
 from crazybilliards.model import checks
+from crazybilliards.particles.running.replica import Replica
 
 
 class Unknown(cb.Widths):
@@ -24,16 +26,8 @@ class Unknown(cb.Widths):
 
 
 @pytest.fixture(scope="module")
-def names(tmp_path_factory):
+def names():
     """Return what the calls name."""
-
-    def swept(text):
-        from crazybilliards.comparison.sweeps import read_sweep
-
-        path = tmp_path_factory.mktemp("sweep") / "grid.toml"
-        path.write_text(text, encoding="utf-8")
-        return read_sweep(path)
-
     chain, six = cb.Chain(size=5), cb.Chain(size=6)
     exact = cb.equilibrium(chain)
     raw = {"duration": 10, "average": "ensemble", "observe": "snapshots", "progress": False}
@@ -52,16 +46,68 @@ def names(tmp_path_factory):
         "start": cb.given_start(chain, chain.anchors),
         "tree": xr.DataTree.from_dict({"a": exact}),
         "foreign": xr.Dataset({"density": ("x", np.full(9, 0.1))}, {"x": np.arange(9.0)}),
-        "swept": swept,
+        "Case": Case,
+        "checks": checks,
+        "xr": xr,
     }
 
 
 @pytest.mark.parametrize(("call", "said"), WRONG_CALLS)
-def test_a_wrong_call_says_in_one_line_what_is_wanted(call, said, names):
+def test_a_wrong_call_says_in_one_line_what_is_wanted_before_any_work(
+    call, said, names, monkeypatch
+):
+    monkeypatch.setattr(Replica, "work", lambda *_: pytest.fail("it works"))
     with pytest.raises((ValueError, TypeError, AttributeError)) as caught:
         eval(call, dict(names))
-    message = str(caught.value)
-    assert len(message) < 400
+    require_said(said, str(caught.value))
+
+
+WANTED = {
+    "Chain": "a Chain: Chain",
+    "xr.Dataset": "a result, an",
+    "xr.DataTree": "an xarray.DataTree, which",
+    "xr.Dataset | xr.DataTree": "a result or a tree",
+    "FuncAnimation": "a FuncAnimation",
+}
+CALLS = [
+    name
+    for name in cb.__all__
+    if not (inspect.isclass(each := getattr(cb, name)) and issubclass(each, BaseException))
+]
+
+
+@pytest.mark.parametrize("name", CALLS)
+def test_every_public_call_is_checked(name):
+    """Names of arguments, those that are missing, and objects of another type."""
+    call = getattr(cb, name)
+    arguments = inspect.signature(call).parameters
+    last = next(reversed(arguments), "")
+    meant = f"; did you mean '{last}'" if last else "; it takes no arguments"
+    with pytest.raises(TypeError, match=f"^{name} has no argument '{last}x'{meant}"):
+        call(**{f"{last}x": 1})
+    needed = [each.name for each in arguments.values() if each.default is each.empty]
+    if needed:
+        with pytest.raises(TypeError, match=f"^{name} needs {' and '.join(needed)}; it takes "):
+            call()
+    for argument in arguments.values():
+        if argument.annotation in WANTED:
+            for wrong in (None, {}, "a.nc", np.zeros(3), cb.Widths):
+                said = f"^{argument.name} must be {WANTED[argument.annotation]}.*; got "
+                with pytest.raises(ValueError, match=said):
+                    call(**{argument.name: wrong})
+
+
+@pytest.mark.parametrize(("text", "said"), WRONG_SWEEPS)
+def test_a_wrong_sweep_says_in_one_line_what_is_wanted(text, said, tmp_path):
+    text, path = eval(text, {"GAMMA": GAMMA}), tmp_path / "grid.toml"
+    path.write_bytes(text if isinstance(text, bytes) else text.encode())
+    with pytest.raises(ValueError, match=r"\w") as caught:
+        read_sweep(path).cases()
+    require_said(said.strip(), str(caught.value))
+
+
+def require_said(said, message):
+    assert len(message) < 500
     assert "\n" not in message
     assert re.search(".*".join(map(re.escape, said.split("..."))), message), message
 
@@ -120,7 +166,7 @@ def test_the_checks_of_calls_leave_everything_else_as_it_was():
 
 
 def test_the_symbols_are_those_of_the_tables():
-    """``docs/tables`` says which parameter each symbol of the paper stands for."""
+    """``docs/tables`` says which parameter each symbol of the paper stands for; so do calls."""
     tables = Path(__file__).parents[1] / "docs" / "tables"
     names = ("symbols_chain.csv", "symbols_scales.csv")
     files = [(tables / name).read_text(encoding="utf-8").splitlines() for name in names]
@@ -128,6 +174,12 @@ def test_the_symbols_are_those_of_the_tables():
     for symbol, parameter in checks.SYMBOLS.items():
         written = "\\gamma" if symbol in ("gamma", GAMMA) else symbol
         assert any(f"${written}$" in row[0] and row[-1] == f"`{parameter}`" for row in rows), symbol
+        if parameter != "time_step":
+            said = f"{parameter} is {symbol} of the paper"
+            for call in (cb.Chain, cb.simulate, cb.phase_space, cb.compare_relaxation):
+                of_chain = "" if call is cb.Chain else ", an argument of Chain"
+                with pytest.raises(TypeError, match=said + of_chain):
+                    call(**{symbol: 2})
 
 
 @pytest.mark.parametrize(

@@ -144,16 +144,3 @@ def test_a_quota_limits_the_cores(files, cores, tmp_path, monkeypatch):
     for task, allowed in (("2", 2), ("16", 8), ("all", 8)):
         monkeypatch.setenv("SLURM_CPUS_PER_TASK", task)
         assert process.cores(tmp_path) == min(cores, allowed)
-
-
-def test_a_file_that_save_did_not_write(tmp_path):
-    path = tmp_path / "a.nc"
-    for engine in ("h5netcdf", "scipy"):
-        cb.equilibrium(CHAIN).to_netcdf(path, engine=engine)
-        with pytest.raises(
-            ValueError, match=r"without the checksum of .*save; xarray.open_dataset"
-        ):
-            cb.load(path)
-    path.write_bytes(b"something else")
-    with pytest.raises(ValueError, match=r"or not a file that crazybilliards saved$"):
-        cb.load(path)

@@ -3,36 +3,19 @@
 ``tests/test_messages.py`` says what the names stand for, and makes the calls.
 """
 
+from wrong_values import SWEEPS, VALUE_TABLES
+
 GAMMA = "\N{GREEK SMALL LETTER GAMMA}"
 
 SYMBOLS = """
-cb.Chain(e=0.9) | 'e'; restitution is e of the paper
-cb.Chain(L=60) | size is L of the paper
-cb.Chain(R=2) | radius is R of the paper
-cb.Chain(m=2) | mass is m of the paper
-cb.Chain(k=2) | stiffness is k of the paper
-cb.Chain(gamma=2) | damping is gamma of the paper
 cb.Chain(**{GAMMA: 2}) | damping is ... of the paper
-cb.Chain(A=2) | amplitude is A of the paper
-cb.Chain(g=2) | gap is g of the paper
 cb.Chain(dt=2) | time_step is dt of the paper, an argument of simulate
 chain.replace(e=0.9) | restitution is e of the paper
 chain.replace(A=2) | amplitude is A of the paper
 cb.simulate(chain, dt=0.1) | 'dt'; time_step is dt of the paper
-cb.simulate(chain, e=0.9) | restitution is e of the paper, an argument of Chain
 cb.simulate(chain, restitution=0.9) | restitution is an argument of Chain
-cb.simulate_limit(chain, gamma=0.9) | damping is gamma of the paper, an argument of Chain
 cb.simulate_limit(chain, dt=0.9) | time_step is dt of the paper, an argument of simulate
 cb.relax_phase_space(chain, exact, 1, dt=0.1) | time_step is dt of the paper
-cb.phase_space(chain, e=0.9) | restitution is e of the paper, an argument of Chain
-cb.force_balance(chain, k=2) | stiffness is k of the paper, an argument of Chain
-cb.hydrodynamics(chain, g=2) | gap is g of the paper, an argument of Chain
-cb.compare_relaxation(chain, L=2) | size is L of the paper, an argument of Chain
-swept("[grid]\\ne = [0.5, 0.9]") | [grid] takes any of ... got 'e'; restitution is e of the paper
-swept(f"[grid]\\n'{GAMMA}' = [0.5]") | damping is ... of the paper
-swept("[chain]\\ngamma = 1") | Chain takes any of ... damping is gamma of the paper
-swept("[simulate]\\ndt = 1") | [simulate] takes any of ... time_step is dt of the paper
-swept("[simulate]\\nL = 1") | takes any of ... size is L of the paper, an argument of Chain
 """
 
 NAMES = """
@@ -46,62 +29,31 @@ cb.simulate(chain, 1000) | simulate takes chain without a name, got 1000: write 
 cb.simulate(chain, 1000, duration=10) | write warmup=1000
 cb.simulate(chain, durations=1000) | did you mean 'duration'?
 cb.simulate(chain, chain=chain) | simulate got chain twice
-cb.simulate() | simulate needs chain
-cb.simulate(duration=3) | simulate needs chain
 cb.simulate_limit(chain, 0.01) | write accuracy=0.01
-cb.simulate_limit(chain, accuraci=0.01) | did you mean 'accuracy'?
-cb.given_start(chain) | given_start needs position
 cb.given_start(chain, chain.anchors, 0.0, 3) | write replicas=3
-cb.given_start(chain, positions=chain.anchors) | did you mean 'position'?
 cb.Density(-3) | reach must be positive, got -3
 cb.simulate(chain, observe=cb.Density(reach=1e12)) | reach=1e+12 is too large for a grid
 cb.simulate_limit(chain, accuracy=0.1, replicas=10**400) | replicas must be an integer from 1 to
 cb.simulate_limit(chain, accuracy=0.1, checkpoint=3) | checkpoint must be a text or a Path, got 3
 cb.Density(bins=3) | Density has no argument 'bins'; it takes reach
-cb.Velocities(bin=3) | did you mean 'bins'?
 cb.Velocities(3, 4) | Velocities takes bins without a name, got 4
-cb.Covariances(separation=3) | did you mean 'separations'?
 cb.Raw(particles=3) | Raw has no argument 'particles'
 cb.TriggeredCollisions(3) | TriggeredCollisions takes no argument
-cb.breathing_cloud(chain) | breathing_cloud needs duration
 cb.breathing_cloud(chain, 3, 1.0) | write every=1.0
-cb.breathing_cloud(chain, 3, strech=1.0) | did you mean 'stretch'?
-cb.compressed(chain) | compressed needs factor
-cb.compressed(chain, factr=2) | did you mean 'factor'?
 cb.displaced(chain, 1, 2) | displaced takes chain, shift without a name, got 2
 cb.two_clumps | has no attribute 'two_clumps' any more: displaced(chain, 0).assign(flow_velocity
 cb.GrowthFit | has no attribute 'GrowthFit' any more: every fit is a Fit
 cb.kinetic.critical_damping | any more: critical_size(chain.replace(damping=...))
 cb.correlated_phase_space(chain, 0.1) | write tolerance=0.1
 cb.critical_size(chain, 3) | critical_size takes chain without a name, got 3
-cb.critical_size() | critical_size needs chain
 cb.equilibrium(chain, gap=1) | gap is an argument of Chain
-cb.equilibrium_states(chain) | equilibrium_states needs replicas
 cb.equilibrium_states(chain, 1, 2, 3) | it takes chain, replicas, seed
-cb.force_balance(chain, displacment=np.tanh) | did you mean 'displacement'?
-cb.hydrodynamics(chain, exact, 1, frames="label") | did you mean 'frame'?
 cb.phase_space(chain, 2) | write order=2
-cb.phase_space(chain, cell=2) | did you mean 'cells'?
-cb.relax_phase_space(chain, exact, 1, evry=2) | did you mean 'every'?
-cb.compare_elastic(chain, amplitude=[1]) | did you mean 'amplitudes'?
-cb.compare_restitutions(chain) | compare_restitutions needs restitutions
 cb.compare_relaxation(chain, "displaced", 1, 40) | write duration=40
 cb.fit_avalanches([3, 2, 1], 2) | write smallest=2
-cb.fit_scaling([1, 2], [1, 2]) | fit_scaling needs error
-cb.fit_border_power_law(run, shift=True) | did you mean 'shifted'?
-cb.deviation(exact) | deviation needs reference
-cb.deviation(exact, exact, flor=0.1) | did you mean 'floor'?
 cb.overlay({"run": run}, "density", "mean_position") | write along='mean_position'
-cb.overlay({"run": run}, quantiti="density") | did you mean 'quantity'?
-cb.load() | load needs path
-cb.load(file="a.nc") | load has no argument 'file'; it takes path
-cb.save(run) | save needs path
 cb.save(run, "a.nc", 3) | save takes result, path without a name, got 3
 cb.chain_of(run, 1) | chain_of takes dataset without a name, got 1
-cb.load_sweep() | load_sweep needs folder
-cb.smooth(exact, window=2) | smooth has no argument 'window'; it takes source
-cb.tail_length([1], [1]) | tail_length needs beyond
-cb.Deviation(maximum=1) | Deviation needs rms and integrated
 """
 
 TYPES = """
@@ -110,25 +62,8 @@ cb.simulate(60) | chain must be a Chain...got 60
 cb.simulate(chain=None) | chain must be a Chain...got None
 cb.simulate(exact) | chain must be a Chain...chain_of(result)...got a Dataset
 cb.simulate(cb.Chain) | chain must be a Chain...got <class
-cb.simulate_limit(np.zeros(3)) | chain must be a Chain...got array
 cb.given_start("chain", [1.0]) | chain must be a Chain...got 'chain'
-cb.equilibrium(None) | chain must be a Chain...got None
-cb.equilibrium_states({}, 3) | chain must be a Chain
-cb.phase_space(3) | chain must be a Chain...got 3
-cb.correlated_phase_space(3) | chain must be a Chain
-cb.force_balance([]) | chain must be a Chain...got []
-cb.hydrodynamics(exact, exact, 1) | chain must be a Chain
-cb.relax_phase_space(1.05) | chain must be a Chain
-cb.breathing_cloud({}, 1) | chain must be a Chain
-cb.compressed(None, 2) | chain must be a Chain
-cb.displaced(tree, 2) | chain must be a Chain...got a DataTree
-cb.critical_size(1.05) | chain must be a Chain...got 1.05
-cb.critical_size(None) | chain must be a Chain
 cb.best_theory(cb.Chain(), "W_v") | quantity must be one of ...got 'W_v'
-cb.theories(None) | chain must be a Chain...got None
-cb.compare_elastic(5) | chain must be a Chain
-cb.compare_relaxation({}) | chain must be a Chain
-cb.compare_restitutions(None, [0.5]) | chain must be a Chain
 cb.chain_of(3) | dataset must be a result...got 3
 cb.chain_of(chain) | dataset must be a result...got Chain(
 cb.chain_of(tree) | must be a result...tree['name'].to_dataset()...got a DataTree
@@ -138,15 +73,10 @@ cb.smooth("a.nc") | source must be a result...load(path)...got 'a.nc'
 cb.smooth(tree) | source must be a result...got a DataTree
 cb.smooth(foreign) | not a crazybilliards result
 cb.smooth(exact.density) | source must be a result...got a DataArray
-cb.coverage_density(None) | source must be a result
 cb.coverage_density(foreign) | not a crazybilliards result
-cb.deviation(exact, None) | reference must be a result...got None
-cb.deviation(3, exact) | result must be a result...got 3
 cb.deviation(foreign, foreign) | not a crazybilliards result
 cb.deviation(exact, exact, floor="a") | floor must be a number, got 'a'
-cb.fit_arctanh({}) | source must be a result
 cb.fit_arctanh(foreign) | the result has no 'mean_displacement'
-cb.fit_border_power_law(3) | source must be a result
 cb.fit_border_power_law(foreign) | the result has no 'velocity_width'
 cb.overlay([run]) | overlay takes results by their labels...got a list
 cb.overlay(run) | overlay takes results by their labels...got a Dataset
@@ -154,6 +84,8 @@ cb.overlay({"a": 3}) | a: not a crazybilliards result: 3
 cb.overlay({"a": tree}) | a: not a crazybilliards result: a DataTree
 cb.overlay({"a": run}, 3) | quantity must be the name of a variable, got 3
 cb.overlay({"a": run}, "widths") | has no 'widths'
+cb.overlay({"a": exact}, "densities") | no 'densities'; it has ... did you mean 'density'
+cb.overlay({"a": exact}, "mean_displacement", along="x") | along must be one of...'mean_position'
 cb.overlay({"a": run}, ax=3) | ax must be Axes of matplotlib, got 3
 cb.overlay({"a": run}, style=3) | style must be keywords...by label, got 3
 cb.overlay({"a": exact}, style={"a": {"colour": "red"}}) | style of 'a': ...'colour'
@@ -175,6 +107,8 @@ cb.simulate(chain, particles=3) | particles must be a list of numbers, got 3
 cb.simulate(chain, particles=["a"]) | particles must be an integer >= 1, got 'a'
 cb.simulate(chain, method=3) | method must be one of...got 3
 cb.hydrodynamics(chain, {}, 1) | start must be a result with density over x...got {}
+cb.hydrodynamics(chain, None, 1) | start must be a result...displaced
+cb.relax_phase_space(chain, xr.Dataset(), 1) | no 'density'
 cb.hydrodynamics(chain, foreign, 1) | start: the density must add up to the chain's 5 rods
 cb.relax_phase_space(chain, "start", 1) | start must be a result...got 'start'
 cb.force_balance(chain, displacement=3) | displacement takes a table (x, values)...got 3
@@ -184,9 +118,7 @@ cb.film(chain, "rods.avi") | path must end in .mp4, .gif or .html, got rods.avi
 cb.film(chain, "rods.gif", seconds=1e4) | seconds must be at most 120
 cb.film("run", "rods.gif") | run must be
 cb.animate(tree) | tree must be what compare_relaxation returns
-cb.width_deviations({}) | tree must be an xarray.DataTree
 cb.width_deviations(tree) | tree must be what compare_restitutions returns
-cb.standalone_page(tree) | animation must be a FuncAnimation
 cb.compare_elastic(chain, 3) | amplitudes must be a list of numbers, got 3
 cb.compare_elastic(chain, ["a"]) | amplitude must be a number, got 'a'
 cb.compare_restitutions(chain, "0.5") | restitutions must be a list of numbers, got '0.5'
@@ -216,36 +148,23 @@ cb.simulate(chain, start=snapshots) | start is over time; choose one time...isel
 cb.simulate(chain, start=start, replicas=3) | start is for replicas=1, got replicas=3
 cb.simulate(chain, start=start.isel(replica=0)) | start: position must be over replica and particle
 cb.simulate(chain, start=some.isel(time=-1)) | start has 2 rods, the chain 5
-cb.given_start(chain, six.anchors) | position must...5 rods
+cb.given_start(chain, six.anchors) | position must fit...5 rods
+cb.given_start(chain, [0, 1, 2, 3, 4]) | do not overlap
+cb.given_start(chain, [0, 3, np.nan, 6, 9]) | finite
+cb.given_start(chain, chain.anchors, [1, 2]) | velocity must fit
+cb.simulate(chain, start=start.drop_vars("velocity")) | position and velocity
+cb.simulate(chain, start=start.assign(position=-start.position)) | in order
+cb.simulate(chain, start=start * np.nan) | finite
 cb.given_start(chain, "a") | position must be numbers, got 'a'
 cb.given_start(chain, chain.anchors, {}) | velocity must be numbers, got {}
 cb.relax_phase_space(cb.Chain(size=20), crystal, 60) | spikes of a crystal...force_balance
 """
 
-VALUES = """
-cb.simulate(chain, duration=5, every=1.0) | duration must be at least...average='ensemble'
-cb.Chain(restitution=-0.1) | restitution must be 0 or more, got -0.1
-cb.Chain(restitution=np.nan) | restitution must be finite, got nan
-cb.Chain(amplitude=np.inf) | amplitude must be finite, got inf
-cb.Chain(amplitude=1e-80) | amplitude must be between 1e-60 and 1e60 in magnitude, or 0, got 1e-80
-cb.Chain(amplitude=10**400) | between 1e-60 and 1e60
-cb.Chain(mass=0) | mass must be positive, got 0
-cb.Chain(mass=-1) | mass must be positive, got -1
-cb.Chain(mass=1e70) | mass must be between 1e-60 and 1e60 in magnitude, got 1e+70
-cb.Chain(gap="1") | gap must be a number, got '1'
-cb.Chain(gap=True) | gap must be a number, got True
-cb.Chain(gap=np.array([1.0])) | gap must be a number, got array([1.])
-cb.Chain(gap=np.array(-1.0)) | gap must be 0 or more
-cb.Chain(size=2.5) | size must be an integer
-cb.Chain(size=np.array([3])) | size must be an integer
-cb.simulate(chain, seed=np.random.RandomState(0)) | seed must be an integer >= 0
-cb.simulate(chain, rng=1) | seed takes what rng took
-cb.equilibrium_states(chain, 3, seed="a") | seed must be an integer >= 0, got 'a'
-cb.simulate(chain, observe=Unknown()) | observe: 'unknown' gives 'my_variable', which has no
-"""
-
 WRONG_CALLS = [
     line.split(" | ")
-    for table in (SYMBOLS, NAMES, TYPES, STARTS, VALUES)
+    for table in (SYMBOLS, NAMES, TYPES, STARTS, *VALUE_TABLES)
     for line in table.strip().splitlines()
 ]
+
+# A description of a sweep, and what the message says that refuses it.
+WRONG_SWEEPS = [line.split(" |") for line in SWEEPS.strip().splitlines()]

@@ -14,12 +14,6 @@ from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
 
 
-@pytest.fixture(autouse=True)
-def close_figures():
-    yield
-    plt.close("all")
-
-
 def test_overlay_draws_symbols_with_errors_and_lines():
     chain = Chain(size=10, amplitude=3)
     run, exact = simulate(chain, duration=300, progress=False), equilibrium(chain)
@@ -88,16 +82,6 @@ def test_noise_is_drawn_as_symbols_and_waves_within_it_as_a_line():
     assert (symbols.size, lined.size) == (0, X.size)
     symbols, _, _ = drawn(overlay({"rods": simulated(X, 0.4 + 0.02 * noise, 0.002)}))
     assert symbols.size == 0
-
-
-def test_the_density_of_a_cold_chain_with_a_gap_shows_its_rods():
-    """Rods at e = 0.5 stay near their anchors, 2.5 R apart: the density has that period."""
-    chain = Chain(size=100, restitution=0.5, gap=0.5)
-    run = smooth(simulate(chain, duration=100, observe="density", progress=False))
-    _, lined, curve = drawn(overlay({"rods": run}))
-    inside = run.x.values[np.abs(run.x.values) < 100]
-    assert set(inside) <= set(lined)
-    np.testing.assert_array_equal(curve(inside), run.density.sel(x=inside))
 
 
 def test_pictures_of_rods_follow_the_same_rule_on_their_own_axes():

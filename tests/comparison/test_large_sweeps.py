@@ -7,6 +7,7 @@ from queue import SimpleQueue
 import numpy as np
 import pytest
 import xarray as xr
+from small_sweeps import AtOnce
 
 from crazybilliards.comparison.sweeps import Case, Sweep, run_cases, running
 from crazybilliards.comparison.sweeps.jobs import JOBS
@@ -139,15 +140,6 @@ def test_a_sweep_gives_the_cases_of_its_grid():
 # -- the files of cases -----------------------------------------------------------------------
 
 
-class Here(Executor):
-    """Carries out what is submitted, here and now."""
-
-    def submit(self, function, /, *arguments):
-        future = Future()
-        future.set_result(function(*arguments))
-        return future
-
-
 @pytest.mark.parametrize(
     "case",
     [
@@ -163,7 +155,7 @@ class Here(Executor):
 )
 def test_a_case_is_read_back_with_its_types(case, tmp_path):
     """A classic NetCDF file has no integers of 64 bits, which sums and products may need."""
-    assert run_cases([case], tmp_path, Here(), progress=False) == {}
+    assert run_cases([case], tmp_path, AtOnce(), progress=False) == {}
     assert read_sealed(case.file(tmp_path)).startswith(b"CDF")
     seed = {"seed": case.own_seed} if case.job == "simulate" else {}
     direct = JOBS[case.job].function(case.chain, **{**case.settings, **seed})
@@ -184,6 +176,6 @@ def test_counts_beyond_32_bits_are_kept(tmp_path, monkeypatch):
 
     monkeypatch.setitem(JOBS, "equilibrium", replace(job, function=counting))
     case = Case("equilibrium", Chain(size=3), {})
-    assert run_cases([case], tmp_path, Here(), progress=False) == {}
+    assert run_cases([case], tmp_path, AtOnce(), progress=False) == {}
     assert load(case.file(tmp_path))["count"].values.tolist() == [1, 2**40, 2**62]
     case.check_file(tmp_path)

@@ -6,12 +6,6 @@ import pytest
 from crazybilliards.comparison.layout import house_style, legend_above, panels
 
 
-@pytest.fixture(autouse=True)
-def close_figures():
-    yield
-    plt.close("all")
-
-
 @pytest.mark.parametrize(("columns", "width"), [(None, 7.0), (1, 3.4), (2, 7.0)])
 def test_a_figure_is_one_or_two_columns_wide_with_letters_of_8_points(columns, width):
     with house_style(columns):

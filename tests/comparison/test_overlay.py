@@ -14,12 +14,6 @@ from crazybilliards.model import Chain
 from crazybilliards.particles import Covariances, simulate
 
 
-@pytest.fixture(autouse=True)
-def close_figures():
-    yield
-    plt.close("all")
-
-
 @pytest.fixture(scope="module")
 def pair():
     """Return a run with all that the theory with pair correlations gives, and the theory."""
@@ -125,18 +119,6 @@ def test_velocity_densities_of_one_rod_are_not_mixed_with_those_of_all(pair):
     few = pair["rods"].isel(particle=slice(3), contact=slice(3))
     with pytest.raises(ValueError, match="choose a particle"):
         overlay({"rods": few}, "velocity_density")
-
-
-def test_results_without_labels_and_wrong_names_are_explained():
-    exact = equilibrium(Chain(size=5))
-    with pytest.raises(ValueError, match=r"by their labels, e.g. \{.*got a list$"):
-        overlay([exact, exact])
-    with pytest.raises(ValueError, match=r"got a Dataset$"):
-        overlay(exact)
-    with pytest.raises(ValueError, match=r"no 'densities'; it has .* did you mean 'density'"):
-        overlay({"exact": exact}, "densities")
-    with pytest.raises(ValueError, match=r"along must be one of .*'mean_position'"):
-        overlay({"exact": exact}, "mean_displacement", along="mean_positions")
 
 
 def test_a_picture_for_print_is_one_column_wide_in_letters_of_type_42(tmp_path):

@@ -3,27 +3,22 @@
 import json
 import logging
 import os
-import signal
 import subprocess
 import sys
 import threading
-import time
 from concurrent.futures import Executor
 
 import psutil
 import pytest
+from killed import until
 from missing_cases import missing_cases
+from small_sweeps import AtOnce
 
-from crazybilliards.apps.commands.line import main
 from crazybilliards.comparison import load_sweep
 from crazybilliards.comparison.sweeps import Case, dask_cluster, process_pool, read_sweep, run_cases
-from crazybilliards.comparison.sweeps.case import compute
 from crazybilliards.model import Chain
-from crazybilliards.model.storage import write_sealed
 
-COMMAND = [sys.executable, "-c", "from crazybilliards.apps.commands.line import main; main()"]
 SCHEDULER = "distributed.cli.dask_scheduler"
-PATIENCE = 300
 GRID = """
 [grid]
 size = [3, 5]
@@ -45,23 +40,6 @@ def grid(tmp_path):
     return path
 
 
-@pytest.fixture
-def long_grid(tmp_path):
-    """Return a grid that takes a minute, of cases that take a third of a second each."""
-    path = tmp_path / "long.toml"
-    many = GRID.format(duration=5e4).replace("size = [3, 5]", f"seed = {list(range(200))}")
-    path.write_text(many.replace("[0.5, 1.0]", "[1.0]").replace("[chain]", "[chain]\nsize = 20"))
-    return path
-
-
-def until(condition):
-    """Wait for a condition to be true, for as long as a busy machine may take."""
-    deadline = time.monotonic() + PATIENCE
-    while not condition():
-        assert time.monotonic() < deadline, "waited for too long"
-        time.sleep(0.05)
-
-
 # -- engines ----------------------------------------------------------------------------------
 
 
@@ -72,14 +50,29 @@ def cluster():
         yield executor
 
 
+EVERY = [
+    Case(
+        "simulate",
+        Chain(size=30, restitution=restitution, damping=damping),
+        {"duration": 500, "replicas": 2, "observe": ["widths", "density", "energy"], **settings},
+    )
+    for restitution, damping, settings in (
+        *((0, 1, {}), (0.9, 1, {}), (1, 1, {}), (1, 1, {"stepper": "euler"}), (1.05, 4, {})),
+        (0.5, 1, {"method": "contact-dynamics"}),
+    )
+] + [
+    Case("equilibrium", Chain(size=30, gap=0.2), {}),
+    Case("phase_space", Chain(size=30, restitution=0.95), {}),
+]
+
+
 @pytest.mark.compiled
-def test_processes_and_dask_give_the_same_results(grid, cluster, tmp_path):
-    cases = read_sweep(grid).cases()
-    for case in cases:
-        write_sealed(case.file(tmp_path / "here"), compute(case, case.source))
+@pytest.mark.parametrize("every", [False, pytest.param(True, marks=pytest.mark.torture)])
+def test_processes_and_dask_give_the_same_results(every, grid, cluster, tmp_path):
+    cases = EVERY if every else read_sweep(grid).cases()
     with process_pool(2) as pool:
-        assert run_cases(cases, tmp_path / "pool", pool, progress=False) == {}
-    assert run_cases(cases, tmp_path / "dask", cluster, progress=False) == {}
+        for name, executor in {"here": AtOnce(), "pool": pool, "dask": cluster}.items():
+            assert run_cases(cases, tmp_path / name, executor, progress=False) == {}
     for case in cases:
         here, pool, dask = (case.load(tmp_path / name) for name in ("here", "pool", "dask"))
         for other in (pool, dask):
@@ -163,26 +156,13 @@ def test_no_scheduler_at_the_address():
 # -- the command ------------------------------------------------------------------------------
 
 
-@pytest.fixture
-def command(monkeypatch, capsys):
-    """Return what calls the command and gives its status and what it printed."""
-
-    def call(*arguments):
-        monkeypatch.setattr(sys, "argv", ["crazybilliards", "sweep", *map(str, arguments)])
-        with pytest.raises(SystemExit) as done:
-            main()
-        return done.value.code or 0, *capsys.readouterr()
-
-    return call
-
-
-def test_the_command_computes_what_is_missing(command, grid, tmp_path):
+def test_the_command_computes_what_is_missing(run, grid, tmp_path):
     folder = tmp_path / "results"
-    status, printed, errors = command(grid, "--output", folder)
+    status, printed, errors = run("sweep", grid, "--output", folder)
     assert status == 0, errors
     assert "4 cases, 0 of them" in printed
     assert "computed 4 cases" in printed
-    status, printed, _ = command(grid, "--output", folder)
+    status, printed, _ = run("sweep", grid, "--output", folder)
     assert status == 0
     assert "4 cases, 4 of them" in printed
     assert "computed" not in printed
@@ -197,61 +177,21 @@ def test_the_command_computes_what_is_missing(command, grid, tmp_path):
         (["--scheduler", "nowhere"], "no dask scheduler"),
     ],
 )
-def test_wrong_options(arguments, message, command, grid, tmp_path):
-    status, _, errors = command(grid, "--output", tmp_path / "results", *arguments)
+def test_wrong_options(arguments, message, run, grid, tmp_path):
+    status, _, errors = run("sweep", grid, "--output", tmp_path / "results", *arguments)
     assert status == 2
     assert message in errors
     assert errors.count("\n") == 1
 
 
-def test_a_missing_file_and_a_wrong_grid_are_one_line(command, tmp_path):
-    status, _, errors = command(tmp_path / "none.toml", "--output", tmp_path / "results")
+def test_a_missing_file_and_a_wrong_grid_are_one_line(run, tmp_path):
+    status, _, errors = run("sweep", tmp_path / "none.toml", "--output", tmp_path / "results")
     assert status == 2
     assert "none.toml" in errors
     assert errors.count("\n") == 1
     wrong = tmp_path / "wrong.toml"
     wrong.write_text("[grid]\nsize = [3, 0]\n")
-    status, _, errors = command(wrong, "--output", tmp_path / "results")
+    status, _, errors = run("sweep", wrong, "--output", tmp_path / "results")
     assert status == 2
     assert "size must be" in errors
     assert not (tmp_path / "results").exists()
-
-
-def workers_of(parent):
-    """Return the processes that it started."""
-    return [worker.pid for worker in psutil.Process(parent).children()]
-
-
-@pytest.mark.posix
-@pytest.mark.compiled
-@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGKILL"])
-def test_a_sweep_that_is_killed_keeps_what_is_finished_and_leaves_no_workers(
-    name, long_grid, tmp_path
-):
-    how = getattr(signal, name)
-    folder = tmp_path / "results"
-    process = subprocess.Popen(
-        [*COMMAND, "sweep", str(long_grid), "--output", str(folder), "--processes", "2"],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-    )
-    try:
-        until(lambda: list(folder.glob("*.nc")))
-        workers = workers_of(process.pid)
-        assert workers
-        process.send_signal(how)
-        _, errors = process.communicate(timeout=PATIENCE)
-    finally:
-        process.kill()
-    assert process.returncode == (143 if how == signal.SIGTERM else -how)
-    if how != signal.SIGKILL:
-        assert "interrupted" in errors
-        assert "Traceback" not in errors
-        assert "leaked" not in errors
-        assert errors.count("interrupted") == 1
-    cases = read_sweep(long_grid).cases()
-    missing = missing_cases(cases, folder)
-    assert 0 < len(missing) < len(cases)
-    until(lambda: not any(psutil.pid_exists(pid) for pid in workers))
-    assert load_sweep(folder).status.size >= 1

@@ -1,6 +1,7 @@
 """Sweeps: the same case the same file, nothing computed twice, nothing lost."""
 
 import errno
+import json
 import os
 import signal
 from concurrent.futures import Executor, Future
@@ -12,55 +13,105 @@ import pytest
 from missing_cases import missing_cases
 from small_sweeps import AtOnce, sweep
 
+from crazybilliards.comparison.stationary_theories import THEORIES
 from crazybilliards.comparison.sweeps import Case, read_sweep, run_cases
+from crazybilliards.comparison.sweeps.case import compute
 from crazybilliards.comparison.sweeps.jobs import JOBS
 from crazybilliards.model import Chain, load
+from crazybilliards.model.fingerprint import room_fingerprint
 from crazybilliards.model.locks import locked
 
 # -- grids ------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ("changes", "message"),
-    [
-        ({"grid": {"size": []}}, "size must be a list"),
-        ({"grid": {"size": 3}}, "size must be a list"),
-        ({"grid": {"gap": [3, 3.0]}}, "twice"),
-        ({"grid": {"damping": [1.0, 2.0]}}, "given twice"),
-        ({"grid": {"length": [1, 2]}}, r"^\[grid\] takes .*'gap', .*'duration', .*got 'length'"),
-        ({"grid": {"size": [3, -1]}}, "size must be an integer"),
-        ({"grid": {"seed": range(2000), "gap": range(2000)}}, "must be a list"),
-        ({"grid": {"seed": [*range(2000)], "gap": [*range(2000)]}}, "4000000 cases"),
-        ({"chain": {"colour": 1}}, "Chain takes any of .*'size', .* got 'colour'"),
-        ({"chain": {"restituton": 1}}, "got 'restituton'; did you mean 'restitution'"),
-        ({"grid": {"restituton": [1]}}, "'size', .* got 'restituton'; did you mean 'restitution'"),
-        ({"settings": {"durations": 1}}, "simulate. takes any of .* did you mean 'duration'"),
-    ],
-)
-def test_wrong_grids(changes, message):
-    with pytest.raises(ValueError, match=message):
-        sweep(**changes).cases()
+SWEEP = b"""[grid]
+size = [3, 4]
+restitution = [0.5, 1.0]
+
+[simulate]
+duration = 200
+observe = ["widths"]
+"""
 
 
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        ("[grid", "not a TOML file"),
-        ("[grids]\nsize = [1]", "got 'grids'"),
-        ("grid = 3", "must be a table"),
-        ("[simulate]\n[phase_space]", "one job a sweep"),
-    ],
-)
-def test_wrong_files(text, message, tmp_path):
-    path = tmp_path / "grid.toml"
-    path.write_text(text)
-    with pytest.raises(ValueError, match=message):
-        read_sweep(path)
+@pytest.mark.parametrize("flips", [100, pytest.param(1000, marks=pytest.mark.torture)])
+def test_a_description_with_flipped_bits_or_cut_is_another_sweep_or_refused(flips, tmp_path):
+    """A text without checksum: what is still TOML and makes sense is a sweep."""
+    generator, refusals = np.random.default_rng(4), []
+    changed = [SWEEP[: cut * len(SWEEP) // 50] for cut in range(50)]
+    for _ in range(flips):
+        text = bytearray(SWEEP)
+        text[generator.integers(len(text))] ^= 1 << int(generator.integers(8))
+        changed.append(bytes(text))
+    for text in changed:
+        (tmp_path / "grid.toml").write_bytes(text)
+        try:
+            read_sweep(tmp_path / "grid.toml").cases()
+        except ValueError as error:
+            refusals.append(str(error))
+    assert not any("\n" in message for message in refusals)
+    assert flips / 2 < len(refusals) < flips + 50
 
 
 def test_a_folder_is_no_description_of_a_sweep(tmp_path):
     with pytest.raises(ValueError, match="a folder, not a TOML file"):
         read_sweep(tmp_path)
+
+
+# -- cases -------------------------------------------------------------------------------------
+
+
+def test_equal_cases_have_equal_keys_however_their_numbers_are_written():
+    chain = Chain(size=3, damping=2)
+    one = Case("simulate", chain, {"duration": 100, "observe": ("widths",), "seed": np.int64(1)})
+    other = Case(
+        "simulate",
+        Chain(size=np.int64(3), damping=np.float64(2.0)),
+        {"seed": 1, "observe": ["widths"], "duration": 100.0, "replicas": 1},
+    )
+    assert one == other
+    assert one.key == other.key
+    assert len({one, other}) == 1
+    assert one.key != Case("simulate", chain, {"duration": 100, "seed": 2}).key
+    assert one.key != Case("simulate", chain.replace(gap=0.1), dict(one.settings)).key
+
+
+def test_the_canonical_text_holds_every_parameter():
+    stored = json.loads(Case("simulate", Chain(), {"duration": 100}).canonical)
+    assert set(Chain().parameters()) < set(stored)
+    assert {"duration", "warmup", "time_step", "method", "seed", "job"} < set(stored)
+    assert not {"threads", "checkpoint", "progress", "start"} & set(stored)
+
+
+def test_key_and_seed_follow_from_what_is_not_the_default():
+    """A parameter that the package gets later, at its default, changes neither."""
+    case = Case("simulate", Chain(size=3, gap=0), {"duration": 5000, "seed": 1})
+    assert case.changed == {"size": 3, "seed": 1}
+    assert case.key == "1ea596a9dd6911f2ba11"
+    assert case.own_seed == 703106191185711103
+    others = [
+        Case("simulate", Chain(size=3), {}),
+        Case("simulate", Chain(size=3, gap=1), {"seed": 1}),
+        Case("equilibrium", Chain(size=3), {}),
+        Case("phase_space", Chain(size=3), {}),
+    ]
+    assert len({each.key for each in [case, *others]}) == 5
+    assert len({each.own_seed for each in [case, *others]}) == 5
+
+
+def test_every_theory_is_a_job():
+    assert set(JOBS) == {"simulate", "simulate_limit", *THEORIES}
+    for name, theory in THEORIES.items():
+        assert Case(name, Chain(size=10), {}).key
+        assert JOBS[name].function is theory.solve
+        assert JOBS[name].source == room_fingerprint("model", "kinetic")
+    assert JOBS["simulate"].source == room_fingerprint("model", "particles")
+
+
+def test_a_worker_with_other_source_code_refuses():
+    case = Case("simulate", Chain(size=2), {"duration": 100})
+    with pytest.raises(ValueError, match="other source code"):
+        compute(case, "0123456789abcdef0123")
 
 
 # -- running ----------------------------------------------------------------------------------
@@ -105,15 +156,6 @@ def test_another_case_under_a_cases_name_is_found_out(tmp_path):
     other.file(tmp_path).rename(one.file(tmp_path))
     with pytest.raises(ValueError, match="not the case"):
         one.load(tmp_path)
-
-
-def test_cases_that_fail_are_named_and_the_others_kept(tmp_path):
-    good = Case("equilibrium", Chain(size=3), {})
-    bad = Case("phase_space", Chain(size=1000, restitution=1.5), {"cells": 6})
-    failed = run_cases([bad, good], tmp_path, AtOnce(), progress=False)
-    assert list(failed) == [bad]
-    assert "no steady state" in failed[bad]
-    assert missing_cases([bad, good], tmp_path) == [bad]
 
 
 @pytest.mark.parametrize("columns", [1, 20, 57, 80, 200])

@@ -4,11 +4,9 @@ import math
 
 import pytest
 
-from crazybilliards.kinetic import equilibrium_states, phase_space
+from crazybilliards.kinetic import phase_space
 from crazybilliards.model import Chain, memory
 from crazybilliards.model.memory import _of_the_groups, available_memory, require_memory
-from crazybilliards.particles import simulate
-from crazybilliards.particles.start import given_start
 
 
 def test_available_memory_is_that_of_a_computer():
@@ -37,33 +35,34 @@ def group(path, limit, used, cached):
     return {f"{path}/memory.{name}": f"{value}\n" for name, value in values.items()}
 
 
-def test_the_limit_of_a_group_counts_without_what_can_be_dropped(groups):
-    assert groups("0::/job\n", **group("job", 1000, 400, 150)) == 750
+LIMITED = {
+    "what can be dropped is left": ("0::/job\n", group("job", 1000, 400, 150), 750),
+    "the tightest of those around": (
+        "0::/a/b/c\n",
+        group("a", 1000, 900, 0)
+        | group("a/b", "max", 500, 0)
+        | group("a/b/c", 800, 300, 0)
+        | group("other", 10, 5, 0),
+        100,
+    ),
+    # A container sees its own group at the top.
+    "a container": ("0::/docker/abc\n", group(".", 1000, 400, 0), 600),
+    "over its limit": ("0::/job\n", group("job", 1000, 1001, 0), 0),
+    "no limit": ("0::/job\n3:cpuset:/job\n", group("job", "max", 400, 0), math.inf),
+}
 
 
-def test_the_tightest_of_the_groups_around_counts(groups):
-    around = group("a", 1000, 900, 0) | group("a/b", "max", 500, 0) | group("a/b/c", 800, 300, 0)
-    assert groups("0::/a/b/c\n", **around, **group("other", 10, 5, 0)) == 100
+@pytest.mark.parametrize("name", LIMITED)
+def test_the_limits_of_groups_count(name, groups):
+    membership, files, left = LIMITED[name]
+    assert groups(membership, **files) == left
 
 
-def test_a_container_sees_its_own_group_at_the_top(groups):
-    files = group(".", 1000, 400, 0)
-    assert groups("0::/docker/abc\n", **files) == 600
-
-
-def test_a_group_over_its_limit_has_nothing_left(groups):
-    assert groups("0::/job\n", **group("job", 1000, 1001, 0)) == 0
-
-
-def test_a_group_without_statistics(groups):
+def test_a_group_without_statistics_and_no_groups_at_all(groups, tmp_path):
     files = group("job", 1000, 400, 0)
     del files["job/memory.stat"]
     assert groups("0::/job\n", **files) == 600
-
-
-def test_groups_without_a_limit(groups, tmp_path):
     assert _of_the_groups(tmp_path / "not Linux") == math.inf
-    assert groups("0::/job\n3:cpuset:/job\n", **group("job", "max", 400, 0)) == math.inf
 
 
 def test_the_smallest_of_machine_and_groups_is_available(monkeypatch):
@@ -77,27 +76,6 @@ def test_the_error_has_both_numbers():
     require_memory("nothing", 0.0)
     with pytest.raises(ValueError, match=r"^size=3 would take 1e\+12 GiB of memory, .* available$"):
         require_memory("size=3", 1e12 * 2**30)
-
-
-@pytest.mark.parametrize(
-    "call",
-    [
-        lambda: simulate(Chain(size=10**9), replicas=10**9),
-        lambda: simulate(Chain(), replicas=10**12),
-        lambda: simulate(Chain(size=10**7), observe="avalanches"),
-        lambda: given_start(Chain(), 0.0, replicas=10**12),
-        lambda: equilibrium_states(Chain(size=3), 10**12),
-    ],
-)
-def test_what_a_user_asks_for_is_checked_before_it_is_allocated(call):
-    with pytest.raises(ValueError, match=r"would take .* GiB of memory"):
-        call()
-
-
-def test_the_mesh_is_checked(monkeypatch):
-    monkeypatch.setattr(memory, "_available_lately", lambda moment: 1e6)
-    with pytest.raises(ValueError, match=r"cells=22 would take"):
-        phase_space(Chain(size=3), cells=22)
 
 
 def test_only_the_meshes_that_are_used_are_checked(monkeypatch):

@@ -6,7 +6,12 @@ import sys
 
 import pytest
 
-from crazybilliards.model.process import interrupts_noted, terminated_like_interrupted
+from crazybilliards.model.process import (
+    announce_compilation,
+    announced,
+    interrupts_noted,
+    terminated_like_interrupted,
+)
 
 ENDING = [getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name)]
 
@@ -127,3 +132,17 @@ def test_progress_needs_no_open_standard_error():
     """A program in the background may have closed its streams; tqdm cannot write then."""
     command = ["sh", "-c", f"exec {sys.executable} -c '{CLOSED}' >&- 2>&-"]
     assert subprocess.run(command, check=False).returncode == 0
+
+
+def test_compiling_is_said_once_and_only_to_those_who_asked(capsys):
+    announce_compilation()
+    with announced(False):
+        announce_compilation()
+    with announced(True):
+        pass  # every kernel was in the cache
+    assert capsys.readouterr().err == ""
+    with announced(True):
+        announce_compilation()
+        announce_compilation()
+    announce_compilation()
+    assert capsys.readouterr().err.count("compiling the kernels") == 1

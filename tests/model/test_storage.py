@@ -1,6 +1,8 @@
 """Files: what is saved comes back, what is damaged is refused in one line."""
 
+import ast
 import os
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -90,29 +92,15 @@ def test_an_unknown_place_is_named_in_the_error(dataset, tmp_path):
             save(dataset, path)
 
 
-def test_every_truncation_and_damage_is_refused(dataset, tmp_path):
-    whole = save(dataset, tmp_path / "run.nc").read_bytes()
-    broken = tmp_path / "broken.nc"
-    generator = np.random.default_rng(1)
-    for length in range(0, len(whole), max(len(whole) // 50, 1)):
-        broken.write_bytes(whole[:length])
-        with pytest.raises(ValueError, match=r"truncated|damaged"):
-            load(broken)
-    for position in generator.integers(0, len(whole), 200):
-        flipped = bytearray(whole)
-        flipped[position] ^= 1 << int(generator.integers(8))
-        broken.write_bytes(bytes(flipped))
-        with pytest.raises(ValueError, match=r"truncated|damaged") as caught:
-            load(broken)
-        assert "\n" not in str(caught.value)
-
-
 def test_foreign_files_are_refused(dataset, tmp_path):
     foreign = tmp_path / "foreign.nc"
-    dataset.to_netcdf(foreign, engine="h5netcdf")
-    for content in (foreign.read_bytes(), b"", b"not a NetCDF file" * 20):
+    for engine in ("h5netcdf", "scipy"):
+        dataset.to_netcdf(foreign, engine=engine)
+        with pytest.raises(ValueError, match=r"without the checksum of .*save; xarray.open_data"):
+            load(foreign)
+    for content in (b"", b"not a NetCDF file" * 20):
         foreign.write_bytes(content)
-        with pytest.raises(ValueError, match="not a file that crazybilliards saved"):
+        with pytest.raises(ValueError, match=r"not a file that crazybilliards saved$"):
             load(foreign)
     with pytest.raises(FileNotFoundError):
         load(tmp_path / "missing.nc")
@@ -125,3 +113,25 @@ def test_foreign_files_are_refused(dataset, tmp_path):
 def test_a_result_without_provenance_names_no_chain():
     with pytest.raises(ValueError, match="names no chain"):
         chain_of(xr.Dataset())
+
+
+FORBIDDEN = {"pickle", "cPickle", "dill", "cloudpickle", "joblib", "shelve", "marshal"}
+
+
+def test_the_package_unpickles_nothing():
+    """A pickle runs whatever it says."""
+    root = Path(load.__code__.co_filename).parents[1]
+    rooms = ("model", "particles", "kinetic", "comparison")
+    sources = [path for room in rooms for path in (root / room).rglob("*.py")]
+    assert len(sources) > 100
+    for path in sources:
+        for node in ast.walk(ast.parse(path.read_text())):
+            names = {each.name for each in node.names} if isinstance(node, ast.Import) else set()
+            names |= {node.module or ""} if isinstance(node, ast.ImportFrom) else set()
+            assert not {name.split(".")[0] for name in names} & FORBIDDEN, path
+            if isinstance(node, ast.Call):
+                called = ast.unparse(node.func)
+                assert called not in ("eval", "exec", "compile", "pd.read_pickle"), path
+                if called == "np.load":
+                    given = {each.arg: ast.unparse(each.value) for each in node.keywords}
+                    assert given.get("allow_pickle") == "False", path

@@ -2,12 +2,13 @@
 
 import numpy as np
 import pytest
+from drifts import everything
 from hypothesis import given
 from hypothesis import strategies as st
 
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
-from crazybilliards.particles.laws.avalanche import make_tally, make_waves, record_collision
+from crazybilliards.particles.laws.avalanche import record_collision
 
 
 def follow_every_wave(size, collisions):
@@ -43,12 +44,6 @@ class TrackedHit:
             self.over = True
 
 
-def everything(size, contacts):
-    """Return a tally that keeps all there is."""
-    empty = make_tally(size, contacts=contacts)
-    return empty._replace(pushes=make_waves(size), triggered=make_waves(size))
-
-
 @given(size=st.integers(2, 8), seed=st.integers(0, 2**32), number=st.integers(0, 300))
 def test_waves_are_counted_like_the_slow_twins(size, seed, number):
     """Clusters that meet pass the push on from rod to rod, to the far end of the one pushed.
@@ -60,7 +55,7 @@ def test_waves_are_counted_like_the_slow_twins(size, seed, number):
     firsts = generator.integers(0, contacts + 1)
     lasts = generator.integers(contacts + 1, size)
     velocities = generator.normal(0.3, 1, (number, 2))
-    tally = everything(size, contacts=True)
+    tally = everything(size)
     pushes, hits = [], []
     for contact, first, last, (left, right) in zip(
         contacts, firsts, lasts, velocities, strict=True
@@ -83,23 +78,8 @@ def test_waves_are_counted_like_the_slow_twins(size, seed, number):
     np.testing.assert_array_equal(tally.triggered.sizes, triggered)
 
 
-def test_a_push_through_a_row_at_rest_is_one_wave_of_every_origin():
-    """Contacts closing one after another from the left: the wave from 0 runs to the end."""
-    tally = everything(6, contacts=False)
-    for contact in range(5):
-        record_collision(contact, contact, contact + 1, 1.0, 0.0, tally)
-    # The last front is thrown back: all waves end there.
-    record_collision(4, 4, 5, 0.0, -1.0, tally)
-    expected = np.zeros((6, 6), dtype=int)
-    for origin in range(5):
-        expected[origin, 5 - origin - 1] = 1
-    np.testing.assert_array_equal(tally.pushes.sizes, expected)
-    # The same waves, each without its first hit: N_c = 0 to 4.
-    np.testing.assert_array_equal(tally.triggered.sizes, expected)
-
-
 def test_the_papers_first_hit_needs_no_momentum_to_the_right():
-    tally = everything(4, contacts=False)
+    tally = everything(4)
     record_collision(0, 0, 1, 0.5, -1.0, tally)  # 0 hits 1, the momentum points left
     record_collision(1, 1, 2, 1.0, 0.0, tally)  # 1 hits 2: one triggered collision
     record_collision(2, 2, 3, 0.0, -1.0, tally)  # interrupted

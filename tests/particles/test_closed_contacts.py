@@ -152,22 +152,6 @@ def test_steps_are_those_that_the_page_describes(e, counted):
     assert in_contact > 20
 
 
-@pytest.mark.parametrize("counted", [False, True])
-def test_a_chain_without_noise_moves_as_ever(counted):
-    chain = Chain(size=20, restitution=0, amplitude=0)
-    dynamics = make_dynamics(chain, 0.05, speed=1.0, counted=counted)
-    weak = dynamics._replace(step=dynamics.step._replace(closed=1.0, closed_outer=1.0))
-    states = []
-    for each in (dynamics, weak):
-        generator = np.random.default_rng(2)
-        y, v = np.sort(generator.normal(size=20)), generator.normal(size=20)
-        noise = make_noise(np.random.SeedSequence(3))
-        for steps in (10, 1, 89):
-            advance(y, v, noise, each, make_scratch(20), UNSEEN, steps)
-        states.append((y, v))
-    np.testing.assert_array_equal(*states)
-
-
 @pytest.mark.parametrize("e", [0.0, 0.1])
 @pytest.mark.parametrize("settings", [{"stepper": "euler"}, {"method": "contact-dynamics"}])
 def test_what_the_paper_describes_is_left_alone(e, settings):

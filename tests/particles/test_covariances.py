@@ -15,7 +15,6 @@ from crazybilliards.particles.laws.impacts import make_impacts
 from crazybilliards.particles.laws.law import EVENTS, Law, drift, make_scratch
 from crazybilliards.particles.noise import make_noise
 from crazybilliards.particles.observers import Covariances
-from crazybilliards.particles.running.replica import Replica
 from crazybilliards.particles.stepping import record
 
 ALL = ["widths", Covariances(separations=9), "modes", "impacts"]
@@ -180,21 +179,6 @@ def test_collisions_make_half_of_the_energy_they_take_into_covariance(seed, size
     assert of_pairs(v) - of_pairs(before) == pytest.approx(taken, abs=1e-9)
 
 
-@pytest.mark.compiled
-def test_an_interrupted_run_goes_on_as_if_it_had_not_been(ctrl_c, tmp_path):
-    options = {"duration": 400, "observe": ALL, "progress": False, "threads": 1}
-    chain = Chain(size=12, restitution=0.6)
-    whole = simulate(chain, **options)
-    ctrl_c(Replica, "_observe", lambda callers: len(callers) > 20)
-    cut = simulate(chain, checkpoint=tmp_path / "state", **options)
-    assert cut.attrs["status"] == "interrupted"
-    resumed = simulate(chain, checkpoint=tmp_path / "state", **options)
-    xr.testing.assert_identical(resumed, whole)
-    some = simulate(chain, particles=[3, 12], **options)
-    for name in ("contact_force", "contact_force_error", "gap_covariance"):
-        xr.testing.assert_identical(some[name], whole[name].sel(contact=[3]))
-
-
 def test_steps_that_diverge_do_not_count():
     def recorded(most, fastest):
         dynamics = make_dynamics(Chain(size=5, restitution=0.5), 0.1, speed=1.0, counted=True)
@@ -209,17 +193,3 @@ def test_steps_that_diverge_do_not_count():
     _, _, expected = recorded(number, np.inf)
     np.testing.assert_array_equal(kept, expected)
     assert (expected > 0).all()
-
-
-def test_what_they_cannot_do_is_refused():
-    with pytest.raises(ValueError, match="'impacts' needs single collisions, unrecorded here"):
-        simulate_limit(Chain(size=4), observe=("widths", "impacts"), progress=False)
-    with pytest.raises(ValueError, match="'impacts' is averaged over time only"):
-        simulate(Chain(size=4), observe="impacts", average="ensemble", progress=False)
-    with pytest.raises(ValueError, match="'impacts' needs single collisions, which only"):
-        simulate(Chain(size=4), observe="impacts", method="contact-dynamics", progress=False)
-    for name in ("impacts", "covariances"):
-        with pytest.raises(ValueError, match=f"'{name}' needs a chain of at least 2 rods"):
-            simulate(Chain(size=1), observe=name, progress=False)
-    with pytest.raises(ValueError, match="separations must be"):
-        Covariances(separations=0)

@@ -8,17 +8,14 @@ import math
 
 import numpy as np
 import pytest
+from drifts import moved
 
 from crazybilliards.kinetic import equilibrium_states
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
-from crazybilliards.particles.dynamics import make_dynamics
 from crazybilliards.particles.laws.avalanche import make_tally
 from crazybilliards.particles.laws.impacts import make_impacts
-from crazybilliards.particles.laws.law import make_scratch
-from crazybilliards.particles.noise import make_noise
 from crazybilliards.particles.scales import default_time_step
-from crazybilliards.particles.stepping import advance
 
 SPRINGS = ["linear", "quadratic"]
 GAPS = [0.0, 0.3, 1.0, 2.0]
@@ -32,19 +29,17 @@ def energy(chain, y, v):
     return (chain.mass / 2 * v**2 + chain.potential(y - chain.reduced_anchors)).sum()
 
 
-def moved(chain, heat, *, duration, seed, method="event-driven", counted=False):
+def released(chain, heat, *, duration, seed, method="event-driven", counted=False):
     """Start and end of a chain that begins in the equilibrium of ``heat``, and the energy lost."""
     start = equilibrium_states(heat, 1, seed)
-    y, v = chain.reduced(start.position.values[0]), start.velocity.values[0].copy()
-    before = y.copy(), v.copy()
+    before = chain.reduced(start.position.values[0]), start.velocity.values[0]
     step = default_time_step(heat)
-    dynamics = make_dynamics(chain, step, speed=1.0, method=method, counted=counted)
     impacts = make_impacts(chain.size if counted else 0)
     tally = make_tally(chain.size, contacts=counted)._replace(impacts=impacts)
-    noise, scratch = make_noise(np.random.SeedSequence(seed)), make_scratch(chain.size)
-    assert advance(y, v, noise, dynamics, scratch, tally, round(duration / step)) >= 0
+    how = {"method": method, "counted": counted, "tally": tally}
+    after = moved(chain, before, step, round(duration / step), **how)
     lost = chain.mass * (impacts[1] - impacts[3]).sum()
-    return before, (y, v), lost, round(duration / step) * step
+    return before, after, lost, round(duration / step) * step
 
 
 @pytest.mark.compiled
@@ -61,10 +56,10 @@ def test_only_collisions_take_energy_and_nothing_adds_any(spring, gap, e):
     chain = heat.replace(restitution=e, amplitude=0.0, damping=0.0)
     kept, left = [], []
     for seed in range(COPIES):
-        start, end, lost, _ = moved(chain, heat, duration=1000, seed=seed, counted=True)
+        start, end, lost, _ = released(chain, heat, duration=1000, seed=seed, counted=True)
         at_start = energy(chain, *start)
         kept.append((energy(chain, *end) + lost) / at_start)
-        _, (y, v), *_ = moved(chain, heat, duration=1000, seed=seed)
+        _, (y, v), *_ = released(chain, heat, duration=1000, seed=seed)
         left.append(energy(chain, y, v) / at_start)
     assert np.mean(kept) == pytest.approx(1, abs=6e-3 if e == 0 else 2e-3)
     assert max(left) < 1.003
@@ -82,7 +77,7 @@ def test_two_elastic_rods_of_contact_dynamics_keep_their_energy(spring, gap):
         chain = heat.replace(amplitude=0.0, damping=0.0)
         kept = []
         for seed in range(COPIES):
-            start, end, *_ = moved(chain, heat, duration=2000, seed=seed, method=METHODS[1])
+            start, end, *_ = released(chain, heat, duration=2000, seed=seed, method=METHODS[1])
             kept.append(energy(chain, *end) / energy(chain, *start))
         assert np.mean(kept) < 1.002
         if size == 2:
@@ -96,7 +91,7 @@ def test_the_centre_of_mass_swings_as_one_rod(gap, e, method):
     """Linear springs: collisions do not change it, whatever the law; here with a weak damping."""
     heat = Chain(size=12, gap=gap, amplitude=3.0)
     chain = heat.replace(restitution=e, amplitude=0.0, damping=0.02)
-    (y, v), (y_end, _), _, time = moved(chain, heat, duration=20, seed=3, method=method)
+    (y, v), (y_end, _), _, time = released(chain, heat, duration=20, seed=3, method=method)
     rate = chain.damping / (2 * chain.mass)
     omega = math.sqrt(chain.stiffness / chain.mass - rate**2)
     turn, decay = omega * time, math.exp(-rate * time)

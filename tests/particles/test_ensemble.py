@@ -8,8 +8,7 @@ from scipy.linalg import expm
 from crazybilliards.comparison import smooth
 from crazybilliards.kinetic import equilibrium_states
 from crazybilliards.model import Chain
-from crazybilliards.particles import given_start, simulate
-from crazybilliards.particles.observers.widths import Widths
+from crazybilliards.particles import simulate
 
 
 def oscillator_covariance(chain, covariance, times):
@@ -109,33 +108,6 @@ def test_replicas_are_the_same_whatever_the_threads_and_however_cut(e, tmp_path)
     np.testing.assert_allclose(again.position[:, 0], positions[:, -1], atol=1e-12)
 
 
-@pytest.mark.compiled
-def test_ctrl_c_keeps_the_replicas_that_were_done_and_a_checkpoint_the_rest(tmp_path, ctrl_c):
-    chain = Chain(size=40)
-    arguments = SMALL | {"replicas": 200, "duration": 200, "every": 20}
-    undisturbed = simulate(chain, **arguments)
-    ctrl_c(Widths, "observe", lambda observers: len(observers) == 1000)  # of 2200
-    checkpoint = tmp_path / "state"
-    partial = simulate(chain, checkpoint=checkpoint, **arguments)
-    for name in ("mean_displacement", "velocity_width", "density"):
-        assert np.isfinite(partial[name]).all()
-    finished = simulate(chain, checkpoint=checkpoint, **arguments)
-    xr.testing.assert_identical(finished, undisturbed)
-    assert partial.attrs["status"] in ("interrupted", "completed")
-
-
-@pytest.mark.compiled
-def test_times_after_the_first_replica_blew_up_are_left_out():
-    chain = Chain(size=150, restitution=1.05, damping=4)
-    start = equilibrium_states(chain.replace(restitution=1, amplitude=10), 3)
-    arguments = SMALL | {"duration": 50, "every": 0.5, "replicas": 3, "observe": "widths"}
-    run = simulate(chain, start=start, **arguments)
-    assert run.attrs["status"] == "diverged"
-    assert 0 < run.attrs["end_time"] < 50
-    assert run.time[-1] == run.attrs["end_time"]
-    assert np.isfinite(run.velocity_width).all()
-
-
 def test_snapshots_in_a_steady_state_are_what_the_averages_are_of():
     chain = Chain(size=6, gap=0.5)
     run = simulate(chain, duration=100, every=0.5, observe=("widths", "snapshots"), progress=False)
@@ -154,35 +126,3 @@ def test_only_chosen_particles_are_reported():
         xr.testing.assert_identical(
             some.drop_attrs(deep=False), whole.sel(particle=[1, 15]).drop_attrs(deep=False)
         )
-    for wrong in ((0,), (31,), (3, 2), (), (1.5,)):
-        with pytest.raises(ValueError, match="particles must"):
-            simulate(chain, particles=wrong, **arguments)
-
-
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        ({"observe": "velocities"}, "not over an ensemble"),
-        ({"every": 5}, "every must be at most the duration"),
-        ({"every": 0}, "every must be"),
-        ({"average": "both"}, "average must be one of"),
-        (
-            {"observe": "snapshots", "duration": 1e6, "every": 1e-3},
-            r"would take .* GiB of memory, .* GiB are available",
-        ),
-        ({"observe": "snapshots", "every": 1e-30}, "too small"),
-        ({"duration": 5.0, "every": 1e-9}, "every = 1e-09 is too small"),
-        ({"duration": 1e-9, "every": None, "warmup": 100.0}, "every = 1e-11 is too small"),
-    ],
-)
-def test_what_an_ensemble_cannot_be_is_refused(arguments, message):
-    with pytest.raises(ValueError, match=message) as caught:
-        simulate(Chain(size=7), **(SMALL | arguments))
-    assert "\n" not in str(caught.value)
-
-
-def test_a_far_start_fits_on_the_grid():
-    chain = Chain(size=5, amplitude=0.1)
-    start = given_start(chain, chain.anchors + 40.0, replicas=2)
-    run = simulate(chain, start=start, **(SMALL | {"replicas": 2}))
-    assert run.outside == 0

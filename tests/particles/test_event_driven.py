@@ -3,21 +3,15 @@
 import next_collision
 import numpy as np
 import pytest
+from drifts import everything
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from crazybilliards.particles.laws.avalanche import make_tally, make_waves
+from crazybilliards.particles.laws.avalanche import make_tally
 from crazybilliards.particles.laws.event_driven import LONG
-from crazybilliards.particles.laws.impacts import make_impacts
 from crazybilliards.particles.laws.law import EVENTS, Law, drift, make_scratch
 
 MOST = 400
-
-
-def everything(size):
-    """Return a tally that keeps all there is."""
-    waves = {"pushes": make_waves(size), "triggered": make_waves(size)}
-    return make_tally(size, contacts=True)._replace(impacts=make_impacts(size), **waves)
 
 
 def running(waves):

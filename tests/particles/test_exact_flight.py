@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from crazybilliards.kinetic import breathing_cloud, equilibrium
+from crazybilliards.kinetic import equilibrium
 from crazybilliards.model import Chain
-from crazybilliards.particles import given_start, simulate, simulate_limit
+from crazybilliards.particles import given_start, simulate
 from crazybilliards.particles.laws.exact_flight import make_propagator
 from crazybilliards.particles.observers import Raw
 
@@ -74,21 +74,6 @@ def test_two_steps_are_one_of_their_sum(one, other, damping, stiffness):
     assert np.abs(found - all_noise).max() <= 1e-9 * np.abs(all_noise).max()
 
 
-def followed(chain, times, *, copies, seed=1, **start):
-    """Return <x x(t)>, <v v(t)> and their errors over all rods, from the first snapshot on."""
-    run = simulate(
-        chain,
-        average="ensemble",
-        observe=Raw(),
-        replicas=copies,
-        seed=seed,
-        progress=False,
-        **times,
-        **start,
-    )
-    return run.position.values - chain.anchors, run.velocity.values
-
-
 @pytest.mark.compiled
 @pytest.mark.parametrize("step", STEPS)
 @pytest.mark.parametrize("damping", [0.1, 1.0, CRITICAL, 10.0])
@@ -118,7 +103,9 @@ def test_rods_forget_as_one_oscillator(stiffness, damping, step):
     v = generator.normal(0.5, 0.7, (copies, chain.size))
     start = given_start(chain, chain.physical(y), v, replicas=copies)
     times = {"duration": 3 * step, "every": step, "time_step": step}
-    x, u = followed(chain, times, copies=copies, start=start)
+    how = {"average": "ensemble", "observe": Raw(), "replicas": copies, "seed": 1}
+    run = simulate(chain, start=start, progress=False, **how, **times)
+    x, u = run.position.values - chain.anchors, run.velocity.values
     before = np.stack([x[:, 0].mean(1), u[:, 0].mean(1)])
     for k in (1, 2, 3):
         e, sigma = moves(chain, k * step), heats(chain, k * step)
@@ -133,33 +120,6 @@ def test_rods_forget_as_one_oscillator(stiffness, damping, step):
             variance = state.var()
             assert variance == pytest.approx(expected, rel=5 * math.sqrt(2 / state.size) * 1.5)
         assert (np.diff(x[:, k], axis=1) > -1e-9 * np.abs(x).max()).all()
-
-
-@pytest.mark.compiled
-@pytest.mark.parametrize("step", [1.0, 6.0])
-def test_a_stretched_cloud_breathes_as_it_should(step):
-    chain = Chain(size=10)
-    exact = breathing_cloud(chain, 24.0, every=6.0, stretch=3.0, shift=1.0)
-    generator, copies = np.random.default_rng(5), 4000
-    y = generator.normal(1.0, 3 * chain.thermal_length, (copies, chain.size))
-    v = generator.normal(0.0, chain.free_velocity_width, (copies, chain.size))
-    start = given_start(chain, chain.physical(np.sort(y, axis=1)), v, replicas=copies)
-    times = {"duration": 24.0, "every": 6.0, "time_step": step}
-    x, _ = followed(chain, times, copies=copies, start=start)
-    error = x.std(0) / math.sqrt(copies)
-    assert (np.abs(x.mean(0) - exact.mean_displacement.values) < 5 * error).all()
-
-
-@pytest.mark.compiled
-def test_the_limit_has_one_level_and_no_bias():
-    chain = Chain(size=10)
-    limit = simulate_limit(chain, accuracy=0.005, progress=False)
-    exact = equilibrium(chain)
-    assert limit.attrs["time_step_error"] == 0
-    assert limit.attrs["flight"] == "exact"
-    assert limit.attrs["coupling"] == "one step"
-    for name in ("velocity_width", "displacement_width", "mean_displacement"):
-        assert (np.abs(limit[name] - exact[name]) < 5 * limit[f"{name}_error"]).all(), name
 
 
 @pytest.mark.parametrize(

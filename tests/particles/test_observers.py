@@ -27,18 +27,11 @@ def test_every_observer_is_a_public_name():
         assert name in pydoc.render_doc(cb.simulate, renderer=pydoc.plaintext)
     assert {observer.__name__ for observer in OBSERVERS.values()} < set(particles.__all__)
 
+    def leaves(kind):
+        own = [each for each in kind.__subclasses__() if each.__module__.startswith("crazyb")]
+        return {kind} if not own else set().union(*map(leaves, own))
 
-@pytest.mark.compiled
-def test_kinetic_energy_is_half_a_temperature_a_rod():
-    chain = Chain(size=10)
-    run = simulate(chain, duration=20_000, replicas=4, observe="energy", progress=False)
-    assert run.kinetic_energy.sizes["time"] <= 1000
-    energy, error = run.kinetic_energy, run.kinetic_energy_error
-    expected = chain.size * chain.temperature / 2
-    spread = error.mean().item() / np.sqrt(run.sizes["time"])
-    assert abs(energy.mean().item() - expected) < 5 * spread
-    assert (np.diff(run.time) > 0).all()
-    assert run.time[-1] <= run.attrs["end_time"] + 1e-9
+    assert leaves(Observer) == set(OBSERVERS.values())
 
 
 @pytest.mark.compiled
@@ -128,24 +121,6 @@ def test_the_autocorrelation_time_is_that_of_a_free_rod():
     assert run.autocorrelation_time.item() == pytest.approx(2, rel=0.6)
 
 
-def test_collisions_are_only_seen_one_at_a_time():
-    with pytest.raises(ValueError, match="'collisions' needs single collisions"):
-        simulate(Chain(), method="contact-dynamics", observe="collisions", progress=False)
-    with pytest.raises(ValueError, match="'velocities' needs"):
-        simulate(Chain(damping=0), observe="velocities", progress=False)
-    with pytest.raises(ValueError, match="would take"):
-        simulate(Chain(size=10**7), observe="velocities", progress=False)
-
-
-def test_observe_and_particles_take_lists():
-    for wrong in (5, None, True, [["widths"]], [3]):
-        with pytest.raises(ValueError, match="observe takes"):
-            simulate(Chain(), observe=wrong, progress=False)
-    for wrong in (5, "12", True):
-        with pytest.raises(ValueError, match="particles must be a list"):
-            simulate(Chain(), particles=wrong, progress=False)
-
-
 def test_the_energy_of_a_run_of_a_billion_snapshots_takes_no_memory_for_their_times():
     run = a_run(Chain(), duration=6.4e9, time_step=0.1, warmup=0, observe="energy")
     assert run.schedule.snapshots == 64 * 10**8
@@ -176,8 +151,6 @@ def test_an_observer_is_taken_as_an_object_with_parameters():
     np.testing.assert_array_equal(fine.velocity_width, usual.velocity_width)
     observe = json.loads(fine.attrs["provenance"])["observe"]
     assert observe == ["widths", "velocities(bins=801)"]
-    with pytest.raises(ValueError, match="bins must be an integer"):
-        Velocities(bins=0)
 
 
 def test_two_observers_that_would_give_one_name_are_refused():
@@ -234,16 +207,6 @@ def test_energies_beside_snapshots_that_not_all_replicas_reached_are_unknown():
     np.testing.assert_array_equal(*times)
     mass = run.chain.mass
     np.testing.assert_allclose(reports["kinetic_energy"][1], [mass, mass, np.nan])
-
-
-def test_every_observer_has_a_name_of_its_own():
-    def leaves(kind):
-        own = [
-            each for each in kind.__subclasses__() if each.__module__.startswith("crazybilliards.")
-        ]
-        return {kind} if not own else set().union(*map(leaves, own))
-
-    assert leaves(Observer) == set(OBSERVERS.values())
 
 
 @pytest.mark.parametrize("e", [0.0, 0.5, 1.0])

@@ -21,7 +21,7 @@ QUANTITIES = ("velocity_width", "mean_displacement", "displacement_width")
 @pytest.mark.compiled
 @pytest.mark.parametrize("spring", ["linear", "quadratic"])
 @pytest.mark.parametrize("gap", [0.0, 0.2, 1.0])
-@pytest.mark.parametrize("size", [2, 3, 20, 100])
+@pytest.mark.parametrize("size", [1, 2, 3, 20, 100])
 def test_elastic_chain_is_in_its_exact_equilibrium(size, gap, spring):
     """Every particle's widths and displacement within 5 standard errors, t-distributed."""
     chain = Chain(size=size, gap=gap, spring=spring)
@@ -33,56 +33,16 @@ def test_elastic_chain_is_in_its_exact_equilibrium(size, gap, spring):
         assert float(np.abs((run[name] - exact[name]) / error).max()) < 5, name
 
 
-def test_the_same_seed_gives_the_same_bits_whatever_the_threads():
-    chain = Chain(size=30, gap=0.1)
-    runs = [
-        simulate(chain, duration=200, replicas=3, threads=threads, seed=5, progress=False)
-        for threads in (1, 2, 3)
-    ]
-    for run in runs[1:]:
-        xr.testing.assert_identical(run, runs[0])
-    other = simulate(chain, duration=200, replicas=3, seed=6, progress=False)
-    assert (other.velocity_width != runs[0].velocity_width).all()
-
-
-def test_rescaling_the_amplitude_rescales_everything_exactly():
-    """Without gap, A is only a unit of length: a factor 4 is exact in binary arithmetic."""
-    one, four = (
-        simulate(
-            Chain(size=10, amplitude=amplitude), duration=200, observe="widths", progress=False
-        )
-        for amplitude in (1.0, 4.0)
-    )
-    for name in QUANTITIES:
-        np.testing.assert_array_equal(four[name], 4 * one[name])
-
-
-def test_a_single_rod_is_free():
-    chain = Chain(size=1)
-    run = simulate(chain, duration=60_000, progress=False)
-    assert (
-        abs(run.velocity_width - chain.free_velocity_width).item()
-        < 5 * run.velocity_width_error.item()
-    )
-    assert abs(run.displacement_width - chain.thermal_length).item() < 0.03
-    assert run.normalized_particle.values.tolist() == [0]
-
-
-def test_without_noise_everything_stays_at_the_anchors():
-    with pytest.warns(UserWarning, match="amplitude=0 and a start at rest"):
-        run = simulate(Chain(size=5, amplitude=0, gap=1), duration=100, progress=False)
-    for name in QUANTITIES:
-        assert (run[name] == 0).all()
-        assert (run[f"{name}_error"] == 0).all()
-
-
-def test_density_holds_every_rod_and_its_blocks_average_to_it():
-    run = simulate(Chain(size=7, gap=0.5), duration=1100, progress=False)
-    spacing = run.x[1] - run.x[0]
-    assert float(run.density.sum() * spacing) == pytest.approx(7)
-    np.testing.assert_allclose(run.density_block.mean("block"), run.density, atol=1e-14)
-    assert run.outside == 0
-    assert run.density_block.sizes["block"] == 64
+@pytest.mark.parametrize(("e", "damping"), [(0, 1), (0.9, 1), (1, 1), (1.05, 4)])
+def test_the_same_seed_gives_the_same_bits_whatever_the_threads(e, damping):
+    chain = Chain(size=30, gap=0.1, restitution=e, damping=damping)
+    options = {"duration": 200, "replicas": 3, "progress": False}
+    options["observe"] = ("widths", "density", "velocities", "energy")
+    one, *others = (simulate(chain, threads=threads, seed=5, **options) for threads in (1, 2, 3))
+    for run in others:
+        xr.testing.assert_identical(run, one)
+    other = simulate(chain, seed=6, **options)
+    assert (other.velocity_width != one.velocity_width).all()
 
 
 def test_an_equilibrium_start_needs_no_warm_up():
@@ -93,14 +53,6 @@ def test_an_equilibrium_start_needs_no_warm_up():
     exact = equilibrium(chain)
     for name in QUANTITIES:
         assert float(np.abs((run[name] - exact[name]) / run[f"{name}_error"]).max()) < 5
-
-
-def test_the_error_bar_is_the_exact_one_of_a_free_rod():
-    """The time average of a free rod's displacement has the variance A^2/(k^2 duration)."""
-    duration = 20_000
-    run = simulate(Chain(size=1), duration=duration, observe="widths", progress=False)
-    # From 64 blocks an error bar is itself known to 9 %; uncorrelated snapshots would give 0.72.
-    assert run.mean_displacement_error.item() * np.sqrt(duration) == pytest.approx(1, abs=0.27)
 
 
 @pytest.mark.parametrize("stepper", ["splitting", "euler"])
@@ -186,47 +138,6 @@ def test_memory_does_not_grow_with_the_duration():
     assert peaks[2] < peaks[1] + 3e6
 
 
-@pytest.mark.compiled  # numpy warns of the overflow, kernels do not
-def test_a_chain_that_blows_up_is_marked_diverged():
-    """No step is short enough for quadratic springs without damping when the swings are wide."""
-    chain = Chain(size=5, damping=0, spring="quadratic")
-    run = simulate(chain, duration=10_000, time_step=1.0, observe="widths", progress=False)
-    assert run.attrs["status"] == "diverged"
-    assert 0 < run.attrs["end_time"] < 10_000
-    assert "velocity_width" in run
-    for name in run.data_vars:
-        assert np.isfinite(run[name]).all() or name.endswith("_error"), name
-
-
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        ({"duration": 0}, "duration must be"),
-        ({"duration": float("nan")}, "duration must be"),
-        ({"duration": 1}, "duration must be at least"),
-        ({"duration": 1e30}, "too small"),
-        ({"duration": 5.0, "warmup": 0.0, "every": 1e-9}, "every = 1e-09 is too small"),
-        ({"duration": 1e-3, "every": 1e-6}, "warm-up and duration would take 1e.08 steps"),
-        ({"warmup": -1}, "warmup must be"),
-        ({"time_step": 0}, "time_step must be"),
-        ({"time_step": 5, "method": "contact-dynamics"}, "time_step must be below"),
-        ({"stepper": "leapfrog"}, "stepper must be one of"),
-        ({"method": "magic"}, "method must be one of"),
-        ({"merging": -1}, "merging must be"),
-        ({"seed": -1}, "seed must be"),
-        ({"seed": 1.5}, "seed must be"),
-        ({"replicas": 0}, "replicas must be"),
-        ({"threads": 0}, "threads must be"),
-        ({"observe": ("widths", "colour")}, "observe takes any of"),
-        ({"observe": ()}, "observe must name"),
-    ],
-)
-def test_wrong_arguments_are_refused_in_one_line(arguments, message):
-    with pytest.raises(ValueError, match=message) as caught:
-        simulate(Chain(size=3), progress=False, **arguments)
-    assert "\n" not in str(caught.value)
-
-
 @pytest.mark.parametrize("average", ["time", "ensemble"])
 def test_a_short_run_may_have_short_steps(average):
     """A thousand steps of 1e-9 T cost nothing, and a thousand of them show how noise begins."""
@@ -237,54 +148,6 @@ def test_a_short_run_may_have_short_steps(average):
     last = float(run.kinetic_energy[-1])
     error = float(run.kinetic_energy_error[-1]) if average == "ensemble" else 0.2 * last
     assert abs(last - heating * float(run.time[-1])) < 5 * error
-
-
-def test_chains_without_a_scale_need_a_time_step():
-    with pytest.raises(ValueError, match="give time_step"):
-        simulate(Chain(stiffness=0, damping=0), observe="widths", progress=False)
-
-
-def test_wrong_starts_are_refused():
-    chain = Chain(size=4)
-    start = equilibrium_states(chain, 2)
-    with pytest.raises(ValueError, match="start is for replicas=2, got replicas=3"):
-        simulate(chain, start=start, replicas=3, progress=False)
-    with pytest.raises(ValueError, match="position and velocity"):
-        simulate(chain, start=start.drop_vars("velocity"), replicas=2, progress=False)
-    with pytest.raises(ValueError, match="in order"):
-        simulate(chain, start=start.assign(position=-start.position), replicas=2, progress=False)
-    with pytest.raises(ValueError, match="finite"):
-        simulate(chain, start=start * np.nan, replicas=2, progress=False)
-
-
-def test_a_displaced_start_swings_back_like_one_damped_oscillator():
-    """A rigid shift of the chain never notices the collisions."""
-    chain = Chain(size=20, gap=0.3, amplitude=0)
-    start = given_start(chain, chain.anchors + 4.0)
-    run = simulate(
-        chain, start=start, duration=30, time_step=0.02, observe="energy", progress=False
-    )
-    rate, half = chain.stiffness / chain.mass, chain.damping / (2 * chain.mass)
-    swing = np.sqrt(rate - half**2)
-    # x = 4 exp(-half t) (cos + half/swing sin), hence:
-    velocity = -4 * rate / swing * np.exp(-half * run.time) * np.sin(swing * run.time)
-    energy = chain.size * chain.mass / 2 * velocity**2
-    np.testing.assert_allclose(run.kinetic_energy, energy, atol=0.01 * float(energy.max()))
-
-
-@pytest.mark.parametrize(
-    ("position", "velocity", "message"),
-    [
-        ([0, 1, 2], 0, "do not overlap"),
-        ([0, 3], 0, "position must fit"),
-        ([0, 3, np.nan], 0, "finite"),
-        ([0, 3, 6], [1, 2], "velocity must fit"),
-        ("abc", 0, "position must be numbers"),
-    ],
-)
-def test_a_given_start_is_checked(position, velocity, message):
-    with pytest.raises(ValueError, match=message):
-        given_start(Chain(size=3), position, velocity)
 
 
 def test_schedule_rounds_up_to_whole_blocks():

@@ -1,9 +1,7 @@
-"""The drift at e = 1 against a slow collision-by-collision twin, and its conservation laws."""
+"""The sort of the drift at e = 1; that it is one collision after another, see test_operators."""
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from crazybilliards.model.kernels import kernel
 from crazybilliards.particles.laws import sort
@@ -17,68 +15,6 @@ def drift(y, v, dt):
 @kernel
 def sort_and_fly(y, v, dt, scratch):
     sort.drift(y, v, dt, scratch)
-
-
-def drift_slowly(y, v, dt):
-    """Elastic collisions one at a time: find the next, go there, swap the two velocities."""
-    y, v = y.copy(), v.copy()
-    remaining = dt
-    while True:
-        closing = v[:-1] - v[1:]
-        with np.errstate(divide="ignore", invalid="ignore"):
-            times = np.where(closing > 0, np.diff(y) / closing, np.inf)
-        pair = int(np.argmin(times)) if times.size else 0
-        if times.size == 0 or times[pair] > remaining:
-            return y + remaining * v, v
-        y += times[pair] * v
-        remaining -= times[pair]
-        v[pair], v[pair + 1] = v[pair + 1], v[pair]
-
-
-@st.composite
-def states(draw):
-    size = draw(st.integers(1, 12))
-    seed = draw(st.integers(0, 2**32))
-    generator = np.random.default_rng(seed)
-    return np.sort(generator.normal(size=size)), generator.normal(size=size)
-
-
-@given(state=states(), dt=st.floats(0, 3))
-def test_equals_its_slow_twin(state, dt):
-    y, v = state
-    expected_y, expected_v = drift_slowly(y, v, dt)
-    y, v = y.copy(), v.copy()
-    drift(y, v, dt)
-    np.testing.assert_allclose(y, expected_y, atol=1e-12)
-    np.testing.assert_allclose(v, expected_v, atol=1e-12)
-
-
-@given(state=states(), dt=st.floats(0, 3))
-def test_keeps_order_momentum_energy_and_moves_the_centre_freely(state, dt):
-    y, v = state
-    after_y, after_v = y.copy(), v.copy()
-    drift(after_y, after_v, dt)
-    assert (np.diff(after_y) >= 0).all()
-    assert after_v.sum() == pytest.approx(v.sum(), abs=1e-12)
-    assert (after_v**2).sum() == pytest.approx((v**2).sum())
-    assert after_y.sum() == pytest.approx(y.sum() + dt * v.sum(), abs=1e-11)
-
-
-@given(state=states(), dt=st.floats(0, 3))
-def test_is_reflection_symmetric(state, dt):
-    y, v = (each.copy() for each in state)
-    mirrored_y, mirrored_v = -state[0][::-1], -state[1][::-1]
-    drift(y, v, dt)
-    drift(mirrored_y, mirrored_v, dt)
-    np.testing.assert_allclose(mirrored_y, -y[::-1], atol=1e-12)
-    np.testing.assert_allclose(mirrored_v, -v[::-1], atol=1e-12)
-
-
-def test_newtons_cradle():
-    y, v = np.array([-1.0, 0, 0, 0]), np.array([1.0, 0, 0, 0])
-    drift(y, v, 2.0)
-    np.testing.assert_array_equal(v, [0, 0, 0, 1])
-    np.testing.assert_array_equal(y, [0, 0, 0, 1])
 
 
 PLACES = {

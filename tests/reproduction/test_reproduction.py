@@ -2,10 +2,10 @@
 
 import json
 import re
-import sys
 from collections import Counter
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import get_args
 
@@ -13,7 +13,6 @@ import matplotlib.pyplot as plt
 import pytest
 
 from crazybilliards.apps.commands import reproduce as reproduce_command
-from crazybilliards.apps.commands.line import main
 from crazybilliards.comparison.sweeps import Case, run_cases
 from crazybilliards.comparison.sweeps.jobs import JOBS
 from crazybilliards.model import Chain
@@ -27,10 +26,16 @@ from crazybilliards.reproduction.reproducible import EVERYTHING, find_studies, g
 # -- figures ----------------------------------------------------------------------------------
 
 
-def test_all_nineteen_figures_are_there_in_order():
+def test_all_nineteen_figures_are_there_in_order_and_everything_has_a_name_of_its_own():
     assert [figure.number for figure in FIGURES] == list(range(1, 20))
-    assert len({figure.name for figure in FIGURES}) == 19
-    assert all(figure.title and figure.caption for figure in FIGURES)
+    assert [study for study in EVERYTHING if study.number is None] == [elastic_gaps.STUDY]
+    for names in ({each.name for each in EVERYTHING}, {each.file_name for each in EVERYTHING}):
+        assert len(names) == len(EVERYTHING)
+        assert not groups().keys() & names
+    assert all(study.title and study.caption for study in EVERYTHING)
+    assert set(reproduce_command._REPORTS) == set(groups())
+    reports = [name for pair in reproduce_command._REPORTS.values() for name in pair]
+    assert len(set(reports)) == 2 * len(groups())
 
 
 def test_figures_and_studies_are_found_by_number_name_or_group():
@@ -42,20 +47,6 @@ def test_figures_and_studies_are_found_by_number_name_or_group():
     for nothing in ("colour", "20", "", "17 density"):
         with pytest.raises(ValueError, match=f"no figure or study '{nothing}'.* elastic-gaps"):
             find_studies(nothing)
-
-
-def test_every_group_has_a_report_of_its_own():
-    assert set(reproduce_command._REPORTS) == set(groups())
-    names = [name for pair in reproduce_command._REPORTS.values() for name in pair]
-    assert len(set(names)) == 2 * len(groups())
-
-
-def test_everything_has_a_name_of_its_own():
-    assert [study for study in EVERYTHING if study.number is None] == [elastic_gaps.STUDY]
-    assert len({study.name for study in EVERYTHING}) == len(EVERYTHING)
-    assert len({study.file_name for study in EVERYTHING}) == len(EVERYTHING)
-    assert not groups().keys() & {study.name for study in EVERYTHING}
-    assert all(study.title and study.caption for study in EVERYTHING)
 
 
 @pytest.mark.compiled
@@ -99,17 +90,10 @@ def test_parameters_are_described_by_what_is_not_the_default():
 
 
 @pytest.fixture
-def command(tmp_path, monkeypatch, capsys):
-    """Return what calls the command in an empty folder and gives its status and what it printed."""
+def command(run, tmp_path, monkeypatch):
+    """Call the command in an empty folder."""
     monkeypatch.chdir(tmp_path)
-
-    def call(*arguments):
-        monkeypatch.setattr(sys, "argv", ["crazybilliards", "reproduce", *arguments])
-        with pytest.raises(SystemExit) as done:
-            main()
-        return done.value.code or 0, *capsys.readouterr()
-
-    return call
+    return partial(run, "reproduce")
 
 
 def test_list_needs_no_folder(command, tmp_path):
@@ -122,21 +106,14 @@ def test_list_needs_no_folder(command, tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_figure_without_claims_prints_no_table(command, tmp_path):
-    status, printed, errors = command("1")
-    assert (status, errors) == (0, "")
-    assert printed.splitlines() == ["wrote reproduced/fig01_model.png"]
-
-
 def test_pictures_come_in_other_widths_and_as_vector_graphics(command, tmp_path):
+    """Figure 1, which has no claims, so that no table is printed."""
+    wrote = "wrote reproduced/fig01_model"
+    assert command("1") == (0, f"{wrote}.png\n", "")
     sizes = {}
     for columns in ("1", "2"):
-        status, printed, errors = command("1", "--columns", columns, "--vector", "svg")
-        assert (status, errors) == (0, "")
-        assert printed.splitlines() == [
-            "wrote reproduced/fig01_model.png",
-            "wrote reproduced/fig01_model.svg",
-        ]
+        done = command("1", "--columns", columns, "--vector", "svg")
+        assert done == (0, f"{wrote}.png\n{wrote}.svg\n", "")
         svg = (tmp_path / "reproduced" / "fig01_model.svg").read_text()
         sizes[columns] = float(re.search(r'width="([0-9.]+)pt"', svg)[1]) / 72
     assert sizes == pytest.approx({"1": 3.4, "2": 7.0})

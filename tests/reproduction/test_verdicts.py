@@ -20,40 +20,49 @@ CONFIRMED = {True: "confirmed", False: "refuted", None: "undecided"}
 REPRODUCED = {True: "reproduced", False: "not reproduced", None: "undecided"}
 
 
+# Three errors have to fit in, or to lie outside.
+NU, SMALL, SEEN = around(-0.46, 0.01), around(0.0, 0.1), around(0.0, EYE)
+
+
 @pytest.mark.parametrize(
-    ("value", "error", "holds"),
+    ("within", "value", "error", "holds"),
     [
-        (-0.46, 0.003, True),
-        (-0.465, 0.001, True),
-        (-0.471, 0.002, None),  # three errors reach the paper's number from outside
-        (-0.465, 0.002, None),  # three errors reach out
-        (-0.475, 0.001, False),
-        (-0.49, 0.01, None),
-        (-0.52, 0.01, False),
-        (-0.46, 0.2, None),
-        (np.nan, 0.01, None),
-        (np.nan, np.inf, None),
-        (-0.46, np.nan, None),
+        (NU, -0.46, 0.003, True),
+        (NU, -0.465, 0.001, True),
+        (NU, -0.471, 0.002, None),  # three errors reach the paper's number from outside
+        (NU, -0.465, 0.002, None),  # three errors reach out
+        (NU, -0.475, 0.001, False),
+        (NU, -0.49, 0.01, None),
+        (NU, -0.52, 0.01, False),
+        (NU, -0.46, 0.2, None),
+        (NU, np.nan, 0.01, None),
+        (NU, np.nan, np.inf, None),
+        (NU, -0.46, np.nan, None),
+        (around(-2.2, 0.1), -2.456, 0.061, None),  # figure 6: once reproduced, for its error
+        (POSITIVE, 0.5, 0.1, True),
+        (POSITIVE, -0.5, 0.1, False),
+        (POSITIVE, 0.02, 0.02, None),
+        (POSITIVE, 0.1, 0.02, True),
+        (POSITIVE, np.nan, 0.1, None),
+        (SMALL, 0.5, 0.1, False),
+        (SMALL, -0.5, 0.1, False),
+        (SMALL, 0.02, 0.02, True),
+        (SMALL, 0.1, 0.02, None),
+        (SMALL, np.nan, 0.1, None),
+        (SEEN, 0.01, 0.003, True),  # however significant: below 2 % of the plot it is not seen
+        (SEEN, 0.018, 0.003, None),
+        (SEEN, 0.03, 0.003, False),
     ],
 )
-def test_numbers(value, error, holds):
-    measured = Estimate(value, error)
-    number = {"found": measured, "within": around(-0.46, 0.01)}
-    claim = Claim("nu", **number, reason="why")
+def test_numbers(within, value, error, holds):
+    number = {"found": Estimate(value, error), "within": within, "reason": "why"}
+    claim = Claim("nu", **number)
     assert claim.verdict == CONFIRMED[holds]
-    assert claim.details["its number"] == "-0.46"
     assert ("why" in claim.details) is (holds is not True)
     assert Claim("nu", **number, source="fig.2").verdict == REPRODUCED[holds]
     # A choice of ours that was not varied excuses nothing.
     chosen = Claim("nu", **number, source="fig.2", ours="the size")
     assert chosen.verdict == REPRODUCED[holds]
-
-
-def test_poor_statistics_do_not_reproduce_the_exponent_of_avalanches():
-    """Figure 6 once counted as reproduced: -2.2 was found to be -2.456, because of its error."""
-    within = around(-2.2, 0.1)
-    claim = Claim("it", found=Estimate(-2.456, 0.061), within=within, source="fig:trigger")
-    assert claim.verdict == "undecided"
 
 
 def every_kind(value, error):
@@ -68,37 +77,15 @@ def every_kind(value, error):
     ]
 
 
-@given(value=st.floats(-5, 5), error=st.floats(0, 5), more=st.floats(1, 10), kind=st.integers(0, 3))
-def test_large_errors_help_no_claim(value, error, more, kind):
+@given(value=st.floats(-5, 5), error=st.floats(0, 2), more=st.floats(1, 10))
+def test_all_kinds_of_limits_have_one_rule_and_large_errors_help_no_claim(value, error, more):
     """A verdict with large errors is that with small ones, or undecided."""
-    precise, poor = (every_kind(value, each)[kind].verdict for each in (error, error * more))
-    assert poor in (precise, "undecided")
-
-
-@given(value=st.floats(-5, 5), error=st.floats(0, 2))
-def test_all_kinds_of_limits_have_one_rule(value, error):
-    verdicts = {claim.verdict for claim in every_kind(value, error)[:2]}
-    assert len(verdicts) == 1
+    precise, poor = (
+        [claim.verdict for claim in every_kind(value, each)] for each in (error, error * more)
+    )
     inside, outside = abs(value) + 3 * error < 1, abs(value) - 3 * error > 1
-    assert verdicts == {CONFIRMED[True if inside else False if outside else None]}
-
-
-@pytest.mark.parametrize("truth", [0.0, 0.9, 1.0, 1.1, 3.0, 30.0])
-def test_a_short_simulation_decides_like_a_long_one_or_not_at_all(truth):
-    """Of 300 short and long runs with a number off by ``truth`` precisions, errors 9 to 1."""
-    rng = np.random.default_rng(5)
-    precision, contradicted = 0.01, 0
-    for error in rng.uniform(0.02, 2.0, 300) * precision:
-        short, long = (
-            Claim(
-                "nu",
-                found=Estimate(rng.normal(1 + truth * precision, e), e),
-                within=around(1.0, precision),
-            )
-            for e in (error, error / 9)
-        )
-        contradicted += {short.verdict, long.verdict} == {"confirmed", "refuted"}
-    assert contradicted == 0
+    assert {*precise[:2]} == {CONFIRMED[True if inside else False if outside else None]}
+    assert all(each in (sure, "undecided") for sure, each in zip(precise, poor, strict=True))
 
 
 def test_a_choice_decides_only_where_it_was_varied_and_changed_the_verdict():
@@ -128,22 +115,6 @@ def test_other_choices_are_named_with_their_numbers_and_verdicts():
     claim = Claim("exponent", **number, source="fig:trigger", elsewhere=elsewhere)
     assert claim.details["at other choices"] == "dt = 0.02: -2.210 ± 0.010, reproduced"
     assert "at other choices" not in Claim("it", **number).details
-
-
-@pytest.mark.parametrize(
-    ("value", "error", "positive", "small"),
-    [
-        (0.5, 0.1, "confirmed", "refuted"),
-        (-0.5, 0.1, "refuted", "refuted"),
-        (0.02, 0.02, "undecided", "confirmed"),
-        (0.1, 0.02, "confirmed", "undecided"),
-        (np.nan, 0.1, "undecided", "undecided"),
-    ],
-)
-def test_signs_and_limits(value, error, positive, small):
-    measured = Estimate(value, error)
-    assert Claim("grows", found=measured, within=POSITIVE).verdict == positive
-    assert Claim("vanishes", found=measured, within=around(0.0, 0.1)).verdict == small
 
 
 def test_the_number_is_told_with_its_limits():
@@ -184,20 +155,10 @@ def test_sameness():
     assert worst("both", [near, off, poor], 0.1)["words"] == f"{words} errors"
 
 
-@pytest.mark.parametrize(
-    ("deviation", "verdict"),
-    [
-        (Estimate(0.01, 0.003), "reproduced"),
-        (Estimate(0.018, 0.003), "undecided"),
-        (Estimate(0.03, 0.003), "not reproduced"),
-        (Estimate(np.nan, 0.003), "undecided"),
-    ],
-)
-def test_what_the_eye_sees(deviation, verdict):
-    """However significant a deviation is: below 2 % of the plot it is not seen."""
-    seen = in_plot("all rods", deviation, 22.4)
+def test_what_the_eye_sees():
+    seen = in_plot("all rods", Estimate(0.01, 0.003), 22.4)
     claim = Claim("fits", **seen, source="fig.2")
-    assert claim.verdict == verdict
+    assert claim.verdict == "reproduced"
     assert "22.4 standard errors" in claim.details["found here"]
 
 

@@ -1,11 +1,9 @@
 """How arguments are drawn, what a sound result is, and what becomes of a call that takes long."""
 
-from __future__ import annotations
-
 import faulthandler
 import math
-import resource
 import signal
+import sys
 from contextlib import contextmanager
 
 import numpy as np
@@ -17,6 +15,8 @@ from hypothesis import strategies as st
 from crazybilliards.kinetic import displaced, hydrodynamics
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.particles import simulate
+
+resource = pytest.importorskip("resource")  # not on Windows
 
 EXAMPLES = 300
 PATIENCE = 2.0  # seconds until Ctrl-C
@@ -99,7 +99,7 @@ def interrupted_when_long():
 
     before = signal.signal(signal.SIGALRM, interrupt)
     signal.setitimer(signal.ITIMER_REAL, PATIENCE)
-    faulthandler.dump_traceback_later(PATIENCE + HANG, exit=True)
+    faulthandler.dump_traceback_later(PATIENCE + HANG, exit=True, file=sys.__stderr__)
     try:
         yield
     finally:

@@ -6,47 +6,16 @@ long. It must end with status 0, with 2 and one line on standard error, or by Ct
 traceback, and never with NaN in what it prints.
 """
 
-from __future__ import annotations
-
-import faulthandler
-import signal
-import sys
-
 import pytest
+from exploration import interrupted_when_long
 from typer.main import get_command
 
 from crazybilliards.apps.commands.line import app, main
 
-PATIENCE, HANG = 2.0, 600.0
 NASTY = [
-    *(
-        "",
-        "x",
-        "nan",
-        "inf",
-        "-inf",
-        "0",
-        "-1",
-        "1.5",
-        "1e300",
-        "-1e300",
-        "1e-300",
-        "1e60",
-        "1e-60",
-    ),
-    *(
-        "1000000000",
-        "9" * 30,
-        "9" * 5000,
-        "true",
-        "None",
-        "1,2",
-        ",",
-        "1,,2",
-        "nan,1",
-        "\x00",
-        "é\n",
-    ),
+    *("x", "nan", "inf", "-inf", "0", "-1", "1.5", "1e300", "-1e300", "1e-300", "1e60", "1e-60"),
+    *("1000000000", "true", "None", "", "1,2", ",", "1,,2", "nan,1", "\x00", "é\n"),
+    *("9" * 30, "9" * 5000),
 ]
 SMALL = {
     "compare": ["--size", "4", "--duration", "300", "--amplitudes", "1", "--threads", "1"],
@@ -66,23 +35,12 @@ OPTIONS = [
 
 def ended(arguments, monkeypatch):
     """Run a command; return its exit status."""
-
-    def interrupt(*_):
-        signal.raise_signal(signal.SIGINT)
-
     monkeypatch.setattr("sys.argv", ["crazybilliards", *arguments])
-    before = signal.signal(signal.SIGALRM, interrupt)
-    signal.setitimer(signal.ITIMER_REAL, PATIENCE)
-    faulthandler.dump_traceback_later(PATIENCE + HANG, exit=True, file=sys.__stderr__)
     try:
-        with pytest.raises(SystemExit) as caught:
+        with interrupted_when_long(), pytest.raises(SystemExit) as caught:
             main()
     except KeyboardInterrupt:  # between two commands
         return 130
-    finally:
-        signal.setitimer(signal.ITIMER_REAL, 0)
-        faulthandler.cancel_dump_traceback_later()
-        signal.signal(signal.SIGALRM, before)
     return caught.value.code
 
 

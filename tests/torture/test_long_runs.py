@@ -1,4 +1,4 @@
-"""Long runs neither drift nor grow, and nothing but the seed decides about a result.
+"""Long runs neither drift nor grow.
 
 Ten thousand million particle steps of an elastic chain without gap, whose energies are known
 exactly: m v^2/T summed over L rods has the chi-squared distribution with L degrees of freedom, and
@@ -8,14 +8,10 @@ is exact, so the step does not matter.
 
 import os
 import threading
-from concurrent.futures import Executor, Future
-from contextlib import nullcontext
 
 import numpy as np
-import pytest
 from scipy import stats
 
-from crazybilliards.comparison.sweeps import Case, dask_cluster, process_pool, run_cases
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
 
@@ -82,64 +78,3 @@ def test_ten_thousand_million_particle_steps():
             print(f"{name}, {part}: D = {test.statistic:.4f}, p = {test.pvalue:.3f}")
             assert test.pvalue > SIGNIFICANCE
         assert stats.ks_2samp(*(half.ravel() for half in halves)).pvalue > SIGNIFICANCE
-
-
-CASES = [
-    Case(
-        "simulate",
-        Chain(size=30, restitution=restitution, damping=damping),
-        {"duration": 500, "replicas": 2, "observe": ["widths", "density", "energy"], **settings},
-    )
-    for restitution, damping, settings in (
-        (0, 1, {}),
-        (0.9, 1, {}),
-        (1, 1, {}),
-        (1, 1, {"stepper": "euler"}),
-        (1.05, 4, {}),
-        (0.5, 1, {"method": "contact-dynamics"}),
-    )
-] + [
-    Case("equilibrium", Chain(size=30, gap=0.2), {}),
-    Case("phase_space", Chain(size=30, restitution=0.95), {}),
-]
-
-
-class AtOnce(Executor):
-    """Carries out what is submitted, here and now."""
-
-    def submit(self, function, /, *arguments):
-        future = Future()
-        future.set_result(function(*arguments))
-        return future
-
-
-def test_same_seed_same_result_in_one_process_in_a_pool_and_on_a_cluster(tmp_path):
-    results = []
-    for name, engine in {
-        "here": nullcontext(AtOnce()),
-        "pool": process_pool(2),
-        "cluster": dask_cluster(),
-    }.items():
-        with engine as executor:
-            assert run_cases(CASES, tmp_path / name, executor, progress=False) == {}
-        results.append([case.load(tmp_path / name) for case in CASES])
-    for here, *others in zip(*results, strict=True):
-        for other in others:
-            assert other.equals(here)
-
-
-@pytest.mark.parametrize(("restitution", "damping"), [(0, 1), (0.9, 1), (1, 1), (1.05, 4)])
-def test_same_seed_same_result_in_one_thread_and_in_two(restitution, damping):
-    chain = Chain(size=50, restitution=restitution, damping=damping)
-    runs = [
-        simulate(
-            chain,
-            duration=1000,
-            replicas=5,
-            threads=threads,
-            observe=("widths", "density", "velocities", "energy"),
-            progress=False,
-        )
-        for threads in (1, 2)
-    ]
-    assert runs[0].equals(runs[1])

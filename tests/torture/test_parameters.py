@@ -12,8 +12,6 @@ Any other exception, any warning, a NaN, a call that outlives Ctrl-C by ten minu
 that asks for more address space than the limit set here fails the test.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -36,22 +34,10 @@ from exploration import (  # noqa: F401 (two are fixtures of every test)
 from hypothesis import given
 from hypothesis import strategies as st
 
-from crazybilliards.kinetic import (
-    breathing_cloud,
-    compressed,
-    critical_size,
-    displaced,
-    equilibrium,
-    equilibrium_states,
-    force_balance,
-    hydrodynamics,
-    phase_space,
-    relax_phase_space,
-)
+from crazybilliards import kinetic
 from crazybilliards.model import Chain
-from crazybilliards.particles import simulate
+from crazybilliards.particles import given_start, simulate
 from crazybilliards.particles.observers import OBSERVERS
-from crazybilliards.particles.start import given_start
 
 
 @explored(1000)
@@ -64,92 +50,20 @@ def test_a_chain_is_sound_or_refused(parameters):
     assert not math.isnan(chain.temperature + chain.thermal_length + chain.free_velocity_width)
 
 
-@pytest.mark.filterwarnings("ignore:amplitude=0 and a start at rest")
-@explored()
-@given(
-    chains(ANY),
-    arguments(
-        duration=st.floats(50, 300),
-        warmup=st.floats(0, 30),
-        time_step=st.floats(0.001, 1),
-        method=st.sampled_from(["event-driven", "contact-dynamics"]),
-        stepper=st.sampled_from(["splitting", "euler"]),
-        merging=st.floats(0, 1),
-        seed=st.integers(0, 10),
-        observe=st.sets(st.sampled_from(sorted(OBSERVERS)), min_size=1, max_size=2).map(list),
-        particles=st.lists(SIZES, min_size=1, max_size=3, unique=True).map(sorted),
-        replicas=st.integers(1, 3),
-        average=st.sampled_from(["time", "ensemble"]),
-        every=st.floats(0.01, 10),
-        threads=st.integers(1, 2),
-        checkpoint_interval=st.floats(0, 10),
-    ),
-)
-def test_a_simulation_is_sound_or_refused(parameters, options):
-    chain = outcome(Chain, **parameters)
-    if chain is None:
-        return
-    run = outcome(simulate, chain, **{"duration": 200.0, "progress": False, **options})
-    require_sound(run)
-
-
-@explored()
-@given(chains(ELASTIC), arguments(replicas=st.integers(1, 5), seed=st.integers(0, 9)))
-def test_an_equilibrium_is_sound_or_refused(parameters, options):
-    chain = outcome(Chain, **parameters)
-    if chain is not None:
-        require_sound(outcome(equilibrium, chain))
-        require_sound(outcome(equilibrium_states, chain, **{"replicas": 2, **options}))
-
-
 TABLE = st.sampled_from(
     [
-        ([-9.0, 0.0, 9.0], [1.0, 2.0, 1.0]),
-        ([-9.0, 0.0, 9.0], [-1.0, 0.0, 1.0]),
-        ([-9.0, 0.0, 9.0], [1e200, -1e200, 1.0]),
-        ([-9.0, 0.0, 9.0], [0.0, 0.0, 0.0]),
-        ([0.0, 0.0], [1.0, 2.0]),
-        ([-1.0, math.nan], [1.0, 2.0]),
-        ([-1.0, 1.0], ["a", "b"]),
-        ([1.0], [2.0]),
-        np.tanh,
-        np.arctan,
-        lambda x: None,
-        lambda x: np.full_like(x, np.nan),
-        lambda x: 1.0,
+        *(([-9.0, 0.0, 9.0], values) for values in ([1.0, 2.0, 1.0], [-1.0, 0.0, 1.0])),
+        *(([-9.0, 0.0, 9.0], values) for values in ([1e200, -1e200, 1.0], [0.0, 0.0, 0.0])),
+        *(([0.0, 0.0], [1.0, 2.0]), ([-1.0, math.nan], [1.0, 2.0]), ([-1.0, 1.0], ["a", "b"])),
+        *(([1.0], [2.0]), np.tanh, np.arctan),
+        *(lambda x: None, lambda x: np.full_like(x, np.nan), lambda x: 1.0),
     ]
 )
 
 
-@explored()
-@given(chains(ELASTIC), arguments(displacement=TABLE, velocity_variance=ORDINARY | TABLE))
-def test_a_force_balance_is_sound_or_refused(parameters, options):
-    chain = outcome(Chain, **parameters)
-    if chain is not None:
-        require_sound(outcome(force_balance, chain, **options))
-
-
-@explored()
-@given(
-    chains(ELASTIC),
-    arguments(
-        duration=ORDINARY,
-        every=ORDINARY,
-        stretch=ORDINARY,
-        shift=ORDINARY,
-        start_velocity_variance=ORDINARY,
-        evolving=st.booleans(),
-    ),
-)
-def test_a_breathing_cloud_is_sound_or_refused(parameters, options):
-    chain = outcome(Chain, **{**parameters, "gap": 0.0, "spring": "linear"})
-    if chain is not None:
-        require_sound(outcome(breathing_cloud, chain, **{"duration": 1.0, **options}))
-
-
 def starts(chain):
     """Return the usual starts of a chain and some that are not sound."""
-    good = outcome(displaced, chain, chain.thermal_length)
+    good = outcome(kinetic.displaced, chain, chain.thermal_length)
     if good is None:
         return []
     few = good.isel(x=slice(None, None, 2))
@@ -169,83 +83,114 @@ def starts(chain):
     ]
 
 
-@explored(150)
-@given(
-    chains(ELASTIC),
-    arguments(
-        duration=st.floats(0.1, 5),
-        frame=st.sampled_from(["label", "eulerian"]),
-        displacement=st.none() | TABLE,
-        velocity_variance=st.sampled_from([None, "evolving"]) | ORDINARY | TABLE,
-        every=st.floats(0.1, 2),
-        cells=st.integers(8, 200),
+# By function: examples, what it always gets, and what of it is drawn.
+EXPLORED = {
+    simulate: (
+        300,
+        {"duration": 200.0, "progress": False},
+        arguments(
+            duration=st.floats(50, 300),
+            warmup=st.floats(0, 30),
+            time_step=st.floats(0.001, 1),
+            method=st.sampled_from(["event-driven", "contact-dynamics"]),
+            stepper=st.sampled_from(["splitting", "euler"]),
+            merging=st.floats(0, 1),
+            seed=st.integers(0, 10),
+            observe=st.sets(st.sampled_from(sorted(OBSERVERS)), min_size=1, max_size=2).map(list),
+            particles=st.lists(SIZES, min_size=1, max_size=3, unique=True).map(sorted),
+            replicas=st.integers(1, 3),
+            average=st.sampled_from(["time", "ensemble"]),
+            every=st.floats(0.01, 10),
+            threads=st.integers(1, 2),
+            checkpoint_interval=st.floats(0, 10),
+        ),
     ),
-    st.integers(0, 60),
-)
-def test_a_flow_is_sound_or_refused(parameters, options, number):
-    chain = outcome(Chain, **parameters)
-    some = starts(chain) if chain is not None else []
-    if some:
-        start = some[number] if number < len(some) else some[0]
-        options = {"duration": 1.0, "progress": False, **options}
-        require_sound(outcome(hydrodynamics, chain, start, **options))
-
-
-@explored(100)
-@given(
-    chains(NEAR_ONE),
-    arguments(
-        duration=st.floats(0.1, 3),
-        every=st.floats(0.1, 2),
-        time_step=st.floats(0.01, 1),
-        cells=st.integers(4, 12),
+    kinetic.equilibrium: (300, {}, st.just({})),
+    kinetic.equilibrium_states: (
+        300,
+        {"replicas": 2},
+        arguments(replicas=st.integers(1, 5), seed=st.integers(0, 9)),
     ),
-    st.integers(0, 60),
-)
-def test_a_phase_space_in_time_is_sound_or_refused(parameters, options, number):
-    chain = outcome(Chain, **parameters)
-    some = starts(chain) if chain is not None else []
-    if some:
-        start = some[number] if number < len(some) else some[0]
-        options = {"duration": 0.5, "cells": 6, "progress": False, **options}
-        require_sound(outcome(relax_phase_space, chain, start, **options))
+    kinetic.force_balance: (
+        300,
+        {},
+        arguments(displacement=TABLE, velocity_variance=ORDINARY | TABLE),
+    ),
+    kinetic.breathing_cloud: (
+        300,
+        {"duration": 1.0},
+        arguments(
+            **dict.fromkeys(("duration", "every", "stretch", "shift"), ORDINARY),
+            start_velocity_variance=ORDINARY,
+            evolving=st.booleans(),
+        ),
+    ),
+    kinetic.hydrodynamics: (
+        150,
+        {"duration": 1.0, "progress": False},
+        arguments(
+            duration=st.floats(0.1, 5),
+            frame=st.sampled_from(["label", "eulerian"]),
+            displacement=st.none() | TABLE,
+            velocity_variance=st.sampled_from([None, "evolving"]) | ORDINARY | TABLE,
+            every=st.floats(0.1, 2),
+            cells=st.integers(8, 200),
+        ),
+    ),
+    kinetic.relax_phase_space: (
+        100,
+        {"duration": 0.5, "cells": 6, "progress": False},
+        arguments(
+            duration=st.floats(0.1, 3),
+            every=st.floats(0.1, 2),
+            time_step=st.floats(0.01, 1),
+            cells=st.integers(4, 12),
+        ),
+    ),
+    kinetic.phase_space: (
+        100,
+        {"cells": 6},
+        arguments(order=st.sampled_from([1, 2]), tolerance=st.floats(0.002, 0.1), cells=SIZES),
+    ),
+    kinetic.displaced: (100, {"shift": 1.0}, arguments(shift=ORDINARY)),
+    kinetic.compressed: (100, {"factor": 1.0}, arguments(factor=ORDINARY)),
+    given_start: (
+        100,
+        {"position": 1.0},
+        arguments(position=ORDINARY, velocity=ORDINARY, replicas=st.integers(1, 3)),
+    ),
+}
+RESTITUTIONS = {simulate: ANY, kinetic.phase_space: NEAR_ONE, kinetic.relax_phase_space: NEAR_ONE}
+STARTED = (kinetic.hydrodynamics, kinetic.relax_phase_space)
 
 
-@explored(100)
-@given(
-    chains(NEAR_ONE),
-    arguments(order=st.sampled_from([1, 2]), tolerance=st.floats(0.002, 0.1), cells=SIZES),
-)
-def test_a_phase_space_is_sound_or_refused(parameters, options):
-    chain = outcome(Chain, **parameters)
-    if chain is not None:
-        require_sound(outcome(phase_space, chain, **{"cells": 6, **options}))
+@pytest.mark.filterwarnings("ignore:amplitude=0 and a start at rest")
+@pytest.mark.parametrize("function", EXPLORED, ids=lambda function: function.__name__)
+def test_a_result_is_sound_or_refused(function):
+    examples, always, drawn = EXPLORED[function]
 
+    @explored(examples)
+    @given(chains(RESTITUTIONS.get(function, ELASTIC)), drawn, st.integers(0, 60))
+    def require(parameters, options, number):
+        if function is kinetic.breathing_cloud:
+            parameters = parameters | {"gap": 0.0, "spring": "linear"}
+        chain = outcome(Chain, **parameters)
+        given_to = {**always, **options}
+        if chain is not None and function in STARTED:
+            some = starts(chain)
+            chain = chain if some else None
+            given_to["start"] = some[number if number < len(some) else 0] if some else None
+        if chain is not None:
+            require_sound(outcome(function, chain, **given_to))
 
-@explored()
-@given(
-    chains(ELASTIC),
-    st.sampled_from(["displaced", "compressed", "given_start"]),
-    arguments(first=ORDINARY, second=ORDINARY, replicas=st.integers(1, 3)),
-)
-def test_a_start_is_sound_or_refused(parameters, kind, options):
-    chain = outcome(Chain, **parameters)
-    if chain is None:
-        return
-    first, second = options.get("first", 1.0), options.get("second", 1.0)
-    if kind == "given_start":
-        replicas = options.get("replicas", 1)
-        start = outcome(given_start, chain, first, second, replicas=replicas)
-    else:
-        start = outcome({"displaced": displaced, "compressed": compressed}[kind], chain, first)
-    require_sound(start)
+    require()
 
 
 @explored(30)
 @given(chains(st.floats(1, 1.1)))
 def test_a_critical_size_is_sound_or_refused(parameters):
     chain = outcome(Chain, **parameters)
-    estimate = None if chain is None else outcome(critical_size, chain)
+    estimate = None if chain is None else outcome(kinetic.critical_size, chain)
     if estimate is not None:
         assert 0 < estimate.value < math.inf
         assert 0 <= estimate.error < math.inf

@@ -8,75 +8,51 @@ import os
 import signal
 import subprocess
 import sys
-import time
+from contextlib import contextmanager
 
 import pytest
 import xarray as xr
+from killed import PATIENCE, begin, end, members, until
 
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
 
 COMMAND = [sys.executable, "-c", "from crazybilliards.apps.commands.line import main; main()"]
-PATIENCE = 600.0
 GRID = """
 [grid]
 size = [4, 10, 30]
 [simulate]
 duration = 1e7
 """
-LONG = """
-import sys
-from crazybilliards.model import Chain
-from crazybilliards.particles import simulate
-simulate(Chain(size=30), duration=1e9, progress=False, checkpoint=sys.argv[1])
-"""
 
 
-@pytest.fixture
-def first():
-    """Start a process that is killed at the end, and wait for a file it writes."""
-    started = []
-
-    def start(path, *command):
-        started.append(
-            subprocess.Popen(
-                command,
-                start_new_session=True,
-                stdout=subprocess.DEVNULL,
-                stderr=subprocess.DEVNULL,
-            )
-        )
-        deadline = time.monotonic() + PATIENCE
-        while not (path.exists() and path.stat().st_size):
-            assert time.monotonic() < deadline
-            assert started[0].poll() is None
-            time.sleep(0.05)
-        return started[0]
-
-    yield start
-    for process in started:
-        if process.poll() is None:
-            os.killpg(process.pid, signal.SIGKILL)
-            process.wait()
+@contextmanager
+def holding(path, job):
+    """Start a process that writes this file, wait for the file, and kill it at the end."""
+    child = begin(job, path.parent)
+    try:
+        until(lambda: path.exists() and path.stat().st_size)
+        yield child
+    finally:
+        if members(child):
+            end(child, signal.SIGKILL, group=True)
 
 
-def test_a_second_run_on_a_checkpoint_is_refused_until_the_first_is_dead(first, tmp_path):
-    state = tmp_path / "state"
-    holder = first(state, sys.executable, "-c", LONG, str(state))
-    arguments = {"duration": 1e9, "progress": False, "checkpoint": state}
-    for how in (signal.SIGSTOP, signal.SIGCONT):  # one that hangs is refused to, not waited for
-        os.kill(holder.pid, how)
-        with pytest.raises(BlockingIOError, match=f"in use by process {holder.pid} on .*state"):
-            simulate(Chain(size=30), **arguments)
-    holder.kill()
-    holder.wait()
+def test_a_second_run_on_a_checkpoint_is_refused_until_the_first_is_dead(tmp_path):
+    state, chain = tmp_path / "work" / "state", Chain(size=30)
+    endless = {"duration": 1e9, "progress": False, "checkpoint": state}
+    with holding(state, lambda _: simulate(chain, **endless)) as holder:
+        for how in (signal.SIGSTOP, signal.SIGCONT):  # one that hangs is not waited for
+            os.kill(holder, how)
+            with pytest.raises(BlockingIOError, match=f"in use by process {holder} on .*state"):
+                simulate(chain, **endless)
     with pytest.raises(ValueError, match="remove the file to start anew"):  # not of this run
-        simulate(Chain(size=31), **arguments)
+        simulate(chain.replace(size=31), **endless)
     state.unlink()
     short = {"duration": 2000.0, "progress": False}
-    undisturbed = simulate(Chain(size=30), **short)
-    xr.testing.assert_identical(simulate(Chain(size=30), **short, checkpoint=state), undisturbed)
-    assert [path.name for path in tmp_path.iterdir()] == ["state"]
+    undisturbed = simulate(chain, **short)
+    xr.testing.assert_identical(simulate(chain, **short, checkpoint=state), undisturbed)
+    assert [path.name for path in state.parent.iterdir()] == ["state"]
 
 
 @pytest.mark.parametrize(
@@ -90,20 +66,20 @@ def test_a_second_run_on_a_checkpoint_is_refused_until_the_first_is_dead(first, 
     ids=lambda what: what[0],
 )
 def test_a_second_command_in_a_folder_is_refused_and_overwrites_nothing(
-    what, other, first, tmp_path, monkeypatch
+    what, other, tmp_path, monkeypatch
 ):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "grid.toml").write_text(GRID)
     folder = tmp_path / "results"
-    arguments = [*what, "--output", str(folder)]
-    holder = first(folder / ".lock", *COMMAND, *arguments)
-    for second in (arguments, [*arguments, *other]):
-        done = subprocess.run(
-            [*COMMAND, *second], capture_output=True, text=True, timeout=PATIENCE, check=False
-        )
-        assert (done.returncode, done.stderr.count("\n")) == (2, 1), done.stderr
-        assert f"error: {folder}: in use by process {holder.pid}" in done.stderr
-    assert holder.poll() is None
+    command = [*COMMAND, *what, "--output", str(folder)]
+    with holding(folder / ".lock", lambda _: os.execv(command[0], command)) as holder:
+        for second in (command, [*command, *other]):
+            done = subprocess.run(
+                second, capture_output=True, text=True, timeout=PATIENCE, check=False
+            )
+            assert (done.returncode, done.stderr.count("\n")) == (2, 1), done.stderr
+            assert f"error: {folder}: in use by process {holder}" in done.stderr
+        assert members(holder)
 
 
 CONTENDER = """
@@ -125,12 +101,8 @@ print(entered)
 
 def test_never_are_two_inside(tmp_path):
     """The lock file is made and removed all the time, which must let nobody slip in."""
-    contenders = [
-        subprocess.Popen(
-            [sys.executable, "-c", CONTENDER, str(tmp_path)], stdout=subprocess.PIPE, text=True
-        )
-        for _ in range(4)
-    ]
+    command = [sys.executable, "-c", CONTENDER, str(tmp_path)]
+    contenders = [subprocess.Popen(command, stdout=subprocess.PIPE, text=True) for _ in range(4)]
     entered = [int(each.communicate(timeout=PATIENCE)[0]) for each in contenders]
     print(f"{sum(entered)} times inside, {4000 - sum(entered)} times refused")
     assert all(each.returncode == 0 for each in contenders)

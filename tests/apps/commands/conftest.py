@@ -7,35 +7,8 @@ real ones.
 import signal
 import subprocess
 import sys
-from typing import NamedTuple
 
-import matplotlib.pyplot as plt
 import pytest
-
-from crazybilliards.apps.commands.line import main
-
-
-class Ended(NamedTuple):
-    """How a command ended."""
-
-    returncode: int
-    stdout: str
-    stderr: str
-
-
-@pytest.fixture
-def run(monkeypatch, capsys):
-    """Run a command in this process."""
-
-    def run(*arguments):
-        monkeypatch.setattr("sys.argv", ["crazybilliards", *map(str, arguments)])
-        monkeypatch.setattr("sys.excepthook", sys.excepthook)
-        with pytest.raises((SystemExit, KeyboardInterrupt)) as caught:
-            main()
-        return Ended(getattr(caught.value, "code", 130) or 0, *capsys.readouterr())
-
-    yield run
-    plt.close("all")
 
 
 @pytest.fixture
@@ -87,7 +60,7 @@ def interrupted():
         )
         # That kernels are being compiled is said if it takes long, on a busy machine say.
         said = done.stderr.splitlines(keepends=True)
-        said = [line for line in said if "compiling the kernels" not in line]
-        return Ended(done.returncode, done.stdout, "".join(said))
+        done.stderr = "".join(line for line in said if "compiling the kernels" not in line)
+        return done
 
     return interrupted

@@ -4,6 +4,8 @@ import dataclasses
 import functools
 import inspect
 import pkgutil
+import shlex
+import signal
 import subprocess
 import sys
 from typing import get_args
@@ -13,7 +15,7 @@ from other_values import other_values
 
 from crazybilliards.apps.commands import chain_options
 from crazybilliards.apps.commands.line import app
-from crazybilliards.model import Chain
+from crazybilliards.model import Chain, load
 
 COMMANDS = [each.name for each in app.registered_commands]
 
@@ -54,6 +56,93 @@ def test_an_unknown_command_and_an_unusable_folder_are_one_line(run, tmp_path):
     assert (done.returncode, done.stderr.count("\n")) == (2, 1)
     assert str(file) in done.stderr
     assert file.read_text() == "mine"
+
+
+REFUSED = """
+compare --size 2 | size
+compare --size ten | size
+compare --amplitudes 1,x | amplitudes takes numbers
+compare --amplitudes '' | amplitudes takes numbers
+compare --amplitudes 0 | no steady state: amplitude=0
+compare --amplitudes 1,1 | differ
+compare --duration 1 | duration must be at least
+compare --restitution 0.9,x | restitution takes numbers
+compare --restitution 0.9 --amplitudes 1 | give restitution or amplitudes
+compare --seed -5 | seed
+compare --colour | No such option
+compare extra | unexpected extra argument
+relax --release dropped | release must be one of
+relax --seed -1 | seed must be
+simulate --observe width | observe takes any of
+simulate --particles 1,x | particles takes numbers
+simulate --particles 1.0 | particles takes numbers
+simulate --particles 101 | particles must ascend within 1..100
+simulate --average median | average must be one of
+simulate --accuracy 0.01 --duration 50 | --duration has no meaning with --accuracy
+simulate --output run.txt | a file whose name ends in .nc
+simulate --output . | a file whose name ends in .nc
+theory --spring cubic | spring must be
+theory --tolerance 0 | tolerance must be
+theory fluid | name must be one of ('equilibrium',
+theory equilibrium --tolerance 0.1 | tolerance: equilibrium has no such setting
+theory force_balance --cells 9 | cells: force_balance has no such setting
+theory equilibrium --restitution 0.9 | restitution must be 1
+theory --critical --restitution 0.95 | every size has a steady state
+theory --restitution 1.3 --damping 4 | the energy grows without bound
+"""
+
+
+@pytest.mark.parametrize(
+    ("line", "message"), [line.split(" | ") for line in REFUSED.strip().splitlines()]
+)
+def test_bad_input_is_one_line_exit_two_and_nothing_written(
+    refused, line, message, tmp_path, monkeypatch
+):
+    monkeypatch.chdir(tmp_path)
+    command, *arguments = shlex.split(line)
+    refused(message, command, "--output", "run.nc", *arguments)
+    assert list(tmp_path.iterdir()) == []
+
+
+LONG = ["--size", "100", "--replicas", "10000", "--duration", "40", "--every", "10"]
+INTERRUPTED = {  # the command, its data, and a picture
+    "compare": (["--size", "10", "--duration", "1e9"], "comparison", "density"),
+    "relax": (LONG, "relaxation", "cloud"),
+}
+
+
+@pytest.mark.compiled
+@pytest.mark.posix
+@pytest.mark.parametrize("command", INTERRUPTED)
+def test_ctrl_c_saves_what_was_computed_beside_a_finished_result(command, interrupted, tmp_path):
+    arguments, data, picture = INTERRUPTED[command]
+    (tmp_path / f"{data}.nc").write_text("finished")
+    done = interrupted(command, *arguments, "--output", tmp_path)
+    assert done.returncode == -signal.SIGINT, done.stderr
+    assert "Traceback" not in done.stderr
+    tree = load(tmp_path / f"{data}-interrupted.nc")
+    assert tree.attrs["status"] == "interrupted"
+    if command == "compare":
+        assert tree["amplitude_1/simulation"].attrs["status"] == "interrupted"
+    assert (tmp_path / f"{picture}-interrupted.png").exists()
+    assert (tmp_path / f"{data}.nc").read_text() == "finished"
+    assert "minus" in done.stdout
+    assert not [path for path in tmp_path.iterdir() if path.suffix == ".part"]
+
+
+@pytest.mark.compiled
+@pytest.mark.posix
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])
+def test_ctrl_c_saves_what_was_simulated(name, interrupted, tmp_path):
+    """So do what batch systems send before they kill, and a lost connection."""
+    number = getattr(signal, name)
+    arguments = ("--size", 10, "--duration", 1e9, "--output", tmp_path / "run.nc")
+    done = interrupted("simulate", *arguments, number=number)
+    # Ctrl-C must also end a loop of a shell, which looks for the signal.
+    assert done.returncode == (-number if name == "SIGINT" else 128 + number), done.stderr
+    assert done.stderr == "crazybilliards: interrupted\n"
+    assert load(tmp_path / "run-interrupted.nc").attrs["status"] == "interrupted"
+    assert [path.name for path in tmp_path.iterdir()] == ["run-interrupted.nc"]
 
 
 # What a command chooses itself.

@@ -57,38 +57,6 @@ def test_without_output_nothing_is_written(run, tmp_path, monkeypatch):
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (["--size", "2"], "size"),
-        (["--size", "ten"], "size"),
-        (["--size", "-1"], "size"),
-        (["--amplitudes", "1,x"], "amplitudes takes numbers"),
-        (["--amplitudes", ""], "amplitudes takes numbers"),
-        (["--amplitudes", "0"], "no steady state: amplitude=0"),
-        (["--amplitudes", "nan"], "amplitude must be"),
-        (["--amplitudes", "1,1"], "differ"),
-        (["--gap", "-1"], "gap must be"),
-        (["--gap", "inf"], "gap must be"),
-        (["--duration", "0"], "duration must be"),
-        (["--duration", "1"], "duration must be at least"),
-        (["--restitution", "0.9,x"], "restitution takes numbers"),
-        (["--restitution", "-1"], "restitution must be"),
-        (["--restitution", "0.9", "--amplitudes", "1"], "give restitution or amplitudes"),
-        (["--restitution", "0.9", "--damping", "0"], "no steady state"),
-        (["--seed", "-5"], "seed"),
-        (["--threads", "0"], "threads must be"),
-        (["--processes", "0"], "processes must be"),
-        (["--colour"], "No such option"),
-        (["extra"], "unexpected extra argument"),
-    ],
-)
-def test_bad_input_is_one_line_exit_two_and_nothing_written(refused, arguments, message, tmp_path):
-    folder = tmp_path / "results"
-    refused(message, "compare", *arguments, "--output", str(folder))
-    assert not folder.exists()
-
-
 @pytest.mark.compiled
 def test_compare_restitutions(run, tmp_path):
     arguments = ["--restitution", "0.9,1", "--size", "10", "--duration", "200"]

@@ -1,7 +1,6 @@
 """The command ``relax``: pictures, animations, data, and what Ctrl-C leaves of them."""
 
 import re
-import signal
 
 import pytest
 import xarray as xr
@@ -37,35 +36,6 @@ def test_relax_writes_pictures_animations_and_the_data(run, tmp_path):
     tree = load(tmp_path / "relaxation.nc")
     assert set(tree.children) == {"particles", "isothermal", "evolving", "exact"}
     assert "rms distance" in done.stdout
-
-
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (["--release", "dropped"], "release must be one of"),
-        (["--by", "-1"], "by must be"),
-        (["--by", "nan"], "by must be"),
-        (["--every", "100"], "every must be at most"),
-        (["--replicas", "1"], "replicas must be"),
-        (["--amplitude", "0"], "no steady state"),
-        (["--seed", "-1"], "seed must be"),
-    ],
-)
-def test_relax_refuses_bad_input_in_one_line(refused, arguments, message, tmp_path):
-    folder = tmp_path / "results"
-    refused(message, *RELAX, *arguments, "--output", str(folder))
-    assert not folder.exists()
-
-
-@pytest.mark.compiled
-@pytest.mark.posix
-def test_ctrl_c_keeps_what_relaxed(interrupted, tmp_path):
-    long = ["--size", "100", "--replicas", "10000", "--duration", "40", "--every", "10"]
-    done = interrupted("relax", *long, "--output", tmp_path)
-    assert done.returncode == -signal.SIGINT, done.stderr
-    assert "Traceback" not in done.stderr
-    assert load(tmp_path / "relaxation-interrupted.nc").attrs["status"] == "interrupted"
-    assert (tmp_path / "cloud-interrupted.png").exists()
 
 
 def test_one_ctrl_c_is_enough_while_the_fluids_are_computed(run, monkeypatch):

@@ -1,7 +1,5 @@
 """The command ``simulate``: what the function returns, in a file."""
 
-import signal
-
 import pytest
 import xarray as xr
 
@@ -63,30 +61,6 @@ def test_simulate_an_ensemble_without_a_file(run, tmp_path, monkeypatch):
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (["--observe", "width"], "observe takes any of"),
-        (["--particles", "1,x"], "particles takes numbers"),
-        (["--particles", "1.0"], "particles takes numbers"),
-        (["--particles", "101"], "particles must ascend within 1..100"),
-        (["--method", "guess"], "method must be one of"),
-        (["--stepper", "guess"], "stepper must be one of"),
-        (["--average", "median"], "average must be one of"),
-        (["--time-step", "-1"], "time_step must be"),
-        (["--gap", "-1"], "gap must be"),
-        (["--accuracy", "2"], "accuracy must lie between"),
-        (["--accuracy", "0.01", "--duration", "50"], "--duration has no meaning with --accuracy"),
-        (["--output", "run.txt"], "a file whose name ends in .nc"),
-        (["--output", "."], "a file whose name ends in .nc"),
-    ],
-)
-def test_simulate_refuses_in_one_line(refused, arguments, message, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    refused(message, "simulate", "--output", "run.nc", *arguments)
-    assert list(tmp_path.iterdir()) == []
-
-
 @pytest.mark.compiled  # uncompiled, an overflow warns
 def test_a_chain_that_diverges_ends_with_status_1(run, tmp_path):
     options = ["--size", 50, "--restitution", 2, "--damping", 0.01, "--duration", 1e5]
@@ -97,18 +71,3 @@ def test_a_chain_that_diverges_ends_with_status_1(run, tmp_path):
     assert "L = 50, e = 2: the simulation diverged" in done.stderr
     result = load(tmp_path / "run-diverged.nc")
     assert (result.attrs["status"], chain_of(result).size) == ("diverged", 50)
-
-
-@pytest.mark.compiled
-@pytest.mark.posix
-@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])
-def test_ctrl_c_saves_what_was_measured(name, interrupted, tmp_path):
-    """So do what batch systems send before they kill, and a lost connection."""
-    number = getattr(signal, name)
-    arguments = ("--size", 10, "--duration", 1e9, "--output", tmp_path / "run.nc")
-    done = interrupted("simulate", *arguments, number=number)
-    # Ctrl-C must also end a loop of a shell, which looks for the signal.
-    assert done.returncode == (-number if name == "SIGINT" else 128 + number), done.stderr
-    assert done.stderr == "crazybilliards: interrupted\n"
-    assert load(tmp_path / "run-interrupted.nc").attrs["status"] == "interrupted"
-    assert [path.name for path in tmp_path.iterdir()] == ["run-interrupted.nc"]

@@ -54,28 +54,6 @@ def test_the_settings_of_a_theory_reach_it(refused, monkeypatch):
     refused("asked for tolerance=1.0 cells=8", "theory", "--cells", 8, "--tolerance", 1)
 
 
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (["--spring", "cubic"], "spring must be"),
-        (["--size", "0"], "size must be"),
-        (["--tolerance", "0"], "tolerance must be"),
-        (["--amplitude", "0"], "no steady state"),
-        (["--cells", "1"], "cells must be"),
-        (["fluid"], "name must be one of ('equilibrium', "),
-        (["equilibrium", "--tolerance", "0.1"], "tolerance: equilibrium has no such setting"),
-        (["force_balance", "--cells", "9"], "cells: force_balance has no such setting"),
-        (["equilibrium", "--restitution", "0.9"], "restitution must be 1"),
-        (["--critical", "--restitution", "0.95"], "every size has a steady state"),
-        (["--restitution", "1.3", "--damping", "4"], "the energy grows without bound"),
-    ],
-)
-def test_theory_refuses_in_one_line(refused, arguments, message, tmp_path):
-    folder = tmp_path / "results"
-    refused(message, "theory", *arguments, "--output", str(folder))
-    assert not folder.exists()
-
-
 def test_without_a_name_it_is_the_best_theory_and_says_so(run, solved):
     done = run("theory", "--size", 30, "--restitution", 0.5)
     assert done.returncode == 0

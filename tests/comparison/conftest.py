@@ -1,0 +1,10 @@
+"""Shared by the tests of comparisons."""
+
+import matplotlib.pyplot as plt
+import pytest
+
+
+@pytest.fixture(autouse=True)
+def close_figures():
+    yield
+    plt.close("all")

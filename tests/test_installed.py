@@ -1,0 +1,240 @@
+"""The package as it is handed out, and run where users run it.
+
+The wheel is installed into an environment of its own, which borrows all other packages, and where
+nobody may write. There the command of `make run` runs in another folder: as whoever runs the tests,
+and as a user who may write nowhere but into that folder, like one of a container, a batch node or a
+service.
+"""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tarfile
+import tempfile
+import zipfile
+from email import message_from_bytes
+from importlib.metadata import version
+from pathlib import Path
+from shutil import copy, copytree, ignore_patterns
+
+import pytest
+from installation import FOLDERS, ROOT, TRY, run
+from readme_renderer import markdown
+
+import crazybilliards as cb
+
+torture = pytest.mark.torture
+PIP = (sys.executable, "-m", "pip")
+QUIET = ("--quiet", "--no-deps", "--disable-pip-version-check")
+
+
+@pytest.fixture(scope="module")
+def installed(tmp_path_factory):
+    """Build the wheel from a copy and install it; return both."""
+    source, there = tmp_path_factory.mktemp("source"), tmp_path_factory.mktemp("there")
+    for folder in FOLDERS:
+        copytree(ROOT / folder, source / folder, ignore=ignore_patterns("__pycache__"))
+    for file in ("pyproject.toml", "setup.py", "README.md", "LICENSE"):
+        copy(ROOT / file, source)
+    run(*PIP, "wheel", *QUIET, "--no-build-isolation", "--wheel-dir", there, source)
+    run(sys.executable, "-m", "venv", "--without-pip", there / "venv")
+    binaries = there / "venv" / ("Scripts" if os.name == "nt" else "bin")
+    python = binaries / "python"
+    where = "import sysconfig; print(sysconfig.get_path('purelib'))"
+    packages = Path(run(python, "-c", where).stdout.strip())
+    borrowed = [path for path in sys.path if path.endswith("-packages")]
+    (packages / "borrowed.pth").write_text("\n".join(borrowed), encoding="utf-8")
+    [wheel] = there.glob("*.whl")
+    run(*PIP, "--python", python, "install", *QUIET, "--no-index", wheel)
+    return wheel, binaries
+
+
+PACKED = ("*.py", "*.pyi", "py.typed", "*.mplstyle", "*.css", "*.js", "*.html", "*.csv")
+
+
+def test_the_wheel_holds_every_module_and_stub(installed):
+    with zipfile.ZipFile(installed[0]) as archive:
+        shipped = {name for name in archive.namelist() if not name.split("/")[0].endswith("info")}
+    wanted = {
+        (Path("crazybilliards" + name.replace(".", "/")) / path.relative_to(ROOT / folder))
+        for folder, name in FOLDERS.items()
+        for pattern in PACKED
+        for path in (ROOT / folder).rglob(pattern)
+    }
+    assert shipped == {path.as_posix() for path in wanted}
+
+
+def test_the_page_of_the_package_index_has_no_relative_link(installed):
+    """The index shows the README, and nothing beside it."""
+    with zipfile.ZipFile(installed[0]) as archive:
+        [name] = [name for name in archive.namelist() if name.endswith("/METADATA")]
+        page = markdown.render(message_from_bytes(archive.read(name)).get_payload())
+    links = re.findall(r'(?:href|src)="([^#][^"]*)"', page)
+    assert len(links) > 30
+    own = re.compile(rf"https://github\.com/[^/]+/crazybilliards/(blob|raw)/v{cb.__version__}/")
+    for link in links:
+        assert link.startswith("https://"), link
+        if own.match(link):
+            assert (ROOT / own.sub("", link).split("#")[0]).exists(), link
+    assert sum(bool(own.match(link)) for link in links) > 20
+
+
+def test_the_wheel_installed(installed, tmp_path):
+    _, binaries = installed
+    for folder in (tmp_path, ROOT):
+        file = run(binaries / "python", "-c", TRY, cwd=folder).stdout.strip()
+        assert file.startswith(str(binaries.parent))
+    for command in ((binaries / "crazybilliards",), (binaries / "python", "-m", "crazybilliards")):
+        said = run(*command, "--version", cwd=tmp_path).stdout
+        assert said == f"crazybilliards {version('crazybilliards')}\n"
+
+
+# Only this package matters here, and reading the others takes half a minute.
+MYPY = """
+[mypy]
+warn_unused_ignores = True
+disable_error_code = import-untyped, import-not-found
+[mypy-numpy.*,xarray.*,scipy.*,pandas.*,matplotlib.*,numba.*,h5py.*,dask.*,distributed.*,pde.*,skfem.*,tqdm.*]
+follow_imports = skip
+follow_imports_for_stubs = True
+"""
+TYPED = """
+import crazybilliards as cb
+from crazybilliards.kinetic import force_balance
+
+chain: cb.Chain = cb.Chain(size=3)
+run = cb.simulate(chain, seed=1)
+size: int = chain.size
+release: str = cb.__version__
+force_balance(chain)
+cb.nonsense  # type: ignore[attr-defined]
+cb.Chain(size="3")  # type: ignore[arg-type]
+cb.simulate(chain, seed="1")  # type: ignore[arg-type]
+"""
+
+
+def test_type_checkers_see_through(installed, tmp_path):
+    """``warn_unused_ignores`` makes mistakes that are not found errors."""
+    pytest.importorskip("mypy")
+    (tmp_path / "mypy.ini").write_text(MYPY)
+    (tmp_path / "user.py").write_text(TYPED)
+    python = ("--python-executable", installed[1] / "python")
+    run(sys.executable, "-m", "mypy", "--config-file", "mypy.ini", *python, "user.py", cwd=tmp_path)
+
+
+# -- where users run it ------------------------------------------------------------------------
+
+# `make run`, smaller. Kernels, a theory, pictures and a file.
+RUN = ["compare", "--size", "4", "--duration", "300", "--amplitudes", "10", "--output", "results"]
+WRITTEN = {"cases", "comparison.nc", "density.png", "displacement.png"}
+NOBODY = 12345
+# A user that no list of users knows. Such a user could not even start a Python that lies in root's
+# home, so this one may read everything.
+AS_NOBODY = [
+    *("setpriv", f"--reuid={NOBODY}", f"--regid={NOBODY}", "--clear-groups"),
+    *("--inh-caps=+dac_read_search", "--ambient-caps=+dac_read_search"),
+]
+
+
+@pytest.fixture
+def nobody():
+    """Give what starts a command as a user without rights, and a folder that is that user's."""
+    # Not tmp_path: pytest makes folders that only whoever runs the tests may enter.
+    with tempfile.TemporaryDirectory() as folder:
+        if os.getuid() != 0:
+            yield [], Path(folder)
+            return
+        os.chown(folder, NOBODY, NOBODY)
+        if subprocess.run([*AS_NOBODY, sys.executable, "-c", ""], check=False).returncode:
+            pytest.skip("cannot become another user here")
+        yield AS_NOBODY, Path(folder)
+
+
+@pytest.fixture
+def command(installed):
+    """Return the command, in an environment where nobody may write."""
+    _, binaries = installed
+    run("chmod", "-R", "a-w", binaries.parent)
+    yield binaries / "crazybilliards"
+    run("chmod", "-R", "u+w", binaries.parent)
+
+
+def nowhere(folder, **environment):
+    """Return an environment without a home or a cache folder that one may write to."""
+    kept = {name: value for name, value in os.environ.items() if not name.startswith("NUMBA")}
+    home = dict.fromkeys(("HOME", "XDG_CACHE_HOME", "NUMBA_CACHE_DIR"), "/proc/none")
+    return kept | home | {"MPLCONFIGDIR": str(folder)} | environment
+
+
+def require_written(done, folder):
+    assert {path.name for path in (folder / "results").iterdir()} == WRITTEN
+    assert "close packing" in done.stdout
+    assert "Traceback" not in done.stderr
+
+
+@torture
+@pytest.mark.skipif(not (ROOT / ".git").exists(), reason="git tells which files are tracked")
+def test_the_source_distribution_carries_every_tracked_file_and_its_tests_run(tmp_path):
+    tracked = set(run("git", "ls-files", cwd=ROOT).stdout.splitlines())
+    for name in tracked:
+        (tmp_path / "tree" / name).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(ROOT / name, tmp_path / "tree" / name)
+    build = f"import setuptools.build_meta as build; build.build_sdist({str(tmp_path)!r})"
+    run(sys.executable, "-c", build, cwd=tmp_path / "tree")
+    [archive] = tmp_path.glob("*.tar.gz")
+    with tarfile.open(archive) as content:
+        content.extractall(tmp_path, filter="data")
+    there = archive.with_name(archive.name.removesuffix(".tar.gz"))
+    carried = {str(path.relative_to(there)) for path in there.rglob("*") if path.is_file()}
+    made = {name for name in carried if "egg-info" in name} | {"PKG-INFO", "setup.cfg"}
+    assert carried - made == tracked
+    quick = ["tests/test_concordance.py", "tests/model/test_locks.py"]
+    run(sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", *quick, cwd=there)
+    run(*PIP, "wheel", *QUIET, "--no-build-isolation", "--wheel-dir", tmp_path, there)
+    assert list(tmp_path.glob("*.whl"))
+
+
+@torture
+def test_the_command_runs_in_another_folder(command, tmp_path):
+    require_written(run(command, *RUN, cwd=tmp_path), tmp_path)
+
+
+@torture
+def test_a_user_who_may_write_nowhere_else_gets_results_and_one_warning(command, nobody):
+    become, folder = nobody
+    done = run(*become, command, *RUN, cwd=folder, env=nowhere(folder))
+    require_written(done, folder)
+    warnings = [line for line in done.stderr.splitlines() if "warning" in line]
+    assert len(warnings) == 1, done.stderr
+    assert "compiled anew in every process" in warnings[0]
+
+
+@torture
+def test_workers_do_not_repeat_the_warning(command, nobody):
+    become, folder = nobody
+    (folder / "grid.toml").write_text("[grid]\nsize = [3]\n[simulate]\nduration = 100\n")
+    sweep = ["sweep", "grid.toml", "--output", "results"]
+    done = run(*become, command, *sweep, cwd=folder, env=nowhere(folder))
+    assert done.stderr.count("compiled anew in every process") == 1, done.stderr
+    assert len(list((folder / "results").iterdir())) == 1
+
+
+@torture
+def test_a_cache_on_a_full_disk_costs_no_run(command, tmp_path):
+    cache = tmp_path / "cache"
+    cache.mkdir()
+    mount = ["mount", "-t", "tmpfs", "-o", "size=64k", "tmpfs", cache]
+    if subprocess.run([*map(str, mount)], check=False, capture_output=True).returncode:
+        pytest.skip("needs to mount a file system")
+    try:
+        there = nowhere(tmp_path, NUMBA_CACHE_DIR=str(cache))
+        # A short command: every kernel is compiled anew.
+        simulate = ["simulate", "--size", "4", "--duration", "300", "--output", "run.nc"]
+        done = run(command, *simulate, cwd=tmp_path, env=there)
+    finally:
+        subprocess.run(["umount", "--lazy", str(cache)], check=True)
+    assert (tmp_path / "run.nc").stat().st_size > 1000
+    assert "Traceback" not in done.stderr
+    assert done.stderr.count("No space left on device") == 1, done.stderr
