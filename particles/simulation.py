@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from contextlib import nullcontext
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -63,8 +64,8 @@ def simulate(
     chain
         The chain, with any restitution.
     duration
-        Time measured in each replica [T]; rounded up to whole blocks of snapshots. Good values
-        are hundreds of relaxation times (:func:`relaxation_time`, 8.4 for the default chain).
+        Time measured in each replica [T]; rounded up to whole snapshots. Good values are hundreds
+        of relaxation times (:func:`relaxation_time`, 8.4 for the default chain).
         In less than some twenty of them, error bars would be too small, which a warning says.
     warmup
         Time before measuring [T]; None: 12 relaxation times, or 0 with a ``start`` and for an
@@ -126,7 +127,8 @@ def simulate(
     checkpoint
         File for the state of the run, written every ``checkpoint_interval`` seconds and at
         Ctrl-C, SIGTERM or SIGHUP. The same call again continues from there and gives the same
-        bits. A checkpoint of another run, or one that another process is using, is refused.
+        bits, also with a longer ``duration``, unless it is an ensemble. A checkpoint of another
+        run, or one that another process is using, is refused.
     progress
         Show a progress bar with the time left, if standard error is a terminal. A text stands in
         front of it, to tell runs apart.
@@ -180,7 +182,11 @@ def simulate(
         compile_kernels()
     keeper = None
     if kept is not None:
-        keeper = Checkpoint(kept, identity(run), checkpoint_interval)
+        # In an ensemble only the last replicas of each group are at hand.
+        shorter = (
+            None if run.schedule.ensemble else lambda d: _replicas(replace(run, duration=d))[0]
+        )
+        keeper = Checkpoint(kept, identity(run), checkpoint_interval, shorter)
     with nullcontext() if keeper is None else keeper.resumed(copies):
         interrupted = run_all(copies, threads, keeper, progress)
     return collect(run, copies, interrupted)

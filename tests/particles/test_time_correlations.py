@@ -99,9 +99,9 @@ def test_pairs_are_those_of_all_snapshots_however_they_come():
     run = a_run(chain, duration=200, every=1.0, particles=[2, 4], observe=observer)
     [own] = (each.prepared(run, 1) for each in run.observers)
     generator = np.random.default_rng(1)
-    snapshots, length = run.schedule.snapshots, run.schedule.snapshots_per_block
+    snapshots, length = run.schedule.snapshots, run.schedule.block
     y, v = generator.normal(size=(2, snapshots, 4))
-    first, counts = 0, np.full(run.schedule.blocks, length)
+    first, counts = 0, np.bincount(np.arange(snapshots) // length, minlength=run.schedule.blocks)
     while first < snapshots:
         block = first // length
         part = slice(first, min(first + generator.integers(1, 4), (block + 1) * length))
