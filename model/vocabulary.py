@@ -126,6 +126,7 @@ def result(
     end_time: float | None = None,
     residual: float | None = None,
     particles: ArrayLike | None = None,
+    vocabulary: Mapping[str, tuple[str, str]] | None = None,
 ) -> xr.Dataset:
     """Build a result in the common vocabulary: coordinates, units, status and provenance.
 
@@ -134,7 +135,7 @@ def result(
     chain
         The chain it belongs to.
     variables
-        ``{name: (dims, values)}``; each name, or NAME of NAME_error, stands in the vocabulary.
+        ``{name: (dims, values)}``; each name, or NAME of NAME_error, stands in a vocabulary.
     source
         ``"simulation"`` or ``"theory"``.
     method
@@ -149,6 +150,8 @@ def result(
     particles
         The particles, from 1, that variables over ``particle`` and ``contact`` are given for, a
         contact having the number of its left particle; None: all.
+    vocabulary
+        Meanings and units of names that are not in ``VOCABULARY``, such as an observer's own.
 
     Raises
     ------
@@ -175,8 +178,9 @@ def result(
             dimensions, mean = variables["mean_displacement"]
             along["mean_position"] = (dimensions, chain.anchors[shown] + np.asarray(mean))
     dataset = xr.Dataset(dict(variables), coords=along)
+    meanings = {**(vocabulary or {}), **VOCABULARY}
     for name in (*dataset.data_vars, *dataset.coords):
-        meaning, unit = VOCABULARY[str(name).removesuffix("_error")]
+        meaning, unit = meanings[str(name).removesuffix("_error")]
         if str(name).endswith("_error"):
             meaning = f"standard error of {meaning}"
         dataset[name].attrs |= described(meaning, unit)

@@ -54,7 +54,10 @@ class Observer(ABC):
     name
         Its name in ``observe``.
     gives
-        The variables that it reports. Their meanings and units are in the vocabulary.
+        The variables that it reports.
+    vocabulary
+        ``{name: (meaning, unit)}`` of its variables and coordinates, as far as they are not in
+        ``VOCABULARY`` of ``crazybilliards.model.vocabulary``. Units consist of R, M and T.
     along
         The coordinates that it adds to the result, e.g. ``("velocity_bin",)``.
     least_rods
@@ -74,6 +77,7 @@ class Observer(ABC):
 
     name: ClassVar[str]
     gives: ClassVar[tuple[str, ...]]
+    vocabulary: ClassVar[Mapping[str, tuple[str, str]]] = {}
     along: ClassVar[tuple[str, ...]] = ()
     least_rods: ClassVar[int] = 1
     single_collisions: ClassVar[bool] = False

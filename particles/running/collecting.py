@@ -54,6 +54,7 @@ def collect(run: Run, replicas: list[Replica], interrupted: bool) -> xr.Dataset:
         status="interrupted" if interrupted else "diverged" if diverged else "completed",
         end_time=end_time,
         particles=run.chosen + 1,
+        vocabulary=run.vocabulary,
         method={**run.provenance(), "duration": schedule.duration, "snapshots": int(counts.sum())},
     )
     measured.attrs |= {
