@@ -2,7 +2,6 @@
 
 import json
 import pydoc
-from typing import ClassVar
 
 import numpy as np
 import pytest
@@ -17,7 +16,7 @@ from crazybilliards.model import Chain, load, save
 from crazybilliards.model.vocabulary import VOCABULARY
 from crazybilliards.particles import simulate
 from crazybilliards.particles.observers import OBSERVERS, Observer, Velocities
-from crazybilliards.particles.observers.base import Averaged, Snapshots
+from crazybilliards.particles.observers.base import Snapshots
 from crazybilliards.particles.observers.energy import Energy
 
 
@@ -167,38 +166,6 @@ def test_an_observer_gives_what_it_declares(observer):
     common = {"particle", "normalized_particle", "mean_position", "contact", "normalized_contact"}
     assert {str(name) for name in result.coords} - common == set(observer.along)
     assert set(observer.gives) <= VOCABULARY.keys()
-
-
-def test_an_observer_brings_the_meanings_of_its_own_names(tmp_path):
-    class Fast(Averaged):
-        name = "fast"
-        gives = ("share_fast",)
-        vocabulary: ClassVar = {
-            "share_fast": ("share of the time in which |v| > W", "1"),
-            "velocity_width": ("something else", "1"),
-        }
-
-        def observe(self, snapshots):
-            fast = np.abs(snapshots.v) > Chain().free_velocity_width
-            self.sums[snapshots.block] += fast.sum(axis=0)
-
-        def report(self, counts):
-            return self.averages({"share_fast": lambda share: share}, counts, "particle")
-
-    before = dict(VOCABULARY)
-    how = {"duration": 400, "observe": [Fast(), "widths"], "progress": False}
-    run = simulate(Chain(size=2), **how)
-    save(run, tmp_path / "run.nc")
-    xr.testing.assert_identical(load(tmp_path / "run.nc"), run)
-    assert run.share_fast.attrs == {"long_name": Fast.vocabulary["share_fast"][0], "units": "1"}
-    assert run.share_fast_error.attrs["long_name"].startswith("standard error of share of the time")
-    assert run.velocity_width.attrs["long_name"] == VOCABULARY["velocity_width"][0]
-    assert dict(VOCABULARY) == before
-    limit = cb.simulate_limit(Chain(size=2), accuracy=0.1, observe=how["observe"], progress=False)
-    assert limit.share_fast.attrs == run.share_fast.attrs
-    Fast.vocabulary = {}
-    with pytest.raises(ValueError, match="'fast' gives 'share_fast', which has no meaning and uni"):
-        simulate(Chain(size=2), **how)
 
 
 def test_an_observer_is_taken_as_an_object_with_parameters():
