@@ -6,6 +6,7 @@ import os
 from collections.abc import Sequence
 from contextlib import nullcontext
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -183,9 +184,7 @@ def simulate(
     keeper = None
     if kept is not None:
         # In an ensemble only the last replicas of each group are at hand.
-        shorter = (
-            None if run.schedule.ensemble else lambda d: _replicas(replace(run, duration=d))[0]
-        )
+        shorter = None if run.schedule.ensemble else partial(_observers, run)
         keeper = Checkpoint(kept, identity(run), checkpoint_interval, shorter)
     with nullcontext() if keeper is None else keeper.resumed(copies):
         interrupted = run_all(copies, threads, keeper, progress)
@@ -210,6 +209,12 @@ def _stays_at_rest(run: Run) -> bool:
         v.any() or (chain.stiffness > 0 and np.abs(y - chain.reduced_anchors).max() > tolerance)
         for y, v in run.starts
     )
+
+
+def _observers(run: Run, duration: float) -> list[Observer]:
+    """Return the observers of a replica of the same run with another duration."""
+    other = replace(run, duration=duration)
+    return [observer.prepared(other, copies=1) for observer in other.observers]
 
 
 def _replicas(run: Run) -> list[Replica]:

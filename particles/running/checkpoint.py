@@ -30,6 +30,7 @@ from crazybilliards.model.fingerprint import room_fingerprint
 from crazybilliards.model.locks import locked
 from crazybilliards.model.process import interrupts_held_back
 from crazybilliards.model.storage import make_folder, read_sealed, write_sealed
+from crazybilliards.particles.observers.base import Observer
 from crazybilliards.particles.run import Run
 from crazybilliards.particles.running.replica import Replica
 
@@ -40,7 +41,7 @@ _SOURCE = room_fingerprint("model", "particles")
 class Checkpoint:
     """The checkpoint file of one run, which continues only if ``identity`` agrees.
 
-    ``shorter`` returns a replica of the same run with a shorter duration, not yet begun. Without it
+    ``shorter`` returns the observers of the same run with a shorter duration, prepared. Without it
     the run cannot be longer than the one in the file.
     """
 
@@ -49,7 +50,7 @@ class Checkpoint:
         path: Path,
         identity: Mapping[str, Any],
         interval: float,
-        shorter: Callable[[float], Replica] | None = None,
+        shorter: Callable[[float], Sequence[Observer]] | None = None,
     ) -> None:
         self.path, self.shorter = path, shorter
         self.identity = json.loads(json.dumps(identity))  # as it will be read back

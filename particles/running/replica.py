@@ -95,12 +95,12 @@ class Replica:
             for name in observer.state():
                 restore(observer, name, state[f"observer {number} {name}"])
 
-    def require_continuing(self, shorter: Replica) -> None:
-        """Raise unless this run, not yet begun, continues what a ``shorter`` one keeps.
+    def require_continuing(self, shorter: Sequence[Observer]) -> None:
+        """Raise unless the observers, which have seen nothing, continue those of a shorter run.
 
-        What they begin with may differ in the number of places for snapshots, and in nothing else.
+        What both begin with may differ in the number of places for snapshots, and in nothing else.
         """
-        for own, other in zip(self.observers, shorter.observers, strict=True):
+        for own, other in zip(self.observers, shorter, strict=True):
             for name, value in other.state().items():
                 place = leading(np.asarray(own.state()[name]), np.asarray(value))
                 if place is None or place.tobytes() != np.asarray(value).tobytes():
