@@ -145,7 +145,7 @@ def make_schedule(
     if replicas >= _BLOCKS:
         blocks = 1
     else:
-        block = max(math.ceil(_BLOCK * correlation_time(chain) / (stride * step)), 1)
+        block = max(math.ceil(_BLOCK * correlation_time(chain) / (stride * step) - 1e-9), 1)
     return Schedule(step, warmup_steps, stride, blocks, math.ceil(snapshots - 1e-9), block)
 
 
