@@ -141,9 +141,9 @@ class Checkpoint:
             if found["duration"] < here["duration"]:
                 return
             raise ValueError(
-                f"{self.path}: a checkpoint of a run with duration={found['duration']:.10g}, "
-                f"longer than {here['duration']:.10g}: a run can be made longer, and not shorter; "
-                "remove the file to start anew"
+                f"{self.path}: a checkpoint of another run: duration is {found['duration']:.10g} "
+                f"there and {here['duration']:.10g} here, and a run can be made longer, but not "
+                "shorter; remove the file to start anew"
             )
         if differing:
             all_of_them = ", ".join(

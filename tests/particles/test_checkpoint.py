@@ -69,7 +69,11 @@ def test_the_checkpoint_of_another_run_is_refused_with_the_reason(tmp_path):
         (Chain(size=11), {}, "size is 10 there and 11 here"),
         (Chain(size=10, gap=1), {}, "gap is 0.0 there and 1.0 here"),
         (Chain(size=10), {"seed": 5}, "seed is 0 there and 5 here"),
-        (Chain(size=10), {"duration": 300}, "duration=500.* a run can be made longer, and not sh"),
+        (
+            Chain(size=10),
+            {"duration": 300},
+            "duration is 5.* here, and a run can be made longer, but not shorter",
+        ),
         (Chain(size=10), {"duration": 900, "every": 2.0}, "every is 1.0.* there and 2.0 here"),
         (Chain(size=10), {"average": "ensemble"}, "average is time there and ensemble here"),
         (Chain(size=10), {"observe": "widths"}, "observe is"),

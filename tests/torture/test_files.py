@@ -213,7 +213,7 @@ def test_the_wrong_version_of_a_checkpoint_or_a_case_is_refused(files, tmp_path,
 @pytest.mark.parametrize(
     "changed",
     [
-        {"duration": 200.0},
+        {"duration": 50.0},
         {"warmup": 2.0},
         {"seed": 1},
         {"replicas": 2},
