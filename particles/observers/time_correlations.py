@@ -137,48 +137,45 @@ class TimeCorrelations(Averaged):
         waves = dct(values, axis=1, norm="ortho")[:, : self.waves]
         return np.concatenate([values[:, self.chosen], waves], axis=1)
 
+    def _means(self, average: Array, rows: slice) -> Array:
+        """Return means (times or lags, series); NaN where there are no terms."""
+        sums, numbers = average[..., rows, :-1], average[..., rows, -1:]
+        means = np.divide(sums, numbers, where=numbers > 0, out=np.full_like(sums, np.nan))
+        return means[:, 0] if self.schedule.ensemble else means
+
+    def _velocities(self, average: Array) -> Array:
+        return self._means(average, slice(self.last + 1))
+
+    def _increments(self, average: Array) -> Array:
+        return self._means(average, slice(self.last + 1, -2))
+
+    def _displacements(self, average: Array) -> Array:
+        mean, square = (self._means(average, row) for row in (slice(-2, -1), slice(-1, None)))
+        return (square[:1] + square - self._increments(average)) / 2 - mean[:1] * mean
+
+    def _spectrum(self, average: Array) -> Array:
+        from scipy.fft import dct
+
+        return np.asarray(self._interval * dct(self._velocities(average), type=1, axis=0))
+
     def report(self, counts: Integers) -> Variables:
         """Return all quantities and their standard errors."""
-        ensemble, first = self.schedule.ensemble, self.last + 1
-
-        def terms(average: Array, rows: slice) -> Array:
-            """Return means (times or lags, series)."""
-            sums, numbers = average[..., rows, :-1], average[..., rows, -1:]
-            means = np.divide(sums, numbers, where=numbers > 0, out=np.full_like(sums, np.nan))
-            return means[:, 0] if ensemble else means
-
-        def displacements(average: Array) -> Array:
-            mean, square = terms(average, slice(-2, -1)), terms(average, slice(-1, None))
-            moved = terms(average, slice(first, -2))
-            return (square[:1] + square - moved) / 2 - mean[:1] * mean
-
-        def spectrum(average: Array) -> Array:
-            from scipy.fft import dct
-
-            return np.asarray(self._interval * dct(terms(average, slice(first)), type=1, axis=0))
-
-        quantities = (
-            lambda average: terms(average, slice(first)),
-            displacements,
-            lambda average: terms(average, slice(first, -2)),
-            spectrum,
-        )
+        ensemble, rods = self.schedule.ensemble, self.chosen.size
+        quantities = self._velocities, self._displacements, self._increments, self._spectrum
         kinds = dict(zip(_QUANTITIES, quantities, strict=True))
         if ensemble:
             del kinds["velocity_spectrum"]
         variables: Variables = {}
         for name, (_, found) in self.averages(kinds, counts).items():
-            values, rods = np.asarray(found), self.chosen.size
-            own = {"": values[:, :rods], "wave_": values[:, rods:]}
-            along = "frequency" if "spectrum" in name else "lag"
-            for of, over in (("", "particle"), ("wave_", "wave")):
-                dims = ("time", over) if ensemble else (over, along)
-                variables[of + name] = (dims, own[of] if ensemble else own[of].T)
+            values = np.asarray(found)
+            along = "time" if ensemble else "frequency" if "spectrum" in name else "lag"
+            own = {"particle": ("", values[:, :rods]), "wave": ("wave_", values[:, rods:])}
+            for over, (of, part) in own.items():
+                variables[of + name] = (
+                    ((along, over), part) if ensemble else ((over, along), part.T)
+                )
             # The first wave is the sum of all rods over the root of their number.
-            variables["centre_" + name] = (
-                ("time",) if ensemble else (along,),
-                values[:, rods] / self.size,
-            )
+            variables["centre_" + name] = ((along,), values[:, rods] / self.size)
         return variables
 
     @property
