@@ -16,6 +16,9 @@ _ABSCISSAE = {
     "time": "time",
     "contact": "normalized_contact",
     "mode": "mode",
+    "wave": "wave",
+    "lag": "lag",
+    "frequency": "frequency",
     "separation": "separation",
     "velocity": "velocity",
     "velocity_bin": "velocity_bin",
@@ -42,6 +45,9 @@ _LABELS = {
     "velocity": "velocity $v$",
     "velocity_bin": "velocity $v$",
     "mode": "mode $q$",
+    "wave": "wave $q$",
+    "lag": "lag $t$",
+    "frequency": r"angular frequency $\omega$",
     "separation": "separation $r$",
     "mean_position": r"mean position $\langle x_i\rangle$",
     "normalized_particle": "normalized particle $i_n$",
@@ -75,7 +81,7 @@ def find_curve(label: str, dataset: xr.Dataset, quantity: str, along: str) -> Cu
     abscissae = _ABSCISSAE | {"particle": along}
     if len(values.dims) != 1 or values.dims[0] not in abscissae:
         message = f"{label}: {quantity} is over ({', '.join(map(str, values.dims))})"
-        for name in ("time", "particle"):
+        for name in ("time", "particle", "wave"):
             rest = set(values.dims) - {name}
             if len(rest) == 1 < len(values.dims) and rest <= abscissae.keys():
                 raise ValueError(f"{message}; choose a {name}: .isel({name}=...)")

@@ -31,7 +31,7 @@ class Deviation:
     maximum_in_errors, rms_in_errors
         The same with each difference divided by its standard error; None if neither result has
         errors. If the two agree they are about 3 to 4.5 and 1, for 10 to 100 rods and the errors
-        from 64 blocks of a long run. A short run has fewer blocks and larger maxima.
+        from 32 to 64 blocks of a long run. A short run has fewer blocks and larger maxima.
     """
 
     maximum: float

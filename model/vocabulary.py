@@ -58,6 +58,18 @@ VOCABULARY = {
     "gap_covariance": ("covariance of gaps <g_i g_i+r> - <g_i><g_i+r>", "R^2"),
     "mean_gap": ("mean free room between neighbours <g_i>", "R"),
     "mode_velocity_variance": ("mean square velocity of a mode <|v_q|^2>", "R^2/T^2"),
+    "velocity_autocorrelation": ("velocity autocorrelation <v_i(0) v_i(t)>", "R^2/T^2"),
+    "displacement_autocorrelation": ("displacement autocorrelation <d_i(0) d_i(t)>", "R^2"),
+    "mean_squared_displacement": ("mean squared displacement <(x_i(t) - x_i(0))^2>", "R^2"),
+    "velocity_spectrum": ("spectrum of the velocity v_i", "R^2/T"),
+    "wave_velocity_autocorrelation": ("velocity autocorrelation of a wave", "R^2/T^2"),
+    "wave_displacement_autocorrelation": ("displacement autocorrelation of a wave", "R^2"),
+    "wave_mean_squared_displacement": ("mean squared displacement of a wave", "R^2"),
+    "wave_velocity_spectrum": ("spectrum of the velocity of a wave", "R^2/T"),
+    "centre_velocity_autocorrelation": ("velocity autocorrelation of the centre", "R^2/T^2"),
+    "centre_displacement_autocorrelation": ("displacement autocorrelation of the centre", "R^2"),
+    "centre_mean_squared_displacement": ("mean squared displacement of the centre", "R^2"),
+    "centre_velocity_spectrum": ("spectrum of the velocity of the centre", "R^2/T"),
     "rods": ("number of rods", "1"),
     "centre": ("mean position of all rods", "R"),
     "cloud_width": ("standard deviation of y over the rods", "R"),
@@ -73,6 +85,9 @@ VOCABULARY = {
     "contact": ("contact of particle i with i + 1", "1"),
     "normalized_contact": ("normalized particle i_n half way between i and i + 1", "1"),
     "mode": ("mode q", "1"),
+    "wave": ("wave cos(pi q (i - 1/2)/L) along the chain q", "1"),
+    "lag": ("time between two snapshots t", "T"),
+    "frequency": ("angular frequency w", "1/T"),
     "separation": ("separation r of two particles or contacts", "1"),
     "mean_position": ("mean position <x_i>", "R"),
     "normalized_particle": ("normalized particle i_n", "1"),
@@ -111,6 +126,7 @@ def result(
     end_time: float | None = None,
     residual: float | None = None,
     particles: ArrayLike | None = None,
+    vocabulary: Mapping[str, tuple[str, str]] | None = None,
 ) -> xr.Dataset:
     """Build a result in the common vocabulary: coordinates, units, status and provenance.
 
@@ -119,7 +135,7 @@ def result(
     chain
         The chain it belongs to.
     variables
-        ``{name: (dims, values)}``; each name, or NAME of NAME_error, stands in the vocabulary.
+        ``{name: (dims, values)}``; each name, or NAME of NAME_error, stands in a vocabulary.
     source
         ``"simulation"`` or ``"theory"``.
     method
@@ -134,6 +150,8 @@ def result(
     particles
         The particles, from 1, that variables over ``particle`` and ``contact`` are given for, a
         contact having the number of its left particle; None: all.
+    vocabulary
+        Meanings and units of names that are not in ``VOCABULARY``, such as an observer's own.
 
     Raises
     ------
@@ -160,8 +178,9 @@ def result(
             dimensions, mean = variables["mean_displacement"]
             along["mean_position"] = (dimensions, chain.anchors[shown] + np.asarray(mean))
     dataset = xr.Dataset(dict(variables), coords=along)
+    meanings = {**(vocabulary or {}), **VOCABULARY}
     for name in (*dataset.data_vars, *dataset.coords):
-        meaning, unit = VOCABULARY[str(name).removesuffix("_error")]
+        meaning, unit = meanings[str(name).removesuffix("_error")]
         if str(name).endswith("_error"):
             meaning = f"standard error of {meaning}"
         dataset[name].attrs |= described(meaning, unit)

@@ -9,6 +9,7 @@ from .observers.energy import Energy as Energy
 from .observers.impacts import Impacts as Impacts
 from .observers.modes import Modes as Modes
 from .observers.raw import Raw as Raw
+from .observers.time_correlations import TimeCorrelations as TimeCorrelations
 from .observers.velocities import Velocities as Velocities
 from .observers.widths import Widths as Widths
 from .scales import relaxation_time as relaxation_time

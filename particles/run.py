@@ -191,6 +191,11 @@ class Run:
             counted=self.counted,
         )
 
+    @property
+    def vocabulary(self) -> dict[str, tuple[str, str]]:
+        """Meanings and units that the observers bring."""
+        return {name: said for each in self.observers for name, said in each.vocabulary.items()}
+
     def provenance(self) -> dict[str, Any]:
         """Return everything except the chain that determines the numbers, in a form for JSON."""
         return {
@@ -224,10 +229,10 @@ def _check_observers(run: Run) -> None:
                 "method='event-driven' sees"
             )
         for name in (*observer.along, *observer.gives):
-            if name.removesuffix("_error") not in VOCABULARY:
+            if name.removesuffix("_error") not in {**observer.vocabulary, **VOCABULARY}:
                 raise ValueError(
-                    f"observe: {observer.name!r} gives {name!r}, which has no entry, meaning and "
-                    "unit, in VOCABULARY of crazybilliards.model.vocabulary"
+                    f"observe: {observer.name!r} gives {name!r}, which has no meaning and unit: "
+                    f"vocabulary = {{{name!r}: (meaning, unit)}} in its class says them"
                 )
         # The times of an ensemble are the same for all observers.
         own = set(observer.along) - ({"time"} if run.average == "ensemble" else set())

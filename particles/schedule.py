@@ -5,8 +5,10 @@
   snapshots.
 * warm-up: 12 relaxation times of the slowest mode, so that the start has decayed to exp(-12). There
   is none with a given start or for an ensemble, whose time begins with the start.
-* blocks: 64 in all, or more for as many in each replica. They are fewer, but at least 10, where
-  they would be shorter than 4 correlation times, because their means must not be correlated.
+* blocks: a block lasts at least 4 correlation times, because the means of blocks must not be
+  correlated. When there are 64 over all replicas, neighbours are added up in pairs, and the next
+  blocks are twice as long. So a long run has 32 to 64 blocks, and what it has measured at a time
+  does not depend on how long it goes on. From 64 replicas on each is one block.
 * snapshots: every 10 steps; for an ensemble every hundredth of the duration. With exact motion they
   are as far apart as 10 steps would be.
 """
@@ -28,6 +30,7 @@ from crazybilliards.particles.scales import correlation_time, default_time_step,
 _STRIDE = 10
 _RELAXATIONS = 12
 _BLOCKS, _FEWEST_BLOCKS = 64, 10
+_ENDLESS = 2**62  # snapshots
 # Of a block in correlation times. The standard error of a mean is then too small by an eighth for
 # exponential correlations, which are the worst case.
 _BLOCK = 4.0
@@ -44,27 +47,24 @@ Average = Literal["time", "ensemble"]
 
 @dataclass(frozen=True)
 class Schedule:
-    """A run in whole numbers: steps of warm-up, then blocks of snapshots ``stride`` steps apart.
+    """A run in whole numbers: steps of warm-up, then snapshots ``stride`` steps apart.
 
-    In an ensemble every block is one snapshot, at one output time, the first after the warm-up.
+    They are counted in up to ``blocks`` blocks, the first ones of ``block`` snapshots each. In an
+    ensemble every block is one snapshot, at one output time, the first after the warm-up.
     """
 
     time_step: float
     warmup_steps: int
     stride: int
     blocks: int
-    snapshots_per_block: int
+    snapshots: int  # of each replica
+    block: int = 1
     ensemble: bool = False
 
     @property
     def warmup(self) -> float:
         """Duration of the warm-up."""
         return self.warmup_steps * self.time_step
-
-    @property
-    def snapshots(self) -> int:
-        """Snapshots of each replica."""
-        return self.blocks * self.snapshots_per_block
 
     @property
     def steps(self) -> int:
@@ -106,8 +106,8 @@ def make_schedule(
 ) -> Schedule:
     """Check the given times, choose the others, and return whole numbers of steps.
 
-    The measured duration is rounded up so that the blocks are equally long. ``every``, the time
-    between snapshots, is kept exactly, and the step becomes a whole fraction of it. An ``every``
+    The measured duration is rounded up to whole snapshots. ``every``, the time between snapshots,
+    is kept exactly, and the step becomes a whole fraction of it. An ``every``
     that makes it over a thousand times as short and the run over a million steps long is refused.
     ``exact``: every step is right, whatever its length.
     """
@@ -133,23 +133,20 @@ def make_schedule(
         if snapshots < 1 - 1e-9:
             raise ValueError(f"every must be at most the duration {duration:g}, got {every:g}")
         times = math.ceil(snapshots - 1e-9) + 1
-        return Schedule(step, warmup_steps, stride, times, 1, ensemble=True)
-    blocks = _number_of_blocks(chain, duration, replicas)
-    if snapshots < blocks:
-        least = blocks * stride * step
+        return Schedule(step, warmup_steps, stride, times, times, ensemble=True)
+    fewest = math.ceil(_FEWEST_BLOCKS / replicas)
+    if snapshots < fewest * (1 - 1e-9):
+        least = fewest * stride * step
         raise ValueError(
-            f"duration must be at least {least:.4g} (one snapshot in each of {blocks} blocks), "
-            f"got {duration:g}; average='ensemble' takes any duration"
+            f"duration must be at least {least:.4g} ({fewest} snapshots), got {duration:g}; "
+            "average='ensemble' takes any duration"
         )
-    # The small tolerance keeps a duration that is a whole number of blocks but for rounding.
-    return Schedule(step, warmup_steps, stride, blocks, math.ceil(snapshots / blocks - 1e-9))
-
-
-def _number_of_blocks(chain: Chain, duration: float, replicas: int) -> int:
-    """Return the blocks of each replica: as many as their errors can use, and long enough."""
-    fewest, most = math.ceil(_FEWEST_BLOCKS / replicas), math.ceil(_BLOCKS / replicas)
-    block = _BLOCK * correlation_time(chain)
-    return most if block * most <= duration else max(int(duration / block), fewest)
+    blocks, block = 2 * math.ceil(_BLOCKS / replicas / 2), _ENDLESS
+    if replicas >= _BLOCKS:
+        blocks = 1
+    else:
+        block = max(math.ceil(_BLOCK * correlation_time(chain) / (stride * step) - 1e-9), 1)
+    return Schedule(step, warmup_steps, stride, blocks, math.ceil(snapshots - 1e-9), block)
 
 
 def too_short(chain: Chain, duration: float, warmup: float, replicas: int, at_rest: bool) -> str:

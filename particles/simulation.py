@@ -5,6 +5,8 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from contextlib import nullcontext
+from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -62,8 +64,8 @@ def simulate(
     chain
         The chain, with any restitution.
     duration
-        Time measured in each replica [T]; rounded up to whole blocks of snapshots. Good values
-        are hundreds of relaxation times (:func:`relaxation_time`, 8.4 for the default chain).
+        Time measured in each replica [T]; rounded up to whole snapshots. Good values are hundreds
+        of relaxation times (:func:`relaxation_time`, 8.4 for the default chain).
         In less than some twenty of them, error bars would be too small, which a warning says.
     warmup
         Time before measuring [T]; None: 12 relaxation times, or 0 with a ``start`` and for an
@@ -94,9 +96,11 @@ def simulate(
         ``"density"``, ``"velocities"`` (velocity_density,
         velocity_skewness, velocity_kurtosis), ``"energy"`` (kinetic_energy in time),
         ``"covariances"`` (velocity_covariance, gap_covariance, mean_gap, neighbour_covariance,
-        relative_temperature), ``"modes"`` (mode_velocity_variance), ``"collisions"``
-        (collision_rate), ``"impacts"`` (contact_force, contact_loss, contact_temperature,
-        rebound_temperature), ``"avalanches"`` (avalanche_count),
+        relative_temperature), ``"modes"`` (mode_velocity_variance),
+        ``"time-correlations"`` (velocity_autocorrelation, displacement_autocorrelation,
+        mean_squared_displacement, velocity_spectrum, each also of waves and of the centre),
+        ``"collisions"`` (collision_rate), ``"impacts"`` (contact_force, contact_loss,
+        contact_temperature, rebound_temperature), ``"avalanches"`` (avalanche_count),
         ``"triggered-collisions"`` (triggered_count) and ``"snapshots"``
         (position and velocity as they are). Observers can also be given as objects,
         ``cb.Velocities(bins=801)`` or your own.
@@ -121,7 +125,8 @@ def simulate(
     checkpoint
         File for the state of the run, written every ``checkpoint_interval`` seconds and at
         Ctrl-C, SIGTERM or SIGHUP. The same call again continues from there and gives the same
-        bits. A checkpoint of another run, or one that another process is using, is refused.
+        bits, also with a longer ``duration``, unless it is an ensemble. A checkpoint of another
+        run, or one that another process is using, is refused.
     progress
         Show a progress bar with the time left, on a terminal or in a notebook. A text stands in
         front of it, to tell runs apart.
@@ -187,7 +192,9 @@ def simulate(
         compile_kernels()
     keeper = None
     if kept is not None:
-        keeper = Checkpoint(kept, identity(run), checkpoint_interval)
+        # In an ensemble only the last replicas of each group are at hand.
+        shorter = None if run.schedule.ensemble else partial(_observers, run)
+        keeper = Checkpoint(kept, identity(run), checkpoint_interval, shorter)
     with nullcontext() if keeper is None else keeper.resumed(copies):
         interrupted = run_all(copies, threads, keeper, progress)
     return collect(run, copies, interrupted)
@@ -211,6 +218,12 @@ def _stays_at_rest(run: Run) -> bool:
         v.any() or (chain.stiffness > 0 and np.abs(y - chain.reduced_anchors).max() > tolerance)
         for y, v in run.starts
     )
+
+
+def _observers(run: Run, duration: float) -> list[Observer]:
+    """Return the observers of a replica of the same run with another duration."""
+    other = replace(run, duration=duration)
+    return [observer.prepared(other, copies=1) for observer in other.observers]
 
 
 def _replicas(run: Run) -> list[Replica]:

@@ -92,7 +92,8 @@ def _states(start: xr.Dataset) -> list[Array]:
     if not set(names) <= set(found):
         raise ValueError(
             "start must be a result with position and velocity, which given_start(chain, position) "
-            f"and equilibrium_states(chain, replicas) return, got {shown(found or start)}"
+            f"and equilibrium_states(chain, replicas) return, got {shown(found or start)}; "
+            "a run is made longer by its checkpoint"
         )
     for name in names:
         dims = start[name].dims

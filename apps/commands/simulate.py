@@ -43,7 +43,8 @@ def command(
         str,
         typer.Option(
             help="What to measure, separated by commas: widths, density, velocities, energy, "
-            "covariances, modes, collisions, impacts, avalanches, triggered-collisions, snapshots."
+            "covariances, modes, time-correlations, collisions, impacts, avalanches, "
+            "triggered-collisions, snapshots."
         ),
     ] = "widths,density",
     duration: Annotated[

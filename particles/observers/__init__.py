@@ -19,6 +19,7 @@ from crazybilliards.particles.observers.energy import Energy
 from crazybilliards.particles.observers.impacts import Impacts
 from crazybilliards.particles.observers.modes import Modes
 from crazybilliards.particles.observers.raw import Raw
+from crazybilliards.particles.observers.time_correlations import TimeCorrelations
 from crazybilliards.particles.observers.velocities import Velocities
 from crazybilliards.particles.observers.widths import Widths
 
@@ -31,6 +32,7 @@ OBSERVERS: dict[str, type[Observer]] = {
         Energy,
         Covariances,
         Modes,
+        TimeCorrelations,
         Collisions,
         Impacts,
         Avalanches,

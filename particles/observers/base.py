@@ -54,7 +54,10 @@ class Observer(ABC):
     name
         Its name in ``observe``.
     gives
-        The variables that it reports. Their meanings and units are in the vocabulary.
+        The variables that it reports.
+    vocabulary
+        ``{name: (meaning, unit)}`` of its variables and coordinates, as far as they are not in
+        ``VOCABULARY`` of ``crazybilliards.model.vocabulary``. Units consist of R, M and T.
     along
         The coordinates that it adds to the result, e.g. ``("velocity_bin",)``.
     least_rods
@@ -76,6 +79,7 @@ class Observer(ABC):
 
     name: ClassVar[str]
     gives: ClassVar[tuple[str, ...]]
+    vocabulary: ClassVar[Mapping[str, tuple[str, str]]] = {}
     along: ClassVar[tuple[str, ...]] = ()
     least_rods: ClassVar[int] = 1
     single_collisions: ClassVar[bool] = False
@@ -140,6 +144,9 @@ class Observer(ABC):
     def observe(self, snapshots: Snapshots) -> None:
         """Take some snapshots."""
 
+    def merge(self) -> None:  # noqa: B027
+        """Add up neighbouring blocks in pairs, because all are full; here there are none."""
+
     @abstractmethod
     def join(self, others: Sequence[Self]) -> None:
         """Append the measurements of other replicas or groups."""
@@ -183,6 +190,10 @@ class Averaged(Observer):
         self.schedule = run.schedule
         self.sums = np.zeros((run.schedule.blocks, *self.shape(run)))
 
+    def merge(self) -> None:
+        """Add up the sums of neighbouring blocks."""
+        merge_pairs(self.sums)
+
     def join(self, others: Sequence[Self]) -> None:
         """Append the blocks of other replicas, or the groups."""
         parts = [self.sums, *(other.sums for other in others)]
@@ -222,12 +233,30 @@ def _is_constant(value: object) -> bool:
     return isinstance(value, _CONSTANT)
 
 
+def merge_pairs(blocks: NDArray[Any]) -> None:
+    """Add up neighbours along the first axis in place; the second half is then free, and 0."""
+    half = len(blocks) // 2
+    blocks[:half] = blocks[0::2] + blocks[1::2]
+    blocks[half:] = 0
+
+
 def restore(owner: Any, name: str, value: NDArray[Any]) -> None:
-    """Set an attribute to a restored value; an array stays an array, a number a number."""
+    """Set an attribute to a restored value; an array stays an array, a number a number.
+
+    The array of a longer run may be longer, as that of all snapshots is. Its rest stays as it is.
+    """
     current = getattr(owner, name)
     if isinstance(current, np.ndarray):
-        if current.shape != value.shape or current.dtype != value.dtype:
+        place = leading(current, value)
+        if place is None or current.dtype != value.dtype:
             raise ValueError(f"the checkpoint's {name} does not fit this run")
-        current[...] = value  # in place: kernels write into the same array
+        place[...] = value  # in place: kernels write into the same array
     else:
         setattr(owner, name, type(current)(value))
+
+
+def leading(longer: NDArray[Any], shorter: NDArray[Any]) -> NDArray[Any] | None:
+    """Return the first places of ``longer``, of the shape of ``shorter``; None if it has not."""
+    if longer.ndim != shorter.ndim or any(np.less(longer.shape, shorter.shape)):
+        return None
+    return longer[tuple(slice(size) for size in shorter.shape)]

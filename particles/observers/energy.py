@@ -8,7 +8,14 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from crazybilliards.particles.observers.base import Array, Integers, Observer, Snapshots, Variables
+from crazybilliards.particles.observers.base import (
+    Array,
+    Integers,
+    Observer,
+    Snapshots,
+    Variables,
+    merge_pairs,
+)
 from crazybilliards.particles.observers.error_bars import jackknife
 from crazybilliards.particles.run import Run
 
@@ -18,7 +25,8 @@ _MOST_TIMES = 1000
 class Energy(Observer):
     """kinetic_energy: sum over the rods of m v^2/2 against time, averaged over the replicas.
 
-    Successive snapshots are averaged so that at most 1000 times are kept. An ensemble keeps all
+    Of 2, 4, 8, ... successive snapshots the average is kept, so that there are at most 1000 times.
+    An ensemble keeps all
     times, and so does a run that observes the snapshots too. With two or more replicas
     kinetic_energy_error is the standard error of their mean. Times that not every replica reached
     are left out, or NaN beside snapshots.
@@ -31,10 +39,9 @@ class Energy(Observer):
 
     def prepare(self, run: Run, copies: int) -> None:
         self.schedule = run.schedule
-        self.every = self._keeps_every(run)
-        self.together = 1 if self.every else -(-run.schedule.snapshots // _MOST_TIMES)
+        self.every, self.together = self._keeps_every(run), 1
         self.mass = run.chain.mass
-        times = -(-run.schedule.snapshots // self.together)
+        times = run.schedule.snapshots if self.every else _MOST_TIMES
         self.sums = np.zeros((1, times))
         self.counts = np.zeros((1, times), dtype=np.int64)
 
@@ -43,6 +50,10 @@ class Energy(Observer):
 
     def observe(self, snapshots: Snapshots) -> None:
         energies = self.mass / 2 * np.einsum("sp,sp->s", snapshots.v, snapshots.v)
+        while snapshots.first + energies.size > self.sums.shape[1] * self.together:
+            merge_pairs(self.sums[0])
+            merge_pairs(self.counts[0])
+            self.together *= 2
         place = (snapshots.first + np.arange(energies.size)) // self.together
         np.add.at(self.sums[0], place, energies)
         np.add.at(self.counts[0], place, 1)

@@ -27,6 +27,9 @@ def jackknife(
     that shape and further dimensions behind, on which ``function`` works. Blocks without snapshots
     are left out. With fewer than two blocks the error is unknown, and infinity is returned.
     """
+    begun = counts.reshape(len(counts), -1).any(axis=1)
+    if not begun.all():
+        sums, counts = sums[begun], counts[begun]
     total, number = sums.sum(axis=0), counts.sum(axis=0)
     value = function(total / _behind(number, total.ndim))
     if len(sums) < 2:

@@ -6,6 +6,10 @@ fingerprint of the source code. Without the fingerprint an edited kernel would c
 The file is written atomically, carries a checksum, and is used by one process at a time. Replicas
 are saved between two chunks. The boundaries of chunks do not depend on the time of saving, so a
 resumed run gives the same bits as an undisturbed one.
+
+The state does not depend on the duration. So the checkpoint of a run, finished or not, is also that
+of every longer one. Only a duration that ends within a chunk cuts it short. The file then holds the
+state before this chunk, and the longer run takes it as a whole.
 """
 
 from __future__ import annotations
@@ -14,7 +18,7 @@ import io
 import json
 import time
 import warnings
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from importlib.metadata import version
 from pathlib import Path
@@ -26,6 +30,7 @@ from crazybilliards.model.fingerprint import room_fingerprint
 from crazybilliards.model.locks import locked
 from crazybilliards.model.process import interrupts_held_back
 from crazybilliards.model.storage import make_folder, read_sealed, write_sealed
+from crazybilliards.particles.observers.base import Observer
 from crazybilliards.particles.run import Run
 from crazybilliards.particles.running.replica import Replica
 
@@ -34,10 +39,20 @@ _SOURCE = room_fingerprint("model", "particles")
 
 
 class Checkpoint:
-    """The checkpoint file of one run, which continues only if ``identity`` agrees."""
+    """The checkpoint file of one run, which continues only if ``identity`` agrees.
 
-    def __init__(self, path: Path, identity: Mapping[str, Any], interval: float) -> None:
-        self.path = path
+    ``shorter`` returns the observers of the same run with a shorter duration, prepared. Without it
+    the run cannot be longer than the one in the file.
+    """
+
+    def __init__(
+        self,
+        path: Path,
+        identity: Mapping[str, Any],
+        interval: float,
+        shorter: Callable[[float], Sequence[Observer]] | None = None,
+    ) -> None:
+        self.path, self.shorter = path, shorter
         self.identity = json.loads(json.dumps(identity))  # as it will be read back
         self.interval = interval
         self.saved = time.monotonic()
@@ -101,6 +116,8 @@ class Checkpoint:
         except Exception as error:
             raise ValueError(f"{self.path}: not a checkpoint") from error
         self._require_same_run(found)
+        if self.shorter is not None and found["duration"] != self.identity["duration"]:
+            replicas[0].require_continuing(self.shorter(found["duration"]))
         states: dict[str, dict[str, np.ndarray]] = {}
         for name, value in arrays.items():
             number, _, own = name.partition("/")
@@ -112,28 +129,44 @@ class Checkpoint:
             raise ValueError(f"{self.path}: a checkpoint without a part of the run") from error
 
     def _require_same_run(self, found: Mapping[str, Any]) -> None:
-        for name, wanted in self.identity.items():
-            if found.get(name) == wanted:
-                continue
-            if name == "source":
-                raise ValueError(
-                    f"{self.path}: a checkpoint that other source code of crazybilliards has "
-                    f"written, version {found.get('version')}: its run cannot be continued to the "
-                    "same numbers; remove the file to start anew, or go back to that code"
-                )
+        here = self.identity
+        differing = [name for name in here if found.get(name) != here[name]]
+        if "source" in differing:
             raise ValueError(
-                f"{self.path}: a checkpoint of another run: {name} is {found.get(name)} there "
-                f"and {wanted} here; remove the file to start anew"
+                f"{self.path}: a checkpoint that other source code of crazybilliards has written, "
+                f"version {found.get('version')}: its run cannot be continued to the same numbers; "
+                "remove the file to start anew, or go back to that code"
+            )
+        if differing == ["duration"] and self.shorter is not None:
+            if found["duration"] < here["duration"]:
+                return
+            raise ValueError(
+                f"{self.path}: a checkpoint of another run: duration is {found['duration']:.10g} "
+                f"there and {here['duration']:.10g} here, and a run can be made longer, but not "
+                "shorter; remove the file to start anew"
+            )
+        if differing:
+            all_of_them = ", ".join(
+                f"{name} is {found.get(name)} there and {here[name]} here" for name in differing
+            )
+            raise ValueError(
+                f"{self.path}: a checkpoint of another run: {all_of_them}; remove the file to "
+                "start anew"
             )
 
 
 def identity(run: Run) -> dict[str, Any]:
-    """Return by name everything that determines the bits of a run."""
-    depends = run.provenance()
+    """Return everything that determines the bits of a run, by the names of the arguments."""
+    depends, schedule = run.provenance(), run.schedule
+    del depends["schedule"]
     return {
         **run.chain.parameters(),
-        **depends.pop("schedule"),
         **depends,
+        "average": run.average,
+        "time_step": schedule.time_step,
+        "every": schedule.stride * schedule.time_step,
+        "warmup": schedule.warmup,
+        "duration": schedule.duration,
         "version": version("crazybilliards"),
         "source": _SOURCE,
     }

@@ -20,6 +20,8 @@ Array = NDArray[np.float64]
 def collect(run: Run, replicas: list[Replica], interrupted: bool) -> xr.Dataset:
     """Join the replicas' measurements into one result."""
     chain, schedule = run.chain, run.schedule
+    for replica in replicas:
+        replica.before_the_end = None  # to join observers takes its memory
     reached = min(replica.reached for replica in replicas)
     counts = np.array([replica.counts for replica in replicas])
     if schedule.ensemble:
@@ -54,6 +56,7 @@ def collect(run: Run, replicas: list[Replica], interrupted: bool) -> xr.Dataset:
         status="interrupted" if interrupted else "diverged" if diverged else "completed",
         end_time=end_time,
         particles=run.chosen + 1,
+        vocabulary=run.vocabulary,
         method={**run.provenance(), "duration": schedule.duration, "snapshots": int(counts.sum())},
     )
     measured.attrs |= {

@@ -14,7 +14,13 @@ from crazybilliards.particles.dynamics import Dynamics, start_noise
 from crazybilliards.particles.laws.avalanche import Tally, make_tally
 from crazybilliards.particles.laws.law import EVENTS, make_scratch
 from crazybilliards.particles.noise import STATE
-from crazybilliards.particles.observers.base import Observer, Snapshots, restore
+from crazybilliards.particles.observers.base import (
+    Observer,
+    Snapshots,
+    leading,
+    merge_pairs,
+    restore,
+)
 from crazybilliards.particles.schedule import Schedule
 from crazybilliards.particles.stepping import record
 
@@ -47,10 +53,14 @@ class Replica:
     over: bool = False  # it diverged
     reached: int = NEVER  # the first block that a diverged copy did not fill
     # Attributes that a checkpoint keeps.
-    changing: ClassVar[Any] = ("copy", "y", "v", "counts", "steps", "snapshots", "over", "reached")
+    changing: ClassVar[Any] = (
+        *("copy", "y", "v", "counts", "length", "steps", "snapshots", "over", "reached"),
+    )
     lock: Any = field(default_factory=Lock)  # held while a chunk is under way
 
     def __post_init__(self) -> None:
+        self.length = self.schedule.block  # of a block, in snapshots
+        self.before_the_end: dict[str, ArrayLike] | None = None  # a state, see ``_measure``
         self._start()
 
     def _start(self) -> None:
@@ -65,7 +75,9 @@ class Replica:
         return self.reached < NEVER
 
     def state(self) -> dict[str, ArrayLike]:
-        """Return everything that changes during the run."""
+        """Return everything that changes during the run, from which a longer one can go on too."""
+        if self.before_the_end is not None:
+            return self.before_the_end
         state: dict[str, ArrayLike] = {name: getattr(self, name) for name in self.changing}
         state |= {f"noise {name}": getattr(self.noise, name) for name in STATE}
         for number, observer in enumerate(self.observers):
@@ -82,6 +94,20 @@ class Replica:
         for number, observer in enumerate(self.observers):
             for name in observer.state():
                 restore(observer, name, state[f"observer {number} {name}"])
+
+    def require_continuing(self, shorter: Sequence[Observer]) -> None:
+        """Raise unless the observers, which have seen nothing, continue those of a shorter run.
+
+        What both begin with may differ in the number of places for snapshots, and in nothing else.
+        """
+        for own, other in zip(self.observers, shorter, strict=True):
+            for name, value in other.state().items():
+                place = leading(np.asarray(own.state()[name]), np.asarray(value))
+                if place is None or place.tobytes() != np.asarray(value).tobytes():
+                    raise ValueError(
+                        f"observe: {own.name!r} cannot continue, because its {name} depends on the "
+                        "duration"
+                    )
 
     @property
     def total(self) -> float:
@@ -129,11 +155,14 @@ class Replica:
         schedule, chunk = self.schedule, self._chunk()
         scratch, tally = self._scratch(), self._tally()
         rows = max(min(chunk // schedule.stride, _ROOM // self.y.shape[-1]), 1)
-        rows = min(rows, schedule.snapshots_per_block)
         y_buffer, v_buffer = np.empty((2, *self.y.shape[:-1], rows, self.y.shape[-1]))
         while self.snapshots < schedule.snapshots and not (self.over or stop.is_set()):
             block, left = self._block()
             n = min(rows, left)
+            if schedule.snapshots - self.snapshots < n:
+                # A longer run would take this chunk as a whole, and add it up to other bits.
+                self.before_the_end = {name: np.array(each) for name, each in self.state().items()}
+                n = schedule.snapshots - self.snapshots
             due = schedule.step_of(self.snapshots) - self.steps
             tally.contacts[:] = 0
             if due == 0:  # the start of an ensemble
@@ -176,9 +205,14 @@ class Replica:
         return int(record(*state, due, y[:n], v[:n]))
 
     def _block(self) -> tuple[int, int]:
-        """Return the current block, and the number of snapshots that it still needs."""
-        block, taken = divmod(self.snapshots, self.schedule.snapshots_per_block)
-        return block, self.schedule.snapshots_per_block - taken
+        """Return the block of the next snapshot, and how many it still needs; make room for it."""
+        if self.snapshots == self.schedule.blocks * self.length:
+            self.length *= 2
+            merge_pairs(self.counts)
+            for observer in self.observers:
+                observer.merge()
+        block, taken = divmod(self.snapshots, self.length)
+        return block, self.length - taken
 
     def _observe(self, block: int, y: Array, v: Array, tally: Tally) -> None:
         """Give snapshots of a block to the observers."""

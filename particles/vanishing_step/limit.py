@@ -236,6 +236,7 @@ def _collect(levels: Levels, interrupted: bool, progress: bool) -> xr.Dataset:
         status="interrupted" if interrupted else "diverged" if diverged else "completed",
         end_time=min(sampler.steps * sampler.schedule.time_step for sampler in used),
         particles=finest.chosen + 1,
+        vocabulary=finest.vocabulary,
     )
     if diverged:  # an average at long steps alone is not the limit
         return collected({}, method=method)

@@ -57,7 +57,9 @@ class Sampler(Replica):
     def _set_steps(self) -> None:
         """Compute the quantities that follow from the chains and the requested snapshots."""
         schedule = (self.coarser or self.finer).schedule
-        self.schedule = replace(schedule, blocks=self.counts.size, snapshots_per_block=self.target)
+        self.schedule = replace(
+            schedule, blocks=self.counts.size, snapshots=self.counts.size * self.target
+        )
         self.observers = [each for chains in self.measured for some in chains for each in some]
         # Number of rods that move in every counted step.
         self.weight = self.finer.chain.size

@@ -77,11 +77,11 @@ def test_a_theory_with_unresolved_spikes_is_binned_right():
 
 
 def test_the_error_of_a_convolved_density_is_that_of_its_blocks():
-    run = simulate(Chain(size=5), duration=2000, progress=False)
+    run = simulate(Chain(size=5), duration=49 * 2 * 17, every=1.0, progress=False)
     convolved = smooth(run)
     blocks = convolved.density_block
-    assert blocks.sizes["block"] == 64
-    error = blocks.std("block", ddof=1) / 8
+    assert blocks.sizes["block"] == 49
+    error = blocks.std("block", ddof=1) / 7
     np.testing.assert_allclose(convolved.density_error, error, atol=1e-15)
     np.testing.assert_allclose(blocks.mean("block"), convolved.density, atol=1e-12)
     # Convolution takes out noise: the naive, unsmoothed error bar would be far too large.

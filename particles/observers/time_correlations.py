@@ -1,0 +1,192 @@
+"""How long rods, waves and the centre of mass remember their velocities and displacements."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from crazybilliards.model.checks import check_integer, check_real
+from crazybilliards.particles.observers.base import Array, Averaged, Integers, Snapshots, Variables
+from crazybilliards.particles.run import Run
+from crazybilliards.particles.scales import relaxation_time
+
+_RELAXATIONS = 5  # the longest lag unless it is given
+_QUANTITIES = (
+    "velocity_autocorrelation",
+    "displacement_autocorrelation",
+    "mean_squared_displacement",
+    "velocity_spectrum",
+)
+
+
+class TimeCorrelations(Averaged):
+    """Autocorrelations in time of every chosen rod, of long waves and of the centre of mass.
+
+    With displacements d, and averages over the times s and the replicas, over a lag t,
+
+    * ``velocity_autocorrelation`` is <v_i(s) v_i(s+t)>,
+    * ``mean_squared_displacement`` is <(d_i(s+t) - d_i(s))^2>,
+    * ``displacement_autocorrelation`` is <d_i(s) d_i(s+t)> - <d_i>^2, computed as the variance of
+      d_i minus half of the mean squared displacement,
+    * ``velocity_spectrum`` is 2 int cos(w t) <v_i(s) v_i(s+t)> dt over the lags, by the
+      trapezoidal rule, over the angular ``frequency`` w. Its integral over w from 0 on is pi
+      <v_i^2>. It includes what aliasing folds down from frequencies above pi over the lag spacing.
+
+    ``wave_velocity_autocorrelation`` and so on, over ``wave`` q, are those of the waves that
+    :class:`Modes` defines, and ``centre_velocity_autocorrelation`` and so on those of the centre of
+    mass. On linear springs the latter are those of a damped oscillator, at any restitution.
+
+    In an ensemble the lag is counted from the first time. All quantities but the spectrum, which
+    does not exist, then lie over ``time``, and <d_i(s)> <d_i(s+t)> is subtracted.
+
+    A buffer keeps the last snapshots. All lags are therefore exact, equally far apart as a spectrum
+    needs them, and take 16 ``lags`` bytes per rod and wave, and as much per block. Snapshots are
+    pairs with all earlier ones within reach, so a snapshot takes some ``lags`` operations per rod.
+
+    Errors are those of blocks. Where a lag is longer than a block, which happens in short runs,
+    the errors of a mean squared displacement are too small by up to a fifth.
+
+    Parameters
+    ----------
+    longest
+        Longest lag [T], below the duration. None: 5 relaxation times of the chain.
+    lags
+        Most lags above 0. Where there are more snapshots, only every second, third, ... is used.
+    waves
+        Number of waves, from q = 0 on; a shorter chain has as many as rods.
+    """
+
+    name = "time-correlations"
+    gives = tuple(f"{of}{name}" for of in ("", "wave_", "centre_") for name in _QUANTITIES)
+    along = ("lag", "frequency", "wave")
+    limit = False
+
+    def __init__(self, longest: float | None = None, lags: int = 100, waves: int = 8) -> None:
+        self.longest = None if longest is None else check_real("longest", longest, positive=True)
+        self.lags = check_integer("lags", lags, least=1, most=100_000)
+        self.waves = check_integer("waves", waves, least=1, most=100_000)
+
+    def _plan(self, run: Run) -> tuple[int, int]:
+        """Return the number of snapshots from one lag to the next, and the number of lags."""
+        if run.schedule.ensemble:
+            return 1, 0
+        longest = self.longest or _RELAXATIONS * relaxation_time(run.chain)
+        if not longest < run.schedule.duration:
+            raise ValueError(
+                f"observe: {self.name!r} needs a duration above the longest lag {longest:.4g}, got "
+                f"{run.schedule.duration:.4g}; cb.TimeCorrelations(longest=...) chooses another"
+            )
+        snapshots = longest / (run.schedule.stride * run.schedule.time_step)
+        spacing = math.ceil(snapshots / self.lags - 1e-9)
+        return spacing, math.ceil(snapshots / spacing - 1e-9)
+
+    def shape(self, run: Run) -> tuple[int, ...]:
+        """Return the shape of the sums of one block.
+
+        The rows are velocities and increments by lag, d and d^2; the columns are rods, waves and
+        the number of terms.
+        """
+        _, last = self._plan(run)
+        return 2 * (last + 1) + 2, run.chosen.size + min(self.waves, run.chain.size) + 1
+
+    def memory(self, run: Run) -> float:
+        """Return the bytes of the sums and of the buffer."""
+        return super().memory(run) + 8.0 * math.prod(self.shape(run))
+
+    def prepare(self, run: Run, copies: int) -> None:
+        """Make the sums and the buffer."""
+        super().prepare(run, copies)
+        self.spacing, self.last = self._plan(run)
+        self.size, self.anchors, self.chosen = run.chain.size, run.chain.reduced_anchors, run.chosen
+        self.before = np.zeros((2, max(self.last, 1), self.sums.shape[-1] - 1))
+
+    def observe(self, snapshots: Snapshots) -> None:
+        """Add the pairs whose later snapshot is one of these to its block."""
+        used = slice(-snapshots.first % self.spacing, None, self.spacing)
+        both = snapshots.v[used], snapshots.y[used] - self.anchors
+        now = np.stack([self._series(values) for values in both])
+        sums, new = self.sums[snapshots.block], now.shape[1]
+        sums[-2, :-1] += now[1].sum(axis=0)
+        sums[-1, :-1] += np.einsum("sp,sp->p", now[1], now[1])
+        sums[-2:, -1] += new
+        if self.schedule.ensemble:
+            if snapshots.first == 0:
+                self.before[...] = now[:, :1]
+            self._add(sums, 0, self.before, now)
+            return
+        taken = -(-snapshots.first // self.spacing)
+        known = np.concatenate([self.before, now], axis=1)
+        end = known.shape[1]
+        for lag in range(self.last + 1):
+            begin = end - new + max(lag - taken, 0)  # the first ones have nothing before them
+            self._add(sums, lag, known[:, begin - lag : end - lag], known[:, begin:])
+        self.before[...] = known[:, new:]
+
+    def _add(self, sums: Array, lag: int, then: Array, now: Array) -> None:
+        """Add pairs of velocities and displacements, each of the shape (2, pairs, series)."""
+        row, step = self.last + 1 + lag, now[1] - then[1]
+        sums[lag, :-1] += np.einsum("sp,sp->p", then[0], now[0])
+        sums[row, :-1] += np.einsum("sp,sp->p", step, step)
+        sums[[lag, row], -1] += now.shape[1]
+
+    def _series(self, values: Array) -> Array:
+        """Return the chosen rods and the waves of snapshots, (snapshots, rods and waves)."""
+        from scipy.fft import dct  # takes half a second, and few runs observe waves
+
+        waves = dct(values, axis=1, norm="ortho")[:, : self.waves]
+        return np.concatenate([values[:, self.chosen], waves], axis=1)
+
+    def _means(self, average: Array, rows: slice) -> Array:
+        """Return means (times or lags, series); NaN where there are no terms."""
+        sums, numbers = average[..., rows, :-1], average[..., rows, -1:]
+        means = np.divide(sums, numbers, where=numbers > 0, out=np.full_like(sums, np.nan))
+        return means[:, 0] if self.schedule.ensemble else means
+
+    def _velocities(self, average: Array) -> Array:
+        return self._means(average, slice(self.last + 1))
+
+    def _increments(self, average: Array) -> Array:
+        return self._means(average, slice(self.last + 1, -2))
+
+    def _displacements(self, average: Array) -> Array:
+        mean, square = (self._means(average, row) for row in (slice(-2, -1), slice(-1, None)))
+        return (square[:1] + square - self._increments(average)) / 2 - mean[:1] * mean
+
+    def _spectrum(self, average: Array) -> Array:
+        from scipy.fft import dct
+
+        return np.asarray(self._interval * dct(self._velocities(average), type=1, axis=0))
+
+    def report(self, counts: Integers) -> Variables:
+        """Return all quantities and their standard errors."""
+        ensemble, rods = self.schedule.ensemble, self.chosen.size
+        quantities = self._velocities, self._displacements, self._increments, self._spectrum
+        kinds = dict(zip(_QUANTITIES, quantities, strict=True))
+        if ensemble:
+            del kinds["velocity_spectrum"]
+        variables: Variables = {}
+        for name, (_, found) in self.averages(kinds, counts).items():
+            values = np.asarray(found)
+            along = "time" if ensemble else "frequency" if "spectrum" in name else "lag"
+            own = {"particle": ("", values[:, :rods]), "wave": ("wave_", values[:, rods:])}
+            for over, (of, part) in own.items():
+                variables[of + name] = (
+                    ((along, over), part) if ensemble else ((over, along), part.T)
+                )
+            # The first wave is the sum of all rods over the root of their number.
+            variables["centre_" + name] = ((along,), values[:, rods] / self.size)
+        return variables
+
+    @property
+    def _interval(self) -> float:
+        return self.spacing * self.schedule.stride * self.schedule.time_step
+
+    def coordinates(self) -> dict[str, Array]:
+        """Return the waves and, unless averages are over an ensemble, lags and frequencies."""
+        waves = {"wave": np.arange(self.sums.shape[-1] - 1.0 - self.chosen.size)}
+        if self.schedule.ensemble:
+            return waves
+        lags = np.arange(self.last + 1.0)
+        frequencies = np.pi * lags / (self.last * self._interval)
+        return {"lag": self._interval * lags, "frequency": frequencies, **waves}

@@ -1,0 +1,144 @@
+"""Correlations in time, against oscillators: the centre of mass, and two elastic rods."""
+
+import numpy as np
+import pytest
+from described_runs import a_run
+from scipy.fft import dct
+
+import crazybilliards as cb
+from crazybilliards.model import Chain
+from crazybilliards.particles import TimeCorrelations, simulate
+from crazybilliards.particles.observers.base import Snapshots
+
+CRITICAL = 2 * np.sqrt(4 * np.pi / 3)
+QUANTITIES = ("velocity_autocorrelation", "displacement_autocorrelation")
+QUANTITIES += ("mean_squared_displacement", "velocity_spectrum")
+
+
+def oscillator(chain, t):
+    """Autocorrelations of displacement and velocity of a free rod, k c(t)/T and m c_v(t)/T."""
+    half = chain.damping / (2 * chain.mass)
+    swing = np.sqrt(complex(chain.stiffness / chain.mass - half**2))
+    sine = np.sin(swing * t) / swing if abs(swing) > 1e-6 else t
+    decay, cosine = np.exp(-half * t), np.cos(swing * t)
+    return (decay * (cosine + half * sine)).real, (decay * (cosine - half * sine)).real
+
+
+def pulls(run, of, expected):
+    return {
+        name: ((run[of + name] - values) / run[f"{of}{name}_error"]).values
+        for name, values in zip(QUANTITIES, expected, strict=False)
+    }
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("e", [1.0, 0.5])
+@pytest.mark.parametrize("damping", [1.0, CRITICAL, 10.0])
+def test_the_centre_of_mass_is_a_damped_oscillator_at_any_restitution(damping, e):
+    chain = Chain(size=5, restitution=e, damping=damping)
+    how = {"duration": 20_000, "replicas": 2, "seed": 3, "progress": False}
+    run = simulate(chain, observe="time-correlations", **how)
+    displacement, velocity = oscillator(chain, run.lag.values)
+    displacement *= chain.temperature / chain.stiffness / chain.size
+    velocity *= chain.temperature / chain.mass / chain.size
+    spectrum = run.lag.values[1] * dct(velocity, type=1)
+    moved = 2 * (displacement[0] - displacement)
+    for each in pulls(run, "centre_", (velocity, displacement, moved, spectrum)).values():
+        assert np.nanmax(abs(each)) < 5
+    assert (run.centre_velocity_autocorrelation_error[0] < 0.02 * velocity[0]).all()
+
+
+def two_rods(chain, t):
+    """Exact functions of the distance of two elastic rods, the modulus of an oscillator x.
+
+    <|x(0) x(t)|> = (2/pi) s^2 (sqrt(1 - c^2) + c asin c) for Gaussian x with the autocorrelation
+    s^2 c, and the velocities have minus its second derivative.
+    """
+    c, velocity = oscillator(chain, t)
+    rate = chain.stiffness / chain.mass
+    half = chain.damping / (2 * chain.mass)
+    swing = np.sqrt(complex(rate - half**2))
+    slope = (-rate * np.exp(-half * t) * np.sin(swing * t) / swing).real
+    variance = 2 * chain.temperature / chain.stiffness
+    product = variance * 2 / np.pi * (np.sqrt(1 - c**2) + c * np.arcsin(c))
+    with np.errstate(invalid="ignore"):
+        bent = np.where(t > 0, slope**2 / np.sqrt(1 - c**2), 0)
+    speeds = -variance * 2 / np.pi * (bent - rate * np.arcsin(c) * velocity)
+    return speeds, product - variance * 2 / np.pi, 2 * (variance - product)
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("average", ["time", "ensemble"])
+def test_two_elastic_rods_remember_what_the_modulus_of_an_oscillator_does(average):
+    chain = Chain(size=2)
+    how = {"duration": 40_000, "replicas": 2, "seed": 1}
+    if average == "ensemble":
+        start = cb.equilibrium_states(chain, 1000, seed=1)
+        how = {"duration": 12, "replicas": 1000, "average": average, "every": 2.0, "start": start}
+    run = simulate(chain, observe="time-correlations", progress=False, **how)
+    along = "time" if average == "ensemble" else "lag"
+    t = run[along].values
+    apart = two_rods(chain, t)
+    displacement, velocity = oscillator(chain, t)
+    displacement *= chain.temperature / chain.stiffness / 2
+    velocity *= chain.temperature / chain.mass / 2
+    centre = velocity, displacement, 2 * (displacement[0] - displacement)
+    rod = [own + relative / 4 for own, relative in zip(centre, apart, strict=True)]
+    for particle in (1, 2):
+        for each in pulls(run.sel(particle=particle), "", rod).values():
+            assert np.nanmax(abs(each)) < 5
+    wave = run.sel(wave=1)
+    for each in pulls(wave, "wave_", [values / 2 for values in apart]).values():
+        assert np.nanmax(abs(each)) < 5
+
+
+def test_pairs_are_those_of_all_snapshots_however_they_come():
+    """Against sums over all pairs, with every third snapshot used and parts of any length."""
+    observer = TimeCorrelations(longest=30, lags=10, waves=3)
+    chain = Chain(size=4)
+    run = a_run(chain, duration=200, every=1.0, particles=[2, 4], observe=observer)
+    [own] = (each.prepared(run, 1) for each in run.observers)
+    generator = np.random.default_rng(1)
+    snapshots, length = run.schedule.snapshots, run.schedule.block
+    y, v = generator.normal(size=(2, snapshots, 4))
+    first, counts = 0, np.bincount(np.arange(snapshots) // length, minlength=run.schedule.blocks)
+    while first < snapshots:
+        block = first // length
+        part = slice(first, min(first + generator.integers(1, 4), (block + 1) * length))
+        own.observe(Snapshots(block, first, 0, y[part], v[part], np.zeros(3, dtype=np.int64)))
+        first = part.stop
+    report = own.report(counts)
+    lag = own.coordinates()["lag"]
+    np.testing.assert_allclose(lag, 3 * np.arange(11))
+    d, w = y[::3], v[::3]
+    for place in range(11):
+        early, late = slice(len(d) - place), slice(place, None)
+        product = (w[early] * w[late]).mean(axis=0)[[1, 3]]
+        moved = ((d[late] - d[early]) ** 2).mean(axis=0)[[1, 3]]
+        np.testing.assert_allclose(report["velocity_autocorrelation"][1][:, place], product)
+        np.testing.assert_allclose(report["mean_squared_displacement"][1][:, place], moved)
+        kept = d.var(axis=0)[[1, 3]] - moved / 2
+        np.testing.assert_allclose(report["displacement_autocorrelation"][1][:, place], kept)
+    centre = y[::3].mean(axis=1)
+    moved = np.mean((centre[7:] - centre[:-7]) ** 2)
+    assert report["centre_mean_squared_displacement"][1][7] == pytest.approx(moved)
+    assert report["wave_velocity_autocorrelation"][1].shape == (3, 11)
+
+
+@pytest.mark.compiled
+def test_all_waves_together_remember_what_all_rods_do():
+    chain = Chain(size=6, restitution=0.7)
+    run = simulate(chain, duration=1000, observe="time-correlations", progress=False)
+    of_rods, of_waves = run.velocity_autocorrelation, run.wave_velocity_autocorrelation
+    np.testing.assert_allclose(of_rods.sum("particle"), of_waves.sum("wave"), atol=1e-12)
+
+
+def test_lags_that_a_run_cannot_have_are_refused():
+    with pytest.raises(ValueError, match=r"duration above the longest lag 41\.89, got 20"):
+        simulate(Chain(size=2), duration=20, observe="time-correlations", progress=False)
+    with pytest.raises(ValueError, match="duration above the longest lag inf"):
+        simulate(Chain(damping=0), observe="time-correlations", progress=False)
+    with pytest.raises(ValueError, match="longest must be"):
+        TimeCorrelations(longest=0)
+    with pytest.raises(ValueError, match="no limit of a vanishing time step"):
+        cb.simulate_limit(Chain(size=2), observe=["widths", "time-correlations"], progress=False)
