@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from crazybilliards.model.checks import check_integer
+from crazybilliards.model.checks import check_integer, shown
 
 Seed = int | np.random.SeedSequence | np.random.Generator
 
@@ -27,4 +27,10 @@ def seed_of(seed: Seed) -> int:
         return sum(int(word) << 32 * i for i, word in enumerate(seed.generate_state(4)))
     if isinstance(seed, np.random.Generator):
         return int(seed.integers(2**63))
-    return check_integer("seed", seed, least=0)
+    try:
+        return check_integer("seed", seed, least=0)
+    except ValueError as error:
+        raise ValueError(
+            "seed must be an integer >= 0, a SeedSequence, or a Generator of numpy, "
+            f"got {shown(seed)}"
+        ) from error

@@ -111,7 +111,7 @@ release: str = cb.__version__
 force_balance(chain)
 cb.nonsense  # type: ignore[attr-defined]
 cb.Chain(size="3")  # type: ignore[arg-type]
-cb.simulate(chain, seed="1")  # type: ignore[arg-type]
+cb.simulate(chain, duration="1")  # type: ignore[arg-type]
 """
 
 

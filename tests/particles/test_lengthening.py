@@ -1,11 +1,13 @@
 """A run, finished or not, is made longer by its checkpoint, to the bits of one long run."""
 
 import signal
+import subprocess
+import sys
+import time
 
 import numpy as np
 import pytest
 import xarray as xr
-from killed import run_and_signal
 
 from crazybilliards.model import Chain, load
 from crazybilliards.particles import simulate
@@ -24,6 +26,22 @@ run = simulate(
 )
 save(run, output)
 """
+
+
+def run_and_signal(script, checkpoint, output, how=None, after=0.0):
+    """Run the script; send it a signal some time ``after`` it has first written its checkpoint."""
+    before = checkpoint.stat().st_mtime_ns if how and checkpoint.exists() else None
+    with subprocess.Popen([sys.executable, "-c", script, str(checkpoint), str(output)]) as process:
+        try:
+            if how is not None:
+                while not checkpoint.exists() or checkpoint.stat().st_mtime_ns == before:
+                    time.sleep(0.01)
+                    assert process.poll() is None
+                time.sleep(after)
+                process.send_signal(how)
+            return process.wait(300)
+        finally:
+            process.kill()  # otherwise leaving the block would wait for a process that hangs
 
 
 @pytest.mark.posix
