@@ -153,7 +153,10 @@ def too_short(chain: Chain, duration: float, warmup: float, replicas: int, at_re
     """Return in what an average over time is too short for the memory of the chain, or nothing.
 
     ``at_rest``: the start is no state of the steady state, so that the warm-up must forget it.
+    A chain without noise has one motion for a start and nothing to be averaged over its noise.
     """
+    if chain.amplitude == 0:
+        return ""
     if chain.damping == 0:
         return (
             "damping=0: the chain never forgets its start, so that the error bars of averages over "

@@ -128,6 +128,14 @@ def test_what_is_long_enough_says_nothing(settings):
         simulate(Chain(size=3), **({"duration": 200, "observe": "widths"} | settings), **QUIET)
 
 
+def test_a_chain_without_noise_has_nothing_to_forget():
+    free = Chain(size=3, amplitude=0, damping=0)
+    start = given_start(free, free.anchors, [1.0, 0.0, -1.0])
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        simulate(free, duration=np.pi, every=0.1, observe="collisions", start=start, **QUIET)
+
+
 @pytest.mark.parametrize("e", [1.0, 0.9])
 def test_a_run_that_continues_another_one_has_new_noise(e):
     chain = Chain(size=4, restitution=e)
