@@ -1,20 +1,28 @@
-"""The same chain in programs for any geometry: what a step costs, and how far its result is off.
+"""The same chain in other programs: what a step costs, and how far its result is off.
 
     python -m venv peers
     peers/bin/python -m pip install . pymunk==7.3.1 mujoco==4.0.0
-    peers/bin/python benchmarks/peers.py
+    peers/bin/python benchmarks/peers.py [PYTHON_WITH_SICONOS]
 
-Each program gets rods as discs or spheres on a line, and moves them and solves their contacts. It
-has no noise, so that kicks by noise and damping, and springs where it has none, are added by numpy
-between its steps. Only its own step is timed. The time step is 1e-3 and e = 0, as in the
-paper. The mean of v^2 over all rods and times is compared with ``simulate`` at the same step. Takes
-five minutes.
+The last argument is an interpreter that has Siconos, as Debian's own Python has after ``apt install
+python3-siconos``. Each program gets rods as discs, spheres or coordinates on a line, and moves them
+and solves their contacts. It has no noise, so that kicks by noise, and by springs and damping where
+it has none, are added between its steps. Only its own step is timed. The time step is 1e-3 and
+e = 0, as in the paper. A plain event-driven program takes e = 0.95, because rods that touch would
+collide without end at e = 0. The mean of v^2 over all rods and times is compared with ``simulate``
+at the same step. Takes eight minutes.
 """
 
+import heapq
+import json
+import subprocess
+import sys
 import time
 from importlib.metadata import version
+from pathlib import Path
 
 import mujoco
+import numba
 import numpy as np
 import pymunk
 
@@ -29,7 +37,7 @@ BLOCKS = 16  # of the measured steps, whose scatter gives the error
 class Pymunk:
     """Discs on a line."""
 
-    name = "pymunk"
+    name, restitution = "pymunk", 0.0
 
     def __init__(self, chain: Chain) -> None:
         self.chain, self.space = chain, pymunk.Space()
@@ -63,7 +71,7 @@ class Pymunk:
 class Mujoco:
     """Spheres on slide joints, whose springs and dampers the program integrates itself."""
 
-    name = "mujoco"
+    name, restitution = "mujoco", 0.0
 
     def __init__(self, chain: Chain) -> None:
         rods = "".join(
@@ -76,8 +84,8 @@ class Mujoco:
             f'<mujoco><option timestep="{TIME_STEP}" gravity="0 0 0" jacobian="sparse"/>'
             f'<size memory="1G"/><worldbody>{rods}</worldbody></mujoco>'
         )
-        self.chain, self.model = chain, mujoco.MjModel.from_xml_string(model)
-        self.data = mujoco.MjData(self.model)
+        self.model = mujoco.MjModel.from_xml_string(model)
+        self.chain, self.data = chain, mujoco.MjData(self.model)
 
     def velocities(self) -> np.ndarray:
         """Return the velocities of all rods."""
@@ -92,7 +100,62 @@ class Mujoco:
         mujoco.mj_step(self.model, self.data)
 
 
-def run(program: Pymunk | Mujoco, noise: np.random.Generator, steps: int) -> tuple[float, float]:
+@numba.njit
+def fly(x: np.ndarray, v: np.ndarray, width: float, restitution: float, duration: float) -> None:
+    """Let rods fly freely and collide in the order of a heap of all meetings of neighbours."""
+    at, collided = np.zeros(x.size), np.zeros(x.size, np.int64)  # moved to this time, how often
+    meetings = [(duration, -1, 0, 0)]
+    i, j, now = 0, x.size - 1, 0.0
+    while True:
+        for k in range(max(i, 0), min(j, x.size - 1)):
+            closing = v[k] - v[k + 1]
+            if closing > 0.0:
+                between = x[k + 1] + v[k + 1] * (now - at[k + 1]) - x[k] - v[k] * (now - at[k])
+                meeting = now + max(between - width, 0.0) / closing
+                if meeting < duration:
+                    heapq.heappush(meetings, (meeting, k, collided[k], collided[k + 1]))
+        now, k, left, right = heapq.heappop(meetings)
+        if k < 0:
+            break
+        i, j = k, k  # nothing to look for, if one of the two has collided since
+        if collided[k] == left and collided[k + 1] == right:
+            for rod in (k, k + 1):
+                x[rod] += v[rod] * (now - at[rod])
+                at[rod] = now
+                collided[rod] += 1
+            mean, half = (v[k] + v[k + 1]) / 2, restitution * (v[k] - v[k + 1]) / 2
+            v[k], v[k + 1] = mean - half, mean + half
+            i, j = k - 1, k + 2
+    x += v * (duration - at)
+
+
+class Events:
+    """A plain event-driven program, compiled."""
+
+    name, restitution = "heap of events", 0.95
+
+    def __init__(self, chain: Chain) -> None:
+        self.chain, self.x, self.v = chain, chain.anchors.copy(), np.zeros(chain.size)
+
+    def velocities(self) -> np.ndarray:
+        """Return the velocities of all rods."""
+        return self.v
+
+    def kick(self, noise: np.ndarray) -> None:
+        """Add a step's noise, a change of momentum, and the forces."""
+        chain = self.chain
+        force = chain.stiffness * (self.x - chain.anchors) + chain.damping * self.v
+        self.v += (noise - TIME_STEP * force) / chain.mass
+
+    def step(self) -> None:
+        """Move the rods and let them collide."""
+        fly(self.x, self.v, 2 * self.chain.radius, self.restitution, TIME_STEP)
+
+
+Program = Pymunk | Mujoco | Events
+
+
+def run(program: Program, noise: np.random.Generator, steps: int) -> tuple[float, float]:
     """Return the seconds of a step without the kicks, and the mean of v^2."""
     strength = program.chain.amplitude * np.sqrt(TIME_STEP)
     seconds, squares = 0.0, 0.0
@@ -106,33 +169,63 @@ def run(program: Pymunk | Mujoco, noise: np.random.Generator, steps: int) -> tup
 
 
 def cost_of_simulate(chain: Chain) -> float:
-    """Return the seconds of a step of ``simulate``, noise and measurement included."""
-    options = {"time_step": TIME_STEP, "seed": 1, "progress": False}
-    simulate(chain, duration=1, warmup=0, **options)  # compiles
+    """Return the seconds of a step of ``simulate``, noise included."""
+    options = {"time_step": TIME_STEP, "seed": 1, "progress": False, "observe": "snapshots"}
+    simulate(chain, duration=WARMUP * TIME_STEP, every=1, warmup=0, **options)  # compiles
     started = time.perf_counter()
-    simulate(chain, duration=WARMUP * TIME_STEP, warmup=0, **options)
+    simulate(chain, duration=WARMUP * TIME_STEP, every=1, warmup=0, **options)
     return (time.perf_counter() - started) / WARMUP
 
 
-def main() -> None:
+def measure(kind: type[Program]) -> tuple[float, list[float]]:
+    """Return the seconds of a step of many rods, and blocks of the mean of v^2 of few rods."""
     noise = np.random.default_rng(1)
-    short, long = (Chain(size=size, restitution=0) for size in (SHORT, LONG))
-    ours = simulate(short, duration=20_000, time_step=TIME_STEP, seed=1, progress=False)
-    expected = float((ours.velocity_width**2).mean())
-    print("program,ns per rod and step,mean of v^2 over that of simulate")
-    print(f"crazybilliards {version('crazybilliards')},{1e9 * cost_of_simulate(long) / LONG:.0f},1")
-    for kind in (Pymunk, Mujoco):
-        program = kind(long)
-        run(program, noise, TIMED)
-        cost, _ = run(program, noise, TIMED)
-        program = kind(short)
-        run(program, noise, WARMUP)
-        found = [run(program, noise, MEASURED // BLOCKS)[1] / expected for _ in range(BLOCKS)]
-        error = np.std(found, ddof=1) / np.sqrt(BLOCKS)
+    program = kind(Chain(size=LONG, restitution=kind.restitution))
+    run(program, noise, TIMED)
+    cost, _ = run(program, noise, TIMED)
+    program = kind(Chain(size=SHORT, restitution=kind.restitution))
+    run(program, noise, WARMUP)
+    return cost, [run(program, noise, MEASURED // BLOCKS)[1] for _ in range(BLOCKS)]
+
+
+def measure_siconos(python: str) -> tuple[float, list[float]]:
+    """Return the same for Siconos, which needs another version of numpy than this package."""
+    chain = Chain(size=LONG)
+    same = {name: getattr(chain, name) for name in ("mass", "damping", "stiffness")}
+    asked = {"sizes": [LONG, SHORT], "chain": same | {"time_step": TIME_STEP}}
+    asked |= {"warmup": WARMUP, "measured": MEASURED, "blocks": BLOCKS}
+    script = Path(__file__).with_name("siconos_steps.py")
+    answer = subprocess.check_output([python, script, json.dumps(asked)], text=True)
+    return json.loads(answer.splitlines()[-1])
+
+
+def main() -> None:
+    expected = {}
+    print("program,e,ns per rod and step,mean of v^2 over that of simulate")
+    for restitution in (0.0, 0.95):
+        short, long = (Chain(size=size, restitution=restitution) for size in (SHORT, LONG))
+        ours = simulate(short, duration=20_000, time_step=TIME_STEP, seed=1, progress=False)
+        expected[restitution] = float((ours.velocity_width**2).mean())
+        cost = 1e9 * cost_of_simulate(long) / LONG
         print(
-            f"{kind.name} {version(kind.name)},{1e9 * cost / LONG:.0f},"
-            f"{np.mean(found):.3f} ± {error:.3f}"
+            f"crazybilliards {version('crazybilliards')},{restitution:g},{cost:.0f},1", flush=True
         )
+    for kind in (Pymunk, Mujoco, Events):
+        show(kind.name, kind.restitution, *measure(kind), expected)
+    for python in sys.argv[1:]:
+        show("siconos", 0.0, *measure_siconos(python), expected)
+
+
+def show(
+    name: str, restitution: float, cost: float, squares: list[float], expected: dict[float, float]
+) -> None:
+    """Print a row of the table."""
+    found = np.array(squares) / expected[restitution]
+    error = found.std(ddof=1) / np.sqrt(BLOCKS)
+    print(
+        f"{name},{restitution:g},{1e9 * cost / LONG:.0f},{found.mean():.3f} ± {error:.3f}",
+        flush=True,
+    )
 
 
 if __name__ == "__main__":

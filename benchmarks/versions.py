@@ -3,10 +3,11 @@
     python benchmarks/versions.py OLD_PYTHON NEW_PYTHON [--time-step 1e-3] [--rounds 5]
 
 OLD_PYTHON and NEW_PYTHON are interpreters of environments in which the two versions are installed.
-Both simulate the same chains, in turns, for the same time, each with its own default time step
-unless ``--time-step`` is given. Printed are, of each version, the computing time of one unit of
-time [T] (median) and the error of the smallest W_v that the version expects of its time step, and
-the ratio new/old of the times. Only arguments of ``simulate`` that all versions have are used.
+Both measure the widths of the same chains, in turns, for the same time, each with its own default
+time step unless ``--time-step`` is given. Printed is a table of the computing time of one unit of
+time [T] (median) in each version, the error of the smallest W_v that it expects of its time step,
+and how many times faster the new version is. Only arguments of ``simulate`` that all versions have
+are used.
 """
 
 import argparse
@@ -15,13 +16,11 @@ import subprocess
 import sys
 from statistics import median
 
-CHAINS = [  # restitution, size, time units of a round at the default step
-    (0.0, 100, 200.0),
-    (0.0, 1000, 20.0),
-    (0.5, 100, 200.0),
-    (0.5, 1000, 20.0),
-    (0.95, 1000, 40.0),
-    (1.0, 1000, 200.0),
+SIZES = [(1, 20_000.0), (10, 10_000.0), (100, 1000.0), (1000, 40.0), (10_000, 2.0)]
+CHAINS = [  # restitution, size, gap, time units of a round
+    *((1.0, size, 0.0, 4 * time) for size, time in SIZES),
+    *((e, size, 0.0, time) for e in (0.95, 0.5, 0.0) for size, time in SIZES),
+    *((e, 100, gap, 1000.0) for e in (1.0, 0.95, 0.5) for gap in (0.3, 1.0)),
 ]
 
 # Reads a line with a chain, a duration and a time step; answers with seconds a time unit and the
@@ -32,21 +31,18 @@ from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
 states = {}
 for line in sys.stdin:
-    restitution, size, duration, step = json.loads(line)
-    chain = Chain(size=size, restitution=restitution)
-    key = (restitution, size)
-    common = {"time_step": step, "progress": False, "threads": 1, "observe": ["snapshots"]}
+    restitution, size, gap, duration, step = json.loads(line)
+    chain = Chain(size=size, restitution=restitution, gap=gap)
+    key = (restitution, size, gap)
+    common = {"time_step": step, "progress": False, "threads": 1, "warmup": 0.0}
     if key not in states:
-        run = simulate(chain, duration=duration, warmup=40.0, every=duration / 70, **common)
-        states[key] = run.isel(time=-1)
+        state = {"observe": ["snapshots"], "duration": 7.0, "every": 0.1}
+        states[key] = simulate(chain, **state, **common).isel(time=-1)
+    common |= {"start": states[key], "observe": ["widths"]}
     used = time.process_time()
-    run = simulate(
-        chain, start=states[key], warmup=0.0, duration=duration, every=duration / 70, **common
-    )
+    run = simulate(chain, duration=duration, **common)
     used = time.process_time() - used
-    states[key] = run.isel(time=-1)
-    error = run.attrs.get("time_step_error", 0.0)
-    print(json.dumps([used / duration, error]), flush=True)
+    print(json.dumps([used / duration, run.attrs.get("time_step_error", 0.0)]), flush=True)
 """
 
 
@@ -55,7 +51,10 @@ class Version:
 
     def __init__(self, python: str) -> None:
         self.process = subprocess.Popen(
-            [python, "-c", SERVER], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+            [python, "-W", "ignore", "-c", SERVER],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
         )
 
     def measure(self, *asked: float | None) -> tuple[float, float]:
@@ -78,17 +77,16 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=5)
     asked = parser.parse_args()
     versions = [Version(asked.old), Version(asked.new)]
-    print("| e | L | old: ms a time unit (error of the step) | new | new/old |")
-    print("|---|---|---|---|---|")
-    for restitution, size, duration in CHAINS:
-        case = (restitution, size, duration, asked.time_step)
+    print("e,L,g,old: ms a time unit,error of its step,new,error of its step,old/new")
+    for restitution, size, gap, duration in CHAINS:
+        case = (restitution, size, gap, duration, asked.time_step)
         rounds = [[version.measure(*case) for version in versions] for _ in range(asked.rounds)]
         (old, old_error), (new, new_error) = (
             (median(time for time, _ in each), each[0][1]) for each in zip(*rounds[1:], strict=True)
         )
         print(
-            f"| {restitution} | {size} | {old:.3g} ({old_error:.2f} %) "
-            f"| {new:.3g} ({new_error:.2f} %) | {new / old:.3f} |",
+            f"{restitution:g},{size},{gap:g},{old:.3g},{old_error:.2f} %,{new:.3g},"
+            f"{new_error:.2f} %,{old / new:.3g}",
             flush=True,
         )
 
