@@ -23,8 +23,8 @@ STEPS = (1e-2, 3e-3, 1e-3)  # at which the perfectly inelastic chain runs beside
 # W_v and <dx> of 1000 rods that start at their anchors are steady, to 2 %, after 20 time units at
 # e = 0 and 0.95. The relaxation time, 8.4, is that of the motion of all rods together.
 _DISSIPATIVE: dict[int, Granted] = {
-    1: {"quick": (4, {"duration": 1000.0}), "full": (8, {"duration": 6000.0})},
-    101: {"quick": (4, {"duration": 500.0}), "full": (8, {"duration": 3000.0})},
+    1: {"quick": (4, {"duration": 1000.0}), "full": (8, {"duration": 24_000.0})},
+    101: {"quick": (4, {"duration": 500.0}), "full": (8, {"duration": 6000.0})},
     LARGE: {
         "quick": (4, {"duration": 40.0, "warmup": 20.0}),
         "full": (5, {"duration": 400.0, "warmup": 100.0}),
@@ -33,15 +33,16 @@ _DISSIPATIVE: dict[int, Granted] = {
 # Runs at other amplitudes. Only differences from A = 1 are drawn from them.
 _SCALED: Granted = {
     "quick": (4, {"duration": 40.0, "warmup": 20.0}),
-    "full": (5, {"duration": 200.0, "warmup": 50.0}),
+    "full": (8, {"duration": 250.0, "warmup": 50.0}),
 }
+# Durations are those at dt = 1e-3. Longer steps are granted as many steps, and cost as much.
 _AT_STEP: dict[int, Granted] = {
-    1: {"quick": (4, {"duration": 400.0}), "full": (6, {"duration": 6000.0})},
-    100: {"quick": (4, {"duration": 400.0}), "full": (6, {"duration": 3000.0})},
-    101: {"quick": (4, {"duration": 100.0}), "full": (6, {"duration": 1500.0})},
+    1: {"quick": (4, {"duration": 200.0}), "full": (6, {"duration": 4000.0})},
+    100: {"quick": (4, {"duration": 200.0}), "full": (6, {"duration": 2000.0})},
+    101: {"quick": (4, {"duration": 60.0}), "full": (6, {"duration": 1000.0})},
     LARGE: {
-        "quick": (4, {"duration": 40.0, "warmup": 20.0}),
-        "full": (6, {"duration": 800.0, "warmup": 50.0}),
+        "quick": (4, {"duration": 25.0, "warmup": 20.0}),
+        "full": (6, {"duration": 500.0, "warmup": 50.0}),
     },
 }
 _ENOUGH = 8, {"duration": 50_000.0}  # which takes a quarter of a second, so that both can afford it
@@ -67,10 +68,14 @@ def at_step(size: int, step: float | None) -> Runs:
     """Return runs of the perfectly inelastic chain at a fixed time step; None: the default one."""
     if step is None:
         return dissipative(size, 0.0)
+    granted: Granted = {
+        quality: (number, {**settings, "duration": step / 1e-3 * settings["duration"]})
+        for quality, (number, settings) in _granted(_AT_STEP, size).items()
+    }
     return Runs(
         f"L={size} dt={step:g}",
         Chain(size=size, restitution=0.0),
-        _granted(_AT_STEP, size),
+        granted,
         {"time_step": step, "observe": ["widths"]},
     )
 
