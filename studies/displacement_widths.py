@@ -3,10 +3,10 @@
     python -m studies.displacement_widths
 
 Prints docs/tables/displacement_widths.csv: the largest error of W_x of any rod against simulations
-in the limit of a vanishing time step, in which W_x has errors of 0.4 to 0.9 % in the mean of rods.
+in the limit of a vanishing time step, in which W_x has an error of 0.2 to 0.8 % at that rod.
 "Before" is W_x with the covariance h of the velocities in place of h'. The chains were drawn after
 the equation was final, and before any of them was simulated. Its cells in chains of 131 to 260 rods
-were changed after the first results (docs/tables.md). On one core it takes about an hour.
+were changed after the first results (docs/tables.md). On one core it takes about two hours.
 """
 
 import math
