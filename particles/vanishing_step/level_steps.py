@@ -61,16 +61,13 @@ class Steps(NamedTuple):
         return math.prod(self.ratios[: level + 1])
 
 
-def velocity_bias(chain: Chain, time_step: float, width: float) -> float:
-    """Relative error of velocities that a step is expected to cause."""
-    return 0.0 if independent_rods(chain) else time_step_error(chain, time_step, width)
-
-
-def relative_bias(chain: Chain, time_step: float, width: float) -> float:
-    """Relative error of displacements."""
-    bias = velocity_bias(chain, time_step, width)
-    linear = chain.spring == "linear" and not independent_rods(chain)
-    return bias + (spring_rate(chain) * time_step) ** 2 / 8 if linear else bias
+def expected_bias(chain: Chain, time_step: float, width: float) -> tuple[float, float]:
+    """Relative errors of velocities and of displacements that a step is expected to cause."""
+    if independent_rods(chain):
+        return 0.0, 0.0
+    bias = time_step_error(chain, time_step, width)
+    springs = (spring_rate(chain) * time_step) ** 2 / 8 if chain.spring == "linear" else 0.0
+    return bias, bias + springs
 
 
 def plan_steps(chain: Chain, accuracy: float, warmup: float | None) -> Steps:
@@ -95,7 +92,7 @@ def _inexact_steps(chain: Chain, accuracy: float) -> tuple[float, list[int]]:
     width = centre_width(chain) * chain.free_velocity_width
     fastest = max(spring_rate(chain), chain.damping / chain.mass)
     longest = step = _SPRINGS / fastest
-    while relative_bias(chain, step, width) > _EXPECTED * accuracy:
+    while expected_bias(chain, step, width)[1] > _EXPECTED * accuracy:
         step *= 0.98
     ratios = [1]
     if chain.restitution != 1:
