@@ -92,10 +92,6 @@ def _compare(
 ) -> xr.DataTree:
     from crazybilliards.comparison.side_by_side.grid import compare_elastic, compare_restitutions
 
-    if restitution is None and chain.size < 3:
-        raise ValueError(
-            f"size must be at least 3 to compare with an arctanh fit, got {chain.size}"
-        )
     try:
         if restitution is not None:
             return compare_restitutions(chain, numbers("restitution", restitution, float), **how)

@@ -63,15 +63,13 @@ def command(
     Example: crazybilliards relax --output results --release displaced --by 2 --gap 0.2
     """
     from crazybilliards.comparison.side_by_side.relaxation import compare_relaxation
-    from crazybilliards.model.checks import check_choice
 
     defaults = {"compressed": 0.3, "displaced": 2.0, "quenched": 3.0}
-    check_choice("release", release, tuple(defaults))
     with writing_to(output):
         tree = compare_relaxation(
             chain,
             release,  # type: ignore[arg-type]
-            defaults[release] if by is None else by,
+            defaults.get(release, 1.0) if by is None else by,
             duration=duration,
             every=every,
             replicas=replicas,
