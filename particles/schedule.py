@@ -27,8 +27,8 @@ from crazybilliards.model.checks import check_real
 from crazybilliards.particles.dynamics import Stepper, longest_step
 from crazybilliards.particles.scales import correlation_time, default_time_step, relaxation_time
 
-_STRIDE = 10
-_RELAXATIONS = 12
+STRIDE = 10  # steps from snapshot to snapshot
+RELAXATIONS = 12  # of the warm-up
 _BLOCKS, _FEWEST_BLOCKS = 64, 10
 _ENDLESS = 2**62  # snapshots
 # Of a block in correlation times. The standard error of a mean is then too small by an eighth for
@@ -117,7 +117,7 @@ def make_schedule(
         every = duration / _OUTPUTS
     if warmup is None:
         none = started or ensemble or chain.damping == 0
-        warmup = 0.0 if none else _RELAXATIONS * relaxation_time(chain)
+        warmup = 0.0 if none else RELAXATIONS * relaxation_time(chain)
     warmup = check_real("warmup", warmup)
     needed, step, stride = _choose_step(chain, time_step, every, warmup, stepper, exact)
     _refuse_short_steps(step, needed, warmup + duration)
@@ -198,11 +198,11 @@ def _choose_step(
                 raise
             needed = every  # free rods have no time scale, and need none if snapshots have one
         if exact:
-            every = every or _STRIDE * needed
+            every = every or STRIDE * needed
             # The warm-up is a whole number of steps, which must not make it much longer.
-            longest = max(_STRIDE * needed, warmup / 100) if warmup > 0 else every
+            longest = max(STRIDE * needed, warmup / 100) if warmup > 0 else every
     if every is None:
-        return needed, needed, _STRIDE
+        return needed, needed, STRIDE
     stride = max(math.ceil(every / longest - 1e-9), 1)
     return needed, every / stride, stride
 

@@ -28,6 +28,7 @@ from crazybilliards.particles.scales import (
     spring_rate,
     time_step_error,
 )
+from crazybilliards.particles.schedule import RELAXATIONS, STRIDE
 
 GROUPS = 32  # of a level: a standard error is then known to an eighth
 _RATIO, _NARROW_RATIO = 9, 3  # of successive steps; of the one in reserve
@@ -37,8 +38,6 @@ _SPRINGS = 0.5  # longest step, over that of spring or damping
 # Least duration of a group, in correlation times. The means of successive groups of the base are
 # then correlated by 0.06 at most, which makes a standard error 5 % too small.
 _LEAST, _PILOT = 10.0, 2.5  # of the base, of a difference
-_STRIDE = 10  # default time steps from snapshot to snapshot
-_RELAXATIONS = 12  # of the warm-up
 
 
 class Steps(NamedTuple):
@@ -72,14 +71,14 @@ def expected_bias(chain: Chain, time_step: float, width: float) -> tuple[float, 
 
 def plan_steps(chain: Chain, accuracy: float, warmup: float | None) -> Steps:
     """Choose the steps of the levels; the last one is used only if the bias is too large."""
-    interval = _STRIDE * default_time_step(chain)
+    interval = STRIDE * default_time_step(chain)
     step, ratios = interval, [1]
     if not independent_rods(chain):
         step, ratios = _inexact_steps(chain, accuracy)
     time_steps = [step * math.prod(ratios[level + 1 :]) for level in range(len(ratios))]
     first = time_steps[0]
     stride = max(round(interval / first), 1)
-    warm = math.ceil((_RELAXATIONS * relaxation_time(chain) if warmup is None else warmup) / first)
+    warm = math.ceil((RELAXATIONS * relaxation_time(chain) if warmup is None else warmup) / first)
     least, pilot = (
         max(math.ceil(each * correlation_time(chain) / (stride * first)), 1)
         for each in (_LEAST, _PILOT)
