@@ -83,11 +83,13 @@ def _plain(value: Any) -> Any:
     return number if math.isfinite(number) else None
 
 
-def empty_table(words: Iterable[str], numbers: Iterable[str], **said: str) -> Table:
+def empty_table(
+    words: Iterable[str], numbers: Iterable[str], *, caption: str, title: str | None = None
+) -> Table:
     """Return a table with columns of words, then of numbers, by their headings."""
     from rich.table import Table
 
-    table = Table(*words, **said)
+    table = Table(*words, title=title, caption=caption)
     for heading in numbers:
         table.add_column(heading, justify="right")
     return table

@@ -79,26 +79,28 @@ def command(
     """
     if amplitudes is not None and restitution is not None:
         raise ValueError("give restitution or amplitudes, not both")
+    if restitution is None and chain.size < 3:
+        raise ValueError(
+            f"size must be at least 3 to compare with an arctanh fit, got {chain.size}"
+        )
+    from crazybilliards.comparison.side_by_side.grid import compare_elastic, compare_restitutions
+
     how: dict[str, Any] = {"seed": seed, "processes": processes, "threads": threads}
     how |= {"folder": output and output / "cases", "keep_old": keep_old}
     how |= {} if duration is None else {"duration": duration}
     with writing_to(output):
-        tree = _compare(chain, amplitudes, restitution, **how)
+        try:
+            if restitution is not None:
+                values = numbers("restitution", restitution, float)
+                tree = compare_restitutions(chain, values, **how)
+            else:
+                values = numbers(
+                    "amplitudes", "1,3,10,30" if amplitudes is None else amplitudes, float
+                )
+                tree = compare_elastic(chain, values, **how)
+        except RuntimeError as error:  # a worker process died
+            raise ValueError(str(error)) from error
         conclude(output, tree, _write, _print_deviations if restitution is None else _print_widths)
-
-
-def _compare(
-    chain: Chain, amplitudes: str | None, restitution: str | None, **how: Any
-) -> xr.DataTree:
-    from crazybilliards.comparison.side_by_side.grid import compare_elastic, compare_restitutions
-
-    try:
-        if restitution is not None:
-            return compare_restitutions(chain, numbers("restitution", restitution, float), **how)
-        values = numbers("amplitudes", "1,3,10,30" if amplitudes is None else amplitudes, float)
-        return compare_elastic(chain, values, **how)
-    except RuntimeError as error:  # a worker process died
-        raise ValueError(str(error)) from error
 
 
 def _write(tree: xr.DataTree, folder: Path, suffix: str) -> None:

@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 
 # Of what there is to say about a claim.
 _PRINTED = ("its number", "found here", "at other choices", "why")
-# By what is asked for: names of the page with everything and of the table of claims.
-_REPORTS = {"all": ("report.html", "claims.md"), "analytics": ("analytics.html", "analytics.md")}
+# By what is asked for: names of the table of claims and of the page with everything.
+_REPORTS = {"all": ("claims.md", "report.html"), "analytics": ("analytics.md", "analytics.html")}
 
 
 def command(
@@ -82,7 +82,8 @@ def command(
         _print_list()
         return
     wanted = find_studies(which)
-    from crazybilliards.reproduction.claims.report import all_cases
+    from crazybilliards.model.storage import write_atomically
+    from crazybilliards.reproduction.claims.report import all_cases, html, markdown
 
     computing = engine(processes, dask, scheduler)
     with writing_to(output):
@@ -90,7 +91,9 @@ def command(
         drawing = {"columns": columns, "formats": [] if vector is None else [vector]}
         reproduced = _draw(wanted, quality, output, keep_old=keep_old, **drawing)
         if which in _REPORTS:
-            _write_report(reproduced, quality, output, *_REPORTS[which])
+            for name, written in zip(_REPORTS[which], (markdown, html), strict=True):
+                write_atomically(output / name, written(reproduced, quality).encode())
+                wrote(output / name)
         _print_claims(reproduced, quality)
 
 
@@ -123,17 +126,6 @@ def _draw(studies: list[Study], quality: Quality, output: Path, **how: Any) -> l
             wrote(path)
         reproduced.append(each)
     return reproduced
-
-
-def _write_report(
-    reproduced: list[Reproduced], quality: Quality, output: Path, page: str, table: str
-) -> None:
-    from crazybilliards.model.storage import write_atomically
-    from crazybilliards.reproduction.claims.report import html, markdown
-
-    for name, written in ((table, markdown), (page, html)):
-        write_atomically(output / name, written(reproduced, quality).encode())
-        wrote(output / name)
 
 
 def _print_claims(reproduced: list[Reproduced], quality: Quality) -> None:
