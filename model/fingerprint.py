@@ -17,8 +17,11 @@ from importlib.resources.abc import Traversable
 def fingerprint_of(sources: Iterable[Traversable], *others: str) -> str:
     """Return a hash of the content of files, in any order, and of further text."""
     hashed = hashlib.sha256("\0".join(others).encode())
-    for content in sorted(_content(source) for source in sources):
-        hashed.update(content)
+    contents = (
+        (each.name.encode(), hashlib.sha256(each.read_bytes()).digest()) for each in sources
+    )
+    for name, content in sorted(contents):
+        hashed.update(name + content)
     return hashed.hexdigest()
 
 
@@ -39,8 +42,3 @@ def _sources(folder: Traversable) -> Iterator[Traversable]:
             yield from _sources(each)
         elif each.name.endswith((".py", ".csv")):  # measured errors stand in tables
             yield each
-
-
-def _content(source: Traversable) -> bytes:
-    """Return the name and the hash of a file."""
-    return source.name.encode() + hashlib.sha256(source.read_bytes()).digest()

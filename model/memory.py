@@ -39,24 +39,17 @@ def _available_lately(moment: int) -> float:
     return available_memory()
 
 
-def available_memory() -> float:
+def available_memory(root: Path = Path("/")) -> float:
     """Return the bytes that can be allocated without swapping, on Linux, macOS and Windows.
 
     A container or a batch job may have less memory than the machine: Linux kills a process that
     exceeds the limit of its control group or of an enclosing group. The smallest number counts.
+    ``root`` is for tests.
     """
-    return min(_of_the_machine(), _of_the_groups(Path("/")))
-
-
-def _of_the_machine() -> float:
     import psutil  # here, because most commands allocate little and start sooner without it
 
-    return float(psutil.virtual_memory().available)
-
-
-def _of_the_groups(root: Path) -> float:
-    """Return the bytes that the control groups of this process leave; ``root`` is for tests."""
-    return min(map(_left, limiting_groups(root)), default=math.inf)
+    of_the_machine = float(psutil.virtual_memory().available)
+    return min([of_the_machine, *map(_left, limiting_groups(root))])
 
 
 def _left(group: Path) -> float:

@@ -12,7 +12,6 @@ from crazybilliards.model import Chain
 from crazybilliards.particles.laws.closed_contacts import CLOSED_KICK, CRITICAL_RESTITUTION
 from crazybilliards.particles.laws.exact_flight import Propagator, make_propagator
 from crazybilliards.particles.laws.law import Law, Method, make_law
-from crazybilliards.particles.noise import Noise, make_noise
 from crazybilliards.particles.scales import spring_rate
 
 # In velocity kicks of one step: rods that separate more slowly move as one. Below the critical
@@ -108,15 +107,6 @@ def make_step(
     # both together have strength^2 times the variance, which is 1 + decay^2 times that of one.
     outer_strength = math.sqrt(strength**2 + outer[0] ** 2 * (strength**2 - 1))
     return Step(time_step, *inner, *outer, full_kick / 2, exponent, True, strength, outer_strength)
-
-
-def start_noise(stream: np.random.SeedSequence, dynamics: Dynamics) -> Noise:
-    """Return the noise that drives one copy of the chain, from its own random numbers.
-
-    White noise remembers nothing, so it is the same for every chain. Noise with a memory of each
-    rod would be made here from ``dynamics``, and ``stepping.draw_kicks`` would correlate it.
-    """
-    return make_noise(stream)
 
 
 def longest_step(chain: Chain, stepper: Stepper) -> float:

@@ -27,8 +27,8 @@ from crazybilliards.model.checks import check_real
 from crazybilliards.particles.dynamics import Stepper, longest_step
 from crazybilliards.particles.scales import correlation_time, default_time_step, relaxation_time
 
-_STRIDE = 10
-_RELAXATIONS = 12
+STRIDE = 10  # steps from snapshot to snapshot
+RELAXATIONS = 12  # of the warm-up
 _BLOCKS, _FEWEST_BLOCKS = 64, 10
 _ENDLESS = 2**62  # snapshots
 # Of a block in correlation times. The standard error of a mean is then too small by an eighth for
@@ -117,13 +117,9 @@ def make_schedule(
         every = duration / _OUTPUTS
     if warmup is None:
         none = started or ensemble or chain.damping == 0
-        warmup = 0.0 if none else _RELAXATIONS * relaxation_time(chain)
+        warmup = 0.0 if none else RELAXATIONS * relaxation_time(chain)
     warmup = check_real("warmup", warmup)
-    if exact:
-        needed, step, stride = _exact_steps(chain, time_step, every, warmup)
-    else:
-        needed = _needed_step(chain, time_step, stepper)
-        step, stride = _step_and_stride(needed, every)
+    needed, step, stride = _choose_step(chain, time_step, every, warmup, stepper, exact)
     _refuse_short_steps(step, needed, warmup + duration)
     if (warmup + duration) / step > 1e15:
         raise ValueError(f"time_step {step:g} is too small for {warmup + duration:g} time units")
@@ -178,49 +174,37 @@ def too_short(chain: Chain, duration: float, warmup: float, replicas: int, at_re
     return ""
 
 
-def _needed_step(chain: Chain, time_step: float | None, stepper: Stepper) -> float:
-    """Return the length of a step without regard to snapshots, checked or chosen."""
-    if time_step is None:
-        return default_time_step(chain)
-    step = check_real("time_step", time_step, positive=True)
-    limit = longest_step(chain, stepper)
-    if step >= limit:
-        raise ValueError(f"time_step must be below {limit:.3g} to be stable, got {step:g}")
-    return step
-
-
-def _exact_steps(
-    chain: Chain, time_step: float | None, every: float | None, warmup: float
+def _choose_step(
+    chain: Chain,
+    time_step: float | None,
+    every: float | None,
+    warmup: float,
+    stepper: Stepper,
+    exact: bool,
 ) -> tuple[float, float, int]:
-    """Return the step without regard to snapshots, the step, and the steps between snapshots.
-
-    The warm-up is a whole number of steps. They are short enough not to make it much longer.
-    """
-    if time_step is not None:
-        needed = check_real("time_step", time_step, positive=True)
-        return needed, *_step_and_stride(needed, every)
+    """Return the step without regard to snapshots, the step, and the steps between snapshots."""
     if every is not None:
         every = check_real("every", every, positive=True)
-    try:
-        needed = default_time_step(chain)
-    except ValueError:  # free rods have no time scale, and need none if snapshots have one
-        if every is None:
-            raise
-        needed = every
-    every = every or _STRIDE * needed
-    longest = max(_STRIDE * needed, warmup / 100) if warmup > 0 else every
-    return needed, *_step_and_stride(longest, every)
-
-
-def _step_and_stride(step: float, every: float | None) -> tuple[float, int]:
-    """Return the length of a step and the number of steps from snapshot to snapshot."""
+    if time_step is not None:
+        needed = longest = check_real("time_step", time_step, positive=True)
+        limit = math.inf if exact else longest_step(chain, stepper)
+        if needed >= limit:
+            raise ValueError(f"time_step must be below {limit:.3g} to be stable, got {needed:g}")
+    else:
+        try:
+            needed = longest = default_time_step(chain)
+        except ValueError:
+            if not exact or every is None:
+                raise
+            needed = every  # free rods have no time scale, and need none if snapshots have one
+        if exact:
+            every = every or STRIDE * needed
+            # The warm-up is a whole number of steps, which must not make it much longer.
+            longest = max(STRIDE * needed, warmup / 100) if warmup > 0 else every
     if every is None:
-        return step, _STRIDE
-    every = check_real("every", every, positive=True)
-    if every / step > 1e15:
-        raise ValueError(f"time_step {step:g} is too small for snapshots every {every:g}")
-    stride = max(math.ceil(every / step - 1e-9), 1)
-    return every / stride, stride
+        return needed, needed, STRIDE
+    stride = max(math.ceil(every / longest - 1e-9), 1)
+    return needed, every / stride, stride
 
 
 def _refuse_short_steps(step: float, needed: float, time: float) -> None:

@@ -5,8 +5,6 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from contextlib import nullcontext
-from dataclasses import replace
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -193,8 +191,8 @@ def simulate(
     keeper = None
     if kept is not None:
         # In an ensemble only the last replicas of each group are at hand.
-        shorter = None if run.schedule.ensemble else partial(_observers, run)
-        keeper = Checkpoint(kept, identity(run), checkpoint_interval, shorter)
+        longer = None if run.schedule.ensemble else run
+        keeper = Checkpoint(kept, identity(run), checkpoint_interval, longer)
     with nullcontext() if keeper is None else keeper.resumed(copies):
         interrupted = run_all(copies, threads, keeper, progress)
     return collect(run, copies, interrupted)
@@ -218,12 +216,6 @@ def _stays_at_rest(run: Run) -> bool:
         v.any() or (chain.stiffness > 0 and np.abs(y - chain.reduced_anchors).max() > tolerance)
         for y, v in run.starts
     )
-
-
-def _observers(run: Run, duration: float) -> list[Observer]:
-    """Return the observers of a replica of the same run with another duration."""
-    other = replace(run, duration=duration)
-    return [observer.prepared(other, copies=1) for observer in other.observers]
 
 
 def _replicas(run: Run) -> list[Replica]:

@@ -1,14 +1,11 @@
-"""What a command answers on standard output: lines and tables for people, or one JSON object.
-
-Standard library and typer only up here, so that ``--help`` answers at once.
-"""
+"""What a command answers on standard output: lines and tables for people, or one JSON object."""
 
 from __future__ import annotations
 
 import inspect
 import json
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from contextvars import ContextVar
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -86,24 +83,32 @@ def _plain(value: Any) -> Any:
     return number if math.isfinite(number) else None
 
 
-def answer_rods(result: xr.Dataset, title: str, caption: str) -> None:
-    """Print widths and displacements of some rods, with their standard errors if there are any."""
+def empty_table(
+    words: Iterable[str], numbers: Iterable[str], *, caption: str, title: str | None = None
+) -> Table:
+    """Return a table with columns of words, then of numbers, by their headings."""
     from rich.table import Table
 
+    table = Table(*words, title=title, caption=caption)
+    for heading in numbers:
+        table.add_column(heading, justify="right")
+    return table
+
+
+def answer_rods(result: xr.Dataset, title: str, caption: str) -> None:
+    """Print widths and displacements of some rods, with their standard errors if there are any."""
     from crazybilliards.model.vocabulary import unit_of
 
     columns = {name: text for name, text in _COLUMNS.items() if name in result}
-    headings = [f"{text} [{unit_of(result[name])}]" for name, text in columns.items()]
-    table = Table("particle", *headings, title=title, caption=caption)
-    for column in table.columns:
-        column.justify = "right"
+    units = {name: unit_of(result[name]) for name in columns}
+    headings = [f"{text} [{units[name]}]" for name, text in columns.items()]
+    table = empty_table([], ["particle", *headings], title=title, caption=caption)
     L, noted = result.sizes["particle"], []
     for i in sorted({1, 2, max(L // 10, 1), max(L // 4, 1), max(L // 2, 1)} & set(range(1, L + 1))):
         rod = result.isel(particle=i - 1)
         table.add_row(str(rod.particle.item()), *(_measured(rod, name) for name in columns))
         errors = [f"{name}_error" for name in columns if f"{name}_error" in rod]
         noted.append({name: rod[name].item() for name in ("particle", *columns, *errors)})
-    units = {name: unit_of(result[name]) for name in columns}
     note(rods=noted, units=units)
     print_table(table)
 

@@ -1,7 +1,4 @@
-"""The command ``crazybilliards compare``.
-
-Only the standard library and typer are imported up here, so that ``--help`` answers at once.
-"""
+"""The command ``crazybilliards compare``."""
 
 from __future__ import annotations
 
@@ -13,17 +10,15 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from crazybilliards.apps.commands.answers import note, print_table, wrote
-from crazybilliards.apps.commands.chain_options import with_chain_options
+from crazybilliards.apps.commands.answers import empty_table, note, print_table, wrote
+from crazybilliards.apps.commands.options import KeepOld, Threads, path_option, with_chain_options
 from crazybilliards.apps.commands.output import (
     complain_of_divergence,
     conclude,
     numbers,
-    place,
     write_figures,
     writing_to,
 )
-from crazybilliards.apps.commands.sweep import KeepOld
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -37,11 +32,9 @@ def command(
     chain: Chain,
     output: Annotated[
         Path | None,
-        typer.Option(
-            help="Folder for the figures, comparison.nc and what was computed, made if missing; "
-            "without it nothing is written.",
-            parser=place,
-            metavar="FOLDER",
+        path_option(
+            "Folder for the figures, comparison.nc and what was computed, made if missing; "
+            "without it nothing is written."
         ),
     ] = None,
     amplitudes: Annotated[
@@ -64,9 +57,7 @@ def command(
     processes: Annotated[
         int | None, typer.Option(help="Processes to compute in; default: this one, in threads.")
     ] = None,
-    threads: Annotated[
-        int | None, typer.Option(help="Threads to simulate in; default: one per core.")
-    ] = None,
+    threads: Threads = None,
     keep_old: KeepOld = False,
 ) -> None:
     """Compare simulated chains with their theories.
@@ -88,33 +79,28 @@ def command(
     """
     if amplitudes is not None and restitution is not None:
         raise ValueError("give restitution or amplitudes, not both")
-    how: dict[str, Any] = {"seed": seed, "processes": processes, "threads": threads}
-    how |= {"folder": output and output / "cases", "keep_old": keep_old}
-    how |= {} if duration is None else {"duration": duration}
-    with writing_to(output):
-        tree = _compare(chain, amplitudes, restitution, **how)
-        status = tree.attrs["status"]
-        note(status=status)
-        show = _print_deviations if restitution is None else _print_widths
-        conclude(output, status, partial(_write, tree), partial(show, tree))
-
-
-def _compare(
-    chain: Chain, amplitudes: str | None, restitution: str | None, **how: Any
-) -> xr.DataTree:
-    from crazybilliards.comparison.side_by_side.grid import compare_elastic, compare_restitutions
-
     if restitution is None and chain.size < 3:
         raise ValueError(
             f"size must be at least 3 to compare with an arctanh fit, got {chain.size}"
         )
-    try:
-        if restitution is not None:
-            return compare_restitutions(chain, numbers("restitution", restitution, float), **how)
-        values = numbers("amplitudes", "1,3,10,30" if amplitudes is None else amplitudes, float)
-        return compare_elastic(chain, values, **how)
-    except RuntimeError as error:  # a worker process died
-        raise ValueError(str(error)) from error
+    from crazybilliards.comparison.side_by_side.grid import compare_elastic, compare_restitutions
+
+    how: dict[str, Any] = {"seed": seed, "processes": processes, "threads": threads}
+    how |= {"folder": output and output / "cases", "keep_old": keep_old}
+    how |= {} if duration is None else {"duration": duration}
+    with writing_to(output):
+        try:
+            if restitution is not None:
+                values = numbers("restitution", restitution, float)
+                tree = compare_restitutions(chain, values, **how)
+            else:
+                values = numbers(
+                    "amplitudes", "1,3,10,30" if amplitudes is None else amplitudes, float
+                )
+                tree = compare_elastic(chain, values, **how)
+        except RuntimeError as error:  # a worker process died
+            raise ValueError(str(error)) from error
+        conclude(output, tree, _write, _print_deviations if restitution is None else _print_widths)
 
 
 def _write(tree: xr.DataTree, folder: Path, suffix: str) -> None:
@@ -146,26 +132,22 @@ def _write(tree: xr.DataTree, folder: Path, suffix: str) -> None:
 
 
 def _print_deviations(tree: xr.DataTree) -> None:
-    from rich.table import Table
-
     from crazybilliards.comparison.side_by_side.grid import ELASTIC
     from crazybilliards.comparison.side_by_side.grid_deviations import (
         deviations,
         largest_width_error,
     )
 
-    table = Table(
+    theories = ["\n".join((*name.split(", "), "max / rms [%]")) for name in ELASTIC.values()]
+    table = empty_table(
+        [],
+        ["A", *theories, "exact\n[sigma]", "W_v\n[sigma]"],
         title="Density: simulation minus theory, in % of close packing 1/(2R)",
         caption="Smoothed as in the paper. max, rms: largest and root mean square. [sigma]: "
         "largest in standard errors of the simulation; 3 to 4 is normal for the largest of many "
         "bins or rods. W_v: the velocity widths' largest distance from their exact value. A in "
         "M R/T^(3/2).",
     )
-    table.add_column("A", justify="right")
-    for name in ELASTIC.values():
-        table.add_column("\n".join((*name.split(", "), "max / rms [%]")), justify="right")
-    table.add_column("exact\n[sigma]", justify="right")
-    table.add_column("W_v\n[sigma]", justify="right")
     noted = []
     for name, by_theory in deviations(tree).items():
         exact, amplitude = by_theory.get("exact"), name.removeprefix("amplitude_")
@@ -190,29 +172,17 @@ def _print_deviations(tree: xr.DataTree) -> None:
 
 
 def _print_widths(tree: xr.DataTree) -> None:
-    from rich.table import Table
-
     from crazybilliards.comparison.side_by_side.grid import KINETIC
     from crazybilliards.comparison.side_by_side.grid_deviations import width_deviations
 
-    table = Table(
+    table = empty_table(
+        ["e", "theory"],
+        ["largest", "expected", "centre", "border", "error of\na rod", "error of\nthe border"],
         title="Velocity widths W_v: theory minus simulation, in %",
         caption="Largest: of the particles 3 to L-2. Border: the first and the last. Errors: one "
         "standard error of the simulation. Expected: the largest that the theory states (-: not "
         "measured for chains like this one).",
     )
-    headings = (
-        "largest",
-        "expected",
-        "centre",
-        "border",
-        "error of\na rod",
-        "error of\nthe border",
-    )
-    table.add_column("e", justify="right")
-    table.add_column("theory")
-    for heading in headings:
-        table.add_column(heading, justify="right")
     noted = []
     for name, by_theory in width_deviations(tree).items():
         run, restitution = tree[name]["simulation"], name.removeprefix("restitution_")

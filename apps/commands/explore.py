@@ -1,7 +1,4 @@
-"""The command ``crazybilliards explore``.
-
-Only the standard library and typer are imported up here, so that ``--help`` answers at once.
-"""
+"""The command ``crazybilliards explore``."""
 
 from __future__ import annotations
 

@@ -1,8 +1,4 @@
-"""The command ``crazybilliards``: one subcommand per job.
-
-Only the standard library and typer are imported up here, so that ``--help`` answers at once; a
-job imports what it needs when it runs.
-"""
+"""The command ``crazybilliards``: one subcommand per job."""
 
 from __future__ import annotations
 

@@ -1,7 +1,4 @@
-"""What the commands share: reading lists, folders, figures, and the exit status.
-
-Standard library and typer only up here, so that ``--help`` answers at once.
-"""
+"""What the commands share: reading lists, folders, figures, and the exit status."""
 
 from __future__ import annotations
 
@@ -14,7 +11,8 @@ from typing import TYPE_CHECKING, TypeVar
 
 import typer
 
-from crazybilliards.apps.commands.answers import say, wrote
+from crazybilliards.apps.commands.answers import note, say, wrote
+from crazybilliards.model.checks import shown
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -23,6 +21,7 @@ if TYPE_CHECKING:
 INTERRUPTED = 130
 
 Number = TypeVar("Number", int, float)
+Result = TypeVar("Result", "xr.Dataset", "xr.DataTree")
 
 
 def numbers(name: str, text: str, kind: Callable[[str], Number]) -> list[Number]:
@@ -30,19 +29,8 @@ def numbers(name: str, text: str, kind: Callable[[str], Number]) -> list[Number]
     try:
         return [kind(part) for part in text.split(",")]
     except ValueError as error:
-        from crazybilliards.model.checks import shown
-
         message = f"{name} takes numbers separated by commas, got {shown(text)}"
         raise ValueError(message) from error
-
-
-def place(text: str) -> Path:
-    """Read the name of a file or a folder. An empty one would be the current folder."""
-    if not str(text):
-        raise typer.BadParameter("an empty name; the current folder is .")
-    from crazybilliards.model.checks import check_path
-
-    return check_path("output", text)
 
 
 @contextmanager
@@ -98,14 +86,6 @@ def write_figures(folder: Path, suffix: str, drawings: Mapping[str, Callable[[],
 
     Ctrl-C then costs no picture that was drawn.
     """
-    for number, (name, draw) in enumerate(drawings.items(), start=1):
-        path = folder / f"{name}{suffix}.png"
-        write_figure(path, draw, f", {number} of {len(drawings)}")
-        wrote(path)
-
-
-def write_figure(path: Path, draw: Callable[[], Figure], which: str = "") -> None:
-    """Draw a picture and write it to a file; ``which`` of them is shown meanwhile."""
     from io import BytesIO
 
     import matplotlib
@@ -117,11 +97,14 @@ def write_figure(path: Path, draw: Callable[[], Figure], which: str = "") -> Non
     from crazybilliards.model.progress import waiting_for
     from crazybilliards.model.storage import write_atomically
 
-    with waiting_for(f"drawing {path.name}{which}"), house_style():
-        figure, picture = draw(), BytesIO()
-        figure.savefig(picture, format="png")
-        plt.close(figure)
-    write_atomically(path, picture.getvalue())
+    for number, (name, draw) in enumerate(drawings.items(), start=1):
+        path, picture = folder / f"{name}{suffix}.png", BytesIO()
+        with waiting_for(f"drawing {path.name}, {number} of {len(drawings)}"), house_style():
+            figure = draw()
+            figure.savefig(picture, format="png")
+            plt.close(figure)
+        write_atomically(path, picture.getvalue())
+        wrote(path)
 
 
 def complain_of_divergence(run: xr.Dataset) -> None:
@@ -139,22 +122,25 @@ def complain_of_divergence(run: xr.Dataset) -> None:
 
 def conclude(
     output: Path | None,
-    status: str,
-    write: Callable[[Path, str], None],
-    show: Callable[[], None],
+    result: Result,
+    write: Callable[[Result, Path, str], None],
+    show: Callable[[Result], None],
     kept: str = "FOLDER keeps the figures and the data",
 ) -> None:
     """Write what was computed, show it, and end the command with the status that tells a shell.
 
-    ``write(output, suffix)`` is called if there is an ``output``, which else would be ``kept``; the
-    suffix of names is ``-interrupted`` or ``-diverged`` unless the run was completed. ``show()`` is
-    called even if nothing can be written any more, because it then prints all there is.
+    ``write(result, output, suffix)`` is called if there is an ``output``, which else would be
+    ``kept``; the suffix of names is ``-interrupted`` or ``-diverged`` unless the run was completed.
+    ``show(result)`` is called even if nothing can be written any more, because it then prints all
+    there is.
     """
+    status = result.attrs["status"]
+    note(status=status)
     try:
         if output is not None:
-            write(output, "" if status == "completed" else f"-{status}")
+            write(result, output, "" if status == "completed" else f"-{status}")
     finally:
-        show()
+        show(result)
     if output is None:
         say(f"Nothing was written; --output {kept}.")
     if status == "interrupted":

@@ -1,7 +1,4 @@
-"""The command ``crazybilliards relax``.
-
-Only the standard library and typer are imported up here, so that ``--help`` answers at once.
-"""
+"""The command ``crazybilliards relax``."""
 
 from __future__ import annotations
 
@@ -11,9 +8,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from crazybilliards.apps.commands.answers import note, print_table, wrote
-from crazybilliards.apps.commands.chain_options import with_chain_options
-from crazybilliards.apps.commands.output import conclude, place, write_figures, writing_to
+from crazybilliards.apps.commands.answers import empty_table, note, print_table, wrote
+from crazybilliards.apps.commands.options import Threads, path_option, with_chain_options
+from crazybilliards.apps.commands.output import conclude, write_figures, writing_to
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -32,12 +29,10 @@ def command(
     chain: Chain,
     output: Annotated[
         Path | None,
-        typer.Option(
-            help="Folder for relaxation.nc, spacetime.png, profiles.png, cloud.png, "
-            "relaxation.html and relaxation.gif, made if missing; without it nothing is written. "
-            "The first holds smoothed densities, all that the pictures show.",
-            parser=place,
-            metavar="FOLDER",
+        path_option(
+            "Folder for relaxation.nc, spacetime.png, profiles.png, cloud.png, relaxation.html and "
+            "relaxation.gif, made if missing; without it nothing is written. The first holds "
+            "smoothed densities, all that the pictures show."
         ),
     ] = None,
     release: Annotated[
@@ -54,9 +49,7 @@ def command(
     every: Annotated[float, typer.Option(help="Time between outputs.")] = 0.5,
     replicas: Annotated[int, typer.Option(help="Simulated chains to average over.")] = 300,
     seed: Annotated[int, typer.Option(help="Seed of the random numbers.")] = 0,
-    threads: Annotated[
-        int | None, typer.Option(help="Threads to simulate in; default: one per core.")
-    ] = None,
+    threads: Threads = None,
 ) -> None:
     """Release an elastic chain and follow it: rods, two fluids, and the exact solution.
 
@@ -70,24 +63,20 @@ def command(
     Example: crazybilliards relax --output results --release displaced --by 2 --gap 0.2
     """
     from crazybilliards.comparison.side_by_side.relaxation import compare_relaxation
-    from crazybilliards.model.checks import check_choice
 
     defaults = {"compressed": 0.3, "displaced": 2.0, "quenched": 3.0}
-    check_choice("release", release, tuple(defaults))
     with writing_to(output):
         tree = compare_relaxation(
             chain,
             release,  # type: ignore[arg-type]
-            defaults[release] if by is None else by,
+            defaults.get(release, 1.0) if by is None else by,
             duration=duration,
             every=every,
             replicas=replicas,
             seed=seed,
             threads=threads,
         )
-        status = tree.attrs["status"]
-        note(status=status)
-        conclude(output, status, partial(_write, tree), partial(_print, tree))
+        conclude(output, tree, _write, _print)
 
 
 def _write(tree: xr.DataTree, folder: Path, suffix: str) -> None:
@@ -123,16 +112,14 @@ def _write(tree: xr.DataTree, folder: Path, suffix: str) -> None:
 
 
 def _print(tree: xr.DataTree) -> None:
-    from rich.table import Table
-
     from crazybilliards.comparison.side_by_side.relaxation import LEGEND, label_distances
 
-    table = Table(
+    table = empty_table(
+        ["theory"],
+        ["rms distance / s"],
         caption="Rms over the rods of their mean position in theory minus simulation, in thermal "
-        "lengths, at the time when it is largest."
+        "lengths, at the time when it is largest.",
     )
-    table.add_column("theory")
-    table.add_column("rms distance / s", justify="right")
     distances = label_distances(tree)
     note(distances=distances)
     for key, distance in distances.items():

@@ -1,53 +1,29 @@
-"""The command ``crazybilliards reproduce``.
-
-Only the standard library and typer are imported up here, so that ``--help`` answers at once.
-"""
+"""The command ``crazybilliards reproduce``."""
 
 from __future__ import annotations
 
 import shutil
 import textwrap
-from enum import StrEnum
 from math import isfinite
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
 from crazybilliards.apps.commands.answers import note, say, wrote
-from crazybilliards.apps.commands.output import place, writing_to
-from crazybilliards.apps.commands.sweep import (
-    Dask,
-    KeepOld,
-    Processes,
-    Scheduler,
-    compute_cases,
-    engine,
-)
+from crazybilliards.apps.commands.options import Dask, KeepOld, Processes, Scheduler, path_option
+from crazybilliards.apps.commands.output import writing_to
+from crazybilliards.apps.commands.sweep import compute_cases, engine
 
 if TYPE_CHECKING:
     from crazybilliards.reproduction.claims.report import Reproduced
-    from crazybilliards.reproduction.claims.study import Study
+    from crazybilliards.reproduction.claims.study import Quality, Study
 
 
 # Of what there is to say about a claim.
 _PRINTED = ("its number", "found here", "at other choices", "why")
-# By what is asked for: names of the page with everything and of the table of claims.
-_REPORTS = {"all": ("report.html", "claims.md"), "analytics": ("analytics.html", "analytics.md")}
-
-
-class Quality(StrEnum):
-    """How much to compute."""
-
-    QUICK = "quick"
-    FULL = "full"
-
-
-class Vector(StrEnum):
-    """Formats of vector graphics."""
-
-    PDF = "pdf"
-    SVG = "svg"
+# By what is asked for: names of the table of claims and of the page with everything.
+_REPORTS = {"all": ("claims.md", "report.html"), "analytics": ("analytics.md", "analytics.html")}
 
 
 def command(
@@ -61,15 +37,11 @@ def command(
     ] = "all",
     show_list: Annotated[bool, typer.Option("--list", help="List the figures, and stop.")] = False,
     quality: Annotated[
-        Quality, typer.Option(help="All figures take 2 minutes (quick) or 10 (full) on two cores.")
-    ] = Quality.QUICK,
+        Literal["quick", "full"],
+        typer.Option(help="All figures take 2 minutes (quick) or 10 (full) on two cores."),
+    ] = "quick",
     output: Annotated[
-        Path,
-        typer.Option(
-            help="Folder for pictures, report and results; made if missing.",
-            parser=place,
-            metavar="FOLDER",
-        ),
+        Path, path_option("Folder for pictures, report and results; made if missing.")
     ] = Path("reproduced"),
     columns: Annotated[
         int | None,
@@ -81,7 +53,8 @@ def command(
         ),
     ] = None,
     vector: Annotated[
-        Vector | None, typer.Option(help="Write every picture as a vector graphic, too.")
+        Literal["pdf", "svg"] | None,
+        typer.Option(help="Write every picture as a vector graphic, too."),
     ] = None,
     processes: Processes = None,
     dask: Dask = False,
@@ -109,15 +82,18 @@ def command(
         _print_list()
         return
     wanted = find_studies(which)
-    from crazybilliards.reproduction.claims.report import all_cases
+    from crazybilliards.model.storage import write_atomically
+    from crazybilliards.reproduction.claims.report import all_cases, html, markdown
 
     computing = engine(processes, dask, scheduler)
     with writing_to(output):
-        compute_cases(all_cases(wanted, quality.value), output / "cases", computing, keep_old)
-        drawing = {"columns": columns, "formats": [] if vector is None else [vector.value]}
+        compute_cases(all_cases(wanted, quality), output / "cases", computing, keep_old)
+        drawing = {"columns": columns, "formats": [] if vector is None else [vector]}
         reproduced = _draw(wanted, quality, output, keep_old=keep_old, **drawing)
         if which in _REPORTS:
-            _write_report(reproduced, quality, output, *_REPORTS[which])
+            for name, written in zip(_REPORTS[which], (markdown, html), strict=True):
+                write_atomically(output / name, written(reproduced, quality).encode())
+                wrote(output / name)
         _print_claims(reproduced, quality)
 
 
@@ -140,7 +116,7 @@ def _draw(studies: list[Study], quality: Quality, output: Path, **how: Any) -> l
     from crazybilliards.reproduction.claims.report import reproduce as draw
 
     reproduced = []
-    drawing = draw(studies, quality.value, output / "cases", **how)
+    drawing = draw(studies, quality, output / "cases", **how)
     for number, study in enumerate(studies, start=1):
         with waiting_for(f"drawing {study.label}, {number} of {len(studies)}"):
             each = next(drawing)
@@ -150,20 +126,6 @@ def _draw(studies: list[Study], quality: Quality, output: Path, **how: Any) -> l
             wrote(path)
         reproduced.append(each)
     return reproduced
-
-
-def _write_report(
-    reproduced: list[Reproduced], quality: Quality, output: Path, page: str, table: str
-) -> None:
-    from crazybilliards.model.storage import write_atomically
-    from crazybilliards.reproduction.claims.report import html, markdown
-
-    for name, text in (
-        (table, markdown(reproduced, quality.value)),
-        (page, html(reproduced, quality.value)),
-    ):
-        write_atomically(output / name, text.encode())
-        wrote(output / name)
 
 
 def _print_claims(reproduced: list[Reproduced], quality: Quality) -> None:
@@ -183,7 +145,7 @@ def _print_claims(reproduced: list[Reproduced], quality: Quality) -> None:
                 "elsewhere": {name: at._asdict() for name, at in claim.elsewhere.items()},
             }
             noted.append(which | said | numbers)
-            more = " from so few runs (--quality full has more)" if quality is Quality.QUICK else ""
+            more = " from so few runs (--quality full has more)" if quality == "quick" else ""
             undecided = more if claim.verdict == "undecided" else ""
             say(_indented(1, f"{claim.statement}: {claim.verdict}{undecided}"))
             for name in (name for name in said if name in _PRINTED):

@@ -1,24 +1,19 @@
-"""The command ``crazybilliards simulate``.
-
-Only the standard library and typer are imported up here, so that ``--help`` answers at once.
-"""
+"""The command ``crazybilliards simulate``."""
 
 from __future__ import annotations
 
 import math
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from crazybilliards.apps.commands.answers import answer_rods, note, say, wrote
-from crazybilliards.apps.commands.chain_options import with_chain_options
+from crazybilliards.apps.commands.options import Threads, path_option, with_chain_options
 from crazybilliards.apps.commands.output import (
     complain_of_divergence,
     conclude,
     numbers,
-    place,
     writing_to,
 )
 
@@ -33,11 +28,7 @@ def command(
     chain: Chain,
     output: Annotated[
         Path | None,
-        typer.Option(
-            help="NetCDF file for the result, FILE.nc; without it nothing is written.",
-            parser=place,
-            metavar="FILE",
-        ),
+        path_option("NetCDF file for the result, FILE.nc; without it nothing is written.", "FILE"),
     ] = None,
     observe: Annotated[
         str,
@@ -82,16 +73,10 @@ def command(
     ] = "event-driven",
     stepper: Annotated[str, typer.Option(help="Time stepping: splitting or euler.")] = "splitting",
     seed: Annotated[int, typer.Option(help="Seed of the random numbers.")] = 0,
-    threads: Annotated[
-        int | None, typer.Option(help="Threads to simulate in; default: one per core.")
-    ] = None,
+    threads: Threads = None,
     checkpoint: Annotated[
         Path | None,
-        typer.Option(
-            help="File to keep the state in: the same command goes on from there.",
-            parser=place,
-            metavar="FILE",
-        ),
+        path_option("File to keep the state in: the same command goes on from there.", "FILE"),
     ] = None,
 ) -> None:
     """Simulate one chain and write what was measured to a file.
@@ -135,9 +120,7 @@ def command(
             )
         else:
             result = simulate_limit(chain, accuracy=accuracy, **common)
-        status = result.attrs["status"]
-        kept = "FILE.nc keeps the result"
-        conclude(output, status, partial(_write, result), partial(_print, result), kept)
+        conclude(output, result, _write, _print, kept="FILE.nc keeps the result")
 
 
 def _write(result: xr.Dataset, file: Path, suffix: str) -> None:
@@ -164,7 +147,7 @@ def _print(result: xr.Dataset) -> None:
     runs = how.get("levels", [how.get("schedule")])
     steps = [each["time_step"] for each in runs if each]
     status, end = result.attrs["status"], result.attrs["end_time"]
-    note(status=status, end_time=end, time_steps=steps)
+    note(end_time=end, time_steps=steps)
     listed = ", ".join(f"{step:.3g}" for step in steps)
     say(f"{status} at t = {end:g} T, time step{'s' * (len(steps) > 1)} {listed} T")
     if status == "diverged":

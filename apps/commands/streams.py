@@ -1,7 +1,4 @@
-"""What commands write to a terminal or a pipe: what goes wrong there costs no work.
-
-Standard library only, so that ``--help`` answers at once.
-"""
+"""What commands write to a terminal or a pipe: what goes wrong there costs no work."""
 
 from __future__ import annotations
 

@@ -1,7 +1,4 @@
-"""The command ``crazybilliards sweep``.
-
-Only the standard library and typer are imported up here, so that ``--help`` answers at once.
-"""
+"""The command ``crazybilliards sweep``."""
 
 from __future__ import annotations
 
@@ -13,31 +10,14 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from crazybilliards.apps.commands.answers import note, say
-from crazybilliards.apps.commands.output import INTERRUPTED, check_folder, place
+from crazybilliards.apps.commands.options import Dask, KeepOld, Processes, Scheduler, path_option
+from crazybilliards.apps.commands.output import INTERRUPTED, check_folder
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
     from contextlib import AbstractContextManager
 
     from crazybilliards.comparison.sweeps import Case
-
-Processes = Annotated[
-    int | None, typer.Option(help="Processes to compute in; default: one per core.")
-]
-Dask = Annotated[
-    bool, typer.Option("--dask", help="Compute on a dask cluster of this machine instead.")
-]
-Scheduler = Annotated[
-    str | None,
-    typer.Option(help="Compute on the dask cluster with this scheduler, tcp://HOST:PORT say."),
-]
-KeepOld = Annotated[
-    bool,
-    typer.Option(
-        "--keep-old",
-        help="Take results that other source code of crazybilliards computed as they are.",
-    ),
-]
 
 
 def command(
@@ -49,12 +29,7 @@ def command(
         ),
     ],
     output: Annotated[
-        Path,
-        typer.Option(
-            help="Folder for the results, one file a case; made if missing.",
-            parser=place,
-            metavar="FOLDER",
-        ),
+        Path, path_option("Folder for the results, one file a case; made if missing.")
     ],
     processes: Processes = None,
     dask: Dask = False,

@@ -1,7 +1,4 @@
-"""The command ``crazybilliards theory``.
-
-Only the standard library and typer are imported up here, so that ``--help`` answers at once.
-"""
+"""The command ``crazybilliards theory``."""
 
 from __future__ import annotations
 
@@ -13,9 +10,16 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from crazybilliards.apps.commands.answers import answer_rods, note, print_table, say, wrote
-from crazybilliards.apps.commands.chain_options import with_chain_options
-from crazybilliards.apps.commands.output import conclude, place, write_figures, writing_to
+from crazybilliards.apps.commands.answers import (
+    answer_rods,
+    empty_table,
+    note,
+    print_table,
+    say,
+    wrote,
+)
+from crazybilliards.apps.commands.options import path_option, with_chain_options
+from crazybilliards.apps.commands.output import conclude, write_figures, writing_to
 from crazybilliards.comparison.stationary_theories import THEORIES, choose_theory
 
 if TYPE_CHECKING:
@@ -53,11 +57,9 @@ def command(
     ] = False,
     output: Annotated[
         Path | None,
-        typer.Option(
-            help="Folder for theory.nc, density.png, profile.png and, of the kinetic equation, "
-            "phase_space.png, made if missing; without it nothing is written.",
-            parser=place,
-            metavar="FOLDER",
+        path_option(
+            "Folder for theory.nc, density.png, profile.png and, of the kinetic equation, "
+            "phase_space.png, made if missing; without it nothing is written."
         ),
     ] = None,
     tolerance: Annotated[
@@ -110,18 +112,17 @@ def command(
         result = theory.solve(chain, **settings)
         if why:
             say(f"{why}.")
-        write, show = partial(_write, theory, result), partial(_print, theory, result)
-        conclude(output, result.attrs["status"], write, show)
+        conclude(output, result, partial(_write, theory), partial(_print, theory))
 
 
 def _list(chain: Chain) -> None:
     """Print the table of theories for a chain."""
-    from rich.table import Table
-
     from crazybilliards.comparison import theories
 
     found = theories(chain)
-    table = Table(
+    table = empty_table(
+        ["theory"],
+        ["W_v", "border", "W_x", "<dx>", "density", "time"],
         title=f"Theories for L = {chain.size}, e = {chain.restitution:g}; best of W_v: "
         + (found.attrs["best"] or "none"),
         caption="Largest errors of the theory itself on chains like this one: relative ones of W_v "
@@ -129,8 +130,6 @@ def _list(chain: Chain) -> None:
         "in thermal lengths; of the smoothed density, of close packing. -: not measured. "
         "Times on one core, within a factor of three.",
     )
-    for heading in ("theory", "W_v", "border", "W_x", "<dx>", "density", "time"):
-        table.add_column(heading, justify="left" if heading == "theory" else "right")
     rows = found.to_dataframe()
     for name, row in rows[rows.takes].iterrows():
         errors = [_percent(row[column]) for column in row.index if column.endswith("_error")]
@@ -154,17 +153,16 @@ def _print(theory: Theory, result: xr.Dataset) -> None:
     caption = f"A free rod has W_v = {chain.free_velocity_width:.4g} R/T."
     caption += "".join(f" {accuracy[name]}: {value:.1e}." for name, value in numbers.items())
     stated = theory.accuracy(chain)._asdict()
-    known = {f"{name}_error": error for name, error in stated.items() if not math.isnan(error)}
-    numbers |= known
-    caption += "\n" + _caveat(stated)
+    known = {name: error for name, error in stated.items() if not math.isnan(error)}
+    numbers |= {f"{name}_error": error for name, error in known.items()}
+    caption += "\n" + _caveat(known)
     note(theory=theory.name, free_velocity_width=chain.free_velocity_width, **numbers)
     title = f"{theory.title.capitalize()}, L = {chain.size}, e = {chain.restitution:g}"
     answer_rods(result, title, caption)
 
 
-def _caveat(stated: Mapping[str, float]) -> str:
+def _caveat(known: Mapping[str, float]) -> str:
     """Return the errors of the theory itself in words."""
-    known = {name: error for name, error in stated.items() if not math.isnan(error)}
     if not known:
         return "The errors of the theory were not measured for chains like this one."
     if not any(known.values()):

@@ -9,9 +9,7 @@ from collections.abc import Collection
 
 from crazybilliards.model.checks import got, shown
 from crazybilliards.particles.observers.avalanches import Avalanches, TriggeredCollisions
-from crazybilliards.particles.observers.base import Integers as Integers
 from crazybilliards.particles.observers.base import Observer
-from crazybilliards.particles.observers.base import Variables as Variables
 from crazybilliards.particles.observers.collisions import Collisions
 from crazybilliards.particles.observers.covariances import Covariances
 from crazybilliards.particles.observers.density import Density

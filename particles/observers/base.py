@@ -127,9 +127,11 @@ class Observer(ABC):
         TypeError
             If an attribute is neither one of these nor a constant.
         """
-        kept = {name: value for name, value in vars(self).items() if _is_kept(value)}
+        kept = {}
         for name, value in vars(self).items():
-            if name not in kept and not _is_constant(value):
+            if _is_kept(value):
+                kept[name] = value
+            elif not _is_constant(value):
                 raise TypeError(
                     f"{self.name}: {name} must be an array or a number, which a checkpoint can "
                     f"hold, got {type(value).__name__}"

@@ -78,8 +78,6 @@ class Energy(Observer):
         return variables
 
     def coordinates(self) -> dict[str, Array]:
-        if self.schedule.ensemble:
-            return {}
         first = np.arange(self.counts.shape[1]) * self.together
         # schedule.times would take too much memory in a long run.
         together = self.counts.sum(axis=0) / np.maximum((self.counts > 0).sum(axis=0), 1)

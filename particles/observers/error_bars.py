@@ -34,13 +34,10 @@ def jackknife(
     value = function(total / _behind(number, total.ndim))
     if len(sums) < 2:
         return value, np.full_like(value, np.inf)
-    rest = number - counts
-    used = (counts > 0) & (rest > 0)
-    divisors = np.where(used, rest, 1)
     left_out = np.array(
         [
-            function((total - part) / _behind(divisor, total.ndim))
-            for part, divisor in zip(sums, divisors, strict=True)
+            function((total - part) / _behind(np.maximum(rest, 1), total.ndim))
+            for part, rest in zip(sums, number - counts, strict=True)
         ]
     )
     return value, jackknife_error(value, left_out, counts)

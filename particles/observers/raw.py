@@ -56,8 +56,6 @@ class Raw(Observer):
         }
 
     def coordinates(self) -> dict[str, Array]:
-        if self.schedule.ensemble:
-            return {}
         return {"time": self.schedule.times[self._reached()]}
 
     def _reached(self) -> NDArray[np.bool_]:

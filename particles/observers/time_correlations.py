@@ -91,18 +91,15 @@ class TimeCorrelations(Averaged):
         return 2 * (last + 1) + 2, run.chosen.size + min(self.waves, run.chain.size) + 1
 
     def memory(self, run: Run) -> float:
-        """Return the bytes of the sums and of the buffer."""
         return super().memory(run) + 8.0 * math.prod(self.shape(run))
 
     def prepare(self, run: Run, copies: int) -> None:
-        """Make the sums and the buffer."""
         super().prepare(run, copies)
         self.spacing, self.last = self._plan(run)
         self.size, self.anchors, self.chosen = run.chain.size, run.chain.reduced_anchors, run.chosen
         self.before = np.zeros((2, max(self.last, 1), self.sums.shape[-1] - 1))
 
     def observe(self, snapshots: Snapshots) -> None:
-        """Add the pairs whose later snapshot is one of these to its block."""
         used = slice(-snapshots.first % self.spacing, None, self.spacing)
         both = snapshots.v[used], snapshots.y[used] - self.anchors
         now = np.stack([self._series(values) for values in both])
@@ -159,7 +156,6 @@ class TimeCorrelations(Averaged):
         return np.asarray(self._interval * dct(self._velocities(average), type=1, axis=0))
 
     def report(self, counts: Integers) -> Variables:
-        """Return all quantities and their standard errors."""
         ensemble, rods = self.schedule.ensemble, self.chosen.size
         quantities = self._velocities, self._displacements, self._increments, self._spectrum
         kinds = dict(zip(_QUANTITIES, quantities, strict=True))
@@ -183,7 +179,6 @@ class TimeCorrelations(Averaged):
         return self.spacing * self.schedule.stride * self.schedule.time_step
 
     def coordinates(self) -> dict[str, Array]:
-        """Return the waves and, unless averages are over an ensemble, lags and frequencies."""
         waves = {"wave": np.arange(self.sums.shape[-1] - 1.0 - self.chosen.size)}
         if self.schedule.ensemble:
             return waves

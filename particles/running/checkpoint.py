@@ -18,8 +18,9 @@ import io
 import json
 import time
 import warnings
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -30,7 +31,6 @@ from crazybilliards.model.fingerprint import room_fingerprint
 from crazybilliards.model.locks import locked
 from crazybilliards.model.process import interrupts_held_back
 from crazybilliards.model.storage import make_folder, read_sealed, write_sealed
-from crazybilliards.particles.observers.base import Observer
 from crazybilliards.particles.run import Run
 from crazybilliards.particles.running.replica import Replica
 
@@ -41,18 +41,13 @@ _SOURCE = room_fingerprint("model", "particles")
 class Checkpoint:
     """The checkpoint file of one run, which continues only if ``identity`` agrees.
 
-    ``shorter`` returns the observers of the same run with a shorter duration, prepared. Without it
-    the run cannot be longer than the one in the file.
+    ``run`` is one that may be longer than that in the file. Without it the durations must agree.
     """
 
     def __init__(
-        self,
-        path: Path,
-        identity: Mapping[str, Any],
-        interval: float,
-        shorter: Callable[[float], Sequence[Observer]] | None = None,
+        self, path: Path, identity: Mapping[str, Any], interval: float, run: Run | None = None
     ) -> None:
-        self.path, self.shorter = path, shorter
+        self.path, self.run = path, run
         self.identity = json.loads(json.dumps(identity))  # as it will be read back
         self.interval = interval
         self.saved = time.monotonic()
@@ -116,8 +111,8 @@ class Checkpoint:
         except Exception as error:
             raise ValueError(f"{self.path}: not a checkpoint") from error
         self._require_same_run(found)
-        if self.shorter is not None and found["duration"] != self.identity["duration"]:
-            replicas[0].require_continuing(self.shorter(found["duration"]))
+        if self.run is not None and found["duration"] != self.identity["duration"]:
+            replicas[0].require_continuing(replace(self.run, duration=found["duration"]))
         states: dict[str, dict[str, np.ndarray]] = {}
         for name, value in arrays.items():
             number, _, own = name.partition("/")
@@ -137,7 +132,7 @@ class Checkpoint:
                 f"version {found.get('version')}: its run cannot be continued to the same numbers; "
                 "remove the file to start anew, or go back to that code"
             )
-        if differing == ["duration"] and self.shorter is not None:
+        if differing == ["duration"] and self.run is not None:
             if found["duration"] < here["duration"]:
                 return
             raise ValueError(

@@ -9,7 +9,7 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from crazybilliards.model.vocabulary import result
-from crazybilliards.particles.observers import Integers, Variables
+from crazybilliards.particles.observers.base import Integers, Variables
 from crazybilliards.particles.run import Run
 from crazybilliards.particles.running.replica import NEVER, Replica
 from crazybilliards.particles.scales import centre_width, relaxation_time, time_step_error
@@ -37,7 +37,7 @@ def collect(run: Run, replicas: list[Replica], interrupted: bool) -> xr.Dataset:
     if interrupted and counts.sum() == 0:
         raise KeyboardInterrupt("nothing was measured yet")
     variables: Variables = {}
-    coordinates: dict[str, Array] = {"time": times} if schedule.ensemble else {}
+    coordinates: dict[str, Array] = {}
     # A chain that diverged before its first snapshot has a status and a time, but no averages.
     observed = zip(*(replica.observers for replica in replicas), strict=True)
     diverged = reached < NEVER
@@ -48,6 +48,8 @@ def collect(run: Run, replicas: list[Replica], interrupted: bool) -> xr.Dataset:
                 warnings.simplefilter("ignore")
             variables |= first.report(counts)
         coordinates |= first.coordinates()
+    if schedule.ensemble:
+        coordinates["time"] = times
     measured = result(
         chain,
         {name: only_chosen(run.chosen, chain.size, *each) for name, each in variables.items()},

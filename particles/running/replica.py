@@ -10,10 +10,10 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from crazybilliards.particles.dynamics import Dynamics, start_noise
+from crazybilliards.particles.dynamics import Dynamics
 from crazybilliards.particles.laws.avalanche import Tally, make_tally
-from crazybilliards.particles.laws.law import EVENTS, make_scratch
-from crazybilliards.particles.noise import STATE
+from crazybilliards.particles.laws.law import make_scratch
+from crazybilliards.particles.noise import STATE, make_noise
 from crazybilliards.particles.observers.base import (
     Observer,
     Snapshots,
@@ -21,6 +21,7 @@ from crazybilliards.particles.observers.base import (
     merge_pairs,
     restore,
 )
+from crazybilliards.particles.run import Run
 from crazybilliards.particles.schedule import Schedule
 from crazybilliards.particles.stepping import record
 
@@ -66,7 +67,7 @@ class Replica:
     def _start(self) -> None:
         """Set the chain to the start of the present copy."""
         self.y, self.v = (np.array(each) for each in self.starts[self.copy])
-        self.noise = start_noise(self.streams[self.copy], self.dynamics)
+        self.noise = make_noise(self.streams[self.copy])
         self.steps, self.snapshots, self.over = 0, 0, False
 
     @property
@@ -95,13 +96,13 @@ class Replica:
             for name in observer.state():
                 restore(observer, name, state[f"observer {number} {name}"])
 
-    def require_continuing(self, shorter: Sequence[Observer]) -> None:
+    def require_continuing(self, shorter: Run) -> None:
         """Raise unless the observers, which have seen nothing, continue those of a shorter run.
 
         What both begin with may differ in the number of places for snapshots, and in nothing else.
         """
-        for own, other in zip(self.observers, shorter, strict=True):
-            for name, value in other.state().items():
+        for own, other in zip(self.observers, shorter.observers, strict=True):
+            for name, value in other.prepared(shorter, copies=1).state().items():
                 place = leading(np.asarray(own.state()[name]), np.asarray(value))
                 if place is None or place.tobytes() != np.asarray(value).tobytes():
                     raise ValueError(
@@ -225,7 +226,8 @@ class Replica:
 
     def _tally(self) -> Tally:
         """Return the record of collisions: counts, and the arrays that observers add."""
-        tally = make_tally(self.y.size, contacts=self.dynamics.law.operator == EVENTS)
+        counted = any(observer.single_collisions for observer in self.observers)
+        tally = make_tally(self.y.shape[-1], contacts=counted)
         for observer in self.observers:
             tally = observer.tally(tally)
         return tally

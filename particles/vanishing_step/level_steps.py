@@ -28,6 +28,7 @@ from crazybilliards.particles.scales import (
     spring_rate,
     time_step_error,
 )
+from crazybilliards.particles.schedule import RELAXATIONS, STRIDE
 
 GROUPS = 32  # of a level: a standard error is then known to an eighth
 _RATIO, _NARROW_RATIO = 9, 3  # of successive steps; of the one in reserve
@@ -37,8 +38,6 @@ _SPRINGS = 0.5  # longest step, over that of spring or damping
 # Least duration of a group, in correlation times. The means of successive groups of the base are
 # then correlated by 0.06 at most, which makes a standard error 5 % too small.
 _LEAST, _PILOT = 10.0, 2.5  # of the base, of a difference
-_STRIDE = 10  # default time steps from snapshot to snapshot
-_RELAXATIONS = 12  # of the warm-up
 
 
 class Steps(NamedTuple):
@@ -61,28 +60,25 @@ class Steps(NamedTuple):
         return math.prod(self.ratios[: level + 1])
 
 
-def velocity_bias(chain: Chain, time_step: float, width: float) -> float:
-    """Relative error of velocities that a step is expected to cause."""
-    return 0.0 if independent_rods(chain) else time_step_error(chain, time_step, width)
-
-
-def relative_bias(chain: Chain, time_step: float, width: float) -> float:
-    """Relative error of displacements."""
-    bias = velocity_bias(chain, time_step, width)
-    linear = chain.spring == "linear" and not independent_rods(chain)
-    return bias + (spring_rate(chain) * time_step) ** 2 / 8 if linear else bias
+def expected_bias(chain: Chain, time_step: float, width: float) -> tuple[float, float]:
+    """Relative errors of velocities and of displacements that a step is expected to cause."""
+    if independent_rods(chain):
+        return 0.0, 0.0
+    bias = time_step_error(chain, time_step, width)
+    springs = (spring_rate(chain) * time_step) ** 2 / 8 if chain.spring == "linear" else 0.0
+    return bias, bias + springs
 
 
 def plan_steps(chain: Chain, accuracy: float, warmup: float | None) -> Steps:
     """Choose the steps of the levels; the last one is used only if the bias is too large."""
-    interval = _STRIDE * default_time_step(chain)
+    interval = STRIDE * default_time_step(chain)
     step, ratios = interval, [1]
     if not independent_rods(chain):
         step, ratios = _inexact_steps(chain, accuracy)
     time_steps = [step * math.prod(ratios[level + 1 :]) for level in range(len(ratios))]
     first = time_steps[0]
     stride = max(round(interval / first), 1)
-    warm = math.ceil((_RELAXATIONS * relaxation_time(chain) if warmup is None else warmup) / first)
+    warm = math.ceil((RELAXATIONS * relaxation_time(chain) if warmup is None else warmup) / first)
     least, pilot = (
         max(math.ceil(each * correlation_time(chain) / (stride * first)), 1)
         for each in (_LEAST, _PILOT)
@@ -95,7 +91,7 @@ def _inexact_steps(chain: Chain, accuracy: float) -> tuple[float, list[int]]:
     width = centre_width(chain) * chain.free_velocity_width
     fastest = max(spring_rate(chain), chain.damping / chain.mass)
     longest = step = _SPRINGS / fastest
-    while relative_bias(chain, step, width) > _EXPECTED * accuracy:
+    while expected_bias(chain, step, width)[1] > _EXPECTED * accuracy:
         step *= 0.98
     ratios = [1]
     if chain.restitution != 1:

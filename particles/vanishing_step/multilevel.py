@@ -39,7 +39,7 @@ import numpy as np
 from crazybilliards.model import Chain
 from crazybilliards.particles.laws.closed_contacts import CRITICAL_RESTITUTION
 from crazybilliards.particles.laws.law import EVENTS, EXACT, ISOTONIC, SORT
-from crazybilliards.particles.vanishing_step.level_steps import Steps, relative_bias, velocity_bias
+from crazybilliards.particles.vanishing_step.level_steps import Steps, expected_bias
 from crazybilliards.particles.vanishing_step.level_terms import CENTRAL, Array, Estimate, estimate
 from crazybilliards.particles.vanishing_step.sampler import Sampler
 
@@ -133,10 +133,11 @@ class Levels:
         if len(terms) == 1:
             values = terms[0].values
             step = self.steps.time_steps[self.used[-1]]
-            case = self.chain, step, float(values[CENTRAL])
-            relative = dict.fromkeys(values, relative_bias(*case))
-            relative |= dict.fromkeys(_VELOCITIES & values.keys(), velocity_bias(*case))
-            return {name: relative[name] * np.abs(value) for name, value in values.items()}
+            velocities, others = expected_bias(self.chain, step, float(values[CENTRAL]))
+            return {
+                name: (velocities if name in _VELOCITIES else others) * np.abs(value)
+                for name, value in values.items()
+            }
         ratio, bias = self.steps.ratios[self.used[-1]], {}
         for name, value in terms[-1].values.items():
             order = 0.75

@@ -122,9 +122,6 @@ class Sampler(Replica):
             return super()._scratch()
         return super()._scratch(), super()._scratch()
 
-    def _tally(self) -> Tally:
-        return make_tally(self.finer.chain.size, contacts=False)
-
     def _record(self, scratch: Any, tally: Tally, due: int, n: int, y: Array, v: Array) -> int:
         if self.coarser is None:
             return super()._record(scratch, tally, due, n, y, v)

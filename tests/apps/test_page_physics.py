@@ -8,10 +8,10 @@ import pytest
 import crazybilliards as cb
 from crazybilliards.comparison.coverage import coverage_density
 from crazybilliards.kinetic.kinetic_equation.weak_damping import weak_damping_growth_rate
-from crazybilliards.particles.dynamics import make_dynamics, start_noise
+from crazybilliards.particles.dynamics import make_dynamics
 from crazybilliards.particles.laws.avalanche import make_tally
 from crazybilliards.particles.laws.law import EXACT, make_scratch
-from crazybilliards.particles.noise import fill
+from crazybilliards.particles.noise import fill, make_noise
 from crazybilliards.particles.scales import default_time_step, relaxation_time
 from crazybilliards.particles.stepping import advance
 
@@ -75,7 +75,7 @@ def test_steps_are_those_of_the_package_under_the_same_noise(page, e, amplitude,
     places, v = rng.uniform(-3, 3, 19), rng.normal(size=20)
     y = np.sort([*places, places[0]])  # two rods touch
     dynamics = make_dynamics(chain, 0.5, speed=1.0)
-    noises = [start_noise(np.random.SeedSequence(1), dynamics) for _ in range(2)]
+    noises = [make_noise(np.random.SeedSequence(1)) for _ in range(2)]
     normals = np.empty((4, 2, 20))  # of which the exact flight takes two at once for each rod
     fill(noises[0], normals.ravel())
     if dynamics.law.operator == EXACT:

@@ -1,21 +1,25 @@
 """What would not fit into memory is refused, with both numbers."""
 
 import math
+from types import SimpleNamespace
 
+import psutil
 import pytest
 
 from crazybilliards.kinetic import phase_space
-from crazybilliards.model import Chain, memory
-from crazybilliards.model.memory import _of_the_groups, available_memory, require_memory
+from crazybilliards.model import Chain
+from crazybilliards.model.memory import available_memory, require_memory
 
 
 def test_available_memory_is_that_of_a_computer():
     assert 2**20 < available_memory() < 2**60
 
 
-@pytest.fixture
-def groups(tmp_path):
-    """Write a tree of control groups, /proc with it, and read it."""
+@pytest.fixture(params=[math.inf])
+def groups(tmp_path, monkeypatch, request):
+    """Write a tree of control groups, /proc with it, and read it on a machine with much memory."""
+    machine = SimpleNamespace(available=request.param)
+    monkeypatch.setattr(psutil, "virtual_memory", lambda: machine)
 
     def read(membership, **files):
         (tmp_path / "proc/self").mkdir(parents=True)
@@ -24,7 +28,7 @@ def groups(tmp_path):
             file = tmp_path / "sys/fs/cgroup" / name
             file.parent.mkdir(parents=True, exist_ok=True)
             file.write_text(content)
-        return _of_the_groups(tmp_path)
+        return available_memory(tmp_path)
 
     return read
 
@@ -62,14 +66,12 @@ def test_a_group_without_statistics_and_no_groups_at_all(groups, tmp_path):
     files = group("job", 1000, 400, 0)
     del files["job/memory.stat"]
     assert groups("0::/job\n", **files) == 600
-    assert _of_the_groups(tmp_path / "not Linux") == math.inf
+    assert available_memory(tmp_path / "not Linux") == math.inf
 
 
-def test_the_smallest_of_machine_and_groups_is_available(monkeypatch):
-    for machine, left in ((7.0, 5.0), (5.0, 7.0)):
-        monkeypatch.setattr(memory, "_of_the_machine", lambda own=machine: own)
-        monkeypatch.setattr(memory, "_of_the_groups", lambda root, own=left: own)
-        assert available_memory() == 5.0
+@pytest.mark.parametrize(("groups", "left"), [(700, 600), (500, 500)], indirect=["groups"])
+def test_the_smallest_of_machine_and_groups_is_available(groups, left):
+    assert groups("0::/job\n", **group("job", 1000, 400, 0)) == left
 
 
 def test_the_error_has_both_numbers():

@@ -13,7 +13,7 @@ from typing import get_args
 import pytest
 from other_values import other_values
 
-from crazybilliards.apps.commands import chain_options
+from crazybilliards.apps.commands import options
 from crazybilliards.apps.commands.line import app
 from crazybilliards.model import Chain, load
 
@@ -176,14 +176,14 @@ def test_every_parameter_of_a_chain_is_an_option_that_reaches_the_chain(
 
 def test_a_new_parameter_of_a_chain_is_an_option_of_itself(monkeypatch):
     @dataclasses.dataclass(frozen=True, kw_only=True)
-    class More(chain_options.Parameters):
+    class More(options.Parameters):
         tilt: float = dataclasses.field(
             default=0.5, metadata={"meaning": "Constant force", "unit": "N", "check": float}
         )
 
-    monkeypatch.setattr(chain_options, "Parameters", More)
+    monkeypatch.setattr(options, "Parameters", More)
 
-    @chain_options.with_chain_options(size=3)
+    @options.with_chain_options(size=3)
     def command(chain, seed: int = 0):
         """Do nothing."""
 

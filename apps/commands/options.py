@@ -1,18 +1,47 @@
-"""The parameters of a chain as options of a command, made from the class that declares them.
-
-Standard library and typer only up here, so that ``--help`` answers at once.
-"""
+"""Options that several commands have; those of a chain come from the class that declares them."""
 
 from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Collection
 from dataclasses import Field, fields
+from pathlib import Path
 from typing import Annotated, Any, Literal, get_origin, get_type_hints
 
 import typer
 
+from crazybilliards.model.checks import check_path
 from crazybilliards.model.parameters import Parameters
+
+Threads = Annotated[int | None, typer.Option(help="Threads to simulate in; default: one per core.")]
+Processes = Annotated[
+    int | None, typer.Option(help="Processes to compute in; default: one per core.")
+]
+Dask = Annotated[
+    bool, typer.Option("--dask", help="Compute on a dask cluster of this machine instead.")
+]
+Scheduler = Annotated[
+    str | None,
+    typer.Option(help="Compute on the dask cluster with this scheduler, tcp://HOST:PORT say."),
+]
+KeepOld = Annotated[
+    bool,
+    typer.Option(
+        "--keep-old",
+        help="Take results that other source code of crazybilliards computed as they are.",
+    ),
+]
+
+
+def path_option(help: str, metavar: str = "FOLDER") -> Any:
+    """Return the declaration of an option that takes the name of a folder, or of a file."""
+    return typer.Option(help=help, parser=_path, metavar=metavar)
+
+
+def _path(text: str) -> Path:
+    if not str(text):
+        raise typer.BadParameter("an empty name; the current folder is .")
+    return check_path("output", text)
 
 
 def with_chain_options(
