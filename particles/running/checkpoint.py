@@ -38,8 +38,8 @@ from crazybilliards.particles.running.replica import Replica
 _SOURCE = room_fingerprint("model", "particles")
 
 
-# Times are planned from the chain. Where this differs, they say nothing more.
-_PLANNED = ("time_step", "every", "warmup", "duration")
+# Planned from the other arguments. Where these differ, they say nothing more.
+_PLANNED = ("time_step", "every", "warmup", "duration", "levels")
 
 
 class Checkpoint:
