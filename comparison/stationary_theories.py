@@ -255,10 +255,11 @@ def choose_theory(
     best = min(errors, key=lambda name: (math.isnan(errors[name]), errors[name]))
     named = quantity.replace("_", " ")
     listed = ", ".join(
-        f"{name} " + ("not measured" if math.isnan(error) else f"{100 * error:.2g} %")
+        f"{name} " + ("not measured" if math.isnan(error) else f"{100 * error:.3g} %")
         for name, error in errors.items()
     )
     if math.isnan(errors[best]):
         return Choice(THEORIES[best], f"{best} comes first, no error of {named} is known here")
-    why = f"{best} has the smallest stated error of {named}: {listed}"
+    has = "has" if list(errors.values()).count(errors[best]) == 1 else "comes first of those with"
+    why = f"{best} {has} the smallest stated error of {named}: {listed}"
     return Choice(THEORIES[best], why)

@@ -142,3 +142,9 @@ def test_a_known_error_needs_no_warning():
         warnings.simplefilter("error")
         phase_space(Chain(size=30, restitution=0.9), cells=8)
         force_balance(Chain(size=20, gap=0.3))
+
+
+def test_a_reason_is_true_where_several_theories_state_the_same_error():
+    why = choose_theory(Chain(size=30), "velocity_width").why
+    first = "equilibrium comes first of those with the smallest stated error of velocity width: "
+    assert why.startswith(first + "equilibrium 0 %, force_balance 0 %, ")
