@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import io
 import tempfile
 from base64 import b64encode
@@ -76,24 +77,35 @@ def _ffmpeg() -> Any:
 
 
 def _as_mp4(pictures: Iterator[Picture]) -> bytes:
-    first = next(pictures)
+    """Return the pictures as an mp4, or raise an OSError, as for a full temporary folder."""
+    ffmpeg, first, sent = _ffmpeg(), next(pictures), 0
     height, width, _ = first.shape
     # Players begin before they have all of the file.
     how = {"pix_fmt_in": "rgba", "fps": PICTURES_A_SECOND, "macro_block_size": 2}
     options = ["-preset", "veryfast", "-movflags", "+faststart"]
     with tempfile.TemporaryDirectory() as scratch:
         film = Path(scratch, "film.mp4")
-        writing = _ffmpeg().write_frames(film, (width, height), **how, output_params=options)
-        with closing(writing):
-            writing.send(None)
-            for picture in chain([first], pictures):
-                writing.send(picture)
+        writing = ffmpeg.write_frames(film, (width, height), **how, output_params=options)
+        try:
+            with closing(writing):
+                writing.send(None)
+                for picture in chain([first], pictures):
+                    writing.send(picture)
+                    sent += 1
+            # It says nothing if it cannot write the end.
+            if ffmpeg.count_frames_and_secs(film)[0] != sent:
+                raise OSError(errno.EIO, "pictures are missing")
+        except (OSError, RuntimeError) as error:
+            reason = f"ffmpeg cannot write a film into {scratch}: the temporary folder may be full"
+            raise OSError(errno.EIO, reason) from error
         return film.read_bytes()
 
 
 def _as_gif(pictures: Iterator[Picture]) -> bytes:
     # The first picture has all colours, because it shows their key.
-    first = Image.fromarray(next(pictures)).convert("RGB").quantize(256)
+    # Of a palette for the median the rare colours, which are those of the rods, would be wrong.
+    method = Image.Quantize.MAXCOVERAGE
+    first = Image.fromarray(next(pictures)).convert("RGB").quantize(256, method)
     others = (
         Image.fromarray(picture).convert("RGB").quantize(palette=first, dither=Image.Dither.NONE)
         for picture in pictures

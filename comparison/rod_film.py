@@ -6,6 +6,8 @@ therefore takes some seconds.
 
 from __future__ import annotations
 
+import errno
+import math
 import os
 from collections.abc import Iterator
 from pathlib import Path
@@ -42,10 +44,10 @@ _FADING = 0.7  # of a flash, from one picture to the next
 _FAINT = 0.1  # a flash that is not shown any more
 _BEYOND = 0.01  # share of the velocities beyond the ends of the colours
 _GROUND = -0.95  # where the anchors are; a rod reaches from -0.5 to 0.5
-_STAR = 120.0  # size of one
+_STAR, _SMALLEST_STAR = 120.0, 4.0  # square points
 _SIZE = 9.6, 2.4  # inches of 100 dots; the encoder needs even numbers of dots
 _LOOK: Any = {"font.size": 12} | {f"axes.spines.{side}": False for side in ("left", "top", "right")}
-_COLOURS, _FLASH, _SPRING = "PuOr", "#000000", "#777777"  # told apart with any colour vision
+_COLOURS, _SPRING = "PuOr", "#777777"  # told apart with any colour vision
 
 
 def film(
@@ -59,11 +61,11 @@ def film(
 ) -> Path | Player:
     """Film the rods of a run, or of a chain that is simulated for it.
 
-    Every rod is drawn in its place, 2R long, in the colour of its velocity. A star flashes where
-    two rods met since the last picture: where they approached in one snapshot and separate in the
-    next, and a straight flight would have led them through one another. The time between snapshots
-    should therefore be shorter than that between two collisions of a rod; of several meetings
-    between two snapshots one star is seen.
+    Every rod is drawn in its place, 2R long (a pixel if that is more), in the colour of its
+    velocity. A star flashes where two rods met since the last picture: where they approached in one
+    snapshot and separate in the next, and a straight flight would have led them through one
+    another. The time between snapshots should therefore be shorter than that between two collisions
+    of a rod; of several meetings between two snapshots one star is seen.
 
     Parameters
     ----------
@@ -94,6 +96,7 @@ def film(
     ------
     ValueError
         Before any work: for a result without snapshots, another name, an mp4 without ffmpeg.
+        For a chain whose simulation diverges, because it has no steady state.
     OSError
         If the file cannot be written. A former one stays as it was.
     """
@@ -102,17 +105,18 @@ def film(
     if suffix not in (".mp4", ".gif", ".html"):
         raise ValueError(f"path must end in .mp4, .gif or .html, got {file}")
     kind = kind_of_film(suffix)
+    duration = check_real("duration", duration, positive=True)
     seconds = check_real("seconds", seconds, positive=True)
     if seconds > _LONGEST:
         raise ValueError(f"seconds must be at most {_LONGEST:g}, got {seconds:g}")
     pictures = max(round(PICTURES_A_SECOND * seconds), 1)
+    if file is not None:
+        _require_place(file)
     if isinstance(run, Chain):
         run = _short_run(run, duration, pictures, progress)
     motion = _motion(run, pictures)
-    if file is not None:
-        make_folder(file.parent)
     drawn = _pictures(motion, springs)
-    shown = progress_bar(progress, drawn, desc="rod_film", total=motion.time.size, leave=False)
+    shown = progress_bar(progress, drawn, desc="film", total=motion.time.size, leave=False)
     with plt.rc_context(_LOOK):
         content = encoded(iter(shown), kind)
     if file is None:
@@ -125,7 +129,6 @@ def film(
 
 def _short_run(chain: Chain, duration: float, pictures: int, progress: bool) -> xr.Dataset:
     """Simulate a chain with snapshots that are close enough to see collisions in them."""
-    duration = check_real("duration", duration, positive=True)
     run = simulate(
         chain,
         duration=duration,
@@ -135,7 +138,20 @@ def _short_run(chain: Chain, duration: float, pictures: int, progress: bool) -> 
     )
     if run.attrs["status"] == "interrupted":
         raise KeyboardInterrupt
-    return run.assign_coords(time=run.time - run.time[0]) if "time" in run else run
+    if run.attrs["status"] == "diverged":
+        raise ValueError(
+            "run: this chain has no steady state to film: its simulation diverged at "
+            f"t = {run.attrs['end_time']:.4g} T"
+        )
+    return run.assign_coords(time=run.time - run.time[0])
+
+
+def _require_place(file: Path) -> None:
+    """Raise an OSError unless the file can be written, before the work for it."""
+    make_folder(file.parent)
+    problem = errno.EISDIR if file.is_dir() else errno.EACCES
+    if file.is_dir() or not os.access(file.parent, os.W_OK | os.X_OK):
+        raise OSError(problem, os.strerror(problem), str(file))
 
 
 class _Motion(NamedTuple):
@@ -151,7 +167,7 @@ class _Motion(NamedTuple):
 
 def _motion(run: xr.Dataset, pictures: int) -> _Motion:
     """Read the snapshots, and choose those that are shown."""
-    if "position" not in run or "time" not in run.position.dims:
+    if not {"position", "velocity"} <= set(run) or "time" not in run.position.dims:
         raise ValueError(
             "run has no snapshots in time, which simulate(chain, observe='snapshots') records; it "
             f"has {', '.join(map(str, run)) or 'nothing'} and is {run.attrs.get('status')}"
@@ -161,12 +177,15 @@ def _motion(run: xr.Dataset, pictures: int) -> _Motion:
         "time", subset=["velocity"]
     )
     time, x, v = rods.time.values, rods.position.values, rods.velocity.values
+    if time.size == 0:
+        raise ValueError("run has no snapshot in which all velocities are known")
     chosen = np.unique(np.linspace(0, time.size - 1, pictures).round().astype(int))
     number = rods.particle.values.astype(int)
-    met = _met(chain, time, x, v) & (np.diff(number) == 1)
+    neighbours = np.diff(number) == 1
     flash = np.zeros((chosen.size, x.shape[1] - 1))
     for now in range(1, chosen.size):
-        just = met[chosen[now - 1] : chosen[now]].any(axis=0)
+        since = slice(chosen[now - 1], chosen[now] + 1)
+        just = _met(chain, time[since], x[since], v[since]).any(axis=0) & neighbours
         flash[now] = np.where(just, 1.0, _FADING * flash[now - 1])
     flash[flash < _FAINT] = 0.0
     return _Motion(chain, time[chosen], x[chosen], v[chosen], flash, chain.anchors[number - 1])
@@ -191,7 +210,7 @@ def _pictures(motion: _Motion, springs: bool) -> Iterator[Picture]:
     fastest = float(np.quantile(np.abs(motion.v), 1 - _BEYOND)) or 1.0
     rods.set_norm(CenteredNorm(halfrange=fastest))
     lines = LineCollection([], color=_SPRING, linewidth=1)
-    stars = ax.scatter([], [], marker="*", color=_FLASH)
+    stars = ax.scatter([], [], marker="*", color=plt.rcParams["text.color"])
     clock = ax.text(0.0, 1.04, "", transform=ax.transAxes)
     _furnish(ax, motion, springs)
     figure.colorbar(rods, ax=ax, label="velocity $v$ [R/T]", pad=0.01, extend="both")
@@ -199,15 +218,16 @@ def _pictures(motion: _Motion, springs: bool) -> Iterator[Picture]:
     for each in moving:
         each.set_animated(True)
     canvas.draw()
-    broad = 0.72 * float(
-        np.ptp(ax.transData.transform([(0, 0), (2 * motion.chain.radius, 0)])[:, 0])
-    )
-    rods.set_linewidth(min(0.5, broad / 20))
-    star = min(_STAR, broad**2)
-    background = canvas.copy_from_bbox(figure.bbox)
     R, low, high = motion.chain.radius, -0.5, 0.5
+    dots = float(np.ptp(ax.transData.transform([(0, 0), (2 * R, 0)])[:, 0]))
+    broad = 0.72 * dots  # of a rod, in points
+    half = R * max(1.0, 1 / dots)  # a thinner rod would not be seen
+    rods.set_linewidth(min(0.5, broad / 20))
+    star = min(_STAR, max(broad**2, _SMALLEST_STAR))
+    background = canvas.copy_from_bbox(figure.bbox)
+    digits = _digits(motion.time)
     for time, x, v, flash in zip(motion.time, motion.x, motion.v, motion.flash, strict=True):
-        sides = x[:, np.newaxis] + R * np.array([-1, 1, 1, -1])
+        sides = x[:, np.newaxis] + half * np.array([-1, 1, 1, -1])
         heights = np.broadcast_to([low, low, high, high], sides.shape)
         rods.set_verts(list(np.stack([sides, heights], axis=-1)))
         rods.set_array(v)
@@ -217,11 +237,17 @@ def _pictures(motion: _Motion, springs: bool) -> Iterator[Picture]:
             lines.set_segments(list(np.stack([ends, levels], axis=-1)))
         stars.set_offsets(np.column_stack([x[:-1] + R, np.full(x.size - 1, 0.75)]))
         stars.set_sizes(star * flash)
-        clock.set_text(f"t = {time:.2f} T")
+        clock.set_text(f"t = {time:.{digits}f} T")
         canvas.restore_region(background)
         for each in moving:
             ax.draw_artist(each)
         yield np.array(canvas.buffer_rgba())
+
+
+def _digits(time: Array) -> int:
+    """Return the decimals of the clock, in which successive pictures differ."""
+    step = float(np.ptp(time)) / max(time.size - 1, 1)
+    return max(2, math.ceil(-math.log10(step))) if step > 0 else 2
 
 
 def _furnish(ax: Axes, motion: _Motion, springs: bool) -> None:

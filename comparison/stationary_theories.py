@@ -75,6 +75,15 @@ class Theory:
             return str(error)
         return ""
 
+    def lacks(self, chain: Chain, quantity: str) -> str:
+        """Return why the result has no such quantity, or nothing."""
+        if quantity == "displacement_width":
+            if self.name == "force_balance":
+                return "it gives no displacement_width"
+            if self.name == "phase_space" and chain.lattice_gap > 0:
+                return "it gives no displacement_width of a chain with a gap"
+        return ""
+
     @property
     def _defaults(self) -> dict[str, Any]:
         arguments = inspect.signature(self.solve).parameters.values()
@@ -195,7 +204,8 @@ def best_theory(
     Raises
     ------
     ValueError
-        For an unknown quantity, before any work; with the reasons, if no theory takes the chain.
+        For an unknown quantity, before any work; with the reasons, if no theory takes the chain or
+        gives the quantity.
 
     Examples
     --------
@@ -228,23 +238,28 @@ def choose_theory(
     from crazybilliards.kinetic.accuracy import Accuracy
 
     check_choice("quantity", quantity, Accuracy._fields)
-    refusals = {theory.name: theory.refusal(chain, settings) for theory in THEORIES.values()}
+    refusals = {
+        theory.name: theory.refusal(chain, settings) or theory.lacks(chain, quantity)
+        for theory in THEORIES.values()
+    }
     if all(refusals.values()):
         if len(set(refusals.values())) == 1:  # it has no steady state
             raise ValueError(refusals.popitem()[1])
         reasons = "; ".join(f"{name}: {reason}" for name, reason in refusals.items())
-        raise ValueError(f"no theory takes this chain: {reasons}")
+        raise ValueError(f"no theory takes this chain for its {quantity}: {reasons}")
     errors = {
         name: getattr(THEORIES[name].accuracy(chain), quantity)
         for name, refusal in refusals.items()
         if not refusal
     }
     best = min(errors, key=lambda name: (math.isnan(errors[name]), errors[name]))
+    named = quantity.replace("_", " ")
     listed = ", ".join(
-        f"{name} " + ("not measured" if math.isnan(error) else f"{100 * error:.2g} %")
+        f"{name} " + ("not measured" if math.isnan(error) else f"{100 * error:.3g} %")
         for name, error in errors.items()
     )
     if math.isnan(errors[best]):
-        return Choice(THEORIES[best], f"{best} comes first, no error of {quantity} is known here")
-    why = f"{best} has the smallest stated error of {quantity.replace('_', ' ')}: {listed}"
+        return Choice(THEORIES[best], f"{best} comes first, no error of {named} is known here")
+    has = "has" if list(errors.values()).count(errors[best]) == 1 else "comes first of those with"
+    why = f"{best} {has} the smallest stated error of {named}: {listed}"
     return Choice(THEORIES[best], why)

@@ -47,6 +47,8 @@ def shown(value: object) -> str:
     """
     if type(value).__module__.startswith("xarray."):
         return f"a {type(value).__name__}"
+    if isinstance(value, int) and value.bit_length() > 10_000:  # Python does not write its digits
+        return f"a number of {value.bit_length()} bits"
     return " ".join(_SHORTLY.repr(value).split())
 
 

@@ -11,6 +11,8 @@ import numpy as np
 
 from crazybilliards.model.checks import check_integer, shown
 
+_END = 2**4096  # the provenance holds the digits, of which Python writes 4300 at most
+
 Seed = int | np.random.SeedSequence | np.random.Generator
 
 
@@ -22,15 +24,15 @@ def seed_of(seed: Seed) -> int:
     next call with the same Generator gets another number. Anything else is a ValueError.
     """
     if isinstance(seed, np.random.SeedSequence):
-        if isinstance(seed.entropy, int) and not seed.spawn_key:
+        if isinstance(seed.entropy, int) and not seed.spawn_key and seed.entropy < _END:
             return seed.entropy
         return sum(int(word) << 32 * i for i, word in enumerate(seed.generate_state(4)))
     if isinstance(seed, np.random.Generator):
         return int(seed.integers(2**63))
     try:
-        return check_integer("seed", seed, least=0)
+        return check_integer("seed", seed, least=0, most=_END - 1)
     except ValueError as error:
         raise ValueError(
-            "seed must be an integer >= 0, a SeedSequence, or a Generator of numpy, "
-            f"got {shown(seed)}"
+            "seed must be an integer >= 0 of up to 4096 bits, a SeedSequence, or a Generator of "
+            f"numpy, got {shown(seed)}"
         ) from error

@@ -7,7 +7,8 @@ the result read it.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Collection, Sequence
+import re
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import cached_property
 from typing import Any, get_args
@@ -31,6 +32,7 @@ from crazybilliards.particles.start import MOST_REPLICAS, replica_starts
 
 Array = NDArray[np.float64]
 
+_UNIT = r"[RMT\d /^().*-]+"
 _GROUPS = 32  # of an ensemble: enough for an error bar good to an eighth
 
 # Measured peak memory: copies while observers are joined and averaged, and chunks of snapshots.
@@ -193,8 +195,12 @@ class Run:
 
     @property
     def vocabulary(self) -> dict[str, tuple[str, str]]:
-        """Meanings and units that the observers bring."""
-        return {name: said for each in self.observers for name, said in each.vocabulary.items()}
+        """Meanings and units that the observers bring; of what one gives, those that it says."""
+        said = {name: said for each in self.observers for name, said in each.vocabulary.items()}
+        for each in self.observers:
+            given = {name.removesuffix("_error") for name in (*each.along, *each.gives)}
+            said |= {name: own for name, own in each.vocabulary.items() if name in given}
+        return said
 
     def provenance(self) -> dict[str, Any]:
         """Return everything except the chain that determines the numbers, in a form for JSON."""
@@ -228,6 +234,7 @@ def _check_observers(run: Run) -> None:
                 f"observe: {observer.name!r} needs single collisions, which only "
                 "method='event-driven' sees"
             )
+        _check_vocabulary(observer)
         for name in (*observer.along, *observer.gives):
             if name.removesuffix("_error") not in {**observer.vocabulary, **VOCABULARY}:
                 raise ValueError(
@@ -244,3 +251,21 @@ def _check_observers(run: Run) -> None:
                     f"observe: {other.name!r} and {observer.name!r} would both give {name!r}; "
                     "take one of them"
                 )
+
+
+def _check_vocabulary(observer: Any) -> None:
+    """Raise unless the meanings and units that an observer brings can be written into a result."""
+    said = observer.vocabulary
+    entries = said.items() if isinstance(said, Mapping) else [(None, None)]
+    for name, entry in entries:
+        texts = [name, *entry] if isinstance(entry, tuple | list) else []
+        if len(texts) != 3 or not all(isinstance(each, str) for each in texts):
+            raise ValueError(
+                f"observe: vocabulary of {observer.name!r} must be {{name: (meaning, unit)}}, all "
+                f"of them texts, got {shown(said)}"
+            )
+        if not re.fullmatch(_UNIT, texts[2]):
+            raise ValueError(
+                f"observe: the unit of {name!r} in the vocabulary of {observer.name!r} must "
+                f"consist of R, M and T, such as R^2/T, or be 1, got {shown(texts[2])}"
+            )

@@ -95,6 +95,8 @@ def time_step_error(
     radii, which damping limits.
     """
     e, gap = chain.restitution, chain.lattice_gap
+    if chain.size == 1:  # it never collides
+        e, method = 1.0, "event-driven"
     if not 0 < velocity_width < math.inf or (chain.amplitude == 0 and e != 1):
         return math.nan
     if chain.damping == 0 and (gap > 0 or chain.spring == "quadratic"):

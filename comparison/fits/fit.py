@@ -85,14 +85,17 @@ def least_squares(
     """
     x, y = points
     try:
-        with warnings.catch_warnings():
+        # A step of the search may overflow. What it finds must not.
+        with np.errstate(all="ignore"), warnings.catch_warnings():
             warnings.simplefilter("error", OptimizeWarning)  # there is no covariance
             values, covariance = curve_fit(
                 curve, x, y, p0=start, sigma=error, absolute_sigma=error is not None, maxfev=20_000
             )
+            residuals = y - curve(x, *values)
     except (RuntimeError, OptimizeWarning) as problem:
         raise ValueError(f"no {what} fits: {problem}") from problem
-    residuals = y - curve(x, *values)
+    if not all(np.isfinite(each).all() for each in (values, covariance, residuals)):
+        raise ValueError(f"no {what} fits: the search for its parameters runs away")
     if error is None:
         return values, covariance, {"misfit": root_mean_square(residuals)}
     residuals, freedom = residuals / error, x.size - len(start)

@@ -13,6 +13,8 @@ from crazybilliards.comparison.fits.fit import (
     root_mean_square,
 )
 
+_OVERFLOW = 700.0  # of exp
+
 
 def fit_singularity(time: ArrayLike, energy: ArrayLike) -> Fit:
     """Fit E(t) = C (t_c - t)^-a to an energy that grows towards a divergence after the last time.
@@ -28,8 +30,8 @@ def fit_singularity(time: ArrayLike, energy: ArrayLike) -> Fit:
     Raises
     ------
     ValueError
-        If there are fewer than five points, or if no such law fits. For example, t_c of an
-        exponential growth is at infinity.
+        If there are fewer than five points, or all at one time, or if no such law fits. For
+        example, t_c of an exponential growth is at infinity.
 
     Examples
     --------
@@ -39,7 +41,7 @@ def fit_singularity(time: ArrayLike, energy: ArrayLike) -> Fit:
     (10.0, 6.0)
     """
     t, log_energy = _logarithm(time, energy, least=5)
-    last, span = float(t[-1]), float(t[-1] - t[0])
+    last, span = float(t.max()), float(np.ptp(t))
 
     # t_c = last + span exp(q) lies behind the data for every q.
     def model(t: Array, intercept: float, exponent: float, q: float) -> Array:
@@ -50,12 +52,13 @@ def fit_singularity(time: ArrayLike, energy: ArrayLike) -> Fit:
         "finite-time singularity", model, (t, log_energy), start
     )
     intercept, exponent, q = map(float, values)
-    if not (-50 < q < 5 and exponent > 0):
+    log_scale = intercept + exponent * float(np.log(span))
+    if not (-50 < q < 5 and exponent > 0 and abs(log_scale) < _OVERFLOW):
         raise ValueError("no finite-time singularity fits: its time runs away")
     errors = np.sqrt(np.diag(covariance))
     return Fit(
         {
-            "scale": float(np.exp(intercept + exponent * np.log(span))),
+            "scale": float(np.exp(log_scale)),
             "time": last + span * float(np.exp(q)),
             "exponent": exponent,
         },
@@ -80,7 +83,7 @@ def fit_growth(time: ArrayLike, energy: ArrayLike) -> Fit:
     Raises
     ------
     ValueError
-        If there are fewer than three points, or an energy is not positive.
+        If there are fewer than three points, or all at one time, or an energy is not positive.
 
     Examples
     --------
@@ -109,6 +112,8 @@ def _logarithm(time: ArrayLike, energy: ArrayLike, least: int) -> tuple[Array, A
     t, E = check_points(time=time, energy=energy)
     if t.size < least or not (np.isfinite(E).all() and E.min() > 0):
         raise ValueError(f"the fit needs at least {least} energies, all of them positive")
+    if np.ptp(t) == 0:
+        raise ValueError(f"the fit needs energies at more than one time, got time={t[0]:g} only")
     return t, np.log(E)
 
 
@@ -127,7 +132,7 @@ def fit_scaling(x: ArrayLike, y: ArrayLike, error: ArrayLike) -> Fit:
     Raises
     ------
     ValueError
-        If there are fewer than two points, or if any number is not positive.
+        If there are fewer than two points, or all at one x, or if any number is not positive.
 
     Examples
     --------
@@ -138,6 +143,8 @@ def fit_scaling(x: ArrayLike, y: ArrayLike, error: ArrayLike) -> Fit:
     x, y, error = check_points(x=x, y=y, error=error)
     if x.size < 2 or not (np.min([x, y, error]) > 0 and np.isfinite([x, y, error]).all()):
         raise ValueError("a power law needs at least two points, positive, with positive errors")
+    if np.ptp(x) == 0:
+        raise ValueError(f"a power law needs more than one x, got x={x[0]:g} only")
     relative = error / y
 
     def line(log_x: Array, intercept: float, slope: float) -> Array:
@@ -177,7 +184,8 @@ def fit_exponential(restitution: ArrayLike, y: ArrayLike, error: ArrayLike) -> F
     Raises
     ------
     ValueError
-        If there are fewer than three points, or if no exponential fits.
+        If there are fewer than three points, if an error is not positive, or if no exponential
+        fits.
 
     Examples
     --------
@@ -189,6 +197,8 @@ def fit_exponential(restitution: ArrayLike, y: ArrayLike, error: ArrayLike) -> F
     e, y, error = check_points(restitution=restitution, y=y, error=error)
     if e.size < 3:
         raise ValueError("an exponential with offset needs at least three points")
+    if error.min() <= 0:
+        raise ValueError("an exponential with offset needs positive errors")
     order = np.argsort(e)
     start = (float(y[order[-1]] - y[order[0]]), 5.0, float(y[order[0]]))
     values, covariance, quality = least_squares("exponential", _saturating, (e, y), start, error)

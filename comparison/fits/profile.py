@@ -56,7 +56,7 @@ def fit_arctanh(source: xr.Dataset) -> Fit:
 
     # C = 1/(edge (1 + exp(q))) keeps every rod inside the support, for every q.
     def model(position: Array, scale: float, q: float) -> Array:
-        return scale * np.arctanh(position / (edge * (1 + math.exp(q))))
+        return scale * np.arctanh(position / (edge * (1 + np.exp(q))))
 
     start = (outward / float(x @ x) * edge, -2.0)
     (scale, q), covariance, quality = least_squares("arctanh", model, (x, displacement), start)

@@ -35,7 +35,8 @@ def fit_avalanches(count: ArrayLike, *, smallest: int = 1, largest: int | None =
     Raises
     ------
     ValueError
-        If there are fewer than two sizes or no avalanches in the range.
+        If the avalanches in the range do not have at least two different sizes, which would leave
+        the exponent open, or if a count is negative.
 
     Examples
     --------
@@ -51,6 +52,11 @@ def fit_avalanches(count: ArrayLike, *, smallest: int = 1, largest: int | None =
     total = float(counts.sum())
     if sizes.size < 2 or not total > 0:
         raise ValueError(f"no avalanches of sizes {smallest} to {largest} to fit")
+    if counts.min() < 0 or np.count_nonzero(counts) < 2:
+        raise ValueError(
+            f"count needs avalanches of at least two of the sizes {smallest} to {largest}, and "
+            "none below 0"
+        )
     logs = np.log(sizes)
     mean = float(counts @ logs) / total
 
@@ -97,7 +103,7 @@ def tail_length(velocity: ArrayLike, density: ArrayLike, beyond: float) -> float
     Raises
     ------
     ValueError
-        If no velocity was measured beyond.
+        If no velocity was measured beyond, or the velocities of the bins do not ascend.
 
     Examples
     --------
@@ -107,6 +113,8 @@ def tail_length(velocity: ArrayLike, density: ArrayLike, beyond: float) -> float
     """
     v, p = check_points(velocity=velocity, density=density)
     beyond = check_real("beyond", beyond, signed=True)
+    if v.size < 2 or not (np.diff(v) > 0).all():
+        raise ValueError("velocity must ascend, over at least two bins")
     between = (v[1:] + v[:-1]) / 2
     edges = np.concatenate([[2 * v[0] - between[0]], between, [2 * v[-1] - between[-1]]])
     right = _beyond(edges, p, beyond)

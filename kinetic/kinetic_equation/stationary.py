@@ -43,7 +43,7 @@ from crazybilliards.model import Chain
 from crazybilliards.model.checks import check_integer
 from crazybilliards.model.progress import waiting_for
 
-_MOST_CELLS = 60  # of a mesh that is not asked for: 22, 33 and 50 cells are tried
+_MOST_CELLS = 80  # of a mesh that is not asked for: 22, 33, 50 and 75 cells are tried
 _MOST_RODS = 100_000
 # Where the equation was solved at e = 0.95 and 100 rods; s, W: a free rod's widths.
 _SOLVED_DAMPINGS = 0.01, 25.0

@@ -12,6 +12,8 @@ from crazybilliards.particles.run import Run
 from crazybilliards.particles.scales import relaxation_time
 
 _RELAXATIONS = 5  # the longest lag unless it is given
+# A block is longer than the lags, because blocks with pairs in common are not independent.
+_LAGS_OF_A_BLOCK, _FEWEST_BLOCKS = 2, 10
 _QUANTITIES = (
     "velocity_autocorrelation",
     "displacement_autocorrelation",
@@ -44,8 +46,8 @@ class TimeCorrelations(Averaged):
     needs them, and take 16 ``lags`` bytes per rod and wave, and as much per block. Snapshots are
     pairs with all earlier ones within reach, so a snapshot takes some ``lags`` operations per rod.
 
-    Errors are those of blocks. Where a lag is longer than a block, which happens in short runs,
-    the errors of a mean squared displacement are too small by up to a fifth.
+    Errors are those of blocks of twice the longest lag, or of ten to twenty shorter blocks in a run
+    that lasts less than 20 times the longest lag: some errors are then too small by a fifth.
 
     Parameters
     ----------
@@ -71,15 +73,20 @@ class TimeCorrelations(Averaged):
         """Return the number of snapshots from one lag to the next, and the number of lags."""
         if run.schedule.ensemble:
             return 1, 0
-        longest = self.longest or _RELAXATIONS * relaxation_time(run.chain)
-        if not longest < run.schedule.duration:
-            raise ValueError(
-                f"observe: {self.name!r} needs a duration above the longest lag {longest:.4g}, got "
-                f"{run.schedule.duration:.4g}; cb.TimeCorrelations(longest=...) chooses another"
-            )
-        snapshots = longest / (run.schedule.stride * run.schedule.time_step)
-        spacing = math.ceil(snapshots / self.lags - 1e-9)
-        return spacing, math.ceil(snapshots / spacing - 1e-9)
+        longest, duration = self.longest, run.schedule.duration
+        if longest is None:
+            longest = _RELAXATIONS * relaxation_time(run.chain)
+        if longest < duration:
+            interval = run.schedule.stride * run.schedule.time_step
+            spacing = max(math.ceil(longest / interval / self.lags - 1e-9), 1)
+            last = max(math.ceil(longest / interval / spacing - 1e-9), 1)
+            longest = spacing * last * interval  # rounded up
+            if spacing * last < run.schedule.snapshots:
+                return spacing, last
+        raise ValueError(
+            f"observe: {self.name!r} needs a duration above the longest lag {longest:.4g}, got "
+            f"{duration:.4g}; cb.TimeCorrelations(longest=...) chooses another"
+        )
 
     def shape(self, run: Run) -> tuple[int, ...]:
         """Return the shape of the sums of one block.
@@ -162,7 +169,7 @@ class TimeCorrelations(Averaged):
         if ensemble:
             del kinds["velocity_spectrum"]
         variables: Variables = {}
-        for name, (_, found) in self.averages(kinds, counts).items():
+        for name, (_, found) in self.averages(kinds, self._joined(counts)).items():
             values = np.asarray(found)
             along = "time" if ensemble else "frequency" if "spectrum" in name else "lag"
             own = {"particle": ("", values[:, :rods]), "wave": ("wave_", values[:, rods:])}
@@ -173,6 +180,15 @@ class TimeCorrelations(Averaged):
             # The first wave is the sum of all rods over the root of their number.
             variables["centre_" + name] = ((along,), values[:, rods] / self.size)
         return variables
+
+    def _joined(self, counts: Integers) -> Integers:
+        """Add up neighbouring blocks until they are as long as needed, while there are enough."""
+        needed = _LAGS_OF_A_BLOCK * self.last * self.spacing
+        while counts.max() < needed and np.count_nonzero(counts) >= 2 * _FEWEST_BLOCKS:
+            pairs = np.arange(0, len(counts), 2)
+            self.sums = np.add.reduceat(self.sums, pairs, axis=0)
+            counts = np.add.reduceat(counts, pairs)
+        return counts
 
     @property
     def _interval(self) -> float:

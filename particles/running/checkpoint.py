@@ -38,6 +38,10 @@ from crazybilliards.particles.running.replica import Replica
 _SOURCE = room_fingerprint("model", "particles")
 
 
+# Planned from the other arguments. Where these differ, they say nothing more.
+_PLANNED = ("time_step", "every", "warmup", "duration", "levels")
+
+
 class Checkpoint:
     """The checkpoint file of one run, which continues only if ``identity`` agrees.
 
@@ -136,18 +140,26 @@ class Checkpoint:
             if found["duration"] < here["duration"]:
                 return
             raise ValueError(
-                f"{self.path}: a checkpoint of another run: duration is {found['duration']:.10g} "
-                f"there and {here['duration']:.10g} here, and a run can be made longer, but not "
-                "shorter; remove the file to start anew"
+                f"{self.path}: a checkpoint of another run: duration is "
+                f"{_in_short(found['duration'])} there and {_in_short(here['duration'])} here, and "
+                "a run can be made longer, but not shorter; remove the file to start anew"
             )
         if differing:
             all_of_them = ", ".join(
-                f"{name} is {found.get(name)} there and {here[name]} here" for name in differing
+                f"{name} is {_in_short(found.get(name))} there and {_in_short(here[name])} here"
+                for name in [each for each in differing if each not in _PLANNED] or differing
             )
             raise ValueError(
                 f"{self.path}: a checkpoint of another run: {all_of_them}; remove the file to "
                 "start anew"
             )
+
+
+def _in_short(value: Any) -> str:
+    """Return a value for an error: a number without its last digits, a digest without its end."""
+    if isinstance(value, float):
+        return f"{value:.10g}"
+    return f"{value[:15]}..." if str(value).startswith("sha256 ") else str(value)
 
 
 def identity(run: Run) -> dict[str, Any]:

@@ -8,8 +8,8 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
-from crazybilliards.model.vocabulary import result
-from crazybilliards.particles.observers.base import Integers, Variables
+from crazybilliards.model.vocabulary import VOCABULARY, result
+from crazybilliards.particles.observers.base import Integers, Observer, Variables
 from crazybilliards.particles.run import Run
 from crazybilliards.particles.running.replica import NEVER, Replica
 from crazybilliards.particles.scales import centre_width, relaxation_time, time_step_error
@@ -46,7 +46,7 @@ def collect(run: Run, replicas: list[Replica], interrupted: bool) -> xr.Dataset:
         with warnings.catch_warnings():
             if diverged:  # that rods lie outside of every grid then is no news
                 warnings.simplefilter("ignore")
-            variables |= first.report(counts)
+            variables |= _known(first, first.report(counts), run)
         coordinates |= first.coordinates()
     if schedule.ensemble:
         coordinates["time"] = times
@@ -67,6 +67,17 @@ def collect(run: Run, replicas: list[Replica], interrupted: bool) -> xr.Dataset:
         "time_step_error": _time_step_error(run, measured),
     }
     return measured
+
+
+def _known(observer: Observer, variables: Variables, run: Run) -> Variables:
+    """Return what an observer reports, or raise if a name has no meaning."""
+    for name in variables:
+        if name.removesuffix("_error") not in {**run.vocabulary, **VOCABULARY}:
+            raise ValueError(
+                f"observe: {observer.name!r} reports {name!r}, which it does not give, and which "
+                "has no meaning and unit"
+            )
+    return variables
 
 
 def _time_step_error(run: Run, measured: xr.Dataset) -> float:

@@ -5,6 +5,7 @@ import pytest
 from scipy.stats import laplace, norm
 
 from crazybilliards.comparison import (
+    fit_arctanh,
     fit_avalanches,
     fit_border_power_law,
     fit_exponential,
@@ -55,6 +56,9 @@ def test_an_exponential_distribution_is_seen_not_to_be_a_power_law():
         ([5, 3], {"smallest": 0}, "smallest"),
         ([5, 3], {"smallest": 2, "largest": 1}, "largest"),
         ([5, 3, 1], {"smallest": 7}, "no avalanches"),
+        ([5, 0, 0], {}, "at least two of the sizes 1 to 3"),
+        ([1, 2, 1, 0], {"smallest": 3}, "at least two of the sizes 3 to 4"),
+        ([5, -3, 2], {}, "none below 0"),
     ],
 )
 def test_avalanches_that_cannot_be_fitted(counts, options, message):
@@ -115,6 +119,45 @@ def test_exponential_growth_is_no_singularity():
         fit_growth([0, 1, 2], [1, -1, 1])
     with pytest.raises(ValueError, match="at least 5 energies"):
         fit_singularity([0, 1], [1, 2])
+
+
+@pytest.mark.parametrize(
+    ("fit", "message"),
+    [
+        (lambda: fit_growth([1, 1, 1], [1, 2, 3]), "more than one time, got time=1 only"),
+        (lambda: fit_singularity([1] * 5, [1, 2, 3, 4, 5]), "more than one time"),
+        (lambda: fit_scaling([2, 2], [1, 3], [1, 1]), "more than one x, got x=2 only"),
+        (lambda: fit_exponential([0, 0.5, 1], [1, 2, 3], [0, 1, 1]), "positive errors"),
+        (lambda: tail_length([1], [1], 0.5), "must ascend"),
+        (lambda: tail_length([1, 3, 2], [1, 1, 1], 0.5), "must ascend"),
+    ],
+)
+def test_points_that_leave_a_fit_open_are_refused(fit, message):
+    with pytest.raises(ValueError, match=message):
+        fit()
+
+
+def test_points_of_any_kind_are_fitted_or_refused_without_a_numerical_warning():
+    """The search for the parameters may overflow on its way. Warnings are errors here."""
+    generator = np.random.default_rng(8)
+    chain = Chain(size=9)
+    for _ in range(20):
+        spread = 10 ** generator.uniform(0, 30)
+        t, energy = np.sort(generator.normal(size=(1, 9))[0]), spread ** generator.random(9)
+        displacement = generator.normal(size=9) + 3 * np.sign(chain.anchors)
+        displaced = result(
+            chain, {"mean_displacement": ("particle", displacement)}, source="theory", method={}
+        )
+        for fit in (
+            lambda t=t, y=energy: fit_singularity(t, y),
+            lambda t=t, y=energy: fit_exponential(t, y, 1e-3 * y),
+            lambda source=displaced: fit_arctanh(source),
+        ):
+            try:
+                found = fit()
+            except ValueError:
+                continue
+            assert np.isfinite([*found.parameters.values(), *found.errors.values()]).all()
 
 
 @pytest.mark.parametrize("beyond", [2.0, 3.0, 4.1, 5.0, 6.3])

@@ -1,7 +1,10 @@
 """Films show every rod where it is, and collisions when they happen, in whole files only."""
 
 import io
+import os
+import sys
 from base64 import b64decode
+from types import SimpleNamespace
 
 import imageio_ffmpeg
 import matplotlib.pyplot as plt
@@ -75,6 +78,38 @@ def test_a_film_has_all_its_pictures(run, kind, tmp_path):
     assert imageio_ffmpeg.count_frames_and_secs(str(path)) == (20, pytest.approx(0.8, abs=0.01))
 
 
+def drawn(motion):
+    with plt.rc_context(rod_film._LOOK):
+        return list(rod_film._pictures(motion, True))
+
+
+def test_a_gif_has_the_colours_that_were_drawn(run):
+    pictures = drawn(rod_film._motion(run, 20))
+    film = Image.open(io.BytesIO(encoding.encoded(iter(pictures), "gif")))
+    for number, picture in enumerate(pictures):
+        film.seek(number)
+        rods = np.array(film.convert("RGB"))[100:150, :860].astype(int)
+        assert abs(rods - picture[100:150, :860, :3]).max() < 20  # of 255
+
+
+def test_rods_that_are_far_apart_are_seen():
+    run = simulate(
+        Chain(size=5, gap=5000), duration=1, every=0.1, observe="snapshots", progress=False
+    )
+    motion = rod_film._motion(run, 2)
+    fast = np.abs(motion.v) > 0.3 * np.abs(motion.v).max()
+    for picture, rods in zip(drawn(motion), fast, strict=True):
+        line = picture[130, 10:850, :3]
+        assert rods.sum() <= (line < 230).any(axis=1).sum() <= 2 * rods.size
+
+
+def test_successive_pictures_have_different_times():
+    for step in (1e-6, 0.01, 1.0, 1e4):
+        times = step * np.arange(5.0)
+        assert len({f"{time:.{rod_film._digits(times)}f}" for time in times}) == 5
+    assert rod_film._digits(np.zeros(1)) == 2
+
+
 def test_a_chain_is_simulated_and_a_notebook_gets_a_player():
     player = film(CHAIN, seconds=0.2, duration=1.0, progress=False)
     assert player._repr_html_().startswith("<video")
@@ -87,6 +122,43 @@ def test_without_ffmpeg_an_mp4_is_refused_before_any_work_and_a_page_has_a_gif(m
     html = film(run, seconds=0.2, progress=False).html
     data = b64decode(html.partition("base64,")[2].partition('"')[0])
     assert Image.open(io.BytesIO(data)).n_frames == 5
+
+
+def test_what_cannot_be_filmed_is_refused(run):
+    with pytest.raises(ValueError, match="no snapshot in which all velocities are known"):
+        film(run * np.nan)
+    with pytest.raises(ValueError, match="no snapshots in time"):
+        film(run.drop_vars("velocity"))
+    with pytest.raises(ValueError, match="duration must be positive"):
+        film(run, duration=-1)
+    with pytest.raises(ValueError, match="no steady state to film: its simulation diverged"):
+        film(Chain(size=100, restitution=1.3), progress=False)
+
+
+@pytest.mark.parametrize("place", ["folder.gif", "file/rods.gif", "locked/rods.gif"])
+def test_a_place_that_cannot_be_written_is_refused_before_any_work(place, tmp_path, monkeypatch):
+    monkeypatch.setattr(rod_film, "simulate", lambda *_, **__: pytest.fail("it works"))
+    monkeypatch.setattr(os, "access", lambda folder, _: folder != tmp_path / "locked")
+    (tmp_path / "folder.gif").mkdir()
+    (tmp_path / "file").touch()
+    with pytest.raises(OSError, match=place.split("/")[0]):
+        film(CHAIN, tmp_path / place)
+
+
+def test_ffmpeg_that_breaks_off_is_an_error_and_leaves_the_former_file(run, tmp_path, monkeypatch):
+    path = tmp_path / "rods.mp4"
+    path.write_text("former")
+    fewer = SimpleNamespace(
+        write_frames=imageio_ffmpeg.write_frames, count_frames_and_secs=lambda _: (1, 0.04)
+    )
+    with monkeypatch.context() as patched:
+        patched.setattr(encoding, "_ffmpeg", lambda: fewer)
+        with pytest.raises(OSError, match="the temporary folder may be full"):
+            film(run, path, seconds=0.2, progress=False)
+    monkeypatch.setenv("IMAGEIO_FFMPEG_EXE", sys.executable)  # fails at once
+    with pytest.raises(OSError, match="the temporary folder may be full"):
+        film(run, path, seconds=0.2, progress=False)
+    assert path.read_text() == "former"
 
 
 @pytest.mark.parametrize("kind", ["mp4", "gif"])

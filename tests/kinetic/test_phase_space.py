@@ -134,6 +134,12 @@ def test_refinement_keeps_its_promise(solved):
     np.testing.assert_allclose(theory.velocity_width, finer.velocity_width, rtol=2e-3)
 
 
+@pytest.mark.validate
+def test_a_thousand_rods_at_restitution_one_half_are_solved_on_a_fine_enough_mesh():
+    """Without being asked: what a mesh of 50 cells changes is above the default tolerance."""
+    assert phase_space(Chain(size=1000, restitution=0.5)).attrs["mesh_error"] < 2e-3
+
+
 def test_a_wide_gap_is_named_where_the_equation_cannot_be_solved():
     message = stationary._out_of_range(Chain(gap=2.0), 2)
     assert "gap * size, as a multiple of s, is 283 (solved for 0 to 80)" in message

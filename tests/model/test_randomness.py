@@ -49,6 +49,13 @@ def test_the_former_name_says_what_replaces_it(name):
         FUNCTIONS[name](rng=5)
 
 
+def test_a_number_that_is_too_long_for_the_provenance_is_mixed_to_a_shorter_one():
+    assert seed_of(np.random.SeedSequence(2**4096)) < 2**128
+    assert seed_of(np.random.SeedSequence(2**4095)) == 2**4095
+    run = simulate(CHAIN, seed=2**4096 - 1, **SHORT)
+    assert json.loads(run.attrs["provenance"])["seed"] == 2**4096 - 1
+
+
 def test_a_generator_gives_a_seed_that_the_provenance_tells():
     generator = np.random.default_rng(1)
     first, second = (simulate(CHAIN, seed=generator, **SHORT) for _ in range(2))

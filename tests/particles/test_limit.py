@@ -200,7 +200,7 @@ def test_the_checkpoint_of_another_run_is_refused(ctrl_c, tmp_path):
     with pytest.raises(KeyboardInterrupt, match="not every level"):
         simulate_limit(chain, warmup=1e6, checkpoint=path, progress=False)
     for change, reason in (
-        ({"accuracy": 0.02}, "time_step is"),
+        ({"accuracy": 0.02}, "another run: accuracy is 0.01 there and 0.02 here; remove"),
         ({"replicas": 2}, "replicas is 1 there and 2 here"),
         ({"seed": 1}, "seed is 0 there and 1 here"),
     ):

@@ -10,6 +10,7 @@ from crazybilliards.model import Chain, load, save
 from crazybilliards.model.vocabulary import VOCABULARY
 from crazybilliards.particles import simulate, simulate_limit
 from crazybilliards.particles.observers.base import Averaged
+from crazybilliards.particles.running.replica import Replica
 
 
 def test_an_observer_brings_the_meanings_of_its_own_names(tmp_path):
@@ -42,3 +43,61 @@ def test_an_observer_brings_the_meanings_of_its_own_names(tmp_path):
     Fast.vocabulary = {}
     with pytest.raises(ValueError, match="'fast' gives 'share_fast', which has no meaning and uni"):
         simulate(Chain(size=2), **how)
+
+
+class Mean(Averaged):
+    name = "mean"
+    gives = ("my_mean",)
+    vocabulary: ClassVar = {"my_mean": ("mean velocity", "R/T")}
+
+    def observe(self, snapshots):
+        self.sums[snapshots.block] += snapshots.v.sum(axis=0)
+
+    def report(self, counts):
+        return self.averages({self.gives[0]: lambda mean: mean}, counts, "particle")
+
+
+HOW = {"duration": 200, "progress": False}
+
+
+@pytest.mark.parametrize(
+    ("vocabulary", "said"),
+    [
+        ({"my_mean": "velocity"}, r"must be {name: \(meaning, unit\)}, all of them texts"),
+        ({"my_mean": ("velocity",)}, "all of them texts, got"),
+        ({"my_mean": ("velocity", 3)}, "all of them texts, got"),
+        ({3: ("velocity", "R")}, "all of them texts, got"),
+        (["my_mean"], r"all of them texts, got \['my_mean'\]"),
+        (None, "all of them texts, got None"),
+        ({"my_mean": ("velocity", "m/s")}, "unit of 'my_mean' .* of R, M and T.*got 'm/s'"),
+    ],
+)
+def test_a_wrong_vocabulary_is_refused_before_any_work(vocabulary, said, monkeypatch):
+    monkeypatch.setattr(Replica, "work", lambda *_: pytest.fail("it works"))
+    wrong = type("Wrong", (Mean,), {"vocabulary": vocabulary})
+    with pytest.raises(ValueError, match=f"^observe: .*{said}"):
+        simulate(Chain(size=2), observe=wrong(), **HOW)
+
+
+def test_what_an_observer_says_of_its_variables_counts_more_than_what_another_says():
+    other = type(
+        "Other",
+        (Mean,),
+        {
+            "name": "other",
+            "gives": ("your_mean",),
+            "vocabulary": {"your_mean": ("yours", "1"), "my_mean": ("not mine", "M")},
+        },
+    )
+    for observe in ([Mean(), other()], [other(), Mean()]):
+        run = simulate(Chain(size=2), observe=observe, **HOW)
+        assert run.my_mean.attrs == {"long_name": "mean velocity", "units": "R_0/T_0"}
+
+
+def test_a_variable_that_an_observer_does_not_give_is_named():
+    class Surprising(Mean):
+        def report(self, counts):
+            return {"surprise": ((), 1.0)}
+
+    with pytest.raises(ValueError, match="'mean' reports 'surprise', which it does not give"):
+        simulate(Chain(size=2), observe=Surprising(), **HOW)

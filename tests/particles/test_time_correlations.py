@@ -48,6 +48,22 @@ def test_the_centre_of_mass_is_a_damped_oscillator_at_any_restitution(damping, e
     assert (run.centre_velocity_autocorrelation_error[0] < 0.02 * velocity[0]).all()
 
 
+@pytest.mark.validate
+@pytest.mark.parametrize("damping", [1.0, 10.0])
+def test_stated_errors_are_the_scatter_in_runs_of_twenty_longest_lags(damping):
+    """The blocks that the schedule makes there are shorter than the longest lag."""
+    chain = Chain(size=1, damping=damping)
+    how = {"duration": 1000, "observe": "time-correlations", "progress": False}
+    runs = [simulate(chain, seed=seed, **how) for seed in range(100)]
+    for name in QUANTITIES:
+        values, errors = (
+            np.array([run[each].values.ravel() for run in runs]) for each in (name, f"{name}_error")
+        )
+        used = errors.max(axis=0) > 0  # the first mean squared displacement is 0
+        stated = np.sqrt(np.mean(errors**2, axis=0))[used]
+        assert 0.75 < np.median(values.std(axis=0, ddof=1)[used] / stated) < 1.25
+
+
 def two_rods(chain, t):
     """Exact functions of the distance of two elastic rods, the modulus of an oscillator x.
 
@@ -138,6 +154,15 @@ def test_lags_that_a_run_cannot_have_are_refused():
         simulate(Chain(size=2), duration=20, observe="time-correlations", progress=False)
     with pytest.raises(ValueError, match="duration above the longest lag inf"):
         simulate(Chain(damping=0), observe="time-correlations", progress=False)
+    chain, how = Chain(size=3), {"duration": 400, "every": 1.0, "progress": False}
+    for longest, lags in ((399.5, 100), (397, 4)):  # rounded up to whole snapshots, 400 both times
+        with pytest.raises(ValueError, match="duration above the longest lag 400, got 400"):
+            simulate(chain, observe=TimeCorrelations(longest=longest, lags=lags), **how)
+    run = simulate(chain, observe=TimeCorrelations(longest=396, lags=99), **how)
+    assert np.isfinite(run.velocity_spectrum).all()
+    for longest in (1e-50, 0.1):  # the finest lag is the time between snapshots
+        run = simulate(chain, observe=TimeCorrelations(longest=longest), **how)
+        assert run.lag.values.tolist() == [0.0, 1.0]
     with pytest.raises(ValueError, match="longest must be"):
         TimeCorrelations(longest=0)
     with pytest.raises(ValueError, match="no limit of a vanishing time step"):

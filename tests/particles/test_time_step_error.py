@@ -37,6 +37,20 @@ def test_the_stated_error_covers_the_measured_change(e, r, shorter, change, erro
         assert stated(e, r) - stated(e, shorter) < 2 * abs(change) + 3 * error
 
 
+@pytest.mark.parametrize("stepper", ["splitting", "euler"])
+@pytest.mark.parametrize("method", ["event-driven", "contact-dynamics"])
+def test_a_single_rod_has_no_error_of_collisions(stepper, method):
+    errors = {
+        time_step_error(
+            Chain(size=1, restitution=e, gap=gap), 0.1, 0.3, stepper=stepper, method=method
+        )
+        for e in (0.0, 0.5, 1.0, 1.2)
+        for gap in (0.0, 2.0)
+    }
+    assert len(errors) == 1
+    assert (errors == {0.0}) == (stepper == "splitting")
+
+
 def test_at_restitution_one_there_is_no_error_of_the_noise():
     assert stated(1.0, 5.0) == 0
     assert stated(1 - 1e-9, 0.3) < 0.05
