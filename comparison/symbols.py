@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from crazybilliards.model.arrays import Array
 
 _MOST_SYMBOLS = 60
 _SEEN = 0.01  # of the height of the picture, between a curve and a line

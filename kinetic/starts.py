@@ -11,18 +11,16 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
 from scipy.optimize import elementwise
 
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.kinetic.statics.label_closure import fluid_reach, stationary
 from crazybilliards.model import Chain, chain_of
+from crazybilliards.model.arrays import Array
 from crazybilliards.model.checks import check_real, shown
 from crazybilliards.model.grid import position_grid, thermal_reach
 from crazybilliards.model.vocabulary import require, result
-
-Array = NDArray[np.float64]
 
 _RODS_TOLERANCE = 1e-3
 _CROWDED = 1.01  # so many rods in the length of one overlap, but for errors of the grid

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from crazybilliards.model.arrays import Array
 from crazybilliards.model.checks import check_real
 
 _MOST = 1_000_000
 
 
-def output_times(duration: float | None, every: float | None, number: int) -> NDArray[np.float64]:
+def output_times(duration: float | None, every: float | None, number: int) -> Array:
     """Return the times 0, every, 2 every, ... up to the first one not before ``duration`` [T].
 
     ``every`` None: ``number`` outputs after the start.

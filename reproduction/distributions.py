@@ -8,13 +8,13 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 from scipy.optimize import curve_fit
 
 from crazybilliards.comparison.distances import distances_in_plot
 from crazybilliards.comparison.drawing import COLOURS, SYMBOLS
 from crazybilliards.comparison.layout import legend_above, panels
 from crazybilliards.model import chain_of
+from crazybilliards.model.arrays import Array
 from crazybilliards.model.vocabulary import require
 from crazybilliards.reproduction.claims.repetition import error_of_mean
 
@@ -39,9 +39,7 @@ def mean_shape(run: xr.Dataset, particles: Sequence[int], name: str) -> float:
     return float(run[name].sel(particle=list(particles)).mean())
 
 
-def histogram(
-    run: xr.Dataset, particles: Sequence[int], reach: float
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def histogram(run: xr.Dataset, particles: Sequence[int], reach: float) -> tuple[Array, Array]:
     """Return velocities and the mean density of some particles in 41 equal bins to +-``reach``."""
     v = run.velocity_bin.values
     weight = np.gradient(v)
@@ -54,12 +52,7 @@ def histogram(
     return middle[filled] / width[filled], share[filled] / width[filled]
 
 
-def off_in_plot(
-    v: NDArray[np.float64],
-    p: NDArray[np.float64],
-    line: Callable[[NDArray[np.float64]], NDArray[np.float64]],
-    reach: float,
-) -> float:
+def off_in_plot(v: Array, p: Array, line: Callable[[Array], Array], reach: float) -> float:
     """Return how far off a line the symbols are at most, in a plot to +-``reach`` from p = 0 up."""
     fine = np.linspace(-reach, reach, 4001)
     height = (0.0, float(p.max()))
@@ -119,9 +112,7 @@ def draw_distributions(ax: Axes, runs: Sequence[xr.Dataset], particles: Sequence
     ax.set(xlabel="velocity $v/W$", ylabel="probability density $W p(v)$")
 
 
-def waves(
-    run: xr.Dataset, count: str, particles: slice
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def waves(run: xr.Dataset, count: str, particles: slice) -> tuple[Array, Array]:
     """Return sizes of avalanches from 1 on, and how many of a count began at some rods."""
     sizes = run[COUNTS[count][1]].values
     counts = run[count].sel(particle=particles).sum("particle").values.astype(float)
@@ -151,14 +142,10 @@ def gaussian(v: np.ndarray, width: float) -> np.ndarray:
     return np.asarray(np.exp(-((v / width) ** 2) / 2) / (width * np.sqrt(2 * np.pi)))
 
 
-def fit_gaussian(
-    v: NDArray[np.float64], p: NDArray[np.float64], width: float
-) -> Callable[[NDArray[np.float64]], NDArray[np.float64]]:
+def fit_gaussian(v: Array, p: Array, width: float) -> Callable[[Array], Array]:
     """Return the Gaussian that fits best by least squares, its height, centre and width free."""
 
-    def model(
-        v: NDArray[np.float64], height: float, centre: float, width: float
-    ) -> NDArray[np.float64]:
+    def model(v: Array, height: float, centre: float, width: float) -> Array:
         return np.asarray(height * np.exp(-(((v - centre) / width) ** 2) / 2))
 
     values, _ = curve_fit(model, v, p, p0=(float(p.max()), 0.0, width))

@@ -5,13 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from crazybilliards.comparison.fits.fit import (
-    Array,
-    Fit,
-    check_points,
-    least_squares,
-    root_mean_square,
-)
+from crazybilliards.comparison.fits.fit import Fit, check_points, least_squares, root_mean_square
+from crazybilliards.model.arrays import Array
 
 
 def fit_singularity(time: ArrayLike, energy: ArrayLike) -> Fit:

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import minimize_scalar
 
-from crazybilliards.comparison.fits.fit import Array, Fit, check_points
+from crazybilliards.comparison.fits.fit import Fit, check_points
+from crazybilliards.model.arrays import Array
 from crazybilliards.model.checks import check_integer, check_real
 
 

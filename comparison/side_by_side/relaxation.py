@@ -12,7 +12,6 @@ from typing import Literal, get_args
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 from crazybilliards.comparison.coverage import smooth
 from crazybilliards.kinetic import (
@@ -29,7 +28,6 @@ from crazybilliards.model.progress import waiting_for
 from crazybilliards.model.randomness import Seed, seed_of
 from crazybilliards.particles import simulate
 
-Array = NDArray[np.float64]
 Release = Literal["compressed", "displaced", "quenched"]
 
 PARTICLES = "particles"

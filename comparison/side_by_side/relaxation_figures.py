@@ -10,7 +10,6 @@ import xarray as xr
 from matplotlib.animation import FuncAnimation
 from matplotlib.artist import Artist
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from crazybilliards.comparison.coverage import smooth
 from crazybilliards.comparison.drawing import overlay
@@ -19,7 +18,6 @@ from crazybilliards.comparison.side_by_side.grid import SIMULATION
 from crazybilliards.comparison.side_by_side.relaxation import LEGEND, PARTICLES, cloud
 from crazybilliards.model import Chain, chain_of
 
-Array = NDArray[np.float64]
 Relaxation = xr.DataTree
 
 _DENSITY = r"density $\rho$ [1/R]"

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from crazybilliards.comparison.sweeps.case import Case, OutdatedError
 from crazybilliards.comparison.sweeps.grid import Sweep
+from crazybilliards.model.arrays import Array
 from crazybilliards.model.calls import warn_user
 from crazybilliards.model.progress import progress_bar
 from crazybilliards.particles import ShortRunWarning
@@ -34,7 +35,7 @@ class Cases:
 
     source: Sweep | list[Case]
     numbers: NDArray[np.int64]
-    work: NDArray[np.float64]
+    work: Array
     replaced: Sequence[str] = ()
 
     def __len__(self) -> int:
@@ -62,7 +63,7 @@ def check_cases(cases: Iterable[Case], *, progress: bool = True) -> Cases:
     return Cases(source, np.arange(work.size), work)
 
 
-def _check_sweep(sweep: Sweep, progress: bool) -> NDArray[np.float64]:
+def _check_sweep(sweep: Sweep, progress: bool) -> Array:
     """Check every case of a grid and return its particle steps.
 
     The check of a seed does not depend on the other parameters, and the computing time does not

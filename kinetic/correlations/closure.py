@@ -42,7 +42,6 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
 from crazybilliards.kinetic.correlations.cells import Cells, at_distance
@@ -51,8 +50,7 @@ from crazybilliards.kinetic.correlations.one_rod import OneRod
 from crazybilliards.kinetic.correlations.pair_covariance import Background, PairCovariance
 from crazybilliards.kinetic.correlations.problem import Problem
 from crazybilliards.kinetic.kinetic_equation.weak_form import Factors
-
-Array = NDArray[np.float64]
+from crazybilliards.model.arrays import Array
 
 _NEIGHBOUR = 1.0  # rod
 _BEYOND = 2  # cells between two rods that have not hit one another

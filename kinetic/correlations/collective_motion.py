@@ -10,12 +10,10 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crazybilliards.kinetic.kinetic_equation.continuation import State
 from crazybilliards.kinetic.kinetic_equation.velocity_moments import moments
-
-Array = NDArray[np.float64]
+from crazybilliards.model.arrays import Array
 
 _NARROWEST = 1e-4  # of a Gaussian, in free units: far below any mesh
 

@@ -30,9 +30,8 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from crazybilliards.model.arrays import Array
 
 _NODES = 24  # exact for polynomials up to this degree in w^2 and in v + u; 6 is needed
 

@@ -44,13 +44,11 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import block_diag, eigvals, solve_continuous_lyapunov
 
 from crazybilliards.kinetic.correlations.cells import Cells, of_cells
 from crazybilliards.kinetic.correlations.problem import Problem
-
-Array = NDArray[np.float64]
+from crazybilliards.model.arrays import Array
 
 
 class Background(NamedTuple):

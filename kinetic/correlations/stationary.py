@@ -22,7 +22,6 @@ from dataclasses import replace
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 from crazybilliards.kinetic.computing_time import expected_seconds
 from crazybilliards.kinetic.correlations.closure import Closure, background, implied
@@ -48,9 +47,8 @@ from crazybilliards.kinetic.kinetic_equation.order_statistics import Rods
 from crazybilliards.kinetic.kinetic_equation.velocity_space import one_thread
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain
+from crazybilliards.model.arrays import Array
 from crazybilliards.model.progress import waiting_for
-
-Array = NDArray[np.float64]
 
 _MOST_CELLS = 80  # of a mesh that is not asked for
 _ROUGHLY = 1e-3

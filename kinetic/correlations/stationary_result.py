@@ -6,7 +6,6 @@ from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 from crazybilliards.kinetic.accuracy import expected
 from crazybilliards.kinetic.correlations.cells import of_cells, of_rods
@@ -22,8 +21,7 @@ from crazybilliards.kinetic.kinetic_equation.continuation import State, free_uni
 from crazybilliards.kinetic.kinetic_equation.order_statistics import Rods, mirrored, points
 from crazybilliards.kinetic.kinetic_equation.stationary_result import in_vocabulary
 from crazybilliards.kinetic.kinetic_equation.velocity_moments import moments
-
-Array = NDArray[np.float64]
+from crazybilliards.model.arrays import Array
 
 
 class Correlated(NamedTuple):

@@ -34,14 +34,13 @@ from crazybilliards.kinetic.accuracy import expected
 from crazybilliards.kinetic.computing_time import expected_seconds
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain
+from crazybilliards.model.arrays import Array
 from crazybilliards.model.checks import check_integer
 from crazybilliards.model.grid import position_grid, require_resolved, thermal_reach
 from crazybilliards.model.memory import require_memory
 from crazybilliards.model.progress import waiting_for
 from crazybilliards.model.randomness import Seed, seed_of
 from crazybilliards.model.vocabulary import result
-
-Array = NDArray[np.float64]
 
 # Grid nodes in the width of the narrowest rod, which is the middle one without a gap.
 _NODES_PER_WIDTH = 10

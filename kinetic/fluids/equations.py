@@ -39,7 +39,6 @@ from typing import Literal, get_args
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 from scipy.integrate import trapezoid
 
 from crazybilliards.kinetic.fluids.eulerian_frame import MOST_CELLS, solve_on_positions
@@ -55,12 +54,11 @@ from crazybilliards.kinetic.statics.profiles import (
 )
 from crazybilliards.kinetic.times import output_times
 from crazybilliards.model import Chain
+from crazybilliards.model.arrays import Array
 from crazybilliards.model.checks import check_choice, check_integer, shown
 from crazybilliards.model.grid import position_grid
 from crazybilliards.model.memory import require_memory
 from crazybilliards.model.vocabulary import result
-
-Array = NDArray[np.float64]
 
 Frame = Literal["label", "eulerian"]
 Evolving = Literal["evolving"]

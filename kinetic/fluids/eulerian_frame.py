@@ -37,9 +37,8 @@ from crazybilliards.kinetic.fluids.pde_solver import make_state, solve
 from crazybilliards.kinetic.starts import Start
 from crazybilliards.kinetic.statics.profiles import Profile
 from crazybilliards.model import Chain
+from crazybilliards.model.arrays import Array
 from crazybilliards.model.grid import position_grid, thermal_reach
-
-Array = NDArray[np.float64]
 
 _COURANT = 0.5
 _MOST_COURANT = 1.0  # beyond, four-stage Runge-Kutta with second-order fluxes is not stable

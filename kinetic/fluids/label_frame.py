@@ -31,7 +31,6 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.integrate import cumulative_trapezoid
 from scipy.interpolate import PchipInterpolator
 
@@ -41,10 +40,9 @@ from crazybilliards.kinetic.fluids.pde_solver import make_state, solve
 from crazybilliards.kinetic.starts import Start
 from crazybilliards.kinetic.statics.label_closure import Stationary, stationary
 from crazybilliards.model import Chain, spring
+from crazybilliards.model.arrays import Array
 from crazybilliards.model.grid import position_grid, thermal_reach
 from crazybilliards.model.kernels import inlined, kernel
-
-Array = NDArray[np.float64]
 
 _pull = inlined(spring.force)
 

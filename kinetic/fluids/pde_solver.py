@@ -12,15 +12,14 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from pde import CartesianGrid, FieldCollection, MemoryStorage, PDEBase, ProgressTracker, ScalarField
 
+from crazybilliards.model.arrays import Array
 from crazybilliards.model.progress import watched
 
 # py-pde would warn that a short run spent more time on storing than on solving.
 logging.getLogger("pde.solvers.controller").setLevel(logging.ERROR)
 
-Array = NDArray[np.float64]
 Rate = Callable[[Array, float], Array]
 
 

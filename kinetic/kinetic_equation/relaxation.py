@@ -19,7 +19,6 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 from scipy.sparse import csc_matrix
 from scipy.stats import norm
 
@@ -49,11 +48,10 @@ from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.kinetic.starts import check_start
 from crazybilliards.kinetic.times import output_times
 from crazybilliards.model import Chain
+from crazybilliards.model.arrays import Array
 from crazybilliards.model.checks import check_integer, check_real
 from crazybilliards.model.memory import require_memory
 from crazybilliards.model.progress import progress_bar
-
-Array = NDArray[np.float64]
 
 _STEP = 0.04  # in units of the spring's 1/w0
 _CELLS = 20

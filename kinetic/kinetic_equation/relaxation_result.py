@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 from scipy.interpolate import RectBivariateSpline
 
 from crazybilliards.kinetic.kinetic_equation.order_statistics import points
@@ -16,10 +15,9 @@ from crazybilliards.kinetic.kinetic_equation.velocity_moments import moments
 from crazybilliards.kinetic.kinetic_equation.velocity_space import VelocitySpace
 from crazybilliards.kinetic.kinetic_equation.weak_form import Units
 from crazybilliards.model import Chain
+from crazybilliards.model.arrays import Array
 from crazybilliards.model.grid import position_grid
 from crazybilliards.model.vocabulary import result
-
-Array = NDArray[np.float64]
 
 
 def snapshot(

@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
 from crazybilliards.kinetic.accuracy import Accuracy
@@ -18,10 +17,9 @@ from crazybilliards.kinetic.kinetic_equation.continuation import State, free_uni
 from crazybilliards.kinetic.kinetic_equation.order_statistics import mirrored
 from crazybilliards.kinetic.kinetic_equation.velocity_moments import moments
 from crazybilliards.model import Chain
+from crazybilliards.model.arrays import Array
 from crazybilliards.model.grid import position_grid
 from crazybilliards.model.vocabulary import result
-
-Array = NDArray[np.float64]
 
 
 def in_vocabulary(

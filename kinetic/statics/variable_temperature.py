@@ -24,7 +24,6 @@ from collections.abc import Callable
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 from scipy.integrate import cumulative_trapezoid
 from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
 from scipy.sparse.linalg import splu
@@ -34,10 +33,10 @@ from skfem.helpers import grad
 from crazybilliards.kinetic.statics.label_closure import stationary
 from crazybilliards.kinetic.statics.profiles import Profile
 from crazybilliards.model import Chain
+from crazybilliards.model.arrays import Array
 from crazybilliards.model.grid import position_grid
 from crazybilliards.model.vocabulary import result
 
-Array = NDArray[np.float64]
 Warmth = Callable[[Array], Array]
 
 _CELLS = 1200

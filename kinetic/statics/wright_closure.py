@@ -27,10 +27,9 @@ from scipy.special import wrightomega
 from crazybilliards.kinetic.statics.label_closure import fluid_reach
 from crazybilliards.kinetic.statics.profiles import Profile
 from crazybilliards.model import Chain
+from crazybilliards.model.arrays import Array
 from crazybilliards.model.grid import position_grid, thermal_reach
 from crazybilliards.model.vocabulary import result
-
-Array = NDArray[np.float64]
 
 _POINTS = 5  # of the quadrature in a cell
 _NOTHING = 1e-12  # of the largest density, at the end of the grid

@@ -7,11 +7,11 @@ from collections.abc import Callable
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from crazybilliards.comparison.distances import distances_in_plot
 from crazybilliards.comparison.fits import Fit, fit_border_power_law
 from crazybilliards.comparison.widths import border_width, central_width
+from crazybilliards.model.arrays import Array
 from crazybilliards.model.chain import middle_tenth
 from crazybilliards.reproduction.chains import flippers, kinetic_equation
 from crazybilliards.reproduction.claims.study import Cases, Quality, Results, Study, all_of
@@ -105,15 +105,12 @@ def _power_law_claim(results: Results) -> Claim:
     )
 
 
-def _unchanged(values: NDArray[np.float64]) -> NDArray[np.float64]:
+def _unchanged(values: Array) -> Array:
     return values
 
 
 def _beyond_the_eye(
-    results: Results,
-    run: xr.Dataset,
-    fit: Fit,
-    axes: Callable[[NDArray[np.float64]], NDArray[np.float64]],
+    results: Results, run: xr.Dataset, fit: Fit, axes: Callable[[Array], Array]
 ) -> Estimate:
     """Return the largest distance of a symbol from the fit, as a share of the plot, less EYE."""
     widths = {g: runs.pooled(results).velocity_width.values for g, runs in _RUNS.items()}

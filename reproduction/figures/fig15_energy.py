@@ -9,13 +9,13 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from crazybilliards.comparison.drawing import COLOURS
 from crazybilliards.comparison.fits import fit_growth, fit_singularity
 from crazybilliards.comparison.layout import panels
 from crazybilliards.kinetic.kinetic_equation.weak_damping import weak_damping_growth_rate
 from crazybilliards.model import Chain
+from crazybilliards.model.arrays import Array
 from crazybilliards.reproduction.claims.repetition import Runs
 from crazybilliards.reproduction.claims.study import Cases, Quality, Results, Study, all_of
 from crazybilliards.reproduction.claims.verdicts import POSITIVE, Claim, Estimate, around
@@ -49,7 +49,7 @@ def cases(quality: Quality) -> Cases:
     return all_of(_RUNS, quality)
 
 
-def _late(run: xr.Dataset, beyond: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _late(run: xr.Dataset, beyond: float) -> tuple[Array, Array]:
     """Return times and energies from the first one above ``beyond``."""
     energy = run.kinetic_energy.values
     begin = int(np.argmax(energy > beyond))
