@@ -104,7 +104,7 @@ class Claim:
         The number that decides, with its standard error. Deviations from a line are shares of the
         plotted range. The error of the worst of many differences is the enlarged one.
     within
-        Where it has to lie: :func:`around` a number, or ``POSITIVE``.
+        Where it has to lie: above zero, or :func:`around` a number.
     source
         Where the paper says so: labels of its source, ``fig. 3, eq:power_law``. Empty: a finding
         of our own.
@@ -122,7 +122,7 @@ class Claim:
     quantity: str = ""
     _: KW_ONLY
     found: Estimate
-    within: Interval
+    within: Interval = POSITIVE
     source: str = ""
     words: str = ""
     elsewhere: Mapping[str, Estimate] = field(default_factory=dict)

@@ -9,7 +9,7 @@ from crazybilliards.comparison.widths import border_width, central_width
 from crazybilliards.model.chain import middle_tenth
 from crazybilliards.reproduction.chains import LARGE, dissipative
 from crazybilliards.reproduction.claims.study import Results, Study
-from crazybilliards.reproduction.claims.verdicts import POSITIVE, Claim, Estimate, in_plot
+from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, in_plot
 from crazybilliards.reproduction.distributions import (
     figure_of_distributions,
     fit_gaussian,
@@ -56,14 +56,12 @@ def claims(results: Results) -> list[Claim]:
             "close to the border the distributions are slightly skewed",
             f"skewness of the outer three rods {skewness}, outward positive; its magnitude",
             found=Estimate(abs(skewness.value), skewness.error),
-            within=POSITIVE,
             source=_SOURCE,
         ),
         Claim(
             "narrower inside than at the border",
             "W_v(border) - W_v(centre) =",
             found=border.minus(_RUNS.estimate(results, central_width)),
-            within=POSITIVE,
             source=_SOURCE,
         ),
     ]

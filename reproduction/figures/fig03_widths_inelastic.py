@@ -16,14 +16,7 @@ from crazybilliards.model import chain_of
 from crazybilliards.reproduction import predictions
 from crazybilliards.reproduction.chains import LARGE, STEPS, at_step, at_steps, chain_step
 from crazybilliards.reproduction.claims.study import Cases, Quality, Results, Study, all_of
-from crazybilliards.reproduction.claims.verdicts import (
-    POSITIVE,
-    Claim,
-    Estimate,
-    around,
-    in_plot,
-    worst,
-)
+from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, around, in_plot, worst
 from crazybilliards.reproduction.power_laws import fits_in_plot, nu, weighted_nu
 from crazybilliards.reproduction.vanishing_step import LABEL, common_bias, limit_estimate, limits
 
@@ -61,7 +54,6 @@ def claims(results: Results) -> list[Claim]:
             "collisions make every velocity distribution narrower than a free rod's",
             "1 - W_v/W of the fastest rod of all four chains:",
             found=Estimate(1 - border.value, border.error),
-            within=POSITIVE,
             source="section seq:e_0, fig.2",
             ours="the sizes below 1000 and the time step",
         ),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,7 @@ from crazybilliards.comparison.widths import central_width
 from crazybilliards.model import Chain
 from crazybilliards.reproduction.chains import SIZES, STEPS, at_step, at_steps
 from crazybilliards.reproduction.claims.repetition import Granted, Runs
-from crazybilliards.reproduction.claims.study import Cases, Quality, Results, Study, all_of
+from crazybilliards.reproduction.claims.study import Results, Study, all_of
 from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, around
 from crazybilliards.reproduction.vanishing_step import LABEL, central_limit, limits
 
@@ -43,11 +44,6 @@ _LONG = [
     )
     for size, granted in _GRANTED.items()
 ]
-
-
-def cases(quality: Quality) -> Cases:
-    """E = 0, L = 10 to 1000 at four time steps and in the limit; longer chains at own steps."""
-    return all_of([*at_steps(), *map(limits, SIZES), *_LONG], quality)
 
 
 def _widths(results: Results, every: Iterable[Runs]) -> dict[int, Estimate]:
@@ -137,7 +133,7 @@ FIGURE = Study(
     "to the default time step, L = 10 to 1000. Dashed: the paper's exponent. (b) The ratio to the "
     "fit. Full circles: the limit of a vanishing step. Longer chains than the paper's are at time "
     "steps whose velocity kick is two thirds of the width at every size.",
-    cases=cases,
+    cases=partial(all_of, [*at_steps(), *map(limits, SIZES), *_LONG]),
     draw=draw,
     claims=claims,
 )

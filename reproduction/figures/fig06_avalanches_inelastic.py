@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
@@ -12,7 +14,7 @@ from crazybilliards.comparison.layout import at_the_left, entitle, panels
 from crazybilliards.model import Chain
 from crazybilliards.reproduction.chains import LARGE
 from crazybilliards.reproduction.claims.repetition import Granted, Runs
-from crazybilliards.reproduction.claims.study import Cases, Quality, Results, Study, all_of
+from crazybilliards.reproduction.claims.study import Results, Study, all_of
 from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, around
 from crazybilliards.reproduction.distributions import COUNTS, draw_sizes, waves
 
@@ -43,11 +45,6 @@ _SIZES = {"triggered_count": (3, 20), "avalanche_count": (20, 150)}
 _OTHER_SIZES = {"triggered_count": (2, 10), "avalanche_count": (10, 100)}
 _SOURCE = "section seq:e_0, fig:trigger"
 _OURS = "the time step, the sizes fitted, and what counts as a collision among rods in contact"
-
-
-def cases(quality: Quality) -> Cases:
-    """L = 1000, e = 0, at four time steps, in both counts."""
-    return all_of(_RUNS.values(), quality)
 
 
 def _exponent(
@@ -172,7 +169,7 @@ FIGURE = Study(
     "that stick together pass on from one to the next. Error bars: counting statistics. The "
     "exponents are maximum-likelihood estimates. Rods in contact collide again after every kick, "
     "so that the number of waves grows as the step is shortened: no count has a limit dt -> 0.",
-    cases=cases,
+    cases=partial(all_of, _RUNS.values()),
     draw=draw,
     claims=claims,
 )

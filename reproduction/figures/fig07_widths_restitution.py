@@ -16,7 +16,7 @@ from crazybilliards.comparison.widths import central_width
 from crazybilliards.model import chain_of
 from crazybilliards.reproduction.chains import LARGE, RESTITUTIONS, dissipative, elastic
 from crazybilliards.reproduction.claims.study import Cases, Quality, Results, Study, all_of
-from crazybilliards.reproduction.claims.verdicts import POSITIVE, Claim, Estimate, in_plot, worst
+from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, in_plot, worst
 from crazybilliards.reproduction.figures.fig12_widths_damping import bulge
 from crazybilliards.reproduction.power_laws import fits_in_plot
 from crazybilliards.reproduction.predictions import (
@@ -75,7 +75,6 @@ def claims(results: Results) -> list[Claim]:
             f"ln of the border's width over the centre's: {uneven[low]} at e = {low:g} and "
             f"{uneven[high]} at e = {high:g}, difference",
             found=uneven[low].minus(uneven[high]),
-            within=POSITIVE,
             source=_SOURCE,
             ours=_OURS,
         ),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -11,7 +13,7 @@ from crazybilliards.comparison.layout import entitle, panels
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.reproduction.chains import LARGE, elastic
 from crazybilliards.reproduction.claims.repetition import Granted, Runs
-from crazybilliards.reproduction.claims.study import Cases, Quality, Results, Study, all_of
+from crazybilliards.reproduction.claims.study import Results, Study, all_of
 from crazybilliards.reproduction.claims.verdicts import EYE, Claim, Estimate, in_plot, worst
 from crazybilliards.reproduction.distributions import (
     draw_distributions,
@@ -43,11 +45,6 @@ _CONTACT = {
     )
     for step in _STEPS
 }
-
-
-def cases(quality: Quality) -> Cases:
-    """L = 100; and L = 1000, with the exact operator and with Contact Dynamics."""
-    return all_of([_RUNS, _EXACT, *_CONTACT.values()], quality)
 
 
 def claims(results: Results) -> list[Claim]:
@@ -115,7 +112,7 @@ FIGURE = Study(
     caption="(a) Symbols: simulated rods 1 and 50 of 100, with standard errors. Dotted: the exact "
     "distribution, that of a free rod. (b) W_v of 1000 rods, exact at any step with event-driven "
     "collisions, wrong with Contact Dynamics at steps that are affordable.",
-    cases=cases,
+    cases=partial(all_of, [_RUNS, _EXACT, *_CONTACT.values()]),
     draw=draw,
     claims=claims,
 )

@@ -15,7 +15,7 @@ from crazybilliards.model import chain_of
 from crazybilliards.model.chain import middle_tenth
 from crazybilliards.reproduction.chains import LARGE, dissipative
 from crazybilliards.reproduction.claims.study import Cases, Quality, Results, Study, all_of
-from crazybilliards.reproduction.claims.verdicts import POSITIVE, Claim, Estimate
+from crazybilliards.reproduction.claims.verdicts import Claim, Estimate
 from crazybilliards.reproduction.figures.fig05_displacements_inelastic import swelling
 from crazybilliards.reproduction.predictions import LINES, by_restitution, predicted
 
@@ -37,7 +37,6 @@ def claims(results: Results) -> list[Claim]:
             f"the mean displacement grows from e = {low:g} to {high:g}",
             f"slope of <dx> against i_n: {found[low]} and {found[high]}, difference",
             found=found[high].minus(found[low]),
-            within=POSITIVE,
             source="section seq:e_larger, fig.5",
         )
         for low, high in itertools.pairwise(_RUNS)
@@ -58,7 +57,6 @@ def _energy_claims(results: Results) -> list[Claim]:
             f"the energy is larger at the border, e = {e:g}",
             f"{what}; their sum",
             found=both,
-            within=POSITIVE,
             source="section seq:e_larger",
             ours="the restitution",
         ),
@@ -66,7 +64,6 @@ def _energy_claims(results: Results) -> list[Claim]:
             f"because the potential energy is, e = {e:g}",
             f"{what}; potential less kinetic",
             found=Estimate(potential.value - kinetic.value, both.error),
-            within=POSITIVE,
             source="section seq:e_larger",
             ours="the restitution",
         ),

@@ -12,7 +12,7 @@ from crazybilliards.comparison.widths import border_width, central_width
 from crazybilliards.model import chain_of
 from crazybilliards.reproduction.chains import flippers
 from crazybilliards.reproduction.claims.study import Results, Study
-from crazybilliards.reproduction.claims.verdicts import POSITIVE, Claim, Estimate
+from crazybilliards.reproduction.claims.verdicts import Claim, Estimate
 from crazybilliards.reproduction.distributions import draw_distributions, mean_shape
 
 SIZE = 100
@@ -33,14 +33,12 @@ def claims(results: Results) -> list[Claim]:
             "every rod is faster than a free one",
             "W_v/W of the slowest rod less 1:",
             found=narrowest.minus(Estimate(1.0, 0.0)),
-            within=POSITIVE,
             source=source,
         ),
         Claim(
             "large velocities are likelier at the border than in the centre",
             "W_v(border) - W_v(centre) =",
             found=border.minus(_RUNS.estimate(results, central_width)),
-            within=POSITIVE,
             source=source,
         ),
         Claim(
@@ -48,7 +46,6 @@ def claims(results: Results) -> list[Claim]:
             f"excess kurtosis {kurtosis}; length of the tail beyond 5 W_v over that beyond 3 W_v "
             f"{ratio} (exponential: 1, Gaussian: 0.65), less half-way between the two",
             found=ratio.minus(Estimate(0.825, 0.0)),
-            within=POSITIVE,
             source=f"{source}, inset",
             reason="the tail falls off faster than an exponential",
         ),

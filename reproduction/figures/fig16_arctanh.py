@@ -11,16 +11,11 @@ from crazybilliards.comparison.fits import fit_arctanh
 from crazybilliards.comparison.layout import panels
 from crazybilliards.kinetic import equilibrium
 from crazybilliards.model import chain_of
-from crazybilliards.reproduction.claims.study import Cases, Quality, Results, Study
+from crazybilliards.reproduction.claims.study import Results, Study
 from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, in_plot
 from crazybilliards.reproduction.figures.fig17_density import simulation
 
 _AMPLITUDE = 10.0
-
-
-def cases(quality: Quality) -> Cases:
-    """L = 100, e = 1, A = 10."""
-    return {"run": simulation(_AMPLITUDE)}
 
 
 def claims(results: Results) -> list[Claim]:
@@ -94,7 +89,7 @@ FIGURE = Study(
     title="The mean displacement at e = 1 and its arctanh fit",
     caption="L = 100, e = 1, A = 10. (b) Curves less simulation; grey: one standard error. "
     "s is the thermal length.",
-    cases=cases,
+    cases=lambda quality: {"run": simulation(_AMPLITUDE)},
     draw=draw,
     claims=claims,
 )

@@ -14,7 +14,7 @@ from crazybilliards.comparison.side_by_side.grid_figures import draw_density
 from crazybilliards.comparison.sweeps import Case
 from crazybilliards.kinetic import force_balance
 from crazybilliards.model import Chain, chain_of
-from crazybilliards.reproduction.claims.study import Cases, Quality, Results, Study
+from crazybilliards.reproduction.claims.study import Results, Study
 from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, in_plot
 
 _AMPLITUDES = (1.0, 3.0, 10.0, 30.0)
@@ -31,11 +31,6 @@ def simulation(amplitude: float) -> Case:
     share = 1.0 if amplitude == _ARCTANH else _SHARE
     settings = {"duration": share * _DURATION, "observe": ["widths", "density"]}
     return Case("simulate", Chain(size=100, amplitude=amplitude), settings)
-
-
-def cases(quality: Quality) -> Cases:
-    """Four amplitudes."""
-    return {f"amplitude_{a:g}": simulation(a) for a in _AMPLITUDES}
 
 
 def claims(results: Results) -> list[Claim]:
@@ -88,7 +83,7 @@ FIGURE = Study(
     "paper; a thin line where circles would hide steps. Other lines: "
     f"{'; '.join(ELASTIC.values())}. Insets: the right edge, every bin. Below each: the difference "
     "from the exact density in units of close packing.",
-    cases=cases,
+    cases=lambda quality: {f"amplitude_{a:g}": simulation(a) for a in _AMPLITUDES},
     draw=draw,
     claims=claims,
 )

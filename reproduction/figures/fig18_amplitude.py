@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
@@ -10,7 +12,7 @@ from crazybilliards.comparison.drawing import along_the_chain, draw_rods
 from crazybilliards.comparison.layout import entitle, panels
 from crazybilliards.model import chain_of
 from crazybilliards.reproduction.chains import LARGE, dissipative
-from crazybilliards.reproduction.claims.study import Cases, Quality, Results, Study, all_of
+from crazybilliards.reproduction.claims.study import Results, Study, all_of
 from crazybilliards.reproduction.claims.verdicts import EYE, Claim, Estimate, worst
 
 _RESTITUTIONS = (0.0, 0.95)
@@ -22,11 +24,6 @@ _SCALED = {
     "mean_square_displacement": "<dx^2>/A^2",
 }
 _LOGARITHMIC = ("velocity_variance",)  # axes; the others are linear
-
-
-def cases(quality: Quality) -> Cases:
-    """L = 1000, two restitutions, three amplitudes."""
-    return all_of((dissipative(LARGE, e, a) for e in _RESTITUTIONS for a in _AMPLITUDES), quality)
 
 
 def _scaled(results: Results, restitution: float, amplitude: float) -> xr.Dataset:
@@ -120,7 +117,7 @@ FIGURE = Study(
     title="The driving amplitude only sets the scale",
     caption="Velocity variance over A^2 and mean displacement over A against the normalized "
     "particle number, L = 1000, three amplitudes with random numbers of their own.",
-    cases=cases,
+    cases=partial(all_of, [dissipative(LARGE, e, a) for e in _RESTITUTIONS for a in _AMPLITUDES]),
     draw=draw,
     claims=claims,
 )
