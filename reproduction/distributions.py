@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from scipy.optimize import curve_fit
 
 from crazybilliards.comparison.distances import distances_in_plot
-from crazybilliards.comparison.drawing import COLOURS, SYMBOLS
+from crazybilliards.comparison.drawing import COLOURS, draw_points
 from crazybilliards.comparison.layout import legend_above, panels
 from crazybilliards.model import chain_of
 from crazybilliards.model.arrays import Array
@@ -86,23 +86,14 @@ def draw_distributions(ax: Axes, runs: Sequence[xr.Dataset], particles: Sequence
         width = float(np.sqrt(variance)) / unit
         drawable = p > _LEAST * p.max()
         reach = max(reach, float(np.abs(v[drawable]).max()))
-        colour = COLOURS[number]
         # Bins grow with v: draw those nearest to equally spaced velocities.
         inside = v[drawable]
         spaced = np.linspace(inside[0], inside[-1], _SYMBOLS_DRAWN)
         shown = np.unique(np.abs(v[:, None] - spaced).argmin(axis=0))
-        ax.errorbar(
-            v[shown],
-            p[shown],
-            error[shown],
-            fmt=SYMBOLS[number],
-            color=colour,
-            markerfacecolor="none",
-            linewidth=0.6,
-            label=f"$i = {particle}$",
-        )
+        label = f"$i = {particle}$"
+        draw_points(ax, v[shown], p[shown], error[shown], number=number, label=label, linewidth=0.6)
         fine = np.linspace(-5 * width, 5 * width, 201)
-        ax.plot(fine, gaussian(fine, width), color=colour, linewidth=0.9)
+        ax.plot(fine, gaussian(fine, width), color=COLOURS[number], linewidth=0.9)
     ax.plot([], [], color="0.4", linewidth=0.9, label="Gaussian")
     fine = np.linspace(-5, 5, 201)
     ax.plot(fine, gaussian(fine, 1.0), "k:", label="free rod")
@@ -119,25 +110,15 @@ def waves(run: xr.Dataset, count: str, particles: slice) -> tuple[Array, Array]:
     return sizes[sizes >= 1], counts[sizes >= 1]
 
 
-def draw_sizes(
-    ax: Axes, sizes: np.ndarray, p: np.ndarray, counts: np.ndarray, *, number: int, label: str
-) -> None:
+def draw_sizes(ax: Axes, sizes: Array, p: Array, counts: Array, *, number: int, label: str) -> None:
     """Draw the probability of avalanche sizes, with error bars of counting statistics."""
     counted = counts > 0
-    ax.errorbar(
-        sizes[counted],
-        p[counted],
-        p[counted] / np.sqrt(counts[counted]),
-        fmt=SYMBOLS[number],
-        color=COLOURS[number],
-        markerfacecolor="none",
-        linewidth=0.7,
-        label=label,
-    )
+    p, error = p[counted], p[counted] / np.sqrt(counts[counted])
+    draw_points(ax, sizes[counted], p, error, number=number, label=label, linewidth=0.7)
     ax.set(xscale="log", yscale="log", xlabel="avalanche size $N_c$")
 
 
-def gaussian(v: np.ndarray, width: float) -> np.ndarray:
+def gaussian(v: Array, width: float) -> Array:
     """Return the normal density of that width."""
     return np.asarray(np.exp(-((v / width) ** 2) / 2) / (width * np.sqrt(2 * np.pi)))
 

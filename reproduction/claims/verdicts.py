@@ -70,6 +70,9 @@ class Estimate(NamedTuple):
         digits = max(0, 1 - math.floor(math.log10(self.error))) if self.error > 0 else 4
         return f"{self.value:.{digits}f} ± {self.error:.{digits}f}"
 
+    def __neg__(self) -> Estimate:
+        return Estimate(-self.value, self.error)
+
     def minus(self, other: Estimate) -> Estimate:
         """Return the difference to an independent one."""
         return Estimate(self.value - other.value, math.hypot(self.error, other.error))

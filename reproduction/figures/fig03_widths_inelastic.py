@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import itertools
+from typing import Any
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from crazybilliards.comparison.drawing import COLOURS, SYMBOLS, draw_rods
+from crazybilliards.comparison.drawing import COLOURS, draw_points, draw_rods
 from crazybilliards.comparison.fits import fit_border_power_law
 from crazybilliards.comparison.layout import mosaic
-from crazybilliards.model import chain_of
 from crazybilliards.reproduction import predictions
 from crazybilliards.reproduction.chains import LARGE, STEPS, at_step, at_steps, chain_step
 from crazybilliards.reproduction.claims.study import Cases, Quality, Results, Study, all_of
@@ -27,6 +27,7 @@ _PAPER, _PRECISION = -0.46, 0.005  # "nu ~ -0.46": half a unit of the last digit
 _SAME = 2 * _PRECISION  # two numbers that are both written -0.46 differ by less
 _ERROR = "velocity_width_error"
 _SOURCE = "section seq:e_0, eq:power_law, fig.2"
+_OURS = "the sizes below 1000 and the time step"
 
 
 def cases(quality: Quality) -> Cases:
@@ -45,7 +46,7 @@ def claims(results: Results) -> list[Claim]:
     runs = {size: each.pooled(results) for size, each in _RUNS.items()}
     found = {size: exponent(results, size) for size in _SIZES}
     listed = ", ".join(f"{size}: {each}" for size, each in found.items())
-    free = chain_of(runs[_SIZES[0]]).free_velocity_width
+    free = _RUNS[LARGE].chain.free_velocity_width
     widest = max(runs.values(), key=lambda run: float(run.velocity_width.max()))
     at = int(widest.velocity_width.values.argmax())
     border = Estimate(*(float(widest[n][at]) / free for n in ("velocity_width", _ERROR)))
@@ -55,9 +56,16 @@ def claims(results: Results) -> list[Claim]:
             "1 - W_v/W of the fastest rod of all four chains:",
             found=Estimate(1 - border.value, border.error),
             source="section seq:e_0, fig.2",
-            ours="the sizes below 1000 and the time step",
+            ours=_OURS,
         ),
-        _fit_claim(runs),
+        Claim(
+            "W_v(i) can be fitted by a sum of two power laws",
+            **in_plot(
+                "four chains and their fits, both axes logarithmic", *fits_in_plot(runs.values())
+            ),
+            source=_SOURCE,
+            ours=_OURS,
+        ),
         *(
             Claim(
                 f"nu = -0.46 at L = {size}",
@@ -77,7 +85,7 @@ def claims(results: Results) -> list[Claim]:
                 _SAME,
             ),
             source=_SOURCE,
-            ours="the sizes below 1000 and the time step",
+            ours=_OURS,
         ),
     ]
 
@@ -87,16 +95,6 @@ def _elsewhere(results: Results, size: int) -> dict[str, Estimate]:
     stepped = {f"dt = {step:g}": exponent(results, size, step) for step in STEPS}
     weighted = _RUNS[size].estimate(results, weighted_nu)
     return stepped | {"rods weighed by their error bars": weighted}
-
-
-def _fit_claim(runs: dict[int, xr.Dataset]) -> Claim:
-    off, significance = fits_in_plot(runs.values())
-    return Claim(
-        "W_v(i) can be fitted by a sum of two power laws",
-        **in_plot("four chains and their fits, both axes logarithmic", off, significance),
-        source=_SOURCE,
-        ours="the sizes below 1000 and the time step",
-    )
 
 
 def draw(results: Results) -> Figure:
@@ -112,21 +110,13 @@ def draw(results: Results) -> Figure:
     widths.set(xscale="log", yscale="log", ylabel="velocity width $W_v/W$")
     for number, (size, runs) in enumerate(_RUNS.items()):
         run = runs.pooled(results)
-        unit = chain_of(run).free_velocity_width
-        draw_rods(
-            widths,
-            run,
-            "velocity_width",
-            number=number,
-            unit=unit,
-            along="particle",
-            label=f"$L = {size}$",
-        )
+        unit = runs.chain.free_velocity_width
+        look: Any = {"number": number, "along": "particle"}
+        draw_rods(widths, run, "velocity_width", unit=unit, label=f"$L = {size}$", **look)
         half = np.geomspace(1, size, 200)
         fit = fit_border_power_law(run)(half) / unit
         widths.plot(half, fit, color=COLOURS[number])
-        over = _over_limit(results, size)
-        draw_rods(ratio, over, "velocity_width", number=number, along="particle", label="")
+        draw_rods(ratio, _over_limit(results, size), "velocity_width", label="", **look)
     widths.plot([], [], color="0.4", label="fit of two power laws")
     predictions.draw_widths_by_size(widths, results)
     widths.legend(loc="lower left")
@@ -154,18 +144,12 @@ def _draw_steps(ax: Axes, results: Results) -> None:
         steps = [chain_step(results, size), *reversed(STEPS)]
         each = [exponent(results, size, step) for step in (None, *reversed(STEPS))]
         order = np.argsort(steps)
-        ax.errorbar(
-            np.array(steps)[order],
-            [each[k].value for k in order],
-            [each[k].error for k in order],
-            fmt=f"-{SYMBOLS[number]}",
-            color=COLOURS[number],
-            markerfacecolor="none",
-            linewidth=0.8,
-        )
+        values, errors = np.transpose(each)[:, order]
+        look: Any = {"number": number, "linewidth": 0.8}
+        draw_points(ax, np.array(steps)[order], values, errors, linestyle="-", **look)
         at = first * 1.25 ** (number - 1.5)  # beside one another
         limit = limit_estimate(results, size, nu)
-        ax.errorbar(at, *limit, fmt=SYMBOLS[number], color=COLOURS[number], linewidth=0.8)
+        draw_points(ax, at, *limit, markerfacecolor=COLOURS[number], **look)
         if size in theories:
             ax.plot(at, nu(theories[size]), **_CROSS | {"color": COLOURS[number]})
     ax.axhline(_PAPER, color="0.4", linestyle="--", label="paper")

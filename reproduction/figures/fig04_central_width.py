@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from crazybilliards.comparison.drawing import COLOURS, SYMBOLS, mark_clipped
+from crazybilliards.comparison.drawing import draw_points, mark_clipped
 from crazybilliards.comparison.fits import Fit, fit_scaling
 from crazybilliards.comparison.layout import legend_above, panels
 from crazybilliards.comparison.widths import central_width
@@ -69,18 +69,16 @@ def claims(results: Results) -> list[Claim]:
     others = {"default time step": _fit(default), **at, "L = 30 to 1000": _fit(default, least=30)}
     elsewhere = {name: _exponent(fit) for name, fit in others.items()}
     return [
-        *(
-            Claim(
-                f"W_v^min ~ L^-0.38, {name}",
-                found=_exponent(fit),
-                within=around(_PAPER, _PRECISION),
-                source="section seq:e_0, fig.3",
-                ours="the least size, 10, and the time step",
-                elsewhere={k: each for k, each in elsewhere.items() if each != _exponent(fit)},
-                reason="-0.38 is the mean slope of L = 10 to 1000; the curve bends",
-            )
-            for name, fit in fits.items()
+        Claim(
+            f"W_v^min ~ L^-0.38, {name}",
+            found=_exponent(fit),
+            within=around(_PAPER, _PRECISION),
+            source="section seq:e_0, fig.3",
+            ours="the least size, 10, and the time step",
+            elsewhere={k: each for k, each in elsewhere.items() if each != _exponent(fit)},
+            reason="-0.38 is the mean slope of L = 10 to 1000; the curve bends",
         )
+        for name, fit in fits.items()
     ]
 
 
@@ -100,15 +98,11 @@ def draw(results: Results) -> Figure:
     for number, (label, widths) in enumerate(series.items()):
         sizes = np.array(list(widths))
         values, errors = np.array(list(widths.values())).T
-        style: dict[str, Any] = {
-            "fmt": SYMBOLS[number % len(SYMBOLS)],
-            "color": COLOURS[number % len(COLOURS)],
-            "markerfacecolor": "none",
-        }
+        look: Any = {"number": number}
         if label == LABEL:  # full, above the others
-            style = {"fmt": ".", "color": "black", "zorder": 4}
-        top.errorbar(sizes, values / unit, errors / unit, label=label, **style)
-        bottom.errorbar(sizes, values / reference(sizes), errors / reference(sizes), **style)
+            look |= {"marker": ".", "color": "black", "markerfacecolor": "black", "zorder": 4}
+        draw_points(top, sizes, values / unit, errors / unit, label=label, **look)
+        draw_points(bottom, sizes, values / reference(sizes), errors / reference(sizes), **look)
     ends = np.array([8, 2e4])
     paper = ends**_PAPER * reference(100.0) / 100.0**_PAPER
     # On top they are one line to the eye; below, each is told from the other.

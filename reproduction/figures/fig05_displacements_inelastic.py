@@ -11,7 +11,6 @@ from matplotlib.figure import Figure
 
 from crazybilliards.comparison.drawing import along_the_chain, draw_rods
 from crazybilliards.comparison.layout import panels
-from crazybilliards.model import chain_of
 from crazybilliards.model.chain import middle_tenth
 from crazybilliards.reproduction.chains import LARGE, dissipative
 from crazybilliards.reproduction.claims.study import Results, Study, all_of
@@ -65,7 +64,7 @@ def draw(results: Results) -> Figure:
     figure, axes = panels(1, 2)
     for number, (size, runs) in enumerate(_RUNS.items()):
         run = runs.pooled(results)
-        s = chain_of(run).thermal_length
+        s = runs.chain.thermal_length
         for ax, name in zip(axes, ("mean_displacement", "displacement_width"), strict=True):
             draw_rods(ax, run, name, number=number, unit=s, label=f"$L = {size}$")
     axes[0].set(ylabel=r"mean displacement $\langle\Delta x\rangle/s$")

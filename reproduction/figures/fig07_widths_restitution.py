@@ -9,11 +9,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 
-from crazybilliards.comparison.drawing import COLOURS, SYMBOLS, along_the_chain, draw_rods
+from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_points, draw_rods
 from crazybilliards.comparison.fits import Fit, fit_exponential
 from crazybilliards.comparison.layout import legend_above, mosaic
 from crazybilliards.comparison.widths import central_width
-from crazybilliards.model import chain_of
 from crazybilliards.reproduction.chains import LARGE, RESTITUTIONS, dissipative, elastic
 from crazybilliards.reproduction.claims.study import Cases, Quality, Results, Study, all_of
 from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, in_plot, worst
@@ -33,7 +32,7 @@ _RUNS = {e: dissipative(LARGE, e) for e in RESTITUTIONS}
 _ELASTIC_SIZE = 100
 _PRECISION = 0.005  # of exponents: the paper gives them with two decimals
 _SOURCE = "section seq:e_larger, fig.4"
-_OPEN: dict[str, Any] = {"fmt": SYMBOLS[0], "color": "black", "markerfacecolor": "none"}
+_OPEN: dict[str, Any] = {"number": 0, "color": "black"}
 _OURS = "the restitutions (those of fig.5, and 0.5) and the time step"
 
 
@@ -122,7 +121,7 @@ def draw(results: Results) -> Figure:
     left.set(ylabel="velocity width $W_v/W$", yscale="log")
     for number, (e, runs) in enumerate((_RUNS | {1.0: elastic(_ELASTIC_SIZE)}).items()):
         run = runs.pooled(results)
-        unit = chain_of(run).free_velocity_width
+        unit = runs.chain.free_velocity_width
         label = f"$e = {e:g}$" + (f", $L = {_ELASTIC_SIZE}$" if e == 1 else "")
         draw_rods(left, run, "velocity_width", number=number, unit=unit, label=label)
         _draw_theories(left, results, e, unit, COLOURS[number])
@@ -153,13 +152,13 @@ def _draw_theories(ax: Axes, results: Results, e: float, unit: float, colour: st
 
 def _draw_centre(ax: Axes, results: Results) -> None:
     unit = _RUNS[0.0].chain.free_velocity_width
-    full: dict[str, Any] = {"fmt": SYMBOLS[2], "color": COLOURS[0]}
+    full: dict[str, Any] = {"number": 2, "color": COLOURS[0], "markerfacecolor": COLOURS[0]}
     for found, label, style in (
         (_central_widths(results), "default step", {**_OPEN, "markersize": 5}),
         (_central_limits(results), LABEL, full),
     ):
         values, errors = np.array(list(found.values())).T / unit
-        ax.errorbar(list(found), values, errors, label=label, **style)
+        draw_points(ax, list(found), values, errors, label=label, **style)
     for theory, of_theory in predicted(results).items():
         centres = [central_width(each) / unit for each in of_theory.values()]
         ax.plot(list(of_theory), centres, **CROSSES[theory], label=theory)
@@ -171,7 +170,7 @@ def _draw_exponents(ax: Axes, results: Results) -> None:
     found = _exponents(results)
     fit = _fit(found)
     values, errors = np.array(list(found.values())).T
-    ax.errorbar(list(found), values, errors, label="simulation", **_OPEN)
+    draw_points(ax, list(found), values, errors, label="simulation", **_OPEN)
     for theory, of_theory in predicted(results).items():
         exponents = [minus_nu(each) for each in of_theory.values()]
         ax.plot(list(of_theory), exponents, **CROSSES[theory], label=theory)

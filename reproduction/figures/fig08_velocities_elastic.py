@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from crazybilliards.comparison.drawing import along_the_chain, draw_rods
 from crazybilliards.comparison.layout import entitle, panels
-from crazybilliards.model import Chain, chain_of
+from crazybilliards.model import Chain
 from crazybilliards.reproduction.chains import LARGE, elastic
 from crazybilliards.reproduction.claims.repetition import Granted, Runs
 from crazybilliards.reproduction.claims.study import Results, Study, all_of
@@ -50,7 +50,7 @@ _CONTACT = {
 def claims(results: Results) -> list[Claim]:
     """Check: identical to the free Gaussian."""
     run = _RUNS.pooled(results)
-    unit = chain_of(run).free_velocity_width
+    unit = _RUNS.chain.free_velocity_width
     shares = (run.velocity_width / unit - 1, run.velocity_width_error / unit)
     kurtosis = _RUNS.estimate(
         results, lambda run: mean_shape(run, range(1, _SIZE + 1), "velocity_kurtosis")
@@ -75,7 +75,7 @@ def claims(results: Results) -> list[Claim]:
 
 def _off(run: xr.Dataset) -> float:
     """Return how far p(v) is off the free rod's, as a share of the plot: the worse of two rods."""
-    unit = chain_of(run).free_velocity_width
+    unit = _RUNS.chain.free_velocity_width
     reach = _SHOWN * unit
     densities = [histogram(run, [particle], reach) for particle in _PARTICLES]
     return max(off_in_plot(v, p, lambda v: gaussian(v, unit), reach) for v, p in densities)
@@ -96,7 +96,7 @@ def _draw_long_chains(ax: Axes, results: Results) -> None:
     shown |= {f"Contact Dyn., $dt = {step:g}$": runs for step, runs in _CONTACT.items()}
     for number, (label, runs) in enumerate(shown.items()):
         run = runs.pooled(results)
-        unit = chain_of(run).free_velocity_width
+        unit = runs.chain.free_velocity_width
         draw_rods(ax, run, "velocity_width", number=number, unit=unit, label=label)
     ax.axhline(1, color="black", linestyle=":", label="exact")
     along_the_chain(ax)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import functools
 import itertools
+from functools import partial
 from typing import Any
 
 import xarray as xr
@@ -47,25 +47,18 @@ def claims(results: Results) -> list[Claim]:
 def _energy_claims(results: Results) -> list[Claim]:
     e = max(_RUNS)
     potential, kinetic = (
-        _RUNS[e].estimate(results, functools.partial(_excess, name=name))
-        for name in ("potential", "kinetic")
+        _RUNS[e].estimate(results, partial(_excess, name=name)) for name in ("potential", "kinetic")
     )
     what = f"border's less centre's, in units of m W^2/2: potential {potential}, kinetic {kinetic}"
     both = Estimate(potential.value + kinetic.value, potential.error + kinetic.error)
+    less = Estimate(potential.value - kinetic.value, both.error)
+    claim = partial(Claim, source="section seq:e_larger", ours="the restitution")
     return [
-        Claim(
-            f"the energy is larger at the border, e = {e:g}",
-            f"{what}; their sum",
-            found=both,
-            source="section seq:e_larger",
-            ours="the restitution",
-        ),
-        Claim(
+        claim(f"the energy is larger at the border, e = {e:g}", f"{what}; their sum", found=both),
+        claim(
             f"because the potential energy is, e = {e:g}",
             f"{what}; potential less kinetic",
-            found=Estimate(potential.value - kinetic.value, both.error),
-            source="section seq:e_larger",
-            ours="the restitution",
+            found=less,
         ),
     ]
 
@@ -87,7 +80,7 @@ def draw(results: Results) -> Figure:
     border.set(xscale="log", xlabel="particle $i$", ylabel=_LABEL)
     for number, (e, runs) in enumerate(_RUNS.items()):
         run = runs.pooled(results)
-        s, colour = chain_of(run).thermal_length, COLOURS[number]
+        s, colour = runs.chain.thermal_length, COLOURS[number]
         half = run.isel(particle=slice(0, LARGE // 2))
         look: Any = {"number": number, "unit": s, "label": f"$e = {e:g}$"}
         draw_rods(whole, run, "mean_displacement", **look)

@@ -37,7 +37,6 @@ def claims(results: Results) -> list[Claim]:
     found = {g: runs.estimate(results, bulge) for g, runs in _RUNS.items()}
     low, high = _DAMPINGS[0], _DAMPINGS[-1]
     change = np.interp(0.0, [each.value for each in found.values()][::-1], _DAMPINGS[::-1])
-    opposite = Estimate(-found[high].value, found[high].error)
     return [
         Claim(
             f"convex at gamma = {low:g}",
@@ -48,21 +47,21 @@ def claims(results: Results) -> list[Claim]:
         Claim(
             f"concave at gamma = {high:g}",
             f"it changes at gamma = {change:.1f}; ln of the centre's width over the border's:",
-            found=opposite,
+            found=-found[high],
             source=_SOURCE,
         ),
-        *(_frequency_claim(results, damping) for damping in (high, low)),
+        *(
+            Claim(
+                f"rods collide more often in the bulk than at the border, gamma = {damping:g}",
+                "ln of the collision rate of the middle tenth of the contacts over that of the "
+                "outermost:",
+                found=_RUNS[damping].estimate(results, _crowding),
+                source=_SOURCE,
+            )
+            for damping in (high, low)
+        ),
         _power_law_claim(results),
     ]
-
-
-def _frequency_claim(results: Results, damping: float) -> Claim:
-    return Claim(
-        f"rods collide more often in the bulk than at the border, gamma = {damping:g}",
-        "ln of the collision rate of the middle tenth of the contacts over that of the outermost:",
-        found=_RUNS[damping].estimate(results, _crowding),
-        source=_SOURCE,
-    )
 
 
 def _crowding(run: xr.Dataset) -> float:

@@ -11,7 +11,7 @@ from crazybilliards.model import Chain
 from crazybilliards.reproduction.chains import flippers, kinetic_equation
 from crazybilliards.reproduction.claims.repetition import Runs, share_of_runs
 from crazybilliards.reproduction.claims.study import Results, Study, all_of
-from crazybilliards.reproduction.claims.verdicts import Claim, Estimate
+from crazybilliards.reproduction.claims.verdicts import Claim
 from crazybilliards.reproduction.figures.fig12_widths_damping import bulge
 from crazybilliards.reproduction.predictions import draw_flippers
 
@@ -39,7 +39,7 @@ def claims(results: Results) -> list[Claim]:
         Claim(
             f"concave at L = {short}",
             "ln of the centre's width over the border's:",
-            found=Estimate(-found[short].value, found[short].error),
+            found=-found[short],
             source=_SOURCE,
         ),
         Claim(

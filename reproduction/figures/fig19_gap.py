@@ -12,7 +12,6 @@ from matplotlib.figure import Figure
 from crazybilliards.comparison.drawing import along_the_chain, draw_rods
 from crazybilliards.comparison.layout import at_the_left, entitle, legend_above, panels
 from crazybilliards.comparison.widths import central_width
-from crazybilliards.model import chain_of
 from crazybilliards.reproduction.chains import LARGE, dissipative
 from crazybilliards.reproduction.claims.repetition import Granted, Runs
 from crazybilliards.reproduction.claims.study import Results, Study, all_of
@@ -24,8 +23,9 @@ _GRANTED: Granted = {
     "quick": (4, {"duration": 80.0, "warmup": 50.0}),
     "full": (4, {"duration": 600.0, "warmup": 100.0}),
 }
-_SOURCE = "appendix, fig:mom_var_gaps"
-_OURS = "the gaps, the restitutions and the time step"
+_claim = partial(
+    Claim, source="appendix, fig:mom_var_gaps", ours="the gaps, the restitutions and the time step"
+)
 _FLAT = 0.1  # change of ln W_v^2 that still counts as a plateau
 
 
@@ -60,46 +60,39 @@ def _widening(results: Results, restitution: float) -> Claim:
     layers = [_runs(restitution, gap).estimate(results, _border_layer) for gap in _GAPS]
     gains = [narrow.minus(wide) for narrow, wide in itertools.pairwise(layers)]
     listed = ", ".join(f"{layer} at g = {gap:g}" for gap, layer in zip(_GAPS, layers, strict=True))
-    return Claim(
+    return _claim(
         f"the larger the gap, the wider the plateau, e = {restitution:g}",
         f"rods at each border where ln W_v^2 is more than {_FLAT:g} above the centre's: {listed}; "
         "what the plateau gains at each border, at least:",
         found=min(gains, key=lambda gain: gain.value - 3 * gain.error),
-        source=_SOURCE,
-        ours=_OURS,
         reason="at the larger gaps the plateau reaches the last rod or two already",
     )
 
 
 def claims(results: Results) -> list[Claim]:
     """Check: a plateau with a gap, the wider the larger the gap; none without."""
-    claims = []
-    for restitution in _RESTITUTIONS:
-        what = "ln of W_v^2 half-way to the border over that in the centre:"
-        without = _runs(restitution, 0.0).estimate(results, _change)
-        for gap in _GAPS:
-            claims.append(
-                Claim(
-                    f"plateau in the interior, e = {restitution:g}, g = {gap:g}",
-                    what,
-                    found=_runs(restitution, gap).estimate(results, _change),
-                    within=around(0.0, _FLAT),
-                    source=_SOURCE,
-                    ours=_OURS,
-                    reason="the gap is too small for the interior to become homogeneous",
-                )
-            )
-        claims.append(
-            Claim(
-                f"no plateau without a gap, e = {restitution:g}",
-                what,
-                found=without,
-                source=_SOURCE,
-                ours=_OURS,
-            )
+    return [
+        claim
+        for restitution in _RESTITUTIONS
+        for claim in (*_plateau(results, restitution), _widening(results, restitution))
+    ]
+
+
+def _plateau(results: Results, restitution: float) -> list[Claim]:
+    what = "ln of W_v^2 half-way to the border over that in the centre:"
+    with_a_gap = [
+        _claim(
+            f"plateau in the interior, e = {restitution:g}, g = {gap:g}",
+            what,
+            found=_runs(restitution, gap).estimate(results, _change),
+            within=around(0.0, _FLAT),
+            reason="the gap is too small for the interior to become homogeneous",
         )
-        claims.append(_widening(results, restitution))
-    return claims
+        for gap in _GAPS
+    ]
+    without = _runs(restitution, 0.0).estimate(results, _change)
+    statement = f"no plateau without a gap, e = {restitution:g}"
+    return [*with_a_gap, _claim(statement, what, found=without)]
 
 
 def draw(results: Results) -> Figure:
@@ -108,15 +101,14 @@ def draw(results: Results) -> Figure:
     for ax, restitution in zip(axes, _RESTITUTIONS, strict=True):
         ax.set_yscale("log")
         for number, gap in enumerate((0.0, *_GAPS)):
-            run = _runs(restitution, gap).pooled(results)
+            runs = _runs(restitution, gap)
+            run = runs.pooled(results)
             run = run.assign(
                 velocity_variance=run.velocity_width**2,
                 velocity_variance_error=2 * run.velocity_width * run.velocity_width_error,
             )
-            unit = chain_of(run).free_velocity_width ** 2
-            draw_rods(
-                ax, run, "velocity_variance", number=number, unit=unit, label=f"$g = {gap:g}$"
-            )
+            unit, label = runs.chain.free_velocity_width**2, f"$g = {gap:g}$"
+            draw_rods(ax, run, "velocity_variance", number=number, unit=unit, label=label)
         along_the_chain(ax)
         entitle(ax, f"$e = {restitution:g}$")
         if at_the_left(ax):
