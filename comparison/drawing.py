@@ -175,16 +175,8 @@ def draw_rods(
     """Draw a quantity of the rods as symbols with error bars; a long chain shows some rods.
 
     As in :func:`overlay` a thin line shows all rods where the symbols would not. Make an axis
-    logarithmic before, because that changes what can be seen.
-
-    Parameters
-    ----------
-    number
-        Number of the colour and symbol.
-    unit
-        Unit to divide by.
-    along
-        Abscissa. ``particle`` is meant for a logarithmic axis and spaces the symbols for it.
+    logarithmic before, because that changes what can be seen. The values are divided by ``unit``.
+    The abscissa ``along="particle"`` is meant for a logarithmic axis and spaces the symbols for it.
     """
     look = {**_look(number), "linewidth": 0.7, "label": label}
     values, error = (run[name].values / unit for name in (quantity, f"{quantity}_error"))

@@ -27,21 +27,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Theory:
-    """A theory of a chain's steady state.
+    """A theory of a chain's steady state."""
 
-    Attributes
-    ----------
-    name
-        The name of the function in ``crazybilliards.kinetic``, e.g. ``"equilibrium"``.
-    title
-        Its name in tables and legends.
-    module
-        The module below ``crazybilliards.kinetic`` that has the function and ``check_NAME``.
-    """
-
-    name: str
-    title: str
-    module: str
+    name: str  # of the function in ``crazybilliards.kinetic``, e.g. "equilibrium"
+    title: str  # in tables and legends
+    module: str  # below ``crazybilliards.kinetic``, with the function and ``check_NAME``
 
     @property
     def solve(self) -> Callable[..., xr.Dataset]:

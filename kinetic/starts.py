@@ -120,7 +120,9 @@ def read_start(chain: Chain, start: xr.Dataset) -> Start:
     require_rods(chain, "density", label[-1])
     scale = chain.size / label[-1]
     profiles = {}
-    free = _own_variance(chain, start)
+    # In a quench it is another chain.
+    own = chain_of(start) if "provenance" in start.attrs else chain
+    free = own.free_velocity_width**2
     for name, default in (("flow_velocity", 0.0), ("velocity_variance", free)):
         values = _numbers(start, name) if name in start else np.full(x.size, default)
         if values.shape != x.shape or not np.isfinite(values).all():
@@ -144,10 +146,3 @@ def _numbers(start: xr.Dataset, name: str) -> Array:
     if not np.issubdtype(values.dtype, np.number):
         raise ValueError(f"start: {name} must be numbers, got {values.dtype}")
     return np.asarray(values, dtype=float)
-
-
-def _own_variance(chain: Chain, start: xr.Dataset) -> float:
-    """Return the free W^2 of the chain of the start, which differs from ``chain`` in a quench."""
-    if "provenance" in start.attrs:
-        chain = chain_of(start)
-    return chain.free_velocity_width**2

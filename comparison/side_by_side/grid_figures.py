@@ -54,23 +54,11 @@ def _draw_edge(ax: Axes, results: dict[str, xr.Dataset], end: float) -> None:
     chain = chain_of(results[SIMULATION])
     begin = end - max(3 * chain.thermal_length, 10 * chain.radius)
     inset = ax.inset_axes((0.29, 0.13, 0.42, 0.56))
-    run = results[SIMULATION].sel(x=slice(begin, end))
-    inset.errorbar(
-        run.x,
-        run.density,
-        run.get("density_error"),
-        linestyle="none",
-        marker=".",
-        markersize=1.5,
-        color="black",
-        linewidth=0.5,
-    )
-    theories = {
-        name: result.sel(x=slice(begin, end))
-        for name, result in results.items()
-        if name != SIMULATION
-    }
-    overlay(theories, ax=inset)
+    shown = {name: result.sel(x=slice(begin, end)) for name, result in results.items()}
+    run = shown.pop(SIMULATION)
+    look = {"linestyle": "none", "marker": ".", "markersize": 1.5, "linewidth": 0.5}
+    inset.errorbar(run.x, run.density, run.get("density_error"), color="black", **look)
+    overlay(shown, ax=inset)
     inset.set(xlabel="", ylabel="", xlim=(begin, end))
     inset.tick_params(labelsize=6)
     inset.locator_params(nbins=3)

@@ -193,9 +193,7 @@ def _fluid(chain: Chain, release: Release, by: float) -> xr.Dataset:
 
 
 def _exact(chain: Chain, release: Release, by: float, duration: float, every: float) -> xr.Dataset:
-    if release == "compressed":
-        return breathing_cloud(chain, duration, every=every, stretch=by)
     if release == "displaced":
         return breathing_cloud(chain, duration, every=every, shift=by * chain.thermal_length)
-    hot = (by * chain.free_velocity_width) ** 2
+    hot = (by * chain.free_velocity_width) ** 2 if release == "quenched" else None
     return breathing_cloud(chain, duration, every=every, stretch=by, start_velocity_variance=hot)

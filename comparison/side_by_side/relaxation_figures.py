@@ -20,6 +20,7 @@ from crazybilliards.model import Chain, chain_of
 
 Relaxation = xr.DataTree
 
+_NAMES = {PARTICLES: SIMULATION} | LEGEND
 _DENSITY = r"density $\rho$ [1/R]"
 _ON_A_SCREEN: Any = {
     "font.size": 13,
@@ -77,12 +78,11 @@ def draw_cloud(tree: xr.DataTree) -> Figure:
     """Width and centre of the cloud in the reduced coordinate against time, in units of s."""
     figure, axes = panels(1, 2, height=2.4)
     s = _chain(tree).thermal_length
-    names = {PARTICLES: SIMULATION} | LEGEND
     for ax, which, label in zip(
         axes, ("cloud_width", "centre"), ("width of the cloud / $s$", "centre / $s$"), strict=True
     ):
         curves = {}
-        for key, name in names.items():
+        for key, name in _NAMES.items():
             if key in tree:
                 found = cloud(tree[key].to_dataset())
                 curves[name] = (found / s).assign_attrs(tree[key].attrs)
@@ -142,7 +142,6 @@ def title(tree: xr.DataTree) -> str:
 
 def _densities(tree: xr.DataTree) -> dict[str, xr.Dataset]:
     """Return the available smoothed densities by the names they are drawn with."""
-    names = {PARTICLES: SIMULATION} | LEGEND
     if PARTICLES not in tree:
         raise ValueError(
             "tree must be what compare_relaxation returns; film(run) shows the rods of one run, "
@@ -150,7 +149,7 @@ def _densities(tree: xr.DataTree) -> dict[str, xr.Dataset]:
         )
     return {
         name: smooth(tree[key].to_dataset())
-        for key, name in names.items()
+        for key, name in _NAMES.items()
         if key in tree and "density" in tree[key]
     }
 

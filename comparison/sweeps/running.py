@@ -38,18 +38,10 @@ _LEAST_ROOM = 10  # letters for the name of a case; a narrower terminal does not
 
 @dataclass
 class Outcome:
-    """The outcome of the cases so far.
+    """The outcome of the cases so far."""
 
-    Attributes
-    ----------
-    written
-        Number of cases that were computed and written.
-    failed
-        The reasons for the cases that failed.
-    """
-
-    written: int = 0
-    failed: dict[Case, str] = field(default_factory=dict)
+    written: int = 0  # cases that were computed and written
+    failed: dict[Case, str] = field(default_factory=dict)  # and the reasons
 
 
 def run_cases(

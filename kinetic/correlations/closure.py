@@ -47,8 +47,7 @@ from scipy.interpolate import PchipInterpolator
 from crazybilliards.kinetic.correlations.cells import Cells, at_distance
 from crazybilliards.kinetic.correlations.contact_speeds import contact_speed
 from crazybilliards.kinetic.correlations.one_rod import OneRod
-from crazybilliards.kinetic.correlations.pair_covariance import Background, PairCovariance
-from crazybilliards.kinetic.correlations.problem import Problem
+from crazybilliards.kinetic.correlations.pair_covariance import Background, PairCovariance, Problem
 from crazybilliards.kinetic.kinetic_equation.weak_form import Factors
 from crazybilliards.model.arrays import Array
 
@@ -97,15 +96,13 @@ def background(problem: Problem, rod: OneRod, closure: Closure) -> Background:
     restitution = problem.chain.restitution
     variance = rod.temperature + closure.collective
     temperature = variance * np.maximum(1 - closure.shared, _LEAST)
+    unclustered = 2 / (1 + restitution) * contact_speed(restitution)
     return Background(
         density=rod.force / temperature,
         gap=rod.gap,
         temperature=temperature,
         pressure=rod.force,
-        strength=2
-        / (1 + restitution)
-        * contact_speed(restitution)
-        * np.exp(closure.log_clustering),
+        strength=unclustered * np.exp(closure.log_clustering),
         shared=variance - temperature,
     )
 

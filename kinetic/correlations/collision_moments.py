@@ -67,13 +67,9 @@ def moments_of_collisions(restitution: float) -> CollisionMoments:
         energy=2 / math.sqrt(math.pi) * (1 - restitution**2),
         temperature=covariance(_second, _second),
         heat=covariance(_third, _third),
-        velocity_heat=covariance(_first, _third),
+        velocity_heat=covariance(lambda v: v, _third),
         decay=_average(lost),
     )
-
-
-def _first(v: Array) -> Array:
-    return v
 
 
 def _second(v: Array) -> Array:

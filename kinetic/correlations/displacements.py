@@ -26,6 +26,7 @@ from crazybilliards.kinetic.correlations.pair_covariance import (
     Background,
     LinearResponse,
     PairCovariance,
+    Problem,
     covariances,
     dissipation,
     linear_response,
@@ -34,7 +35,6 @@ from crazybilliards.kinetic.correlations.pair_covariance import (
     scales,
     steps,
 )
-from crazybilliards.kinetic.correlations.problem import Problem
 from crazybilliards.model.arrays import Array
 
 _AGREEMENT = 1e-3  # of h_gg and ln tau; W_x changes by less than a tenth of it

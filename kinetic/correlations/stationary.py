@@ -28,8 +28,11 @@ from crazybilliards.kinetic.correlations.closure import Closure, background, imp
 from crazybilliards.kinetic.correlations.displacements import relaxing_pairs
 from crazybilliards.kinetic.correlations.fixed_point import NoFixedPointError, find_fixed_point
 from crazybilliards.kinetic.correlations.one_rod import profiles_of_one_rod
-from crazybilliards.kinetic.correlations.pair_covariance import linear_response, solve_pairs
-from crazybilliards.kinetic.correlations.problem import Problem
+from crazybilliards.kinetic.correlations.pair_covariance import (
+    Problem,
+    linear_response,
+    solve_pairs,
+)
 from crazybilliards.kinetic.correlations.stationary_result import Correlated, assemble, rods
 from crazybilliards.kinetic.kinetic_equation.continuation import (
     CELLS,

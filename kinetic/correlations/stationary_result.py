@@ -14,9 +14,9 @@ from crazybilliards.kinetic.correlations.collective_motion import as_seen_in_pla
 from crazybilliards.kinetic.correlations.pair_covariance import (
     Background,
     PairCovariance,
+    Problem,
     dissipation,
 )
-from crazybilliards.kinetic.correlations.problem import Problem
 from crazybilliards.kinetic.kinetic_equation.continuation import State, free_units
 from crazybilliards.kinetic.kinetic_equation.order_statistics import Rods, mirrored, points
 from crazybilliards.kinetic.kinetic_equation.stationary_result import in_vocabulary

@@ -22,8 +22,7 @@ import xarray as xr
 from scipy.integrate import solve_ivp
 
 from crazybilliards.kinetic.exact.gibbs_measure import equilibrium
-from crazybilliards.kinetic.requirements import require_chain
-from crazybilliards.kinetic.times import output_times
+from crazybilliards.kinetic.requirements import output_times, require_chain
 from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array
 from crazybilliards.model.checks import check_real

@@ -44,7 +44,7 @@ from scipy.integrate import trapezoid
 from crazybilliards.kinetic.fluids.eulerian_frame import MOST_CELLS, solve_on_positions
 from crazybilliards.kinetic.fluids.flow_fields import FlowFields
 from crazybilliards.kinetic.fluids.label_frame import solve_on_labels
-from crazybilliards.kinetic.requirements import require_chain
+from crazybilliards.kinetic.requirements import output_times, require_chain
 from crazybilliards.kinetic.starts import check_start, read_start
 from crazybilliards.kinetic.statics.profiles import (
     Prescribed,
@@ -52,7 +52,6 @@ from crazybilliards.kinetic.statics.profiles import (
     read_displacement,
     read_velocity_variance,
 )
-from crazybilliards.kinetic.times import output_times
 from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array
 from crazybilliards.model.checks import check_choice, check_integer, shown

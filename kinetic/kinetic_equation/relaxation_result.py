@@ -10,13 +10,12 @@ import xarray as xr
 from scipy.interpolate import RectBivariateSpline
 
 from crazybilliards.kinetic.kinetic_equation.order_statistics import points
-from crazybilliards.kinetic.kinetic_equation.stationary_result import density_and_label
+from crazybilliards.kinetic.kinetic_equation.stationary_result import density_and_label, positions
 from crazybilliards.kinetic.kinetic_equation.velocity_moments import moments
 from crazybilliards.kinetic.kinetic_equation.velocity_space import VelocitySpace
 from crazybilliards.kinetic.kinetic_equation.weak_form import Units
 from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array
-from crazybilliards.model.grid import position_grid
 from crazybilliards.model.vocabulary import result
 
 
@@ -59,12 +58,6 @@ def snapshot(
     }
 
 
-def positions(chain: Chain, units: Units, space: VelocitySpace) -> Array:
-    """Return the grid of positions for all points of the mesh."""
-    reach = units.length * space.box.length - float(chain.reduced_anchors[-1])
-    return position_grid(chain, max(reach, units.length))
-
-
 def in_vocabulary(
     chain: Chain,
     units: Units,
@@ -74,7 +67,7 @@ def in_vocabulary(
     status: str,
 ) -> xr.Dataset:
     """Put the outputs into the common vocabulary, on the axes of the last, largest mesh."""
-    x = positions(chain, units, last)
+    x = positions(chain, units.length, last)
     density, label = np.empty((2, len(outputs), x.size))
     for i, output in enumerate(outputs):
         of = (output[name] for name in ("y", "points", "below"))

@@ -90,7 +90,7 @@ def solve_variable_temperature(chain: Chain, variance: Profile) -> xr.Dataset:
         order = np.argsort(basis.doflocs[0])
         guess = PchipInterpolator(basis.doflocs[0][order], P[order])
     _require_vacuum(basis, P, s)
-    return _assemble(chain, basis, P, label, warmth)
+    return _assemble(chain, basis, guess, label, warmth)
 
 
 def _end(warmth: Warmth, crowd: float, lam: float) -> float:
@@ -162,12 +162,12 @@ def _adapted(basis: Basis, P: Array, label: Array, crowd: float, warmth: Warmth)
     return np.interp(np.linspace(0, spread[-1], x.size), spread, x)
 
 
-def _assemble(chain: Chain, basis: Basis, P: Array, label: Array, warmth: Warmth) -> xr.Dataset:
+def _assemble(
+    chain: Chain, basis: Basis, log_pressure: PchipInterpolator, label: Array, warmth: Warmth
+) -> xr.Dataset:
     """Put the solution onto the position grid and the particles."""
     s, L = chain.thermal_length, chain.size
     crowd = 2 * chain.radius * L / s
-    order = np.argsort(basis.doflocs[0])
-    log_pressure = PchipInterpolator(basis.doflocs[0][order], P[order])
 
     def share(x: Array) -> Array:
         """Return n = rho s/L."""
