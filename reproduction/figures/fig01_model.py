@@ -10,7 +10,13 @@ from matplotlib.patches import Circle
 from crazybilliards.comparison.drawing import COLOURS
 from crazybilliards.comparison.layout import panels
 from crazybilliards.model import Chain
-from crazybilliards.reproduction.claims.study import Results, Study
+from crazybilliards.reproduction.claims.study import Results
+
+TITLE = "The model"
+CAPTION = (
+    "Rods of radius R, each tied by a damped spring to its own anchor and driven by white "
+    "noise of its own. Neighbouring anchors are 2R + g apart. Drawn by code, not to scale."
+)
 
 _DISPLACEMENTS = (-1.3, -0.4, 0.5, 0.3)
 _CEILING = 2.7  # height of the anchors
@@ -60,13 +66,3 @@ def _measure(ax: Axes, start: float, end: float, height: float, text: str) -> No
         arrowprops={"arrowstyle": "<->", "lw": 0.9, "shrinkA": 0, "shrinkB": 0},
     )
     ax.text((start + end) / 2, height - 0.75, text, ha="center")
-
-
-FIGURE = Study(
-    number=1,
-    name="model",
-    title="The model",
-    caption="Rods of radius R, each tied by a damped spring to its own anchor and driven by white "
-    "noise of its own. Neighbouring anchors are 2R + g apart. Drawn by code, not to scale.",
-    draw=draw,
-)

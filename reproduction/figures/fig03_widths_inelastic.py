@@ -15,10 +15,19 @@ from crazybilliards.comparison.fits import fit_border_power_law
 from crazybilliards.comparison.layout import mosaic
 from crazybilliards.reproduction import predictions
 from crazybilliards.reproduction.chains import LARGE, STEPS, at_step, at_steps, chain_step
-from crazybilliards.reproduction.claims.study import Cases, Quality, Results, Study, all_of
+from crazybilliards.reproduction.claims.study import Cases, Quality, Results, all_of
 from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, around, in_plot, worst
 from crazybilliards.reproduction.power_laws import fits_in_plot, nu, weighted_nu
 from crazybilliards.reproduction.vanishing_step import LABEL, common_bias, limit_estimate, limits
+
+TITLE = "Velocity widths at e = 0: power laws from both borders"
+CAPTION = (
+    "(a) W_v against the rod's number, e = 0, at the default time step, with the fits "
+    "a [(i - c)^nu + (L + 1 - c - i)^nu] to all rods; dotted, in (b) "
+    "crosses: the kinetic equation with pair correlations. (b) The exponent against the time "
+    "step; the leftmost open symbol of each size is the default step, the full one the limit. (c) "
+    "W_v over its limit dt -> 0."
+)
 
 _SIZES = predictions.SIZES
 _RUNS = {size: at_step(size, None) for size in _SIZES}  # at the default step
@@ -161,18 +170,3 @@ def _draw_steps(ax: Axes, results: Results) -> None:
     ax.set_xticks([first, 1e-3, 1e-2], [r"$\to 0$", "$10^{-3}$", "$10^{-2}$"])
     ax.set_xticks([tenth * k for tenth in (1e-3, 1e-2) for k in range(2, 10)], minor=True)
     ax.set_xlim(0.5 * first, 4e-2)
-
-
-FIGURE = Study(
-    number=3,
-    name="widths-inelastic",
-    title="Velocity widths at e = 0: power laws from both borders",
-    caption="(a) W_v against the rod's number, e = 0, at the default time step, with the fits "
-    "a [(i - c)^nu + (L + 1 - c - i)^nu] to all rods; dotted, in (b) "
-    "crosses: the kinetic equation with pair correlations. (b) The exponent against the time "
-    "step; the leftmost open symbol of each size is the default step, the full one the limit. (c) "
-    "W_v over its limit dt -> 0.",
-    cases=cases,
-    draw=draw,
-    claims=claims,
-)

@@ -16,9 +16,17 @@ from crazybilliards.comparison.widths import central_width
 from crazybilliards.model import Chain
 from crazybilliards.reproduction.chains import SIZES, STEPS, at_step, at_steps
 from crazybilliards.reproduction.claims.repetition import Granted, Runs
-from crazybilliards.reproduction.claims.study import Results, Study, all_of
+from crazybilliards.reproduction.claims.study import Results, all_of
 from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, around
 from crazybilliards.reproduction.vanishing_step import LABEL, central_limit, limits
+
+TITLE = "The central width against the size at e = 0"
+CAPTION = (
+    "Root mean square velocity of the middle tenth of the rods, e = 0. Grey line: a fit "
+    "to the default time step, L = 10 to 1000. Dashed: the paper's exponent. (b) The ratio to the "
+    "fit. Full circles: the limit of a vanishing step. Longer chains than the paper's are at time "
+    "steps whose velocity kick is two thirds of the width at every size."
+)
 
 _PAPER, _PRECISION = -0.38, 0.005  # "with exponent -0.38": half a unit of the last digit
 # Beyond the paper: the default step would take hours there. These steps are in the ratio of the
@@ -44,6 +52,7 @@ _LONG = [
     )
     for size, granted in _GRANTED.items()
 ]
+cases = partial(all_of, [*at_steps(), *map(limits, SIZES), *_LONG])
 
 
 def _widths(results: Results, every: Iterable[Runs]) -> dict[int, Estimate]:
@@ -117,17 +126,3 @@ def draw(results: Results) -> Figure:
     mark_clipped(bottom)
     legend_above(figure, top)
     return figure
-
-
-FIGURE = Study(
-    number=4,
-    name="central-width",
-    title="The central width against the size at e = 0",
-    caption="Root mean square velocity of the middle tenth of the rods, e = 0. Grey line: a fit "
-    "to the default time step, L = 10 to 1000. Dashed: the paper's exponent. (b) The ratio to the "
-    "fit. Full circles: the limit of a vanishing step. Longer chains than the paper's are at time "
-    "steps whose velocity kick is two thirds of the width at every size.",
-    cases=partial(all_of, [*at_steps(), *map(limits, SIZES), *_LONG]),
-    draw=draw,
-    claims=claims,
-)

@@ -13,10 +13,17 @@ from crazybilliards.comparison.drawing import along_the_chain, draw_rods
 from crazybilliards.comparison.layout import panels
 from crazybilliards.model.chain import middle_tenth
 from crazybilliards.reproduction.chains import LARGE, dissipative
-from crazybilliards.reproduction.claims.study import Results, Study, all_of
+from crazybilliards.reproduction.claims.study import Results, all_of
 from crazybilliards.reproduction.claims.verdicts import Claim
 
+TITLE = "Mean displacements at e = 0"
+CAPTION = (
+    "(a) Mean displacement and (b) its width (the paper's inset) against the "
+    "normalized particle number, e = 0, in units of the thermal length s."
+)
+
 _RUNS = {size: dissipative(size, 0.0) for size in (30, 100, 300, LARGE)}
+cases = partial(all_of, _RUNS.values())
 
 
 def swelling(run: xr.Dataset) -> float:
@@ -73,15 +80,3 @@ def draw(results: Results) -> Figure:
         along_the_chain(ax)
     axes[0].legend()
     return figure
-
-
-FIGURE = Study(
-    number=5,
-    name="displacements-inelastic",
-    title="Mean displacements at e = 0",
-    caption="(a) Mean displacement and (b) its width (the paper's inset) against the "
-    "normalized particle number, e = 0, in units of the thermal length s.",
-    cases=partial(all_of, _RUNS.values()),
-    draw=draw,
-    claims=claims,
-)

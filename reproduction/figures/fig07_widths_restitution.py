@@ -14,7 +14,7 @@ from crazybilliards.comparison.fits import Fit, fit_exponential
 from crazybilliards.comparison.layout import legend_above, mosaic
 from crazybilliards.comparison.widths import central_width
 from crazybilliards.reproduction.chains import LARGE, RESTITUTIONS, dissipative, elastic
-from crazybilliards.reproduction.claims.study import Cases, Quality, Results, Study, all_of
+from crazybilliards.reproduction.claims.study import Cases, Quality, Results, all_of
 from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, in_plot, worst
 from crazybilliards.reproduction.figures.fig12_widths_damping import bulge
 from crazybilliards.reproduction.power_laws import fits_in_plot
@@ -26,6 +26,15 @@ from crazybilliards.reproduction.predictions import (
     predicted,
 )
 from crazybilliards.reproduction.vanishing_step import LABEL, central_limit, limits
+
+TITLE = "Velocity widths for several restitutions"
+CAPTION = (
+    "(a) W_v against the normalized particle number, L = 1000 (e = 1: L = 100). Lines: "
+    "the kinetic equation in the colour of its e, dashed without pair correlations, full with "
+    "them; nothing of the simulation goes into these lines. (b) The exponent of the two "
+    "power laws against the restitution, and a exp(-lambda (1 - e)) + d fitted to it. (c) W_v in "
+    "the centre at the default time step and in the limit of a vanishing one."
+)
 
 IN_LIMIT = {"quick": (0.0, 0.95), "full": RESTITUTIONS}
 _RUNS = {e: dissipative(LARGE, e) for e in RESTITUTIONS}
@@ -179,18 +188,3 @@ def _draw_exponents(ax: Axes, results: Results) -> None:
     ax.set(ylabel=r"exponent $-\nu$")
     ax.tick_params(labelbottom=False)
     ax.legend()
-
-
-FIGURE = Study(
-    number=7,
-    name="widths-restitution",
-    title="Velocity widths for several restitutions",
-    caption="(a) W_v against the normalized particle number, L = 1000 (e = 1: L = 100). Lines: "
-    "the kinetic equation in the colour of its e, dashed without pair correlations, full with "
-    "them; nothing of the simulation goes into these lines. (b) The exponent of the two "
-    "power laws against the restitution, and a exp(-lambda (1 - e)) + d fitted to it. (c) W_v in "
-    "the centre at the default time step and in the limit of a vanishing one.",
-    cases=cases,
-    draw=draw,
-    claims=claims,
-)

@@ -13,7 +13,7 @@ from crazybilliards.comparison.layout import entitle, panels
 from crazybilliards.model import Chain
 from crazybilliards.reproduction.chains import LARGE, elastic
 from crazybilliards.reproduction.claims.repetition import Granted, Runs
-from crazybilliards.reproduction.claims.study import Results, Study, all_of
+from crazybilliards.reproduction.claims.study import Results, all_of
 from crazybilliards.reproduction.claims.verdicts import EYE, Claim, Estimate, in_plot, worst
 from crazybilliards.reproduction.distributions import (
     draw_distributions,
@@ -21,6 +21,13 @@ from crazybilliards.reproduction.distributions import (
     histogram,
     mean_shape,
     off_in_plot,
+)
+
+TITLE = "Velocity distributions at e = 1"
+CAPTION = (
+    "(a) Symbols: simulated rods 1 and 50 of 100, with standard errors. Dotted: the exact "
+    "distribution, that of a free rod. (b) W_v of 1000 rods, exact at any step with event-driven "
+    "collisions, wrong with Contact Dynamics at steps that are affordable."
 )
 
 _SIZE = 100
@@ -45,6 +52,7 @@ _CONTACT = {
     )
     for step in _STEPS
 }
+cases = partial(all_of, [_RUNS, _EXACT, *_CONTACT.values()])
 
 
 def claims(results: Results) -> list[Claim]:
@@ -103,16 +111,3 @@ def _draw_long_chains(ax: Axes, results: Results) -> None:
     ax.set(ylabel="velocity width $W_v/W$", ylim=(0, 1.6))
     entitle(ax, f"$L = {LARGE}$")
     ax.legend(loc="upper center", ncols=2)
-
-
-FIGURE = Study(
-    number=8,
-    name="velocities-elastic",
-    title="Velocity distributions at e = 1",
-    caption="(a) Symbols: simulated rods 1 and 50 of 100, with standard errors. Dotted: the exact "
-    "distribution, that of a free rod. (b) W_v of 1000 rods, exact at any step with event-driven "
-    "collisions, wrong with Contact Dynamics at steps that are affordable.",
-    cases=partial(all_of, [_RUNS, _EXACT, *_CONTACT.values()]),
-    draw=draw,
-    claims=claims,
-)

@@ -14,10 +14,18 @@ from crazybilliards.comparison.layout import legend_above, panels
 from crazybilliards.model import chain_of
 from crazybilliards.model.chain import middle_tenth
 from crazybilliards.reproduction.chains import LARGE, dissipative
-from crazybilliards.reproduction.claims.study import Cases, Quality, Results, Study, all_of
+from crazybilliards.reproduction.claims.study import Cases, Quality, Results, all_of
 from crazybilliards.reproduction.claims.verdicts import Claim, Estimate
 from crazybilliards.reproduction.figures.fig05_displacements_inelastic import swelling
 from crazybilliards.reproduction.predictions import LINES, by_restitution, predicted
+
+TITLE = "Mean displacements for several restitutions"
+CAPTION = (
+    "Mean displacement, L = 1000, in units of the thermal length s, (a) of all rods "
+    "against the normalized particle number, (b) of the left half against the rod's number. "
+    "Lines: the kinetic equation, dashed without pair correlations, full with them. "
+    "Triangles at the frame of (a): rods beyond it, which (b) shows."
+)
 
 _FRAME = 0.7
 _LABEL = r"displacement $\langle\Delta x\rangle/s$"
@@ -97,17 +105,3 @@ def draw(results: Results) -> Figure:
         whole.plot([], [], style, color="0.4", label=theory)
     legend_above(figure, whole)
     return figure
-
-
-FIGURE = Study(
-    number=9,
-    name="displacements-restitution",
-    title="Mean displacements for several restitutions",
-    caption="Mean displacement, L = 1000, in units of the thermal length s, (a) of all rods "
-    "against the normalized particle number, (b) of the left half against the rod's number. "
-    "Lines: the kinetic equation, dashed without pair correlations, full with them. "
-    "Triangles at the frame of (a): rods beyond it, which (b) shows.",
-    cases=cases,
-    draw=draw,
-    claims=claims,
-)

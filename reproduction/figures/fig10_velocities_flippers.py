@@ -10,9 +10,16 @@ from crazybilliards.comparison.fits import tail_length
 from crazybilliards.comparison.layout import legend_above, panels
 from crazybilliards.comparison.widths import border_width, central_width
 from crazybilliards.reproduction.chains import flippers
-from crazybilliards.reproduction.claims.study import Results, Study
+from crazybilliards.reproduction.claims.study import Results
 from crazybilliards.reproduction.claims.verdicts import Claim, Estimate
 from crazybilliards.reproduction.distributions import draw_distributions, mean_shape
+
+TITLE = "Velocity distributions at e = 1.05, gamma = 4"
+CAPTION = (
+    "L = 100, e = 1.05, gamma = 4. Symbols: simulation. Lines: Gaussians of the same "
+    "width. Dashed: an exponential of the border's mean excess over three widths. Dotted: a free "
+    "rod. Error bars: standard errors from independent runs."
+)
 
 SIZE = 100
 PARTICLES = (1, 10, 50)
@@ -20,6 +27,7 @@ _RUNS = flippers(SIZE, 4.0)
 _UNIT = _RUNS.chain.free_velocity_width
 _SOURCE = "section Anti-Dissipation, fig:mom_hist_antidiss_gamma4"
 _TAIL = 3.0  # widths of the rod, where the tail begins
+cases = _RUNS.cases
 
 
 def claims(results: Results) -> list[Claim]:
@@ -81,16 +89,3 @@ def draw(results: Results) -> Figure:
     ax.plot(-out / _UNIT, tail * _UNIT, "--", color="0.3", label="exponential tail")
     legend_above(figure, ax)
     return figure
-
-
-FIGURE = Study(
-    number=10,
-    name="velocities-flippers",
-    title="Velocity distributions at e = 1.05, gamma = 4",
-    caption="L = 100, e = 1.05, gamma = 4. Symbols: simulation. Lines: Gaussians of the same "
-    "width. Dashed: an exponential of the border's mean excess over three widths. Dotted: a free "
-    "rod. Error bars: standard errors from independent runs.",
-    cases=_RUNS.cases,
-    draw=draw,
-    claims=claims,
-)

@@ -15,9 +15,15 @@ from crazybilliards.comparison.widths import border_width, central_width
 from crazybilliards.model.arrays import Array
 from crazybilliards.model.chain import middle_tenth
 from crazybilliards.reproduction.chains import flippers, kinetic_equation
-from crazybilliards.reproduction.claims.study import Results, Study, all_of
+from crazybilliards.reproduction.claims.study import Results, all_of
 from crazybilliards.reproduction.claims.verdicts import EYE, Claim, Estimate
 from crazybilliards.reproduction.predictions import draw_flippers
+
+TITLE = "Velocity widths of flippers for several dampings"
+CAPTION = (
+    "Damping times velocity width against the normalized particle number, L = 100, "
+    "e = 1.05. Lines: the kinetic equation."
+)
 
 _SIZE = 100
 _RESTITUTION = 1.05
@@ -25,6 +31,7 @@ _SOURCE = "section Anti-Dissipation, fig:mom_var_antidiss_diff_gamma_sq"
 _DAMPINGS = (4.0, 5.0, 6.0, 8.0, 10.0)
 _RUNS = {damping: flippers(_SIZE, damping) for damping in _DAMPINGS}
 _THEORIES = {damping: kinetic_equation(_SIZE, _RESTITUTION, damping) for damping in _DAMPINGS}
+cases = partial(all_of, [each[g] for g in _DAMPINGS for each in (_RUNS, _THEORIES)])
 
 
 def bulge(run: xr.Dataset) -> float:
@@ -127,15 +134,3 @@ def draw(results: Results) -> Figure:
         shown[rf"$\gamma = {damping:g}$"] = runs, _THEORIES[damping], unit
     label = r"$\gamma W_v/(A/\sqrt{2m})$  [M$^{1/2}$T$^{-1/2}$]"
     return draw_flippers(results, shown, label)
-
-
-FIGURE = Study(
-    number=12,
-    name="widths-damping",
-    title="Velocity widths of flippers for several dampings",
-    caption="Damping times velocity width against the normalized particle number, L = 100, "
-    "e = 1.05. Lines: the kinetic equation.",
-    cases=partial(all_of, [each[g] for g in _DAMPINGS for each in (_RUNS, _THEORIES)]),
-    draw=draw,
-    claims=claims,
-)

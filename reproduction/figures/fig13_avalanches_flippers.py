@@ -9,14 +9,23 @@ from matplotlib.figure import Figure
 
 from crazybilliards.comparison.layout import at_the_left, entitle, panels
 from crazybilliards.reproduction.chains import flippers
-from crazybilliards.reproduction.claims.study import Results, Study, all_of
+from crazybilliards.reproduction.claims.study import Results, all_of
 from crazybilliards.reproduction.claims.verdicts import Claim
 from crazybilliards.reproduction.distributions import COUNTS, draw_sizes, waves
+
+TITLE = "Avalanche sizes at e = 1.05"
+CAPTION = (
+    "Probability of a rightward wave of N_c >= 1 collisions that began at one of the first "
+    "ten rods, L = 100, e = 1.05. (a) The paper's count, without the first hit. (b) Pushes, with "
+    "it. Grey: waves of 80 to 100 collisions, which span the system. Error bars: counting "
+    "statistics."
+)
 
 _SIZE = 100
 _RUNS = {damping: flippers(_SIZE, damping) for damping in (4.0, 10.0)}
 _ORIGINS = slice(1, 10)
 _SPANNING = 80  # collisions of a wave that began at one of those origins
+cases = partial(all_of, _RUNS.values())
 
 
 def _spanning(run: xr.Dataset, count: str) -> float:
@@ -59,17 +68,3 @@ def draw(results: Results) -> Figure:
             ax.set_ylabel("probability $p(N_c)$")
         ax.legend(loc="lower left")
     return figure
-
-
-FIGURE = Study(
-    number=13,
-    name="avalanches-flippers",
-    title="Avalanche sizes at e = 1.05",
-    caption="Probability of a rightward wave of N_c >= 1 collisions that began at one of the first "
-    "ten rods, L = 100, e = 1.05. (a) The paper's count, without the first hit. (b) Pushes, with "
-    "it. Grey: waves of 80 to 100 collisions, which span the system. Error bars: counting "
-    "statistics.",
-    cases=partial(all_of, _RUNS.values()),
-    draw=draw,
-    claims=claims,
-)

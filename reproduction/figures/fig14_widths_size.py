@@ -10,10 +10,16 @@ from crazybilliards.comparison.widths import central_width
 from crazybilliards.model import Chain
 from crazybilliards.reproduction.chains import flippers, kinetic_equation
 from crazybilliards.reproduction.claims.repetition import Runs, share_of_runs
-from crazybilliards.reproduction.claims.study import Results, Study, all_of
+from crazybilliards.reproduction.claims.study import Results, all_of
 from crazybilliards.reproduction.claims.verdicts import Claim
 from crazybilliards.reproduction.figures.fig12_widths_damping import bulge
 from crazybilliards.reproduction.predictions import draw_flippers
+
+TITLE = "Velocity widths of flippers for several sizes"
+CAPTION = (
+    "W_v against the normalized particle number, e = 1.05, gamma = 4. Lines: the kinetic "
+    "equation. Longer chains have no steady state: L = 150 diverges."
+)
 
 _DAMPING, _RESTITUTION = 4.0, 1.05
 _SIZES = (25, 50, 75, 100, 105)
@@ -27,6 +33,7 @@ _UNSTEADY = Runs(
 )
 _BESIDE = [each[size] for size in _SIZES for each in (_RUNS, _THEORIES)]
 _SOURCE = "section Anti-Dissipation, fig:antidiss_diff_L"
+cases = partial(all_of, [*_BESIDE, _UNSTEADY])
 
 
 def claims(results: Results) -> list[Claim]:
@@ -74,15 +81,3 @@ def draw(results: Results) -> Figure:
         for size, runs in _RUNS.items()
     }
     return draw_flippers(results, shown, "velocity width $W_v/W$")
-
-
-FIGURE = Study(
-    number=14,
-    name="widths-size",
-    title="Velocity widths of flippers for several sizes",
-    caption="W_v against the normalized particle number, e = 1.05, gamma = 4. Lines: the kinetic "
-    "equation. Longer chains have no steady state: L = 150 diverges.",
-    cases=partial(all_of, [*_BESIDE, _UNSTEADY]),
-    draw=draw,
-    claims=claims,
-)

@@ -17,8 +17,16 @@ from crazybilliards.kinetic.kinetic_equation.weak_damping import weak_damping_gr
 from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array
 from crazybilliards.reproduction.claims.repetition import Runs
-from crazybilliards.reproduction.claims.study import Results, Study, all_of
+from crazybilliards.reproduction.claims.study import Results, all_of
 from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, around
+
+TITLE = "Kinetic energy of flippers in time"
+CAPTION = (
+    "L = 100, e = 1.01, gamma = 0.4, from rest. (a) Every line is a run, cut off at 1e8 "
+    "and at t = 150. Dashed: the growth rate of a balance between damping and one collision of "
+    "every pair in half a period. (b) The runs with quadratic springs against the time left until "
+    "their t_c, fitted from E = 1e5 on."
+)
 
 _SOURCE = "section Anti-Dissipation, non_linear_vs_linear"
 
@@ -42,6 +50,7 @@ _HALF_WAY = 150.0  # where the rate of linear springs is measured up to, and aga
 _ENERGY = r"kinetic energy $E$ [M R$^2$/T$^2$]"
 # And beyond which damping matters little: how far beyond, the exponent depends on.
 _SINGULAR = (1e5, 1e6, 1e7, 1e8)
+cases = partial(all_of, _RUNS)
 
 
 def _late(run: xr.Dataset, beyond: float) -> tuple[Array, Array]:
@@ -157,17 +166,3 @@ def _draw_singularity(ax: Axes, quadratic: list[xr.Dataset]) -> None:
     ax.loglog(span, 3e7 * span**-6.0, "k--", label="slope $-6$")
     ax.set(xlabel="time left $t_c - t$ [T]", ylabel=_ENERGY, ylim=(1, 1e12))
     ax.legend()
-
-
-FIGURE = Study(
-    number=15,
-    name="energy",
-    title="Kinetic energy of flippers in time",
-    caption="L = 100, e = 1.01, gamma = 0.4, from rest. (a) Every line is a run, cut off at 1e8 "
-    "and at t = 150. Dashed: the growth rate of a balance between damping and one collision of "
-    "every pair in half a period. (b) The runs with quadratic springs against the time left until "
-    "their t_c, fitted from E = 1e5 on.",
-    cases=partial(all_of, _RUNS),
-    draw=draw,
-    claims=claims,
-)

@@ -13,11 +13,22 @@ from crazybilliards.comparison.fits import fit_arctanh
 from crazybilliards.comparison.layout import panels
 from crazybilliards.kinetic import equilibrium
 from crazybilliards.model import chain_of
-from crazybilliards.reproduction.claims.study import Results, Study
+from crazybilliards.reproduction.claims.study import Cases, Quality, Results
 from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, in_plot
 from crazybilliards.reproduction.figures.fig17_density import simulation
 
+TITLE = "The mean displacement at e = 1 and its arctanh fit"
+CAPTION = (
+    "L = 100, e = 1, A = 10. (b) Curves less simulation; grey: one standard error. "
+    "s is the thermal length."
+)
+
 _AMPLITUDE = 10.0
+
+
+def cases(quality: Quality) -> Cases:
+    """L = 100, e = 1, A = 10."""
+    return {"run": simulation(_AMPLITUDE)}
 
 
 def claims(results: Results) -> list[Claim]:
@@ -70,15 +81,3 @@ def draw(results: Results) -> Figure:
     bottom.set(xlabel=r"mean position $\langle x_i\rangle$ [R]", ylabel="curve less\nsimulation")
     top.legend()
     return figure
-
-
-FIGURE = Study(
-    number=16,
-    name="arctanh",
-    title="The mean displacement at e = 1 and its arctanh fit",
-    caption="L = 100, e = 1, A = 10. (b) Curves less simulation; grey: one standard error. "
-    "s is the thermal length.",
-    cases=lambda quality: {"run": simulation(_AMPLITUDE)},
-    draw=draw,
-    claims=claims,
-)

@@ -12,8 +12,14 @@ from crazybilliards.comparison.drawing import along_the_chain, draw_rods
 from crazybilliards.comparison.layout import entitle, panels
 from crazybilliards.model import chain_of
 from crazybilliards.reproduction.chains import LARGE, dissipative
-from crazybilliards.reproduction.claims.study import Results, Study, all_of
+from crazybilliards.reproduction.claims.study import Results, all_of
 from crazybilliards.reproduction.claims.verdicts import EYE, Claim, Estimate, worst
+
+TITLE = "The driving amplitude only sets the scale"
+CAPTION = (
+    "Velocity variance over A^2 and mean displacement over A against the normalized "
+    "particle number, L = 1000, three amplitudes with random numbers of their own."
+)
 
 _RESTITUTIONS = (0.0, 0.95)
 _AMPLITUDES = (1.0, 3.0, 10.0)
@@ -24,6 +30,7 @@ _SCALED = {
     "mean_square_displacement": "<dx^2>/A^2",
 }
 _LOGARITHMIC = ("velocity_variance",)  # axes; the others are linear
+cases = partial(all_of, [dissipative(LARGE, e, a) for e in _RESTITUTIONS for a in _AMPLITUDES])
 
 
 def _scaled(results: Results, restitution: float, amplitude: float) -> xr.Dataset:
@@ -109,15 +116,3 @@ def draw(results: Results) -> Figure:
             entitle(ax, f"$e = {restitution:g}$")
     axes[0].legend()
     return figure
-
-
-FIGURE = Study(
-    number=18,
-    name="amplitude",
-    title="The driving amplitude only sets the scale",
-    caption="Velocity variance over A^2 and mean displacement over A against the normalized "
-    "particle number, L = 1000, three amplitudes with random numbers of their own.",
-    cases=partial(all_of, [dissipative(LARGE, e, a) for e in _RESTITUTIONS for a in _AMPLITUDES]),
-    draw=draw,
-    claims=claims,
-)

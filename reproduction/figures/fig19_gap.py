@@ -14,8 +14,14 @@ from crazybilliards.comparison.layout import at_the_left, entitle, legend_above,
 from crazybilliards.comparison.widths import central_width
 from crazybilliards.reproduction.chains import LARGE, dissipative
 from crazybilliards.reproduction.claims.repetition import Granted, Runs
-from crazybilliards.reproduction.claims.study import Results, Study, all_of
+from crazybilliards.reproduction.claims.study import Results, all_of
 from crazybilliards.reproduction.claims.verdicts import Claim, around
+
+TITLE = "Velocity variances of chains with gaps"
+CAPTION = (
+    "W_v^2 against the normalized particle number, L = 1000, for several gaps g between "
+    "neighbouring rods at their anchors, in radii."
+)
 
 _RESTITUTIONS = (0.0, 0.75, 0.95)
 _GAPS = (0.05, 0.2, 1.0)
@@ -35,6 +41,9 @@ def _runs(restitution: float, gap: float) -> Runs:
         return without
     chain = without.chain.replace(gap=gap)
     return Runs(f"{without.name} g={gap:g}", chain, _GRANTED, {"observe": ["widths"]})
+
+
+cases = partial(all_of, [_runs(e, gap) for e in _RESTITUTIONS for gap in (0.0, *_GAPS)])
 
 
 def _change(run: xr.Dataset) -> float:
@@ -115,15 +124,3 @@ def draw(results: Results) -> Figure:
             ax.set_ylabel("velocity variance $W_v^2/W^2$")
     legend_above(figure, axes[0])
     return figure
-
-
-FIGURE = Study(
-    number=19,
-    name="gap",
-    title="Velocity variances of chains with gaps",
-    caption="W_v^2 against the normalized particle number, L = 1000, for several gaps g between "
-    "neighbouring rods at their anchors, in radii.",
-    cases=partial(all_of, [_runs(e, gap) for e in _RESTITUTIONS for gap in (0.0, *_GAPS)]),
-    draw=draw,
-    claims=claims,
-)
