@@ -51,8 +51,9 @@ class Theory:
 
     def seconds(self, chain: Chain) -> float:
         """Return the computing time on one core, within a factor of three."""
-        computing_time = import_module("crazybilliards.kinetic.computing_time")
-        return float(computing_time.expected_seconds(self.name, chain))
+        from crazybilliards.kinetic.accuracy import expected_seconds
+
+        return expected_seconds(self.name, chain)
 
     def refusal(self, chain: Chain, settings: Mapping[str, Any] | None = None) -> str:
         """Return why the theory does not take the chain and these settings, or nothing."""

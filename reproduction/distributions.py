@@ -28,14 +28,8 @@ _SYMBOLS_DRAWN = 41
 
 
 def mean_shape(run: xr.Dataset, particles: Sequence[int], name: str) -> float:
-    """Mean over the particles of their ``velocity_skewness`` or excess ``velocity_kurtosis``.
-
-    Raises
-    ------
-    ValueError
-        If the result lacks it, because an old version computed it.
-    """
-    require(run, (name,))
+    """Mean over the particles of their ``velocity_skewness`` or excess ``velocity_kurtosis``."""
+    require(run, (name,))  # a result of an old version lacks it
     return float(run[name].sel(particle=list(particles)).mean())
 
 

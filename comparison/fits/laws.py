@@ -102,7 +102,7 @@ def _growth(t: Array, scale: float, rate: float) -> Array:
 def _logarithm(time: ArrayLike, energy: ArrayLike, least: int) -> tuple[Array, Array]:
     """Return the times and ln E, if there are enough and all energies are positive."""
     t, E = check_points(time=time, energy=energy)
-    if t.size < least or not (np.isfinite(E).all() and E.min() > 0):
+    if t.size < least or E.min() <= 0:
         raise ValueError(f"the fit needs at least {least} energies, all of them positive")
     return t, np.log(E)
 
@@ -131,7 +131,7 @@ def fit_scaling(x: ArrayLike, y: ArrayLike, error: ArrayLike) -> Fit:
     (-1.0, 0.015)
     """
     x, y, error = check_points(x=x, y=y, error=error)
-    if x.size < 2 or not (np.min([x, y, error]) > 0 and np.isfinite([x, y, error]).all()):
+    if x.size < 2 or np.min([x, y, error]) <= 0:
         raise ValueError("a power law needs at least two points, positive, with positive errors")
     relative = error / y
 

@@ -94,16 +94,9 @@ def run_cases(
 def compute_missing(
     missing: Cases, folder: Path, executor: Executor, outcome: Outcome, *, progress: bool = True
 ) -> None:
-    """Compute cases and write each when it arrives.
+    """Compute cases and write each when it arrives; errors are those of :func:`run_cases`.
 
     ``outcome`` records what happened to each case, also if this raises.
-
-    Raises
-    ------
-    RuntimeError
-        If a worker of ``process_pool`` or the scheduler of a dask cluster dies.
-    OSError
-        If a file cannot be written.
     """
     for what in missing.replaced:
         print(f"crazybilliards: {what}", file=sys.stderr)

@@ -23,7 +23,7 @@ from dataclasses import replace
 import numpy as np
 import xarray as xr
 
-from crazybilliards.kinetic.computing_time import expected_seconds
+from crazybilliards.kinetic.accuracy import expected_seconds
 from crazybilliards.kinetic.correlations.closure import Closure, background, implied
 from crazybilliards.kinetic.correlations.displacements import relaxing_pairs
 from crazybilliards.kinetic.correlations.fixed_point import NoFixedPointError, find_fixed_point

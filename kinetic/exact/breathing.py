@@ -88,14 +88,9 @@ def breathing_cloud(
 
     def equations(time: float, state: Array) -> list[float]:
         place, speed, width, rate, heat = state
+        spreading = heat / width - width - damping * rate
         warming = -2 * heat * rate / width - 2 * damping * (heat - 1) if evolving else 0.0
-        return [
-            speed,
-            -place - damping * speed,
-            rate,
-            heat / width - width - damping * rate,
-            warming,
-        ]
+        return [speed, -place - damping * speed, rate, spreading, warming]
 
     start = [shift / s, 0.0, stretch, 0.0, hot / free]
     scaled = times * W / s

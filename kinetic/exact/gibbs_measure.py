@@ -30,8 +30,7 @@ import xarray as xr
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from crazybilliards.kinetic.accuracy import expected
-from crazybilliards.kinetic.computing_time import expected_seconds
+from crazybilliards.kinetic.accuracy import expected, expected_seconds
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array
@@ -162,9 +161,8 @@ class _Recursion:
     log_f: Array  # shape (L, 2 half + 1)
 
     def nodes(self, i: int) -> Array:
-        return self.spacing * np.arange(
-            self.centres[i] - self.half, self.centres[i] + self.half + 1
-        )
+        first = self.centres[i] - self.half
+        return self.spacing * np.arange(first, first + 2 * self.half + 1)
 
     def log_weight(self, i: int) -> tuple[Array, Array]:
         """Displacements d on window i (i from 0) and log w(d) = -U(d)/T."""

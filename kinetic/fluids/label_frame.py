@@ -35,8 +35,7 @@ from scipy.integrate import cumulative_trapezoid
 from scipy.interpolate import PchipInterpolator
 
 from crazybilliards.kinetic.fluids.finite_volumes import minmod
-from crazybilliards.kinetic.fluids.flow_fields import FlowFields
-from crazybilliards.kinetic.fluids.pde_solver import make_state, solve
+from crazybilliards.kinetic.fluids.pde_solver import FlowFields, make_state, solve
 from crazybilliards.kinetic.starts import Start
 from crazybilliards.kinetic.statics.label_closure import Stationary, stationary
 from crazybilliards.model import Chain, spring

@@ -34,6 +34,7 @@ def snapshot(
     centre = share @ profiles.y
     spread = share @ profiles.y**2 - centre**2
     drift = profiles.weights @ profiles.flux
+    covariance = (profiles.weights * profiles.y) @ profiles.flux - centre * drift
     y, v, values = space.sampled(f)
     # Ripples in the vacuum are left out, so that the positions ascend.
     alive = np.maximum(profiles.density, 0.0)
@@ -52,9 +53,7 @@ def snapshot(
         "centre": length * centre,
         "cloud_width": length * math.sqrt(spread),
         "kinetic_energy": chain.size * chain.temperature / 2 * energy,
-        "covariance": length
-        * velocity
-        * ((profiles.weights * profiles.y) @ profiles.flux - centre * drift),
+        "covariance": length * velocity * covariance,
     }
 
 

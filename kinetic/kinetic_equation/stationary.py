@@ -21,8 +21,7 @@ from typing import Literal
 import numpy as np
 import xarray as xr
 
-from crazybilliards.kinetic.accuracy import expected, warn_if_unmeasured
-from crazybilliards.kinetic.computing_time import expected_seconds
+from crazybilliards.kinetic.accuracy import expected, expected_seconds, warn_if_unmeasured
 from crazybilliards.kinetic.kinetic_equation.continuation import (
     CELLS,
     State,

@@ -20,9 +20,9 @@ from crazybilliards.reproduction.distributions import (
 
 TITLE = "Velocity distributions at e = 0"
 CAPTION = (
-    "L = 1000, e = 0. Symbols: simulation, rods i from the border to the centre. Lines: "
-    "Gaussians of the same width. Dotted: a free rod. Error bars: standard errors from independent "
-    "runs. Velocities in units of the free width W."
+    "L = 1000, e = 0. Symbols: simulation, rods i from the border to the centre. Lines: Gaussians "
+    "of the same width. Dotted: a free rod. Error bars: standard errors from independent runs. "
+    "Velocities in units of the free width W."
 )
 
 _RUNS = dissipative(LARGE, 0.0)

@@ -13,25 +13,32 @@ from matplotlib.figure import Figure
 from crazybilliards.comparison.drawing import COLOURS, draw_points, draw_rods
 from crazybilliards.comparison.fits import fit_border_power_law
 from crazybilliards.comparison.layout import mosaic
-from crazybilliards.reproduction import predictions
-from crazybilliards.reproduction.chains import LARGE, STEPS, at_step, at_steps, chain_step
+from crazybilliards.reproduction.chains import (
+    LARGE,
+    STEPS,
+    at_step,
+    at_steps,
+    chain_step,
+    correlated_equation,
+)
 from crazybilliards.reproduction.claims.study import Cases, Quality, Results, all_of
 from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, around, in_plot, worst
-from crazybilliards.reproduction.power_laws import fits_in_plot, nu, weighted_nu
+from crazybilliards.reproduction.power_laws import fits_in_plot, nu
+from crazybilliards.reproduction.predictions import CROSSES, PAIRS
 from crazybilliards.reproduction.vanishing_step import LABEL, common_bias, limit_estimate, limits
 
 TITLE = "Velocity widths at e = 0: power laws from both borders"
 CAPTION = (
-    "(a) W_v against the rod's number, e = 0, at the default time step, with the fits "
-    "a [(i - c)^nu + (L + 1 - c - i)^nu] to all rods; dotted, in (b) "
-    "crosses: the kinetic equation with pair correlations. (b) The exponent against the time "
-    "step; the leftmost open symbol of each size is the default step, the full one the limit. (c) "
-    "W_v over its limit dt -> 0."
+    "(a) W_v against the rod's number, e = 0, at the default time step, with the fits a [(i - "
+    "c)^nu + (L + 1 - c - i)^nu] to all rods; dotted, in (b) crosses: the kinetic equation with "
+    "pair correlations. (b) The exponent against the time step; the leftmost open symbol of each "
+    "size is the default step, the full one the limit. (c) W_v over its limit dt -> 0."
 )
 
-_SIZES = predictions.SIZES
+_SIZES = (30, 100, 300, LARGE)
+_SOLVED = {"quick": (30,), "full": _SIZES}  # by the theory with pair correlations
 _RUNS = {size: at_step(size, None) for size in _SIZES}  # at the default step
-_CROSS = predictions.CROSSES[predictions.PAIRS]
+_CROSS, _PAIRS = CROSSES[PAIRS], "theory with pairs"
 _PAPER, _PRECISION = -0.46, 0.005  # "nu ~ -0.46": half a unit of the last digit
 _SAME = 2 * _PRECISION  # two numbers that are both written -0.46 differ by less
 _ERROR = "velocity_width_error"
@@ -41,8 +48,14 @@ _OURS = "the sizes below 1000 and the time step"
 
 def cases(quality: Quality) -> Cases:
     """E = 0, four sizes, four time steps and the limit; the theory with pair correlations."""
-    runs = [*at_steps(_SIZES), *map(limits, _SIZES)]
-    return all_of(runs, quality) | predictions.by_size(quality)
+    theories = [correlated_equation(size, 0.0) for size in _SOLVED[quality]]
+    return all_of([*at_steps(_SIZES), *map(limits, _SIZES), *theories], quality)
+
+
+def _predicted(results: Results) -> dict[int, xr.Dataset]:
+    """Return the results of the theory."""
+    names = {size: correlated_equation(size, 0.0).name for size in _SIZES}
+    return {size: results[name] for size, name in names.items() if name in results}
 
 
 def exponent(results: Results, size: int, step: float | None = None) -> Estimate:
@@ -82,7 +95,10 @@ def claims(results: Results) -> list[Claim]:
                 within=around(_PAPER, _PRECISION),
                 source=_SOURCE,
                 ours="the time step, the weights" + (" and the size" if size < LARGE else ""),
-                elsewhere=_elsewhere(results, size),
+                elsewhere={
+                    **{f"dt = {step:g}": exponent(results, size, step) for step in STEPS},
+                    "rods weighed by their error bars": _RUNS[size].estimate(results, _weighted_nu),
+                },
             )
             for size, each in found.items()
         ),
@@ -99,11 +115,8 @@ def claims(results: Results) -> list[Claim]:
     ]
 
 
-def _elsewhere(results: Results, size: int) -> dict[str, Estimate]:
-    """Return nu at other time steps, and with weights."""
-    stepped = {f"dt = {step:g}": exponent(results, size, step) for step in STEPS}
-    weighted = _RUNS[size].estimate(results, weighted_nu)
-    return stepped | {"rods weighed by their error bars": weighted}
+def _weighted_nu(run: xr.Dataset) -> float:
+    return fit_border_power_law(run, weighted=True).exponent
 
 
 def draw(results: Results) -> Figure:
@@ -127,7 +140,10 @@ def draw(results: Results) -> Figure:
         widths.plot(half, fit, color=COLOURS[number])
         draw_rods(ratio, _over_limit(results, size), "velocity_width", label="", **look)
     widths.plot([], [], color="0.4", label="fit of two power laws")
-    predictions.draw_widths_by_size(widths, results)
+    for size, theory in _predicted(results).items():
+        unit, colour = _RUNS[size].chain.free_velocity_width, COLOURS[_SIZES.index(size)]
+        widths.plot(theory.particle, theory.velocity_width / unit, ":", color=colour, zorder=4)
+    widths.plot([], [], ":", color="0.4", label=_PAIRS)
     widths.legend(loc="lower left")
     widths.tick_params(labelbottom=False)
     ratio.axhline(1, color="0.4", linewidth=0.8)
@@ -147,7 +163,7 @@ def _over_limit(results: Results, size: int) -> xr.Dataset:
 
 def _draw_steps(ax: Axes, results: Results) -> None:
     """Draw nu against the time step, the limit as full symbols at the left margin."""
-    theories = predictions.predicted_by_size(results)
+    theories = _predicted(results)
     first = 0.3 * min(chain_step(results, size) for size in _SIZES)
     for number, size in enumerate(_SIZES):
         steps = [chain_step(results, size), *reversed(STEPS)]
@@ -164,7 +180,7 @@ def _draw_steps(ax: Axes, results: Results) -> None:
     ax.axhline(_PAPER, color="0.4", linestyle="--", label="paper")
     ax.plot([], [], "o", color="0.4", markerfacecolor="none", label="at a time step")
     ax.plot([], [], "o", color="0.4", label=LABEL)
-    ax.plot([], [], **_CROSS | {"color": "0.4"}, label=predictions.PAIRS_ALONE)
+    ax.plot([], [], **_CROSS | {"color": "0.4"}, label=_PAIRS)
     ax.legend(loc="upper right")
     ax.set(xscale="log", xlabel="time step $dt$ [T]", ylabel=r"exponent $\nu$")
     ax.set_xticks([first, 1e-3, 1e-2], [r"$\to 0$", "$10^{-3}$", "$10^{-2}$"])

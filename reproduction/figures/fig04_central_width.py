@@ -22,10 +22,10 @@ from crazybilliards.reproduction.vanishing_step import LABEL, central_limit, lim
 
 TITLE = "The central width against the size at e = 0"
 CAPTION = (
-    "Root mean square velocity of the middle tenth of the rods, e = 0. Grey line: a fit "
-    "to the default time step, L = 10 to 1000. Dashed: the paper's exponent. (b) The ratio to the "
-    "fit. Full circles: the limit of a vanishing step. Longer chains than the paper's are at time "
-    "steps whose velocity kick is two thirds of the width at every size."
+    "Root mean square velocity of the middle tenth of the rods, e = 0. Grey line: a fit to the "
+    "default time step, L = 10 to 1000. Dashed: the paper's exponent. (b) The ratio to the fit. "
+    "Full circles: the limit of a vanishing step. Longer chains than the paper's are at time steps "
+    "whose velocity kick is two thirds of the width at every size."
 )
 
 _PAPER, _PRECISION = -0.38, 0.005  # "with exponent -0.38": half a unit of the last digit

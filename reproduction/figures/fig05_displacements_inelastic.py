@@ -5,21 +5,20 @@ from __future__ import annotations
 import itertools
 from functools import partial
 
-import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
 from crazybilliards.comparison.drawing import along_the_chain, draw_rods
 from crazybilliards.comparison.layout import panels
-from crazybilliards.model.chain import middle_tenth
+from crazybilliards.comparison.widths import central_width
 from crazybilliards.reproduction.chains import LARGE, dissipative
 from crazybilliards.reproduction.claims.study import Results, all_of
 from crazybilliards.reproduction.claims.verdicts import Claim
 
 TITLE = "Mean displacements at e = 0"
 CAPTION = (
-    "(a) Mean displacement and (b) its width (the paper's inset) against the "
-    "normalized particle number, e = 0, in units of the thermal length s."
+    "(a) Mean displacement and (b) its width (the paper's inset) against the normalized particle "
+    "number, e = 0, in units of the thermal length s."
 )
 
 _RUNS = {size: dissipative(size, 0.0) for size in (30, 100, 300, LARGE)}
@@ -32,16 +31,11 @@ def swelling(run: xr.Dataset) -> float:
     return float(place @ run.mean_displacement.values / (place @ place))
 
 
-def _confined(run: xr.Dataset) -> float:
-    """Return W_x of the middle tenth of the rods."""
-    middle = middle_tenth(run.sizes["particle"])
-    return float(np.sqrt((run.displacement_width.values[middle] ** 2).mean()))
-
-
 def claims(results: Results) -> list[Claim]:
     """Check: displacements decrease with the size."""
     found = {size: runs.estimate(results, swelling) for size, runs in _RUNS.items()}
-    spread = {size: runs.estimate(results, _confined) for size, runs in _RUNS.items()}
+    confined = partial(central_width, of="displacement_width")
+    spread = {size: runs.estimate(results, confined) for size, runs in _RUNS.items()}
     source, ours = "section seq:e_0, fig.3_2", "the sizes and the time step"
     return [
         claim

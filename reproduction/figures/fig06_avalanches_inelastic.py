@@ -20,11 +20,11 @@ from crazybilliards.reproduction.distributions import COUNTS, draw_sizes, waves
 
 TITLE = "Avalanche sizes at e = 0"
 CAPTION = (
-    "Probability of a rightward wave of N_c >= 1 collisions, L = 1000, e = 0. (a) The "
-    "paper's count, every hit and the collisions after it. (b) and (c) Pushes, which rods "
-    "that stick together pass on from one to the next. Error bars: counting statistics. The "
-    "exponents are maximum-likelihood estimates. Rods in contact collide again after every kick, "
-    "so that the number of waves grows as the step is shortened: no count has a limit dt -> 0."
+    "Probability of a rightward wave of N_c >= 1 collisions, L = 1000, e = 0. (a) The paper's "
+    "count, every hit and the collisions after it. (b) and (c) Pushes, which rods that stick "
+    "together pass on from one to the next. Error bars: counting statistics. The exponents are "
+    "maximum-likelihood estimates. Rods in contact collide again after every kick, so that the "
+    "number of waves grows as the step is shortened: no count has a limit dt -> 0."
 )
 
 _STEPS = (1e-1, 2.3e-2, 1e-2, 1e-3)

@@ -17,23 +17,17 @@ from crazybilliards.reproduction.chains import LARGE, RESTITUTIONS, dissipative,
 from crazybilliards.reproduction.claims.study import Cases, Quality, Results, all_of
 from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, in_plot, worst
 from crazybilliards.reproduction.figures.fig12_widths_damping import bulge
-from crazybilliards.reproduction.power_laws import fits_in_plot
-from crazybilliards.reproduction.predictions import (
-    CROSSES,
-    LINES,
-    by_restitution,
-    minus_nu,
-    predicted,
-)
+from crazybilliards.reproduction.power_laws import fits_in_plot, nu
+from crazybilliards.reproduction.predictions import CROSSES, LINES, by_restitution, predicted
 from crazybilliards.reproduction.vanishing_step import LABEL, central_limit, limits
 
 TITLE = "Velocity widths for several restitutions"
 CAPTION = (
-    "(a) W_v against the normalized particle number, L = 1000 (e = 1: L = 100). Lines: "
-    "the kinetic equation in the colour of its e, dashed without pair correlations, full with "
-    "them; nothing of the simulation goes into these lines. (b) The exponent of the two "
-    "power laws against the restitution, and a exp(-lambda (1 - e)) + d fitted to it. (c) W_v in "
-    "the centre at the default time step and in the limit of a vanishing one."
+    "(a) W_v against the normalized particle number, L = 1000 (e = 1: L = 100). Lines: the kinetic "
+    "equation in the colour of its e, dashed without pair correlations, full with them; nothing of "
+    "the simulation goes into these lines. (b) The exponent of the two power laws against the "
+    "restitution, and a exp(-lambda (1 - e)) + d fitted to it. (c) W_v in the centre at the "
+    "default time step and in the limit of a vanishing one."
 )
 
 IN_LIMIT = {"quick": (0.0, 0.95), "full": RESTITUTIONS}
@@ -55,17 +49,8 @@ def cases(quality: Quality) -> Cases:
     )
 
 
-def _central_widths(results: Results) -> dict[float, Estimate]:
-    return {e: runs.estimate(results, central_width) for e, runs in _RUNS.items()}
-
-
-def _central_limits(results: Results) -> dict[float, Estimate]:
-    there = [e for e in RESTITUTIONS if limits(LARGE, e).members(results)]
-    return {e: central_limit(results, LARGE, e) for e in there}
-
-
 def _exponents(results: Results) -> dict[float, Estimate]:
-    return {e: runs.estimate(results, minus_nu) for e, runs in _RUNS.items()}
+    return {e: -runs.estimate(results, nu) for e, runs in _RUNS.items()}
 
 
 def _fit(found: dict[float, Estimate]) -> Fit:
@@ -162,9 +147,11 @@ def _draw_theories(ax: Axes, results: Results, e: float, unit: float, colour: st
 def _draw_centre(ax: Axes, results: Results) -> None:
     unit = _RUNS[0.0].chain.free_velocity_width
     full: dict[str, Any] = {"number": 2, "color": COLOURS[0], "markerfacecolor": COLOURS[0]}
+    widths = {e: runs.estimate(results, central_width) for e, runs in _RUNS.items()}
+    there = [e for e in RESTITUTIONS if limits(LARGE, e).members(results)]
     for found, label, style in (
-        (_central_widths(results), "default step", {**_OPEN, "markersize": 5}),
-        (_central_limits(results), LABEL, full),
+        (widths, "default step", {**_OPEN, "markersize": 5}),
+        ({e: central_limit(results, LARGE, e) for e in there}, LABEL, full),
     ):
         values, errors = np.array(list(found.values())).T / unit
         draw_points(ax, list(found), values, errors, label=label, **style)
@@ -181,7 +168,7 @@ def _draw_exponents(ax: Axes, results: Results) -> None:
     values, errors = np.array(list(found.values())).T
     draw_points(ax, list(found), values, errors, label="simulation", **_OPEN)
     for theory, of_theory in predicted(results).items():
-        exponents = [minus_nu(each) for each in of_theory.values()]
+        exponents = [-nu(each) for each in of_theory.values()]
         ax.plot(list(of_theory), exponents, **CROSSES[theory], label=theory)
     fine = np.linspace(0, 1, 101)
     ax.plot(fine, fit(fine), "0.4", label=rf"fit, $\lambda = {fit.rate:.1f}$")

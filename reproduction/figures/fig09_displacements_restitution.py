@@ -21,10 +21,10 @@ from crazybilliards.reproduction.predictions import LINES, by_restitution, predi
 
 TITLE = "Mean displacements for several restitutions"
 CAPTION = (
-    "Mean displacement, L = 1000, in units of the thermal length s, (a) of all rods "
-    "against the normalized particle number, (b) of the left half against the rod's number. "
-    "Lines: the kinetic equation, dashed without pair correlations, full with them. "
-    "Triangles at the frame of (a): rods beyond it, which (b) shows."
+    "Mean displacement, L = 1000, in units of the thermal length s, (a) of all rods against the "
+    "normalized particle number, (b) of the left half against the rod's number. Lines: the kinetic "
+    "equation, dashed without pair correlations, full with them. Triangles at the frame of (a): "
+    "rods beyond it, which (b) shows."
 )
 
 _FRAME = 0.7

@@ -16,9 +16,9 @@ from crazybilliards.reproduction.distributions import draw_distributions, mean_s
 
 TITLE = "Velocity distributions at e = 1.05, gamma = 4"
 CAPTION = (
-    "L = 100, e = 1.05, gamma = 4. Symbols: simulation. Lines: Gaussians of the same "
-    "width. Dashed: an exponential of the border's mean excess over three widths. Dotted: a free "
-    "rod. Error bars: standard errors from independent runs."
+    "L = 100, e = 1.05, gamma = 4. Symbols: simulation. Lines: Gaussians of the same width. "
+    "Dashed: an exponential of the border's mean excess over three widths. Dotted: a free rod. "
+    "Error bars: standard errors from independent runs."
 )
 
 SIZE = 100

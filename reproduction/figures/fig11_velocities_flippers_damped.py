@@ -13,8 +13,8 @@ from crazybilliards.reproduction.figures.fig10_velocities_flippers import PARTIC
 
 TITLE = "Velocity distributions at e = 1.05, gamma = 10"
 CAPTION = (
-    "L = 100, e = 1.05, gamma = 10. Symbols: simulation. Lines: Gaussians of the same "
-    "width. Dotted: a free rod. Error bars: standard errors from independent runs."
+    "L = 100, e = 1.05, gamma = 10. Symbols: simulation. Lines: Gaussians of the same width. "
+    "Dotted: a free rod. Error bars: standard errors from independent runs."
 )
 
 _RUNS = flippers(SIZE, 10.0)

@@ -21,13 +21,13 @@ from crazybilliards.reproduction.predictions import draw_flippers
 
 TITLE = "Velocity widths of flippers for several dampings"
 CAPTION = (
-    "Damping times velocity width against the normalized particle number, L = 100, "
-    "e = 1.05. Lines: the kinetic equation."
+    "Damping times velocity width against the normalized particle number, L = 100, e = 1.05. "
+    "Lines: the kinetic equation."
 )
 
 _SIZE = 100
 _RESTITUTION = 1.05
-_SOURCE = "section Anti-Dissipation, fig:mom_var_antidiss_diff_gamma_sq"
+_claim = partial(Claim, source="section Anti-Dissipation, fig:mom_var_antidiss_diff_gamma_sq")
 _DAMPINGS = (4.0, 5.0, 6.0, 8.0, 10.0)
 _RUNS = {damping: flippers(_SIZE, damping) for damping in _DAMPINGS}
 _THEORIES = {damping: kinetic_equation(_SIZE, _RESTITUTION, damping) for damping in _DAMPINGS}
@@ -45,25 +45,22 @@ def claims(results: Results) -> list[Claim]:
     low, high = _DAMPINGS[0], _DAMPINGS[-1]
     change = np.interp(0.0, [each.value for each in found.values()][::-1], _DAMPINGS[::-1])
     return [
-        Claim(
+        _claim(
             f"convex at gamma = {low:g}",
             "ln of the border's width over the centre's:",
             found=found[low],
-            source=_SOURCE,
         ),
-        Claim(
+        _claim(
             f"concave at gamma = {high:g}",
             f"it changes at gamma = {change:.1f}; ln of the centre's width over the border's:",
             found=-found[high],
-            source=_SOURCE,
         ),
         *(
-            Claim(
+            _claim(
                 f"rods collide more often in the bulk than at the border, gamma = {damping:g}",
                 "ln of the collision rate of the middle tenth of the contacts over that of the "
                 "outermost:",
                 found=_RUNS[damping].estimate(results, _crowding),
-                source=_SOURCE,
             )
             for damping in (high, low)
         ),
@@ -88,22 +85,17 @@ def _power_law_claim(results: Results) -> Claim:
     else:
         words = f"nu = {fit.exponent:.3f} fits best"
         linear, logarithmic = (
-            _beyond_the_eye(results, run, fit, axes) for axes in (_unchanged, np.log)
+            _beyond_the_eye(results, run, fit, axes) for axes in (np.asarray, np.log)
         )
-    return Claim(
+    return _claim(
         f"the convex profile at gamma = {_DAMPINGS[0]:g} cannot be described by a power law",
         f"gamma W_v against i for the five dampings, both axes linear: {words}; by how much the "
         f"largest deviation, as a share of the plotted range, exceeds what an eye sees, {EYE:g}:",
         found=linear,
-        source=_SOURCE,
         ours="whether the axes are linear",
         elsewhere={"both axes logarithmic": logarithmic},
         reason="a sum of two flat power laws fits",
     )
-
-
-def _unchanged(values: Array) -> Array:
-    return values
 
 
 def _beyond_the_eye(

@@ -15,10 +15,9 @@ from crazybilliards.reproduction.distributions import COUNTS, draw_sizes, waves
 
 TITLE = "Avalanche sizes at e = 1.05"
 CAPTION = (
-    "Probability of a rightward wave of N_c >= 1 collisions that began at one of the first "
-    "ten rods, L = 100, e = 1.05. (a) The paper's count, without the first hit. (b) Pushes, with "
-    "it. Grey: waves of 80 to 100 collisions, which span the system. Error bars: counting "
-    "statistics."
+    "Probability of a rightward wave of N_c >= 1 collisions that began at one of the first ten "
+    "rods, L = 100, e = 1.05. (a) The paper's count, without the first hit. (b) Pushes, with it. "
+    "Grey: waves of 80 to 100 collisions, which span the system. Error bars: counting statistics."
 )
 
 _SIZE = 100

@@ -17,8 +17,8 @@ from crazybilliards.reproduction.predictions import draw_flippers
 
 TITLE = "Velocity widths of flippers for several sizes"
 CAPTION = (
-    "W_v against the normalized particle number, e = 1.05, gamma = 4. Lines: the kinetic "
-    "equation. Longer chains have no steady state: L = 150 diverges."
+    "W_v against the normalized particle number, e = 1.05, gamma = 4. Lines: the kinetic equation. "
+    "Longer chains have no steady state: L = 150 diverges."
 )
 
 _DAMPING, _RESTITUTION = 4.0, 1.05
@@ -32,7 +32,7 @@ _UNSTEADY = Runs(
     {"duration": 1000.0, "warmup": 0.0, "observe": ["energy"]},
 )
 _BESIDE = [each[size] for size in _SIZES for each in (_RUNS, _THEORIES)]
-_SOURCE = "section Anti-Dissipation, fig:antidiss_diff_L"
+_claim = partial(Claim, source="section Anti-Dissipation, fig:antidiss_diff_L")
 cases = partial(all_of, [*_BESIDE, _UNSTEADY])
 
 
@@ -43,32 +43,28 @@ def claims(results: Results) -> list[Claim]:
     diverged = sum(run.attrs["status"] == "diverged" for run in unsteady)
     short, long = _SIZES[0], _SIZES[-1]
     return [
-        Claim(
+        _claim(
             f"concave at L = {short}",
             "ln of the centre's width over the border's:",
             found=-found[short],
-            source=_SOURCE,
         ),
-        Claim(
+        _claim(
             f"convex at L = {long}",
             "ln of the border's width over the centre's:",
             found=found[long],
-            source=_SOURCE,
         ),
-        Claim(
+        _claim(
             "the longer the chain, the larger W_v",
             f"W_v in the centre at L = {long} less that at L = {short}:",
             found=_RUNS[long]
             .estimate(results, central_width)
             .minus(_RUNS[short].estimate(results, central_width)),
-            source=_SOURCE,
         ),
-        Claim(
+        _claim(
             f"without a steady state at L = {_UNSTEADY.chain.size}",
             f"{diverged} of {len(unsteady)} runs, released from rest, diverged; their share, as "
             "far as so few runs show it:",
             found=share_of_runs(diverged, len(unsteady)),
-            source=_SOURCE,
             ours="the size that is too large",
         ),
     ]

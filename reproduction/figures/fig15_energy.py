@@ -22,10 +22,10 @@ from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, around
 
 TITLE = "Kinetic energy of flippers in time"
 CAPTION = (
-    "L = 100, e = 1.01, gamma = 0.4, from rest. (a) Every line is a run, cut off at 1e8 "
-    "and at t = 150. Dashed: the growth rate of a balance between damping and one collision of "
-    "every pair in half a period. (b) The runs with quadratic springs against the time left until "
-    "their t_c, fitted from E = 1e5 on."
+    "L = 100, e = 1.01, gamma = 0.4, from rest. (a) Every line is a run, cut off at 1e8 and at t = "
+    "150. Dashed: the growth rate of a balance between damping and one collision of every pair in "
+    "half a period. (b) The runs with quadratic springs against the time left until their t_c, "
+    "fitted from E = 1e5 on."
 )
 
 _SOURCE = "section Anti-Dissipation, non_linear_vs_linear"
@@ -80,16 +80,12 @@ def _growth_claim(results: Results) -> Claim:
 
 
 def _singularity_claim(results: Results) -> Claim:
-    exponents, times = zip(
-        *(
-            _QUADRATIC.estimates(results, partial(_singularity, beyond=beyond))
-            for beyond in _SINGULAR
-        ),
-        strict=True,
-    )
-    every = ", ".join(
-        f"{beyond:.0e}: {each}" for beyond, each in zip(_SINGULAR, exponents, strict=True)
-    )
+    found = {
+        beyond: _QUADRATIC.estimates(results, partial(_singularity, beyond=beyond))
+        for beyond in _SINGULAR
+    }
+    every = ", ".join(f"{beyond:.0e}: {exponent}" for beyond, (exponent, _) in found.items())
+    exponents, times = zip(*found.values(), strict=True)
     values = [each.value for each in exponents]
     # Half the spread is the error of not knowing where the power law begins.
     ends = Estimate((min(values) + max(values)) / 2, (max(values) - min(values)) / 2)

@@ -19,8 +19,8 @@ from crazybilliards.reproduction.figures.fig17_density import simulation
 
 TITLE = "The mean displacement at e = 1 and its arctanh fit"
 CAPTION = (
-    "L = 100, e = 1, A = 10. (b) Curves less simulation; grey: one standard error. "
-    "s is the thermal length."
+    "L = 100, e = 1, A = 10. (b) Curves less simulation; grey: one standard error. s is the "
+    "thermal length."
 )
 
 _AMPLITUDE = 10.0
