@@ -17,14 +17,12 @@ from collections.abc import Mapping
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 from scipy.ndimage import convolve1d
 
 from crazybilliards.model import Chain, chain_of
+from crazybilliards.model.arrays import Array
 from crazybilliards.model.grid import deposit, position_grid
 from crazybilliards.model.vocabulary import require, result
-
-Array = NDArray[np.float64]
 
 _ONCE, _TWICE = "coverage", "coverage, running average"
 

@@ -66,11 +66,8 @@ class Curve(NamedTuple):
 def find_curve(label: str, dataset: xr.Dataset, quantity: str, along: str) -> Curve:
     """Return a quantity of a result as a curve; ``along`` is the abscissa of the particles.
 
-    Raises
-    ------
-    ValueError
-        If the result, which the message calls ``label``, lacks the quantity, or has it over
-        another dimension or several.
+    Raise a ValueError if the result, which the message calls ``label``, lacks the quantity, or has
+    it over another dimension or several.
     """
     if not isinstance(dataset, xr.Dataset):
         raise ValueError(f"{label}: not a crazybilliards result: {shown(dataset)}")

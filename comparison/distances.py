@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from crazybilliards.comparison.coverage import require_same_smoothing
 from crazybilliards.model import Chain, chain_of
+from crazybilliards.model.arrays import Array
 from crazybilliards.model.calls import warn_user
 from crazybilliards.model.checks import check_real
 from crazybilliards.model.vocabulary import require
@@ -79,7 +80,7 @@ def deviation(result: xr.Dataset, reference: xr.Dataset, floor: float = 1e-3) ->
 
 def _differences(
     result: xr.Dataset, reference: xr.Dataset, floor: float
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.bool_]]:
+) -> tuple[Array, Array, NDArray[np.bool_]]:
     """Return differences, their errors, and the bins where either density exceeds the floor.
 
     In units of close packing, on the common grid. An error is infinite where it is not reliable.
@@ -136,7 +137,7 @@ def distances_in_plot(
     *,
     x_range: tuple[float, float] | None = None,
     y_range: tuple[float, float] | None = None,
-) -> NDArray[np.float64]:
+) -> Array:
     """Distances of symbols from a line in the plane of a plot, shape of ``x``.
 
     Each axis is in units of its range. For logarithmic axes give logarithms.
@@ -174,8 +175,6 @@ def distances_in_plot(
     return distances
 
 
-def _in_range(
-    values: NDArray[np.float64], symbols: NDArray[np.float64], span: tuple[float, float] | None
-) -> NDArray[np.float64]:
+def _in_range(values: Array, symbols: Array, span: tuple[float, float] | None) -> Array:
     low, high = span or (float(symbols.min()), float(symbols.max()))
     return np.asarray((values - low) / (high - low))

@@ -175,23 +175,10 @@ def draw_rods(
     """Draw a quantity of the rods as symbols with error bars; a long chain shows some rods.
 
     As in :func:`overlay` a thin line shows all rods where the symbols would not. Make an axis
-    logarithmic before, because that changes what can be seen.
-
-    Parameters
-    ----------
-    number
-        Number of the colour and symbol.
-    unit
-        Unit to divide by.
-    along
-        Abscissa. ``particle`` is meant for a logarithmic axis and spaces the symbols for it.
+    logarithmic before, because that changes what can be seen. The values are divided by ``unit``.
+    The abscissa ``along="particle"`` is meant for a logarithmic axis and spaces the symbols for it.
     """
-    look = {
-        "color": COLOURS[number % len(COLOURS)],
-        "marker": SYMBOLS[number % len(SYMBOLS)],
-        "linewidth": 0.7,
-        "label": label,
-    }
+    look = {**_look(number), "linewidth": 0.7, "label": label}
     values, error = (run[name].values / unit for name in (quantity, f"{quantity}_error"))
     spaced = np.geomspace if along == "particle" else np.linspace
     draw_measured(ax, run[along].values, values, error, look, spaced=spaced)
@@ -207,10 +194,16 @@ def draw_points(
     label: str = "",
     **how: Any,
 ) -> None:
-    """Draw a few measured numbers as symbols with error bars, in the colour of that number."""
-    look = {"linestyle": "none", "markerfacecolor": "none", **how}
-    colour, marker = COLOURS[number % len(COLOURS)], SYMBOLS[number % len(SYMBOLS)]
-    ax.errorbar(x, values, errors, color=colour, marker=marker, label=label, **look)
+    """Draw a few measured numbers as symbols with error bars, in the look of that number.
+
+    ``how``: keywords of ``errorbar``, in place of those of that look as well.
+    """
+    look = {"linestyle": "none", "markerfacecolor": "none", **_look(number)}
+    ax.errorbar(x, values, errors, **look | {"label": label} | how)
+
+
+def _look(number: int) -> dict[str, Any]:
+    return {"color": COLOURS[number % len(COLOURS)], "marker": SYMBOLS[number % len(SYMBOLS)]}
 
 
 def mark_clipped(ax: Axes) -> None:

@@ -13,7 +13,6 @@ from typing import Any, Literal
 
 import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties
@@ -51,16 +50,8 @@ def panels(
 ) -> tuple[Figure, list[Axes]]:
     """Make a figure with lettered panels, row by row; one below the other where it is narrow.
 
-    Parameters
-    ----------
-    rows, columns
-        Of panels, where the figure is wide enough.
-    height
-        Of a row [inch].
-    wanted
-        The width that suits it, in columns of a journal.
-    how
-        As ``plt.subplots`` takes it.
+    ``height`` [inch] is that of a row, ``wanted`` the width that suits the figure, in columns of a
+    journal, and ``how`` as ``plt.subplots`` takes it.
     """
     width = picture_width(wanted)
     if width / columns < _LEAST_WIDTH or (columns > 1 and width < _WIDTHS[wanted]):
@@ -111,12 +102,9 @@ def at_the_left(ax: Axes) -> bool:
     return place is None or place.is_first_col()
 
 
-def legend_above(
-    figure: Figure, ax: Axes, title: str | None = None, extra: Sequence[tuple[Artist, str]] = ()
-) -> None:
+def legend_above(figure: Figure, ax: Axes, title: str | None = None) -> None:
     """Put the legend of one panel over all of them, in as many columns as fit."""
     handles, labels = ax.get_legend_handles_labels()
-    handles, labels = [*handles, *(h for h, _ in extra)], [*labels, *(text for _, text in extra)]
     if not handles:
         return
     size = FontProperties(size=plt.rcParams["legend.fontsize"]).get_size_in_points() / 72

@@ -31,12 +31,11 @@ from crazybilliards.comparison.encoding import (
     kind_of_film,
 )
 from crazybilliards.model import Chain, chain_of
+from crazybilliards.model.arrays import Array
 from crazybilliards.model.checks import check_path, check_real
 from crazybilliards.model.progress import progress_bar
 from crazybilliards.model.storage import make_folder, write_atomically
 from crazybilliards.particles import simulate
-
-Array = NDArray[np.float64]
 
 _LONGEST = 120.0  # s
 _FINER = 4  # snapshots for one picture, of a chain that is simulated

@@ -27,21 +27,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Theory:
-    """A theory of a chain's steady state.
+    """A theory of a chain's steady state."""
 
-    Attributes
-    ----------
-    name
-        The name of the function in ``crazybilliards.kinetic``, e.g. ``"equilibrium"``.
-    title
-        Its name in tables and legends.
-    module
-        The module below ``crazybilliards.kinetic`` that has the function and ``check_NAME``.
-    """
-
-    name: str
-    title: str
-    module: str
+    name: str  # of the function in ``crazybilliards.kinetic``, e.g. "equilibrium"
+    title: str  # in tables and legends
+    module: str  # below ``crazybilliards.kinetic``, with the function and ``check_NAME``
 
     @property
     def solve(self) -> Callable[..., xr.Dataset]:
@@ -61,8 +51,9 @@ class Theory:
 
     def seconds(self, chain: Chain) -> float:
         """Return the computing time on one core, within a factor of three."""
-        computing_time = import_module("crazybilliards.kinetic.computing_time")
-        return float(computing_time.expected_seconds(self.name, chain))
+        from crazybilliards.kinetic.accuracy import expected_seconds
+
+        return expected_seconds(self.name, chain)
 
     def refusal(self, chain: Chain, settings: Mapping[str, Any] | None = None) -> str:
         """Return why the theory does not take the chain and these settings, or nothing."""

@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from crazybilliards.model.arrays import Array
 
 _MOST_SYMBOLS = 60
 _SEEN = 0.01  # of the height of the picture, between a curve and a line
@@ -30,17 +30,10 @@ def draw_measured(
 ) -> None:
     """Draw some nodes as symbols with error bars, and the stretches they hide as a line.
 
-    A node that is not known, or that a logarithmic axis cannot show, is left out.
-
-    Parameters
-    ----------
-    error
-        Standard errors; None: they are not known.
-    look
-        color, label and other keywords of ``errorbar``.
-    spaced
-        Spaces the symbols over the numbers of the nodes. The first and the last are always drawn,
-        because theories differ most at the border.
+    A node that is not known, or that a logarithmic axis cannot show, is left out. ``error`` None:
+    standard errors are not known. ``look``: color, label and other keywords of ``errorbar``.
+    ``spaced`` spaces the symbols over the numbers of the nodes. The first and the last are always
+    drawn, because theories differ most at the border.
     """
     known = np.isfinite(values) & np.isfinite(x)
     if ax.get_xscale() == "log":

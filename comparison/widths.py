@@ -23,10 +23,10 @@ class WidthDeviation(NamedTuple):
     border_error: float  # that of the border's
 
 
-def central_width(run: xr.Dataset) -> float:
-    """W_v in the centre: root mean square over the middle tenth of the rods."""
+def central_width(run: xr.Dataset, of: str = "velocity_width") -> float:
+    """W_v in the centre, or W_x: root mean square over the middle tenth of the rods."""
     middle = middle_tenth(run.sizes["particle"])
-    return float(np.sqrt((run.velocity_width.values[middle] ** 2).mean()))
+    return float(np.sqrt((run[of].values[middle] ** 2).mean()))
 
 
 def border_width(run: xr.Dataset) -> float:

@@ -1,8 +1,14 @@
-"""The conditions of the theories on a chain, checked in one place."""
+"""What theories ask of a chain, and of the times to solve for, checked in one place."""
 
 from __future__ import annotations
 
+import numpy as np
+
 from crazybilliards.model import Chain
+from crazybilliards.model.arrays import Array
+from crazybilliards.model.checks import check_real
+
+_MOST_OUTPUTS = 1_000_000
 
 
 def require_chain(
@@ -20,18 +26,9 @@ def require_chain(
     Every theory calls this once, before any work. A chain with a parameter that the theories do
     not know passes only if that parameter has its default value.
 
-    Parameters
-    ----------
-    chain
-        The chain to check.
-    theory
-        The name of the theory in the error.
-    elastic, linear, gapless
-        Whether the theory needs restitution 1, linear springs, no gap.
-    steady
-        Whether the theory needs a chain that has a steady state.
-    remedy
-        What to do for a restitution other than 1; the end of that error.
+    ``theory`` is its name in the error. It needs restitution 1 (``elastic``), linear springs, no
+    gap, or a steady state, where these are True. ``remedy`` says what to do for another
+    restitution, at the end of that error.
     """
     chain.require_known(theory)
     if elastic and chain.restitution != 1:
@@ -47,3 +44,18 @@ def require_chain(
         raise ValueError(f"{theory} holds without gap only: gap must be 0, got {chain.gap:g}")
     if steady:
         chain.require_steady_state()
+
+
+def output_times(duration: float | None, every: float | None, number: int) -> Array:
+    """Return the times 0, every, 2 every, ... up to the first one not before ``duration`` [T].
+
+    ``every`` None: ``number`` outputs after the start.
+    """
+    duration = check_real("duration", duration, positive=True)
+    every = duration / number if every is None else check_real("every", every, positive=True)
+    if every > duration * (1 + 1e-9):
+        raise ValueError(f"every must be at most the duration {duration:g}, got {every:g}")
+    count = np.ceil(duration / every - 1e-9)
+    if count > _MOST_OUTPUTS:
+        raise ValueError(f"every = {every:g} asks for {count:.1g} outputs, {_MOST_OUTPUTS} at most")
+    return every * np.arange(count + 1)

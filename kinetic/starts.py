@@ -11,18 +11,16 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
 from scipy.optimize import elementwise
 
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.kinetic.statics.label_closure import fluid_reach, stationary
 from crazybilliards.model import Chain, chain_of
+from crazybilliards.model.arrays import Array
 from crazybilliards.model.checks import check_real, shown
 from crazybilliards.model.grid import position_grid, thermal_reach
 from crazybilliards.model.vocabulary import require, result
-
-Array = NDArray[np.float64]
 
 _RODS_TOLERANCE = 1e-3
 _CROWDED = 1.01  # so many rods in the length of one overlap, but for errors of the grid
@@ -122,7 +120,9 @@ def read_start(chain: Chain, start: xr.Dataset) -> Start:
     require_rods(chain, "density", label[-1])
     scale = chain.size / label[-1]
     profiles = {}
-    free = _own_variance(chain, start)
+    # In a quench it is another chain.
+    own = chain_of(start) if "provenance" in start.attrs else chain
+    free = own.free_velocity_width**2
     for name, default in (("flow_velocity", 0.0), ("velocity_variance", free)):
         values = _numbers(start, name) if name in start else np.full(x.size, default)
         if values.shape != x.shape or not np.isfinite(values).all():
@@ -146,10 +146,3 @@ def _numbers(start: xr.Dataset, name: str) -> Array:
     if not np.issubdtype(values.dtype, np.number):
         raise ValueError(f"start: {name} must be numbers, got {values.dtype}")
     return np.asarray(values, dtype=float)
-
-
-def _own_variance(chain: Chain, start: xr.Dataset) -> float:
-    """Return the free W^2 of the chain of the start, which differs from ``chain`` in a quench."""
-    if "provenance" in start.attrs:
-        chain = chain_of(start)
-    return chain.free_velocity_width**2

@@ -1,4 +1,4 @@
-"""Arrays that a user gives: checked to be numbers."""
+"""Arrays: the type of most of them, and the check of those that a user gives."""
 
 from __future__ import annotations
 
@@ -7,8 +7,10 @@ from numpy.typing import NDArray
 
 from crazybilliards.model.checks import shown
 
+Array = NDArray[np.float64]
 
-def check_numbers(name: str, values: object) -> NDArray[np.float64]:
+
+def check_numbers(name: str, values: object) -> Array:
     """Return ``values`` as an array of floats, or raise a ValueError that names the argument."""
     try:
         if values is not None:  # numpy would make a NaN of it

@@ -8,13 +8,13 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 from scipy.optimize import curve_fit
 
 from crazybilliards.comparison.distances import distances_in_plot
-from crazybilliards.comparison.drawing import COLOURS, SYMBOLS
+from crazybilliards.comparison.drawing import COLOURS, draw_points
 from crazybilliards.comparison.layout import legend_above, panels
 from crazybilliards.model import chain_of
+from crazybilliards.model.arrays import Array
 from crazybilliards.model.vocabulary import require
 from crazybilliards.reproduction.claims.repetition import error_of_mean
 
@@ -28,20 +28,12 @@ _SYMBOLS_DRAWN = 41
 
 
 def mean_shape(run: xr.Dataset, particles: Sequence[int], name: str) -> float:
-    """Mean over the particles of their ``velocity_skewness`` or excess ``velocity_kurtosis``.
-
-    Raises
-    ------
-    ValueError
-        If the result lacks it, because an old version computed it.
-    """
-    require(run, (name,))
+    """Mean over the particles of their ``velocity_skewness`` or excess ``velocity_kurtosis``."""
+    require(run, (name,))  # a result of an old version lacks it
     return float(run[name].sel(particle=list(particles)).mean())
 
 
-def histogram(
-    run: xr.Dataset, particles: Sequence[int], reach: float
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def histogram(run: xr.Dataset, particles: Sequence[int], reach: float) -> tuple[Array, Array]:
     """Return velocities and the mean density of some particles in 41 equal bins to +-``reach``."""
     v = run.velocity_bin.values
     weight = np.gradient(v)
@@ -54,12 +46,7 @@ def histogram(
     return middle[filled] / width[filled], share[filled] / width[filled]
 
 
-def off_in_plot(
-    v: NDArray[np.float64],
-    p: NDArray[np.float64],
-    line: Callable[[NDArray[np.float64]], NDArray[np.float64]],
-    reach: float,
-) -> float:
+def off_in_plot(v: Array, p: Array, line: Callable[[Array], Array], reach: float) -> float:
     """Return how far off a line the symbols are at most, in a plot to +-``reach`` from p = 0 up."""
     fine = np.linspace(-reach, reach, 4001)
     height = (0.0, float(p.max()))
@@ -93,23 +80,14 @@ def draw_distributions(ax: Axes, runs: Sequence[xr.Dataset], particles: Sequence
         width = float(np.sqrt(variance)) / unit
         drawable = p > _LEAST * p.max()
         reach = max(reach, float(np.abs(v[drawable]).max()))
-        colour = COLOURS[number]
         # Bins grow with v: draw those nearest to equally spaced velocities.
         inside = v[drawable]
         spaced = np.linspace(inside[0], inside[-1], _SYMBOLS_DRAWN)
         shown = np.unique(np.abs(v[:, None] - spaced).argmin(axis=0))
-        ax.errorbar(
-            v[shown],
-            p[shown],
-            error[shown],
-            fmt=SYMBOLS[number],
-            color=colour,
-            markerfacecolor="none",
-            linewidth=0.6,
-            label=f"$i = {particle}$",
-        )
+        label = f"$i = {particle}$"
+        draw_points(ax, v[shown], p[shown], error[shown], number=number, label=label, linewidth=0.6)
         fine = np.linspace(-5 * width, 5 * width, 201)
-        ax.plot(fine, gaussian(fine, width), color=colour, linewidth=0.9)
+        ax.plot(fine, gaussian(fine, width), color=COLOURS[number], linewidth=0.9)
     ax.plot([], [], color="0.4", linewidth=0.9, label="Gaussian")
     fine = np.linspace(-5, 5, 201)
     ax.plot(fine, gaussian(fine, 1.0), "k:", label="free rod")
@@ -119,46 +97,30 @@ def draw_distributions(ax: Axes, runs: Sequence[xr.Dataset], particles: Sequence
     ax.set(xlabel="velocity $v/W$", ylabel="probability density $W p(v)$")
 
 
-def waves(
-    run: xr.Dataset, count: str, particles: slice
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def waves(run: xr.Dataset, count: str, particles: slice) -> tuple[Array, Array]:
     """Return sizes of avalanches from 1 on, and how many of a count began at some rods."""
     sizes = run[COUNTS[count][1]].values
     counts = run[count].sel(particle=particles).sum("particle").values.astype(float)
     return sizes[sizes >= 1], counts[sizes >= 1]
 
 
-def draw_sizes(
-    ax: Axes, sizes: np.ndarray, p: np.ndarray, counts: np.ndarray, *, number: int, label: str
-) -> None:
+def draw_sizes(ax: Axes, sizes: Array, p: Array, counts: Array, *, number: int, label: str) -> None:
     """Draw the probability of avalanche sizes, with error bars of counting statistics."""
     counted = counts > 0
-    ax.errorbar(
-        sizes[counted],
-        p[counted],
-        p[counted] / np.sqrt(counts[counted]),
-        fmt=SYMBOLS[number],
-        color=COLOURS[number],
-        markerfacecolor="none",
-        linewidth=0.7,
-        label=label,
-    )
+    p, error = p[counted], p[counted] / np.sqrt(counts[counted])
+    draw_points(ax, sizes[counted], p, error, number=number, label=label, linewidth=0.7)
     ax.set(xscale="log", yscale="log", xlabel="avalanche size $N_c$")
 
 
-def gaussian(v: np.ndarray, width: float) -> np.ndarray:
+def gaussian(v: Array, width: float) -> Array:
     """Return the normal density of that width."""
     return np.asarray(np.exp(-((v / width) ** 2) / 2) / (width * np.sqrt(2 * np.pi)))
 
 
-def fit_gaussian(
-    v: NDArray[np.float64], p: NDArray[np.float64], width: float
-) -> Callable[[NDArray[np.float64]], NDArray[np.float64]]:
+def fit_gaussian(v: Array, p: Array, width: float) -> Callable[[Array], Array]:
     """Return the Gaussian that fits best by least squares, its height, centre and width free."""
 
-    def model(
-        v: NDArray[np.float64], height: float, centre: float, width: float
-    ) -> NDArray[np.float64]:
+    def model(v: Array, height: float, centre: float, width: float) -> Array:
         return np.asarray(height * np.exp(-(((v - centre) / width) ** 2) / 2))
 
     values, _ = curve_fit(model, v, p, p0=(float(p.max()), 0.0, width))

@@ -37,23 +37,19 @@ def cases(quality: Quality) -> Cases:
 
 def claims(results: Results) -> list[Claim]:
     """Check: the mean and the width of every rod's displacement are the exact ones."""
-    claims = []
-    for gap in _GAPS:
-        rods, exact = results[f"rods g={gap:g}"], results[f"exact g={gap:g}"]
-        for name, symbol in (("mean_displacement", "<dx>"), ("displacement_width", "W_x")):
-            s = chain_of(rods).thermal_length
-            difference, error = (rods[name] - exact[name]) / s, rods[f"{name}_error"] / s
-            claims.append(
-                Claim(
-                    f"{symbol} of every rod is the exact one, g = {gap:g}",
-                    **worst(
-                        f"{symbol} of a rod less the exact one, in units of s",
-                        map(Estimate, difference.values, error.values),
-                        EYE,
-                    ),
-                )
-            )
-    return claims
+    symbols = {"mean_displacement": "<dx>", "displacement_width": "W_x"}
+    return [_exact(results, gap, *each) for gap in _GAPS for each in symbols.items()]
+
+
+def _exact(results: Results, gap: float, name: str, symbol: str) -> Claim:
+    rods, exact = results[f"rods g={gap:g}"], results[f"exact g={gap:g}"]
+    s = chain_of(rods).thermal_length
+    difference, error = (rods[name] - exact[name]) / s, rods[f"{name}_error"] / s
+    differences = map(Estimate, difference.values, error.values)
+    return Claim(
+        f"{symbol} of every rod is the exact one, g = {gap:g}",
+        **worst(f"{symbol} of a rod less the exact one, in units of s", differences, EYE),
+    )
 
 
 def draw(results: Results) -> Figure:

@@ -18,11 +18,6 @@ def nu(run: xr.Dataset) -> float:
     return fit_border_power_law(run).exponent
 
 
-def weighted_nu(run: xr.Dataset) -> float:
-    """Return the exponent with rods weighed by their error bars."""
-    return fit_border_power_law(run, weighted=True).exponent
-
-
 def fits_in_plot(runs: Iterable[xr.Dataset]) -> tuple[Estimate, float]:
     """Compare the fits with the widths in a plot of all runs, both axes logarithmic.
 
@@ -36,11 +31,8 @@ def fits_in_plot(runs: Iterable[xr.Dataset]) -> tuple[Estimate, float]:
     worst, significance = Estimate(0.0, 0.0), 0.0
     for run in runs:
         fit = fit_border_power_law(run)
-        i, width, error = (
-            run.particle.values,
-            run.velocity_width.values,
-            run.velocity_width_error.values,
-        )
+        i, width = run.particle.values, run.velocity_width.values
+        error = run.velocity_width_error.values
         fine = np.geomspace(1, i[-1], 2000)
         off = distances_in_plot(
             np.log(i),

@@ -6,13 +6,10 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 import xarray as xr
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_rods
-from crazybilliards.comparison.fits import fit_border_power_law
 from crazybilliards.comparison.layout import legend_above, panels
-from crazybilliards.model import chain_of
 from crazybilliards.reproduction.chains import (
     LARGE,
     RESTITUTIONS,
@@ -23,11 +20,7 @@ from crazybilliards.reproduction.chains import (
 from crazybilliards.reproduction.claims.repetition import Runs
 from crazybilliards.reproduction.claims.study import Cases, Quality, Results, all_of
 
-SIZES = (30, 100, 300, LARGE)  # of chains at e = 0
-_SIZES_OF_PAIRS = {"quick": (30,), "full": SIZES}
-
 INDEPENDENT, PAIRS = "kinetic equation", "with pair correlations"
-PAIRS_ALONE = "theory with pairs"  # in a figure without the other theory and with less room
 _EQUATIONS: dict[str, Callable[[int, float], Theory]] = {
     INDEPENDENT: kinetic_equation,
     PAIRS: correlated_equation,
@@ -62,33 +55,6 @@ def predicted(results: Results) -> Theories:
         }
         for name, equation in _EQUATIONS.items()
     }
-
-
-def by_size(quality: Quality) -> Cases:
-    """Return the theory with pair correlations at e = 0."""
-    return all_of((correlated_equation(size, 0.0) for size in _SIZES_OF_PAIRS[quality]), quality)
-
-
-def predicted_by_size(results: Results) -> dict[int, xr.Dataset]:
-    """Return the results of :func:`by_size`."""
-    return {
-        size: results[theory]
-        for size in SIZES
-        if (theory := correlated_equation(size, 0.0).name) in results
-    }
-
-
-def minus_nu(theory: xr.Dataset) -> float:
-    """Return the exponent of the power laws from the borders."""
-    return -fit_border_power_law(theory).exponent
-
-
-def draw_widths_by_size(ax: Axes, results: Results) -> None:
-    """Draw W_v(i)/W of the theory at e = 0 as dotted lines."""
-    for size, theory in predicted_by_size(results).items():
-        widths = theory.velocity_width / chain_of(theory).free_velocity_width
-        ax.plot(theory.particle, widths, ":", color=COLOURS[SIZES.index(size)], zorder=4)
-    ax.plot([], [], ":", color="0.4", label=PAIRS_ALONE)
 
 
 def draw_flippers(

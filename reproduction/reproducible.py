@@ -20,13 +20,7 @@ def groups() -> dict[str, tuple[Study, ...]]:
 
 
 def find_studies(which: str) -> list[Study]:
-    """Return what a number, a name, ``all`` or ``analytics`` stands for.
-
-    Raises
-    ------
-    ValueError
-        If there is nothing of that number or name.
-    """
+    """Return what a number, a name, ``all`` or ``analytics`` stands for, or raise a ValueError."""
     if which in groups():
         return list(groups()[which])
     for study in EVERYTHING:

@@ -48,13 +48,12 @@ def central_limit(results: Results, size: int, restitution: float = 0.0) -> Esti
     runs = limits(size, restitution).members(results)
     value = float(np.mean([central_width(run) for run in runs]))
     bias = common_bias(runs)
-    squares = [_relative_error(run) ** 2 - float(run.attrs["time_step_error"]) ** 2 for run in runs]
-    statistics = math.sqrt(sum(max(square, 0.0) for square in squares)) / len(runs)
+    squares = 0.0
+    for run in runs:
+        error = float(run.central_velocity_width_error / run.central_velocity_width)
+        squares += max(error**2 - float(run.attrs["time_step_error"]) ** 2, 0.0)
+    statistics = math.sqrt(squares) / len(runs)
     return Estimate(value, value * math.hypot(statistics, bias))
-
-
-def _relative_error(run: xr.Dataset) -> float:
-    return float(run.central_velocity_width_error / run.central_velocity_width)
 
 
 def common_bias(runs: list[xr.Dataset]) -> float:

@@ -28,7 +28,7 @@ from crazybilliards.model import Chain, load, save
 from crazybilliards.model.storage import write_sealed
 from crazybilliards.particles import simulate, simulate_limit
 from crazybilliards.reproduction import figures
-from crazybilliards.reproduction.figures import fig01_model, fig16_arctanh, fig17_density
+from crazybilliards.reproduction.figures import fig17_density
 
 pytestmark = [
     pytest.mark.skipif(not sys.platform.startswith("linux"), reason="forks, reads /proc"),
@@ -92,7 +92,7 @@ def prepared():
     for restitution in (0.9, 1.0):
         simulate(Chain(size=5, restitution=restitution), duration=200, progress=False)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(figures, "FIGURES", (fig01_model.FIGURE, fig16_arctanh.FIGURE))
+        patch.setattr(figures, "FIGURES", (figures.FIGURES[0], figures.FIGURES[15]))
         patch.setattr(fig17_density, "_DURATION", 5000.0)
         yield
 

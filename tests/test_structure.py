@@ -33,7 +33,7 @@ FLOORS = {
         {"vanishing_step"},
     ),
     "kinetic": (
-        {"accuracy", "computing_time", "requirements", "times"},
+        {"accuracy", "requirements"},
         {"statics", "exact"},
         {"starts"},
         {"fluids", "kinetic_equation"},

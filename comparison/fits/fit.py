@@ -9,13 +9,11 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.optimize import OptimizeWarning, curve_fit
 
-from crazybilliards.model.arrays import check_numbers
+from crazybilliards.model.arrays import Array, check_numbers
 from crazybilliards.model.checks import shown
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -5,13 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from crazybilliards.comparison.fits.fit import (
-    Array,
-    Fit,
-    check_points,
-    least_squares,
-    root_mean_square,
-)
+from crazybilliards.comparison.fits.fit import Fit, check_points, least_squares, root_mean_square
+from crazybilliards.model.arrays import Array
 
 _OVERFLOW = 700.0  # of exp
 
@@ -110,7 +105,7 @@ def _growth(t: Array, scale: float, rate: float) -> Array:
 def _logarithm(time: ArrayLike, energy: ArrayLike, least: int) -> tuple[Array, Array]:
     """Return the times and ln E, if there are enough and all energies are positive."""
     t, E = check_points(time=time, energy=energy)
-    if t.size < least or not (np.isfinite(E).all() and E.min() > 0):
+    if t.size < least or E.min() <= 0:
         raise ValueError(f"the fit needs at least {least} energies, all of them positive")
     if np.ptp(t) == 0:
         raise ValueError(f"the fit needs energies at more than one time, got time={t[0]:g} only")
@@ -141,7 +136,7 @@ def fit_scaling(x: ArrayLike, y: ArrayLike, error: ArrayLike) -> Fit:
     (-1.0, 0.015)
     """
     x, y, error = check_points(x=x, y=y, error=error)
-    if x.size < 2 or not (np.min([x, y, error]) > 0 and np.isfinite([x, y, error]).all()):
+    if x.size < 2 or np.min([x, y, error]) <= 0:
         raise ValueError("a power law needs at least two points, positive, with positive errors")
     if np.ptp(x) == 0:
         raise ValueError(f"a power law needs more than one x, got x={x[0]:g} only")

@@ -9,8 +9,9 @@ import numpy as np
 import xarray as xr
 from scipy.optimize import curve_fit
 
-from crazybilliards.comparison.fits.fit import Array, Fit, least_squares, root_mean_square
+from crazybilliards.comparison.fits.fit import Fit, least_squares, root_mean_square
 from crazybilliards.model import chain_of
+from crazybilliards.model.arrays import Array
 from crazybilliards.model.vocabulary import require
 
 _STEEPEST = -5.0  # of the exponents that are tried

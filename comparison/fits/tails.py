@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import minimize_scalar
 
-from crazybilliards.comparison.fits.fit import Array, Fit, check_points
+from crazybilliards.comparison.fits.fit import Fit, check_points
+from crazybilliards.model.arrays import Array
 from crazybilliards.model.checks import check_integer, check_real
 
 
@@ -131,12 +132,8 @@ def _beyond(edges: Array, density: Array, start: float) -> tuple[float, float]:
     used = (edges[1:] > start) & (shares[:-1] > 0)
     if not used.any():
         return 0.0, 0.0
-    low, high, at_low, at_high = (
-        edges[:-1][used],
-        edges[1:][used],
-        shares[:-1][used],
-        shares[1:][used],
-    )
+    low, high = edges[:-1][used], edges[1:][used]
+    at_low, at_high = shares[:-1][used], shares[1:][used]
     # No logarithm where the share ends at 0: the velocities are then evenly spread over the bin.
     fall = np.log(at_low / np.where(at_high > 0, at_high, at_low))
     here = np.maximum(low, start)

@@ -7,6 +7,7 @@ them, which are too small to be seen above; at e != 1 those from the simulation.
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -19,7 +20,7 @@ from crazybilliards.comparison.coverage import smooth
 from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_rods, overlay
 from crazybilliards.comparison.layout import entitle, legend_above, letter, panels, picture_width
 from crazybilliards.comparison.side_by_side.grid import ELASTIC, KINETIC, SIMULATION, TITLES
-from crazybilliards.model import Chain, chain_of
+from crazybilliards.model import chain_of
 from crazybilliards.model.vocabulary import require
 
 _DECADES = 5  # of f in the image
@@ -32,12 +33,11 @@ def draw_density(tree: xr.DataTree) -> Figure:
 
     The insets show the right edge, where the theories differ most, with every bin.
     """
-    figure, axes_of_all = _panels(len(tree.children))
+    figure, axes_of_all = _panels(tree)
     for axes, group in zip(axes_of_all, tree.children.values(), strict=True):
         results = {name: smooth(result) for name, result in _results(group).items()}
         chain = chain_of(results[SIMULATION])
         _draw(axes, results, "density", unit=chain.close_packed_density)
-        entitle(axes[0], _title(group, chain))
         axes[0].set(ylabel=r"density $\rho$ [1/R]")
         axes[1].set(xlabel="position $x$ [R]", ylabel=r"diff. $\times\, 2R$")
         reference = results[_reference(results)]
@@ -54,23 +54,11 @@ def _draw_edge(ax: Axes, results: dict[str, xr.Dataset], end: float) -> None:
     chain = chain_of(results[SIMULATION])
     begin = end - max(3 * chain.thermal_length, 10 * chain.radius)
     inset = ax.inset_axes((0.29, 0.13, 0.42, 0.56))
-    run = results[SIMULATION].sel(x=slice(begin, end))
-    inset.errorbar(
-        run.x,
-        run.density,
-        run.get("density_error"),
-        linestyle="none",
-        marker=".",
-        markersize=1.5,
-        color="black",
-        linewidth=0.5,
-    )
-    theories = {
-        name: result.sel(x=slice(begin, end))
-        for name, result in results.items()
-        if name != SIMULATION
-    }
-    overlay(theories, ax=inset)
+    shown = {name: result.sel(x=slice(begin, end)) for name, result in results.items()}
+    run = shown.pop(SIMULATION)
+    look: Any = {"linestyle": "none", "marker": ".", "markersize": 1.5, "linewidth": 0.5}
+    inset.errorbar(run.x, run.density, run.get("density_error"), color="black", **look)
+    overlay(shown, ax=inset)
     inset.set(xlabel="", ylabel="", xlim=(begin, end))
     inset.tick_params(labelsize=6)
     inset.locator_params(nbins=3)
@@ -79,12 +67,11 @@ def _draw_edge(ax: Axes, results: dict[str, xr.Dataset], end: float) -> None:
 
 def draw_displacement(tree: xr.DataTree) -> Figure:
     """<dx> at the rods' mean positions, with the paper's arctanh fit, for each amplitude."""
-    figure, axes_of_all = _panels(len(tree.children))
+    figure, axes_of_all = _panels(tree)
     for axes, group in zip(axes_of_all, tree.children.values(), strict=True):
         results = _results(group)
-        chain = chain_of(results[SIMULATION])
-        _draw(axes, results, "mean_displacement", unit=chain.thermal_length)
-        entitle(axes[0], _title(group, chain))
+        s = chain_of(results[SIMULATION]).thermal_length
+        _draw(axes, results, "mean_displacement", unit=s)
         axes[0].set(ylabel=r"displacement $\langle\Delta x\rangle$ [R]")
         axes[1].set(xlabel=r"mean position $\langle x_i\rangle$ [R]", ylabel="diff. / $s$")
     legend_above(figure, axes_of_all[0][0])
@@ -94,11 +81,6 @@ def draw_displacement(tree: xr.DataTree) -> Figure:
 def _results(group: xr.DataTree) -> dict[str, xr.Dataset]:
     """Return the results of one chain by their titles, in drawing order."""
     return {title: group[key].to_dataset() for key, title in TITLES.items() if key in group}
-
-
-def _title(group: xr.DataTree, chain: Chain) -> str:
-    name, _, value = str(group.name).rpartition("_")
-    return rf"${_VARIED[name]} = {value}$,  $s = {chain.thermal_length:.3g}\,R$"
 
 
 def _reference(results: dict[str, xr.Dataset]) -> str:
@@ -125,8 +107,9 @@ def _draw(axes: list[Axes], results: dict[str, xr.Dataset], quantity: str, unit:
     overlay(differences, quantity, along="mean_position", ax=axes[1])
 
 
-def _panels(number: int) -> tuple[Figure, list[list[Axes]]]:
-    """Make a lettered panel for each chain, with one for differences below it."""
+def _panels(tree: xr.DataTree) -> tuple[Figure, list[list[Axes]]]:
+    """Make a lettered panel for each chain, with its title, and one for differences below it."""
+    number = len(tree.children)
     width = picture_width(2 if number > 1 else 1)
     columns = min(number, 2 if width > picture_width(1) else 1)
     rows = math.ceil(number / columns)
@@ -135,6 +118,10 @@ def _panels(number: int) -> tuple[Figure, list[list[Axes]]]:
     made = [list(part.subplots(2, 1, sharex=True, height_ratios=(3, 1.3))) for part in parts]
     if number > 1:
         letter([above for above, _ in made])
+    for (above, _), group in zip(made, tree.children.values(), strict=True):
+        name, _, value = str(group.name).rpartition("_")
+        s = chain_of(group[SIMULATION].to_dataset()).thermal_length
+        entitle(above, rf"${_VARIED[name]} = {value}$,  $s = {s:.3g}\,R$")
     return figure, made
 
 
@@ -156,8 +143,7 @@ def draw_widths(tree: xr.DataTree) -> Figure:
                     values = theory[name] / unit
                     ax.plot(theory.normalized_particle, values, style, color=colour, zorder=3)
     along_the_chain(axes[0])
-    axes[0].set(ylabel="velocity width $W_v/W$")
-    axes[0].set_ylim(bottom=0)
+    axes[0].set(ylabel="velocity width $W_v/W$", ylim=(0, None))
     along_the_chain(axes[1])
     axes[1].set(ylabel=r"displacement $\langle\Delta x\rangle/s$")
     for key, style in _STYLES.items():

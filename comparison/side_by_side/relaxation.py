@@ -12,7 +12,6 @@ from typing import Literal, get_args
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 from crazybilliards.comparison.coverage import smooth
 from crazybilliards.kinetic import (
@@ -29,7 +28,6 @@ from crazybilliards.model.progress import waiting_for
 from crazybilliards.model.randomness import Seed, seed_of
 from crazybilliards.particles import simulate
 
-Array = NDArray[np.float64]
 Release = Literal["compressed", "displaced", "quenched"]
 
 PARTICLES = "particles"
@@ -195,9 +193,7 @@ def _fluid(chain: Chain, release: Release, by: float) -> xr.Dataset:
 
 
 def _exact(chain: Chain, release: Release, by: float, duration: float, every: float) -> xr.Dataset:
-    if release == "compressed":
-        return breathing_cloud(chain, duration, every=every, stretch=by)
     if release == "displaced":
         return breathing_cloud(chain, duration, every=every, shift=by * chain.thermal_length)
-    hot = (by * chain.free_velocity_width) ** 2
+    hot = (by * chain.free_velocity_width) ** 2 if release == "quenched" else None
     return breathing_cloud(chain, duration, every=every, stretch=by, start_velocity_variance=hot)

@@ -10,7 +10,6 @@ import xarray as xr
 from matplotlib.animation import FuncAnimation
 from matplotlib.artist import Artist
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from crazybilliards.comparison.coverage import smooth
 from crazybilliards.comparison.drawing import overlay
@@ -19,9 +18,9 @@ from crazybilliards.comparison.side_by_side.grid import SIMULATION
 from crazybilliards.comparison.side_by_side.relaxation import LEGEND, PARTICLES, cloud
 from crazybilliards.model import Chain, chain_of
 
-Array = NDArray[np.float64]
 Relaxation = xr.DataTree
 
+_NAMES = {PARTICLES: SIMULATION} | LEGEND
 _DENSITY = r"density $\rho$ [1/R]"
 _ON_A_SCREEN: Any = {
     "font.size": 13,
@@ -79,12 +78,11 @@ def draw_cloud(tree: xr.DataTree) -> Figure:
     """Width and centre of the cloud in the reduced coordinate against time, in units of s."""
     figure, axes = panels(1, 2, height=2.4)
     s = _chain(tree).thermal_length
-    names = {PARTICLES: SIMULATION} | LEGEND
     for ax, which, label in zip(
         axes, ("cloud_width", "centre"), ("width of the cloud / $s$", "centre / $s$"), strict=True
     ):
         curves = {}
-        for key, name in names.items():
+        for key, name in _NAMES.items():
             if key in tree:
                 found = cloud(tree[key].to_dataset())
                 curves[name] = (found / s).assign_attrs(tree[key].attrs)
@@ -144,7 +142,6 @@ def title(tree: xr.DataTree) -> str:
 
 def _densities(tree: xr.DataTree) -> dict[str, xr.Dataset]:
     """Return the available smoothed densities by the names they are drawn with."""
-    names = {PARTICLES: SIMULATION} | LEGEND
     if PARTICLES not in tree:
         raise ValueError(
             "tree must be what compare_relaxation returns; film(run) shows the rods of one run, "
@@ -152,7 +149,7 @@ def _densities(tree: xr.DataTree) -> dict[str, xr.Dataset]:
         )
     return {
         name: smooth(tree[key].to_dataset())
-        for key, name in names.items()
+        for key, name in _NAMES.items()
         if key in tree and "density" in tree[key]
     }
 

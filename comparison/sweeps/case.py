@@ -148,12 +148,7 @@ class Case:
     def check_file(self, folder: Path, *, keep_old: bool = False) -> None:
         """Raise unless ``folder`` holds its result.
 
-        Parameters
-        ----------
-        folder
-            The folder of its file.
-        keep_old
-            Accept a result that other source code of the package computed.
+        ``keep_old`` accepts a result that other source code of the package computed.
 
         Raises
         ------

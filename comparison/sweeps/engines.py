@@ -86,12 +86,8 @@ def _prepare_worker(started: Event) -> None:
 def dask_cluster(address: str | None = None) -> Iterator[Executor]:
     """Run cases on the dask cluster whose scheduler is at ``address``; None: one of this machine.
 
-    If a worker dies, another one gets its case.
-
-    Raises
-    ------
-    ValueError
-        If dask is not installed, or no scheduler answers there.
+    If a worker dies, another one gets its case. A ValueError says that dask is not installed, or
+    that no scheduler answers there.
     """
     try:
         from distributed import Client, LocalCluster

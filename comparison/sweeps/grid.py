@@ -66,9 +66,8 @@ class Sweep:
     job: str
     chain: Mapping[str, Any]
     settings: Mapping[str, Any]
-    _chain: Chain = field(
-        init=False, repr=False, compare=False
-    )  # the common parameters of the cases
+    # The common parameters of the cases.
+    _chain: Chain = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         settings = list(JOBS[check_choice("job", self.job, sorted(JOBS))].settings)
@@ -92,13 +91,7 @@ class Sweep:
         return map(self.case, range(len(self)))
 
     def case(self, number: int) -> Case:
-        """Return one case, counted from 0; the last parameter of the grid varies fastest.
-
-        Raises
-        ------
-        ValueError
-            If the case is wrong.
-        """
+        """Return one case, counted from 0; the last parameter of the grid varies fastest."""
         here: dict[str, Any] = {}
         settings = dict(self.settings)
         for name in reversed(list(self.grid)):
@@ -115,10 +108,7 @@ class Sweep:
 def read_sweep(path: str | os.PathLike[str]) -> Sweep:
     """Read a sweep from a TOML file with the tables grid, chain and that of the job.
 
-    Raises
-    ------
-    ValueError
-        If the file is not TOML, or a table is unknown or not a table.
+    Raise a ValueError if the file is not TOML, or a table is unknown or not a table.
     """
     path = check_path("path", path)
     try:

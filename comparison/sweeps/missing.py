@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from crazybilliards.comparison.sweeps.case import Case, OutdatedError
 from crazybilliards.comparison.sweeps.grid import Sweep
+from crazybilliards.model.arrays import Array
 from crazybilliards.model.calls import warn_user
 from crazybilliards.model.progress import progress_bar
 from crazybilliards.particles import ShortRunWarning
@@ -18,24 +19,12 @@ from crazybilliards.particles import ShortRunWarning
 
 @dataclass(frozen=True)
 class Cases:
-    """Checked cases, all different. A sweep may have a million: each is made when it is needed.
+    """Checked cases, all different. A sweep may have a million: each is made when it is needed."""
 
-    Attributes
-    ----------
-    source
-        The sweep or the list that they come from.
-    numbers
-        Their numbers there, shape (cases,).
-    work
-        The particle steps of each, shape (cases,).
-    replaced
-        What to say of the files that their results replace.
-    """
-
-    source: Sweep | list[Case]
-    numbers: NDArray[np.int64]
-    work: NDArray[np.float64]
-    replaced: Sequence[str] = ()
+    source: Sweep | list[Case]  # that they come from
+    numbers: NDArray[np.int64]  # in the source, shape (cases,)
+    work: Array  # particle steps of each, shape (cases,)
+    replaced: Sequence[str] = ()  # what to say of the files that their results replace
 
     def __len__(self) -> int:
         return self.work.size
@@ -48,10 +37,7 @@ class Cases:
 def check_cases(cases: Iterable[Case], *, progress: bool = True) -> Cases:
     """Check every case of a sweep, and leave out repeated ones.
 
-    Raises
-    ------
-    ValueError
-        For the first case that is wrong.
+    A ValueError is that of the first case that is wrong.
     """
     source: Sweep | list[Case]
     if isinstance(cases, Sweep):
@@ -62,7 +48,7 @@ def check_cases(cases: Iterable[Case], *, progress: bool = True) -> Cases:
     return Cases(source, np.arange(work.size), work)
 
 
-def _check_sweep(sweep: Sweep, progress: bool) -> NDArray[np.float64]:
+def _check_sweep(sweep: Sweep, progress: bool) -> Array:
     """Check every case of a grid and return its particle steps.
 
     The check of a seed does not depend on the other parameters, and the computing time does not

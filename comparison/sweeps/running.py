@@ -38,18 +38,10 @@ _LEAST_ROOM = 10  # letters for the name of a case; a narrower terminal does not
 
 @dataclass
 class Outcome:
-    """The outcome of the cases so far.
+    """The outcome of the cases so far."""
 
-    Attributes
-    ----------
-    written
-        Number of cases that were computed and written.
-    failed
-        The reasons for the cases that failed.
-    """
-
-    written: int = 0
-    failed: dict[Case, str] = field(default_factory=dict)
+    written: int = 0  # cases that were computed and written
+    failed: dict[Case, str] = field(default_factory=dict)  # and the reasons
 
 
 def run_cases(
@@ -102,16 +94,9 @@ def run_cases(
 def compute_missing(
     missing: Cases, folder: Path, executor: Executor, outcome: Outcome, *, progress: bool = True
 ) -> None:
-    """Compute cases and write each when it arrives.
+    """Compute cases and write each when it arrives; errors are those of :func:`run_cases`.
 
     ``outcome`` records what happened to each case, also if this raises.
-
-    Raises
-    ------
-    RuntimeError
-        If a worker of ``process_pool`` or the scheduler of a dask cluster dies.
-    OSError
-        If a file cannot be written.
     """
     for what in missing.replaced:
         print(f"crazybilliards: {what}", file=sys.stderr)

@@ -9,9 +9,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from crazybilliards.model.arrays import Array
 
 MOST = 130
 
@@ -49,14 +48,8 @@ def at_distance(
     apart. What lies closer is left out: on the diagonal is what cells add of their own, and next
     to it what the last collision of two neighbours left.
 
-    Parameters
-    ----------
-    covariance
-        Symmetric, shape (M, M), M > nearest + 1, between fields at ``places``.
-    wanted
-        Middles of the pairs.
-    distance
-        Between the two of a pair, in rods.
+    ``covariance``, symmetric, shape (M, M), M > nearest + 1, is that of fields at ``places``. The
+    pairs have their middles at ``wanted`` and are ``distance`` rods apart.
     """
     symmetric = (covariance + covariance.T) / 2
     near_middle, near_apart, near = _side_diagonal(symmetric, places, nearest)
@@ -69,14 +62,11 @@ def at_distance(
 def of_rods(covariance: Array, cells: Cells) -> Array:
     """Return the covariances of the rods i and i + r, shape (L, L), over i and r from 0.
 
+    ``covariance`` is that of the fields of cells, symmetric, shape (M, M).
+
     Along a line across the diagonal they are linear between those of different cells, and continued
     to r = 0 as :func:`at_distance` does. If every cell is one rod, they are the given ones from
     r = 1 on. Where i + r lies beyond the chain there is NaN.
-
-    Parameters
-    ----------
-    covariance
-        Of the fields of cells, symmetric, shape (M, M).
     """
     size, symmetric = round(cells.rods.sum()), (covariance + covariance.T) / 2
     middles = np.arange(1, 2 * size) / 2

@@ -42,17 +42,14 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
 from crazybilliards.kinetic.correlations.cells import Cells, at_distance
 from crazybilliards.kinetic.correlations.contact_speeds import contact_speed
 from crazybilliards.kinetic.correlations.one_rod import OneRod
-from crazybilliards.kinetic.correlations.pair_covariance import Background, PairCovariance
-from crazybilliards.kinetic.correlations.problem import Problem
+from crazybilliards.kinetic.correlations.pair_covariance import Background, PairCovariance, Problem
 from crazybilliards.kinetic.kinetic_equation.weak_form import Factors
-
-Array = NDArray[np.float64]
+from crazybilliards.model.arrays import Array
 
 _NEIGHBOUR = 1.0  # rod
 _BEYOND = 2  # cells between two rods that have not hit one another
@@ -99,15 +96,13 @@ def background(problem: Problem, rod: OneRod, closure: Closure) -> Background:
     restitution = problem.chain.restitution
     variance = rod.temperature + closure.collective
     temperature = variance * np.maximum(1 - closure.shared, _LEAST)
+    unclustered = 2 / (1 + restitution) * contact_speed(restitution)
     return Background(
         density=rod.force / temperature,
         gap=rod.gap,
         temperature=temperature,
         pressure=rod.force,
-        strength=2
-        / (1 + restitution)
-        * contact_speed(restitution)
-        * np.exp(closure.log_clustering),
+        strength=unclustered * np.exp(closure.log_clustering),
         shared=variance - temperature,
     )
 

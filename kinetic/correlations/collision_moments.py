@@ -30,9 +30,8 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from crazybilliards.model.arrays import Array
 
 _NODES = 24  # exact for polynomials up to this degree in w^2 and in v + u; 6 is needed
 
@@ -68,13 +67,9 @@ def moments_of_collisions(restitution: float) -> CollisionMoments:
         energy=2 / math.sqrt(math.pi) * (1 - restitution**2),
         temperature=covariance(_second, _second),
         heat=covariance(_third, _third),
-        velocity_heat=covariance(_first, _third),
+        velocity_heat=covariance(lambda v: v, _third),
         decay=_average(lost),
     )
-
-
-def _first(v: Array) -> Array:
-    return v
 
 
 def _second(v: Array) -> Array:

@@ -18,7 +18,6 @@ which squares of waves relax, follow from h' itself.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import block_diag
 
 from crazybilliards.kinetic.correlations.cells import Cells, at_distance, of_cells
@@ -27,6 +26,7 @@ from crazybilliards.kinetic.correlations.pair_covariance import (
     Background,
     LinearResponse,
     PairCovariance,
+    Problem,
     covariances,
     dissipation,
     linear_response,
@@ -35,9 +35,7 @@ from crazybilliards.kinetic.correlations.pair_covariance import (
     scales,
     steps,
 )
-from crazybilliards.kinetic.correlations.problem import Problem
-
-Array = NDArray[np.float64]
+from crazybilliards.model.arrays import Array
 
 _AGREEMENT = 1e-3  # of h_gg and ln tau; W_x changes by less than a tenth of it
 _MOST_ITERATIONS = 40

@@ -15,14 +15,12 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crazybilliards.kinetic.correlations.cells import Cells
 from crazybilliards.kinetic.kinetic_equation.continuation import State
 from crazybilliards.kinetic.kinetic_equation.order_statistics import LabelAverage, mirrored
 from crazybilliards.kinetic.kinetic_equation.velocity_moments import Moments, moments
-
-Array = NDArray[np.float64]
+from crazybilliards.model.arrays import Array
 
 
 class OneRod(NamedTuple):

@@ -22,15 +22,17 @@ from dataclasses import replace
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
-from crazybilliards.kinetic.computing_time import expected_seconds
+from crazybilliards.kinetic.accuracy import expected_seconds
 from crazybilliards.kinetic.correlations.closure import Closure, background, implied
 from crazybilliards.kinetic.correlations.displacements import relaxing_pairs
 from crazybilliards.kinetic.correlations.fixed_point import NoFixedPointError, find_fixed_point
 from crazybilliards.kinetic.correlations.one_rod import profiles_of_one_rod
-from crazybilliards.kinetic.correlations.pair_covariance import linear_response, solve_pairs
-from crazybilliards.kinetic.correlations.problem import Problem
+from crazybilliards.kinetic.correlations.pair_covariance import (
+    Problem,
+    linear_response,
+    solve_pairs,
+)
 from crazybilliards.kinetic.correlations.stationary_result import Correlated, assemble, rods
 from crazybilliards.kinetic.kinetic_equation.continuation import (
     CELLS,
@@ -48,9 +50,8 @@ from crazybilliards.kinetic.kinetic_equation.order_statistics import Rods
 from crazybilliards.kinetic.kinetic_equation.velocity_space import one_thread
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain
+from crazybilliards.model.arrays import Array
 from crazybilliards.model.progress import waiting_for
-
-Array = NDArray[np.float64]
 
 _MOST_CELLS = 80  # of a mesh that is not asked for
 _ROUGHLY = 1e-3

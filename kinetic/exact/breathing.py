@@ -19,13 +19,12 @@ from __future__ import annotations
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 from crazybilliards.kinetic.exact.gibbs_measure import equilibrium
-from crazybilliards.kinetic.requirements import require_chain
-from crazybilliards.kinetic.times import output_times
+from crazybilliards.kinetic.requirements import output_times, require_chain
 from crazybilliards.model import Chain
+from crazybilliards.model.arrays import Array
 from crazybilliards.model.checks import check_real
 from crazybilliards.model.memory import require_memory
 from crazybilliards.model.vocabulary import result
@@ -87,16 +86,11 @@ def breathing_cloud(
     s, W = chain.thermal_length, chain.free_velocity_width
     damping = chain.damping * s / (chain.mass * W)
 
-    def equations(time: float, state: NDArray[np.float64]) -> list[float]:
+    def equations(time: float, state: Array) -> list[float]:
         place, speed, width, rate, heat = state
+        spreading = heat / width - width - damping * rate
         warming = -2 * heat * rate / width - 2 * damping * (heat - 1) if evolving else 0.0
-        return [
-            speed,
-            -place - damping * speed,
-            rate,
-            heat / width - width - damping * rate,
-            warming,
-        ]
+        return [speed, -place - damping * speed, rate, spreading, warming]
 
     start = [shift / s, 0.0, stretch, 0.0, hot / free]
     scaled = times * W / s

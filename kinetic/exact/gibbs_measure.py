@@ -30,18 +30,16 @@ import xarray as xr
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from crazybilliards.kinetic.accuracy import expected
-from crazybilliards.kinetic.computing_time import expected_seconds
+from crazybilliards.kinetic.accuracy import expected, expected_seconds
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain
+from crazybilliards.model.arrays import Array
 from crazybilliards.model.checks import check_integer
 from crazybilliards.model.grid import position_grid, require_resolved, thermal_reach
 from crazybilliards.model.memory import require_memory
 from crazybilliards.model.progress import waiting_for
 from crazybilliards.model.randomness import Seed, seed_of
 from crazybilliards.model.vocabulary import result
-
-Array = NDArray[np.float64]
 
 # Grid nodes in the width of the narrowest rod, which is the middle one without a gap.
 _NODES_PER_WIDTH = 10
@@ -163,9 +161,8 @@ class _Recursion:
     log_f: Array  # shape (L, 2 half + 1)
 
     def nodes(self, i: int) -> Array:
-        return self.spacing * np.arange(
-            self.centres[i] - self.half, self.centres[i] + self.half + 1
-        )
+        first = self.centres[i] - self.half
+        return self.spacing * np.arange(first, first + 2 * self.half + 1)
 
     def log_weight(self, i: int) -> tuple[Array, Array]:
         """Displacements d on window i (i from 0) and log w(d) = -U(d)/T."""

@@ -39,13 +39,12 @@ from typing import Literal, get_args
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 from scipy.integrate import trapezoid
 
 from crazybilliards.kinetic.fluids.eulerian_frame import MOST_CELLS, solve_on_positions
-from crazybilliards.kinetic.fluids.flow_fields import FlowFields
 from crazybilliards.kinetic.fluids.label_frame import solve_on_labels
-from crazybilliards.kinetic.requirements import require_chain
+from crazybilliards.kinetic.fluids.pde_solver import FlowFields
+from crazybilliards.kinetic.requirements import output_times, require_chain
 from crazybilliards.kinetic.starts import check_start, read_start
 from crazybilliards.kinetic.statics.profiles import (
     Prescribed,
@@ -53,14 +52,12 @@ from crazybilliards.kinetic.statics.profiles import (
     read_displacement,
     read_velocity_variance,
 )
-from crazybilliards.kinetic.times import output_times
 from crazybilliards.model import Chain
+from crazybilliards.model.arrays import Array
 from crazybilliards.model.checks import check_choice, check_integer, shown
 from crazybilliards.model.grid import position_grid
 from crazybilliards.model.memory import require_memory
 from crazybilliards.model.vocabulary import result
-
-Array = NDArray[np.float64]
 
 Frame = Literal["label", "eulerian"]
 Evolving = Literal["evolving"]
@@ -155,20 +152,11 @@ def hydrodynamics(
     known = read_start(chain, start)
     nodes = position_grid(chain, float(np.abs(known.x).max())).size + chain.size
     require_memory(f"every: {times.size} outputs", _BYTES_PER_NODE * float(nodes) * times.size)
-    thermal = kind == "evolving"
+    how = {"thermal": kind == "evolving", "progress": progress}
     if frame == "label":
-        fields = solve_on_labels(chain, known, times, cells, thermal=thermal, progress=progress)
+        fields = solve_on_labels(chain, known, times, cells, **how)
     else:
-        fields = solve_on_positions(
-            chain,
-            known,
-            times,
-            cells,
-            variance=variance,
-            displacement=frozen,
-            thermal=thermal,
-            progress=progress,
-        )
+        fields = solve_on_positions(chain, known, times, cells, variance, frozen, **how)
     method = {
         "frame": frame,
         "displacement": "prescribed" if frozen else "by labels",

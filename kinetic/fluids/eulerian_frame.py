@@ -32,14 +32,12 @@ from crazybilliards.kinetic.fluids.finite_volumes import (
     make_rate,
     primitive,
 )
-from crazybilliards.kinetic.fluids.flow_fields import FlowFields
-from crazybilliards.kinetic.fluids.pde_solver import make_state, solve
+from crazybilliards.kinetic.fluids.pde_solver import FlowFields, make_state, solve
 from crazybilliards.kinetic.starts import Start
 from crazybilliards.kinetic.statics.profiles import Profile
 from crazybilliards.model import Chain
+from crazybilliards.model.arrays import Array
 from crazybilliards.model.grid import position_grid, thermal_reach
-
-Array = NDArray[np.float64]
 
 _COURANT = 0.5
 _MOST_COURANT = 1.0  # beyond, four-stage Runge-Kutta with second-order fluxes is not stable
@@ -64,9 +62,9 @@ def solve_on_positions(
     start: Start,
     times: Array,
     number: int | None,
-    *,
     variance: Profile | None,
     displacement: Profile | None,
+    *,
     thermal: bool,
     progress: bool,
 ) -> FlowFields:
@@ -124,7 +122,12 @@ def _integrate(
     fastest = _fastest(np.array(list(fields.values())), constants)
     for _ in range(_HALVINGS):
         steps = math.ceil(interval * fastest / (_COURANT * h))
-        _refuse_endless(steps * (times.size - 1) * constants.x.size)
+        work = float(steps * (times.size - 1) * constants.x.size)
+        if work > _MOST_WORK:
+            raise ValueError(
+                f"frame='eulerian' would take {work:.1e} steps of cells, about "
+                f"{work * _CELL_STEP / 3600:.0f} hours; use frame='label'"
+            )
         solution = solve(
             rate,
             make_state(fields, (faces[0], faces[-1])),
@@ -216,14 +219,6 @@ def _fastest(fields: Array, constants: Constants) -> float:
     W = math.sqrt(constants.heat)
     speed = np.abs(v) + sound * W * np.exp(log_variance / 2) * (1 + constants.rod * free)
     return float(speed[here].max())
-
-
-def _refuse_endless(work: float) -> None:
-    if work > _MOST_WORK:
-        raise ValueError(
-            f"frame='eulerian' would take {work:.1e} steps of cells, about "
-            f"{work * _CELL_STEP / 3600:.0f} hours; use frame='label'"
-        )
 
 
 def _unsteadiness(fields: Array, constants: Constants) -> float:

@@ -14,13 +14,11 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crazybilliards.kinetic.fluids.pde_solver import Rate
 from crazybilliards.model import spring
+from crazybilliards.model.arrays import Array
 from crazybilliards.model.kernels import copy, inlined, kernel
-
-Array = NDArray[np.float64]
 
 _pull = inlined(spring.force)
 

@@ -31,20 +31,17 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.integrate import cumulative_trapezoid
 from scipy.interpolate import PchipInterpolator
 
 from crazybilliards.kinetic.fluids.finite_volumes import minmod
-from crazybilliards.kinetic.fluids.flow_fields import FlowFields
-from crazybilliards.kinetic.fluids.pde_solver import make_state, solve
+from crazybilliards.kinetic.fluids.pde_solver import FlowFields, make_state, solve
 from crazybilliards.kinetic.starts import Start
 from crazybilliards.kinetic.statics.label_closure import Stationary, stationary
 from crazybilliards.model import Chain, spring
+from crazybilliards.model.arrays import Array
 from crazybilliards.model.grid import position_grid, thermal_reach
 from crazybilliards.model.kernels import inlined, kernel
-
-Array = NDArray[np.float64]
 
 _pull = inlined(spring.force)
 

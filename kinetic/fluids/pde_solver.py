@@ -1,27 +1,41 @@
-"""Calls py-pde with fields on a uniform grid and a compiled right-hand side.
+"""What both frames of hydrodynamics share: the call of py-pde, and the fields that they return.
 
-No other module calls py-pde. It provides the equation class, the grid, the fields, the time
-steppers, trackers and storage. The solver is always named here and not left to a default. The
-interrupts are named too, because trackers that read the clock would make two equal runs differ.
+No other module calls py-pde. It gets fields on a uniform grid and a compiled right-hand side, and
+provides the equation class, the grid, the fields, the time steppers, trackers and storage. The
+solver is always named here and not left to a default. The interrupts are named too, because
+trackers that read the clock would make two equal runs differ.
 """
 
 from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from pde import CartesianGrid, FieldCollection, MemoryStorage, PDEBase, ProgressTracker, ScalarField
 
+from crazybilliards.model.arrays import Array
 from crazybilliards.model.progress import watched
 
 # py-pde would warn that a short run spent more time on storing than on solving.
 logging.getLogger("pde.solvers.controller").setLevel(logging.ERROR)
 
-Array = NDArray[np.float64]
 Rate = Callable[[Array, float], Array]
+
+
+class FlowFields(NamedTuple):
+    """Fields on positions at the output times, in the chain's units."""
+
+    x: Array  # (nodes,)
+    density: Array  # (times, nodes)
+    label: Array
+    velocity: Array
+    variance: Array
+    rods: Array  # positions of the rods, (times, L)
+    rod_velocities: Array
+    cells: int
+    unsteadiness: Array  # rms rate of change of eta and V in scaled units, (times,)
 
 
 class Flow(PDEBase):

@@ -13,7 +13,6 @@ from dataclasses import dataclass, replace
 from typing import TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crazybilliards.kinetic.kinetic_equation.newton import NotSolvedError, stationary_state
 from crazybilliards.kinetic.kinetic_equation.order_statistics import Rods
@@ -22,10 +21,9 @@ from crazybilliards.kinetic.kinetic_equation.velocity_space import Box, Velocity
 from crazybilliards.kinetic.kinetic_equation.weak_form import Factors, Units, coefficients
 from crazybilliards.kinetic.statics.label_closure import stationary
 from crazybilliards.model import Chain
+from crazybilliards.model.arrays import Array
 from crazybilliards.model.checks import check_integer, check_real
 from crazybilliards.model.memory import require_memory
-
-Array = NDArray[np.float64]
 
 CELLS = 22  # of the mesh on which a state is found
 _FINER = 1.5

@@ -27,7 +27,6 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crazybilliards.kinetic.kinetic_equation.continuation import OnMesh, followed, on_fitting_mesh
 from crazybilliards.kinetic.kinetic_equation.newton import stationary_state
@@ -36,9 +35,8 @@ from crazybilliards.kinetic.kinetic_equation.weak_damping import weak_damping_dr
 from crazybilliards.kinetic.kinetic_equation.weak_form import Coefficients
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain
+from crazybilliards.model.arrays import Array
 from crazybilliards.model.progress import waiting_for
-
-Array = NDArray[np.float64]
 
 _CELLS = 24
 _NOISE = (0.85, 0.7, 0.4, 0.2, 0.1, 0.05, 0.025)  # values of tau

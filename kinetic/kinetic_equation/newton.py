@@ -7,7 +7,6 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import csc_matrix, hstack, vstack
 from scipy.sparse.linalg import LinearOperator, SuperLU, gmres
 
@@ -17,8 +16,7 @@ from crazybilliards.kinetic.kinetic_equation.velocity_space import (
     one_thread,
 )
 from crazybilliards.kinetic.kinetic_equation.weak_form import Coefficients, Equation, Factors
-
-Array = NDArray[np.float64]
+from crazybilliards.model.arrays import Array
 
 _MOST_STEPS = 12
 _GMRES = 40  # Krylov vectors; 5 to 15 are needed

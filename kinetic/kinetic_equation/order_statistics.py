@@ -26,14 +26,12 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 from scipy.special import betaincinv, ndtr, ndtri
 
 from crazybilliards.kinetic.kinetic_equation.velocity_moments import Moments
 from crazybilliards.model import Chain
-
-Array = NDArray[np.float64]
+from crazybilliards.model.arrays import Array
 
 _NODES = 40  # of Gauss-Hermite quadrature over an order statistic's normal score
 _FARTHEST = 1e-8  # labels closer to the end than this are numerical noise

@@ -19,18 +19,14 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 from scipy.sparse import csc_matrix
 from scipy.stats import norm
 
 from crazybilliards.kinetic.accuracy import expected_relax_phase_space, warn_if_unmeasured
 from crazybilliards.kinetic.kinetic_equation.continuation import free_units
-from crazybilliards.kinetic.kinetic_equation.relaxation_result import (
-    in_vocabulary,
-    positions,
-    snapshot,
-)
+from crazybilliards.kinetic.kinetic_equation.relaxation_result import in_vocabulary, snapshot
 from crazybilliards.kinetic.kinetic_equation.start import REACH, PhaseSpaceStart, read_phase_space
+from crazybilliards.kinetic.kinetic_equation.stationary_result import positions
 from crazybilliards.kinetic.kinetic_equation.velocity_moments import moments
 from crazybilliards.kinetic.kinetic_equation.velocity_space import (
     Box,
@@ -45,15 +41,13 @@ from crazybilliards.kinetic.kinetic_equation.weak_form import (
     Units,
     coefficients,
 )
-from crazybilliards.kinetic.requirements import require_chain
+from crazybilliards.kinetic.requirements import output_times, require_chain
 from crazybilliards.kinetic.starts import check_start
-from crazybilliards.kinetic.times import output_times
 from crazybilliards.model import Chain
+from crazybilliards.model.arrays import Array
 from crazybilliards.model.checks import check_integer, check_real
 from crazybilliards.model.memory import require_memory
 from crazybilliards.model.progress import progress_bar
-
-Array = NDArray[np.float64]
 
 _STEP = 0.04  # in units of the spring's 1/w0
 _CELLS = 20
@@ -153,7 +147,7 @@ def relax_phase_space(
         time_step = check_real("time_step", time_step, positive=True) / unit_time
     steps = math.ceil(interval / unit_time / (time_step or _STEP) - 1e-9)
     flow = _start(chain, units, read_phase_space(chain, units, start), cells)
-    nodes = positions(chain, units, flow.space).size
+    nodes = positions(chain, units.length, flow.space).size
     require_memory(f"every: {count} outputs", _BYTES_PER_NODE * float(nodes) * count)
     outputs = [snapshot(chain, units, flow.space, flow.f, flow.energy())]
     most = _DIVERGED * max(flow.energy(), 1.0)
@@ -163,7 +157,12 @@ def relax_phase_space(
             flow = flow.advanced(interval / unit_time / steps, steps)
             sound = flow.sound()
             if chain.restitution <= 1 and not sound:
-                raise ValueError(_unresolved(times[len(outputs) - 1], cells))
+                raise ValueError(
+                    f"the kinetic equation in time could not be solved beyond "
+                    f"{times[len(outputs) - 1]:g}: on cells={cells} the distribution became "
+                    "negative, because it is narrower than the mesh resolves; a shorter duration "
+                    "or more cells can help"
+                )
             if not sound or flow.energy() > most:
                 status = "diverged"
                 break
@@ -186,14 +185,6 @@ def _compression(chain: Chain, start: Mapping[str, Any]) -> float:
     off = np.abs(start["phase_space_density"] / chain.size - released)
     share = np.trapezoid(np.trapezoid(off, v), y) / 2
     return round(width / chain.thermal_length, 2) if share < _LIKE else math.nan
-
-
-def _unresolved(time: float, cells: int) -> str:
-    return (
-        f"the kinetic equation in time could not be solved beyond {time:g}: on cells={cells} the "
-        "distribution became negative, because it is narrower than the mesh resolves; a shorter "
-        "duration or more cells can help"
-    )
 
 
 @dataclass(frozen=True)

@@ -7,19 +7,16 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 from scipy.interpolate import RectBivariateSpline
 
 from crazybilliards.kinetic.kinetic_equation.order_statistics import points
-from crazybilliards.kinetic.kinetic_equation.stationary_result import density_and_label
+from crazybilliards.kinetic.kinetic_equation.stationary_result import density_and_label, positions
 from crazybilliards.kinetic.kinetic_equation.velocity_moments import moments
 from crazybilliards.kinetic.kinetic_equation.velocity_space import VelocitySpace
 from crazybilliards.kinetic.kinetic_equation.weak_form import Units
 from crazybilliards.model import Chain
-from crazybilliards.model.grid import position_grid
+from crazybilliards.model.arrays import Array
 from crazybilliards.model.vocabulary import result
-
-Array = NDArray[np.float64]
 
 
 def snapshot(
@@ -37,6 +34,7 @@ def snapshot(
     centre = share @ profiles.y
     spread = share @ profiles.y**2 - centre**2
     drift = profiles.weights @ profiles.flux
+    covariance = (profiles.weights * profiles.y) @ profiles.flux - centre * drift
     y, v, values = space.sampled(f)
     # Ripples in the vacuum are left out, so that the positions ascend.
     alive = np.maximum(profiles.density, 0.0)
@@ -55,16 +53,8 @@ def snapshot(
         "centre": length * centre,
         "cloud_width": length * math.sqrt(spread),
         "kinetic_energy": chain.size * chain.temperature / 2 * energy,
-        "covariance": length
-        * velocity
-        * ((profiles.weights * profiles.y) @ profiles.flux - centre * drift),
+        "covariance": length * velocity * covariance,
     }
-
-
-def positions(chain: Chain, units: Units, space: VelocitySpace) -> Array:
-    """Return the grid of positions for all points of the mesh."""
-    reach = units.length * space.box.length - float(chain.reduced_anchors[-1])
-    return position_grid(chain, max(reach, units.length))
 
 
 def in_vocabulary(
@@ -76,7 +66,7 @@ def in_vocabulary(
     status: str,
 ) -> xr.Dataset:
     """Put the outputs into the common vocabulary, on the axes of the last, largest mesh."""
-    x = positions(chain, units, last)
+    x = positions(chain, units.length, last)
     density, label = np.empty((2, len(outputs), x.size))
     for i, output in enumerate(outputs):
         of = (output[name] for name in ("y", "points", "below"))

@@ -7,14 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator, RectBivariateSpline
 
 from crazybilliards.kinetic.kinetic_equation.weak_form import Units
 from crazybilliards.kinetic.starts import read_start, require_rods
 from crazybilliards.model import Chain
-
-Array = NDArray[np.float64]
+from crazybilliards.model.arrays import Array
 
 REACH = 6.5  # of a mesh, in widths of a Gaussian
 

@@ -21,8 +21,7 @@ from typing import Literal
 import numpy as np
 import xarray as xr
 
-from crazybilliards.kinetic.accuracy import expected, warn_if_unmeasured
-from crazybilliards.kinetic.computing_time import expected_seconds
+from crazybilliards.kinetic.accuracy import expected, expected_seconds, warn_if_unmeasured
 from crazybilliards.kinetic.kinetic_equation.continuation import (
     CELLS,
     State,
@@ -113,21 +112,14 @@ def phase_space(
     order = check_phase_space(chain, order=order, tolerance=tolerance, cells=cells)
     try:
         with waiting_for("kinetic equation", seconds=expected_seconds("phase_space", chain)):
-            found = _assemble(*_solve(chain, order, tolerance, cells))
+            state = continued(chain, elastic_state(chain, order, CELLS))
+            if cells is None:
+                state = refined(state, CELLS)
+            found = _assemble(*on_fine_mesh(state, _rods, tolerance, cells, _MOST_CELLS))
     except NotSolvedError as error:
         raise ValueError(f"{error}: {_out_of_range(chain, order)}") from error
     warn_if_unmeasured("the kinetic equation", found.attrs["model_error"])
     return found
-
-
-def _solve(
-    chain: Chain, order: Literal[1, 2], tolerance: float, cells: int | None
-) -> tuple[State, Rods, float]:
-    """Return the state on a mesh that is fine enough, its rods, and the error of the mesh."""
-    state = continued(chain, elastic_state(chain, order, CELLS))
-    if cells is None:
-        state = refined(state, CELLS)
-    return on_fine_mesh(state, _rods, tolerance, cells, _MOST_CELLS)
 
 
 def _out_of_range(chain: Chain, order: Literal[1, 2]) -> str:

@@ -10,18 +10,17 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
 from crazybilliards.kinetic.accuracy import Accuracy
 from crazybilliards.kinetic.kinetic_equation.continuation import State, free_units
 from crazybilliards.kinetic.kinetic_equation.order_statistics import mirrored
 from crazybilliards.kinetic.kinetic_equation.velocity_moments import moments
+from crazybilliards.kinetic.kinetic_equation.velocity_space import VelocitySpace
 from crazybilliards.model import Chain
+from crazybilliards.model.arrays import Array
 from crazybilliards.model.grid import position_grid
 from crazybilliards.model.vocabulary import result
-
-Array = NDArray[np.float64]
 
 
 def in_vocabulary(
@@ -62,8 +61,7 @@ def _profiles_over_x(state: State) -> dict[str, Array]:
     chain, (length, velocity) = state.chain, free_units(state.chain)
     profiles = mirrored(moments(state.space, state.f))
     L, R = chain.size, chain.radius
-    reach = length * state.space.box.length - float(chain.reduced_anchors[-1])
-    x = position_grid(chain, max(reach, length))
+    x = positions(chain, length, state.space)
     places = length * profiles.y + 2 * R * L * profiles.label
 
     def over_x(values: Array) -> Array:
@@ -84,6 +82,12 @@ def _profiles_over_x(state: State) -> dict[str, Array]:
         "flow_velocity": velocity * np.nan_to_num(over_x(profiles.flux / alive)),
         "heat_flux": heat * np.nan_to_num(over_x(profiles.heat_flux)),
     }
+
+
+def positions(chain: Chain, length: float, space: VelocitySpace) -> Array:
+    """Return the grid of positions for all points of a mesh in units of ``length`` [R]."""
+    reach = length * space.box.length - float(chain.reduced_anchors[-1])
+    return position_grid(chain, max(reach, length))
 
 
 def density_and_label(

@@ -5,11 +5,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crazybilliards.kinetic.kinetic_equation.velocity_space import Box, VelocitySpace
-
-Array = NDArray[np.float64]
+from crazybilliards.model.arrays import Array
 
 _TAIL = 1e-5  # share of the points beyond which only a margin follows
 _MARGIN = 1.5

@@ -27,7 +27,7 @@ from scipy.sparse.linalg import SuperLU, splu
 from skfem import Basis, BilinearForm, ElementLineP2, ElementQuad2, LinearForm, MeshLine, MeshQuad
 from threadpoolctl import threadpool_limits
 
-Array = NDArray[np.float64]
+from crazybilliards.model.arrays import Array
 
 _MISFIT = 1.15  # factor that a box may be off
 

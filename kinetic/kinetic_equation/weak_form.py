@@ -39,7 +39,6 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 from scipy.sparse import csc_matrix
 from skfem import BilinearForm
@@ -47,8 +46,7 @@ from skfem.helpers import grad
 
 from crazybilliards.kinetic.kinetic_equation.velocity_space import VelocitySpace
 from crazybilliards.model import Chain, spring
-
-Array = NDArray[np.float64]
+from crazybilliards.model.arrays import Array
 
 
 class Units(NamedTuple):

@@ -116,10 +116,7 @@ def check_force_balance(
 ) -> tuple[Chain, Profile | None, Profile | None]:
     """Raise the ValueError that :func:`force_balance` would raise for a wrong argument.
 
-    Returns
-    -------
-    tuple
-        The elastic chain with this temperature, and the profiles <dx>(x) and W^2(x) if given.
+    Return the elastic chain with this temperature, and the profiles <dx>(x) and W^2(x) if given.
     """
     given = read_displacement(chain, displacement)
     chain, variance = read_velocity_variance(chain, velocity_variance)

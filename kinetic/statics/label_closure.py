@@ -28,17 +28,15 @@ from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 from scipy.integrate import solve_bvp
 from scipy.special import gamma, gammaincc
 from scipy.stats import gennorm
 
 from crazybilliards.kinetic.accuracy import expected
 from crazybilliards.model import Chain, spring
+from crazybilliards.model.arrays import Array
 from crazybilliards.model.grid import position_grid, thermal_reach
 from crazybilliards.model.vocabulary import result
-
-Array = NDArray[np.float64]
 
 _TAIL = 36.0  # tails are followed down to exp(-36) = 2e-16 of the maximum
 _EDGE_DEPTH = {2: 40.0, 3: 1e4}  # where the plateau is reached, by exponent n

@@ -16,16 +16,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.interpolate import PchipInterpolator
 
 from crazybilliards.model import Chain
+from crazybilliards.model.arrays import Array
 from crazybilliards.model.checks import check_real, shown
 from crazybilliards.model.vocabulary import require
 
-Prescribed = (
-    xr.Dataset | Sequence[ArrayLike] | NDArray[np.float64] | Callable[[ArrayLike], ArrayLike]
-)
+Prescribed = xr.Dataset | Sequence[ArrayLike] | Array | Callable[[ArrayLike], ArrayLike]
 
 
 class Profile(NamedTuple):
@@ -76,7 +75,7 @@ def read_velocity_variance(
             values = values**2
         function = _interpolated(x, values, slope=0.0)
 
-    def positive(x: ArrayLike) -> NDArray[np.float64]:
+    def positive(x: ArrayLike) -> Array:
         values = np.asarray(function(x))
         if not (np.isfinite(values).all() and (values > 0).all()):
             raise ValueError("velocity_variance must be finite and positive everywhere")
@@ -86,12 +85,10 @@ def read_velocity_variance(
     return chain, Profile(positive, -math.inf, math.inf)
 
 
-def _numbers(
-    name: str, function: Callable[[ArrayLike], ArrayLike]
-) -> Callable[[ArrayLike], NDArray[np.float64]]:
+def _numbers(name: str, function: Callable[[ArrayLike], ArrayLike]) -> Callable[[ArrayLike], Array]:
     """Return a user's function with a check at each call that it returns one number per x."""
 
-    def checked(x: ArrayLike) -> NDArray[np.float64]:
+    def checked(x: ArrayLike) -> Array:
         values = function(x)
         try:
             return np.broadcast_to(np.asarray(values, dtype=float), np.shape(x))
@@ -105,7 +102,7 @@ def _numbers(
 
 def _table(
     name: str, variable: str, chain: Chain, source: xr.Dataset | Sequence[ArrayLike] | Any
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+) -> tuple[Array, Array]:
     """Return x and values of a table, or of the particles of a result at their mean positions."""
     if isinstance(source, xr.Dataset):
         require(source, (variable, "mean_displacement"))
@@ -132,13 +129,11 @@ def _table(
     return x, values
 
 
-def _interpolated(
-    x: NDArray[np.float64], values: NDArray[np.float64], slope: float
-) -> Callable[[ArrayLike], NDArray[np.float64]]:
+def _interpolated(x: Array, values: Array, slope: float) -> Callable[[ArrayLike], Array]:
     """Return a shape-preserving cubic through the table, continued with ``slope``."""
     inner = PchipInterpolator(x, values)
 
-    def function(position: ArrayLike) -> NDArray[np.float64]:
+    def function(position: ArrayLike) -> Array:
         inside = np.clip(position, x[0], x[-1])
         return np.asarray(inner(inside) + slope * (np.asarray(position) - inside))
 

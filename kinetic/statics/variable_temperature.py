@@ -24,7 +24,6 @@ from collections.abc import Callable
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 from scipy.integrate import cumulative_trapezoid
 from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
 from scipy.sparse.linalg import splu
@@ -34,10 +33,10 @@ from skfem.helpers import grad
 from crazybilliards.kinetic.statics.label_closure import stationary
 from crazybilliards.kinetic.statics.profiles import Profile
 from crazybilliards.model import Chain
+from crazybilliards.model.arrays import Array
 from crazybilliards.model.grid import position_grid
 from crazybilliards.model.vocabulary import result
 
-Array = NDArray[np.float64]
 Warmth = Callable[[Array], Array]
 
 _CELLS = 1200
@@ -91,7 +90,7 @@ def solve_variable_temperature(chain: Chain, variance: Profile) -> xr.Dataset:
         order = np.argsort(basis.doflocs[0])
         guess = PchipInterpolator(basis.doflocs[0][order], P[order])
     _require_vacuum(basis, P, s)
-    return _assemble(chain, basis, P, label, warmth)
+    return _assemble(chain, basis, guess, label, warmth)
 
 
 def _end(warmth: Warmth, crowd: float, lam: float) -> float:
@@ -163,12 +162,12 @@ def _adapted(basis: Basis, P: Array, label: Array, crowd: float, warmth: Warmth)
     return np.interp(np.linspace(0, spread[-1], x.size), spread, x)
 
 
-def _assemble(chain: Chain, basis: Basis, P: Array, label: Array, warmth: Warmth) -> xr.Dataset:
+def _assemble(
+    chain: Chain, basis: Basis, log_pressure: PchipInterpolator, label: Array, warmth: Warmth
+) -> xr.Dataset:
     """Put the solution onto the position grid and the particles."""
     s, L = chain.thermal_length, chain.size
     crowd = 2 * chain.radius * L / s
-    order = np.argsort(basis.doflocs[0])
-    log_pressure = PchipInterpolator(basis.doflocs[0][order], P[order])
 
     def share(x: Array) -> Array:
         """Return n = rho s/L."""

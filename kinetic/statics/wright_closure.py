@@ -19,7 +19,6 @@ import math
 import numpy as np
 import xarray as xr
 from numpy.polynomial import legendre
-from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 from scipy.optimize import brentq
 from scipy.special import wrightomega
@@ -27,10 +26,9 @@ from scipy.special import wrightomega
 from crazybilliards.kinetic.statics.label_closure import fluid_reach
 from crazybilliards.kinetic.statics.profiles import Profile
 from crazybilliards.model import Chain
+from crazybilliards.model.arrays import Array
 from crazybilliards.model.grid import position_grid, thermal_reach
 from crazybilliards.model.vocabulary import result
-
-Array = NDArray[np.float64]
 
 _POINTS = 5  # of the quadrature in a cell
 _NOTHING = 1e-12  # of the largest density, at the end of the grid
@@ -74,12 +72,14 @@ def solve_wright_closure(chain: Chain, profile: Profile) -> xr.Dataset:
     here = np.clip(grid, edges[0], edges[-1])
     inside = (grid > profile.left) & (grid < profile.right)
     values = density(constant, PchipInterpolator(edges, at_edges)(here))
+    displacement = np.zeros(grid.size)  # beyond the profile
+    displacement[inside] = profile.function(grid[inside])
     return result(
         chain,
         {
             "density": ("x", np.where(inside, values, 0.0)),
             "label": ("x", np.interp(here, edges, np.append(0.0, rods))),
-            "displacement": ("x", _displacement(profile, grid, inside)),
+            "displacement": ("x", displacement),
         },
         coordinates={"x": grid},
         source="theory",
@@ -116,10 +116,3 @@ def _partial_integrals(points: Array) -> Array:
         [legendre.legval(points, legendre.legint(unit, lbnd=-1)) for unit in np.eye(points.size)]
     ).T
     return integrals @ np.linalg.inv(powers)
-
-
-def _displacement(profile: Profile, x: Array, inside: NDArray[np.bool_]) -> Array:
-    """Return <dx> where the profile is given, 0 beyond."""
-    values = np.zeros(x.size)
-    values[inside] = profile.function(x[inside])
-    return values

@@ -13,11 +13,12 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.stats import norm, t
 
 from crazybilliards.comparison.sweeps import Case
 from crazybilliards.model import Chain
+from crazybilliards.model.arrays import Array
 from crazybilliards.reproduction.claims.study import Cases, Quality, Results
 from crazybilliards.reproduction.claims.verdicts import Estimate
 
@@ -110,7 +111,7 @@ class Runs:
         ]
 
 
-def error_of_mean(values: ArrayLike) -> NDArray[np.float64]:
+def error_of_mean(values: ArrayLike) -> Array:
     """Return the standard error of the mean of independent runs, along the first axis.
 
     It comes from their scatter, which few runs do not show well. It is therefore enlarged by

@@ -49,24 +49,12 @@ _INTRODUCTION = (
 
 @dataclass(frozen=True)
 class Reproduced:
-    """A study, drawn from its results, and what became of its claims.
-
-    Attributes
-    ----------
-    study
-        The study, which may be a figure of the paper.
-    pictures
-        The picture as a file, by format: PNG always, others as asked for.
-    claims
-        The checked claims.
-    parameters
-        What was computed, a line for each kind of case.
-    """
+    """A study, drawn from its results, and what became of its claims."""
 
     study: Study
-    pictures: dict[str, bytes]
-    claims: list[Claim]
-    parameters: list[str]
+    pictures: dict[str, bytes]  # the picture as a file, by format: PNG always, others as asked for
+    claims: list[Claim]  # checked
+    parameters: list[str]  # what was computed, a line for each kind of case
 
 
 def all_cases(studies: Iterable[Study], quality: Quality) -> list[Case]:

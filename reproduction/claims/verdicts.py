@@ -70,6 +70,9 @@ class Estimate(NamedTuple):
         digits = max(0, 1 - math.floor(math.log10(self.error))) if self.error > 0 else 4
         return f"{self.value:.{digits}f} ± {self.error:.{digits}f}"
 
+    def __neg__(self) -> Estimate:
+        return Estimate(-self.value, self.error)
+
     def minus(self, other: Estimate) -> Estimate:
         """Return the difference to an independent one."""
         return Estimate(self.value - other.value, math.hypot(self.error, other.error))
@@ -104,7 +107,7 @@ class Claim:
         The number that decides, with its standard error. Deviations from a line are shares of the
         plotted range. The error of the worst of many differences is the enlarged one.
     within
-        Where it has to lie: :func:`around` a number, or ``POSITIVE``.
+        Where it has to lie: above zero, or :func:`around` a number.
     source
         Where the paper says so: labels of its source, ``fig. 3, eq:power_law``. Empty: a finding
         of our own.
@@ -122,7 +125,7 @@ class Claim:
     quantity: str = ""
     _: KW_ONLY
     found: Estimate
-    within: Interval
+    within: Interval = POSITIVE
     source: str = ""
     words: str = ""
     elsewhere: Mapping[str, Estimate] = field(default_factory=dict)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -10,7 +12,13 @@ from matplotlib.patches import Circle
 from crazybilliards.comparison.drawing import COLOURS
 from crazybilliards.comparison.layout import panels
 from crazybilliards.model import Chain
-from crazybilliards.reproduction.claims.study import Results, Study
+from crazybilliards.reproduction.claims.study import Results
+
+TITLE = "The model"
+CAPTION = (
+    "Rods of radius R, each tied by a damped spring to its own anchor and driven by white noise of "
+    "its own. Neighbouring anchors are 2R + g apart. Drawn by code, not to scale."
+)
 
 _DISPLACEMENTS = (-1.3, -0.4, 0.5, 0.3)
 _CEILING = 2.7  # height of the anchors
@@ -29,12 +37,7 @@ def draw(results: Results) -> Figure:
     _measure(ax, chain.anchors[1], chain.anchors[2], -1.5, r"$2R + g$")
     _measure(ax, chain.anchors[0] + _DISPLACEMENTS[0], chain.anchors[0], -1.5, r"$\Delta x_1$")
     shaken = chain.anchors[3] + _DISPLACEMENTS[3]
-    ax.annotate(
-        "",
-        xy=(shaken + 1.1, 0),
-        xytext=(shaken + 2.3, 0),
-        arrowprops={"arrowstyle": "<->", "color": COLOURS[0]},
-    )
+    _arrow(ax, shaken + 1.1, shaken + 2.3, 0, color=COLOURS[0])
     ax.text(shaken + 1.2, 0.5, r"$A\,\xi_4(t)$", color=COLOURS[0])
     ax.axhline(-chain.radius, color="0.6", linewidth=0.8, zorder=0)
     ax.set(xlim=(chain.anchors[0] - 3, chain.anchors[-1] + 3.4), ylim=(-2.4, 4.1), aspect="equal")
@@ -53,20 +56,10 @@ def _spring(ax: Axes, anchor: float, centre: float) -> None:
 
 
 def _measure(ax: Axes, start: float, end: float, height: float, text: str) -> None:
-    ax.annotate(
-        "",
-        xy=(start, height),
-        xytext=(end, height),
-        arrowprops={"arrowstyle": "<->", "lw": 0.9, "shrinkA": 0, "shrinkB": 0},
-    )
+    _arrow(ax, start, end, height, lw=0.9, shrinkA=0, shrinkB=0)
     ax.text((start + end) / 2, height - 0.75, text, ha="center")
 
 
-FIGURE = Study(
-    number=1,
-    name="model",
-    title="The model",
-    caption="Rods of radius R, each tied by a damped spring to its own anchor and driven by white "
-    "noise of its own. Neighbouring anchors are 2R + g apart. Drawn by code, not to scale.",
-    draw=draw,
-)
+def _arrow(ax: Axes, start: float, end: float, height: float, **look: Any) -> None:
+    look |= {"arrowstyle": "<->"}
+    ax.annotate("", xy=(start, height), xytext=(end, height), arrowprops=look)

@@ -3,43 +3,59 @@
 from __future__ import annotations
 
 import itertools
+from typing import Any
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from crazybilliards.comparison.drawing import COLOURS, SYMBOLS, draw_rods
+from crazybilliards.comparison.drawing import COLOURS, draw_points, draw_rods
 from crazybilliards.comparison.fits import fit_border_power_law
 from crazybilliards.comparison.layout import mosaic
-from crazybilliards.model import chain_of
-from crazybilliards.reproduction import predictions
-from crazybilliards.reproduction.chains import LARGE, STEPS, at_step, at_steps, chain_step
-from crazybilliards.reproduction.claims.study import Cases, Quality, Results, Study, all_of
-from crazybilliards.reproduction.claims.verdicts import (
-    POSITIVE,
-    Claim,
-    Estimate,
-    around,
-    in_plot,
-    worst,
+from crazybilliards.reproduction.chains import (
+    LARGE,
+    STEPS,
+    at_step,
+    at_steps,
+    chain_step,
+    correlated_equation,
 )
-from crazybilliards.reproduction.power_laws import fits_in_plot, nu, weighted_nu
+from crazybilliards.reproduction.claims.study import Cases, Quality, Results, all_of
+from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, around, in_plot, worst
+from crazybilliards.reproduction.power_laws import fits_in_plot, nu
+from crazybilliards.reproduction.predictions import CROSSES, PAIRS
 from crazybilliards.reproduction.vanishing_step import LABEL, common_bias, limit_estimate, limits
 
-_SIZES = predictions.SIZES
+TITLE = "Velocity widths at e = 0: power laws from both borders"
+CAPTION = (
+    "(a) W_v against the rod's number, e = 0, at the default time step, with the fits a [(i - "
+    "c)^nu + (L + 1 - c - i)^nu] to all rods; dotted, in (b) crosses: the kinetic equation with "
+    "pair correlations. (b) The exponent against the time step; the leftmost open symbol of each "
+    "size is the default step, the full one the limit. (c) W_v over its limit dt -> 0."
+)
+
+_SIZES = (30, 100, 300, LARGE)
+_SOLVED = {"quick": (30,), "full": _SIZES}  # by the theory with pair correlations
 _RUNS = {size: at_step(size, None) for size in _SIZES}  # at the default step
-_CROSS = predictions.CROSSES[predictions.PAIRS]
+_CROSS, _PAIRS = CROSSES[PAIRS], "theory with pairs"
 _PAPER, _PRECISION = -0.46, 0.005  # "nu ~ -0.46": half a unit of the last digit
 _SAME = 2 * _PRECISION  # two numbers that are both written -0.46 differ by less
 _ERROR = "velocity_width_error"
 _SOURCE = "section seq:e_0, eq:power_law, fig.2"
+_OURS = "the sizes below 1000 and the time step"
 
 
 def cases(quality: Quality) -> Cases:
     """E = 0, four sizes, four time steps and the limit; the theory with pair correlations."""
-    runs = [*at_steps(_SIZES), *map(limits, _SIZES)]
-    return all_of(runs, quality) | predictions.by_size(quality)
+    theories = [correlated_equation(size, 0.0) for size in _SOLVED[quality]]
+    return all_of([*at_steps(_SIZES), *map(limits, _SIZES), *theories], quality)
+
+
+def _predicted(results: Results) -> dict[int, xr.Dataset]:
+    """Return the results of the theory."""
+    names = {size: correlated_equation(size, 0.0).name for size in _SIZES}
+    return {size: results[name] for size, name in names.items() if name in results}
 
 
 def exponent(results: Results, size: int, step: float | None = None) -> Estimate:
@@ -52,7 +68,7 @@ def claims(results: Results) -> list[Claim]:
     runs = {size: each.pooled(results) for size, each in _RUNS.items()}
     found = {size: exponent(results, size) for size in _SIZES}
     listed = ", ".join(f"{size}: {each}" for size, each in found.items())
-    free = chain_of(runs[_SIZES[0]]).free_velocity_width
+    free = _RUNS[LARGE].chain.free_velocity_width
     widest = max(runs.values(), key=lambda run: float(run.velocity_width.max()))
     at = int(widest.velocity_width.values.argmax())
     border = Estimate(*(float(widest[n][at]) / free for n in ("velocity_width", _ERROR)))
@@ -61,11 +77,17 @@ def claims(results: Results) -> list[Claim]:
             "collisions make every velocity distribution narrower than a free rod's",
             "1 - W_v/W of the fastest rod of all four chains:",
             found=Estimate(1 - border.value, border.error),
-            within=POSITIVE,
             source="section seq:e_0, fig.2",
-            ours="the sizes below 1000 and the time step",
+            ours=_OURS,
         ),
-        _fit_claim(runs),
+        Claim(
+            "W_v(i) can be fitted by a sum of two power laws",
+            **in_plot(
+                "four chains and their fits, both axes logarithmic", *fits_in_plot(runs.values())
+            ),
+            source=_SOURCE,
+            ours=_OURS,
+        ),
         *(
             Claim(
                 f"nu = -0.46 at L = {size}",
@@ -73,7 +95,10 @@ def claims(results: Results) -> list[Claim]:
                 within=around(_PAPER, _PRECISION),
                 source=_SOURCE,
                 ours="the time step, the weights" + (" and the size" if size < LARGE else ""),
-                elsewhere=_elsewhere(results, size),
+                elsewhere={
+                    **{f"dt = {step:g}": exponent(results, size, step) for step in STEPS},
+                    "rods weighed by their error bars": _RUNS[size].estimate(results, _weighted_nu),
+                },
             )
             for size, each in found.items()
         ),
@@ -85,26 +110,13 @@ def claims(results: Results) -> list[Claim]:
                 _SAME,
             ),
             source=_SOURCE,
-            ours="the sizes below 1000 and the time step",
+            ours=_OURS,
         ),
     ]
 
 
-def _elsewhere(results: Results, size: int) -> dict[str, Estimate]:
-    """Return nu at other time steps, and with weights."""
-    stepped = {f"dt = {step:g}": exponent(results, size, step) for step in STEPS}
-    weighted = _RUNS[size].estimate(results, weighted_nu)
-    return stepped | {"rods weighed by their error bars": weighted}
-
-
-def _fit_claim(runs: dict[int, xr.Dataset]) -> Claim:
-    off, significance = fits_in_plot(runs.values())
-    return Claim(
-        "W_v(i) can be fitted by a sum of two power laws",
-        **in_plot("four chains and their fits, both axes logarithmic", off, significance),
-        source=_SOURCE,
-        ours="the sizes below 1000 and the time step",
-    )
+def _weighted_nu(run: xr.Dataset) -> float:
+    return fit_border_power_law(run, weighted=True).exponent
 
 
 def draw(results: Results) -> Figure:
@@ -120,23 +132,18 @@ def draw(results: Results) -> Figure:
     widths.set(xscale="log", yscale="log", ylabel="velocity width $W_v/W$")
     for number, (size, runs) in enumerate(_RUNS.items()):
         run = runs.pooled(results)
-        unit = chain_of(run).free_velocity_width
-        draw_rods(
-            widths,
-            run,
-            "velocity_width",
-            number=number,
-            unit=unit,
-            along="particle",
-            label=f"$L = {size}$",
-        )
+        unit = runs.chain.free_velocity_width
+        look: Any = {"number": number, "along": "particle"}
+        draw_rods(widths, run, "velocity_width", unit=unit, label=f"$L = {size}$", **look)
         half = np.geomspace(1, size, 200)
         fit = fit_border_power_law(run)(half) / unit
         widths.plot(half, fit, color=COLOURS[number])
-        over = _over_limit(results, size)
-        draw_rods(ratio, over, "velocity_width", number=number, along="particle", label="")
+        draw_rods(ratio, _over_limit(results, size), "velocity_width", label="", **look)
     widths.plot([], [], color="0.4", label="fit of two power laws")
-    predictions.draw_widths_by_size(widths, results)
+    for size, theory in _predicted(results).items():
+        unit, colour = _RUNS[size].chain.free_velocity_width, COLOURS[_SIZES.index(size)]
+        widths.plot(theory.particle, theory.velocity_width / unit, ":", color=colour, zorder=4)
+    widths.plot([], [], ":", color="0.4", label=_PAIRS)
     widths.legend(loc="lower left")
     widths.tick_params(labelbottom=False)
     ratio.axhline(1, color="0.4", linewidth=0.8)
@@ -156,47 +163,26 @@ def _over_limit(results: Results, size: int) -> xr.Dataset:
 
 def _draw_steps(ax: Axes, results: Results) -> None:
     """Draw nu against the time step, the limit as full symbols at the left margin."""
-    theories = predictions.predicted_by_size(results)
+    theories = _predicted(results)
     first = 0.3 * min(chain_step(results, size) for size in _SIZES)
     for number, size in enumerate(_SIZES):
         steps = [chain_step(results, size), *reversed(STEPS)]
         each = [exponent(results, size, step) for step in (None, *reversed(STEPS))]
         order = np.argsort(steps)
-        ax.errorbar(
-            np.array(steps)[order],
-            [each[k].value for k in order],
-            [each[k].error for k in order],
-            fmt=f"-{SYMBOLS[number]}",
-            color=COLOURS[number],
-            markerfacecolor="none",
-            linewidth=0.8,
-        )
+        values, errors = np.transpose(each)[:, order]
+        look: Any = {"number": number, "linewidth": 0.8}
+        draw_points(ax, np.array(steps)[order], values, errors, linestyle="-", **look)
         at = first * 1.25 ** (number - 1.5)  # beside one another
         limit = limit_estimate(results, size, nu)
-        ax.errorbar(at, *limit, fmt=SYMBOLS[number], color=COLOURS[number], linewidth=0.8)
+        draw_points(ax, at, *limit, markerfacecolor=COLOURS[number], **look)
         if size in theories:
             ax.plot(at, nu(theories[size]), **_CROSS | {"color": COLOURS[number]})
     ax.axhline(_PAPER, color="0.4", linestyle="--", label="paper")
     ax.plot([], [], "o", color="0.4", markerfacecolor="none", label="at a time step")
     ax.plot([], [], "o", color="0.4", label=LABEL)
-    ax.plot([], [], **_CROSS | {"color": "0.4"}, label=predictions.PAIRS_ALONE)
+    ax.plot([], [], **_CROSS | {"color": "0.4"}, label=_PAIRS)
     ax.legend(loc="upper right")
     ax.set(xscale="log", xlabel="time step $dt$ [T]", ylabel=r"exponent $\nu$")
     ax.set_xticks([first, 1e-3, 1e-2], [r"$\to 0$", "$10^{-3}$", "$10^{-2}$"])
     ax.set_xticks([tenth * k for tenth in (1e-3, 1e-2) for k in range(2, 10)], minor=True)
     ax.set_xlim(0.5 * first, 4e-2)
-
-
-FIGURE = Study(
-    number=3,
-    name="widths-inelastic",
-    title="Velocity widths at e = 0: power laws from both borders",
-    caption="(a) W_v against the rod's number, e = 0, at the default time step, with the fits "
-    "a [(i - c)^nu + (L + 1 - c - i)^nu] to all rods; dotted, in (b) "
-    "crosses: the kinetic equation with pair correlations. (b) The exponent against the time "
-    "step; the leftmost open symbol of each size is the default step, the full one the limit. (c) "
-    "W_v over its limit dt -> 0.",
-    cases=cases,
-    draw=draw,
-    claims=claims,
-)

@@ -3,21 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from functools import partial
 from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
 
-from crazybilliards.comparison.drawing import COLOURS, SYMBOLS, mark_clipped
+from crazybilliards.comparison.drawing import draw_points, mark_clipped
 from crazybilliards.comparison.fits import Fit, fit_scaling
 from crazybilliards.comparison.layout import legend_above, panels
 from crazybilliards.comparison.widths import central_width
 from crazybilliards.model import Chain
 from crazybilliards.reproduction.chains import SIZES, STEPS, at_step, at_steps
 from crazybilliards.reproduction.claims.repetition import Granted, Runs
-from crazybilliards.reproduction.claims.study import Cases, Quality, Results, Study, all_of
+from crazybilliards.reproduction.claims.study import Results, all_of
 from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, around
 from crazybilliards.reproduction.vanishing_step import LABEL, central_limit, limits
+
+TITLE = "The central width against the size at e = 0"
+CAPTION = (
+    "Root mean square velocity of the middle tenth of the rods, e = 0. Grey line: a fit to the "
+    "default time step, L = 10 to 1000. Dashed: the paper's exponent. (b) The ratio to the fit. "
+    "Full circles: the limit of a vanishing step. Longer chains than the paper's are at time steps "
+    "whose velocity kick is two thirds of the width at every size."
+)
 
 _PAPER, _PRECISION = -0.38, 0.005  # "with exponent -0.38": half a unit of the last digit
 # Beyond the paper: the default step would take hours there. These steps are in the ratio of the
@@ -43,11 +52,7 @@ _LONG = [
     )
     for size, granted in _GRANTED.items()
 ]
-
-
-def cases(quality: Quality) -> Cases:
-    """E = 0, L = 10 to 1000 at four time steps and in the limit; longer chains at own steps."""
-    return all_of([*at_steps(), *map(limits, SIZES), *_LONG], quality)
+cases = partial(all_of, [*at_steps(), *map(limits, SIZES), *_LONG])
 
 
 def _widths(results: Results, every: Iterable[Runs]) -> dict[int, Estimate]:
@@ -73,18 +78,16 @@ def claims(results: Results) -> list[Claim]:
     others = {"default time step": _fit(default), **at, "L = 30 to 1000": _fit(default, least=30)}
     elsewhere = {name: _exponent(fit) for name, fit in others.items()}
     return [
-        *(
-            Claim(
-                f"W_v^min ~ L^-0.38, {name}",
-                found=_exponent(fit),
-                within=around(_PAPER, _PRECISION),
-                source="section seq:e_0, fig.3",
-                ours="the least size, 10, and the time step",
-                elsewhere={k: each for k, each in elsewhere.items() if each != _exponent(fit)},
-                reason="-0.38 is the mean slope of L = 10 to 1000; the curve bends",
-            )
-            for name, fit in fits.items()
+        Claim(
+            f"W_v^min ~ L^-0.38, {name}",
+            found=_exponent(fit),
+            within=around(_PAPER, _PRECISION),
+            source="section seq:e_0, fig.3",
+            ours="the least size, 10, and the time step",
+            elsewhere={k: each for k, each in elsewhere.items() if each != _exponent(fit)},
+            reason="-0.38 is the mean slope of L = 10 to 1000; the curve bends",
         )
+        for name, fit in fits.items()
     ]
 
 
@@ -104,15 +107,11 @@ def draw(results: Results) -> Figure:
     for number, (label, widths) in enumerate(series.items()):
         sizes = np.array(list(widths))
         values, errors = np.array(list(widths.values())).T
-        style: dict[str, Any] = {
-            "fmt": SYMBOLS[number % len(SYMBOLS)],
-            "color": COLOURS[number % len(COLOURS)],
-            "markerfacecolor": "none",
-        }
+        look: Any = {"number": number}
         if label == LABEL:  # full, above the others
-            style = {"fmt": ".", "color": "black", "zorder": 4}
-        top.errorbar(sizes, values / unit, errors / unit, label=label, **style)
-        bottom.errorbar(sizes, values / reference(sizes), errors / reference(sizes), **style)
+            look |= {"marker": ".", "color": "black", "markerfacecolor": "black", "zorder": 4}
+        draw_points(top, sizes, values / unit, errors / unit, label=label, **look)
+        draw_points(bottom, sizes, values / reference(sizes), errors / reference(sizes), **look)
     ends = np.array([8, 2e4])
     paper = ends**_PAPER * reference(100.0) / 100.0**_PAPER
     # On top they are one line to the eye; below, each is told from the other.
@@ -127,17 +126,3 @@ def draw(results: Results) -> Figure:
     mark_clipped(bottom)
     legend_above(figure, top)
     return figure
-
-
-FIGURE = Study(
-    number=4,
-    name="central-width",
-    title="The central width against the size at e = 0",
-    caption="Root mean square velocity of the middle tenth of the rods, e = 0. Grey line: a fit "
-    "to the default time step, L = 10 to 1000. Dashed: the paper's exponent. (b) The ratio to the "
-    "fit. Full circles: the limit of a vanishing step. Longer chains than the paper's are at time "
-    "steps whose velocity kick is two thirds of the width at every size.",
-    cases=cases,
-    draw=draw,
-    claims=claims,
-)

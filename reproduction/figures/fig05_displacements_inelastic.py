@@ -3,25 +3,26 @@
 from __future__ import annotations
 
 import itertools
+from functools import partial
 
-import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
 from crazybilliards.comparison.drawing import along_the_chain, draw_rods
 from crazybilliards.comparison.layout import panels
-from crazybilliards.model import chain_of
-from crazybilliards.model.chain import middle_tenth
+from crazybilliards.comparison.widths import central_width
 from crazybilliards.reproduction.chains import LARGE, dissipative
-from crazybilliards.reproduction.claims.study import Cases, Quality, Results, Study, all_of
-from crazybilliards.reproduction.claims.verdicts import POSITIVE, Claim
+from crazybilliards.reproduction.claims.study import Results, all_of
+from crazybilliards.reproduction.claims.verdicts import Claim
+
+TITLE = "Mean displacements at e = 0"
+CAPTION = (
+    "(a) Mean displacement and (b) its width (the paper's inset) against the normalized particle "
+    "number, e = 0, in units of the thermal length s."
+)
 
 _RUNS = {size: dissipative(size, 0.0) for size in (30, 100, 300, LARGE)}
-
-
-def cases(quality: Quality) -> Cases:
-    """E = 0, four sizes."""
-    return all_of(_RUNS.values(), quality)
+cases = partial(all_of, _RUNS.values())
 
 
 def swelling(run: xr.Dataset) -> float:
@@ -30,16 +31,11 @@ def swelling(run: xr.Dataset) -> float:
     return float(place @ run.mean_displacement.values / (place @ place))
 
 
-def _confined(run: xr.Dataset) -> float:
-    """Return W_x of the middle tenth of the rods."""
-    middle = middle_tenth(run.sizes["particle"])
-    return float(np.sqrt((run.displacement_width.values[middle] ** 2).mean()))
-
-
 def claims(results: Results) -> list[Claim]:
     """Check: displacements decrease with the size."""
     found = {size: runs.estimate(results, swelling) for size, runs in _RUNS.items()}
-    spread = {size: runs.estimate(results, _confined) for size, runs in _RUNS.items()}
+    confined = partial(central_width, of="displacement_width")
+    spread = {size: runs.estimate(results, confined) for size, runs in _RUNS.items()}
     source, ours = "section seq:e_0, fig.3_2", "the sizes and the time step"
     return [
         claim
@@ -49,7 +45,6 @@ def claims(results: Results) -> list[Claim]:
                 f"the mean displacement decreases from L = {small} to L = {large}",
                 f"slope of <dx> against i_n: {found[small]} less {found[large]}, difference",
                 found=found[small].minus(found[large]),
-                within=POSITIVE,
                 source=source,
                 ours=ours,
             ),
@@ -58,7 +53,6 @@ def claims(results: Results) -> list[Claim]:
                 f"W_x in the centre, middle tenth: {spread[small]} less {spread[large]}, "
                 "difference",
                 found=spread[small].minus(spread[large]),
-                within=POSITIVE,
                 source=f"{source}, inset",
                 ours=ours,
             ),
@@ -71,7 +65,7 @@ def draw(results: Results) -> Figure:
     figure, axes = panels(1, 2)
     for number, (size, runs) in enumerate(_RUNS.items()):
         run = runs.pooled(results)
-        s = chain_of(run).thermal_length
+        s = runs.chain.thermal_length
         for ax, name in zip(axes, ("mean_displacement", "displacement_width"), strict=True):
             draw_rods(ax, run, name, number=number, unit=s, label=f"$L = {size}$")
     axes[0].set(ylabel=r"mean displacement $\langle\Delta x\rangle/s$")
@@ -80,15 +74,3 @@ def draw(results: Results) -> Figure:
         along_the_chain(ax)
     axes[0].legend()
     return figure
-
-
-FIGURE = Study(
-    number=5,
-    name="displacements-inelastic",
-    title="Mean displacements at e = 0",
-    caption="(a) Mean displacement and (b) its width (the paper's inset) against the "
-    "normalized particle number, e = 0, in units of the thermal length s.",
-    cases=cases,
-    draw=draw,
-    claims=claims,
-)

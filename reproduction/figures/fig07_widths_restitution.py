@@ -9,31 +9,33 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 
-from crazybilliards.comparison.drawing import COLOURS, SYMBOLS, along_the_chain, draw_rods
+from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_points, draw_rods
 from crazybilliards.comparison.fits import Fit, fit_exponential
 from crazybilliards.comparison.layout import legend_above, mosaic
 from crazybilliards.comparison.widths import central_width
-from crazybilliards.model import chain_of
 from crazybilliards.reproduction.chains import LARGE, RESTITUTIONS, dissipative, elastic
-from crazybilliards.reproduction.claims.study import Cases, Quality, Results, Study, all_of
-from crazybilliards.reproduction.claims.verdicts import POSITIVE, Claim, Estimate, in_plot, worst
+from crazybilliards.reproduction.claims.study import Cases, Quality, Results, all_of
+from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, in_plot, worst
 from crazybilliards.reproduction.figures.fig12_widths_damping import bulge
-from crazybilliards.reproduction.power_laws import fits_in_plot
-from crazybilliards.reproduction.predictions import (
-    CROSSES,
-    LINES,
-    by_restitution,
-    minus_nu,
-    predicted,
-)
+from crazybilliards.reproduction.power_laws import fits_in_plot, nu
+from crazybilliards.reproduction.predictions import CROSSES, LINES, by_restitution, predicted
 from crazybilliards.reproduction.vanishing_step import LABEL, central_limit, limits
+
+TITLE = "Velocity widths for several restitutions"
+CAPTION = (
+    "(a) W_v against the normalized particle number, L = 1000 (e = 1: L = 100). Lines: the kinetic "
+    "equation in the colour of its e, dashed without pair correlations, full with them; nothing of "
+    "the simulation goes into these lines. (b) The exponent of the two power laws against the "
+    "restitution, and a exp(-lambda (1 - e)) + d fitted to it. (c) W_v in the centre at the "
+    "default time step and in the limit of a vanishing one."
+)
 
 IN_LIMIT = {"quick": (0.0, 0.95), "full": RESTITUTIONS}
 _RUNS = {e: dissipative(LARGE, e) for e in RESTITUTIONS}
 _ELASTIC_SIZE = 100
 _PRECISION = 0.005  # of exponents: the paper gives them with two decimals
 _SOURCE = "section seq:e_larger, fig.4"
-_OPEN: dict[str, Any] = {"fmt": SYMBOLS[0], "color": "black", "markerfacecolor": "none"}
+_OPEN: dict[str, Any] = {"number": 0, "color": "black"}
 _OURS = "the restitutions (those of fig.5, and 0.5) and the time step"
 
 
@@ -47,17 +49,8 @@ def cases(quality: Quality) -> Cases:
     )
 
 
-def _central_widths(results: Results) -> dict[float, Estimate]:
-    return {e: runs.estimate(results, central_width) for e, runs in _RUNS.items()}
-
-
-def _central_limits(results: Results) -> dict[float, Estimate]:
-    there = [e for e in RESTITUTIONS if limits(LARGE, e).members(results)]
-    return {e: central_limit(results, LARGE, e) for e in there}
-
-
 def _exponents(results: Results) -> dict[float, Estimate]:
-    return {e: runs.estimate(results, minus_nu) for e, runs in _RUNS.items()}
+    return {e: -runs.estimate(results, nu) for e, runs in _RUNS.items()}
 
 
 def _fit(found: dict[float, Estimate]) -> Fit:
@@ -75,7 +68,6 @@ def claims(results: Results) -> list[Claim]:
             f"ln of the border's width over the centre's: {uneven[low]} at e = {low:g} and "
             f"{uneven[high]} at e = {high:g}, difference",
             found=uneven[low].minus(uneven[high]),
-            within=POSITIVE,
             source=_SOURCE,
             ours=_OURS,
         ),
@@ -123,7 +115,7 @@ def draw(results: Results) -> Figure:
     left.set(ylabel="velocity width $W_v/W$", yscale="log")
     for number, (e, runs) in enumerate((_RUNS | {1.0: elastic(_ELASTIC_SIZE)}).items()):
         run = runs.pooled(results)
-        unit = chain_of(run).free_velocity_width
+        unit = runs.chain.free_velocity_width
         label = f"$e = {e:g}$" + (f", $L = {_ELASTIC_SIZE}$" if e == 1 else "")
         draw_rods(left, run, "velocity_width", number=number, unit=unit, label=label)
         _draw_theories(left, results, e, unit, COLOURS[number])
@@ -154,13 +146,15 @@ def _draw_theories(ax: Axes, results: Results, e: float, unit: float, colour: st
 
 def _draw_centre(ax: Axes, results: Results) -> None:
     unit = _RUNS[0.0].chain.free_velocity_width
-    full: dict[str, Any] = {"fmt": SYMBOLS[2], "color": COLOURS[0]}
+    full: dict[str, Any] = {"number": 2, "color": COLOURS[0], "markerfacecolor": COLOURS[0]}
+    widths = {e: runs.estimate(results, central_width) for e, runs in _RUNS.items()}
+    there = [e for e in RESTITUTIONS if limits(LARGE, e).members(results)]
     for found, label, style in (
-        (_central_widths(results), "default step", {**_OPEN, "markersize": 5}),
-        (_central_limits(results), LABEL, full),
+        (widths, "default step", {**_OPEN, "markersize": 5}),
+        ({e: central_limit(results, LARGE, e) for e in there}, LABEL, full),
     ):
         values, errors = np.array(list(found.values())).T / unit
-        ax.errorbar(list(found), values, errors, label=label, **style)
+        draw_points(ax, list(found), values, errors, label=label, **style)
     for theory, of_theory in predicted(results).items():
         centres = [central_width(each) / unit for each in of_theory.values()]
         ax.plot(list(of_theory), centres, **CROSSES[theory], label=theory)
@@ -172,27 +166,12 @@ def _draw_exponents(ax: Axes, results: Results) -> None:
     found = _exponents(results)
     fit = _fit(found)
     values, errors = np.array(list(found.values())).T
-    ax.errorbar(list(found), values, errors, label="simulation", **_OPEN)
+    draw_points(ax, list(found), values, errors, label="simulation", **_OPEN)
     for theory, of_theory in predicted(results).items():
-        exponents = [minus_nu(each) for each in of_theory.values()]
+        exponents = [-nu(each) for each in of_theory.values()]
         ax.plot(list(of_theory), exponents, **CROSSES[theory], label=theory)
     fine = np.linspace(0, 1, 101)
     ax.plot(fine, fit(fine), "0.4", label=rf"fit, $\lambda = {fit.rate:.1f}$")
     ax.set(ylabel=r"exponent $-\nu$")
     ax.tick_params(labelbottom=False)
     ax.legend()
-
-
-FIGURE = Study(
-    number=7,
-    name="widths-restitution",
-    title="Velocity widths for several restitutions",
-    caption="(a) W_v against the normalized particle number, L = 1000 (e = 1: L = 100). Lines: "
-    "the kinetic equation in the colour of its e, dashed without pair correlations, full with "
-    "them; nothing of the simulation goes into these lines. (b) The exponent of the two "
-    "power laws against the restitution, and a exp(-lambda (1 - e)) + d fitted to it. (c) W_v in "
-    "the centre at the default time step and in the limit of a vanishing one.",
-    cases=cases,
-    draw=draw,
-    claims=claims,
-)

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from crazybilliards.comparison.drawing import along_the_chain, draw_rods
 from crazybilliards.comparison.layout import entitle, panels
-from crazybilliards.model import Chain, chain_of
+from crazybilliards.model import Chain
 from crazybilliards.reproduction.chains import LARGE, elastic
 from crazybilliards.reproduction.claims.repetition import Granted, Runs
-from crazybilliards.reproduction.claims.study import Cases, Quality, Results, Study, all_of
+from crazybilliards.reproduction.claims.study import Results, all_of
 from crazybilliards.reproduction.claims.verdicts import EYE, Claim, Estimate, in_plot, worst
 from crazybilliards.reproduction.distributions import (
     draw_distributions,
@@ -19,6 +21,13 @@ from crazybilliards.reproduction.distributions import (
     histogram,
     mean_shape,
     off_in_plot,
+)
+
+TITLE = "Velocity distributions at e = 1"
+CAPTION = (
+    "(a) Symbols: simulated rods 1 and 50 of 100, with standard errors. Dotted: the exact "
+    "distribution, that of a free rod. (b) W_v of 1000 rods, exact at any step with event-driven "
+    "collisions, wrong with Contact Dynamics at steps that are affordable."
 )
 
 _SIZE = 100
@@ -43,17 +52,13 @@ _CONTACT = {
     )
     for step in _STEPS
 }
-
-
-def cases(quality: Quality) -> Cases:
-    """L = 100; and L = 1000, with the exact operator and with Contact Dynamics."""
-    return all_of([_RUNS, _EXACT, *_CONTACT.values()], quality)
+cases = partial(all_of, [_RUNS, _EXACT, *_CONTACT.values()])
 
 
 def claims(results: Results) -> list[Claim]:
     """Check: identical to the free Gaussian."""
     run = _RUNS.pooled(results)
-    unit = chain_of(run).free_velocity_width
+    unit = _RUNS.chain.free_velocity_width
     shares = (run.velocity_width / unit - 1, run.velocity_width_error / unit)
     kurtosis = _RUNS.estimate(
         results, lambda run: mean_shape(run, range(1, _SIZE + 1), "velocity_kurtosis")
@@ -78,7 +83,7 @@ def claims(results: Results) -> list[Claim]:
 
 def _off(run: xr.Dataset) -> float:
     """Return how far p(v) is off the free rod's, as a share of the plot: the worse of two rods."""
-    unit = chain_of(run).free_velocity_width
+    unit = _RUNS.chain.free_velocity_width
     reach = _SHOWN * unit
     densities = [histogram(run, [particle], reach) for particle in _PARTICLES]
     return max(off_in_plot(v, p, lambda v: gaussian(v, unit), reach) for v, p in densities)
@@ -99,23 +104,10 @@ def _draw_long_chains(ax: Axes, results: Results) -> None:
     shown |= {f"Contact Dyn., $dt = {step:g}$": runs for step, runs in _CONTACT.items()}
     for number, (label, runs) in enumerate(shown.items()):
         run = runs.pooled(results)
-        unit = chain_of(run).free_velocity_width
+        unit = runs.chain.free_velocity_width
         draw_rods(ax, run, "velocity_width", number=number, unit=unit, label=label)
     ax.axhline(1, color="black", linestyle=":", label="exact")
     along_the_chain(ax)
     ax.set(ylabel="velocity width $W_v/W$", ylim=(0, 1.6))
     entitle(ax, f"$L = {LARGE}$")
     ax.legend(loc="upper center", ncols=2)
-
-
-FIGURE = Study(
-    number=8,
-    name="velocities-elastic",
-    title="Velocity distributions at e = 1",
-    caption="(a) Symbols: simulated rods 1 and 50 of 100, with standard errors. Dotted: the exact "
-    "distribution, that of a free rod. (b) W_v of 1000 rods, exact at any step with event-driven "
-    "collisions, wrong with Contact Dynamics at steps that are affordable.",
-    cases=cases,
-    draw=draw,
-    claims=claims,
-)

@@ -3,33 +3,35 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from crazybilliards.comparison.distances import distances_in_plot
 from crazybilliards.comparison.fits import Fit, fit_border_power_law
 from crazybilliards.comparison.widths import border_width, central_width
+from crazybilliards.model.arrays import Array
 from crazybilliards.model.chain import middle_tenth
 from crazybilliards.reproduction.chains import flippers, kinetic_equation
-from crazybilliards.reproduction.claims.study import Cases, Quality, Results, Study, all_of
-from crazybilliards.reproduction.claims.verdicts import EYE, POSITIVE, Claim, Estimate
+from crazybilliards.reproduction.claims.study import Results, all_of
+from crazybilliards.reproduction.claims.verdicts import EYE, Claim, Estimate
 from crazybilliards.reproduction.predictions import draw_flippers
+
+TITLE = "Velocity widths of flippers for several dampings"
+CAPTION = (
+    "Damping times velocity width against the normalized particle number, L = 100, e = 1.05. "
+    "Lines: the kinetic equation."
+)
 
 _SIZE = 100
 _RESTITUTION = 1.05
-_SOURCE = "section Anti-Dissipation, fig:mom_var_antidiss_diff_gamma_sq"
+_claim = partial(Claim, source="section Anti-Dissipation, fig:mom_var_antidiss_diff_gamma_sq")
 _DAMPINGS = (4.0, 5.0, 6.0, 8.0, 10.0)
 _RUNS = {damping: flippers(_SIZE, damping) for damping in _DAMPINGS}
 _THEORIES = {damping: kinetic_equation(_SIZE, _RESTITUTION, damping) for damping in _DAMPINGS}
-
-
-def cases(quality: Quality) -> Cases:
-    """L = 100, e = 1.05, five dampings, each with the kinetic equation."""
-    beside = [each for damping in _DAMPINGS for each in (_RUNS[damping], _THEORIES[damping])]
-    return all_of(beside, quality)
+cases = partial(all_of, [each[g] for g in _DAMPINGS for each in (_RUNS, _THEORIES)])
 
 
 def bulge(run: xr.Dataset) -> float:
@@ -42,35 +44,28 @@ def claims(results: Results) -> list[Claim]:
     found = {g: runs.estimate(results, bulge) for g, runs in _RUNS.items()}
     low, high = _DAMPINGS[0], _DAMPINGS[-1]
     change = np.interp(0.0, [each.value for each in found.values()][::-1], _DAMPINGS[::-1])
-    opposite = Estimate(-found[high].value, found[high].error)
     return [
-        Claim(
+        _claim(
             f"convex at gamma = {low:g}",
             "ln of the border's width over the centre's:",
             found=found[low],
-            within=POSITIVE,
-            source=_SOURCE,
         ),
-        Claim(
+        _claim(
             f"concave at gamma = {high:g}",
             f"it changes at gamma = {change:.1f}; ln of the centre's width over the border's:",
-            found=opposite,
-            within=POSITIVE,
-            source=_SOURCE,
+            found=-found[high],
         ),
-        *(_frequency_claim(results, damping) for damping in (high, low)),
+        *(
+            _claim(
+                f"rods collide more often in the bulk than at the border, gamma = {damping:g}",
+                "ln of the collision rate of the middle tenth of the contacts over that of the "
+                "outermost:",
+                found=_RUNS[damping].estimate(results, _crowding),
+            )
+            for damping in (high, low)
+        ),
         _power_law_claim(results),
     ]
-
-
-def _frequency_claim(results: Results, damping: float) -> Claim:
-    return Claim(
-        f"rods collide more often in the bulk than at the border, gamma = {damping:g}",
-        "ln of the collision rate of the middle tenth of the contacts over that of the outermost:",
-        found=_RUNS[damping].estimate(results, _crowding),
-        within=POSITIVE,
-        source=_SOURCE,
-    )
 
 
 def _crowding(run: xr.Dataset) -> float:
@@ -90,30 +85,21 @@ def _power_law_claim(results: Results) -> Claim:
     else:
         words = f"nu = {fit.exponent:.3f} fits best"
         linear, logarithmic = (
-            _beyond_the_eye(results, run, fit, axes) for axes in (_unchanged, np.log)
+            _beyond_the_eye(results, run, fit, axes) for axes in (np.asarray, np.log)
         )
-    return Claim(
+    return _claim(
         f"the convex profile at gamma = {_DAMPINGS[0]:g} cannot be described by a power law",
         f"gamma W_v against i for the five dampings, both axes linear: {words}; by how much the "
         f"largest deviation, as a share of the plotted range, exceeds what an eye sees, {EYE:g}:",
         found=linear,
-        within=POSITIVE,
-        source=_SOURCE,
         ours="whether the axes are linear",
         elsewhere={"both axes logarithmic": logarithmic},
         reason="a sum of two flat power laws fits",
     )
 
 
-def _unchanged(values: NDArray[np.float64]) -> NDArray[np.float64]:
-    return values
-
-
 def _beyond_the_eye(
-    results: Results,
-    run: xr.Dataset,
-    fit: Fit,
-    axes: Callable[[NDArray[np.float64]], NDArray[np.float64]],
+    results: Results, run: xr.Dataset, fit: Fit, axes: Callable[[Array], Array]
 ) -> Estimate:
     """Return the largest distance of a symbol from the fit, as a share of the plot, less EYE."""
     widths = {g: runs.pooled(results).velocity_width.values for g, runs in _RUNS.items()}
@@ -140,15 +126,3 @@ def draw(results: Results) -> Figure:
         shown[rf"$\gamma = {damping:g}$"] = runs, _THEORIES[damping], unit
     label = r"$\gamma W_v/(A/\sqrt{2m})$  [M$^{1/2}$T$^{-1/2}$]"
     return draw_flippers(results, shown, label)
-
-
-FIGURE = Study(
-    number=12,
-    name="widths-damping",
-    title="Velocity widths of flippers for several dampings",
-    caption="Damping times velocity width against the normalized particle number, L = 100, "
-    "e = 1.05. Lines: the kinetic equation.",
-    cases=cases,
-    draw=draw,
-    claims=claims,
-)

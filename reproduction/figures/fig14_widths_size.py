@@ -2,16 +2,24 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 from matplotlib.figure import Figure
 
 from crazybilliards.comparison.widths import central_width
 from crazybilliards.model import Chain
 from crazybilliards.reproduction.chains import flippers, kinetic_equation
 from crazybilliards.reproduction.claims.repetition import Runs, share_of_runs
-from crazybilliards.reproduction.claims.study import Cases, Quality, Results, Study, all_of
-from crazybilliards.reproduction.claims.verdicts import POSITIVE, Claim, Estimate
+from crazybilliards.reproduction.claims.study import Results, all_of
+from crazybilliards.reproduction.claims.verdicts import Claim
 from crazybilliards.reproduction.figures.fig12_widths_damping import bulge
 from crazybilliards.reproduction.predictions import draw_flippers
+
+TITLE = "Velocity widths of flippers for several sizes"
+CAPTION = (
+    "W_v against the normalized particle number, e = 1.05, gamma = 4. Lines: the kinetic equation. "
+    "Longer chains have no steady state: L = 150 diverges."
+)
 
 _DAMPING, _RESTITUTION = 4.0, 1.05
 _SIZES = (25, 50, 75, 100, 105)
@@ -23,13 +31,9 @@ _UNSTEADY = Runs(
     {"quick": (4, {}), "full": (4, {})},
     {"duration": 1000.0, "warmup": 0.0, "observe": ["energy"]},
 )
-_SOURCE = "section Anti-Dissipation, fig:antidiss_diff_L"
-
-
-def cases(quality: Quality) -> Cases:
-    """E = 1.05, gamma = 4, five sizes with the kinetic equation, and one that diverges."""
-    beside = [each for size in _SIZES for each in (_RUNS[size], _THEORIES[size])]
-    return all_of([*beside, _UNSTEADY], quality)
+_BESIDE = [each[size] for size in _SIZES for each in (_RUNS, _THEORIES)]
+_claim = partial(Claim, source="section Anti-Dissipation, fig:antidiss_diff_L")
+cases = partial(all_of, [*_BESIDE, _UNSTEADY])
 
 
 def claims(results: Results) -> list[Claim]:
@@ -39,36 +43,28 @@ def claims(results: Results) -> list[Claim]:
     diverged = sum(run.attrs["status"] == "diverged" for run in unsteady)
     short, long = _SIZES[0], _SIZES[-1]
     return [
-        Claim(
+        _claim(
             f"concave at L = {short}",
             "ln of the centre's width over the border's:",
-            found=Estimate(-found[short].value, found[short].error),
-            within=POSITIVE,
-            source=_SOURCE,
+            found=-found[short],
         ),
-        Claim(
+        _claim(
             f"convex at L = {long}",
             "ln of the border's width over the centre's:",
             found=found[long],
-            within=POSITIVE,
-            source=_SOURCE,
         ),
-        Claim(
+        _claim(
             "the longer the chain, the larger W_v",
             f"W_v in the centre at L = {long} less that at L = {short}:",
             found=_RUNS[long]
             .estimate(results, central_width)
             .minus(_RUNS[short].estimate(results, central_width)),
-            within=POSITIVE,
-            source=_SOURCE,
         ),
-        Claim(
+        _claim(
             f"without a steady state at L = {_UNSTEADY.chain.size}",
             f"{diverged} of {len(unsteady)} runs, released from rest, diverged; their share, as "
             "far as so few runs show it:",
             found=share_of_runs(diverged, len(unsteady)),
-            within=POSITIVE,
-            source=_SOURCE,
             ours="the size that is too large",
         ),
     ]
@@ -81,15 +77,3 @@ def draw(results: Results) -> Figure:
         for size, runs in _RUNS.items()
     }
     return draw_flippers(results, shown, "velocity width $W_v/W$")
-
-
-FIGURE = Study(
-    number=14,
-    name="widths-size",
-    title="Velocity widths of flippers for several sizes",
-    caption="W_v against the normalized particle number, e = 1.05, gamma = 4. Lines: the kinetic "
-    "equation. Longer chains have no steady state: L = 150 diverges.",
-    cases=cases,
-    draw=draw,
-    claims=claims,
-)

@@ -2,18 +2,26 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from matplotlib.figure import Figure
 
 from crazybilliards.comparison.distances import distances_in_plot
-from crazybilliards.comparison.drawing import COLOURS
+from crazybilliards.comparison.drawing import COLOURS, draw_points
 from crazybilliards.comparison.fits import fit_arctanh
 from crazybilliards.comparison.layout import panels
 from crazybilliards.kinetic import equilibrium
 from crazybilliards.model import chain_of
-from crazybilliards.reproduction.claims.study import Cases, Quality, Results, Study
+from crazybilliards.reproduction.claims.study import Cases, Quality, Results
 from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, in_plot
 from crazybilliards.reproduction.figures.fig17_density import simulation
+
+TITLE = "The mean displacement at e = 1 and its arctanh fit"
+CAPTION = (
+    "L = 100, e = 1, A = 10. (b) Curves less simulation; grey: one standard error. s is the "
+    "thermal length."
+)
 
 _AMPLITUDE = 10.0
 
@@ -57,16 +65,9 @@ def draw(results: Results) -> Figure:
     x = run.mean_position.values
     figure, (top, bottom) = panels(2, 1, height=1.7, wanted=1, sharex=True, height_ratios=(2, 1))
     measured = run.mean_displacement.values
-    top.errorbar(
-        x,
-        measured / s,
-        run.mean_displacement_error / s,
-        fmt="o",
-        color="black",
-        markerfacecolor="none",
-        linewidth=0.7,
-        label="simulation",
-    )
+    error = run.mean_displacement_error.values
+    look: Any = {"number": 0, "color": "black", "linewidth": 0.7, "label": "simulation"}
+    draw_points(top, x, measured / s, error / s, **look)
     curves = {
         "exact": (exact.mean_displacement.values, "-", COLOURS[1]),
         "arctanh fit": (fit(x), "--", COLOURS[0]),
@@ -74,27 +75,9 @@ def draw(results: Results) -> Figure:
     for label, (curve, style, colour) in curves.items():
         top.plot(x, curve / s, style, color=colour, label=label)
         bottom.plot(x, (curve - measured) / s, style, color=colour)
-    bottom.fill_between(
-        x,
-        -run.mean_displacement_error / s,
-        run.mean_displacement_error / s,
-        color="0.8",
-        label="one standard error",
-    )
+    bottom.fill_between(x, -error / s, error / s, color="0.8", label="one standard error")
     bottom.legend(loc="lower center")
     top.set(ylabel=r"displacement $\langle\Delta x\rangle/s$")
     bottom.set(xlabel=r"mean position $\langle x_i\rangle$ [R]", ylabel="curve less\nsimulation")
     top.legend()
     return figure
-
-
-FIGURE = Study(
-    number=16,
-    name="arctanh",
-    title="The mean displacement at e = 1 and its arctanh fit",
-    caption="L = 100, e = 1, A = 10. (b) Curves less simulation; grey: one standard error. "
-    "s is the thermal length.",
-    cases=cases,
-    draw=draw,
-    claims=claims,
-)

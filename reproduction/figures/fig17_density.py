@@ -14,8 +14,16 @@ from crazybilliards.comparison.side_by_side.grid_figures import draw_density
 from crazybilliards.comparison.sweeps import Case
 from crazybilliards.kinetic import force_balance
 from crazybilliards.model import Chain, chain_of
-from crazybilliards.reproduction.claims.study import Cases, Quality, Results, Study
+from crazybilliards.reproduction.claims.study import Cases, Quality, Results
 from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, in_plot
+
+TITLE = "Density at e = 1: simulation and theory"
+CAPTION = (
+    "L = 100, e = 1, four driving amplitudes. Circles: simulation, smoothed as in the "
+    "paper; a thin line where circles would hide steps. Other lines: "
+    f"{'; '.join(ELASTIC.values())}. Insets: the right edge, every bin. Below each: the difference "
+    "from the exact density in units of close packing."
+)
 
 _AMPLITUDES = (1.0, 3.0, 10.0, 30.0)
 _ARCTANH = 10.0  # the amplitude of the paper's arctanh fit, fig:atan
@@ -78,17 +86,3 @@ def _off_in_plot(run: xr.Dataset, theory: xr.Dataset) -> tuple[float, float]:
 def draw(results: Results) -> Figure:
     """Draw rho(x) and the differences from the exact density."""
     return draw_density(elastic_tree(results))
-
-
-FIGURE = Study(
-    number=17,
-    name="density",
-    title="Density at e = 1: simulation and theory",
-    caption="L = 100, e = 1, four driving amplitudes. Circles: simulation, smoothed as in the "
-    "paper; a thin line where circles would hide steps. Other lines: "
-    f"{'; '.join(ELASTIC.values())}. Insets: the right edge, every bin. Below each: the difference "
-    "from the exact density in units of close packing.",
-    cases=cases,
-    draw=draw,
-    claims=claims,
-)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
@@ -10,8 +12,14 @@ from crazybilliards.comparison.drawing import along_the_chain, draw_rods
 from crazybilliards.comparison.layout import entitle, panels
 from crazybilliards.model import chain_of
 from crazybilliards.reproduction.chains import LARGE, dissipative
-from crazybilliards.reproduction.claims.study import Cases, Quality, Results, Study, all_of
+from crazybilliards.reproduction.claims.study import Results, all_of
 from crazybilliards.reproduction.claims.verdicts import EYE, Claim, Estimate, worst
+
+TITLE = "The driving amplitude only sets the scale"
+CAPTION = (
+    "Velocity variance over A^2 and mean displacement over A against the normalized particle "
+    "number, L = 1000, three amplitudes with random numbers of their own."
+)
 
 _RESTITUTIONS = (0.0, 0.95)
 _AMPLITUDES = (1.0, 3.0, 10.0)
@@ -22,18 +30,10 @@ _SCALED = {
     "mean_square_displacement": "<dx^2>/A^2",
 }
 _LOGARITHMIC = ("velocity_variance",)  # axes; the others are linear
+cases = partial(all_of, [dissipative(LARGE, e, a) for e in _RESTITUTIONS for a in _AMPLITUDES])
 
 
-def cases(quality: Quality) -> Cases:
-    """L = 1000, two restitutions, three amplitudes."""
-    return all_of((dissipative(LARGE, e, a) for e in _RESTITUTIONS for a in _AMPLITUDES), quality)
-
-
-def _scaled(results: Results, restitution: float, amplitude: float) -> xr.Dataset:
-    return _scale(dissipative(LARGE, restitution, amplitude).pooled(results))
-
-
-def _scale(run: xr.Dataset) -> xr.Dataset:
+def _scaled(run: xr.Dataset) -> xr.Dataset:
     """Return W_v^2/A^2, <dx>/A and <dx^2>/A^2 with their errors."""
     amplitude = chain_of(run).amplitude
     error = 2 * run.velocity_width * run.velocity_width_error
@@ -53,25 +53,23 @@ def _scale(run: xr.Dataset) -> xr.Dataset:
 
 def claims(results: Results) -> list[Claim]:
     """Check: all amplitudes fall onto one curve."""
-    claims = []
+    return [_same(results, e, name) for e in _RESTITUTIONS for name in _SCALED]
+
+
+def _same(results: Results, restitution: float, name: str) -> Claim:
     first, *others = (f"{a:g}" for a in _AMPLITUDES)
-    for restitution in _RESTITUTIONS:
-        for name, symbol in _SCALED.items():
-            axis = "logarithmic" if name in _LOGARITHMIC else "linear"
-            claims.append(
-                Claim(
-                    f"{symbol} the same for all A, e = {restitution:g}",
-                    **worst(
-                        f"mean over a tenth of the chain at A = {' or '.join(others)} less that at "
-                        f"A = {first}, as a share of the plotted range, {axis} axis",
-                        _differences(results, restitution, name),
-                        EYE,
-                    ),
-                    source="appendix, fig:amp_influence",
-                    ours="the amplitudes and restitutions",
-                )
-            )
-    return claims
+    axis = "logarithmic" if name in _LOGARITHMIC else "linear"
+    return Claim(
+        f"{_SCALED[name]} the same for all A, e = {restitution:g}",
+        **worst(
+            f"mean over a tenth of the chain at A = {' or '.join(others)} less that at "
+            f"A = {first}, as a share of the plotted range, {axis} axis",
+            _differences(results, restitution, name),
+            EYE,
+        ),
+        source="appendix, fig:amp_influence",
+        ours="the amplitudes and restitutions",
+    )
 
 
 def _differences(results: Results, restitution: float, name: str) -> list[Estimate]:
@@ -81,13 +79,13 @@ def _differences(results: Results, restitution: float, name: str) -> list[Estima
     """
 
     def tenths(run: xr.Dataset) -> list[float]:
-        means = [part.mean() for part in np.array_split(_scale(run)[name].values, 10)]
+        means = [part.mean() for part in np.array_split(_scaled(run)[name].values, 10)]
         return list(np.log(means) if name in _LOGARITHMIC else means)
 
     reference, *others = (
         dissipative(LARGE, restitution, a).estimates(results, tenths) for a in _AMPLITUDES
     )
-    plotted = _scaled(results, restitution, _AMPLITUDES[0])[name].values
+    plotted = _scaled(dissipative(LARGE, restitution).pooled(results))[name].values
     span = float(np.ptp(np.log(plotted) if name in _LOGARITHMIC else plotted))
     return [
         Estimate(difference.value / span, difference.error / span)
@@ -103,7 +101,7 @@ def draw(results: Results) -> Figure:
     for row, restitution in zip((axes[:2], axes[2:]), _RESTITUTIONS, strict=True):
         row[0].set_yscale("log")
         for number, amplitude in enumerate(_AMPLITUDES):
-            scaled = _scaled(results, restitution, amplitude)
+            scaled = _scaled(dissipative(LARGE, restitution, amplitude).pooled(results))
             for ax, name, label in zip(row, _DRAWN, labels, strict=True):
                 draw_rods(ax, scaled, name, number=number, label=f"$A = {amplitude:g}$")
                 ax.set_ylabel(label)
@@ -112,15 +110,3 @@ def draw(results: Results) -> Figure:
             entitle(ax, f"$e = {restitution:g}$")
     axes[0].legend()
     return figure
-
-
-FIGURE = Study(
-    number=18,
-    name="amplitude",
-    title="The driving amplitude only sets the scale",
-    caption="Velocity variance over A^2 and mean displacement over A against the normalized "
-    "particle number, L = 1000, three amplitudes with random numbers of their own.",
-    cases=cases,
-    draw=draw,
-    claims=claims,
-)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from functools import partial
 
 import numpy as np
 import xarray as xr
@@ -11,11 +12,16 @@ from matplotlib.figure import Figure
 from crazybilliards.comparison.drawing import along_the_chain, draw_rods
 from crazybilliards.comparison.layout import at_the_left, entitle, legend_above, panels
 from crazybilliards.comparison.widths import central_width
-from crazybilliards.model import chain_of
 from crazybilliards.reproduction.chains import LARGE, dissipative
 from crazybilliards.reproduction.claims.repetition import Granted, Runs
-from crazybilliards.reproduction.claims.study import Cases, Quality, Results, Study, all_of
-from crazybilliards.reproduction.claims.verdicts import POSITIVE, Claim, around
+from crazybilliards.reproduction.claims.study import Results, all_of
+from crazybilliards.reproduction.claims.verdicts import Claim, around
+
+TITLE = "Velocity variances of chains with gaps"
+CAPTION = (
+    "W_v^2 against the normalized particle number, L = 1000, for several gaps g between "
+    "neighbouring rods at their anchors, in radii."
+)
 
 _RESTITUTIONS = (0.0, 0.75, 0.95)
 _GAPS = (0.05, 0.2, 1.0)
@@ -23,14 +29,10 @@ _GRANTED: Granted = {
     "quick": (4, {"duration": 80.0, "warmup": 50.0}),
     "full": (4, {"duration": 600.0, "warmup": 100.0}),
 }
-_SOURCE = "appendix, fig:mom_var_gaps"
-_OURS = "the gaps, the restitutions and the time step"
+_claim = partial(
+    Claim, source="appendix, fig:mom_var_gaps", ours="the gaps, the restitutions and the time step"
+)
 _FLAT = 0.1  # change of ln W_v^2 that still counts as a plateau
-
-
-def cases(quality: Quality) -> Cases:
-    """L = 1000, three restitutions, four gaps."""
-    return all_of((_runs(e, gap) for e in _RESTITUTIONS for gap in (0.0, *_GAPS)), quality)
 
 
 def _runs(restitution: float, gap: float) -> Runs:
@@ -39,6 +41,9 @@ def _runs(restitution: float, gap: float) -> Runs:
         return without
     chain = without.chain.replace(gap=gap)
     return Runs(f"{without.name} g={gap:g}", chain, _GRANTED, {"observe": ["widths"]})
+
+
+cases = partial(all_of, [_runs(e, gap) for e in _RESTITUTIONS for gap in (0.0, *_GAPS)])
 
 
 def _change(run: xr.Dataset) -> float:
@@ -64,48 +69,39 @@ def _widening(results: Results, restitution: float) -> Claim:
     layers = [_runs(restitution, gap).estimate(results, _border_layer) for gap in _GAPS]
     gains = [narrow.minus(wide) for narrow, wide in itertools.pairwise(layers)]
     listed = ", ".join(f"{layer} at g = {gap:g}" for gap, layer in zip(_GAPS, layers, strict=True))
-    return Claim(
+    return _claim(
         f"the larger the gap, the wider the plateau, e = {restitution:g}",
         f"rods at each border where ln W_v^2 is more than {_FLAT:g} above the centre's: {listed}; "
         "what the plateau gains at each border, at least:",
         found=min(gains, key=lambda gain: gain.value - 3 * gain.error),
-        within=POSITIVE,
-        source=_SOURCE,
-        ours=_OURS,
         reason="at the larger gaps the plateau reaches the last rod or two already",
     )
 
 
 def claims(results: Results) -> list[Claim]:
     """Check: a plateau with a gap, the wider the larger the gap; none without."""
-    claims = []
-    for restitution in _RESTITUTIONS:
-        what = "ln of W_v^2 half-way to the border over that in the centre:"
-        without = _runs(restitution, 0.0).estimate(results, _change)
-        for gap in _GAPS:
-            claims.append(
-                Claim(
-                    f"plateau in the interior, e = {restitution:g}, g = {gap:g}",
-                    what,
-                    found=_runs(restitution, gap).estimate(results, _change),
-                    within=around(0.0, _FLAT),
-                    source=_SOURCE,
-                    ours=_OURS,
-                    reason="the gap is too small for the interior to become homogeneous",
-                )
-            )
-        claims.append(
-            Claim(
-                f"no plateau without a gap, e = {restitution:g}",
-                what,
-                found=without,
-                within=POSITIVE,
-                source=_SOURCE,
-                ours=_OURS,
-            )
+    return [
+        claim
+        for restitution in _RESTITUTIONS
+        for claim in (*_plateau(results, restitution), _widening(results, restitution))
+    ]
+
+
+def _plateau(results: Results, restitution: float) -> list[Claim]:
+    what = "ln of W_v^2 half-way to the border over that in the centre:"
+    with_a_gap = [
+        _claim(
+            f"plateau in the interior, e = {restitution:g}, g = {gap:g}",
+            what,
+            found=_runs(restitution, gap).estimate(results, _change),
+            within=around(0.0, _FLAT),
+            reason="the gap is too small for the interior to become homogeneous",
         )
-        claims.append(_widening(results, restitution))
-    return claims
+        for gap in _GAPS
+    ]
+    without = _runs(restitution, 0.0).estimate(results, _change)
+    statement = f"no plateau without a gap, e = {restitution:g}"
+    return [*with_a_gap, _claim(statement, what, found=without)]
 
 
 def draw(results: Results) -> Figure:
@@ -114,30 +110,17 @@ def draw(results: Results) -> Figure:
     for ax, restitution in zip(axes, _RESTITUTIONS, strict=True):
         ax.set_yscale("log")
         for number, gap in enumerate((0.0, *_GAPS)):
-            run = _runs(restitution, gap).pooled(results)
+            runs = _runs(restitution, gap)
+            run = runs.pooled(results)
             run = run.assign(
                 velocity_variance=run.velocity_width**2,
                 velocity_variance_error=2 * run.velocity_width * run.velocity_width_error,
             )
-            unit = chain_of(run).free_velocity_width ** 2
-            draw_rods(
-                ax, run, "velocity_variance", number=number, unit=unit, label=f"$g = {gap:g}$"
-            )
+            unit, label = runs.chain.free_velocity_width**2, f"$g = {gap:g}$"
+            draw_rods(ax, run, "velocity_variance", number=number, unit=unit, label=label)
         along_the_chain(ax)
         entitle(ax, f"$e = {restitution:g}$")
         if at_the_left(ax):
             ax.set_ylabel("velocity variance $W_v^2/W^2$")
     legend_above(figure, axes[0])
     return figure
-
-
-FIGURE = Study(
-    number=19,
-    name="gap",
-    title="Velocity variances of chains with gaps",
-    caption="W_v^2 against the normalized particle number, L = 1000, for several gaps g between "
-    "neighbouring rods at their anchors, in radii.",
-    cases=cases,
-    draw=draw,
-    claims=claims,
-)

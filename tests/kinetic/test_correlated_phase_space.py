@@ -6,7 +6,7 @@ from scipy.interpolate import PchipInterpolator
 
 from crazybilliards.kinetic import correlated_phase_space, equilibrium, phase_space
 from crazybilliards.kinetic.correlations import stationary
-from crazybilliards.kinetic.correlations.collective_motion import as_seen_in_place
+from crazybilliards.kinetic.correlations.stationary_result import as_seen_in_place
 from crazybilliards.kinetic.kinetic_equation.continuation import elastic_state, free_units
 from crazybilliards.kinetic.kinetic_equation.newton import stationary_state
 from crazybilliards.kinetic.kinetic_equation.velocity_moments import moments

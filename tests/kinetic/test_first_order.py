@@ -12,8 +12,7 @@ from crazybilliards.kinetic.correlations.cells import make_cells
 from crazybilliards.kinetic.correlations.closure import Closure, background
 from crazybilliards.kinetic.correlations.displacements import relaxing_pairs
 from crazybilliards.kinetic.correlations.one_rod import profiles_of_one_rod
-from crazybilliards.kinetic.correlations.pair_covariance import parts, scales, solve_pairs
-from crazybilliards.kinetic.correlations.problem import Problem
+from crazybilliards.kinetic.correlations.pair_covariance import Problem, parts, scales, solve_pairs
 from crazybilliards.kinetic.kinetic_equation.continuation import elastic_state
 from crazybilliards.model import Chain
 

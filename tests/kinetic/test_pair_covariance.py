@@ -13,11 +13,11 @@ from crazybilliards.kinetic.correlations.one_rod import OneRod
 from crazybilliards.kinetic.correlations.pair_covariance import (
     Background,
     PairCovariance,
+    Problem,
     dissipation,
     linear_response,
     solve_pairs,
 )
-from crazybilliards.kinetic.correlations.problem import Problem
 from crazybilliards.model import Chain
 
 
