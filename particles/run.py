@@ -18,6 +18,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from crazybilliards.model import Chain
+from crazybilliards.model.arrays import Array
 from crazybilliards.model.checks import check_choice, check_integer, check_real, shown
 from crazybilliards.model.grid import require_resolved
 from crazybilliards.model.memory import require_memory
@@ -29,8 +30,6 @@ from crazybilliards.particles.laws.law import EXACT, Method, choose_operator
 from crazybilliards.particles.scales import start_swing, typical_speed
 from crazybilliards.particles.schedule import Average, Schedule, make_schedule, too_short
 from crazybilliards.particles.start import MOST_REPLICAS, replica_starts
-
-Array = NDArray[np.float64]
 
 _UNIT = r"[RMT\d /^().*-]+"
 _GROUPS = 32  # of an ensemble: enough for an error bar good to an eighth

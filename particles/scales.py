@@ -14,12 +14,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crazybilliards.model import Chain
+from crazybilliards.model.arrays import Array
 from crazybilliards.particles.laws.closed_contacts import CRITICAL_RESTITUTION
-
-Array = NDArray[np.float64]
 
 _RESOLUTION = 0.05
 _KICK = 0.3

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import xarray as xr
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from crazybilliards.model import Chain
-from crazybilliards.model.arrays import check_numbers
+from crazybilliards.model.arrays import Array, check_numbers
 from crazybilliards.model.checks import check_integer, shown
 from crazybilliards.model.memory import require_memory
 from crazybilliards.model.vocabulary import result
-
-Array = NDArray[np.float64]
 
 MOST_REPLICAS = 10**15  # more than any memory holds, and still exact as a float
 

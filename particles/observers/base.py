@@ -17,12 +17,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from crazybilliards.model import Chain
+from crazybilliards.model.arrays import Array
 from crazybilliards.particles.laws.avalanche import Tally
 from crazybilliards.particles.observers.error_bars import jackknife
 from crazybilliards.particles.run import Run
 from crazybilliards.particles.schedule import Schedule
 
-Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 Variables = dict[str, tuple[tuple[str, ...], ArrayLike]]
 

@@ -6,15 +6,14 @@ import warnings
 
 import numpy as np
 import xarray as xr
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from crazybilliards.model.arrays import Array
 from crazybilliards.model.vocabulary import VOCABULARY, result
 from crazybilliards.particles.observers.base import Integers, Observer, Variables
 from crazybilliards.particles.run import Run
 from crazybilliards.particles.running.replica import NEVER, Replica
 from crazybilliards.particles.scales import centre_width, relaxation_time, time_step_error
-
-Array = NDArray[np.float64]
 
 
 def collect(run: Run, replicas: list[Replica], interrupted: bool) -> xr.Dataset:

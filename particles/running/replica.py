@@ -10,6 +10,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from crazybilliards.model.arrays import Array
 from crazybilliards.particles.dynamics import Dynamics
 from crazybilliards.particles.laws.avalanche import Tally, make_tally
 from crazybilliards.particles.laws.law import make_scratch
@@ -24,8 +25,6 @@ from crazybilliards.particles.observers.base import (
 from crazybilliards.particles.run import Run
 from crazybilliards.particles.schedule import Schedule
 from crazybilliards.particles.stepping import record
-
-Array = NDArray[np.float64]
 
 # Number of particle steps between two checks for Ctrl-C (about 20 ms), and the most positions in
 # the snapshots between them, which then stay in a processor's cache.

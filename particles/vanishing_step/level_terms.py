@@ -15,12 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ndtr, stdtrit
 
+from crazybilliards.model.arrays import Array
 from crazybilliards.model.chain import middle_tenth
 from crazybilliards.particles.observers.base import Averaged, Observer
 from crazybilliards.particles.observers.error_bars import jackknife_error
 from crazybilliards.particles.vanishing_step.sampler import Sampler
-
-Array = NDArray[np.float64]
 
 CENTRAL = "central_velocity_width"
 # The one follows from an error bar and is no average. The other is zero, and the error of a

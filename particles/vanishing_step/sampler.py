@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crazybilliards.model import Chain
+from crazybilliards.model.arrays import Array
 from crazybilliards.particles.dynamics import make_dynamics
 from crazybilliards.particles.laws.avalanche import Tally, make_tally
 from crazybilliards.particles.laws.law import make_scratch
@@ -25,8 +26,6 @@ from crazybilliards.particles.observers.base import Observer, Snapshots
 from crazybilliards.particles.run import Run
 from crazybilliards.particles.running.replica import Replica
 from crazybilliards.particles.vanishing_step.coupling import record_pair
-
-Array = NDArray[np.float64]
 
 
 class Sampler(Replica):
