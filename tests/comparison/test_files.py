@@ -12,7 +12,6 @@ import shutil
 import subprocess
 import sys
 from dataclasses import replace
-from pathlib import Path
 
 import h5py
 import numpy as np
@@ -123,9 +122,10 @@ def test_a_damaged_file_is_refused_or_read_right(kind, flips, files, tmp_path, m
     assert again.identical(sound) if hasattr(sound, "identical") else str(again) == str(sound)
 
 
-def sealed_strangers(folder, files):
+@pytest.fixture(scope="module")
+def strangers(files, tmp_path_factory):
     """Write files that are sealed well, and are not what they should be."""
-    run = load(files["result"])
+    run, folder = load(files["result"]), tmp_path_factory.mktemp("strangers")
 
     def netcdf(dataset):
         return bytes(dataset.to_netcdf(engine="h5netcdf"))
@@ -149,11 +149,10 @@ def sealed_strangers(folder, files):
         "other chain": netcdf(run.assign_attrs(provenance='{"chain": {"length": 3}}')),
     }
     for name, content in contents.items():
-        path = folder / f"{name}.nc"
-        write_sealed(path, content)
-        yield path
+        write_sealed(folder / f"{name}.nc", content)
     for kind, path in files.items():
-        yield Path(shutil.copy(path, folder / f"another {kind}.nc"))
+        shutil.copy(path, folder / f"another {kind}.nc")
+    return sorted(folder.iterdir())
 
 
 # NetCDF files that are no results are read as what they are, and name no chain.
@@ -167,13 +166,12 @@ READABLE = {
 
 
 @pytest.mark.parametrize("kind", READERS)
-def test_a_file_of_another_kind_is_refused_and_kept(kind, files, tmp_path):
-    paths = [*sealed_strangers(tmp_path, files)]
-    before = [path.read_bytes() for path in paths]
-    readable = {path.stem for path in paths if not refused(READERS[kind], path)}
+def test_a_file_of_another_kind_is_refused_and_kept(kind, strangers):
+    before = [path.read_bytes() for path in strangers]
+    readable = {path.stem for path in strangers if not refused(READERS[kind], path)}
     assert readable == READABLE.get(kind, NETCDF - {"another checkpoint"})
-    assert [path.read_bytes() for path in paths] == before
-    assert len(paths) == 22
+    assert [path.read_bytes() for path in strangers] == before
+    assert len(strangers) == 22
 
 
 @pytest.mark.parametrize("kind", READERS)
@@ -247,11 +245,8 @@ def test_a_result_of_another_chain_is_refused_where_it_would_be_used():
         assert what_is_wrong(lambda _, call=call: call(), None)
 
 
-def test_a_result_names_its_chain_or_is_refused(files, tmp_path):
-    messages = [
-        what_is_wrong(lambda path: chain_of(load(path)), path)
-        for path in sealed_strangers(tmp_path, files)
-    ]
+def test_a_result_names_its_chain_or_is_refused(strangers):
+    messages = [what_is_wrong(lambda path: chain_of(load(path)), path) for path in strangers]
     assert messages.count("") == 4
 
 
@@ -277,8 +272,8 @@ assert not any("system" in str(details) for details in seen), seen
 
 
 @pytest.mark.torture
-def test_reading_a_file_runs_no_pickle(files, tmp_path):
+def test_reading_a_file_runs_no_pickle(strangers):
     """Seen by Python itself: its audit event for every name that a pickle asks for."""
-    command = [sys.executable, "-c", SCRIPT, *map(str, sealed_strangers(tmp_path, files))]
+    command = [sys.executable, "-c", SCRIPT, *map(str, strangers)]
     done = subprocess.run(command, capture_output=True, text=True, timeout=600, check=False)
     assert done.returncode == 0, done.stderr

@@ -158,7 +158,7 @@ def test_no_scheduler_at_the_address():
 
 def test_the_command_computes_what_is_missing(run, grid, tmp_path):
     folder = tmp_path / "results"
-    status, printed, errors = run("sweep", grid, "--output", folder)
+    status, printed, errors = run("sweep", grid, "--output", folder, "--processes", "1")
     assert status == 0, errors
     assert "4 cases, 0 of them" in printed
     assert "computed 4 cases" in printed
