@@ -77,10 +77,20 @@ CALLS = [
 
 
 @pytest.mark.parametrize("name", CALLS)
-def test_every_public_call_is_checked(name):
-    """Names of arguments, those that are missing, and objects of another type."""
+def test_every_public_call_is_checked(name, names):
+    """Names and number of arguments, those that are missing, and objects of another type."""
     call = getattr(cb, name)
     arguments = inspect.signature(call).parameters
+    right = {"Chain": "chain", "xr.Dataset": "exact", "xr.DataTree": "tree"}
+    right |= {"xr.Dataset | xr.DataTree": "exact"}
+    own = [each for each in arguments.values() if each.kind != each.KEYWORD_ONLY]
+    by_name = [each.name for each in arguments.values() if each.kind == each.KEYWORD_ONLY]
+    placed = [names[right[each.annotation]] if each.annotation in right else 3 for each in own]
+    way = f": write {by_name[0]}=3 with its name" if by_name else "; it takes "
+    takes = ", ".join(each.name for each in own) or "no argument"
+    if name not in ("animate", "film", "standalone_page"):  # which look at the objects before
+        with pytest.raises(TypeError, match=f"^{name} takes {takes} without a name, got 3{way}"):
+            call(*placed, 3)
     last = next(reversed(arguments), "")
     meant = f"; did you mean '{last}'" if last else "; it takes no arguments"
     with pytest.raises(TypeError, match=f"^{name} has no argument '{last}x'{meant}"):
