@@ -1,15 +1,12 @@
-"""What no other tool finds in the texts: stale numbers, dead paths in code, text that is not shown.
+"""What no other tool finds in the texts: dead paths in code, text that is not shown, other imports.
 
 Sphinx checks the links of the documentation. How a text is written says CONTRIBUTING.md.
 """
 
 import re
-from math import ceil
 from pathlib import Path
 
 import jupytext
-import pandas as pd
-import pytest
 
 import crazybilliards as cb
 
@@ -19,107 +16,6 @@ PAGES = [*FRONT, *sorted((ROOT / "docs").rglob("*.md"))]
 ROOMS = ("api", "model", "particles", "kinetic", "comparison", "reproduction", "apps")
 CODE = (*ROOMS, "benchmarks", "docs", "notebooks", "studies")
 LESSONS = sorted((ROOT / "notebooks").glob("[0-9]*.py"))
-
-
-def table(name):
-    """Return a table of the documentation; cells that repeat the one above them are filled."""
-    found = pd.read_csv(ROOT / "docs/tables" / f"{name}.csv")
-    first = found.columns[0]
-    return found.assign(**{first: found[first].ffill()})
-
-
-def words(page):
-    return " ".join((ROOT / page).read_text(encoding="utf-8").split())
-
-
-def held_out():
-    found = table("correlations_held_out")
-    apart = (found.L == 230) & (found.e == 0.3)
-    longest, small = (found.L > 300) & (found.e == 0), found.L <= 300
-    centre, border, single = (found[f"W_v {of}, %"].abs() for of in ("centre", "border", "largest"))
-    without = -found["W_v centre without, %"].min()
-    return {
-        "docs/correlations.md": [
-            f"The error of $W_v$ is at most {centre[~apart].max()} % in all of them",
-            f"where it is {centre[apart].item()} %. `phase_space` is up to {without:.0f} % too",
-            f"too small by up to {border[small & ~apart].max()} % in chains of at most 300 rods",
-            f"({border[apart].item()} %), and by {border[longest].item()} % with 420 rods",
-            f"For $e \\ge 0.8$ it is right to {border[found.e >= 0.8].max()} %",
-            f"is {single[small & (found.e > 0.5)].max()} % for $e > 0.5$, "
-            f"{single[small & (found.e < 0.5)].max()} % below, and {single[longest].item()} % with",
-        ],
-        "paper.md": [
-            f"within {centre[~apart].max()} % in fifteen of them and {centre[apart].item()} % off",
-            f"up to {without:.0f} % off",
-        ],
-    }
-
-
-def displacement_widths():
-    found = table("displacement_widths")
-    before, now = found["before, %"], found["now, %"].abs()
-    worst = now == now.max()
-    [size], [error] = found.L[worst], found["its error, %"][worst]
-    return {
-        "docs/correlations.md": [
-            f"{len(found)} chains of {found.L.min()} to {found.L.max()} rods",
-            f"any rod is {now.min()} to {now.max()} %, where it was {before.min()} to "
-            f"{before.max()} % with $h$. It is at most {now[~worst].max()} %, but for the first of "
-            f"{size} rods, where the simulation has an error of {error} %",
-        ],
-        "docs/tables.md": [f"{size} rods at $e = 0.642$, with {now.max()} ± {error} %"],
-    }
-
-
-def correlation_lengths():
-    found = table("correlation_lengths").set_index(["e", "L"])
-    measured = found["xi, simulation"].str.split(" ± ", expand=True).astype(float)
-    short = 100 * (1 - found["xi, theory"] / measured[0])
-    errors = (found["xi, theory"] - measured[0]).abs() / measured[1]
-    assert errors[errors.index.get_level_values("e") >= 0.9].drop((0.9, 1000)).max() < 2
-    simulated = found["h_c/T centre, simulation"].str.split().str[0].astype(float)
-    return {
-        "docs/correlations.md": [
-            f"where it is {short[0.9, 1000]:.0f} % too short",
-            f"by {short[0.75, 300]:.0f} % for 300 rods at $e = 0.75$, and by "
-            f"{short[0, 300]:.0f} % for 300 rods and {short[0, 1000]:.0f} % for 1000",
-            f"at most {(found['h_c/T centre, theory'] - simulated).max():.2f} too large",
-        ]
-    }
-
-
-def first_order():
-    found = table("first_order").set_index(["field", "calculation"])
-
-    def off(field):
-        ratio = found.loc[(field, "theory with the right source")] / found.loc[(field, "exact")]
-        return 100 * (ratio - 1).abs()[1:]
-
-    moves, heat = pd.concat([off("displacement"), off("velocity")], axis=1), off("temperature")
-    row = found.loc[("displacement", "theory")] / found.loc[("displacement", "exact")]
-    return {
-        "docs/correlations.md": [
-            f"the part of the displacements is {row['j = 1']:.1f} times too large",
-            f"right to {ceil(moves[:2].max(axis=None))} %, and those of the wave 3 to "
-            f"{ceil(moves.iloc[2].max())} %",
-            f"remain {heat.min():.0f} to {ceil(heat.max())} % off",
-        ]
-    }
-
-
-def verdicts():
-    [counts] = re.findall(r"Statements of the paper: (.*?) \|", words("docs/paper/claims.md"))
-    number = [int(part.split()[0]) for part in counts.split(", ")]
-    told = f"Of {sum(number)} statements {number[0]} are reproduced, {number[1]} are not"
-    return {"paper.md": [told]}
-
-
-@pytest.mark.parametrize(
-    "tell", [held_out, displacement_widths, correlation_lengths, first_order, verdicts]
-)
-def test_pages_tell_the_numbers_of_their_tables(tell):
-    for page, numbers in tell().items():
-        assert not [number for number in numbers if number not in words(page)], page
 
 
 def test_a_file_that_code_or_a_front_page_names_exists():
