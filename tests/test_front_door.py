@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 import yaml
-from installation import EXPECTED, FOLDERS, ROOT, TRY, run
+from installation import EXPECTED, FOLDERS, ROOT, run
 
 import crazybilliards as cb
 
@@ -46,15 +46,6 @@ def test_the_import_is_quick():
     script = "import time; t = time.process_time(); import crazybilliards; "
     script += "print(time.process_time() - t)"
     assert min(float(run(sys.executable, "-c", script).stdout) for _ in range(3)) < 0.05
-
-
-@pytest.mark.parametrize("where", [ROOT, None])
-def test_as_it_is_installed_here(where, tmp_path):
-    folder = tmp_path if where is None else where
-    assert Path(run(sys.executable, "-c", TRY, cwd=folder).stdout.strip()).name == "__init__.py"
-    assert (
-        "Example: crazybilliards" in run(sys.executable, "-m", "crazybilliards", cwd=folder).stdout
-    )
 
 
 def test_citation_and_recipe_follow_the_project():

@@ -6,9 +6,8 @@ import pytest
 import xarray as xr
 from drawn_pictures import WAVES, X, drawn, simulated
 
-from crazybilliards.comparison import compare_elastic, overlay, smooth
+from crazybilliards.comparison import overlay, smooth
 from crazybilliards.comparison.drawing import draw_rods, mark_clipped
-from crazybilliards.comparison.side_by_side.grid_figures import draw_density, draw_displacement
 from crazybilliards.kinetic import equilibrium, equilibrium_states, force_balance
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
@@ -148,19 +147,3 @@ def test_overlay_takes_one_curve_a_result():
     states = equilibrium_states(chain, 3)
     with pytest.raises(ValueError, match=r"over \(replica, particle\); overlay draws what"):
         overlay({"states": states}, "position")
-
-
-@pytest.mark.parametrize("amplitudes", [(2.0,), (1.0, 2.0, 5.0)])
-def test_the_figures_of_the_main_comparison(amplitudes):
-    tree = compare_elastic(Chain(size=8), amplitudes, duration=300, progress=False)
-    for figure in (draw_density(tree), draw_displacement(tree)):
-        axes = figure.get_axes()
-        assert len(axes) == 2 * len(amplitudes)
-        labels = [text.get_text() for text in figure.legends[0].get_texts()]
-        assert sorted(labels) == [
-            "exact",
-            "force balance, arctanh fit",
-            "force balance, without fit",
-            "simulation",
-        ]
-        assert all(ax.get_ylabel() for ax in axes)

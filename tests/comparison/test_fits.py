@@ -137,15 +137,6 @@ def test_the_tail_of_a_single_bin_is_half_of_it():
     assert tail_length(v, (np.abs(v) == 3) * 0.5, 2.75) == pytest.approx(0.375)
 
 
-def test_tail_lengths_tell_an_exponential_from_a_gaussian():
-    v = np.linspace(-40, 40, 8001)
-    exponential, gauss = np.exp(-np.abs(v)), np.exp(-(v**2) / 2)
-    assert tail_length(v, exponential, 5.0) == pytest.approx(tail_length(v, exponential, 3.0), 1e-2)
-    assert tail_length(v, gauss, 5.0) == pytest.approx(0.65 * tail_length(v, gauss, 3.0), 0.05)
-    with pytest.raises(ValueError, match="no velocities"):
-        tail_length(v, exponential, 50.0)
-
-
 def profile(width, error=None):
     chain = Chain(size=len(width), restitution=0)
     variables = {"velocity_width": ("particle", width)}

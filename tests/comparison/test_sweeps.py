@@ -150,14 +150,6 @@ def test_nothing_is_computed_twice_and_a_damaged_file_is_computed_anew(tmp_path,
     assert missing_cases(cases, tmp_path) == []
 
 
-def test_another_case_under_a_cases_name_is_found_out(tmp_path):
-    one, other = sweep().cases()[:2]
-    run_cases([other], tmp_path, AtOnce(), progress=False)
-    other.file(tmp_path).rename(one.file(tmp_path))
-    with pytest.raises(ValueError, match="not the case"):
-        one.load(tmp_path)
-
-
 @pytest.mark.parametrize("columns", [1, 20, 57, 80, 200])
 def test_the_terminal_may_be_narrow(columns, tmp_path, monkeypatch):
     monkeypatch.setenv("COLUMNS", str(columns))

@@ -12,8 +12,6 @@ from crazybilliards.particles import given_start, simulate
 from crazybilliards.particles.dynamics import longest_step
 from crazybilliards.particles.observers.widths import Widths
 from crazybilliards.particles.running.replica import Replica
-from crazybilliards.particles.scales import relaxation_time
-from crazybilliards.particles.schedule import make_schedule
 
 QUANTITIES = ("velocity_width", "mean_displacement", "displacement_width")
 
@@ -152,10 +150,3 @@ def test_a_short_run_may_have_short_steps(average):
     last = float(run.kinetic_energy[-1])
     error = float(run.kinetic_energy_error[-1]) if average == "ensemble" else 0.2 * last
     assert abs(last - heating * float(run.time[-1])) < 5 * error
-
-
-def test_schedule_rounds_up_to_whole_snapshots():
-    schedule = make_schedule(Chain(), duration=1000, replicas=3)
-    assert schedule.blocks == 22
-    assert 1000 <= schedule.duration < 1000 + 10 * schedule.time_step
-    assert schedule.warmup == pytest.approx(12 * relaxation_time(Chain()), abs=schedule.time_step)

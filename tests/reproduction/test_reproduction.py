@@ -6,7 +6,6 @@ from collections import Counter
 from contextlib import nullcontext
 from dataclasses import replace
 from functools import partial
-from pathlib import Path
 from typing import get_args
 
 import matplotlib.pyplot as plt
@@ -178,11 +177,6 @@ def assert_table_counts_verdicts(page):
     lines = re.findall(r"^\| (\[.*) \|$", first, re.MULTILINE)
     assert [line.split(" | ") for line in lines] == expected
     assert "|" not in "".join(parts)
-
-
-def test_the_table_of_the_stored_report_counts_its_verdicts():
-    page = Path(__file__).parents[2].joinpath("docs", "paper", "claims.md")
-    assert_table_counts_verdicts(page.read_text(encoding="utf-8"))
 
 
 @pytest.mark.compiled

@@ -155,13 +155,6 @@ def test_sameness():
     assert worst("both", [near, off, poor], 0.1)["words"] == f"{words} errors"
 
 
-def test_what_the_eye_sees():
-    seen = in_plot("all rods", Estimate(0.01, 0.003), 22.4)
-    claim = Claim("fits", **seen, source="fig.2")
-    assert claim.verdict == "reproduced"
-    assert "22.4 standard errors" in claim.details["found here"]
-
-
 def test_estimates_are_written_to_the_second_digit_of_the_error():
     assert str(Estimate(-0.46123, 0.00234)) == "-0.4612 ± 0.0023"
     assert str(Estimate(37.512, 1.234)) == "37.5 ± 1.2"

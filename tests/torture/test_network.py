@@ -145,15 +145,6 @@ def test_the_guard_sees_what_is_asked_and_refuses_it(guarded, attempt, event):
     guarded.log.write_text("")
 
 
-def test_the_guard_lets_this_machine_talk_to_itself(guarded):
-    script = """
-import socket
-with socket.create_server(("127.0.0.1", 0)) as server:
-    socket.create_connection(("localhost", server.getsockname()[1]), 60).close()
-"""
-    run(guarded, "-c", script)
-
-
 # -- everything that computes ---------------------------------------------------------------
 
 

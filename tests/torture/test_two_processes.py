@@ -55,33 +55,6 @@ def test_a_second_run_on_a_checkpoint_is_refused_until_the_first_is_dead(tmp_pat
     assert [path.name for path in state.parent.iterdir()] == ["state"]
 
 
-@pytest.mark.parametrize(
-    ("what", "other"),
-    [
-        (["sweep", "grid.toml", "--processes", "1"], ["--processes", "2"]),
-        (["reproduce", "all", "--processes", "1"], ["--processes", "2"]),
-        (["compare", "--duration", "1e9"], ["--size", "3"]),
-        (["relax", "--replicas", "100000"], ["--size", "3"]),
-    ],
-    ids=lambda what: what[0],
-)
-def test_a_second_command_in_a_folder_is_refused_and_overwrites_nothing(
-    what, other, tmp_path, monkeypatch
-):
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "grid.toml").write_text(GRID)
-    folder = tmp_path / "results"
-    command = [*COMMAND, *what, "--output", str(folder)]
-    with holding(folder / ".lock", lambda _: os.execv(command[0], command)) as holder:
-        for second in (command, [*command, *other]):
-            done = subprocess.run(
-                second, capture_output=True, text=True, timeout=PATIENCE, check=False
-            )
-            assert (done.returncode, done.stderr.count("\n")) == (2, 1), done.stderr
-            assert f"error: {folder}: in use by process {holder}" in done.stderr
-        assert members(holder)
-
-
 CONTENDER = """
 import os, sys
 from pathlib import Path

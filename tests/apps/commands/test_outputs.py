@@ -72,12 +72,6 @@ def test_a_file_belongs_to_one_process_at_a_time(arguments, refused, run, tmp_pa
     assert sorted(path.name for path in tmp_path.iterdir()) == ["grid.toml", "run.nc"]
 
 
-def test_a_mistake_leaves_no_folder(refused, tmp_path):
-    for output in (tmp_path / "new", tmp_path / "new" / "deep"):
-        refused("amplitudes", "compare", "--amplitudes", "x", "--output", output)
-        assert list(tmp_path.iterdir()) == []
-
-
 @pytest.mark.posix
 def test_a_reader_that_goes_costs_no_work(tmp_path):
     reading, writing = os.pipe()
@@ -170,11 +164,6 @@ def test_json_is_one_object_with_every_file_written(name, arguments, run, tmp_pa
         assert found["exact"] == asdict(deviations(tree)["amplitude_10"]["exact"])
     if name == "relax":
         assert facts["distances"] == label_distances(load(folder / "relaxation.nc"))
-
-
-def test_json_of_a_mistake_is_nothing(run):
-    done = run("theory", "--json", "--size", 0)
-    assert (done.returncode, done.stdout) == (2, "")
 
 
 def test_a_warning_is_one_plain_line(run):
