@@ -69,11 +69,3 @@ def test_every_figure_has_a_row_and_a_module():
     modules = re.findall(r"`(fig\d\d_\w+)`", section("Figures"))
     found = [importlib.import_module(f"{FIGURES}.{name}").FIGURE.number for name in modules]
     assert found == numbers == [figure.number for figure in groups()["all"]]
-
-
-def test_the_sections_of_notebook_11_exist():
-    [notebook] = (ROOT / "notebooks").glob("11_*.py")
-    headings = re.findall(r"^# ## (\d+)\. ", notebook.read_text(encoding="utf-8"), re.MULTILINE)
-    named = re.findall(r"notebook 11[^|.;\n]*?sections? (\d+)(?: (?:and|to) (\d+))?", TEXT)
-    assert len(named) > 10
-    assert {number for pair in named for number in pair if number} <= set(headings)

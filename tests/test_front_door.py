@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 import yaml
-from installation import EXPECTED, FOLDERS, ROOT, run
+from installation import EXPECTED, ROOT, run
 
 import crazybilliards as cb
 
@@ -59,17 +59,6 @@ def test_citation_and_recipe_follow_the_project():
         each.replace("matplotlib-base", "matplotlib") for each in needed if each[:6] != "python"
     }
     assert needed == set(project["dependencies"])
-
-
-def test_every_folder_of_the_package_is_shipped():
-    with open(ROOT / "pyproject.toml", "rb") as file:
-        listed = tomllib.load(file)["tool"]["setuptools"]["packages"]
-    there = {
-        ".".join([f"crazybilliards{name}", *path.parent.relative_to(ROOT / folder).parts])
-        for folder, name in FOLDERS.items()
-        for path in (ROOT / folder).rglob("*.py")
-    }
-    assert sorted(there) == sorted(listed)
 
 
 def test_no_folder_shadows_the_package():

@@ -24,8 +24,7 @@ from tqdm import tqdm
 from crazybilliards.apps.commands.line import main
 from crazybilliards.comparison import load_sweep
 from crazybilliards.comparison.sweeps import read_sweep
-from crazybilliards.model import Chain, load, save
-from crazybilliards.model.storage import write_sealed
+from crazybilliards.model import Chain, save
 from crazybilliards.particles import simulate, simulate_limit
 from crazybilliards.reproduction import figures
 from crazybilliards.reproduction.figures import fig01_model, fig16_arctanh, fig17_density
@@ -198,32 +197,3 @@ def test_a_sweep_that_is_killed_keeps_what_is_finished_and_leaves_no_workers(nam
     cases = read_sweep(tmp_path / "grid.toml").cases()
     assert 0 < len(missing_cases(cases, folder)) < len(cases)
     assert load_sweep(folder).status.size >= 1
-
-
-@torture
-def test_killed_while_writing_it_leaves_the_old_file_or_the_new_one(tmp_path):
-    results = [simulate(Chain(size=size), duration=200, progress=False) for size in (3, 30)]
-    stored = [bytes(each.to_netcdf(engine="h5netcdf")) for each in results]
-
-    def written(folder):
-        """Write one of two results over the other for ever, to a slow disk."""
-        os.fsync = lambda descriptor: time.sleep(0.02)
-        while True:
-            for content in stored:
-                write_sealed(folder / "run.nc", content)
-
-    folder, generator, unfinished = tmp_path / "results", np.random.default_rng(5), 0
-    for _ in range(100):
-        child = begin(written, folder)
-        time.sleep(generator.uniform(0, 0.3))
-        end(child, signal.SIGKILL)
-        names = {path.name for path in folder.iterdir()}
-        assert names <= {"run.nc", ".run.nc.part"}
-        unfinished += ".run.nc.part" in names
-        if "run.nc" in names:
-            assert any(load(folder / "run.nc").identical(each) for each in results)
-    assert "Traceback" not in (tmp_path / "log.txt").read_text()
-    save(results[0], folder / "run.nc")
-    assert [path.name for path in folder.iterdir()] == ["run.nc"]
-    print(f"{unfinished} of 100 kills left an unfinished file")
-    assert unfinished > 0

@@ -1,12 +1,10 @@
 """What a wrong call says: one line that names what came, what is wanted and the nearest name."""
 
-import csv
 import inspect
 import pickle
 import re
 from dataclasses import FrozenInstanceError
 from importlib import import_module
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -175,15 +173,8 @@ def test_the_checks_of_calls_leave_everything_else_as_it_was():
         cb.force_balance(cb.Chain(size=3), displacement=lambda x: x + None)
 
 
-def test_the_symbols_are_those_of_the_tables():
-    """``docs/tables`` says which parameter each symbol of the paper stands for; so do calls."""
-    tables = Path(__file__).parents[1] / "docs" / "tables"
-    names = ("symbols_chain.csv", "symbols_scales.csv")
-    files = [(tables / name).read_text(encoding="utf-8").splitlines() for name in names]
-    rows = [row for lines in files for row in csv.reader(lines)]
+def test_every_symbol_of_the_paper_says_which_parameter_it_is():
     for symbol, parameter in checks.SYMBOLS.items():
-        written = "\\gamma" if symbol in ("gamma", GAMMA) else symbol
-        assert any(f"${written}$" in row[0] and row[-1] == f"`{parameter}`" for row in rows), symbol
         if parameter != "time_step":
             said = f"{parameter} is {symbol} of the paper"
             for call in (cb.Chain, cb.simulate, cb.phase_space, cb.compare_relaxation):

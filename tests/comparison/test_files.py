@@ -9,8 +9,6 @@ Damage must be found before the NetCDF libraries see a byte. Nothing is ever unp
 
 import re
 import shutil
-import subprocess
-import sys
 from dataclasses import replace
 
 import h5py
@@ -248,32 +246,3 @@ def test_a_result_of_another_chain_is_refused_where_it_would_be_used():
 def test_a_result_names_its_chain_or_is_refused(strangers):
     messages = [what_is_wrong(lambda path: chain_of(load(path)), path) for path in strangers]
     assert messages.count("") == 4
-
-
-# -- pickles ----------------------------------------------------------------------------------
-
-SCRIPT = """
-import sys
-from crazybilliards.model import Chain, load
-from crazybilliards.model.storage import load_attributes
-from crazybilliards.particles import simulate
-seen = []
-sys.addaudithook(lambda event, details: seen.append(details) if "pickle" in event else None)
-options = {"duration": 100.0, "warmup": 1.0, "progress": False}
-for path in sys.argv[1:]:
-    for read in (load, load_attributes, lambda p: simulate(Chain(size=3), checkpoint=p, **options)):
-        try:
-            read(path)
-        except ValueError:
-            pass
-# numba's cache of compiled kernels, which it wrote itself, is no file of the package.
-assert not any("system" in str(details) for details in seen), seen
-"""
-
-
-@pytest.mark.torture
-def test_reading_a_file_runs_no_pickle(strangers):
-    """Seen by Python itself: its audit event for every name that a pickle asks for."""
-    command = [sys.executable, "-c", SCRIPT, *map(str, strangers)]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=600, check=False)
-    assert done.returncode == 0, done.stderr

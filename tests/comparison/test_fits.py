@@ -192,14 +192,6 @@ def test_dropping_c_flattens_the_exponent():
     assert (exact.scale, exact.exponent) == pytest.approx((0.3, -0.46), rel=1e-5)
 
 
-def test_the_mirrored_profile_gives_the_same_two_power_laws():
-    generator = np.random.default_rng(7)
-    width = generator.normal(power_laws(50, 0.3, -0.46, -0.4), 0.002)
-    one, other = (fit_border_power_law(profile(each)) for each in (width, width[::-1]))
-    for numbers in ("parameters", "errors", "quality"):
-        assert getattr(one, numbers) == pytest.approx(getattr(other, numbers), rel=1e-3)
-
-
 def test_weighted_widths_count_by_their_errors():
     """One wrong rod with a large error bar does no harm; in ordinary least squares it does."""
     width = power_laws(100, 0.3, -0.5, -0.4)

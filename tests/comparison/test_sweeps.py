@@ -17,7 +17,7 @@ from crazybilliards.comparison.stationary_theories import THEORIES
 from crazybilliards.comparison.sweeps import Case, read_sweep, run_cases
 from crazybilliards.comparison.sweeps.case import compute
 from crazybilliards.comparison.sweeps.jobs import JOBS
-from crazybilliards.model import Chain, load
+from crazybilliards.model import Chain
 from crazybilliards.model.fingerprint import room_fingerprint
 from crazybilliards.model.locks import locked
 
@@ -125,14 +125,6 @@ def test_cases_have_random_numbers_of_their_own(tmp_path):
     assert run_cases(cases, tmp_path, AtOnce(), progress=False) == {}
     v = [case.load(tmp_path).velocity.values for case in cases]
     assert abs(np.corrcoef(v[1].ravel(), v[2].ravel())[0, 1]) < 0.3
-
-
-def test_files_are_named_by_the_key_and_hold_the_parameters(tmp_path):
-    cases = sweep().cases()
-    run_cases(cases, tmp_path, AtOnce(), progress=False)
-    assert sorted(path.name for path in tmp_path.iterdir()) == sorted(f"{c.key}.nc" for c in cases)
-    for case in cases:
-        assert load(case.file(tmp_path)).attrs["case"] == case.canonical
 
 
 def test_nothing_is_computed_twice_and_a_damaged_file_is_computed_anew(tmp_path, capsys):
