@@ -162,23 +162,6 @@ def test_a_sweep_on_a_full_disk_keeps_what_fits_and_goes_on_with_more_room(small
     assert len(list(small.iterdir())) == 6
 
 
-@torture
-@pytest.mark.parametrize(
-    "arguments",
-    [["compare", "--size", "30", "--duration", "2000"], ["theory"], ["reproduce", "1"]],
-    ids=lambda arguments: arguments[0],
-)
-def test_commands_on_a_full_disk_say_so(arguments, small):
-    (small / "filler").write_bytes(b"x" * 1_040_000)
-    done = run(*arguments, "--output", small)
-    assert (done.returncode, done.stderr.count("\n")) == (2, 1), done.stderr
-    assert f"error: {small}" in done.stderr
-    assert "No space left on device" in done.stderr
-    assert [path.name for path in small.iterdir() if path.suffix == ".part"] == []
-    if arguments[0] == "compare":
-        assert "finished cases are kept" in done.stderr
-
-
 # -- places that cannot be written ------------------------------------------------------------
 
 

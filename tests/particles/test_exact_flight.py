@@ -7,7 +7,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from crazybilliards.kinetic import equilibrium
 from crazybilliards.model import Chain
 from crazybilliards.particles import given_start, simulate
 from crazybilliards.particles.laws.exact_flight import make_propagator
@@ -68,20 +67,6 @@ def test_two_steps_are_one_of_their_sum(one, other, damping, stiffness):
     assert np.abs(f @ e - both).max() <= 1e-10 * scale.max()
     found = f @ sigma @ f.T + rho
     assert np.abs(found - all_noise).max() <= 1e-9 * np.abs(all_noise).max()
-
-
-@pytest.mark.compiled
-@pytest.mark.parametrize("step", STEPS)
-@pytest.mark.parametrize("damping", [0.1, 1.0, CRITICAL, 10.0])
-def test_the_steady_state_is_exact_at_any_step(damping, step):
-    chain = Chain(size=10, damping=damping)
-    run = simulate(chain, time_step=step, every=max(step, 1.0), duration=20_000, progress=False)
-    exact = equilibrium(chain)
-    assert run.attrs["time_step_error"] == 0
-    assert run.attrs["flight"] == "exact"
-    for name in ("velocity_width", "displacement_width", "mean_displacement"):
-        assert (np.abs(run[name] - exact[name]) < 5 * run[f"{name}_error"]).all(), name
-    assert (run.velocity_width_error < 0.06 * chain.free_velocity_width).all()
 
 
 @pytest.mark.compiled
