@@ -30,6 +30,13 @@ def test_elastic_chain_is_maxwellian(size):
     np.testing.assert_allclose(theory.velocity_width, chain.free_velocity_width, rtol=1e-4)
 
 
+def test_collisions_do_not_act_on_the_centre_of_mass():
+    """One rod is nothing else, whatever the restitution."""
+    chain = Chain(size=1, restitution=0.5)
+    width = phase_space(chain, cells=8).velocity_width
+    np.testing.assert_allclose(width, chain.free_velocity_width, rtol=1e-9)
+
+
 @pytest.mark.parametrize("spring", ["linear", "quadratic"])
 def test_elastic_rods_are_the_exact_ones(spring):
     chain = Chain(size=50, spring=spring)
