@@ -4,10 +4,11 @@ import os
 import signal
 import sys
 import threading
-from typing import NamedTuple
 
 import matplotlib as mpl
+import matplotlib.pyplot as plt
 import pytest
+from forked import Ended
 from hypothesis import settings
 
 from crazybilliards.apps.commands.line import main
@@ -68,14 +69,6 @@ def ctrl_c(monkeypatch):
     return ctrl_c
 
 
-class Ended(NamedTuple):
-    """How a command ended."""
-
-    returncode: int
-    stdout: str
-    stderr: str
-
-
 @pytest.fixture
 def run(monkeypatch, capsys):
     """Run a command in this process."""
@@ -88,4 +81,4 @@ def run(monkeypatch, capsys):
         return Ended(getattr(caught.value, "code", 130) or 0, *capsys.readouterr())
 
     yield run
-    mpl.pyplot.close("all")
+    plt.close("all")

@@ -55,6 +55,7 @@ FLOORS = {
     "apps": ({"explore"}, {"commands"}),
 }
 LINES = 300
+VALIDATED = {"kinetic": pytest.mark.validate}  # its examples take seconds
 MODULES = architecture.modules()
 
 
@@ -126,7 +127,9 @@ def test_the_picture_of_the_architecture_shows_the_imports():
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("room", ["", *STANDS_ON])
+@pytest.mark.parametrize(
+    "room", [pytest.param(each, marks=VALIDATED.get(each, ())) for each in ("", *STANDS_ON)]
+)
 def test_examples_in_docstrings(room):
     # The names that a room hands out have their examples where they are defined.
     names = [name for name in MODULES if name.split(".")[0] == room and name not in cb._ROOMS]

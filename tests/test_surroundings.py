@@ -9,10 +9,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from every_solver import SOLVERS, Given
+from small_sweeps import AtOnce
 
 import crazybilliards as cb
 from crazybilliards.apps.commands.line import main
-from crazybilliards.comparison.sweeps import process_pool, read_sweep, run_cases
+from crazybilliards.comparison.sweeps import read_sweep, run_cases
 from crazybilliards.model import process
 from crazybilliards.model.vocabulary import VOCABULARY, described, unit_of
 
@@ -40,8 +41,7 @@ def test_a_tilde_is_the_home_folder(home, monkeypatch, capsys):
     cb.simulate(CHAIN, duration=100, checkpoint=Path("~/run.ckpt"), progress=False)
     (home / "grid.toml").write_text("[grid]\nsize = [2, 3]\n[force_balance]\n")
     sweep = read_sweep("~/grid.toml")
-    with process_pool(1) as pool:
-        assert not run_cases(sweep, "~/sweep", pool, progress=False)
+    assert not run_cases(sweep, "~/sweep", AtOnce(), progress=False)
     assert cb.load_sweep("~/sweep").sizes["size"] == 2
     command = ["crazybilliards", "theory", "equilibrium", "--size=3", "--output=~/figures"]
     monkeypatch.setattr(sys, "argv", command)

@@ -6,9 +6,8 @@ import pytest
 import xarray as xr
 from drawn_pictures import WAVES, X, drawn, simulated
 
-from crazybilliards.comparison import compare_elastic, overlay, smooth
-from crazybilliards.comparison.drawing import draw_rods, mark_clipped
-from crazybilliards.comparison.side_by_side.grid_figures import draw_density, draw_displacement
+from crazybilliards.comparison import overlay, smooth
+from crazybilliards.comparison.drawing import mark_clipped
 from crazybilliards.kinetic import equilibrium, equilibrium_states, force_balance
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
@@ -84,28 +83,6 @@ def test_noise_is_drawn_as_symbols_and_waves_within_it_as_a_line():
     assert symbols.size == 0
 
 
-def test_pictures_of_rods_follow_the_same_rule_on_their_own_axes():
-    """A wave of a thousandth of the range is seen on a logarithmic axis only."""
-    chain = Chain(size=600)
-    place = np.linspace(-1, 1, 600)
-    values = np.where(np.abs(place) < 0.8, 0.01 + 0.005 * np.cos(2 * np.arange(600)), 1.0)
-    units = {"units": "R/T", "long_name": "width"}
-    run = xr.Dataset(
-        {
-            "velocity_width": ("particle", values, units),
-            "velocity_width_error": ("particle", 1e-6 * values, units),
-        },
-        coords={"particle": chain.rank, "normalized_particle": ("particle", place)},
-    )
-    for scale, hidden in (("linear", True), ("log", False)):
-        _, ax = plt.subplots()
-        ax.set_yscale(scale)
-        draw_rods(ax, run, "velocity_width", number=0, label="rods")
-        symbols, lined, _ = drawn(ax)
-        assert (0.0 in np.round(symbols, 1)) is hidden
-        assert (0.0 in np.round(lined, 1)) is not hidden
-
-
 def test_two_simulations_differ_and_keywords_are_passed_through():
     chain = Chain(size=5)
     runs = {f"seed {n}": simulate(chain, duration=200, seed=n, progress=False) for n in (1, 2)}
@@ -148,19 +125,3 @@ def test_overlay_takes_one_curve_a_result():
     states = equilibrium_states(chain, 3)
     with pytest.raises(ValueError, match=r"over \(replica, particle\); overlay draws what"):
         overlay({"states": states}, "position")
-
-
-@pytest.mark.parametrize("amplitudes", [(2.0,), (1.0, 2.0, 5.0)])
-def test_the_figures_of_the_main_comparison(amplitudes):
-    tree = compare_elastic(Chain(size=8), amplitudes, duration=300, progress=False)
-    for figure in (draw_density(tree), draw_displacement(tree)):
-        axes = figure.get_axes()
-        assert len(axes) == 2 * len(amplitudes)
-        labels = [text.get_text() for text in figure.legends[0].get_texts()]
-        assert sorted(labels) == [
-            "exact",
-            "force balance, arctanh fit",
-            "force balance, without fit",
-            "simulation",
-        ]
-        assert all(ax.get_ylabel() for ax in axes)

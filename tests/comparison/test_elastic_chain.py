@@ -84,11 +84,6 @@ def test_rods_that_hardly_touch_go_without_the_arctanh_but_lose_nothing():
     assert set(deviations(tree)["amplitude_1"]) == {"exact", "labels"}
 
 
-def test_amplitudes_have_random_numbers_of_their_own(tree):
-    one, three = (tree[f"amplitude_{a}/simulation"] for a in (1, 3))
-    assert (one.velocity_width * 3 != three.velocity_width).any()
-
-
 @pytest.mark.parametrize(
     ("chain", "amplitudes", "message"),
     [

@@ -180,15 +180,6 @@ def test_the_tail_of_a_single_bin_is_half_of_it():
     assert tail_length(v, (np.abs(v) == 3) * 0.5, 2.75) == pytest.approx(0.375)
 
 
-def test_tail_lengths_tell_an_exponential_from_a_gaussian():
-    v = np.linspace(-40, 40, 8001)
-    exponential, gauss = np.exp(-np.abs(v)), np.exp(-(v**2) / 2)
-    assert tail_length(v, exponential, 5.0) == pytest.approx(tail_length(v, exponential, 3.0), 1e-2)
-    assert tail_length(v, gauss, 5.0) == pytest.approx(0.65 * tail_length(v, gauss, 3.0), 0.05)
-    with pytest.raises(ValueError, match="no velocities"):
-        tail_length(v, exponential, 50.0)
-
-
 def profile(width, error=None):
     chain = Chain(size=len(width), restitution=0)
     variables = {"velocity_width": ("particle", width)}
@@ -242,14 +233,6 @@ def test_dropping_c_flattens_the_exponent():
     assert -0.44 < fit.exponent < -0.41
     exact = fit_border_power_law(profile(power_laws(100, 0.3, -0.46, 0.0)), shifted=False)
     assert (exact.scale, exact.exponent) == pytest.approx((0.3, -0.46), rel=1e-5)
-
-
-def test_the_mirrored_profile_gives_the_same_two_power_laws():
-    generator = np.random.default_rng(7)
-    width = generator.normal(power_laws(50, 0.3, -0.46, -0.4), 0.002)
-    one, other = (fit_border_power_law(profile(each)) for each in (width, width[::-1]))
-    for numbers in ("parameters", "errors", "quality"):
-        assert getattr(one, numbers) == pytest.approx(getattr(other, numbers), rel=1e-3)
 
 
 def test_weighted_widths_count_by_their_errors():

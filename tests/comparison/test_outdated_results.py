@@ -100,42 +100,35 @@ ROOMS = ("model", "particles", "kinetic", "comparison")
 COMMAND = [sys.executable, "-c", "from crazybilliards.apps.commands.line import main; main()"]
 
 
-def test_after_an_edit_of_a_theory_its_sweep_gives_the_new_number(tmp_path):
-    """A copy of the package is edited and its commands are run, as a developer would."""
-    package = tmp_path / "crazybilliards"
+def test_after_an_edit_of_a_theory_its_sweep_gives_the_new_number(folder, tmp_path_factory):
+    """A copy of the package is edited and its command is run, as a developer would."""
+    place = tmp_path_factory.mktemp("edited")
+    package = place / "crazybilliards"
     root = Path(crazybilliards.model.__file__).parents[1]
     for room in ROOMS:
         shutil.copytree(root / room, package / room, ignore=shutil.ignore_patterns("__pycache__"))
     (package / "__init__.py").touch()
-    (tmp_path / "grid.toml").write_text("[grid]\nsize = [2]\n[equilibrium]\n")
-
-    # Coverage is that of the package, and not of its copy.
-    unmeasured = {name: value for name, value in os.environ.items() if "COVERAGE" not in name}
-
-    def sweep(*options):
-        """Run the command; return the velocity width, over the free one, and standard error."""
-        done = subprocess.run(
-            [*COMMAND, "sweep", "grid.toml", "--output", "results", "--processes", "1", *options],
-            capture_output=True,
-            text=True,
-            timeout=300,
-            check=True,
-            cwd=tmp_path,
-            env={**unmeasured, "PYTHONPATH": str(tmp_path), "PYTHONDONTWRITEBYTECODE": "1"},
-        )
-        [file] = (tmp_path / "results").glob("*.nc")
-        return float(load(file).velocity_width[0]) / Chain().free_velocity_width, done.stderr
-
-    assert sweep() == (pytest.approx(1), "")
+    (place / "grid.toml").write_text("[grid]\nsize = [2]\n[equilibrium]\n")
     theory = package / "kinetic" / "exact" / "gibbs_measure.py"
     text = theory.read_text()
     assert text.count("np.full(chain.size, chain.free_velocity_width)") == 1
     theory.write_text(text.replace("np.full(chain.size,", "np.full(chain.size, 2 *"))
-    assert sweep("--keep-old") == (pytest.approx(1), "")
-    number, errors = sweep()
-    assert number == pytest.approx(2)
-    assert errors.count("\n") == 1
-    assert "computed 1 cases in results; computing them anew" in errors
+    # Coverage is that of the package, and not of its copy.
+    unmeasured = {name: value for name, value in os.environ.items() if "COVERAGE" not in name}
+    done = subprocess.run(
+        [*COMMAND, "sweep", "grid.toml", "--output", str(folder), "--processes", "1"],
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=True,
+        cwd=place,
+        env={**unmeasured, "PYTHONPATH": str(place), "PYTHONDONTWRITEBYTECODE": "1"},
+    )
+    assert done.stderr.count("\n") == 1
+    assert f"computed 1 cases in {folder}; computing them anew" in done.stderr
+    with pytest.raises(ValueError, match="computed by other source code"):
+        CASES[0].load(folder)
+    assert width(CASES[0], folder, keep_old=True) == pytest.approx(2)
 
 
 # -- parameters -------------------------------------------------------------------------------

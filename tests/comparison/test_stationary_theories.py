@@ -8,7 +8,13 @@ import pytest
 
 from crazybilliards.comparison import best_theory, theories
 from crazybilliards.comparison.stationary_theories import THEORIES, choose_theory
-from crazybilliards.kinetic import UnmeasuredWarning, equilibrium, force_balance, phase_space
+from crazybilliards.kinetic import (
+    UnmeasuredWarning,
+    correlated_phase_space,
+    equilibrium,
+    force_balance,
+    phase_space,
+)
 from crazybilliards.kinetic.accuracy import Accuracy
 from crazybilliards.model import Chain
 
@@ -59,7 +65,7 @@ def test_a_reason_is_the_error_that_the_theory_raises(name):
 def test_expected_errors_are_those_that_results_state(chain):
     table = theories(chain)
     for name in table.theory.values[table.takes.values]:
-        settings = {"cells": 12} if name.endswith("phase_space") else {}
+        settings = {"cells": 6} if name.endswith("phase_space") else {}
         stated = THEORIES[name].solve(chain, **settings).attrs
         row = table.sel(theory=name)
         for column, attribute in ERRORS.items():
@@ -71,25 +77,32 @@ def test_expected_errors_are_those_that_results_state(chain):
 
 
 def test_the_best_theory_depends_on_the_quantity_and_says_why():
-    chain = Chain(size=100, restitution=0.95)
+    chain, best = Chain(size=100, restitution=0.95), {}
     for quantity in ("velocity_width", "displacement_width", "mean_displacement", "density"):
-        column = theories(chain)[f"{quantity}_error"]
-        found = best_theory(chain, quantity, cells=16)
-        assert found.attrs["best_theory"] == column.idxmin("theory")
-        assert found.attrs["chosen"].startswith(
-            f"{found.attrs['best_theory']} has the smallest stated error of "
-        )
-    of_widths = [
-        choose_theory(chain, f"{each}_width").theory.name for each in ("velocity", "displacement")
-    ]
-    assert of_widths == ["phase_space", "correlated_phase_space"]
+        theory, why = choose_theory(chain, quantity)
+        best[quantity] = theory.name
+        assert theory.name == theories(chain)[f"{quantity}_error"].idxmin("theory")
+        assert why.startswith(f"{theory.name} has the smallest stated error of ")
+    assert best["velocity_width"] == "phase_space"
+    assert best["displacement_width"] == "correlated_phase_space"
 
 
-def test_the_best_theory_is_the_solved_one():
-    chain = Chain(size=20, gap=0.5)
-    found = best_theory(chain)
-    assert found.drop_attrs(deep=False).identical(equilibrium(chain).drop_attrs(deep=False))
-    assert "force_balance" in found.attrs["chosen"]
+@pytest.mark.parametrize(
+    ("chain", "quantity", "theory"),
+    [
+        (Chain(size=20, gap=0.5), "velocity_width", equilibrium),
+        (Chain(size=20, restitution=0.9), "displacement_width", correlated_phase_space),
+    ],
+)
+def test_the_best_theory_is_the_solved_one(chain, quantity, theory):
+    settings = {} if theory is equilibrium else {"cells": 6}
+    found = best_theory(chain, quantity, **settings)
+    expected = theory(chain, **settings).drop_attrs(deep=False)
+    assert found.drop_attrs(deep=False).identical(expected)
+    assert (found.best_theory, found.chosen) == (
+        theory.__name__,
+        choose_theory(chain, quantity, settings).why,
+    )
 
 
 def test_without_a_known_error_the_first_theory_is_taken_and_that_is_said():

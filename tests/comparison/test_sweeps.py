@@ -17,7 +17,7 @@ from crazybilliards.comparison.stationary_theories import THEORIES
 from crazybilliards.comparison.sweeps import Case, read_sweep, run_cases
 from crazybilliards.comparison.sweeps.case import compute
 from crazybilliards.comparison.sweeps.jobs import JOBS
-from crazybilliards.model import Chain, load
+from crazybilliards.model import Chain
 from crazybilliards.model.fingerprint import room_fingerprint
 from crazybilliards.model.locks import locked
 
@@ -127,14 +127,6 @@ def test_cases_have_random_numbers_of_their_own(tmp_path):
     assert abs(np.corrcoef(v[1].ravel(), v[2].ravel())[0, 1]) < 0.3
 
 
-def test_files_are_named_by_the_key_and_hold_the_parameters(tmp_path):
-    cases = sweep().cases()
-    run_cases(cases, tmp_path, AtOnce(), progress=False)
-    assert sorted(path.name for path in tmp_path.iterdir()) == sorted(f"{c.key}.nc" for c in cases)
-    for case in cases:
-        assert load(case.file(tmp_path)).attrs["case"] == case.canonical
-
-
 def test_nothing_is_computed_twice_and_a_damaged_file_is_computed_anew(tmp_path, capsys):
     cases = sweep().cases()
     run_cases([*cases, *cases], tmp_path, AtOnce(), progress=False)
@@ -148,14 +140,6 @@ def test_nothing_is_computed_twice_and_a_damaged_file_is_computed_anew(tmp_path,
     after = {case: case.file(tmp_path).stat().st_mtime_ns for case in cases}
     assert [case for case in cases if after[case] != before[case]] == [cases[2]]
     assert missing_cases(cases, tmp_path) == []
-
-
-def test_another_case_under_a_cases_name_is_found_out(tmp_path):
-    one, other = sweep().cases()[:2]
-    run_cases([other], tmp_path, AtOnce(), progress=False)
-    other.file(tmp_path).rename(one.file(tmp_path))
-    with pytest.raises(ValueError, match="not the case"):
-        one.load(tmp_path)
 
 
 @pytest.mark.parametrize("columns", [1, 20, 57, 80, 200])

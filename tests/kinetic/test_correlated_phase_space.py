@@ -69,29 +69,12 @@ def test_the_force_balances_the_springs(theory):
 @pytest.mark.compiled
 @pytest.mark.parametrize("restitution", [0.9, 0.75])
 def test_simulation(restitution, theory):
-    """Velocity widths within the error that the theory states; correlations in the centre."""
+    """Widths within the errors that the theory states; all covariances have a test of their own."""
     chain, found = CHAIN.replace(restitution=restitution), theory(restitution)
-    run = simulate(
-        chain,
-        duration=8_000,
-        every=0.5,
-        seed=3,
-        observe=("widths", "snapshots"),
-        threads=1,
-        progress=False,
-    )
+    run = simulate(chain, duration=8_000, seed=3, observe="widths", threads=1, progress=False)
     ratio = (found.velocity_width / run.velocity_width).values[2:-2] - 1
     error = (run.velocity_width_error / run.velocity_width).values[2:-2].max()
     assert np.abs(ratio).max() < found.attrs["model_error"] + 5 * error
-    v = run.velocity.values[0][:, 10:20]
-    blocks = v[: len(v) // 16 * 16].reshape(16, -1, v.shape[1])
-    measured = (blocks[:, :, 1:] * blocks[:, :, :-1]).mean(axis=(1, 2)) / (blocks**2).mean((1, 2))
-    shared, relative = found.neighbour_covariance.values, found.relative_temperature.values
-    expected = (shared / (shared + relative))[10:19].mean()
-    standard_error = measured.std(ddof=1) / 4
-    # A model error that the page's table states: at e = 0.9 the covariance is 0.02 T too large.
-    assert abs(measured.mean() - expected) < 0.02 + 5 * standard_error
-    assert expected > 10 * standard_error, "the simulation is long enough to see the correlation"
     wide = (found.displacement_width / run.displacement_width).values - 1
     error = (run.displacement_width_error / run.displacement_width).values.max()
     assert np.abs(wide).max() < 0.07 + 5 * error

@@ -18,7 +18,9 @@ NUMBER = 40
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize(("size", "restitution"), [(30, 0.9), (140, 0.6)])
+@pytest.mark.parametrize(
+    ("size", "restitution"), [(30, 0.9), pytest.param(140, 0.6, marks=pytest.mark.validate)]
+)
 def test_the_centre_of_mass_is_displaced_as_if_alone(size, restitution):
     """The variance of independent points, and what neighbourhoods have in common: W^2/L."""
     found = in_agreement(Chain(size=size, restitution=restitution), 2e-3)

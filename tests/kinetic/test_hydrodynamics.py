@@ -41,22 +41,6 @@ def test_the_label_frame_is_exact_for_the_breathing_cloud(fluid, stretch):
 
 
 @pytest.mark.compiled
-def test_isothermal_clouds_overshoot_where_rods_and_warm_clouds_do_not():
-    """From 0.3 s, at the reference damping: a width of 1.55 s, against 1.00 s in truth."""
-    chain = Chain()
-    start = compressed(chain, 0.3)
-    widest = {
-        fluid: hydrodynamics(chain, start, 15, velocity_variance=fluid, **QUIET)
-        .cloud_width.max()
-        .item()
-        / chain.thermal_length
-        for fluid in (None, "evolving")
-    }
-    assert widest[None] == pytest.approx(1.555, abs=0.002)
-    assert widest["evolving"] < 1.0001
-
-
-@pytest.mark.compiled
 @pytest.mark.parametrize("frame", ["label", "eulerian"])
 @pytest.mark.parametrize("spring", ["linear", "quadratic"])
 def test_a_shift_swings_as_one_oscillator_if_the_springs_are_linear(frame, spring):
@@ -78,15 +62,14 @@ def test_a_shift_swings_as_one_oscillator_if_the_springs_are_linear(frame, sprin
 @pytest.mark.parametrize(
     ("size", "amplitude", "gap", "spring"),
     [
-        pytest.param(*chain, gap, spring, marks=() if quick else pytest.mark.validate)
-        for i, chain in enumerate([(10, 30), (100, 1), (100, 100), (1000, 10)])
-        for j, gap in enumerate([0.0, 0.2, 1.0])
-        for k, spring in enumerate(["linear", "quadratic"])
-        # Twelve have every chain with every gap and every spring. Six of them are quick: they have
-        # every gap with every spring, and every chain at least once.
-        for after in [(i - j - 2 * k) % 4]
-        if after < 2
-        for quick in [after == 0]
+        (10, 30, 0.0, "linear"),
+        (100, 1, 0.2, "linear"),
+        (100, 100, 1.0, "linear"),
+        pytest.param(1000, 10, 0.0, "linear", marks=pytest.mark.validate),
+        (1000, 10, 0.2, "quadratic"),
+        pytest.param(10, 30, 1.0, "quadratic", marks=pytest.mark.validate),
+        pytest.param(100, 100, 0.0, "quadratic", marks=pytest.mark.validate),
+        pytest.param(100, 1, 1.0, "quadratic", marks=pytest.mark.validate),
     ],
 )
 def test_relaxation_ends_in_the_force_balance(size, amplitude, gap, spring):
@@ -219,7 +202,7 @@ def shock_tube(chain):
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("stiffness", [1e-4, 1e-6, 1e-8])
+@pytest.mark.parametrize("stiffness", [1e-4, 1e-6, pytest.param(1e-8, marks=pytest.mark.validate)])
 def test_a_shock_does_not_depend_on_a_very_soft_spring(stiffness):
     """The cells resolve the rods and the waves, which are short against the thermal length."""
     damping = 1e-4

@@ -14,12 +14,6 @@ from crazybilliards.model import Chain
 QUIET = {"progress": False}
 
 
-def test_equal_calls_give_equal_bits():
-    chain = Chain(size=20)
-    one, two = (hydrodynamics(chain, displaced(chain, 1), 5, **QUIET) for _ in range(2))
-    assert one.identical(two)
-
-
 @pytest.mark.compiled
 def test_the_number_of_cells_that_is_called_enough_is():
     """Their centre is right to a hundredth of a thermal length."""

@@ -103,7 +103,7 @@ NAMES = [
 @pytest.mark.parametrize("e", [0.9, 1.0])
 def test_results_state_the_errors_of_all_quantities(name, e):
     chain = Chain(size=30, restitution=e)
-    found = STATIONARY[name](chain, cells=12).attrs
+    found = STATIONARY[name](chain, cells=6).attrs
     expected = accuracy.expected(name, chain)
     assert [found[each] for each in NAMES] == list(expected)
     assert all(np.isfinite(expected))
@@ -128,7 +128,7 @@ def test_the_force_balance_states_its_density_and_its_displacements():
         assert np.isnan(force_balance(Chain(size=size)).attrs["model_error"])
 
 
-@pytest.mark.parametrize("size", [3, 30, 300])
+@pytest.mark.parametrize("size", [3, 30, 100])
 @pytest.mark.parametrize("gap", [0.0, 0.2, 2.0])
 def test_the_errors_of_the_force_balance_are_those_from_the_exact_solution(size, gap):
     for amplitude in (1.0, 4.0, 10.0, 40.0):
@@ -154,36 +154,6 @@ def test_chains_drawn_at_random_keep_to_the_stated_errors():
         beyond += float(row["error"]) > stated + 2 * error
     assert known > 380
     assert beyond <= 2
-
-
-@pytest.mark.parametrize("which", ["derived_with", "held_out"])
-def test_chains_that_were_simulated_before_keep_to_them(which):
-    """The tables of the page on correlations are from other runs, at the default step.
-
-    Their columns of W_x are of the theory before displacements had an equation of their own.
-    """
-    beyond = []
-    for row in rows(ROOT / "docs" / "tables" / f"correlations_{which}.csv"):
-        chain = Chain(size=int(row["L"]), restitution=float(row["e"]), damping=float(row["gamma"]))
-        expected = accuracy.expected("correlated_phase_space", chain)
-        _, of_rod, of_border = map(
-            float, row["error of the centre, a rod, the border, %"].split(",")
-        )
-        for column, stated, error in (
-            ("W_v largest, %", expected.velocity_width, of_rod),
-            ("W_v border, %", expected.border, of_border),
-        ):
-            if abs(float(row[column])) > 100 * stated + 2 * error:
-                beyond.append((row, column, stated, error))
-    assert len(beyond) <= 1, beyond
-
-
-def test_displacement_widths_of_chains_drawn_at_random_keep_to_them():
-    for row in rows(ROOT / "docs" / "tables" / "displacement_widths.csv"):
-        expected = accuracy.expected("correlated_phase_space", chain_of_row(row))
-        stated = 100 * expected.displacement_width
-        assert stated == pytest.approx(float(row["stated, %"]), abs=0.051)
-        assert abs(float(row["now, %"])) <= stated + 2 * float(row["its error, %"])
 
 
 def stated(start, cells=6, **changes):

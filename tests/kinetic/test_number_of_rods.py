@@ -1,6 +1,6 @@
 """Theories hold all rods at wide gaps, and the gap of a single rod does not matter.
 
-Over the whole parameter space the same is checked in ``tests/torture/test_number_of_rods.py``.
+Over the whole parameter space the same is checked in ``tests/torture/test_any_number_of_rods.py``.
 """
 
 import numpy as np

@@ -11,49 +11,36 @@ from crazybilliards.model import Chain
 STATIONARY = """
 equilibrium(Chain(restitution=0.9)) | restitution must be 1
 equilibrium(Chain(amplitude=0)) | no steady state: amplitude=0
-equilibrium(Chain(damping=0)) | no steady state: damping=0
-equilibrium(Chain(stiffness=0)) | no steady state: stiffness=0
 equilibrium(Chain(size=10**6)) | would take ... GiB
 equilibrium_states(Chain(restitution=0.9), 1) | restitution must be 1
-equilibrium_states(Chain(damping=0), 1) | no steady state: damping=0
 equilibrium_states(Chain(size=10**6), 1) | would take ... GiB
 equilibrium_states(Chain(), 0) | replicas must be
-equilibrium_states(Chain(), 10**400) | replicas must be
 phase_space(Chain(amplitude=0)) | no steady state
-phase_space(Chain(damping=0)) | no steady state
-phase_space(Chain(stiffness=0)) | no steady state
 phase_space(Chain(size=160, restitution=1.05, damping=4.0)) | no steady state: with 160 rods
 phase_space(Chain(), tolerance=0.0) | tolerance
 phase_space(Chain(), cells=2) | cells
-phase_space(Chain(), cells=100_000) | cells must be
 phase_space(Chain(size=10**6)) | size must be at most
 phase_space(Chain(), order=3) | order
-phase_space(Chain(restitution=0.95), tolerance=1e-9) | accurate to ... theory --cells 75 accepts
+phase_space(Chain(size=3, restitution=0.95), tolerance=1e-9) | accurate to ... --cells 75 accepts
 phase_space(Chain(restitution=0.95, damping=1e-4)) | multiple of m W/s, is 4.89e-05 ...0.01 to 25
 phase_space(Chain(damping=1000.0)) | multiple of m W/s, is 489 ...0.01 to 25...; simulate takes any
 correlated_phase_space(thirty.replace(restitution=1.05)) | from 0 to 1 only, got 1.05; phase_space
 correlated_phase_space(thirty.replace(size=9)) | size from 10 to 1000 only, got 9
-correlated_phase_space(thirty.replace(size=1001)) | size from 10 to 1000 only
 correlated_phase_space(thirty.replace(damping=0.2)) | damping/sqrt(k m) from 0.14 to 1.5 only
-correlated_phase_space(thirty.replace(damping=4)) | damping/sqrt(k m) from 0.14 to 1.5 only
 correlated_phase_space(thirty.replace(gap=0.1)) | without gap only
 correlated_phase_space(thirty.replace(spring="quadratic")) | linear springs only
 correlated_phase_space(thirty.replace(amplitude=0)) | no steady state
 correlated_phase_space(thirty, tolerance=0) | tolerance
 correlated_phase_space(thirty, cells=3) | cells
-correlated_phase_space(thirty, cells=151) | cells
 critical_size(Chain(restitution=1.0)) | every size has a steady state
-critical_size(Chain(restitution=0.5)) | every size has a steady state
 critical_size(Chain(restitution=1.05, spring="quadratic")) | quadratic
 critical_size(Chain(restitution=1.05, damping=0)) | damping=0
-critical_size(Chain(restitution=1.05, stiffness=0)) | stiffness=0
 critical_size(Chain(restitution=1.05, damping=50)) | sqrt(k m) = ... is too strong...up to 3.5
 """
 
 FORCE_BALANCE = """
 force_balance(Chain(restitution=0.5)) | restitution must be 1, got 0.5; give velocity_variance
 force_balance(Chain(amplitude=0)) | no steady state
-force_balance(Chain(damping=0)) | no steady state
 force_balance(Chain(), velocity_variance=-1) | velocity_variance must be
 force_balance(Chain(), 3) | displacement takes
 force_balance(Chain(), ([0, 1], [1])) | equally long
@@ -65,13 +52,9 @@ force_balance(Chain(), lambda x: np.arctanh(x)) | not finite at x =
 force_balance(Chain(size=3), equilibrium(Chain(size=4))) | 4 particles
 force_balance(Chain(), lambda x: 0.3 * x, lambda x: 1.0) | cannot be given together
 force_balance(five, lambda x: "one") | displacement: the callable must return a number for each x
-force_balance(five, lambda x: [1.0, 2.0]) | displacement: the callable must return a number
 force_balance(five, None, lambda x: "one") | velocity_variance: the callable must return a number
-force_balance(five, None, lambda x: [1.0, 2.0]) | velocity_variance: the callable must return a
 force_balance(five, None, lambda x: -1.0) | finite and positive
-force_balance(five, None, lambda x: x * np.nan) | finite and positive
 force_balance(five, None, ([0, 1], [1, 2, 3])) | equally long
-force_balance(five, None, ([1, 0], [1, 2])) | ascending
 force_balance(five, None, "abc") | velocity_variance takes
 force_balance(five, None, force_balance(Chain(size=9))) | 9 particles
 force_balance(five.replace(spring="quadratic"), None, lambda x: 1.0) | linear springs
@@ -79,9 +62,7 @@ force_balance(five.replace(spring="quadratic"), None, lambda x: 1.0) | linear sp
 
 IN_TIME = """
 flow(duration=0) | duration must be
-flow(duration=float("nan")) | duration must be
 flow(every=100) | every must be at most
-flow(every=-1) | every must be
 flow(every=1e-9) | outputs
 flow(frame="polar") | frame must be one of
 flow(displacement="magic") | displacement takes a table
@@ -90,16 +71,13 @@ flow(velocity_variance="cold") | velocity_variance must be None, 'evolving', a n
 flow(velocity_variance=lambda x: 1.0) | needs frame='eulerian'
 flow(velocity_variance=lambda x: -1.0, frame="eulerian") | finite and positive
 flow(velocity_variance=-1.0) | velocity_variance must be positive
-flow(velocity_variance=0.1, chain=five.replace(damping=0)) | damping=0
 flow(cells=2) | cells must be
 flow(cells=10**8) | at most 100000
 flow(frame="eulerian", cells=10**5, duration=1e4) | use frame='label'
 flow(chain=five.replace(restitution=0.5)) | restitution must be 1
-flow(chain=five.replace(damping=0)) | no steady state
 flow(moved.assign(density=2 * moved.density)) | overlap
 flow(moved.drop_vars("label").assign(density=0.5 * moved.density)) | add up to the chain's 5
 flow(moved.assign(density=-moved.density)) | not negative
-flow(moved.assign(density=moved.density * np.nan)) | finite
 flow(moved.assign(flow_velocity=moved.flow_velocity * np.nan)) | flow_velocity
 flow(moved.assign(velocity_variance=-moved.velocity_variance)) | positive
 flow(moved.drop_vars("density")) | no 'density'
@@ -109,17 +87,12 @@ flow(displaced(wide, 0.5), wide, frame="eulerian", cells=100) | wide, 0.5 at mos
 flow(displaced(dense, 0.5), dense, frame="eulerian") | wide, 0.5 at most ...use frame='label'
 flow(compressed(twenty, 5e-4), twenty, duration=1) | too steep
 flow(inward, twenty, duration=0.01, every=0.001) | collapses to less than
-displaced(five.replace(damping=0), 1.0) | no steady state
 breathing_cloud(Chain(gap=1), 1) | breathing cloud holds without gap only
-breathing_cloud(five, 0.0) | duration must be
-breathing_cloud(five, 1.0, every=2.0) | every must be at most
 breathing_cloud(five, 1.0, stretch=0.0) | stretch must be
 breathing_cloud(five, 1.0, shift=np.inf) | shift must be
 breathing_cloud(five, 1.0, start_velocity_variance=-1.0) | start_velocity_variance must be
 relax_phase_space(five, moved, 0.0) | duration
-relax_phase_space(five, moved, 5.0, every=99.0) | every
 relax_phase_space(five, moved, 5.0, every=1e-9) | every
-relax_phase_space(five, moved, 5.0, cells=1) | cells
 relax_phase_space(five, moved, 5.0, cells=10**6) | cells must be an integer from 4 to 80
 relax_phase_space(five, moved, 5.0, time_step=-1.0) | time_step
 relax_phase_space(five, steady[["velocity_width"]], 5.0) | density
@@ -127,7 +100,6 @@ relax_phase_space(five, f.transpose("velocity", "y"), 5.0) | over y and velocity
 relax_phase_space(five, f * np.nan, 5.0) | finite
 relax_phase_space(Chain(size=6), steady, 5.0) | add up to the chain's 6 rods
 relax_phase_space(five, moved.assign(flow_velocity=moved.label + 1e100), 5.0) | too far apart
-relax_phase_space(five.replace(damping=0.0), steady, 5.0) | no steady state
 """
 
 

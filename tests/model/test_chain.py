@@ -14,13 +14,22 @@ positive = st.floats(min_value=1e-6, max_value=1e6)
 gaps = st.floats(0, 10).map(lambda gap: round(gap, 6))
 
 
-@pytest.mark.parametrize("value", [np.zeros((9, 9)), np.array(["linear"] * 2), 10**400, "x" * 999])
-def test_a_huge_wrong_parameter_is_still_one_short_line(value):
-    for name in ("size", "amplitude", "spring"):
+WRONG = [-1, -1e-9, 1e70, 10**400, np.nan, np.inf, 1j, None, True, "1", "x" * 999, ["linear"]]
+
+
+@pytest.mark.parametrize("name", Chain().parameters())
+def test_a_wrong_parameter_is_one_short_line(name):
+    for value in [*WRONG, np.array(-1.0), np.array([1.0]), np.zeros((9, 9)), np.array(["a"] * 2)]:
         with pytest.raises(ValueError, match=f"^{name} must be .*, got ") as caught:
             Chain(**{name: value})
         assert "\n" not in str(caught.value)
         assert len(str(caught.value)) < 250
+
+
+@pytest.mark.parametrize("name", ["size", "mass", "radius"])
+def test_what_must_be_positive_is_not_zero(name):
+    with pytest.raises(ValueError, match=f"^{name} must be"):
+        Chain(**{name: 0})
 
 
 def test_zero_amplitude_damping_and_stiffness_are_chains_without_a_steady_state():

@@ -50,7 +50,7 @@ def test_a_changed_callee_is_recompiled_however_far_away(tmp_path):
     (tmp_path / "caller.py").write_text(CALLER)
     (tmp_path / "inner" / "middle.py").write_text(MIDDLE)
     outputs = []
-    for factor, shift in ((2, 1), (2, 1), (5, 1), (5, 3)):
+    for factor, shift in ((2, 1), (5, 1), (5, 3)):
         (tmp_path / "inner" / "deep" / "innermost.py").write_text(INNERMOST.format(factor))
         (tmp_path / "constants.py").write_text(f"SHIFT = {shift}\n")
         done = subprocess.run(
@@ -62,7 +62,7 @@ def test_a_changed_callee_is_recompiled_however_far_away(tmp_path):
             check=True,
         )
         outputs.append(int(done.stdout))
-    assert outputs == [3, 3, 6, 8]
+    assert outputs == [3, 6, 8]
     assert list(tmp_path.glob("__pycache__/caller.outer*.nbi"))
 
 

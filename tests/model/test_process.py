@@ -1,17 +1,19 @@
 """Signals: which are taken, what they do afterwards, and that handlers are restored."""
 
 import signal
-import subprocess
-import sys
 
 import pytest
+from forked import forked
 
+from crazybilliards.kinetic import displaced, hydrodynamics
+from crazybilliards.model import Chain
 from crazybilliards.model.process import (
     announce_compilation,
     announced,
     interrupts_noted,
     terminated_like_interrupted,
 )
+from crazybilliards.particles import simulate
 
 ENDING = [getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name)]
 
@@ -48,23 +50,18 @@ def test_ctrl_c_between_two_restorations_leaves_no_handler_behind(monkeypatch, h
     assert signal.getsignal(signal.SIGTERM) is signal.default_int_handler
 
 
-NOTED = """
-import signal
-from crazybilliards.model.process import interrupts_noted
-number = {number}
-signal.signal(number, signal.SIG_DFL)  # for example nohup ignores SIGHUP
-with interrupts_noted():
-    signal.raise_signal(number)
-    print("went on", flush=True)
-print("survived", flush=True)
-"""
-
-
+@pytest.mark.posix
 @pytest.mark.parametrize("number", ENDING)
 def test_a_signal_that_ends_programs_does_so_after_the_block(number):
-    script = NOTED.format(number=int(number))
-    done = subprocess.run([sys.executable, "-c", script], stdout=subprocess.PIPE, check=False)
-    assert (done.returncode, done.stdout.split()) == (-number, [b"went", b"on"])
+    def job():
+        signal.signal(number, signal.SIG_DFL)  # for example nohup ignores SIGHUP
+        with interrupts_noted():
+            signal.raise_signal(number)
+            print("went on", flush=True)
+        print("survived", flush=True)
+
+    done = forked(job)
+    assert (done.returncode, done.stdout) == (-number, "went on\n")
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, *ENDING])
@@ -118,20 +115,16 @@ def test_a_command_is_terminated_like_interrupted_and_only_once(number, handle):
     assert signal.getsignal(number) is signal.SIG_DFL
 
 
-CLOSED = """
-from crazybilliards.kinetic import displaced, hydrodynamics
-from crazybilliards.model import Chain
-from crazybilliards.particles import simulate
-simulate(Chain(size=2), duration=70, warmup=0)
-hydrodynamics(Chain(size=5), displaced(Chain(size=5), 1.0), 1.0)
-"""
-
-
 @pytest.mark.posix
 def test_progress_needs_no_open_standard_error():
     """A program in the background may have closed its streams; tqdm cannot write then."""
-    command = ["sh", "-c", f"exec {sys.executable} -c '{CLOSED}' >&- 2>&-"]
-    assert subprocess.run(command, check=False).returncode == 0
+
+    def job():
+        simulate(Chain(size=2), duration=100)
+        hydrodynamics(Chain(size=5), displaced(Chain(size=5), 1.0), 1.0)
+
+    done = forked(job, closed=(1, 2))
+    assert done.returncode == 0
 
 
 def test_compiling_is_said_once_and_only_to_those_who_asked(capsys):

@@ -101,15 +101,3 @@ def test_both_counts_are_taken_in_one_run():
     # Half of the first hits point left. Of the others all that follows is the same.
     assert int(waves.sum()) < int(hits.sum()) < 3 * int(waves.sum())
     assert (hits.values >= waves.values).all()
-
-
-@pytest.mark.compiled
-def test_large_avalanches_are_rare_in_the_dissipative_chain():
-    chain = Chain(size=50, restitution=0)
-    run = simulate(chain, duration=500, replicas=2, observe="avalanches", progress=False)
-    counts = run.avalanche_count.sel(particle=slice(15, 25)).sum("particle").values
-    assert run.avalanche_count.attrs["units"] == "1"
-    assert counts[0] > 2 * counts[1] > 4 * counts[3] > 0
-    # No wave runs further than there are rods to its right.
-    sizes, particles = run.avalanche_size, run.particle
-    assert (run.avalanche_count.where(particles + sizes > 50, 0) == 0).all()

@@ -3,8 +3,6 @@
 import numpy as np
 import pytest
 import xarray as xr
-from hypothesis import given
-from hypothesis import strategies as st
 from scipy.fft import dct
 
 from crazybilliards.model import Chain
@@ -12,7 +10,7 @@ from crazybilliards.particles import simulate, simulate_limit
 from crazybilliards.particles.dynamics import make_dynamics
 from crazybilliards.particles.laws.avalanche import make_tally
 from crazybilliards.particles.laws.impacts import make_impacts
-from crazybilliards.particles.laws.law import EVENTS, Law, drift, make_scratch
+from crazybilliards.particles.laws.law import make_scratch
 from crazybilliards.particles.noise import make_noise
 from crazybilliards.particles.observers import Covariances
 from crazybilliards.particles.stepping import record
@@ -149,34 +147,6 @@ def test_the_centre_of_mass_knows_nothing_of_collisions():
         some.neighbour_covariance, limit.neighbour_covariance.sel(contact=[2])
     )
     xr.testing.assert_identical(some.velocity_covariance, products.sel(particle=[2, 8]))
-
-
-@given(
-    seed=st.integers(0, 2**32),
-    size=st.integers(2, 12),
-    e=st.sampled_from([0.0, 0.4, 0.9, 1.0, 1.05]),
-    merge_speed=st.sampled_from([1e-9, 0.3]),
-)
-def test_collisions_make_half_of_the_energy_they_take_into_covariance(seed, size, e, merge_speed):
-    """And what crosses a contact is what the rods on its left lose, clusters included."""
-    generator = np.random.default_rng(seed)
-    y, v = np.cumsum(generator.exponential(size=size)), generator.normal(size=size)
-    y[generator.random(size) < 0.3] = y[0]
-    y.sort()
-    before, impacts = v.copy(), make_impacts(size)
-    tally = make_tally(size, contacts=True)._replace(impacts=impacts)
-    law = Law(EVENTS, e, merge_speed if e < 1 else 0.0, 400)
-    if drift(y, v, np.zeros(size), 3.0, law, make_scratch(size), tally) < 0:
-        return
-    given_away = np.cumsum(before - v)[:-1]
-    np.testing.assert_allclose(impacts[0] + impacts[2], given_away, atol=1e-9)
-    taken = (impacts[1] - impacts[3]).sum()
-    assert taken == pytest.approx((before**2 - v**2).sum() / 2, abs=1e-9)
-
-    def of_pairs(v):
-        return (np.outer(v, v).sum() - (v**2).sum()) / 2
-
-    assert of_pairs(v) - of_pairs(before) == pytest.approx(taken, abs=1e-9)
 
 
 def test_steps_that_diverge_do_not_count():

@@ -1,67 +1,42 @@
 """A run, finished or not, is made longer by its checkpoint, to the bits of one long run."""
 
 import signal
-import subprocess
 import sys
 import time
 
 import numpy as np
 import pytest
 import xarray as xr
+from killed import begin, end, until
 
 from crazybilliards.kinetic import equilibrium_states
-from crazybilliards.model import Chain, load
+from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
 from crazybilliards.particles.observers import OBSERVERS
 from crazybilliards.particles.observers.base import Averaged
 
-SCRIPT = """
-import sys
-from crazybilliards.model import Chain, save
-from crazybilliards.particles import simulate
-checkpoint, output = sys.argv[1:]
-run = simulate(
-    Chain(size=40, restitution=0.7, gap=0.1), duration={duration}, replicas={copies}, seed=4,
-    threads={copies}, observe=("widths", "density", "energy", "velocities", "time-correlations"),
-    progress=False, checkpoint=checkpoint or None, checkpoint_interval=0.05,
-)
-save(run, output)
-"""
 
-
-def run_and_signal(script, checkpoint, output, how=None, after=0.0):
-    """Run the script; send it a signal some time ``after`` it has first written its checkpoint."""
-    before = checkpoint.stat().st_mtime_ns if how and checkpoint.exists() else None
-    with subprocess.Popen([sys.executable, "-c", script, str(checkpoint), str(output)]) as process:
-        try:
-            if how is not None:
-                while not checkpoint.exists() or checkpoint.stat().st_mtime_ns == before:
-                    time.sleep(0.01)
-                    assert process.poll() is None
-                time.sleep(after)
-                process.send_signal(how)
-            return process.wait(300)
-        finally:
-            process.kill()  # otherwise leaving the block would wait for a process that hangs
-
-
-@pytest.mark.posix
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="forks, reads /proc")
 @pytest.mark.compiled
 @pytest.mark.parametrize(
     "copies", [2, *(pytest.param(n, marks=pytest.mark.validate) for n in (1, 4))]
 )
 def test_made_longer_and_killed_and_resumed_it_is_one_long_run(copies, tmp_path):
-    long = SCRIPT.format(duration=12_000 // copies, copies=copies)
-    undisturbed, output = tmp_path / "undisturbed.nc", tmp_path / "run.nc"
-    checkpoint = tmp_path / "state"
-    assert run_and_signal(long, "", undisturbed) == 0
-    short = SCRIPT.format(duration=3333.3 / copies, copies=copies)
-    assert run_and_signal(short, checkpoint, output) == 0
-    assert load(output).attrs["status"] == "completed"
-    how = signal.SIGKILL if copies == 2 else signal.SIGTERM
-    assert run_and_signal(long, checkpoint, output, how, after=0.1) == -how
-    assert run_and_signal(long, checkpoint, output) == 0
-    xr.testing.assert_identical(load(output), load(undisturbed))
+    how = {"observe": ("widths", "density", "energy", "velocities", "time-correlations")}
+    how |= {"seed": 4, "replicas": copies, "threads": copies, "progress": False}
+    chain, long = Chain(size=40, restitution=0.7, gap=0.1), 12_000 // copies
+    undisturbed = simulate(chain, duration=long, **how)
+    state = tmp_path / "job" / "state"
+    state.parent.mkdir()
+    how |= {"checkpoint": state, "checkpoint_interval": 0.05}
+    assert simulate(chain, duration=3333.3 / copies, **how).attrs["status"] == "completed"
+    written = state.stat().st_mtime_ns
+    child = begin(lambda _: simulate(chain, duration=long, **how), state.parent)
+    until(lambda: state.stat().st_mtime_ns != written)
+    time.sleep(0.1)
+    number = signal.SIGKILL if copies == 2 else signal.SIGTERM
+    assert end(child, number) == -number
+    xr.testing.assert_identical(simulate(chain, duration=long, **how), undisturbed)
 
 
 @pytest.mark.parametrize("e", [0.8, 1.0])

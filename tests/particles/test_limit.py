@@ -150,17 +150,6 @@ def test_the_same_seed_gives_the_same_bits_whatever_the_threads():
 
 
 @pytest.mark.compiled
-def test_only_chosen_particles_are_reported():
-    chain = Chain(size=6, restitution=0)
-    observe = ("widths", "velocities")
-    every = simulate_limit(chain, observe=observe, **OPTIONS)
-    some = simulate_limit(chain, observe=observe, particles=[1, 4], **OPTIONS)
-    for name in ("velocity_width", "velocity_width_error", "velocity_density"):
-        xr.testing.assert_identical(every[name].sel(particle=[1, 4]), some[name])
-    assert some.central_velocity_width == every.central_velocity_width
-
-
-@pytest.mark.compiled
 def test_ctrl_c_gives_the_limit_with_the_errors_so_far(ctrl_c, tmp_path):
     chain = Chain(size=12, restitution=0)
     whole = simulate_limit(chain, **OPTIONS)

@@ -9,9 +9,8 @@ import pytest
 from drifts import OPERATORS, drifted, moved, require_alike, require_kept
 
 from crazybilliards.model import Chain
-from crazybilliards.particles.laws.contact_dynamics import bound
 from crazybilliards.particles.laws.exact_flight import make_propagator
-from crazybilliards.particles.laws.law import CONTACTS, EVENTS, ISOTONIC, SORT
+from crazybilliards.particles.laws.law import EVENTS, ISOTONIC, SORT
 from crazybilliards.particles.schedule import make_schedule
 
 RESTITUTIONS = [0.0, 0.05, 0.16, 0.17, 0.5, 0.9999, 1.0, 1.05]
@@ -58,28 +57,6 @@ def test_no_rod_passes_another_and_nothing_is_lost_or_won(name, e):
             require_alike(special, EVENTS, HOSTILE[name], dt, e)
 
 
-@pytest.mark.parametrize("e", RESTITUTIONS)
-@pytest.mark.parametrize("name", HOSTILE)
-def test_mirrored_rods_move_as_mirror_images(name, e):
-    """For every law, but not where neighbouring contacts tie: there the left one is first.
-
-    In a collapse rounding decides on the order, and by that which rods become a cluster first.
-    """
-    y, v = (np.array(each, dtype=float) for each in HOSTILE[name])
-    ties = "neighbours that tie" in name or name == "a lattice that meets"
-    for operator in (*OPERATORS, *SPECIAL.get(e, [])):
-        if operator == EVENTS and ties and 0 < e != 1:
-            continue
-        rough = 1e-4 if operator == EVENTS and 0 < e < 0.2 else 1e-10
-        for dt in (1.5, 500.0):
-            end, w, *_ = drifted(operator, (y, v), dt, e)
-            other, u, *_ = drifted(operator, (-y[::-1], -v[::-1]), dt, e)
-            np.testing.assert_allclose(-other[::-1], end, atol=rough * dt)
-            np.testing.assert_allclose(-u[::-1], w, atol=rough)
-            if name in MIRRORED:
-                np.testing.assert_allclose(w, -w[::-1], atol=rough)
-
-
 @pytest.mark.parametrize("together", [0.0, 1.0])
 def test_of_equal_contacts_the_faster_and_then_the_left_one_is_first(together):
     """By hand, at e = 1/2; rods that touch, and rods that meet at the time 1."""
@@ -94,22 +71,6 @@ def test_of_equal_contacts_the_faster_and_then_the_left_one_is_first(together):
         )
         _, v, _, _ = drifted(EVENTS, state, 1.5, 0.5)
         np.testing.assert_array_equal(v[::side] * side, [-0.15625, 0.28125, 0.875])
-
-
-@pytest.mark.parametrize("e", RESTITUTIONS)
-@pytest.mark.parametrize("name", HOSTILE)
-def test_contact_dynamics_solves_every_contact(name, e):
-    """Bounds are kept, no impulse pulls, and only contacts at their bounds push."""
-    y, v = (np.array(each, dtype=float) for each in HOSTILE[name])
-    for dt in (0.1, 500.0):
-        _, w, *_ = drifted(CONTACTS, (y, v), dt, e)
-        least = [
-            bound(y[i + 1] - y[i], v[i] - v[i + 1], e, dt, 0, 0, 0, 2) for i in range(len(y) - 1)
-        ]
-        above, impulse = np.diff(w) - least, np.cumsum(v - w)[:-1]
-        assert (above > -1e-12).all()
-        assert (impulse > -1e-12).all()
-        np.testing.assert_allclose(above * impulse, 0, atol=1e-12)
 
 
 @pytest.mark.parametrize(

@@ -5,18 +5,19 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
 import xarray as xr
+from forked import forked
 
 from crazybilliards.model import Chain
 from crazybilliards.model.process import terminated_like_interrupted
 from crazybilliards.model.storage import read_sealed
 from crazybilliards.particles import simulate
-
-PATIENCE = 200  # for what must come to an end, in seconds
+from crazybilliards.particles.observers.widths import Widths
 
 
 def test_ctrl_c_while_replicas_are_started_stops_the_run(tmp_path, monkeypatch):
@@ -63,11 +64,7 @@ for number in range(1, 9):
 def test_ctrl_c_may_come_while_the_lock_of_the_threads_is_being_taken():
     """An error between the taking and the block that frees it would leave it held for ever."""
     done = subprocess.run(
-        [sys.executable, "-c", EVERY_ENTRY],
-        capture_output=True,
-        text=True,
-        timeout=PATIENCE,
-        check=True,
+        [sys.executable, "-c", EVERY_ENTRY], capture_output=True, text=True, timeout=200, check=True
     )
     ends = done.stdout.splitlines()
     assert len(ends) == 8
@@ -94,57 +91,41 @@ def test_ctrl_c_during_the_last_writing_keeps_everything(tmp_path, monkeypatch):
     assert resumed.attrs["status"] == "completed"
 
 
-ENDED = """
-import signal, sys
-from crazybilliards.model import Chain
-from crazybilliards.particles import simulate
-from crazybilliards.particles.observers.widths import Widths
-
-number, handler, checkpoint = int(sys.argv[1]), sys.argv[2], sys.argv[3]
-handlers = {
-    "default": signal.SIG_DFL,
-    "like Ctrl-C": signal.default_int_handler,
-    "exits": lambda number, _: sys.exit(7),
+HANDLERS = {  # what a program does at a signal, how it then ends, and how many runs it gets
+    "default": (signal.SIG_DFL, None, 0),
+    "like Ctrl-C": (signal.default_int_handler, 0, 2),
+    "exits": (lambda number, _: sys.exit(7), 7, 0),
 }
-signal.signal(number, handlers[handler])
-observe, calls = Widths.observe, []
-
-def and_signal(self, *arguments):
-    observe(self, *arguments)
-    calls.append(self)
-    if len(calls) == 20:
-        signal.pthread_kill(threading.main_thread().ident, number)
-
-import threading
-Widths.observe = and_signal
-for attempt in range(2):
-    calls.clear()
-    run = simulate(Chain(size=10), duration=1e9, progress=False, checkpoint=checkpoint,
-                   checkpoint_interval=1e9)
-    print(run.attrs["status"], run.attrs["end_time"], flush=True)
-"""
 
 
 @pytest.mark.compiled
 @pytest.mark.posix
 @pytest.mark.parametrize("name", ["SIGTERM", "SIGHUP"])
-@pytest.mark.parametrize(
-    ("handler", "status", "lines"), [("default", None, 0), ("like Ctrl-C", 0, 2), ("exits", 7, 0)]
-)
+@pytest.mark.parametrize("how", HANDLERS)
 def test_a_loop_ends_at_a_signal_after_the_checkpoint_unless_it_asks_for_the_result(
-    name, handler, status, lines, tmp_path
+    name, how, tmp_path, monkeypatch
 ):
-    number = getattr(signal, name)
-    state = tmp_path / "state"
-    done = subprocess.run(
-        [sys.executable, "-c", ENDED, str(int(number)), handler, state],
-        stdout=subprocess.PIPE,
-        text=True,
-        timeout=PATIENCE,
-        check=False,
-    )
+    number, (handler, status, runs) = getattr(signal, name), HANDLERS[how]
+    state, observe, calls = tmp_path / "state", Widths.observe, []
+
+    def and_signal(self, *arguments):
+        observe(self, *arguments)
+        calls.append(self)
+        if len(calls) == 20:
+            signal.pthread_kill(threading.main_thread().ident, number)
+
+    def job():
+        signal.signal(number, handler)
+        for _ in range(2):
+            calls.clear()
+            run = simulate(Chain(size=10), duration=1e9, progress=False, **checkpoint)
+            print(run.attrs["status"], flush=True)
+
+    checkpoint = {"checkpoint": state, "checkpoint_interval": 1e9}
+    monkeypatch.setattr(Widths, "observe", and_signal)
+    done = forked(job)
     assert done.returncode == (-number if status is None else status)
-    assert [line.split()[0] for line in done.stdout.splitlines()] == ["interrupted"] * lines
+    assert done.stdout == runs * "interrupted\n"
     # The first checkpoint, before any work, has measured nothing.
     assert np.load(io.BytesIO(read_sealed(state)))["0/steps"] > 0
 

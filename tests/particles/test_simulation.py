@@ -12,8 +12,6 @@ from crazybilliards.particles import given_start, simulate
 from crazybilliards.particles.dynamics import longest_step
 from crazybilliards.particles.observers.widths import Widths
 from crazybilliards.particles.running.replica import Replica
-from crazybilliards.particles.scales import relaxation_time
-from crazybilliards.particles.schedule import make_schedule
 
 QUANTITIES = ("velocity_width", "mean_displacement", "displacement_width")
 
@@ -21,7 +19,7 @@ QUANTITIES = ("velocity_width", "mean_displacement", "displacement_width")
 @pytest.mark.compiled
 @pytest.mark.parametrize("spring", ["linear", "quadratic"])
 @pytest.mark.parametrize("gap", [0.0, 0.2, 1.0])
-@pytest.mark.parametrize("size", [1, 2, 3, 20, 100])
+@pytest.mark.parametrize("size", [1, 2, 3, 20])
 def test_elastic_chain_is_in_its_exact_equilibrium(size, gap, spring):
     """Every particle's widths and displacement within 5 standard errors, t-distributed."""
     chain = Chain(size=size, gap=gap, spring=spring)
@@ -103,12 +101,16 @@ def test_ctrl_c_keeps_what_was_measured(ctrl_c):
     assert (run.velocity_width_error > 0).all()
 
 
-@pytest.mark.parametrize("average", ["time", "ensemble"])
-@pytest.mark.parametrize("observe", [("widths", "energy"), ("collisions",)])
+@pytest.mark.parametrize(
+    ("average", "observe"),
+    [
+        ("time", ("widths", "energy")),
+        ("time", ("collisions",)),  # which are not averaged over an ensemble
+        ("ensemble", ("widths", "energy")),
+    ],
+)
 def test_long_times_between_snapshots_are_taken_in_parts(average, observe, monkeypatch):
     """Without noise, which would be drawn at other moments, nothing else shows."""
-    if average == "ensemble" and "collisions" in observe:
-        pytest.skip("collisions are not averaged over an ensemble")
     chain = Chain(size=4, amplitude=0, restitution=0.9)
     position = [-9.0, -3.1, 5.0, 7.1]
     options = {"duration": 8.0, "every": 0.1, "time_step": 1e-3, "average": average}
@@ -148,10 +150,3 @@ def test_a_short_run_may_have_short_steps(average):
     last = float(run.kinetic_energy[-1])
     error = float(run.kinetic_energy_error[-1]) if average == "ensemble" else 0.2 * last
     assert abs(last - heating * float(run.time[-1])) < 5 * error
-
-
-def test_schedule_rounds_up_to_whole_snapshots():
-    schedule = make_schedule(Chain(), duration=1000, replicas=3)
-    assert schedule.blocks == 22
-    assert 1000 <= schedule.duration < 1000 + 10 * schedule.time_step
-    assert schedule.warmup == pytest.approx(12 * relaxation_time(Chain()), abs=schedule.time_step)

@@ -56,17 +56,6 @@ def test_cases_of_runs_differ_in_their_seeds_and_their_qualities_in_what_each_gr
     assert all_of([RUNS], "quick") == quick
 
 
-def test_errors_of_estimates_cover_the_truth_however_few_the_runs():
-    """68 % of the estimates from four runs lie within one error, thanks to Student's factor."""
-    generator = np.random.default_rng(5)
-    hits, trials = 0, 300
-    for _ in range(trials):
-        results = {f"a/{k}": generator.normal(1, 0.1) for k in range(4)}  # of runs only the number
-        value, error = RUNS.estimate(results, float)
-        hits += abs(value - 1) < error
-    assert abs(hits / trials - 0.683) < 5 * (0.683 * 0.317 / trials) ** 0.5
-
-
 def test_few_runs_have_an_error_of_student_or_none():
     """Of four the scatter times 1.2; several quantities at once have each their own."""
     factor = t.ppf(norm.cdf(1), 3)

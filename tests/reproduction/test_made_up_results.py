@@ -43,15 +43,6 @@ def made_up(chain, job, *, seed=0, steeper=0.0):
     return run.assign_attrs(time_step_error=BIAS) if job == "simulate_limit" else run
 
 
-@pytest.mark.parametrize("restitution", [0.0, 0.95])
-def test_full_quality_asks_for_more(restitution):
-    runs = limits(100, restitution)
-    quick, full = (runs.cases(quality) for quality in ("quick", "full"))
-    assert len(quick) <= len(full)
-    first = f"{runs.name}/0"
-    assert full[first].settings["accuracy"] < quick[first].settings["accuracy"] / 2
-
-
 def test_the_time_step_that_is_left_does_not_average_out():
     """Five limits: a fifth of the variance, all of the bias."""
     runs = [made_up(CHAIN, "simulate_limit", seed=seed) for seed in range(5)]

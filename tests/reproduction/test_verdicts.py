@@ -28,27 +28,19 @@ NU, SMALL, SEEN = around(-0.46, 0.01), around(0.0, 0.1), around(0.0, EYE)
     ("within", "value", "error", "holds"),
     [
         (NU, -0.46, 0.003, True),
-        (NU, -0.465, 0.001, True),
         (NU, -0.471, 0.002, None),  # three errors reach the paper's number from outside
         (NU, -0.465, 0.002, None),  # three errors reach out
         (NU, -0.475, 0.001, False),
-        (NU, -0.49, 0.01, None),
-        (NU, -0.52, 0.01, False),
         (NU, -0.46, 0.2, None),
         (NU, np.nan, 0.01, None),
-        (NU, np.nan, np.inf, None),
         (NU, -0.46, np.nan, None),
         (around(-2.2, 0.1), -2.456, 0.061, None),  # figure 6: once reproduced, for its error
         (POSITIVE, 0.5, 0.1, True),
         (POSITIVE, -0.5, 0.1, False),
         (POSITIVE, 0.02, 0.02, None),
-        (POSITIVE, 0.1, 0.02, True),
-        (POSITIVE, np.nan, 0.1, None),
         (SMALL, 0.5, 0.1, False),
-        (SMALL, -0.5, 0.1, False),
         (SMALL, 0.02, 0.02, True),
         (SMALL, 0.1, 0.02, None),
-        (SMALL, np.nan, 0.1, None),
         (SEEN, 0.01, 0.003, True),  # however significant: below 2 % of the plot it is not seen
         (SEEN, 0.018, 0.003, None),
         (SEEN, 0.03, 0.003, False),
@@ -153,13 +145,6 @@ def test_sameness():
     assert verdict(off, Estimate(np.nan, 0.1)) == "refuted"
     words = "both: -0.300 ± 0.010, the worst of 3 (limit 0.1); largest difference 30.0 standard"
     assert worst("both", [near, off, poor], 0.1)["words"] == f"{words} errors"
-
-
-def test_what_the_eye_sees():
-    seen = in_plot("all rods", Estimate(0.01, 0.003), 22.4)
-    claim = Claim("fits", **seen, source="fig.2")
-    assert claim.verdict == "reproduced"
-    assert "22.4 standard errors" in claim.details["found here"]
 
 
 def test_estimates_are_written_to_the_second_digit_of_the_error():

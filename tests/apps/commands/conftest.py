@@ -1,14 +1,14 @@
-"""Shared by the tests of the commands: most run in this process.
+"""Shared by the tests of the commands: most run in this process, and some in a fork of it."""
 
-What only a process of its own can show (what it loads, how it takes a signal) is shown by a few
-real ones.
-"""
-
+import itertools
+import os
 import signal
-import subprocess
-import sys
 
 import pytest
+from forked import command, forked
+
+from crazybilliards.particles.observers.widths import Widths
+from crazybilliards.particles.simulation import compile_kernels
 
 
 @pytest.fixture
@@ -25,42 +25,29 @@ def refused(run):
     return refused
 
 
-# A command that gets a signal when its simulation has measured for a while.
-MEASURING = """
-import itertools, os, signal, sys
-from crazybilliards.apps.commands.line import main
-from crazybilliards.particles.observers.widths import Widths
-
-observe, calls = Widths.observe, itertools.count(1)  # which two threads cannot both advance to 20
-
-def and_interrupt(self, *arguments):
-    observe(self, *arguments)
-    if next(calls) == 20:
-        os.kill(os.getpid(), number)
-
-number = int(sys.argv.pop(1))
-if number != signal.SIGINT:
-    signal.signal(number, signal.SIG_DFL)  # for example nohup ignores SIGHUP
-Widths.observe = and_interrupt
-main()
-"""
-
-
 @pytest.fixture
-def interrupted():
-    """Run a real command and let Ctrl-C, or another signal, come while it measures."""
+def interrupted(monkeypatch):
+    """Run a command in a fork, and let Ctrl-C, or another signal, come while it measures."""
 
     def interrupted(*arguments, number=signal.SIGINT):
-        done = subprocess.run(
-            [sys.executable, "-c", MEASURING, str(int(number)), *map(str, arguments)],
-            capture_output=True,
-            text=True,
-            timeout=300,
-            check=False,
-        )
+        observe, calls = Widths.observe, itertools.count(1)  # which no two threads advance to 20
+
+        def and_interrupt(self, *snapshots):
+            observe(self, *snapshots)
+            if next(calls) == 20:
+                os.kill(os.getpid(), number)
+
+        def job():
+            if number != signal.SIGINT:
+                signal.signal(number, signal.SIG_DFL)  # for example nohup ignores SIGHUP
+            command(*arguments)()
+
+        compile_kernels()  # or each fork would load them
+        monkeypatch.setattr(Widths, "observe", and_interrupt)
+        done = forked(job)
         # That kernels are being compiled is said if it takes long, on a busy machine say.
         said = done.stderr.splitlines(keepends=True)
-        done.stderr = "".join(line for line in said if "compiling the kernels" not in line)
-        return done
+        kept = "".join(line for line in said if "compiling the kernels" not in line)
+        return done._replace(stderr=kept)
 
     return interrupted

@@ -20,24 +20,33 @@ from crazybilliards.model import Chain, load
 COMMANDS = [each.name for each in app.registered_commands]
 
 
-@pytest.mark.parametrize("arguments", [["-h"], [], *([each, "--help"] for each in COMMANDS)])
-def test_help_shows_an_example_and_loads_nothing_heavy(arguments):
-    script = (
-        "import sys\n"
-        "from crazybilliards.apps.commands.line import main\n"
-        "try:\n    main()\n"
-        "finally:\n"
-        "    heavy = {'numpy', 'numba', 'scipy', 'matplotlib', 'xarray'}\n"
-        "    heavy &= set(sys.modules)\n"
-        "    assert not heavy, heavy\n"
-    )
+HELP = """
+import sys
+from crazybilliards.apps.commands.line import main
+for line in sys.stdin.read().splitlines():
+    print("asked", line)
+    sys.argv = ["crazybilliards", *line.split()]
+    try:
+        main()
+    except SystemExit as ended:
+        assert not ended.code, line
+    heavy = {"numpy", "numba", "scipy", "matplotlib", "xarray"} & set(sys.modules)
+    assert not heavy, (line, heavy)
+"""
+
+
+def test_help_shows_an_example_and_loads_nothing_heavy():
+    asked = ["-h", "", *(f"{each} --help" for each in COMMANDS)]
+    process = [sys.executable, "-c", HELP]
     done = subprocess.run(
-        [sys.executable, "-c", script, *arguments], capture_output=True, text=True, check=False
+        process, input="\n".join(asked), capture_output=True, text=True, check=False
     )
-    assert done.returncode == 0, done.stderr
-    assert "Usage: " in done.stdout
-    assert "Example: crazybilliards " in done.stdout
-    assert done.stderr == ""
+    assert (done.returncode, done.stderr) == (0, "")
+    _, *answers = done.stdout.split("asked ")
+    assert [answer.partition("\n")[0] for answer in answers] == asked
+    for answer in answers:
+        assert "Usage: " in answer
+        assert "Example: crazybilliards " in answer
 
 
 def test_an_error_that_quotes_an_endless_argument_is_cut(run):
@@ -60,33 +69,20 @@ def test_an_unknown_command_and_an_unusable_folder_are_one_line(run, tmp_path):
 
 REFUSED = """
 compare --size 2 | size
-compare --size ten | size
 compare --amplitudes 1,x | amplitudes takes numbers
-compare --amplitudes '' | amplitudes takes numbers
-compare --amplitudes 0 | no steady state: amplitude=0
-compare --amplitudes 1,1 | differ
-compare --duration 1 | duration must be at least
-compare --restitution 0.9,x | restitution takes numbers
 compare --restitution 0.9 --amplitudes 1 | give restitution or amplitudes
-compare --seed -5 | seed
 compare --colour | No such option
 compare extra | unexpected extra argument
-relax --release dropped | release must be one of
 relax --seed -1 | seed must be
-simulate --observe width | observe takes any of
 simulate --particles 1,x | particles takes numbers
 simulate --particles 1.0 | particles takes numbers
 simulate --particles 101 | particles must ascend within 1..100
-simulate --average median | average must be one of
 simulate --accuracy 0.01 --duration 50 | --duration has no meaning with --accuracy
 simulate --output run.txt | a file whose name ends in .nc
 simulate --output . | a file whose name ends in .nc
-theory --spring cubic | spring must be
-theory --tolerance 0 | tolerance must be
 theory fluid | name must be one of ('equilibrium',
 theory equilibrium --tolerance 0.1 | tolerance: equilibrium has no such setting
 theory force_balance --cells 9 | cells: force_balance has no such setting
-theory equilibrium --restitution 0.9 | restitution must be 1
 theory --critical --restitution 0.95 | every size has a steady state
 theory --restitution 1.3 --damping 4 | the energy grows without bound
 """
@@ -104,7 +100,7 @@ def test_bad_input_is_one_line_exit_two_and_nothing_written(
     assert list(tmp_path.iterdir()) == []
 
 
-LONG = ["--size", "100", "--replicas", "10000", "--duration", "40", "--every", "10"]
+LONG = ["--size", "10", "--replicas", "100", "--duration", "40", "--every", "10"]
 
 
 @pytest.mark.compiled

@@ -2,17 +2,19 @@
 
 import signal
 import warnings
+from contextlib import nullcontext
 
 import pytest
+from small_sweeps import AtOnce
 
-from crazybilliards.comparison.side_by_side import grid_figures
+from crazybilliards.comparison.side_by_side import grid, grid_figures
 from crazybilliards.model import load
 
-QUICK = ["compare", "--size", "10", "--duration", "1000", "--amplitudes", "1,5"]
+QUICK = ["compare", "--size", "10", "--duration", "300", "--amplitudes", "1,5"]
 
 
 @pytest.mark.compiled
-def test_compare_writes_both_figures_and_the_data(run, tmp_path):
+def test_compare_writes_both_figures_and_the_data(run, tmp_path, monkeypatch):
     folder = tmp_path / "new" / "folder"
     done = run(*QUICK, "--output", str(folder))
     assert done.returncode == 0, done.stderr
@@ -34,6 +36,8 @@ def test_compare_writes_both_figures_and_the_data(run, tmp_path):
     assert run(*QUICK, "--output", str(folder)).returncode == 0
     assert {path: path.stat().st_mtime_ns for path in (folder / "cases").iterdir()} == before
     assert load(folder / "comparison.nc").identical(tree)
+    # So do other processes; this one stands for them.
+    monkeypatch.setattr(grid, "process_pool", lambda number: nullcontext(AtOnce()))
     other = ["--output", str(tmp_path / "other"), "--processes", "2"]
     assert run(*QUICK, *other).returncode == 0
     assert load(tmp_path / "other" / "comparison.nc").identical(tree)
@@ -57,39 +61,37 @@ def test_without_output_nothing_is_written(run, tmp_path, monkeypatch):
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.fixture
+def without_pairs(monkeypatch):
+    """Leave out the theory with pair correlations, which takes longer than the other one."""
+    monkeypatch.setattr(grid, "KINETIC", {"kinetic_equation": "phase_space"})
+
+
 @pytest.mark.compiled
-def test_compare_restitutions(run, tmp_path):
-    arguments = ["--restitution", "0.9,1", "--size", "10", "--duration", "200"]
-    done = run("compare", *arguments, "--output", str(tmp_path))
+def test_compare_restitutions_and_ctrl_c_while_a_picture_is_drawn(
+    run, tmp_path, monkeypatch, without_pairs
+):
+    def stopped(theory):
+        raise KeyboardInterrupt
+
+    options = ["--size", 10, "--duration", 200, "--output", tmp_path]
+    with monkeypatch.context() as patch:
+        patch.setattr(grid_figures, "draw_phase_space", stopped)
+        done = run("compare", "--restitution", "0.9", *options)
+    assert done.returncode == 130
+    before = {"cases", "comparison.nc", "density.png", "widths.png"}
+    assert {path.name for path in tmp_path.iterdir()} == before
+    assert "theory minus simulation" in " ".join(done.stdout.split())
+    done = run("compare", "--restitution", "0.9,1", *options)
     assert done.returncode == 0, done.stderr
-    assert sorted(path.name for path in tmp_path.iterdir()) == [
-        "cases",
-        "comparison.nc",
-        "density.png",
-        "phase_space_restitution_0.9.png",
-        "phase_space_restitution_1.png",
-        "widths.png",
-    ]
+    pictures = {f"phase_space_restitution_{e}.png" for e in ("0.9", "1")}
+    assert {path.name for path in tmp_path.iterdir()} == before | pictures
     assert set(load(tmp_path / "comparison.nc").children) == {"restitution_0.9", "restitution_1"}
     assert "theory minus simulation" in " ".join(done.stdout.split())
 
 
 @pytest.mark.compiled
-def test_ctrl_c_while_a_picture_is_drawn_keeps_those_before(run, tmp_path, monkeypatch):
-    def stopped(theory):
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(grid_figures, "draw_phase_space", stopped)
-    arguments = ["--restitution", "0.9", "--size", "10", "--duration", "200"]
-    done = run("compare", *arguments, "--output", str(tmp_path))
-    assert done.returncode == 130
-    names = {path.name for path in tmp_path.iterdir()}
-    assert names == {"cases", "comparison.nc", "density.png", "widths.png"}
-    assert "theory minus simulation" in " ".join(done.stdout.split())
-
-
-@pytest.mark.compiled
-def test_a_chain_that_diverges_is_told_and_drawn_as_far_as_it_can_be(run, tmp_path):
+def test_a_chain_that_diverges_is_told_and_drawn_as_far_as_it_can_be(run, tmp_path, without_pairs):
     arguments = ["--restitution", "1.5,0.9", "--size", "30", "--damping", "0.1"]
     with warnings.catch_warnings():
         warnings.simplefilter("default")
