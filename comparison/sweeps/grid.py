@@ -91,7 +91,10 @@ class Sweep:
         return map(self.case, range(len(self)))
 
     def case(self, number: int) -> Case:
-        """Return one case, counted from 0; the last parameter of the grid varies fastest."""
+        """Return one case, counted from 0; the last parameter of the grid varies fastest.
+
+        Raise a ValueError if the case is wrong.
+        """
         here: dict[str, Any] = {}
         settings = dict(self.settings)
         for name in reversed(list(self.grid)):
