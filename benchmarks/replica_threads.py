@@ -6,9 +6,9 @@ from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
 
 CASES = {
-    "sort, L=100": (Chain(size=100), 50_000.0),
-    "sort, L=1000": (Chain(size=1000), 3_000.0),
-    "events, e=0.5, L=100": (Chain(size=100, restitution=0.5), 100.0),
+    "exact, L=100": (Chain(size=100), 200_000.0),
+    "exact, L=1000": (Chain(size=1000), 20_000.0),
+    "events, e=0.5, L=100": (Chain(size=100, restitution=0.5), 2000.0),
 }
 
 

@@ -16,11 +16,11 @@ import subprocess
 import sys
 from statistics import median
 
-SIZES = [(1, 20_000.0), (10, 10_000.0), (100, 1000.0), (1000, 40.0), (10_000, 2.0)]
 CHAINS = [  # restitution, size, gap, time units of a round
-    *((1.0, size, 0.0, 4 * time) for size, time in SIZES),
-    *((e, size, 0.0, time) for e in (0.95, 0.5, 0.0) for size, time in SIZES),
-    *((e, 100, gap, 1000.0) for e in (1.0, 0.95, 0.5) for gap in (0.3, 1.0)),
+    *((1.0, 10**n, 0.0, time) for n, time in enumerate([1e6, 1e6, 1e5, 1e4, 200.0])),
+    *((e, 10**n, 0.0, time) for e in (0.95, 0.5) for n, time in enumerate([1e5, 5e4, 3e3, 20.0])),
+    *((0.0, 10**n, 0.0, time) for n, time in enumerate([1e5, 5e4, 3e3, 20.0, 0.5])),
+    *((e, 100, gap, 3e3) for e in (1.0, 0.95, 0.5) for gap in (0.3, 1.0)),
 ]
 
 # Reads a line with a chain, a duration and a time step; answers with seconds a time unit and the
@@ -38,7 +38,8 @@ for line in sys.stdin:
     if key not in states:
         state = {"observe": ["snapshots"], "duration": 7.0, "every": 0.1}
         states[key] = simulate(chain, **state, **common).isel(time=-1)
-    common |= {"start": states[key], "observe": ["widths"]}
+    often = {"every": duration / 70} if duration < 70 else {}
+    common |= {"start": states[key], "observe": ["widths"], **often}
     used = time.process_time()
     run = simulate(chain, duration=duration, **common)
     used = time.process_time() - used
