@@ -42,10 +42,10 @@ class Rods:
             forces = noise.standard_normal(len(self.rods)) / np.sqrt(self.time_step)
             for rod, force in zip(self.rods, forces, strict=True):
                 rod.setFExtPtr(np.array([force]))
-            started = time.perf_counter()
+            started = time.process_time()
             self.simulation.computeOneStep()
             self.simulation.nextStep()
-            seconds += time.perf_counter() - started
+            seconds += time.process_time() - started
             squares += np.mean([rod.velocity()[0] ** 2 for rod in self.rods])
         return seconds / steps, squares / steps
 

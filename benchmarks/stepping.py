@@ -36,7 +36,7 @@ def main() -> None:
     chain = Chain(amplitude=10)
     start = read_start(chain, compressed(chain, 0.8))
     for cells in (200, 800, 3200):
-        faces = make_faces(chain, start, cells, 1.0)
+        faces = make_faces(chain, start, STEPS, cells, 1.0)
         fields = starting_fields(chain, start, faces, thermal=False)
         constants = make_constants(chain, faces, None, None)
         dt = 0.02 * constants.spacing / chain.free_velocity_width
