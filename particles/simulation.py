@@ -90,7 +90,7 @@ def simulate(
         random numbers.
     observe
         Any of ``"widths"`` (velocity_width, mean_velocity, mean_displacement, displacement_width
-        and autocorrelation_time),
+        and autocorrelation_time, which is infinite, thus not known, in a run of a single block),
         ``"density"``, ``"velocities"`` (velocity_density,
         velocity_skewness, velocity_kurtosis), ``"energy"`` (kinetic_energy in time),
         ``"covariances"`` (velocity_covariance, gap_covariance, mean_gap, neighbour_covariance,

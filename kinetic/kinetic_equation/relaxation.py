@@ -145,7 +145,7 @@ def relax_phase_space(
     unit_time = units.length / units.velocity
     if time_step is not None:
         time_step = check_real("time_step", time_step, positive=True) / unit_time
-    steps = math.ceil(interval / unit_time / (time_step or _STEP) - 1e-9)
+    steps = max(1, math.ceil(interval / unit_time / (time_step or _STEP) - 1e-9))
     flow = _start(chain, units, read_phase_space(chain, units, start), cells)
     nodes = positions(chain, units.length, flow.space).size
     require_memory(f"every: {count} outputs", _BYTES_PER_NODE * float(nodes) * count)

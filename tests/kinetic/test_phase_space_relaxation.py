@@ -71,6 +71,13 @@ def test_error_is_of_second_order_in_the_time_step():
     assert coarse / fine == pytest.approx(4, rel=0.1)
 
 
+def test_a_step_longer_than_the_outputs_are_apart_ends_at_every_output():
+    start = displaced(CHAIN, 1.0)
+    asked = {"duration": 1.0, "every": 0.5, "cells": 8, "progress": False}
+    one, longer = (relax_phase_space(CHAIN, start, time_step=t, **asked) for t in (0.5, 1e60))
+    assert one.centre.equals(longer.centre)
+
+
 @pytest.mark.compiled
 @pytest.mark.validate
 @pytest.mark.parametrize(("restitution", "damping"), [(0.9, 1.0), (1.05, 6.0)])

@@ -57,6 +57,7 @@ def require_clear(status, printed):
         assert status in (0, None, 1, 130), (status, printed.err)
 
 
+@pytest.mark.filterwarnings("ignore:amplitude=0 and a start at rest")
 @pytest.mark.parametrize(("command", "option"), OPTIONS)
 def test_an_option_is_taken_or_refused_in_one_line(command, option, monkeypatch, capsys):
     for value in NASTY:
