@@ -1,5 +1,6 @@
 """Programs as forks of this process, because imports would take most of their time."""
 
+import multiprocessing
 import os
 import signal
 import sys
@@ -42,6 +43,8 @@ def forked(job, *, closed=(), stdout=None):
 
 
 def _become_a_program(output, errors, closed):
+    # The semaphores of other start methods are removed by a clean-up that a fork does not reach.
+    multiprocessing.set_start_method("fork", force=True)
     signal.signal(signal.SIGALRM, signal.SIG_DFL)
     signal.alarm(PATIENCE)
     signal.signal(signal.SIGINT, signal.default_int_handler)
