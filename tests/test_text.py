@@ -146,6 +146,13 @@ def test_a_file_that_code_or_a_front_page_names_exists():
     assert not dead
 
 
+def test_a_test_that_a_page_names_exists():
+    code = "".join(path.read_text(encoding="utf-8") for path in (ROOT / "tests").rglob("*.py"))
+    named = {name for page in PAGES for name in re.findall(r"`(test_\w+)`", words(page))}
+    assert named
+    assert not [name for name in named if f"def {name}(" not in code]
+
+
 def test_markdown_shows_all_of_a_page():
     """A line that begins with a per cent sign would be a comment, and <dx> a tag."""
     for page in PAGES + LESSONS:
