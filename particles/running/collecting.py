@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
 from crazybilliards.model.arrays import Array
+from crazybilliards.model.calls import warn_user
 from crazybilliards.model.vocabulary import VOCABULARY, result
 from crazybilliards.particles.observers.base import Integers, Observer, Variables
 from crazybilliards.particles.run import Run
@@ -37,6 +39,7 @@ def collect(run: Run, replicas: list[Replica], interrupted: bool) -> xr.Dataset:
         raise KeyboardInterrupt("nothing was measured yet")
     variables: Variables = {}
     coordinates: dict[str, Array] = {}
+    vocabulary = dict(run.vocabulary)
     # A chain that diverged before its first snapshot has a status and a time, but no averages.
     observed = zip(*(replica.observers for replica in replicas), strict=True)
     diverged = reached < NEVER
@@ -45,8 +48,10 @@ def collect(run: Run, replicas: list[Replica], interrupted: bool) -> xr.Dataset:
         with warnings.catch_warnings():
             if diverged:  # that rods lie outside of every grid then is no news
                 warnings.simplefilter("ignore")
-            variables |= _known(first, first.report(counts), run)
+            reported = first.report(counts)
+        variables |= reported
         coordinates |= first.coordinates()
+        vocabulary |= _undeclared(first, [*reported, *first.coordinates()], vocabulary)
     if schedule.ensemble:
         coordinates["time"] = times
     measured = result(
@@ -57,7 +62,7 @@ def collect(run: Run, replicas: list[Replica], interrupted: bool) -> xr.Dataset:
         status="interrupted" if interrupted else "diverged" if diverged else "completed",
         end_time=end_time,
         particles=run.chosen + 1,
-        vocabulary=run.vocabulary,
+        vocabulary=vocabulary,
         method={**run.provenance(), "duration": schedule.duration, "snapshots": int(counts.sum())},
     )
     measured.attrs |= {
@@ -68,15 +73,18 @@ def collect(run: Run, replicas: list[Replica], interrupted: bool) -> xr.Dataset:
     return measured
 
 
-def _known(observer: Observer, variables: Variables, run: Run) -> Variables:
-    """Return what an observer reports, or raise if a name has no meaning."""
-    for name in variables:
-        if name.removesuffix("_error") not in {**run.vocabulary, **VOCABULARY}:
-            raise ValueError(
-                f"observe: {observer.name!r} reports {name!r}, which it does not give, and which "
-                "has no meaning and unit"
-            )
-    return variables
+def _undeclared(
+    observer: Observer, names: Iterable[str], vocabulary: Mapping[str, tuple[str, str]]
+) -> dict[str, tuple[str, str]]:
+    """Return a vocabulary of the names that have none, with a warning: the run is not lost."""
+    names = {name.removesuffix("_error") for name in names}
+    unknown = sorted(names - {*vocabulary, *VOCABULARY})
+    if unknown:
+        warn_user(
+            f"observe: {observer.name!r} reports {', '.join(map(repr, unknown))}, which it does "
+            "not give: the result holds them without a meaning and a unit"
+        )
+    return dict.fromkeys(unknown, (f"reported by {observer.name!r} without a meaning", ""))
 
 
 def _time_step_error(run: Run, measured: xr.Dataset) -> float:

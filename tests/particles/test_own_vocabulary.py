@@ -94,10 +94,17 @@ def test_what_an_observer_says_of_its_variables_counts_more_than_what_another_sa
         assert run.my_mean.attrs == {"long_name": "mean velocity", "units": "R_0/T_0"}
 
 
-def test_a_variable_that_an_observer_does_not_give_is_named():
+def test_a_run_is_not_lost_if_an_observer_reports_what_it_does_not_give():
     class Surprising(Mean):
         def report(self, counts):
-            return {"surprise": ((), 1.0)}
+            return {**super().report(counts), "surprise": ((), 1.0), "odd": (("odd_bin",), [2.0])}
 
-    with pytest.raises(ValueError, match="'mean' reports 'surprise', which it does not give"):
-        simulate(Chain(size=2), observe=Surprising(), **HOW)
+        def coordinates(self):
+            return {"odd_bin": [3.0]}
+
+    with pytest.warns(UserWarning, match="'mean' reports 'odd', 'odd_bin', 'surprise', which it"):
+        run = simulate(Chain(size=2), observe=[Surprising(), "widths"], **HOW)
+    assert run.surprise == 1
+    assert run.odd.sel(odd_bin=3) == 2
+    assert run.surprise.attrs == {"long_name": "reported by 'mean' without a meaning", "units": ""}
+    assert {"my_mean", "velocity_width"} <= {*run}
