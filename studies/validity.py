@@ -1,4 +1,4 @@
-"""Where does the kinetic equation hold, without and with pair correlations? Its errors of W_v, W_x.
+"""Where does the kinetic equation hold, without and with pair correlations? Its errors of W_v.
 
     python -m studies.validity FOLDER
 
@@ -140,26 +140,21 @@ def row(results: Results, each: Checked) -> list[str]:
 
 
 def row_of_both(results: Results, each: Checked) -> list[str]:
-    """Return the errors of W_v and W_x of both theories, and the relative temperatures."""
+    """Return the errors of W_v of both theories, and the relative temperatures."""
     chain, run = each.chain, each.runs.pooled(results)
     without, theory = (results[name] for name in each.theories)
     both = [width_deviation(run, found) for found in (without, theory)]
     centre, border = (each.runs.estimate(results, of) for of in (central_width, border_width))
     errors = centre.error / centre.value, both[-1].error, border.error / border.value
-    slow, wide = (
-        theory[name].values / even(run[name].values) - 1
-        for name in ("velocity_width", "displacement_width")
-    )
-    half = chain.size // 2
+    off = theory.velocity_width.values / even(run.velocity_width.values) - 1
     return [
         *(f"{chain.size}", f"{chain.restitution:g}", f"{chain.damping:g}"),
         *(percent(found.centre) for found in both),
         *(percent(found.border) for found in both),
         *(f"{100 * found.largest:.1f}" for found in both),
-        percent(slow[2 : min(10, half)].mean()),
+        percent(off[2 : min(10, chain.size // 2)].mean()),
         ", ".join(f"{100 * error:.1f}" for error in errors),
         *temperatures(theory, run),
-        *(percent(wide[0]), percent(wide[1:half].mean()), f"{100 * np.abs(wide).max():.1f}"),
     ]
 
 
@@ -192,7 +187,6 @@ def tables(results: Results) -> dict[str, Table]:
         heads += [f"W_v {place} without, %", f"W_v {place}, %"]
     heads += ["rods 3 to 10, %", "error of the centre, a rod, the border, %"]
     heads += ["Theta/T centre", "Theta/T border"]
-    heads += [f"W_x {which}, %" for which in ("rod 1", "rods 2 to L/2", "largest")]
     without = [row(results, each) for each in alone if each.chain.gap == 0]
     gaps = [row(results, each) for each in alone if each.chain.gap > 0]
     found: dict[str, Table] = {"kinetic_equation": [["e", "L", "gamma", *errors], *without]}
