@@ -99,7 +99,13 @@ class Replica:
         """Raise unless the observers, which have seen nothing, continue those of a shorter run.
 
         What both begin with may differ in the number of places for snapshots, and in nothing else.
+        Nor may the collisions, where rods merge below a fraction of the speed they reach in time.
         """
+        if shorter.dynamics().law != self.dynamics.law:
+            raise ValueError(
+                f"merging={shorter.merging:g} is too small: rods merge below a speed that depends "
+                "on the duration, so that the run cannot be made longer"
+            )
         for own, other in zip(self.observers, shorter.observers, strict=True):
             for name, value in other.prepared(shorter, copies=1).state().items():
                 place = leading(np.asarray(own.state()[name]), np.asarray(value))

@@ -102,6 +102,19 @@ def test_what_depends_on_the_duration_cannot_continue(observe, reason, tmp_path)
         simulate(chain, duration=9000, checkpoint=tmp_path / "state", **how)
 
 
+def test_rods_that_merge_at_a_speed_that_depends_on_the_duration_cannot_continue(tmp_path):
+    """Noise without damping heats the chain for ever; the usual threshold is one of a step."""
+    chain = Chain(size=20, restitution=0.1, damping=0)
+    how = {"observe": "snapshots", "progress": False, "time_step": 0.05}
+    simulate(chain, duration=6, checkpoint=tmp_path / "state", **how)
+    longer = simulate(chain, duration=20, checkpoint=tmp_path / "state", **how)
+    xr.testing.assert_identical(longer, simulate(chain, duration=20, **how))
+    how |= {"merging": 0, "checkpoint": tmp_path / "other"}
+    simulate(chain, duration=6, **how)
+    with pytest.raises(ValueError, match="merging=0 is too small"):
+        simulate(chain, duration=20, **how)
+
+
 def test_an_ensemble_is_not_made_longer(tmp_path):
     how = {"average": "ensemble", "every": 1.0, "checkpoint": tmp_path / "state"}
     simulate(Chain(size=2), duration=10, progress=False, **how)
