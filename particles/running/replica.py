@@ -99,7 +99,16 @@ class Replica:
         """Raise unless the observers, which have seen nothing, continue those of a shorter run.
 
         What both begin with may differ in the number of places for snapshots, and in nothing else.
+        Nor may the speeds at which rods merge and, for e > 1, at which they count as diverged.
         """
+        now, before = self.dynamics, shorter.dynamics()
+        diverges = now.law.restitution > 1 and now.fastest != before.fastest
+        if diverges or now.law != before.law:
+            speed = "above which it has diverged" if diverges else "below which its rods merge"
+            raise ValueError(
+                f"the run cannot be made longer: the speed {speed} depends on the duration, "
+                "because the chain has so little damping"
+            )
         for own, other in zip(self.observers, shorter.observers, strict=True):
             for name, value in other.prepared(shorter, copies=1).state().items():
                 place = leading(np.asarray(own.state()[name]), np.asarray(value))

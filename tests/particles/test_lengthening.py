@@ -102,6 +102,21 @@ def test_what_depends_on_the_duration_cannot_continue(observe, reason, tmp_path)
         simulate(chain, duration=9000, checkpoint=tmp_path / "state", **how)
 
 
+@pytest.mark.parametrize(("e", "speed"), [(0.1, "below which its rods merge"), (1.05, "above")])
+def test_a_speed_that_depends_on_the_duration_stays_as_it_was(e, speed, tmp_path):
+    """Noise without damping makes rods faster for ever, and thresholds follow a typical speed."""
+    chain = Chain(size=20, restitution=e, damping=0)
+    how = {"observe": "snapshots", "progress": False, "time_step": 0.05, "merging": 0}
+    simulate(chain, duration=6, checkpoint=tmp_path / "state", **how)
+    with pytest.raises(ValueError, match=f"longer: the speed {speed}"):
+        simulate(chain, duration=20, checkpoint=tmp_path / "state", **how)
+    # The usual threshold is one of the noise of a step.
+    chain, how["merging"] = chain.replace(restitution=0.1), None
+    simulate(chain, duration=6, checkpoint=tmp_path / "other", **how)
+    longer = simulate(chain, duration=20, checkpoint=tmp_path / "other", **how)
+    xr.testing.assert_identical(longer, simulate(chain, duration=20, **how))
+
+
 def test_an_ensemble_is_not_made_longer(tmp_path):
     how = {"average": "ensemble", "every": 1.0, "checkpoint": tmp_path / "state"}
     simulate(Chain(size=2), duration=10, progress=False, **how)
