@@ -166,15 +166,14 @@ class _Motion(NamedTuple):
 
 def _motion(run: xr.Dataset, pictures: int) -> _Motion:
     """Read the snapshots, and choose those that are shown."""
-    if not {"position", "velocity"} <= set(run) or "time" not in run.position.dims:
+    if not {"position", "velocity"} <= set(run) or {"time", "particle"} - set(run.position.dims):
         raise ValueError(
             "run has no snapshots in time, which simulate(chain, observe='snapshots') records; it "
             f"has {', '.join(map(str, run)) or 'nothing'} and is {run.attrs.get('status')}"
         )
     chain = chain_of(run)
-    rods = (run.isel(replica=0) if "replica" in run.dims else run).dropna(
-        "time", subset=["velocity"]
-    )
+    run = run.isel(replica=0) if "replica" in run.dims else run
+    rods = run.dropna("time", subset=["velocity"]).transpose("time", "particle", ...)
     time, x, v = rods.time.values, rods.position.values, rods.velocity.values
     if time.size == 0:
         raise ValueError("run has no snapshot in which all velocities are known")

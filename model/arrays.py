@@ -13,7 +13,9 @@ Array = NDArray[np.float64]
 def check_numbers(name: str, values: object) -> Array:
     """Return ``values`` as an array of floats, or raise a ValueError that names the argument."""
     try:
-        if values is not None:  # numpy would make a NaN of it
+        # numpy would make numbers of None, texts and dates, and of what lies under a mask.
+        kind = np.asarray(values).dtype.kind
+        if values is not None and kind not in "SUMm" and not np.ma.is_masked(values):
             return np.asarray(values, dtype=float)
     except (TypeError, ValueError, OverflowError):
         pass

@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 import os
 import reprlib
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from difflib import get_close_matches
 from numbers import Integral, Real
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeGuard
+
+from numpy.ma import is_masked
 
 # Squares and ratios of parameters must neither overflow nor underflow.
 _SMALLEST, _LARGEST = 1e-60, 1e60
@@ -80,7 +82,8 @@ def _is_a(kind: type, number: Any) -> bool:
 
 def _plain(value: Any) -> Any:
     """Return the number in an array without dimensions, such as one value of a coordinate."""
-    return value.item() if getattr(value, "shape", None) == () else value
+    # numpy's masked number is no number, although ``item`` gives 0 for it.
+    return value if getattr(value, "shape", None) != () or is_masked(value) else value.item()
 
 
 def check_integer(name: str, value: object, *, least: int, most: int | None = None) -> int:
@@ -90,6 +93,12 @@ def check_integer(name: str, value: object, *, least: int, most: int | None = No
     if not _is_a(Integral, number) or number < least or (most is not None and number > most):
         raise ValueError(f"{name} must be {wanted}, got {shown(value)}")
     return int(number)
+
+
+def is_list(value: object) -> TypeGuard[Collection[Any]]:
+    """Return whether this has entries: a text and an array without dimensions have none."""
+    whole = isinstance(value, str) or getattr(value, "shape", None) == ()
+    return isinstance(value, Collection) and not whole
 
 
 def check_choice(name: str, value: object, choices: Iterable[str]) -> str:

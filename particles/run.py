@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import re
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import cached_property
 from typing import Any, get_args
@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array
-from crazybilliards.model.checks import check_choice, check_integer, check_real, shown
+from crazybilliards.model.checks import check_choice, check_integer, check_real, is_list, shown
 from crazybilliards.model.grid import require_resolved
 from crazybilliards.model.memory import require_memory
 from crazybilliards.model.vocabulary import VOCABULARY
@@ -113,7 +113,7 @@ class Run:
         size, particles = self.chain.size, self.particles
         if particles is None:
             return np.arange(size)
-        if isinstance(particles, str) or not isinstance(particles, Collection):
+        if not is_list(particles):
             raise ValueError(f"particles must be a list of numbers, got {shown(particles)}")
         chosen = [check_integer("particles", particle, least=1) for particle in particles]
         if not chosen or max(chosen) > size or sorted(set(chosen)) != chosen:
@@ -220,6 +220,17 @@ def _check_observers(run: Run) -> None:
     """Raise if an observer cannot work in this run, or if two report the same variable."""
     given: dict[str, Any] = {}
     for observer in run.observers:
+        for what in ("gives", "along"):
+            names = getattr(observer, what, None)
+            if not is_list(names) or not all(isinstance(name, str) for name in names):
+                raise ValueError(
+                    f"observe: {what} of {type(observer).__name__} must be a tuple of names, such "
+                    f"as ('my_variable',), got {shown(names)}"
+                )
+        if not isinstance(name := getattr(observer, "name", None), str):
+            raise ValueError(
+                f"observe: name of {type(observer).__name__} must be a text, got {shown(name)}"
+            )
         if run.chain.size < observer.least_rods:
             raise ValueError(
                 f"observe: {observer.name!r} needs a chain of at least {observer.least_rods} rods"

@@ -52,6 +52,9 @@ cb.load(3) | path must be a text or a Path, got 3
 cb.simulate(chain, start=3) | start must be a result with position and velocity...got 3
 cb.simulate(chain, start=exact) | start must be a result with position and velocity...given_start
 cb.simulate(chain, observe=[cb.Density]) | observe takes names and observers, got <class
+cb.simulate(chain, observe=np.array(2.0)) | observe takes a list of names or observers, got array(2.
+cb.simulate(chain, particles=np.array(2.0)) | particles must be a list of numbers, got array(2.
+cb.compare_elastic(chain, np.array(3.0)) | amplitudes must be a list of numbers, got array(3.
 cb.simulate(chain, particles=3) | particles must be a list of numbers, got 3
 cb.relax_phase_space(chain, xr.Dataset(), 1) | no 'density'
 cb.hydrodynamics(chain, foreign, 1) | start: the density must add up to the chain's 5 rods
@@ -71,6 +74,8 @@ cb.fit_singularity([1, 2, 3], {}) | energy must be numbers, got {}
 cb.fit_growth([1, 2, np.nan], [1, 2, 3]) | time must be finite, got [1, 2, nan]
 cb.fit_border_power_law(run, weighted="no") | weighted must be True or False; got 'no'
 cb.simulate(chain, progress=np.zeros(3)) | progress must be True, False or a text; got array
+cb.fit_avalanches([4, 2, 1], smallest=10**400) | no avalanches of sizes 1000
+cb.Chain(restitution=np.ma.masked) | restitution must be a number, got masked
 cb.fit_avalanches(3) | count must have one dimension
 cb.tail_length([1, 2], [1], 3) | velocity, density must have
 cb.tail_length([1, 2, 3], [1, 1, 1], "a") | beyond must be a number, got 'a'
@@ -90,6 +95,9 @@ cb.given_start(chain, chain.anchors, [1, 2]) | velocity must fit
 cb.simulate(chain, start=start.drop_vars("velocity")) | position and velocity
 cb.simulate(chain, start=start.assign(position=-start.position)) | in order
 cb.simulate(chain, start=start * np.nan) | finite
+cb.given_start(chain, chain.anchors, "1") | velocity must be numbers, got '1'
+cb.given_start(chain, chain.anchors, np.datetime64("2020-01-01")) | velocity must be numbers
+cb.given_start(chain, chain.anchors, np.ma.masked_less(range(5), 2)) | velocity must be numbers
 cb.given_start(chain, "a") | position must be numbers, got 'a'
 cb.relax_phase_space(cb.Chain(size=20), crystal, 60) | spikes of a crystal...force_balance
 """

@@ -48,8 +48,8 @@ def fit_avalanches(count: ArrayLike, *, smallest: int = 1, largest: int | None =
     [counts] = check_points(count=count)
     smallest = check_integer("smallest", smallest, least=1)
     largest = counts.size if largest is None else check_integer("largest", largest, least=smallest)
-    sizes = np.arange(smallest, min(largest, counts.size) + 1, dtype=float)
-    counts = counts[smallest - 1 : largest]
+    chosen = slice(smallest - 1, largest)
+    sizes, counts = np.arange(1.0, counts.size + 1)[chosen], counts[chosen]
     total = float(counts.sum())
     if sizes.size < 2 or not total > 0:
         raise ValueError(f"no avalanches of sizes {smallest} to {largest} to fit")

@@ -12,7 +12,7 @@ as it is computed, and the same call takes it from there.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
 from contextlib import AbstractContextManager, ExitStack
 from pathlib import Path
@@ -29,7 +29,7 @@ from crazybilliards.kinetic import equilibrium, force_balance
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.calls import warn_user
-from crazybilliards.model.checks import check_integer, check_path, check_real, shown
+from crazybilliards.model.checks import check_integer, check_path, check_real, is_list, shown
 from crazybilliards.model.process import announced, cores
 from crazybilliards.model.progress import waiting_for
 from crazybilliards.model.randomness import Seed, seed_of
@@ -173,7 +173,7 @@ def _simulations(
     chain: Chain, name: str, values: Sequence[float], duration: float, seed: int
 ) -> dict[str, dict[str, Case]]:
     """Return the simulation at every value of a parameter; all are checked before any work."""
-    if isinstance(values, str) or not isinstance(values, Iterable):
+    if not is_list(values):
         raise ValueError(f"{name}s must be a list of numbers, got {shown(values)}")
     checked = [check_real(name, value) for value in values]
     if not checked:

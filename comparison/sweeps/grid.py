@@ -115,7 +115,7 @@ def read_sweep(path: str | os.PathLike[str]) -> Sweep:
     """
     path = check_path("path", path)
     try:
-        tables = tomllib.loads(path.read_text(encoding="utf-8"))
+        tables = tomllib.loads(path.read_text(encoding="utf-8-sig"))
     except IsADirectoryError as error:
         raise ValueError(f"{path}: a folder, not a TOML file") from error
     except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:

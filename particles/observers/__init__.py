@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Collection
 
-from crazybilliards.model.checks import got, shown
+from crazybilliards.model.checks import got, is_list, shown
 from crazybilliards.particles.observers.avalanches import Avalanches, TriggeredCollisions
 from crazybilliards.particles.observers.base import Observer
 from crazybilliards.particles.observers.collisions import Collisions
@@ -44,14 +44,14 @@ def find_observers(observe: str | Observer | Collection[str | Observer]) -> tupl
     """Return the observers for the argument ``observe``, each name once."""
     if isinstance(observe, str | Observer):
         observe = [observe]
-    elif not isinstance(observe, Collection):
+    elif not is_list(observe):
         raise ValueError(f"observe takes a list of names or observers, got {shown(observe)}")
     for each in observe:
         if not isinstance(each, str | Observer):
             raise ValueError(f"observe takes names and observers, got {shown(each)}")
         if isinstance(each, str) and each not in OBSERVERS:
             raise ValueError(f"observe takes any of {got(each, sorted(OBSERVERS))}")
-    if not observe:
+    if len(observe) == 0:
         raise ValueError(f"observe must name at least one of {sorted(OBSERVERS)}")
     return tuple(
         OBSERVERS[each]() if isinstance(each, str) else each for each in dict.fromkeys(observe)

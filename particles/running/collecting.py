@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
+from typing import Any, TypeVar
 
 import numpy as np
 import xarray as xr
@@ -11,11 +12,22 @@ from numpy.typing import ArrayLike
 
 from crazybilliards.model.arrays import Array
 from crazybilliards.model.calls import warn_user
+from crazybilliards.model.checks import shown
 from crazybilliards.model.vocabulary import VOCABULARY, result
 from crazybilliards.particles.observers.base import Integers, Observer, Variables
 from crazybilliards.particles.run import Run
 from crazybilliards.particles.running.replica import NEVER, Replica
 from crazybilliards.particles.scales import centre_width, relaxation_time, time_step_error
+
+T = TypeVar("T")
+# The coordinates that the result itself has.
+_EVERY_RESULT = {
+    "particle",
+    "normalized_particle",
+    "contact",
+    "normalized_contact",
+    "mean_position",
+}
 
 
 def collect(run: Run, replicas: list[Replica], interrupted: bool) -> xr.Dataset:
@@ -40,6 +52,7 @@ def collect(run: Run, replicas: list[Replica], interrupted: bool) -> xr.Dataset:
     variables: Variables = {}
     coordinates: dict[str, Array] = {}
     vocabulary = dict(run.vocabulary)
+    given = _EVERY_RESULT.union(*((*each.gives, *each.along) for each in run.observers))
     # A chain that diverged before its first snapshot has a status and a time, but no averages.
     observed = zip(*(replica.observers for replica in replicas), strict=True)
     diverged = reached < NEVER
@@ -48,10 +61,11 @@ def collect(run: Run, replicas: list[Replica], interrupted: bool) -> xr.Dataset:
         with warnings.catch_warnings():
             if diverged:  # that rods lie outside of every grid then is no news
                 warnings.simplefilter("ignore")
-            reported = first.report(counts)
-        variables |= reported
-        coordinates |= first.coordinates()
-        vocabulary |= _undeclared(first, [*reported, *first.coordinates()], vocabulary)
+            reported = _require_variables(first, first.report(counts))
+        taken = given | {*variables, *coordinates}
+        variables |= (reported := _own_names(first, reported, taken))
+        coordinates |= (along := _own_names(first, first.coordinates(), taken))
+        vocabulary |= _undeclared(first, [*reported, *along], vocabulary)
     if schedule.ensemble:
         coordinates["time"] = times
     measured = result(
@@ -71,6 +85,28 @@ def collect(run: Run, replicas: list[Replica], interrupted: bool) -> xr.Dataset:
         "time_step_error": _time_step_error(run, measured),
     }
     return measured
+
+
+def _require_variables(observer: Observer, reported: Any) -> Variables:
+    """Return what an observer reports, or raise a TypeError if these are no variables."""
+    items = reported.items() if isinstance(reported, dict) else [(None, None)]
+    for name, each in items:
+        if not (isinstance(name, str) and isinstance(each, tuple | list) and len(each) == 2):
+            raise TypeError(
+                f"observe: {observer.name!r} must report {{name: (dimensions, values)}}, got "
+                f"{shown(reported)}"
+            )
+    return dict(items)
+
+
+def _own_names(observer: Observer, found: Mapping[str, T], taken: Collection[str]) -> dict[str, T]:
+    """Return what an observer found, renamed if it has not said so and the name is another's."""
+    own = {*observer.gives, *observer.along}
+    return {
+        f"{name}_of_{observer.name}" if base in taken and base not in own else name: each
+        for name, each in found.items()
+        for base in [name.removesuffix("_error")]
+    }
 
 
 def _undeclared(

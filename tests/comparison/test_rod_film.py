@@ -124,7 +124,13 @@ def test_without_ffmpeg_an_mp4_is_refused_before_any_work_and_a_page_has_a_gif(m
     assert Image.open(io.BytesIO(data)).n_frames == 5
 
 
+def test_the_order_of_dimensions_does_not_matter(run):
+    assert np.array_equal(rod_film._motion(run.transpose(), 5).x, rod_film._motion(run, 5).x)
+
+
 def test_what_cannot_be_filmed_is_refused(run):
+    with pytest.raises(ValueError, match="no snapshots in time"):
+        film(run.isel(particle=0))
     with pytest.raises(ValueError, match="no snapshot in which all velocities are known"):
         film(run * np.nan)
     with pytest.raises(ValueError, match="no snapshots in time"):

@@ -53,6 +53,11 @@ def test_a_description_with_flipped_bits_or_cut_is_another_sweep_or_refused(flip
     assert flips / 2 < len(refusals) < flips + 50
 
 
+def test_the_mark_that_some_editors_write_before_a_text_is_left_out(tmp_path):
+    (tmp_path / "grid.toml").write_bytes(b"\xef\xbb\xbf" + SWEEP)
+    assert read_sweep(tmp_path / "grid.toml").grid
+
+
 def test_a_folder_is_no_description_of_a_sweep(tmp_path):
     with pytest.raises(ValueError, match="a folder, not a TOML file"):
         read_sweep(tmp_path)

@@ -108,3 +108,48 @@ def test_a_run_is_not_lost_if_an_observer_reports_what_it_does_not_give():
     assert run.odd.sel(odd_bin=3) == 2
     assert run.surprise.attrs == {"long_name": "reported by 'mean' without a meaning", "units": ""}
     assert {"my_mean", "velocity_width"} <= {*run}
+
+
+def test_an_observer_takes_no_name_of_another_one_and_not_of_every_result():
+    surprises = {"velocity_width": 7.0, "velocity_width_error": 8.0, "particle": 9.0}
+
+    class Surprising(Mean):
+        def report(self, counts):
+            return super().report(counts) | {name: ((), x) for name, x in surprises.items()}
+
+    alone = simulate(Chain(size=2), observe="widths", **HOW)
+    for observe in ([Surprising(), "widths"], ["widths", Surprising()]):
+        with pytest.warns(UserWarning, match="reports 'particle_of_mean', 'velocity_width_err"):
+            run = simulate(Chain(size=2), observe=observe, **HOW)
+        assert alone.identical(run[[*alone]].assign_attrs(alone.attrs))
+        for name, value in surprises.items():
+            assert run[f"{name}_of_mean"] == value
+
+
+@pytest.mark.parametrize("reported", [None, [1], {"a": 3.0}, {3: ((), 1.0)}, {"a": ((), 1.0, {})}])
+def test_a_report_that_holds_no_variables_is_an_error_that_names_the_observer(reported):
+    wrong = type("Wrong", (Mean,), {"report": lambda *_: reported})
+    with pytest.raises(TypeError, match=r"^observe: 'mean' must report {name: \(dimensions, val"):
+        simulate(Chain(size=2), observe=wrong(), **HOW)
+
+
+@pytest.mark.parametrize(
+    "wrong", [{"gives": "my_mean"}, {"gives": None}, {"along": "x"}, {"along": [3]}, {"name": None}]
+)
+def test_names_that_are_no_names_are_refused_before_any_work(wrong, monkeypatch):
+    monkeypatch.setattr(Replica, "work", lambda *_: pytest.fail("it works"))
+    [what] = wrong
+    with pytest.raises(ValueError, match=rf"^observe: {what} of Wrong must be a t.*, got"):
+        simulate(Chain(size=2), observe=type("Wrong", (Mean,), wrong)(), **HOW)
+
+
+@pytest.mark.parametrize("array", ["y", "v", "collisions"])
+def test_an_observer_cannot_change_what_the_others_see(array):
+    class Careless(Mean):
+        single_collisions = True
+
+        def observe(self, snapshots):
+            getattr(snapshots, array)[...] = 0
+
+    with pytest.raises(ValueError, match="read-only"):
+        simulate(Chain(size=2), observe=[Careless(), "widths"], **HOW)
