@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any, TypeVar
 
 import numpy as np
@@ -99,11 +99,11 @@ def _require_variables(observer: Observer, reported: Any) -> Variables:
     return dict(items)
 
 
-def _own_names(observer: Observer, found: Mapping[str, T], taken: Collection[str]) -> dict[str, T]:
+def _own_names(observer: Observer, found: Mapping[str, T], taken: set[str]) -> dict[str, T]:
     """Return what an observer found, renamed if it has not said so and the name is another's."""
     own = {*observer.gives, *observer.along}
     return {
-        f"{name}_of_{observer.name}" if base in taken and base not in own else name: each
+        f"{base}_of_{observer.name}{name[len(base) :]}" if base in taken - own else name: each
         for name, each in found.items()
         for base in [name.removesuffix("_error")]
     }
