@@ -143,6 +143,7 @@ def test_elastic_steps_are_symmetric_in_time(counted, size, gap, spring):
     assert np.abs(there[0] - y).max() > 0.1
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("e", [0.5, 0.9999, 1.0, 1.05])
 @pytest.mark.parametrize("gap", GAPS)
 @pytest.mark.parametrize(("method", "size", "order"), [(METHODS[0], 5, 2), (METHODS[1], 2, 1)])
