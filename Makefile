@@ -26,7 +26,7 @@ help:
 	@echo "make test       run the tests that are quick (3 min)"
 	@echo "make validate   run the others: statistics, long runs, kills, the page in a browser (3 min)"
 	@echo "make test-lowest  run the tests with the oldest allowed version of every package"
-	@echo "make torture    test kills, full disks, bad input and long runs (7 min; docs/reliability.md)"
+	@echo "make torture    test kills, full disks, bad input and long runs (11 min; docs/reliability.md)"
 	@echo "make coverage   show which lines the tests reach, kernels included (11 min)"
 	@echo "make check      check lint, format and types"
 	@echo "make audit      look up known vulnerabilities of every package used (needs the network)"
