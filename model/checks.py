@@ -11,8 +11,6 @@ from numbers import Integral, Real
 from pathlib import Path
 from typing import Any, TypeGuard
 
-from numpy.ma import is_masked
-
 # Squares and ratios of parameters must neither overflow nor underflow.
 _SMALLEST, _LARGEST = 1e-60, 1e60
 
@@ -83,7 +81,8 @@ def _is_a(kind: type, number: Any) -> bool:
 def _plain(value: Any) -> Any:
     """Return the number in an array without dimensions, such as one value of a coordinate."""
     # numpy's masked number is no number, although ``item`` gives 0 for it.
-    return value if getattr(value, "shape", None) != () or is_masked(value) else value.item()
+    whole = getattr(value, "shape", None) == () and not getattr(value, "mask", False)
+    return value.item() if whole else value
 
 
 def check_integer(name: str, value: object, *, least: int, most: int | None = None) -> int:

@@ -58,8 +58,8 @@ def kernel(
         return partial(kernel, fused=fused, allocates=allocates)
     dispatcher = _compiled(function, fused=fused, allocates=allocates)
     if not hasattr(dispatcher, "enable_caching"):  # compilation is disabled
-        # Compiled code does not warn where it divides by zero.
-        return np.errstate(divide="ignore", invalid="ignore")(dispatcher)
+        # Compiled code does not warn of numbers that are infinite or undefined.
+        return np.errstate(all="ignore")(dispatcher)
     # Ctrl-C while numba registers its functions would leave it without them in this process.
     dispatcher.compile = interrupts_held_back()(dispatcher.compile)
     try:
