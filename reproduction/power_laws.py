@@ -10,7 +10,7 @@ import xarray as xr
 from crazybilliards.comparison.distances import distances_in_plot
 from crazybilliards.comparison.fits import fit_border_power_law
 from crazybilliards.model import chain_of
-from crazybilliards.reproduction.claims.verdicts import Estimate
+from crazybilliards.reproduction.claims.verdicts import Estimate, furthest_in_plot
 
 
 def nu(run: xr.Dataset) -> float:
@@ -21,14 +21,14 @@ def nu(run: xr.Dataset) -> float:
 def fits_in_plot(runs: Iterable[xr.Dataset]) -> tuple[Estimate, float]:
     """Compare the fits with the widths in a plot of all runs, both axes logarithmic.
 
-    Returns the largest deviation as a share of the plotted range, which ends at the free rod's
+    Returns the deviation that decides as a share of the plotted range, which ends at the free rod's
     width, and the largest one in standard errors.
     """
     runs = list(runs)
     free = np.log(chain_of(runs[0]).free_velocity_width)
     lowest = np.log(min(float(run.velocity_width.min()) for run in runs))
     longest = np.log(max(run.sizes["particle"] for run in runs))
-    worst, significance = Estimate(0.0, 0.0), 0.0
+    deviations, errors, significance = [], [], 0.0
     for run in runs:
         fit = fit_border_power_law(run)
         i, width = run.particle.values, run.velocity_width.values
@@ -42,8 +42,7 @@ def fits_in_plot(runs: Iterable[xr.Dataset]) -> tuple[Estimate, float]:
             x_range=(0.0, longest),
             y_range=(lowest, free),
         )
-        at = int(off.argmax())
-        if off[at] > worst.value:
-            worst = Estimate(float(off[at]), float(error[at] / width[at] / (free - lowest)))
+        deviations.append(off)
+        errors.append(error / width / (free - lowest))
         significance = max(significance, float(np.abs((fit(i) - width) / error).max()))
-    return worst, significance
+    return furthest_in_plot(*map(np.concatenate, (deviations, errors))), significance

@@ -38,7 +38,7 @@ def command(
     show_list: Annotated[bool, typer.Option("--list", help="List the figures, and stop.")] = False,
     quality: Annotated[
         Literal["quick", "full"],
-        typer.Option(help="All figures take 2 minutes (quick) or 12 (full) on two cores."),
+        typer.Option(help="All figures take 2 minutes (quick) or 17 (full) on two cores."),
     ] = "quick",
     output: Annotated[
         Path, path_option("Folder for pictures, report and results; made if missing.")

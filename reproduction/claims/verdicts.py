@@ -40,11 +40,13 @@ worked out. A deviation is a distance in the plane of the plot (``distances_in_p
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass, field
 from typing import Literal, NamedTuple, TypedDict
 
 from scipy.stats import norm
+
+from crazybilliards.model.arrays import Array
 
 Verdict = Literal[
     "reproduced", "not reproduced", "cannot be decided", "confirmed", "refuted", "undecided"
@@ -181,15 +183,30 @@ def worst(quantity: str, differences: Iterable[Estimate], limit: float) -> Found
     """Return the difference that decides whether two things are the same to ``limit``."""
     every = list(differences)
     chance = float(norm.isf(norm.sf(_SIGNIFICANT) / len(every))) / _SIGNIFICANT
-    within, order = around(0.0, limit), {True: 0, None: 1, False: 2}
+    within = around(0.0, limit)
     each = [Estimate(one.value, one.error * chance) for one in every]
-    at = max(range(len(every)), key=lambda k: (order[each[k].lies(within)], abs(each[k].value)))
+    at = each.index(_decisive(each, within))
     largest = max((abs(one.value) / one.error for one in every if one.error > 0), default=math.nan)
     words = (
         f"{quantity}: {every[at]}, the worst of {len(every)} (limit {limit:g}); largest "
         f"difference {largest:.1f} standard errors"
     )
     return {"found": each[at], "within": within, "words": words}
+
+
+def _decisive(every: Sequence[Estimate], within: Interval) -> Estimate:
+    """Return the number that decides whether all lie inside, which need not be the largest one.
+
+    It is one that lies outside or, if there is none, one of which its error does not allow to say.
+    """
+    order = {True: 0, None: 1, False: 2}
+    return max(every, key=lambda one: (order[one.lies(within)], abs(one.value)))
+
+
+def furthest_in_plot(deviations: Array, errors: Array) -> Estimate:
+    """Return the deviation, as a share of the plotted range, that decides :func:`in_plot`."""
+    each = [Estimate(*pair) for pair in zip(deviations.tolist(), errors.tolist(), strict=True)]
+    return _decisive(each, around(0.0, EYE))
 
 
 def in_plot(quantity: str, deviation: Estimate, significance: float) -> Found:
@@ -200,7 +217,8 @@ def in_plot(quantity: str, deviation: Estimate, significance: float) -> Found:
     quantity
         Which points, which curve, and what axes the plot has.
     deviation
-        The largest deviation as a share of the plotted range, with its standard error.
+        The largest deviation as a share of the plotted range, with its standard error; of several
+        points :func:`furthest_in_plot`.
     significance
         The largest deviation in standard errors of the points, which may be that of another point.
     """

@@ -16,7 +16,7 @@ from crazybilliards.model.arrays import Array
 from crazybilliards.model.chain import middle_tenth
 from crazybilliards.reproduction.chains import flippers, kinetic_equation
 from crazybilliards.reproduction.claims.study import Results, all_of
-from crazybilliards.reproduction.claims.verdicts import EYE, Claim, Estimate
+from crazybilliards.reproduction.claims.verdicts import EYE, Claim, Estimate, furthest_in_plot
 from crazybilliards.reproduction.predictions import draw_flippers
 
 TITLE = "Velocity widths of flippers for several dampings"
@@ -101,7 +101,7 @@ def _power_law_claim(results: Results) -> Claim:
 def _beyond_the_eye(
     results: Results, run: xr.Dataset, fit: Fit, axes: Callable[[Array], Array]
 ) -> Estimate:
-    """Return the largest distance of a symbol from the fit, as a share of the plot, less EYE."""
+    """Return the distance from the fit that decides, as a share of the plot, less EYE."""
     widths = {g: runs.pooled(results).velocity_width.values for g, runs in _RUNS.items()}
     plotted = axes(np.concatenate([g * width for g, width in widths.items()]))
     shown = float(plotted.min()), float(plotted.max())
@@ -111,10 +111,10 @@ def _beyond_the_eye(
     off = distances_in_plot(
         axes(i), axes(damping * width), axes(fine), axes(damping * fit(fine)), y_range=shown
     )
-    at = int(off.argmax())
-    # The height of the error bar on these axes.
-    low, high = axes(damping * (width[at] + np.array([-1, 1]) * error[at]))
-    return Estimate(float(off[at]) - EYE, float(high - low) / 2 / (shown[1] - shown[0]))
+    # The height of the error bars on these axes.
+    low, high = (axes(damping * (width + sign * error)) for sign in (-1, 1))
+    furthest = furthest_in_plot(off, (high - low) / 2 / (shown[1] - shown[0]))
+    return Estimate(furthest.value - EYE, furthest.error)
 
 
 def draw(results: Results) -> Figure:

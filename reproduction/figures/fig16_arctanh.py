@@ -14,7 +14,7 @@ from crazybilliards.comparison.layout import panels
 from crazybilliards.kinetic import equilibrium
 from crazybilliards.model import chain_of
 from crazybilliards.reproduction.claims.study import Cases, Quality, Results
-from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, in_plot
+from crazybilliards.reproduction.claims.verdicts import Claim, furthest_in_plot, in_plot
 from crazybilliards.reproduction.figures.fig17_density import simulation
 
 TITLE = "The mean displacement at e = 1 and its arctanh fit"
@@ -39,14 +39,12 @@ def claims(results: Results) -> list[Claim]:
     errors, fitted = run.mean_displacement_error.values, fit(run.mean_position)
     fine = np.linspace(x[0], x[-1], 4001)
     off = distances_in_plot(x, displacement, fine, fit(fine))
-    at = int(off.argmax())
-    error = float(errors[at] / np.ptp(displacement))
     return [
         Claim(
             "<dx> is described by B arctanh(C x)",
             **in_plot(
                 f"B = {fit.scale:.3f} R, C = {fit.steepness:.5f}/R, all rods, both axes linear",
-                Estimate(float(off[at]), error),
+                furthest_in_plot(off, errors / np.ptp(displacement)),
                 float((np.abs(displacement - fitted) / errors).max()),
             ),
             source="section seq:analytics, fig:atan",

@@ -15,7 +15,7 @@ from crazybilliards.comparison.sweeps import Case
 from crazybilliards.kinetic import force_balance
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.reproduction.claims.study import Cases, Quality, Results
-from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, in_plot
+from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, furthest_in_plot, in_plot
 
 TITLE = "Density at e = 1: simulation and theory"
 CAPTION = (
@@ -56,12 +56,11 @@ def _match(run: xr.Dataset) -> Claim:
     chain = chain_of(run)
     fed = force_balance(chain, displacement=fit_arctanh(run))
     run, theory = smooth(run), smooth(fed)
-    off, error = _off_in_plot(run, theory)
     return Claim(
         f"simulated and integrated densities match perfectly, A = {chain.amplitude:g}",
         **in_plot(
             "rho(x) of simulation and theory, fed with the fitted displacement, both axes linear",
-            Estimate(off, error),
+            _off_in_plot(run, theory),
             deviation(run, theory).maximum_in_errors or 0.0,
         ),
         source=_SOURCE,
@@ -71,16 +70,15 @@ def _match(run: xr.Dataset) -> Claim:
     )
 
 
-def _off_in_plot(run: xr.Dataset, theory: xr.Dataset) -> tuple[float, float]:
-    """Return the largest distance in the plot of rho(x), as a share of it, and its error."""
+def _off_in_plot(run: xr.Dataset, theory: xr.Dataset) -> Estimate:
+    """Return the distance in the plot of rho(x) that decides, as a share of it."""
     x, rho = run.x.values, run.density.values
     line = np.interp(x, theory.x.values, theory.density.values, left=0.0, right=0.0)
     least = _VISIBLE * chain_of(run).close_packed_density
     drawn = (rho > least) | (line > least)
     height = (0.0, float(rho.max()))
     off = distances_in_plot(x[drawn], rho[drawn], x[drawn], line[drawn], y_range=height)
-    at = int(off.argmax())
-    return float(off[at]), float(run.density_error.values[drawn][at]) / height[1]
+    return furthest_in_plot(off, run.density_error.values[drawn] / height[1])
 
 
 def draw(results: Results) -> Figure:

@@ -12,6 +12,7 @@ from crazybilliards.reproduction.claims.verdicts import (
     Claim,
     Estimate,
     around,
+    furthest_in_plot,
     in_plot,
     worst,
 )
@@ -121,6 +122,21 @@ def test_the_number_is_told_with_its_limits():
     assert told(POSITIVE) == ("change 0.100 ± 0.020", None)
     assert in_plot("rods", measured, 3.0)["within"] == around(0.0, 0.02)
     assert worst("both", [measured], 0.5)["found"] == pytest.approx(measured)
+
+
+@pytest.mark.parametrize(
+    ("deviations", "errors", "verdict", "decides"),
+    [
+        ([0.9, 0.8, 0.1], [0.02, 0.1, 0.2], "undecided", 1),  # a smaller one may be seen
+        ([0.9, 0.8, 0.1], [0.02, 0.05, 0.2], "reproduced", 0),
+        ([4.0, 3.0, 0.1], [2.0, 0.1, 0.2], "not reproduced", 1),  # the largest may be chance
+    ],
+)
+def test_the_deviation_that_decides_need_not_be_the_largest(deviations, errors, verdict, decides):
+    """Limits are 1, in units of what an eye sees."""
+    found = furthest_in_plot(EYE * np.array(deviations), EYE * np.array(errors))
+    assert found.value == EYE * deviations[decides]
+    assert Claim("it fits", **in_plot("rods", found, 5.0), source="fig.2").verdict == verdict
 
 
 @pytest.mark.parametrize("number", [1, 4, 1000])
