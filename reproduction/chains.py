@@ -33,8 +33,8 @@ _DISSIPATIVE: dict[int, Granted] = {
 # At e = 0 runs cost less than at other restitutions below 1, and more statements depend on them.
 _INELASTIC: dict[int, Granted] = {
     **_DISSIPATIVE,
-    101: _DISSIPATIVE[101] | {"full": (20, {"duration": 6000.0})},
-    LARGE: _DISSIPATIVE[LARGE] | {"full": (30, {"duration": 500.0, "warmup": 50.0})},
+    101: {**_DISSIPATIVE[101], "full": (20, {"duration": 6000.0})},
+    LARGE: {**_DISSIPATIVE[LARGE], "full": (30, {"duration": 500.0, "warmup": 50.0})},
 }
 _AT_STEP: dict[int, Granted] = {
     1: {"quick": (4, {"duration": 400.0}), "full": (6, {"duration": 6000.0})},
