@@ -104,14 +104,10 @@ def test_the_correlation_length_is_that_of_the_spectrum(length):
 
 
 def rods(chain, factor):
-    """Return widths of rods that are all the same."""
+    """Return velocity widths of rods that are all the same."""
     widths = factor * np.ones(chain.size)
-    variables = {
-        f"{kind}_width{end}": ("particle", share * widths)
-        for kind in ("velocity", "displacement")
-        for end, share in (("", 1.0), ("_error", 0.01))
-    }
-    return described(chain, **variables)
+    errors = ("particle", 0.01 * widths)
+    return described(chain, velocity_width=("particle", widths), velocity_width_error=errors)
 
 
 def test_errors_of_the_theories_are_those_of_their_widths(monkeypatch):

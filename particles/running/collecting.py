@@ -22,11 +22,7 @@ from crazybilliards.particles.scales import centre_width, relaxation_time, time_
 T = TypeVar("T")
 # The coordinates that the result itself has.
 _EVERY_RESULT = {
-    "particle",
-    "normalized_particle",
-    "contact",
-    "normalized_contact",
-    "mean_position",
+    *("particle", "normalized_particle", "mean_position", "contact", "normalized_contact")
 }
 
 

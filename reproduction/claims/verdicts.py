@@ -224,7 +224,7 @@ def in_plot(quantity: str, deviation: Estimate, significance: float) -> Found:
     """
     percent = Estimate(100 * deviation.value, 100 * deviation.error)
     words = (
-        f"{quantity}: off by at most {percent} % of the plotted range (visible: "
-        f"{100 * EYE:g} %), {significance:.1f} standard errors"
+        f"{quantity}: off by {percent} % of the plotted range at the point that decides (visible: "
+        f"{100 * EYE:g} %); the largest deviation is {significance:.1f} standard errors"
     )
     return {"found": deviation, "within": around(0.0, EYE), "words": words}
