@@ -69,10 +69,12 @@ class Theory:
     def lacks(self, chain: Chain, quantity: str) -> str:
         """Return why the result has no such quantity, or nothing."""
         if quantity == "displacement_width":
+            from crazybilliards.kinetic.rods.places import are_resolved
+
             if self.name == "force_balance":
                 return "it gives no displacement_width"
-            if self.name == "phase_space" and chain.lattice_gap > 0:
-                return "it gives no displacement_width of a chain with a gap"
+            if self.name == "phase_space" and chain.lattice_gap > 0 and not are_resolved(chain):
+                return "it gives no displacement_width of so many rods with a gap"
         return ""
 
     @property

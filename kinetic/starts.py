@@ -20,7 +20,7 @@ from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.arrays import Array
 from crazybilliards.model.checks import check_real, shown
 from crazybilliards.model.grid import position_grid, thermal_reach
-from crazybilliards.model.vocabulary import require, result
+from crazybilliards.model.vocabulary import OF_FLUID, require, result
 
 _RODS_TOLERANCE = 1e-3
 _CROWDED = 1.01  # so many rods in the length of one overlap, but for errors of the grid
@@ -62,7 +62,7 @@ def _stationary_image(chain: Chain, stretch: float = 1.0, shift: float = 0.0) ->
         source="start",
         method={"start": "hydrodynamics"},
         coordinates={"x": grid},
-    )
+    ).assign_attrs(density_of=OF_FLUID)
 
 
 def check_start(start: xr.Dataset | None, more: str = "") -> xr.Dataset:

@@ -112,6 +112,9 @@ ATTRIBUTES = {
     "iterations": ("iterations until the equations were satisfied", "1"),
 }
 
+# What the density of a theory is: its attribute `density_of`.
+OF_FLUID, OF_RODS = "fluid", "rods"
+
 _RODS_TOLERANCE = 1e-6
 
 

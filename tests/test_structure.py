@@ -35,6 +35,7 @@ FLOORS = {
     "kinetic": (
         {"accuracy", "requirements"},
         {"statics", "exact"},
+        {"rods"},
         {"starts"},
         {"fluids", "kinetic_equation"},
         {"correlations"},

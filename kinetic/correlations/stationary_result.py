@@ -21,6 +21,7 @@ from crazybilliards.kinetic.kinetic_equation.continuation import State, free_uni
 from crazybilliards.kinetic.kinetic_equation.order_statistics import Rods, mirrored, points
 from crazybilliards.kinetic.kinetic_equation.stationary_result import in_vocabulary
 from crazybilliards.kinetic.kinetic_equation.velocity_moments import moments
+from crazybilliards.kinetic.rods.places import elastic_rods
 from crazybilliards.model.arrays import Array
 
 _NARROWEST = 1e-4  # of a Gaussian, in free units: far below any mesh
@@ -54,12 +55,14 @@ def rods(found: Correlated) -> Rods:
 def assemble(found: Correlated, of_rods: Rods, mesh_error: float) -> xr.Dataset:
     """Put the solution into the common vocabulary."""
     chain, (length, velocity) = found.state.chain, free_units(found.state.chain)
+    means, widths = length * of_rods.position, length * np.sqrt(of_rods.position_variance)
     return in_vocabulary(
         as_seen_in_place(found.state, np.arange(0.5, chain.size), _collective(found)),
+        elastic_rods(chain).moved(means, widths),
         {
             "velocity_width": ("particle", velocity * np.sqrt(of_rods.velocity_variance)),
-            "mean_displacement": ("particle", length * of_rods.position),
-            "displacement_width": ("particle", length * np.sqrt(of_rods.position_variance)),
+            "mean_displacement": ("particle", means),
+            "displacement_width": ("particle", widths),
             **_of_pairs(found, of_rods.velocity_variance),
         },
         coordinates={

@@ -39,7 +39,7 @@ from crazybilliards.model.grid import position_grid, require_resolved, thermal_r
 from crazybilliards.model.memory import require_memory
 from crazybilliards.model.progress import waiting_for
 from crazybilliards.model.randomness import Seed, seed_of
-from crazybilliards.model.vocabulary import result
+from crazybilliards.model.vocabulary import OF_RODS, result
 
 # Grid nodes in the width of the narrowest rod, which is the middle one without a gap.
 _NODES_PER_WIDTH = 10
@@ -73,10 +73,10 @@ def equilibrium(chain: Chain) -> xr.Dataset:
     array([-0.56419,  0.56419])
     """
     with waiting_for("exact equilibrium", seconds=expected_seconds("equilibrium", chain)):
-        return _in_vocabulary(chain, _recursion(chain))
+        return _in_vocabulary(chain, recursion_of(chain))
 
 
-def _in_vocabulary(chain: Chain, recursion: _Recursion) -> xr.Dataset:
+def _in_vocabulary(chain: Chain, recursion: Recursion) -> xr.Dataset:
     x = position_grid(chain)
     density, label = np.zeros((2, x.size))
     mean, width, log_z = np.zeros((3, chain.size))
@@ -104,7 +104,7 @@ def _in_vocabulary(chain: Chain, recursion: _Recursion) -> xr.Dataset:
         residual=float(np.ptp(log_z)),
     )
     dataset.attrs |= expected("equilibrium", chain).attributes("density")
-    return dataset
+    return dataset.assign_attrs(density_of=OF_RODS)
 
 
 def equilibrium_states(chain: Chain, replicas: int, seed: Seed = 0) -> xr.Dataset:
@@ -130,7 +130,7 @@ def equilibrium_states(chain: Chain, replicas: int, seed: Seed = 0) -> xr.Datase
     generator = np.random.default_rng(seed)
     require_memory(f"replicas={replicas} of {chain.size} rods", 40.0 * replicas * chain.size)
     with waiting_for("exact equilibrium", seconds=expected_seconds("equilibrium", chain) / 2):
-        recursion = _recursion(chain)
+        recursion = recursion_of(chain)
     y = np.empty((replicas, chain.size))
     below = np.full(replicas, np.inf)
     for i in reversed(range(chain.size)):
@@ -151,7 +151,7 @@ def equilibrium_states(chain: Chain, replicas: int, seed: Seed = 0) -> xr.Datase
 
 
 @dataclass(frozen=True)
-class _Recursion:
+class Recursion:
     """log Z_i on each rod's own window of the common grid y = j h, |y - y0_i| <= reach."""
 
     chain: Chain
@@ -161,6 +161,7 @@ class _Recursion:
     log_f: Array  # shape (L, 2 half + 1)
 
     def nodes(self, i: int) -> Array:
+        """Return the grid on window i."""
         first = self.centres[i] - self.half
         return self.spacing * np.arange(first, first + 2 * self.half + 1)
 
@@ -200,14 +201,15 @@ def _half_window(chain: Chain) -> int:
     return int(np.ceil(thermal_reach(chain) / narrowest * _NODES_PER_WIDTH))
 
 
-def _recursion(chain: Chain) -> _Recursion:
+def recursion_of(chain: Chain) -> Recursion:
+    """Compute log Z_i of all rods."""
     check_equilibrium(chain)
     reach, half = thermal_reach(chain), _half_window(chain)
     spacing = reach / half
     # Rounding halves to even keeps the centres antisymmetric, as log_density needs.
     centres = np.rint(chain.reduced_anchors / spacing).astype(np.int64)
     log_f = np.empty((chain.size, 2 * half + 1))
-    recursion = _Recursion(chain, spacing, centres, half, log_f)
+    recursion = Recursion(chain, spacing, centres, half, log_f)
     for i in range(chain.size):
         log_f[i] = _log_cumulative(recursion.log_weight(i)[1] + recursion.log_below(i))
     return recursion

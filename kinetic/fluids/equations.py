@@ -57,7 +57,7 @@ from crazybilliards.model.arrays import Array
 from crazybilliards.model.checks import check_choice, check_integer, shown
 from crazybilliards.model.grid import position_grid
 from crazybilliards.model.memory import require_memory
-from crazybilliards.model.vocabulary import result
+from crazybilliards.model.vocabulary import OF_FLUID, result
 
 Frame = Literal["label", "eulerian"]
 Evolving = Literal["evolving"]
@@ -228,4 +228,4 @@ def _result(
         status="interrupted" if interrupted else "completed",
         end_time=times[-1],
         residual=fields.unsteadiness[-1],
-    )
+    ).assign_attrs(density_of=OF_FLUID)

@@ -14,9 +14,11 @@ from crazybilliards.kinetic.kinetic_equation.stationary_result import density_an
 from crazybilliards.kinetic.kinetic_equation.velocity_moments import moments
 from crazybilliards.kinetic.kinetic_equation.velocity_space import VelocitySpace
 from crazybilliards.kinetic.kinetic_equation.weak_form import Units
+from crazybilliards.kinetic.rods.places import LabelledPoints, are_resolved, rods_of
+from crazybilliards.kinetic.rods.profiles import over_positions
 from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array
-from crazybilliards.model.vocabulary import result
+from crazybilliards.model.vocabulary import OF_FLUID, OF_RODS, result
 
 
 def snapshot(
@@ -69,8 +71,14 @@ def in_vocabulary(
     x = positions(chain, units.length, last)
     density, label = np.empty((2, len(outputs), x.size))
     for i, output in enumerate(outputs):
-        of = (output[name] for name in ("y", "points", "below"))
-        density[i], label[i] = density_and_label(chain, x, *of)
+        y, points, below = (output[name] for name in ("y", "points", "below"))
+        if are_resolved(chain):
+            labelled = LabelledPoints(chain.size, y, points, below, chain.size - below)
+            temperature = chain.mass * float((output["velocity_width"] ** 2).mean())
+            rods = over_positions(chain, x, rods_of(chain, labelled, temperature), {})
+            density[i], label[i] = rods["density"], rods["label"]
+        else:
+            density[i], label[i] = density_and_label(chain, x, y, points, below)
     y, v = outputs[-1]["y"], outputs[-1]["v"]
     phase_space = np.zeros((len(outputs), y.size, v.size))
     for place, output in zip(phase_space, outputs, strict=True):
@@ -99,4 +107,4 @@ def in_vocabulary(
         method={"theory": "kinetic equation in time", "cells": last.cells},
         status=status,
         end_time=times[-1],
-    )
+    ).assign_attrs(density_of=OF_RODS if are_resolved(chain) else OF_FLUID)

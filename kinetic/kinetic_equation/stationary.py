@@ -34,10 +34,19 @@ from crazybilliards.kinetic.kinetic_equation.continuation import (
 )
 from crazybilliards.kinetic.kinetic_equation.newton import NotSolvedError
 from crazybilliards.kinetic.kinetic_equation.order_statistics import Rods, rods
-from crazybilliards.kinetic.kinetic_equation.stationary_result import in_vocabulary
+from crazybilliards.kinetic.kinetic_equation.stationary_result import in_vocabulary, points_of
 from crazybilliards.kinetic.kinetic_equation.velocity_moments import moments
 from crazybilliards.kinetic.kinetic_equation.weak_form import coefficients
 from crazybilliards.kinetic.requirements import require_chain
+from crazybilliards.kinetic.rods.places import (
+    MOST_RODS_WITH_GAP,
+    RodPlaces,
+    are_resolved,
+    at_temperature,
+    elastic_rods,
+    rods_of,
+)
+from crazybilliards.kinetic.rods.waves import displacement_widths
 from crazybilliards.model import Chain
 from crazybilliards.model.checks import check_integer
 from crazybilliards.model.progress import waiting_for
@@ -154,18 +163,38 @@ def _rods(state: State) -> Rods:
     return rods(state.chain, moments(state.space, state.f), *free_units(state.chain))
 
 
+def _rod_places(state: State, of_rods: Rods) -> RodPlaces:
+    """Return where the rods are: the elastic chain's, moved and stretched to the theory's moments.
+
+    The shapes of the elastic chain are closer to simulations than those of the theory's points.
+    """
+    chain, temperature = state.chain, state.chain.mass * float(of_rods.velocity_variance.mean())
+    own = rods_of(chain, points_of(state), temperature)
+    width = own.width()
+    if chain.spring == "linear" and chain.size <= MOST_RODS_WITH_GAP:
+        width = displacement_widths(chain, own, of_rods.velocity_variance)
+    elif chain.lattice_gap == 0:
+        width = np.sqrt(of_rods.position_variance)
+    return elastic_rods(at_temperature(chain, temperature)).moved(own.mean(), width)
+
+
 def _assemble(state: State, of_rods: Rods, mesh_error: float) -> xr.Dataset:
     """Put the solution into the common vocabulary."""
     chain = state.chain
+    places = _rod_places(state, of_rods) if are_resolved(chain) else None
+    position, width = of_rods.position, np.sqrt(of_rods.position_variance)
+    if places is not None:
+        position, width = places.mean(), places.width()
     variables = {
         "velocity_width": ("particle", np.sqrt(of_rods.velocity_variance)),
-        "mean_displacement": ("particle", of_rods.position - chain.reduced_anchors),
+        "mean_displacement": ("particle", position - chain.reduced_anchors),
     }
     # With a gap each rod has its own anchor, and rods are not drawn from one distribution.
-    if chain.lattice_gap == 0:
-        variables["displacement_width"] = ("particle", np.sqrt(of_rods.position_variance))
+    if places is not None or chain.lattice_gap == 0:
+        variables["displacement_width"] = ("particle", width)
     return in_vocabulary(
         state,
+        places,
         variables,
         coordinates={},
         method={"theory": "kinetic equation", "order": state.order},

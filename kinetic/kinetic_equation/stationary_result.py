@@ -1,6 +1,6 @@
 """The result of a stationary kinetic equation, with or without correlations, in the vocabulary.
 
-Profiles over the rods' positions x = y + 2 R (N - L/2) follow from the density of points over y.
+Profiles over x are those of the rods, which :mod:`crazybilliards.kinetic.rods` makes of the points.
 """
 
 from __future__ import annotations
@@ -17,14 +17,26 @@ from crazybilliards.kinetic.kinetic_equation.continuation import State, free_uni
 from crazybilliards.kinetic.kinetic_equation.order_statistics import mirrored
 from crazybilliards.kinetic.kinetic_equation.velocity_moments import moments
 from crazybilliards.kinetic.kinetic_equation.velocity_space import VelocitySpace
+from crazybilliards.kinetic.rods.places import LabelledPoints, RodPlaces
+from crazybilliards.kinetic.rods.profiles import over_positions
 from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array
 from crazybilliards.model.grid import position_grid
-from crazybilliards.model.vocabulary import result
+from crazybilliards.model.vocabulary import OF_FLUID, OF_RODS, result
+
+
+def points_of(state: State) -> LabelledPoints:
+    """Return the points of a distribution, with places in R."""
+    size, length = state.chain.size, free_units(state.chain).length
+    profiles = mirrored(moments(state.space, state.f))
+    label, density = profiles.label, np.maximum(profiles.density, 0.0)
+    below, beyond = (size * (0.5 + sign * label) for sign in (1, -1))
+    return LabelledPoints(size, length * profiles.y, size / length * density, below, beyond)
 
 
 def in_vocabulary(
     state: State,
+    rods: RodPlaces | None,
     variables: Mapping[str, tuple[str | tuple[str, ...], Array]],
     coordinates: dict[str, Array],
     *,
@@ -33,13 +45,14 @@ def in_vocabulary(
     mesh_error: float,
     expected: Accuracy,
 ) -> xr.Dataset:
-    """Return f, its profiles over x, and further ``variables`` with their ``coordinates``.
+    """Return f, the profiles of the rods, and further ``variables`` with their ``coordinates``.
 
-    ``residual`` and ``mesh_error`` are errors of the solution, ``expected`` those of the theory.
+    ``rods`` None: they are not resolved, and read off the density of a fluid. ``residual`` and
+    ``mesh_error`` are errors of the solution, ``expected`` those of the theory.
     """
     chain, (length, velocity) = state.chain, free_units(state.chain)
     y, v, f = state.space.sampled(state.f)
-    fields = _profiles_over_x(state)
+    fields = _profiles_over_x(state, rods)
     dataset = result(
         chain,
         {
@@ -53,35 +66,35 @@ def in_vocabulary(
         residual=residual,
     )
     dataset.attrs |= {"mesh_error": mesh_error, "cells": state.space.cells, **expected.attributes()}
-    return dataset
+    return dataset.assign_attrs(density_of=OF_FLUID if rods is None else OF_RODS)
 
 
-def _profiles_over_x(state: State) -> dict[str, Array]:
+def _profiles_over_x(state: State, rods: RodPlaces | None) -> dict[str, Array]:
     """Return the positions x, and density and velocity moments over them."""
     chain, (length, velocity) = state.chain, free_units(state.chain)
     profiles = mirrored(moments(state.space, state.f))
-    L, R = chain.size, chain.radius
+    L, R, y = chain.size, chain.radius, length * profiles.y
     x = positions(chain, length, state.space)
-    places = length * profiles.y + 2 * R * L * profiles.label
-
-    def over_x(values: Array) -> Array:
-        return np.asarray(PchipInterpolator(places, values, extrapolate=False)(x))
-
-    points = L / length * np.maximum(profiles.density, 0.0)
-    density, label = density_and_label(
-        chain, x, length * profiles.y, points, L / 2 + L * profiles.label
-    )
     alive = np.maximum(profiles.density, profiles.density.max() * 1e-6)
-    heat = chain.mass * velocity**3 * L / length
-    return {
-        "x": x,
-        "density": density,
-        "label": label,
-        "displacement": x - (2 * R + chain.lattice_gap) * (label - L / 2),
-        "velocity_variance": velocity**2 * _continued_flat(over_x(profiles.variance)),
-        "flow_velocity": velocity * np.nan_to_num(over_x(profiles.flux / alive)),
-        "heat_flux": heat * np.nan_to_num(over_x(profiles.heat_flux)),
+    fields = {
+        "velocity_variance": velocity**2 * profiles.variance,
+        "flow_velocity": velocity * profiles.flux / alive,
+        "heat_flux": chain.mass * velocity**3 * L / length * profiles.heat_flux,
     }
+    if rods is not None:
+        farthest = float(np.abs(rods.places).max() - chain.reduced_anchors[-1])
+        x = position_grid(chain, max(farthest, x[-1] - chain.anchors[-1] - 4 * R))
+        found = over_positions(chain, x, rods, {each: (y, fields[each]) for each in fields})
+    else:
+        points, label = L / length * np.maximum(profiles.density, 0.0), L * (0.5 + profiles.label)
+        places = y + 2 * R * L * profiles.label
+        density, label = density_and_label(chain, x, y, points, label)
+        displacement = x - (2 * R + chain.lattice_gap) * (label - L / 2)
+        found = {"density": density, "label": label, "displacement": displacement}
+        for name, values in fields.items():
+            found[name] = PchipInterpolator(places, values, extrapolate=False)(x)
+    found["velocity_variance"] = _continued_flat(found["velocity_variance"])
+    return {"x": x} | {name: np.nan_to_num(values) for name, values in found.items()}
 
 
 def positions(chain: Chain, length: float, space: VelocitySpace) -> Array:

@@ -49,6 +49,7 @@ from crazybilliards.kinetic.statics.profiles import (
 from crazybilliards.kinetic.statics.variable_temperature import solve_variable_temperature
 from crazybilliards.kinetic.statics.wright_closure import solve_wright_closure
 from crazybilliards.model import Chain
+from crazybilliards.model.vocabulary import OF_FLUID
 
 
 def force_balance(
@@ -98,7 +99,7 @@ def force_balance(
     """
     chain, given, variance = check_force_balance(chain, displacement, velocity_variance)
     if given is not None:
-        return solve_wright_closure(chain, given)
+        return solve_wright_closure(chain, given).assign_attrs(density_of=OF_FLUID)
     if variance is not None:
         found = solve_variable_temperature(chain, variance)
     else:
@@ -106,7 +107,7 @@ def force_balance(
     if velocity_variance is not None:  # measured for the free variance only
         found.attrs |= Accuracy().attributes()
     warn_if_unmeasured("the force balance", found.attrs["model_error"])
-    return found
+    return found.assign_attrs(density_of=OF_FLUID)
 
 
 def check_force_balance(

@@ -38,6 +38,8 @@ from crazybilliards.model.arrays import Array
 from crazybilliards.model.grid import position_grid, thermal_reach
 from crazybilliards.model.vocabulary import result
 
+BY_LABELS = "force balance, by labels"
+
 _TAIL = 36.0  # tails are followed down to exp(-36) = 2e-16 of the maximum
 _EDGE_DEPTH = {2: 40.0, 3: 1e4}  # where the plateau is reached, by exponent n
 
@@ -61,7 +63,7 @@ def solve_label_closure(chain: Chain) -> xr.Dataset:
         },
         coordinates={"x": x},
         source="theory",
-        method={"theory": "force balance, by labels"},
+        method={"theory": BY_LABELS},
         residual=state.residual,
     )
     dataset.attrs |= expected("force_balance", chain).attributes("density")

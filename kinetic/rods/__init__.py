@@ -1,0 +1,1 @@
+"""From the density of points, which every theory has, to the rods."""

@@ -1,0 +1,162 @@
+"""The rods of a theory that describes the chain as a fluid."""
+
+from __future__ import annotations
+
+import json
+import math
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from crazybilliards.kinetic.accuracy import Accuracy, expected
+from crazybilliards.kinetic.rods.places import LabelledPoints, RodPlaces, are_resolved, rods_of
+from crazybilliards.kinetic.rods.profiles import over_positions
+from crazybilliards.kinetic.statics.label_closure import BY_LABELS
+from crazybilliards.model import Chain, chain_of
+from crazybilliards.model.arrays import Array
+from crazybilliards.model.vocabulary import OF_RODS, VOCABULARY, described, require
+
+_FIELDS = ("velocity_variance", "flow_velocity")
+_ALL = 1e-4  # of the rods, which a grid may miss; those of the eulerian frame do
+
+
+def rod_by_rod(theory: xr.Dataset) -> xr.Dataset:
+    """Return the result of a theory with the density of its rods in place of that of a fluid.
+
+    ``force_balance`` and ``hydrodynamics`` compute the density rho of a fluid, in which the rods
+    with the label N are exactly at the place x where N(x) rods lie to the left. A real rod is an
+    order statistic, found around this place with the distribution of :mod:`.places`,
+
+        rho(x) = sum_i p_i(x - 2R (i - (L+1)/2)),    p_i(y) = n(y)/L Beta(N(y)/L; i, L + 1 - i),
+
+    with the points' density n = rho/(1 - 2 R rho) at y = x - 2R (N - L/2). At restitution 1 and
+    without a gap this is exact, if the theory's n is. With a gap rod i has the labels that it has
+    in the elastic chain at the temperature of the fluid, which takes as long as ``equilibrium``,
+    for every time.
+
+    Parameters
+    ----------
+    theory
+        A result of ``force_balance`` or ``hydrodynamics``, or a start of it, at one time or at all
+        times. A result whose density is that of its rods already, as that of ``equilibrium``,
+        ``phase_space`` and ``rod_by_rod``, is returned as it is.
+
+    Returns
+    -------
+    xarray.Dataset
+        The same result with other ``density`` [1/R], which may have one peak for each rod, and
+        ``label``, and with ``mean_displacement`` and ``displacement_width`` [R] of each rod.
+        ``displacement``, ``velocity_variance``, ``flow_velocity`` over x and ``mean_velocity`` are
+        means over the rods, if the theory has them. Where peaks are narrower than the
+        spacing of x, ``density`` has its values at x, and ``label``, which ``smooth`` uses, counts
+        the rods between. ``attrs["density_of"]`` is ``"rods"``. It stays ``"fluid"``, with the
+        density, for more than 10 000 rods, or 3000 with a gap, which nobody resolves. The errors of
+        the theory are zero for ``force_balance`` by labels at restitution 1, and not known (NaN)
+        for others.
+
+    Raises
+    ------
+    ValueError
+        For a simulation, a density that is smoothed or has no label, a grid that does not hold all
+        rods of the chain.
+
+    Examples
+    --------
+    >>> from crazybilliards import equilibrium, force_balance
+    >>> chain = Chain(size=20)
+    >>> rods, exact = rod_by_rod(force_balance(chain)), equilibrium(chain)
+    >>> float(abs(rods.density.interp(x=exact.x) - exact.density).max()) < 1e-4
+    True
+    """
+    chain = _check(theory)
+    if theory.attrs.get("density_of") == OF_RODS or not are_resolved(chain):
+        return theory
+    x, times = theory.x.values, np.atleast_2d(theory.label.values).shape[0]
+    at_times = [_at_one_time(chain, x, _slice(theory, k)) for k in range(times)]
+    leading = theory.label.dims[:-1]
+    found = theory.copy()
+    for name, (along, _) in at_times[0].items():
+        values = np.array([each[name][1] for each in at_times])
+        meaning = described(*VOCABULARY[name])
+        found[name] = ((*leading, along), values if leading else values[0], meaning)
+    mean = found.mean_displacement
+    position = described(*VOCABULARY["mean_position"])
+    found = found.assign_coords(
+        particle=("particle", np.arange(chain.size) + 1, described(*VOCABULARY["particle"])),
+        mean_position=(mean.dims, mean.values + chain.anchors, position),
+    )
+    return found.assign_attrs(density_of=OF_RODS, **_errors(theory, chain))
+
+
+def _check(theory: xr.Dataset) -> Chain:
+    """Return the chain of a theory, or raise for what it is not."""
+    require(theory, ("density",))
+    chain = chain_of(theory)
+    if theory.attrs.get("source") == "simulation":
+        raise ValueError("rod_by_rod takes a theory; a simulation has the density of its rods")
+    if "smoothed" in theory.attrs:
+        raise ValueError("the density is smoothed already; smooth what rod_by_rod returns")
+    require(theory, ("label",))
+    label = theory.label
+    if label.dims not in (("x",), ("time", "x")) or theory.density.dims != label.dims:
+        raise ValueError(f"density and label must be over x or (time, x), got {label.dims}")
+    held = np.ravel(np.diff(label.values[..., [0, -1]]))
+    if (np.abs(held - chain.size) > _ALL * chain.size).any():
+        raise ValueError(
+            f"the grid of x holds {held[np.argmax(np.abs(held - chain.size))]:.6g} of the chain's "
+            f"{chain.size} rods: rod_by_rod needs the whole grid of the theory"
+        )
+    if theory.sizes.get("particle", chain.size) != chain.size:
+        raise ValueError(
+            f"the result has {theory.sizes['particle']} particles, the chain {chain.size}"
+        )
+    return chain
+
+
+def _slice(theory: xr.Dataset, time: int) -> xr.Dataset:
+    return theory.isel(time=time) if "time" in theory.label.dims else theory
+
+
+def _at_one_time(chain: Chain, x: Array, fluid: xr.Dataset) -> dict[str, tuple[str, Array]]:
+    """Return the variables of the rods at one time."""
+    R, rho = chain.radius, fluid.density.values
+    label = np.clip(fluid.label.values - fluid.label.values[0], 0.0, chain.size)
+    y = np.maximum.accumulate(x - 2 * R * (label - chain.size / 2))
+    n = rho / np.maximum(1 - 2 * R * rho, np.finfo(float).tiny)
+    points = LabelledPoints(chain.size, y, n, label, label[-1] - label)
+    rods = rods_of(chain, points, _temperature(chain, fluid))
+    fields = {name: (y, fluid[name].values) for name in _FIELDS if name in fluid}
+    profiles = over_positions(chain, x, rods, fields)
+    wanted = ("density", "label", *(each for each in ("displacement", *fields) if each in fluid))
+    found = {name: ("x", profiles[name]) for name in wanted}
+    for name in fields:  # in the vacuum, too
+        found[name] = ("x", np.where(np.isnan(profiles[name]), fluid[name], profiles[name]))
+    if "mean_velocity" in fluid:
+        found["mean_velocity"] = ("particle", _mean(rods, *fields["flow_velocity"]))
+    found["mean_displacement"] = ("particle", rods.mean() - chain.reduced_anchors)
+    found["displacement_width"] = ("particle", rods.width())
+    return found
+
+
+def _mean(rods: RodPlaces, y: Array, values: Array) -> Array:
+    return rods.mean(np.interp(rods.places, y, values))
+
+
+def _temperature(chain: Chain, fluid: xr.Dataset) -> float:
+    """Return the mean of m W^2 over the rods."""
+    if "velocity_variance" in fluid:
+        share = fluid.density.values / fluid.density.values.sum()
+        return chain.mass * float(share @ fluid.velocity_variance.values)
+    if "velocity_width" in fluid:
+        return chain.mass * float((fluid.velocity_width.values**2).mean())
+    return chain.temperature
+
+
+def _errors(theory: xr.Dataset, chain: Chain) -> dict[str, Any]:
+    """Return the errors to state, of the kinds that the theory states."""
+    by_labels = json.loads(theory.attrs["provenance"]).get("theory") == BY_LABELS
+    exact = by_labels and not math.isnan(theory.attrs["model_error"])
+    accuracy = expected("equilibrium", chain) if exact else Accuracy()
+    stated = accuracy.attributes("density")
+    return {name: value for name, value in stated.items() if name in theory.attrs}

@@ -1,0 +1,190 @@
+r"""The distribution of each rod's place in the reduced coordinate, from a density of points.
+
+Theories compute the density n(y) of *points*, of which N(y) lie below y. Read as a fluid, rod i is
+at the place where N = i - 1/2. A real rod is found around it, and p_i(y) says where.
+
+**Without a gap** the points are exchangeable. If L points are drawn independently from n/L, the
+i-th in order has
+
+    p_i(y) = n(y)/L Beta(N(y)/L; i, L + 1 - i).
+
+This is exact at e = 1, in the steady state and, because points that exchange their names stay
+independent, at any time after an independent start.
+
+**With a gap** every rod has an anchor of its own. At e = 1 and rest the Gibbs measure has the exact
+p_i of the elastic chain, and the force balance its N(y). Together they say at which labels N rod i
+is found. A theory takes these labels, of the elastic chain with its own mean temperature
+m <W^2>, to the places that have them in its own N(y). This is exact at e = 1 at rest and after a
+shift or a stretch from there. Without a gap it is the law above.
+
+Every distribution is a table of some places. Between them its integral is a cubic.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+from scipy.interpolate import CubicHermiteSpline, CubicSpline
+from scipy.special import betainc, betaincinv, betaln, log_ndtr, ndtr, ndtri
+from scipy.stats import gennorm
+
+from crazybilliards.kinetic.exact.gibbs_measure import recursion_of
+from crazybilliards.kinetic.statics.label_closure import stationary
+from crazybilliards.model import Chain
+from crazybilliards.model.arrays import Array
+
+# More rods are not resolved: neither by a grid of positions nor, with a gap, within seconds.
+MOST_RODS, MOST_RODS_WITH_GAP = 10_000, 3000
+
+_NODES = 193  # of a table
+_TAIL = 1e-13  # probability beyond either end of a table
+_FARTHEST = 1e-8  # shares of the points closer to an end than this are numerical noise
+
+
+class RodPlaces(NamedTuple):
+    """Distributions of the places of all rods, each a table over ascending places; shape (L, K)."""
+
+    places: Array  # y
+    below: Array  # probability of a place below
+    density: Array  # p_i
+    share: Array  # of the probability, for means over the table; sums to 1
+
+    def mean(self, values: Array | None = None) -> Array:
+        """Return each rod's mean of values given at the places, of the place itself if None."""
+        return np.asarray((self.share * (self.places if values is None else values)).sum(axis=1))
+
+    def width(self) -> Array:
+        """Return the standard deviation of each rod's place."""
+        apart = self.places - self.mean()[:, None]
+        return np.asarray(np.sqrt(self.mean(apart**2)))
+
+    def moved(self, mean: Array, width: Array) -> RodPlaces:
+        """Return the rods moved and stretched to other means and standard deviations."""
+        factor = (width / self.width())[:, None]
+        places = mean[:, None] + factor * (self.places - self.mean()[:, None])
+        return self._replace(places=places, density=self.density / factor)
+
+
+class LabelledPoints:
+    """A theory's points: y as a function of the normal score z of their label, N = L Phi(z)."""
+
+    def __init__(self, size: int, y: Array, density: Array, below: Array, beyond: Array) -> None:
+        """Read the points' density n and the numbers below and beyond each ascending y."""
+        share = np.minimum(below, beyond) / size
+        kept = share > _FARTHEST
+        y, density = y[kept], density[kept]
+        # The smaller of the two numbers is more accurate.
+        score = np.where(below < beyond, 1, -1)[kept] * ndtri(share[kept])
+        highest = np.maximum.accumulate
+        new = np.append(True, (score[1:] > highest(score)[:-1]) & (y[1:] > highest(y)[:-1]))
+        y, score, density = y[new], score[new], density[new]
+        secant = np.diff(y) / np.diff(score)
+        # Three times the smaller secant at most keeps the cubic monotonic.
+        most = 3 * np.minimum(np.append(secant, np.inf), np.append(np.inf, secant))
+        with np.errstate(divide="ignore"):
+            slope = np.minimum(size * _normal(score) / density, most)
+        self._curve = CubicHermiteSpline(score, y, slope)
+        self.ends = score[0], score[-1]
+
+    def at(self, score: Array) -> tuple[Array, Array]:
+        """Return y and dy/dz at scores, continued linearly; of a Gaussian, y is linear in z."""
+        inside = np.clip(score, *self.ends)
+        slope = self._curve(inside, 1)
+        return self._curve(inside) + slope * (score - inside), slope
+
+
+def are_resolved(chain: Chain) -> bool:
+    """Return whether the rods of a chain are told apart."""
+    return chain.size <= (MOST_RODS_WITH_GAP if chain.lattice_gap else MOST_RODS)
+
+
+def rods_of(chain: Chain, points: LabelledPoints, temperature: float) -> RodPlaces:
+    """Return the rods of a theory's points; ``temperature``: the mean of m W^2 over the rods."""
+    if chain.lattice_gap == 0:
+        return _mapped(exchangeable(chain.size), *points.at(exchangeable(chain.size).places))
+    cold = at_temperature(chain, temperature)
+    rest, score, slope_at_rest = elastic_rods(cold), *_scores_at_rest(cold)
+    # Beyond the last points, rods are moved as these are.
+    inside = np.clip(score, *points.ends)
+    places, slope = points.at(inside)
+    known = inside == score
+    at_rest = rest.places.copy()
+    for beyond, end in zip((score < inside, score > inside), points.ends, strict=True):
+        at_rest[beyond] = _place_at_rest(cold, end)
+    stretch = np.where(known, slope / slope_at_rest, 1.0)
+    return _mapped(rest, rest.places + (places - at_rest), stretch)
+
+
+def _mapped(rods: RodPlaces, places: Array, slope: Array) -> RodPlaces:
+    return rods._replace(places=places, density=rods.density / slope)
+
+
+def at_temperature(chain: Chain, temperature: float) -> Chain:
+    """Return the elastic chain with about this temperature, to a thousandth of the free one."""
+    ratio = max(round(temperature / chain.temperature, 3), 1e-3)
+    return chain.replace(restitution=1.0, amplitude=chain.amplitude * math.sqrt(ratio))
+
+
+@lru_cache(maxsize=4)
+def exchangeable(size: int) -> RodPlaces:
+    """Return the distributions of the normal scores of the labels of independent points."""
+    i = np.arange(1.0, size + 1)
+    low = ndtri(betaincinv(i, size + 1 - i, _TAIL))
+    score = low[:, None] + np.linspace(0, 1, _NODES) * (-low[::-1] - low)[:, None]
+    i = i[:, None]
+    log_share = (i - 1) * log_ndtr(score) + (size - i) * log_ndtr(-score)
+    density = np.exp(log_share - betaln(i, size + 1 - i)) * _normal(score)
+    share = density / density.sum(axis=1, keepdims=True)
+    return RodPlaces(score, betainc(i, size + 1 - i, ndtr(score)), density, share)
+
+
+@lru_cache(maxsize=4)
+def elastic_rods(chain: Chain) -> RodPlaces:
+    """Return the exact rods of the elastic chain at rest."""
+    if chain.lattice_gap == 0:
+        return _without_gap(chain)
+    recursion, L = recursion_of(chain), chain.size
+    rods = RodPlaces(*np.empty((4, L, _NODES)))
+    for i in range(L):
+        d, log_p = recursion.log_density(i)
+        p = np.exp(log_p - log_p.max())
+        likely = np.flatnonzero(p > _TAIL)
+        d, p = d[likely[0] : likely[-1] + 1], p[likely[0] : likely[-1] + 1]
+        curve = CubicSpline(d, p / (p.sum() * (d[1] - d[0])))
+        nodes = np.linspace(d[0], d[-1], _NODES)
+        rods.places[i] = chain.reduced_anchors[i] + nodes
+        rods.density[i], rods.below[i] = curve(nodes), curve.antiderivative()(nodes)
+    rods.below[:] /= rods.below[:, -1:]
+    rods.share[:] = rods.density / rods.density.sum(axis=1, keepdims=True)
+    return rods
+
+
+def _without_gap(chain: Chain) -> RodPlaces:
+    law, n = exchangeable(chain.size), chain.potential_exponent
+    free = gennorm(n, scale=n ** (1 / n))
+    # The lower tail is the accurate one.
+    u = -np.sign(law.places) * free.ppf(ndtr(-np.abs(law.places)))
+    s = chain.thermal_length
+    return _mapped(law, s * u, s * _normal(law.places) / free.pdf(u))
+
+
+@lru_cache(maxsize=4)
+def _scores_at_rest(chain: Chain) -> tuple[Array, Array]:
+    """Return z of the places of the exact rods in the fluid at rest, and dy/dz there."""
+    s = chain.thermal_length
+    label, log_density = stationary(chain).profile(elastic_rods(chain).places / s)
+    beyond = np.maximum(0.5 - np.abs(label), np.finfo(float).tiny)
+    score = -np.sign(label) * ndtri(beyond)
+    return score, s * _normal(score) * np.exp(-np.maximum(log_density, -600.0))
+
+
+def _place_at_rest(chain: Chain, score: float) -> float:
+    eta, _ = stationary(chain).at(np.array([ndtr(score) - 0.5]))
+    return chain.thermal_length * float(eta[0])
+
+
+def _normal(score: Array) -> Array:
+    return np.asarray(np.exp(-(score**2) / 2) / math.sqrt(2 * math.pi))
