@@ -208,9 +208,8 @@ assert apart[inside].max() < 0.01
 # <details><summary>Explain</summary>
 #
 # The densities agree to better than 1 % of close packing where $|x|<100$ R. The largest difference,
-# 3 %, is at the two ends, where the density falls to zero over a few rods. The statistical error
-# is smaller than 1 %. [Lesson 6](06_theory_meets_particles.ipynb) shows that this difference
-# belongs to the description as a fluid and not to the fit.
+# 4 %, is at the two ends, where the density falls to zero over a few rods. The statistical error
+# is smaller than 1 %. Section 7 gives the reason.
 # </details>
 #
 # ## 6. The fluid in time: three strings
@@ -381,14 +380,30 @@ assert abs(theirs - L) < 1e-3
 # solves a boundary-value problem. With a fit it needs no differential equation at all, because the
 # force balance then has a solution in closed form.
 #
+# **Rods in place of a fluid.** At $e = 1$ without a gap the force balance is exact for the *points*,
+# whose density is $\rho_y$. What is approximate is to read rods off a fluid, by
+# $\rho = \rho_y/(1+2R\rho_y)$. `rod_by_rod` reads them off the points
+# ([lesson 6](06_theory_meets_particles.ipynb), section 5):
+
+# %%
+labels = cb.force_balance(chain)
+for name, theory in {"fluid": labels, "rod by rod": cb.rod_by_rod(labels)}.items():
+    largest = cb.deviation(binned, cb.smooth(theory)).maximum
+    print(f"{name}: at most {largest:.3f} of close packing from the simulation")
+
+# %% tags=["remove-cell"]
+assert largest < 0.01
+
+# %% [markdown]
 # ## Exercises
 #
 # **1.** Repeat sections 1 to 5 with $A = 1$. How large is the largest difference, and where is it?
 #
 # <details><summary>Solution</summary>
 #
-# Some 15 % of close packing, at the outermost rods. The chain is then nearly a crystal, and a fluid
-# has no single rods ([lesson 6](06_theory_meets_particles.ipynb), exercise 1).
+# Some 15 % of close packing, at the outermost rods. The chain is then nearly a crystal. Nearly all
+# of the error comes from reading rods off a fluid: `cb.rod_by_rod(cb.force_balance(chain))` agrees
+# with the simulation.
 # </details>
 #
 # **2.** Remove the viscosity from the second string. When does the solution of section 6 end?

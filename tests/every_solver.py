@@ -25,6 +25,7 @@ from crazybilliards.kinetic import (
     hydrodynamics,
     phase_space,
     relax_phase_space,
+    rod_by_rod,
 )
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate, simulate_limit
@@ -131,6 +132,13 @@ SOLVERS = {
         lambda chain, given: relax_phase_space(
             chain, given.start, **given.times, cells=given.cells, progress=False
         )
+    ),
+    "rod_by_rod": Solver(lambda chain, _: rod_by_rod(force_balance(chain)), ELASTIC),
+    "rod_by_rod, in time": Solver(
+        lambda chain, given: rod_by_rod(
+            hydrodynamics(chain, given.start, **given.times, **given.fluid, progress=False)
+        ),
+        ELASTIC,
     ),
     "critical_size": Solver(lambda chain, _: critical_size(chain), DRIVEN),
     "simulate": _run(),

@@ -74,9 +74,9 @@ def in_vocabulary(
         y, points, below = (output[name] for name in ("y", "points", "below"))
         if are_resolved(chain):
             labelled = LabelledPoints(chain.size, y, points, below, chain.size - below)
-            temperature = chain.mass * float((output["velocity_width"] ** 2).mean())
-            rods = over_positions(chain, x, rods_of(chain, labelled, temperature), {})
-            density[i], label[i] = rods["density"], rods["label"]
+            variance = output["velocity_width"] ** 2 - output["mean_velocity"] ** 2
+            rods = rods_of(chain, labelled, chain.mass * float(variance.mean()))
+            density[i], label[i] = over_positions(chain, x, rods)
         else:
             density[i], label[i] = density_and_label(chain, x, y, points, below)
     y, v = outputs[-1]["y"], outputs[-1]["v"]

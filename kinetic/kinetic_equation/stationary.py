@@ -173,8 +173,6 @@ def _rod_places(state: State, of_rods: Rods) -> RodPlaces:
     width = own.width()
     if chain.spring == "linear" and chain.size <= MOST_RODS_WITH_GAP:
         width = displacement_widths(chain, own, of_rods.velocity_variance)
-    elif chain.lattice_gap == 0:
-        width = np.sqrt(of_rods.position_variance)
     return elastic_rods(at_temperature(chain, temperature)).moved(own.mean(), width)
 
 

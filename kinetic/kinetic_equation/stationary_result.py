@@ -1,6 +1,7 @@
 """The result of a stationary kinetic equation, with or without correlations, in the vocabulary.
 
-Profiles over x are those of the rods, which :mod:`crazybilliards.kinetic.rods` makes of the points.
+Density and label over x are those of the rods, which :mod:`crazybilliards.kinetic.rods` makes of
+the points. The other profiles are those of the points at x = y + 2 R (N - L/2), as of a fluid.
 """
 
 from __future__ import annotations
@@ -45,7 +46,7 @@ def in_vocabulary(
     mesh_error: float,
     expected: Accuracy,
 ) -> xr.Dataset:
-    """Return f, the profiles of the rods, and further ``variables`` with their ``coordinates``.
+    """Return f, the profiles over x, and further ``variables`` with their ``coordinates``.
 
     ``rods`` None: they are not resolved, and read off the density of a fluid. ``residual`` and
     ``mesh_error`` are errors of the solution, ``expected`` those of the theory.
@@ -73,28 +74,34 @@ def _profiles_over_x(state: State, rods: RodPlaces | None) -> dict[str, Array]:
     """Return the positions x, and density and velocity moments over them."""
     chain, (length, velocity) = state.chain, free_units(state.chain)
     profiles = mirrored(moments(state.space, state.f))
-    L, R, y = chain.size, chain.radius, length * profiles.y
+    L, R = chain.size, chain.radius
     x = positions(chain, length, state.space)
-    alive = np.maximum(profiles.density, profiles.density.max() * 1e-6)
-    fields = {
-        "velocity_variance": velocity**2 * profiles.variance,
-        "flow_velocity": velocity * profiles.flux / alive,
-        "heat_flux": chain.mass * velocity**3 * L / length * profiles.heat_flux,
-    }
     if rods is not None:
         farthest = float(np.abs(rods.places).max() - chain.reduced_anchors[-1])
-        x = position_grid(chain, max(farthest, x[-1] - chain.anchors[-1] - 4 * R))
-        found = over_positions(chain, x, rods, {each: (y, fields[each]) for each in fields})
-    else:
-        points, label = L / length * np.maximum(profiles.density, 0.0), L * (0.5 + profiles.label)
-        places = y + 2 * R * L * profiles.label
-        density, label = density_and_label(chain, x, y, points, label)
-        displacement = x - (2 * R + chain.lattice_gap) * (label - L / 2)
-        found = {"density": density, "label": label, "displacement": displacement}
-        for name, values in fields.items():
-            found[name] = PchipInterpolator(places, values, extrapolate=False)(x)
-    found["velocity_variance"] = _continued_flat(found["velocity_variance"])
-    return {"x": x} | {name: np.nan_to_num(values) for name, values in found.items()}
+        x = max(x, position_grid(chain, farthest), key=len)
+    places = length * profiles.y + 2 * R * L * profiles.label
+
+    def over_x(values: Array) -> Array:
+        return np.asarray(PchipInterpolator(places, values, extrapolate=False)(x))
+
+    points = L / length * np.maximum(profiles.density, 0.0)
+    density, label = density_and_label(
+        chain, x, length * profiles.y, points, L / 2 + L * profiles.label
+    )
+    displacement = x - (2 * R + chain.lattice_gap) * (label - L / 2)
+    if rods is not None:
+        density, label = over_positions(chain, x, rods)
+    alive = np.maximum(profiles.density, profiles.density.max() * 1e-6)
+    heat = chain.mass * velocity**3 * L / length
+    return {
+        "x": x,
+        "density": density,
+        "label": label,
+        "displacement": displacement,
+        "velocity_variance": velocity**2 * _continued_flat(over_x(profiles.variance)),
+        "flow_velocity": velocity * np.nan_to_num(over_x(profiles.flux / alive)),
+        "heat_flux": heat * np.nan_to_num(over_x(profiles.heat_flux)),
+    }
 
 
 def positions(chain: Chain, length: float, space: VelocitySpace) -> Array:

@@ -130,15 +130,23 @@ def at_temperature(chain: Chain, temperature: float) -> Chain:
 
 @lru_cache(maxsize=4)
 def exchangeable(size: int) -> RodPlaces:
-    """Return the distributions of the normal scores of the labels of independent points."""
+    """Return the distributions of the normal scores of independent points in order."""
     i = np.arange(1.0, size + 1)
-    low = ndtri(betaincinv(i, size + 1 - i, _TAIL))
+    return beta_scores(i, size + 1 - i)
+
+
+def beta_scores(first: Array, second: Array) -> RodPlaces:
+    """Return distributions of normal scores of labels that are Beta(first, second).
+
+    ``second`` is ``first`` backwards.
+    """
+    low = ndtri(betaincinv(first, second, _TAIL))
     score = low[:, None] + np.linspace(0, 1, _NODES) * (-low[::-1] - low)[:, None]
-    i = i[:, None]
-    log_share = (i - 1) * log_ndtr(score) + (size - i) * log_ndtr(-score)
-    density = np.exp(log_share - betaln(i, size + 1 - i)) * _normal(score)
+    first, second = first[:, None], second[:, None]
+    log_share = (first - 1) * log_ndtr(score) + (second - 1) * log_ndtr(-score)
+    density = np.exp(log_share - betaln(first, second)) * _normal(score)
     share = density / density.sum(axis=1, keepdims=True)
-    return RodPlaces(score, betainc(i, size + 1 - i, ndtr(score)), density, share)
+    return RodPlaces(score, betainc(first, second, ndtr(score)), density, share)
 
 
 @lru_cache(maxsize=4)

@@ -1,12 +1,10 @@
-"""Profiles over the positions x, summed rod by rod.
+"""The density of the rods over the positions x, summed rod by rod.
 
 Rod i, whose place in the reduced coordinate has the density p_i(y), adds p_i(x - 2R (i - (L+1)/2))
-to the density at x. Other profiles are means over the rods that are found at x.
+to the density at x.
 """
 
 from __future__ import annotations
-
-from collections.abc import Mapping
 
 import numpy as np
 
@@ -15,23 +13,15 @@ from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array
 
 _TOGETHER = 500  # rods that are summed at once, for the memory
-_RESOLVED = 1.0  # spacings of x in the width of a rod, from which on a sum over x is its integral
-_NONE = 1e-200  # a density below which no rod is found
+_RESOLVED = 0.8  # spacings of x in the width of a rod, from which on a sum over x is its integral
 
 
-def over_positions(
-    chain: Chain, x: Array, rods: RodPlaces, fields: Mapping[str, tuple[Array, Array]]
-) -> dict[str, Array]:
-    """Return density [1/R], label, displacement and other ``fields`` at ascending, even ``x`` [R].
-
-    A field is given as (y, values), and is that of a rod at the place y.
-    """
-    L, shift = chain.size, 2 * chain.radius * chain.rank[:, None]
-    spacing = x[1] - x[0]
+def over_positions(chain: Chain, x: Array, rods: RodPlaces) -> tuple[Array, Array]:
+    """Return density [1/R] and label of the rods at ascending, even ``x`` [R]."""
+    shift, spacing = 2 * chain.radius * chain.rank[:, None], x[1] - x[0]
     resolved = rods.width() > _RESOLVED * spacing
-    density, label, moved = np.zeros((3, x.size))
-    sums = {name: np.zeros(x.size) for name in fields}
-    for first in range(0, L, _TOGETHER):
+    density, label = np.zeros((2, x.size))
+    for first in range(0, chain.size, _TOGETHER):
         some = slice(first, first + _TOGETHER)
         rod, node, below, p = _at_nodes(x, rods.places[some] + shift[some], rods, some)
         # Of a rod that the grid resolves, the sum is off by what the points are rough.
@@ -39,20 +29,10 @@ def over_positions(
         p = p / np.where(resolved[some] & (held > 0), held, 1.0)[rod]
         np.add.at(density, node, p)
         np.add.at(label, node, below)
-        np.add.at(moved, node, p * (x[node] - chain.anchors[some][rod]))
-        for name, (y, values) in fields.items():
-            there = np.interp(x[node] - shift[some][rod, 0], y, values)
-            np.add.at(sums[name], node, p * there)
     # A rod counts as one from the first node beyond its table.
     ends = np.searchsorted(x, rods.places[:, -1] + shift[:, 0], side="right")
     label += np.searchsorted(np.sort(ends), np.arange(x.size), side="right")
-    found = density > _NONE
-    room = np.where(found, density, 1.0)
-    nearest = np.clip(np.rint(label - 0.5), 0, L - 1).astype(int)
-    alone = x - chain.anchors[nearest]
-    profiles = {name: np.where(found, each / room, np.nan) for name, each in sums.items()}
-    displacement = np.where(found, moved / room, alone)
-    return {"density": density, "label": label, "displacement": displacement, **profiles}
+    return density, np.maximum.accumulate(label)
 
 
 def _at_nodes(
@@ -69,13 +49,11 @@ def _at_nodes(
     row = (places + apart * np.arange(len(places))[:, None]).ravel()
     cell = np.searchsorted(row, at + apart * rod, side="right") - 1 - rod * width
     cell = np.clip(cell, 0, width - 2)
-    left, right = places[rod, cell], places[rod, cell + 1]
-    step = right - left
-    t = (at - left) / step
+    left, step = places[rod, cell], places[rod, cell + 1] - places[rod, cell]
     below, slope = rods.below[some], rods.density[some]
     start, rise = below[rod, cell], below[rod, cell + 1] - below[rod, cell]
     # The cubic with these values and slopes at both ends of a cell.
     a, b = step * slope[rod, cell], step * slope[rod, cell + 1]
-    c, d = 3 * rise - 2 * a - b, a + b - 2 * rise
+    c, d, t = 3 * rise - 2 * a - b, a + b - 2 * rise, (at - left) / step
     value = start + t * (a + t * (c + t * d))
     return rod, node, value, np.maximum(a + t * (2 * c + 3 * t * d), 0.0) / step

@@ -5,7 +5,7 @@ import inspect
 import numpy as np
 import pytest
 
-from crazybilliards.kinetic import equilibrium, force_balance, phase_space
+from crazybilliards.kinetic import equilibrium, phase_space
 from crazybilliards.kinetic.kinetic_equation import stationary
 from crazybilliards.kinetic.kinetic_equation.continuation import (
     continued,
@@ -48,11 +48,11 @@ def test_elastic_rods_are_the_exact_ones(spring):
 
 
 @pytest.mark.parametrize("gap", [0.0, 0.2])
-def test_elastic_density_is_that_of_the_force_balance(gap):
+def test_elastic_density_is_exact(gap):
     chain = Chain(size=100, gap=gap, amplitude=10)
-    theory, balance = phase_space(chain), force_balance(chain)
-    found = np.interp(balance.x, theory.x, theory.density)
-    np.testing.assert_allclose(found, balance.density, atol=3e-3 * float(balance.density.max()))
+    theory, exact = phase_space(chain), equilibrium(chain)
+    found = np.interp(exact.x, theory.x, theory.density)
+    np.testing.assert_allclose(found, exact.density, atol=3e-3 * float(exact.density.max()))
     assert float(theory.density.integrate("x")) == pytest.approx(100, rel=1e-4)
 
 

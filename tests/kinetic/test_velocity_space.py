@@ -100,10 +100,6 @@ def test_order_statistics_of_a_gaussian():
     np.testing.assert_allclose(two.position_variance, 1 - 1 / np.pi, atol=3e-3)
     np.testing.assert_allclose(three.position, np.array([-1.5, 0, 1.5]) / np.sqrt(np.pi), atol=1e-3)
     np.testing.assert_allclose(three.velocity_variance, 1, atol=1e-4)
-    # L Cov(y_i, Y) = 1 for each order statistic of independent normal variables.
-    lever = points(40, seen).lever
-    np.testing.assert_allclose(lever, 1, atol=0.02)
-    np.testing.assert_allclose(lever[1:-1], 1, atol=2e-3)
 
 
 @pytest.mark.parametrize("symmetric", [True, False])

@@ -1,0 +1,261 @@
+"""From points to rods: exact at restitution 1, conserved, and what is refused."""
+
+import math
+
+import numpy as np
+import pytest
+
+from crazybilliards.comparison import deviation, smooth
+from crazybilliards.kinetic import (
+    breathing_cloud,
+    compressed,
+    displaced,
+    equilibrium,
+    equilibrium_states,
+    force_balance,
+    hydrodynamics,
+    phase_space,
+    relax_phase_space,
+    rod_by_rod,
+)
+from crazybilliards.kinetic.rods import fluids, places
+from crazybilliards.kinetic.rods.places import elastic_rods, exchangeable
+from crazybilliards.kinetic.rods.waves import displacement_widths
+from crazybilliards.model import Chain, load, save
+from crazybilliards.particles import simulate
+
+TWELVE = Chain(size=12)
+
+
+@pytest.mark.parametrize("spring", ["linear", "quadratic"])
+@pytest.mark.parametrize(
+    ("size", "amplitude", "gap"),
+    [
+        *[(7, 0.5, 0), (7, 30, 0), (20, 1, 0), (100, 0.5, 0), (300, 1, 0), (300, 30, 0)],
+        *[(2, 1, 0), (1, 1, 0), (20, 1, 0.3), (100, 3, 0.3), (30, 1, 2.0)],
+    ],
+)
+@pytest.mark.filterwarnings("ignore::crazybilliards.kinetic.UnmeasuredWarning")
+def test_rods_of_the_force_balance_are_exact(size, amplitude, gap, spring):
+    """The force balance has the exact points; what is left is the grid."""
+    chain = Chain(size=size, amplitude=amplitude, gap=gap, spring=spring)
+    exact, rods = equilibrium(chain), rod_by_rod(force_balance(chain))
+    assert deviation(smooth(exact), smooth(rods)).maximum < 1e-5
+    assert deviation(exact, rods).maximum < 1e-3
+    moved = np.abs(rods.mean_displacement - exact.mean_displacement)
+    assert float(moved.max()) < 1e-6 * chain.thermal_length
+    np.testing.assert_allclose(rods.displacement_width, exact.displacement_width, rtol=1e-6)
+    assert rods.attrs["density_of"] == "rods"
+
+
+def test_the_fluid_is_far_from_them():
+    """The step back from points to rods makes all of the error of the paper's equation."""
+    chain = Chain()
+    exact = smooth(equilibrium(chain))
+    assert deviation(exact, smooth(force_balance(chain))).maximum > 0.13
+    assert deviation(exact, smooth(rod_by_rod(force_balance(chain)))).maximum < 1e-5
+
+
+@pytest.mark.parametrize("frame", ["label", "eulerian"])
+def test_rods_of_a_breathing_cloud_are_exact(frame):
+    """The points of a released chain stay Gaussian, with the width that is known in closed form."""
+    release = {"duration": 6.0, "every": 2.0}
+    flow = hydrodynamics(
+        TWELVE,
+        compressed(TWELVE, 0.5),
+        **release,
+        velocity_variance="evolving",
+        frame=frame,
+        progress=False,
+    )
+    rods, cloud = rod_by_rod(flow), breathing_cloud(TWELVE, **release, stretch=0.5)
+    for time in range(flow.sizes["time"]):
+        width = float(cloud.cloud_width[time]) / TWELVE.thermal_length
+        exact = equilibrium(TWELVE.replace(amplitude=width * TWELVE.amplitude))
+        found = rods.isel(time=time)
+        known = smooth(exact).density.interp(x=found.x, kwargs={"fill_value": 0.0})
+        difference = np.abs(smooth(found).density - known).max() / TWELVE.close_packed_density
+        assert float(difference) < (1e-3 if frame == "label" else 5e-3)
+        moved = found.mean_displacement - exact.mean_displacement
+        assert float(np.abs(moved).max()) < 5e-3 * TWELVE.thermal_length
+        np.testing.assert_allclose(found.displacement_width, exact.displacement_width, rtol=0.01)
+
+
+def test_velocities_are_how_fast_the_rods_move():
+    flow = hydrodynamics(TWELVE, compressed(TWELVE, 0.5), 0.02, every=0.01, progress=False)
+    rods = rod_by_rod(flow)
+    moved = (rods.mean_displacement[2] - rods.mean_displacement[0]) / 0.02
+    np.testing.assert_allclose(rods.mean_velocity[1], moved, atol=1e-3, rtol=1e-2)
+
+
+@pytest.mark.parametrize("gap", [0.0, 0.3])
+def test_rods_move_and_stretch_with_the_chain(gap):
+    """A shift and a stretch of the exact state are exact, with a gap too."""
+    chain = Chain(size=20, gap=gap)
+    exact, rest = elastic_rods(chain), chain.reduced_anchors
+    shifted, stretched = rod_by_rod(displaced(chain, 2.0)), rod_by_rod(compressed(chain, 0.4))
+    np.testing.assert_allclose(shifted.mean_displacement, exact.mean() - rest + 2.0, atol=1e-5)
+    np.testing.assert_allclose(shifted.displacement_width, exact.width(), rtol=1e-5)
+    np.testing.assert_allclose(stretched.mean_displacement, 0.4 * exact.mean() - rest, atol=1e-5)
+    np.testing.assert_allclose(stretched.displacement_width, 0.4 * exact.width(), rtol=1e-5)
+
+
+@pytest.mark.compiled
+def test_a_quench_is_that_of_simulated_chains():
+    hot = TWELVE.replace(amplitude=2.5)
+    run = simulate(
+        TWELVE,
+        start=equilibrium_states(hot, 4000),
+        replicas=4000,
+        average="ensemble",
+        duration=4,
+        every=2.0,
+        observe="density",
+        progress=False,
+    )
+    flow = hydrodynamics(
+        TWELVE, force_balance(hot), 4, every=2.0, velocity_variance="evolving", progress=False
+    )
+    for time in range(3):
+        simulated, fluid, rods = (
+            smooth(each).isel(time=time) for each in (run, flow, rod_by_rod(flow))
+        )
+        assert deviation(simulated, rods).maximum_in_errors < 5
+        assert deviation(simulated, fluid).maximum_in_errors > 20
+
+
+def _theories():
+    chain = TWELVE.replace(restitution=0.9)
+    start = compressed(chain, 0.7)
+    flow = {"every": 1.0, "progress": False}
+    yield rod_by_rod(force_balance(TWELVE))
+    yield rod_by_rod(hydrodynamics(TWELVE, start, 2.0, **flow))
+    yield rod_by_rod(hydrodynamics(TWELVE, start, 2.0, frame="eulerian", **flow))
+    yield phase_space(chain, cells=12)
+    yield phase_space(chain.replace(gap=0.3), cells=12)
+    yield relax_phase_space(chain, start, 1.0, cells=12, **flow)
+    yield rod_by_rod(force_balance(TWELVE, lambda x: 0.3 * x))
+    run = (TWELVE.anchors, 0.1 + 0.01 * np.abs(TWELVE.anchors))
+    yield rod_by_rod(force_balance(chain.replace(gap=0.2), velocity_variance=run))
+
+
+@pytest.mark.filterwarnings("ignore::crazybilliards.kinetic.UnmeasuredWarning")
+def test_no_rod_is_lost():
+    for theory in _theories():
+        spacing = float(theory.x[1] - theory.x[0])
+        np.testing.assert_allclose(theory.density.sum("x") * spacing, 12, rtol=1e-6)
+        label = theory.label.values
+        np.testing.assert_allclose(label[..., -1] - label[..., 0], 12, rtol=1e-12)
+        assert (np.diff(label) >= 0).all()
+        assert (theory.density.values >= 0).all()
+        assert theory.attrs["density_of"] == "rods"
+
+
+def test_what_has_the_density_of_its_rods_is_returned_as_it_is():
+    for found in (equilibrium(TWELVE), phase_space(TWELVE), rod_by_rod(force_balance(TWELVE))):
+        assert rod_by_rod(found) is found
+
+
+def test_it_takes_one_time_or_all_and_files(tmp_path):
+    flow = hydrodynamics(TWELVE, displaced(TWELVE, 1.0), 2, every=1.0, progress=False)
+    save(flow, tmp_path / "flow.nc")
+    rods = rod_by_rod(load(tmp_path / "flow.nc"))
+    assert rods.density.dims == ("time", "x")
+    one = rod_by_rod(flow.isel(time=1))
+    for name in ("density", "mean_displacement", "mean_position", "mean_velocity"):
+        np.testing.assert_array_equal(one[name], rods[name][1])
+    np.testing.assert_allclose(one.mean_position, TWELVE.anchors + one.mean_displacement)
+    save(rods, tmp_path / "rods.nc")
+    assert flow.attrs["density_of"] == "fluid"
+
+
+def test_its_errors_are_stated():
+    assert force_balance(TWELVE).attrs["model_error"] > 0.1
+    assert rod_by_rod(force_balance(TWELVE)).attrs["model_error"] == 0
+    with pytest.warns(UserWarning, match="not measured"):
+        other = force_balance(TWELVE, velocity_variance=0.1)
+    assert math.isnan(rod_by_rod(other).attrs["model_error"])
+
+
+def test_more_rods_than_anybody_resolves_stay_a_fluid(monkeypatch):
+    monkeypatch.setattr(places, "MOST_RODS", 11)
+    balance = force_balance(TWELVE)
+    assert rod_by_rod(balance) is balance
+    assert phase_space(TWELVE, cells=8).attrs["density_of"] == "fluid"
+    monkeypatch.setattr(places, "MOST_RODS_WITH_GAP", 11)
+    found = phase_space(TWELVE.replace(gap=0.3), cells=8)
+    assert found.attrs["density_of"] == "fluid"
+    assert "displacement_width" not in found
+
+
+def _wrong():
+    balance = force_balance(TWELVE)
+    yield smooth(balance), "smoothed already"
+    yield balance.drop_vars("label"), "no 'label'"
+    yield balance.drop_vars("density"), "no 'density'"
+    yield balance.isel(x=slice(0, balance.sizes["x"] // 2)), "needs the whole grid"
+    yield balance.isel(x=[*range(0, 100, 2), *range(100, balance.sizes["x"])]), "must be even"
+    yield balance.isel(x=slice(None, None, -1)), "needs the whole grid"
+    yield balance.isel(particle=slice(3)), "3 particles, the chain 12"
+    yield balance.expand_dims("case"), "over x or"
+    yield balance.assign(label=balance.label * np.nan), "needs the whole grid"
+    yield balance.assign_attrs(provenance=force_balance(Chain(size=5)).attrs["provenance"]), "rods"
+    run = simulate(Chain(size=3), duration=20, observe="density", progress=False)
+    yield run, "takes a theory"
+    yield balance.drop_attrs(), "names no chain"
+    yield balance.density, "xarray.Dataset"
+
+
+def test_refusals():
+    for wrong, message in _wrong():
+        with pytest.raises(ValueError, match=message):
+            rod_by_rod(wrong)
+
+
+def test_order_statistics_of_two_and_three():
+    two, three = exchangeable(2), exchangeable(3)
+    np.testing.assert_allclose(two.mean(), np.array([-1, 1]) / math.sqrt(math.pi), atol=1e-9)
+    np.testing.assert_allclose(two.width() ** 2, 1 - 1 / math.pi, atol=1e-9)
+    np.testing.assert_allclose(three.mean()[0], -1.5 / math.sqrt(math.pi), atol=1e-9)
+
+
+def test_widths_of_waves_have_their_limits():
+    """Exact at e = 1; the centre of mass is a free rod of mass L m; far apart rods are alone."""
+    chain = Chain(size=30, restitution=0.7)
+    free, elastic = chain.free_velocity_width**2, elastic_rods(chain.replace(restitution=1))
+    warm = displacement_widths(chain, elastic, np.full(30, free))
+    np.testing.assert_allclose(warm, elastic.width(), rtol=1e-9)
+    # Cold rods that are pressed together hard move as one.
+    cold = exchangeable(30)._replace(places=1e-4 * exchangeable(30).places)
+    alone = displacement_widths(chain, cold, np.full(30, free / 30 * 1.001))
+    np.testing.assert_allclose(alone, chain.thermal_length / math.sqrt(30), rtol=0.02)
+    apart = chain.replace(gap=50.0)
+    single = elastic_rods(apart.replace(restitution=1))
+    np.testing.assert_allclose(
+        displacement_widths(apart, single, np.full(30, free)), chain.thermal_length, rtol=1e-6
+    )
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize(("restitution", "gap"), [(0.65, 0.3), (0.8, 0.0)])
+def test_kinetic_equation_against_simulated_rods(restitution, gap, solved):
+    """Before, the density was 0.12 of close packing off, and with a gap there was no W_x."""
+    chain = Chain(size=30, restitution=restitution, gap=gap)
+    run = simulate(chain, duration=20_000, observe=("widths", "density"), progress=False, seed=3)
+    theory = solved(chain)
+    assert deviation(smooth(run), smooth(theory)).maximum < 0.03
+    off = theory.displacement_width / run.displacement_width - 1
+    assert float(np.abs(off).max()) < 0.1 + 5 * float((run.displacement_width_error).max())
+    moved = np.abs(theory.mean_displacement - run.mean_displacement)
+    assert float(moved.max()) < 0.06 * chain.thermal_length
+
+
+def test_no_more_equilibria_than_temperatures(monkeypatch):
+    """With a gap all times of an isothermal fluid share one exact equilibrium."""
+    chain = Chain(size=9, gap=0.123)
+    flow = hydrodynamics(chain, displaced(chain, 1.0), 4, every=1.0, progress=False)
+    computed = []
+    recursion = places.recursion_of
+    monkeypatch.setattr(places, "recursion_of", lambda c: computed.append(c) or recursion(c))
+    fluids.rod_by_rod(flow)
+    assert len(computed) == 1
