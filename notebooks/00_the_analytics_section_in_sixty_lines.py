@@ -209,7 +209,8 @@ assert apart[inside].max() < 0.01
 #
 # The densities agree to better than 1 % of close packing where $|x|<100$ R. The largest difference,
 # 4 %, is at the two ends, where the density falls to zero over a few rods. The statistical error
-# is smaller than 1 %. Section 7 gives the reason.
+# is smaller than 1 %. Section 7 gives the main reason, and
+# [lesson 6](06_theory_meets_particles.ipynb), section 6, tells what the fit adds.
 # </details>
 #
 # ## 6. The fluid in time: three strings

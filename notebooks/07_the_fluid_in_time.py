@@ -273,6 +273,34 @@ assert max(off) < 1e-3  # hydrodynamics, and the exact solution of the package
 # closure that is right in the steady state can be wrong on the way to it.**
 # </details>
 #
+# The cloud tells where the *points* are. A fluid has rod $i$ at the place where $N = i-\frac12$.
+# `rod_by_rod` reads the rods off the points ([lesson 6](06_theory_meets_particles.ipynb), section 5).
+#
+# **Predict.** The fluid with a temperature has the exact cloud. Does it have the exact mean
+# displacements of the rods, too? Does `rod_by_rod` hold while the chain moves?
+#
+# **Run.**
+
+# %%
+by_rod = cb.rod_by_rod(warm)
+for name, theory in {"fluid": warm, "rod by rod": by_rod}.items():
+    off = abs(theory.mean_displacement - exact.mean_displacement).max().item()
+    print(f"mean displacements, {name}: at most {off / s:.4f} s from the exact ones")
+for name in ("mean_displacement", "displacement_width"):
+    agree(f"{name} of the rods and rod by rod", rods[name], by_rod[name], rods[f"{name}_error"])
+
+# %% tags=["remove-cell"]
+assert off < 1e-4 * s
+assert abs(warm.mean_displacement - exact.mean_displacement).max() > 0.05 * s
+
+# %% [markdown]
+# <details><summary>Explain</summary>
+#
+# The fluid's mean displacements are wrong by up to 0.07 $s$. Rod by rod they are right at all times,
+# and so are the widths, which a fluid does not have. Points that exchange their names in elastic
+# collisions remain independent while they move. This is all that `rod_by_rod` assumes.
+# </details>
+#
 # ## 4. The animation
 
 # %% tags=["hide-input"]

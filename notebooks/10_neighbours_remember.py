@@ -299,9 +299,10 @@ assert abs(of_neighbours) < 0.04
 # displace rods are hardly damped by collisions themselves. They are damped because the distances
 # of neighbours fluctuate by as much as their mean: a chain that is strained suddenly pushes back
 # harder than one that has had time to rearrange, and this delay costs energy, as in a viscous
-# fluid. The second theory has an equation for displacements, with this damping as one of three
-# changes, and its $W_x$ is right within a few per cent. Before, it was up to 21 % too large. The
-# same page derives it.
+# fluid. The first theory corrects the widths of strangers by the temperatures of these waves. The
+# second has an equation for displacements, with this damping as one of three changes, and its $W_x$
+# is right within a few per cent. Without these changes it would be up to 21 % too large. The same
+# page derives it.
 #
 # </details>
 #

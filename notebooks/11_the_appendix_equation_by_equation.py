@@ -690,8 +690,8 @@ assert 0.01 < error < 0.02
 #
 # They differ at the outermost rods, by one or two per cent of the displacement there, and agree in
 # the interior. In the density at $A = 30$ this makes 0.001 of close packing. The arctanh, which is
-# not the law of the displacement, costs more
-# ([lesson 6](06_theory_meets_particles.ipynb)).
+# not the law of the displacement, costs more. The 0.007 that the exact means leave come from
+# reading rods off a fluid ([lesson 6](06_theory_meets_particles.ipynb), sections 5 and 6).
 #
 # </details>
 #

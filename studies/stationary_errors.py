@@ -20,11 +20,12 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
-from scipy.interpolate import PchipInterpolator
 
 import crazybilliards as cb
 from crazybilliards.comparison.sweeps import process_pool
 from crazybilliards.kinetic import accuracy
+from crazybilliards.kinetic.rods.places import at_temperature, elastic_rods
+from crazybilliards.kinetic.rods.profiles import over_positions
 from crazybilliards.model.storage import write_atomically
 from studies.common import Table, damped, options, print_table
 
@@ -55,7 +56,7 @@ def places() -> Iterator[Place]:
 
 def held_out() -> Iterator[Place]:
     """Draw chains in the ranges of the table, half of them with a gap."""
-    draw = np.random.default_rng(20261125)
+    draw = np.random.default_rng(20261126)
     for number in range(HELD_OUT):
         size = round(math.exp(draw.uniform(math.log(10), math.log(300))))
         damping = math.exp(draw.uniform(math.log(0.15), math.log(1.5)))
@@ -100,17 +101,16 @@ def simulated_widths(chain: cb.Chain, accuracy: float, limit: float) -> xr.Datas
 
 
 def of_radius(theory: xr.Dataset, run: xr.Dataset) -> xr.Dataset:
-    """Return the density of a theory for rods of the radius of ``run``; y and the labels stay."""
-    chain, other = cb.chain_of(theory), cb.chain_of(run)
-    longer = 2 * (other.radius - chain.radius)
-    x = theory.x.values + longer * (theory.label.values - chain.size / 2)
+    """Return the density of a theory for rods of the radius of ``run``; their places in y stay."""
+    chain = cb.chain_of(theory)
+    temperature = chain.mass * float((theory.velocity_width**2).mean())
+    places = chain.reduced_anchors + theory.mean_displacement.values
+    shapes = elastic_rods(at_temperature(chain, temperature))
     spacing = run.x.values[1] - run.x.values[0]
     fine = spacing * np.arange(-run.x.size, run.x.size + 1.0)  # twice as far as the simulation
-    kept = np.concatenate([[True], np.diff(x) > 0])
-    label = PchipInterpolator(x[kept], theory.label.values[kept], extrapolate=False)
-    labels = np.where(fine < x[0], 0.0, np.where(fine > x[-1], chain.size, label(fine)))
-    density = np.nan_to_num(label.derivative()(fine))
-    return xr.Dataset({"density": ("x", density), "label": ("x", labels)}, {"x": fine}, run.attrs)
+    rods = shapes.moved(places, theory.displacement_width.values)
+    density, label = over_positions(cb.chain_of(run), fine, rods)
+    return xr.Dataset({"density": ("x", density), "label": ("x", label)}, {"x": fine}, run.attrs)
 
 
 def pooled(runs: list[xr.Dataset], name: str, sign: int) -> tuple[np.ndarray, np.ndarray]:
@@ -208,8 +208,7 @@ def measured_displacements(place: Place) -> list[Row]:
 
 def stated(theory: str, place: Place, length: float, quantity: str) -> float:
     """Return the error that the theory states for a chain that was drawn at random."""
-    expected = getattr(accuracy, f"expected_{theory}")(chain_at(place, length))
-    return float(getattr(expected, quantity))
+    return float(getattr(accuracy.expected(theory, chain_at(place, length)), quantity))
 
 
 def rows_of(folder: Path, lengths: Sequence[float], place: Place) -> list[Row]:

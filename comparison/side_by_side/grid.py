@@ -1,9 +1,9 @@
 """One chain at several values of a parameter: simulated, and solved by its theories.
 
-At e = 1 the amplitude varies. There are four results for each: the simulation; the exact
-equilibrium; the force balance closed by labels, without an input; and the force balance with an
-arctanh fitted to the simulated displacements, as in the paper. At other e the restitution varies,
-and the kinetic equations are solved, without a fit.
+At e = 1 the amplitude varies. There are five results for each: the simulation; the exact
+equilibrium; the force balance closed by labels, without an input; the density of its rods; and the
+force balance with an arctanh fitted to the simulated displacements, as in the paper. At other e the
+restitution varies, and the kinetic equations are solved, without a fit.
 
 The simulations and the kinetic equations are cases of a sweep: each is written to a folder as soon
 as it is computed, and the same call takes it from there.
@@ -25,7 +25,7 @@ from crazybilliards.comparison.stationary_theories import THEORIES
 from crazybilliards.comparison.sweeps import Case, process_pool, run_cases
 from crazybilliards.comparison.sweeps.engines import ThisProcess
 from crazybilliards.comparison.sweeps.missing import warn_of_short_runs
-from crazybilliards.kinetic import equilibrium, force_balance
+from crazybilliards.kinetic import equilibrium, force_balance, rod_by_rod
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.calls import warn_user
@@ -42,6 +42,7 @@ ELASTIC = {
     "exact": "exact",
     "labels": "force balance, without fit",
     "arctanh": "force balance, arctanh fit",
+    "rods": "force balance, rod by rod",
 }
 # The kinetic equations by their names in the results, and the jobs that solve them.
 KINETIC = {"kinetic_equation": "phase_space", "pair_correlations": "correlated_phase_space"}
@@ -92,9 +93,9 @@ def compare_elastic(
     Returns
     -------
     xarray.DataTree
-        ``tree["amplitude_3/simulation"]``, ``.../exact``, ``.../labels``, ``.../arctanh``: results
-        in the common vocabulary, not smoothed. ``attrs["status"]`` is ``interrupted`` if Ctrl-C
-        ended it early. The tree then holds what was finished.
+        ``tree["amplitude_3/simulation"]``, ``.../exact``, ``.../labels``, ``.../rods``,
+        ``.../arctanh``: results in the common vocabulary, not smoothed. ``attrs["status"]`` is
+        ``interrupted`` if Ctrl-C ended it early. The tree then holds what was finished.
 
     Raises
     ------
@@ -258,7 +259,8 @@ def _tree(results: Mapping[str, Mapping[str, xr.Dataset]], status: str) -> xr.Da
 def _elastic_theories(run: xr.Dataset) -> dict[str, xr.Dataset]:
     """Return the theories by their names; the arctanh is fitted to the run."""
     chain = chain_of(run)
-    theories = {"exact": equilibrium(chain), "labels": force_balance(chain)}
+    balance = force_balance(chain)
+    theories = {"exact": equilibrium(chain), "labels": balance, "rods": rod_by_rod(balance)}
     try:
         fit = fit_arctanh(run)
         arctanh = force_balance(chain, displacement=fit)

@@ -2,8 +2,8 @@
 
 An elastic chain is released from a displaced or compressed state, or quenched from another driving
 amplitude. The results are an ensemble of simulated chains, the isothermal fluid (the paper's two
-equations with a constant W^2), the fluid with a temperature equation, and without a gap the exact
-motion.
+equations with a constant W^2), the fluid with a temperature equation, as it is and rod by rod, and
+without a gap the exact motion.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from crazybilliards.kinetic import (
     equilibrium_states,
     force_balance,
     hydrodynamics,
+    rod_by_rod,
 )
 from crazybilliards.kinetic.exact.breathing import breathing_cloud
 from crazybilliards.model import Chain, chain_of
@@ -33,7 +34,12 @@ Release = Literal["compressed", "displaced", "quenched"]
 PARTICLES = "particles"
 # The argument velocity_variance of hydrodynamics.
 FLUIDS: dict[str, Literal["evolving"] | None] = {"isothermal": None, "evolving": "evolving"}
-LEGEND = {"isothermal": "isothermal fluid", "evolving": "fluid with temperature", "exact": "exact"}
+LEGEND = {
+    "isothermal": "isothermal fluid",
+    "evolving": "fluid with temperature",
+    "rods": "rods of this fluid",
+    "exact": "exact",
+}
 
 
 def compare_relaxation(
@@ -66,9 +72,10 @@ def compare_relaxation(
     Returns
     -------
     xarray.DataTree
-        ``tree["particles"]``, ``["isothermal"]``, ``["evolving"]`` and, for linear springs without
-        gap, ``["exact"]``: results over time in the common vocabulary. The densities are as they
-        are, not smoothed, those of the simulation in groups of replicas as well.
+        ``tree["particles"]``, ``["isothermal"]``, ``["evolving"]``, its ``["rods"]`` and, for
+        linear springs without gap, ``["exact"]``: results over time in the common vocabulary. The
+        densities are as they are, not smoothed, those of the simulation in groups of replicas as
+        well.
 
     Raises
     ------
@@ -93,6 +100,8 @@ def compare_relaxation(
             )
         if results[name].attrs["status"] == "interrupted":
             raise KeyboardInterrupt("interrupted before the simulation")
+    with waiting_for("summing rod by rod", progress):
+        results["rods"] = rod_by_rod(results["evolving"])
     if chain.gap == 0 and chain.spring == "linear":
         results["exact"] = _exact(chain, release, by, duration, every)
     results[PARTICLES] = simulate(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import matplotlib.pyplot as plt
@@ -13,7 +14,7 @@ from matplotlib.figure import Figure
 
 from crazybilliards.comparison.coverage import smooth
 from crazybilliards.comparison.drawing import overlay
-from crazybilliards.comparison.layout import at_the_left, entitle, legend_above, panels
+from crazybilliards.comparison.layout import entitle, legend_above, panels
 from crazybilliards.comparison.side_by_side.grid import SIMULATION
 from crazybilliards.comparison.side_by_side.relaxation import LEGEND, PARTICLES, cloud
 from crazybilliards.model import Chain, chain_of
@@ -33,9 +34,9 @@ _LEAST_DRAWN = 2e-3  # of close packing: pictures end where every density is low
 
 
 def draw_spacetime(tree: xr.DataTree) -> Figure:
-    """rho(x, t) of the simulation and both fluids, side by side on one colour scale."""
+    """rho(x, t) of the simulation, both fluids and the rods, on one colour scale."""
     densities = _densities(tree)
-    figure, axes = panels(1, len(densities), height=2.9, sharey=True)
+    figure, axes = panels(2, math.ceil(len(densities) / 2), height=2.3, sharex=True, sharey=True)
     chain = _chain(tree)
     for ax, (name, result) in zip(axes, densities.items(), strict=True):
         image = ax.pcolormesh(
@@ -47,9 +48,8 @@ def draw_spacetime(tree: xr.DataTree) -> Figure:
             rasterized=True,
         )
         entitle(ax, name)
-        ax.set(xlabel="position $x$ [R]", xlim=_extent(densities))
-        if at_the_left(ax):
-            ax.set_ylabel("time $t$ [T]")
+        ax.set(xlabel="position $x$ [R]", ylabel="time $t$ [T]", xlim=_extent(densities))
+        ax.label_outer()
     figure.colorbar(image, ax=axes, label=_DENSITY)
     return figure
 
@@ -83,7 +83,7 @@ def draw_cloud(tree: xr.DataTree) -> Figure:
     ):
         curves = {}
         for key, name in _NAMES.items():
-            if key in tree:
+            if key in tree and key != "rods":  # whose cloud is that of the fluid
                 found = cloud(tree[key].to_dataset())
                 curves[name] = (found / s).assign_attrs(tree[key].attrs)
                 curves[name][which].attrs = {"long_name": "", "units": "1"}

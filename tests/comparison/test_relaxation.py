@@ -10,7 +10,7 @@ from crazybilliards.comparison.side_by_side.relaxation_figures import (
     draw_profiles,
     draw_spacetime,
 )
-from crazybilliards.model import Chain, load, save
+from crazybilliards.model import Chain, chain_of, load, save
 
 pytestmark = pytest.mark.compiled
 
@@ -27,6 +27,12 @@ def test_the_isothermal_fluid_is_wrong_and_the_one_with_temperature_right(tree):
     assert distances["isothermal"] > 0.5
     assert distances["evolving"] < 0.05
     assert distances["exact"] < 0.05
+    # Rod by rod the fluid with a temperature is exact: what is left is the grid.
+    rods, exact = tree["rods"].mean_displacement, tree["exact"].mean_displacement
+    assert (
+        float(np.abs(rods - exact).max())
+        < 1e-3 * chain_of(tree["rods"].to_dataset()).thermal_length
+    )
 
 
 @pytest.mark.parametrize(("release", "by"), [("displaced", 2.0), ("quenched", 3.0)])
@@ -42,7 +48,10 @@ def test_with_a_gap_the_fluid_with_temperature_stays_close(release, by):
 
 def test_the_pictures_show_every_description(tree):
     titles = [ax.get_title(loc="left") for ax in draw_spacetime(tree).axes]
-    assert titles == ["(a)  simulation", "(b)  isothermal fluid", "(c)  fluid with temperature", ""]
+    assert titles == [
+        *("(a)  simulation", "(b)  isothermal fluid", "(c)  fluid with temperature"),
+        *("(d)  rods of this fluid", ""),
+    ]
     assert len(draw_profiles(tree).axes) == 4
     labels = draw_cloud(tree).axes[0].get_legend_handles_labels()[1]
     assert set(labels) == {"simulation", "isothermal fluid", "fluid with temperature", "exact"}

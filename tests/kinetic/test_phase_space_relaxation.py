@@ -54,7 +54,8 @@ def test_the_density_is_that_of_the_fluid(gap):
         inside = np.abs(fluid.x) < float(flow.x[-1])
         assert float(np.abs(difference.where(inside)).max()) < most, name
     np.testing.assert_allclose(flow.density.integrate("x"), chain.size, rtol=1e-4)
-    np.testing.assert_allclose(flow.label[:, -1], chain.size, rtol=1e-12)
+    # The tails of the rods are continued beyond the mesh.
+    np.testing.assert_allclose(flow.label[:, -1], chain.size, rtol=1e-9)
     smoothed = smooth(flow).density.interp(x=fluid.x, kwargs={"fill_value": 0.0})
     assert float(np.abs(smoothed - smooth(fluid).density).max()) < 1e-3
 

@@ -34,7 +34,7 @@ def test_relax_writes_pictures_animations_and_the_data(run, tmp_path):
     assert re.search(r"= new Animation\([^)]*\);\s*if \(!matchMedia.*play_animation\(\)", page)
     assert "input[type=range].anim-slider { width: 100%; }" in page
     tree = load(tmp_path / "relaxation.nc")
-    assert set(tree.children) == {"particles", "isothermal", "evolving", "exact"}
+    assert set(tree.children) == {"particles", "isothermal", "evolving", "rods", "exact"}
     assert "rms distance" in done.stdout
 
 
