@@ -205,7 +205,7 @@ def best_theory(
     >>> from crazybilliards import Chain
     >>> theory = best_theory(Chain(size=30), "density")
     >>> theory.attrs["chosen"].partition(":")[0]
-    'equilibrium has the smallest stated error of density'
+    'equilibrium comes first of those with the smallest stated error of density'
     """
     given = {"tolerance": tolerance, "cells": cells}
     settings = {name: value for name, value in given.items() if value is not None}

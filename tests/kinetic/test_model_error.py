@@ -47,7 +47,9 @@ def test_a_measured_chain_states_its_row_and_two_standard_errors():
     for row in measured:
         expected = accuracy.expected(row["theory"], chain_of_row(row))
         error = float(row["error"]) + 2 * float(row["standard error"])
-        assert getattr(expected, row["quantity"]) == pytest.approx(error), row
+        # At e = 1 no distribution depends on the damping, but the mesh does.
+        mesh = 2e-4 if float(row["e"]) == 1 else 0.0
+        assert getattr(expected, row["quantity"]) == pytest.approx(error, abs=mesh), row
 
 
 def test_between_the_measured_chains_the_largest_error_counts():
