@@ -20,7 +20,7 @@ from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.arrays import Array
 from crazybilliards.model.checks import check_real, shown
 from crazybilliards.model.grid import position_grid, thermal_reach
-from crazybilliards.model.vocabulary import OF_FLUID, require, result
+from crazybilliards.model.vocabulary import OF_FLUID, OF_RODS, require, result
 
 _RODS_TOLERANCE = 1e-3
 _CROWDED = 1.01  # so many rods in the length of one overlap, but for errors of the grid
@@ -100,6 +100,8 @@ class Start(NamedTuple):
 def read_start(chain: Chain, start: xr.Dataset) -> Start:
     """Check a start and make functions of it."""
     require(start, ("density",))
+    if start.attrs.get("density_of") == OF_RODS and "displacement" in start:
+        start = _as_a_fluid(start)
     if start.density.dims != ("x",):
         raise ValueError(f"start: density must be over x alone, got {start.density.dims}")
     x, density = (_numbers(start, name) for name in ("x", "density"))
@@ -131,6 +133,15 @@ def read_start(chain: Chain, start: xr.Dataset) -> Start:
     if (profiles["velocity_variance"](x) <= 0).any():
         raise ValueError("start: velocity_variance must be positive")
     return Start(x, CubicHermiteSpline(x, scale * label, scale * density), *profiles.values())
+
+
+def _as_a_fluid(start: xr.Dataset) -> xr.Dataset:
+    """Return a result with the density of its fluid, whose label belongs to its displacement."""
+    own, x = chain_of(start), start.x.values
+    lattice = 2 * own.radius + own.lattice_gap
+    label = own.size / 2 + (x - start.displacement.values) / lattice
+    density = np.maximum(PchipInterpolator(x, label).derivative()(x), 0.0)
+    return start.assign(density=("x", density), label=("x", label))
 
 
 def require_rods(chain: Chain, name: str, rods: float) -> None:

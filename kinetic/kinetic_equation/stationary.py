@@ -71,7 +71,7 @@ def phase_space(
     ----------
     chain
         The chain, with a restitution near 1 (0.9 to 1.05 gives good results), both springs, and
-        up to 100 000 rods. A gap enters in mean field; see the notes.
+        up to 100 000 rods. A gap enters f in mean field.
     order
         Order of the collision operator in lambda. None: 2 for e <= 1 and 1 for e > 1, which
         agree with simulations. The module of the equation gives the reason.
@@ -84,9 +84,12 @@ def phase_space(
     Returns
     -------
     xarray.Dataset
-        ``phase_space_density`` over (y, velocity); ``density``, ``label``, ``displacement``,
-        ``velocity_variance``, ``flow_velocity`` and ``heat_flux`` over x; ``velocity_width``,
-        ``mean_displacement`` and, without gap, ``displacement_width`` over particle.
+        ``phase_space_density`` over (y, velocity); ``density`` and ``label`` of the rods over x,
+        and there ``displacement``, ``velocity_variance``, ``flow_velocity`` and ``heat_flux`` of
+        the points, as in a fluid; ``velocity_width``, ``mean_displacement`` and
+        ``displacement_width`` over particle. Of more than 10 000 rods, or 3000 with a gap, the
+        density is that of a fluid (``attrs["density_of"]``), and with a gap there is no
+        ``displacement_width``.
         ``attrs``: ``residual``, the last Newton step relative to max f; ``mesh_error``, the
         largest relative change of a velocity width in the last refinement (NaN if ``cells`` was
         given); ``cells``; and the errors of the theory in simulations of chains like this one,
@@ -100,10 +103,10 @@ def phase_space(
     Notes
     -----
     Compared with simulations (L = 100, gamma = 1, particles 3 to L - 2) velocity widths are
-    within 0.8 % for e = 0.95 to 1, 1.0 % at 0.9, and 6.6 % at 0.8. Displacement widths are up to
-    13 % too small at 0.95 and 20 % at 0.9, because only the collective motion of the centre of
-    mass is included. With a gap the mean displacements are those of the mean field, which also
-    has displacements in the middle of the chain where there are none.
+    within 0.8 % for e = 0.95 to 1, 1.0 % at 0.9, and 6.6 % at 0.8. Displacement widths of all
+    rods are within 5 % at 0.95 and 7 % at 0.9 (:mod:`crazybilliards.kinetic.rods.waves`). With a
+    gap the rods need an exact equilibrium (:mod:`crazybilliards.kinetic.rods.places`), which takes
+    a second for 1000 rods.
 
     Raises
     ------

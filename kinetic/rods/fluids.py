@@ -154,7 +154,7 @@ def _temperature(chain: Chain, fluid: xr.Dataset) -> float:
 def _errors(theory: xr.Dataset, chain: Chain) -> dict[str, Any]:
     """Return the errors to state, of the kinds that the theory states."""
     by_labels = json.loads(theory.attrs["provenance"]).get("theory") == BY_LABELS
-    exact = by_labels and not math.isnan(theory.attrs["model_error"])
+    exact = by_labels and not math.isnan(theory.attrs.get("model_error", math.nan))
     accuracy = expected("equilibrium", chain) if exact else Accuracy()
     stated = accuracy.attributes("density")
     return {name: value for name, value in stated.items() if name in theory.attrs}

@@ -171,6 +171,19 @@ def test_it_takes_one_time_or_all_and_files(tmp_path):
     assert flow.attrs["density_of"] == "fluid"
 
 
+@pytest.mark.parametrize("gap", [0.0, 0.3])
+def test_a_start_with_the_density_of_rods_is_that_of_their_fluid(gap):
+    """At this amplitude rods have peaks, which no fluid can start from."""
+    chain, cold = Chain(size=12, gap=gap), Chain(size=12, gap=gap, amplitude=0.5)
+    balance = force_balance(cold)
+    known = hydrodynamics(chain, balance, 2, every=1.0, progress=False)
+    for start, most in ((rod_by_rod(balance), 0.005), (phase_space(cold), 0.02)):
+        assert float(start.density.max()) > chain.close_packed_density
+        flow = hydrodynamics(chain, start, 2, every=1.0, progress=False)
+        moved = np.abs(flow.mean_displacement - known.mean_displacement)
+        assert float(moved.max()) < most * chain.thermal_length
+
+
 def test_its_errors_are_stated():
     assert force_balance(TWELVE).attrs["model_error"] > 0.1
     assert rod_by_rod(force_balance(TWELVE)).attrs["model_error"] == 0
