@@ -100,6 +100,10 @@ def test_rods_move_and_stretch_with_the_chain(gap):
     np.testing.assert_allclose(shifted.displacement_width, exact.width(), rtol=1e-5)
     np.testing.assert_allclose(stretched.mean_displacement, 0.4 * exact.mean() - rest, atol=1e-5)
     np.testing.assert_allclose(stretched.displacement_width, 0.4 * exact.width(), rtol=1e-5)
+    closer = exact._replace(places=0.4 * exact.places, density=exact.density / 0.4)
+    density, label = over_positions(chain, stretched.x.values, closer)
+    np.testing.assert_allclose(stretched.density, density, atol=1e-4 * density.max())
+    np.testing.assert_allclose(stretched.label, label, atol=1e-5)
 
 
 @pytest.mark.compiled
@@ -263,6 +267,15 @@ def test_kinetic_equation_against_simulated_rods(restitution, gap, solved):
     assert float(np.abs(off).max()) < 0.1 + 5 * float((run.displacement_width_error).max())
     moved = np.abs(theory.mean_displacement - run.mean_displacement)
     assert float(moved.max()) < 0.06 * chain.thermal_length
+
+
+@pytest.mark.compiled
+def test_few_weakly_damped_rods_have_the_widths_of_simulated_ones(solved):
+    """The waves of independent points are colder than the rods, which have the centre of mass."""
+    chain = Chain(size=10, restitution=0.9, damping=0.3)
+    run = simulate(chain, duration=40_000, progress=False, seed=3)
+    off = solved(chain).displacement_width / run.displacement_width - 1
+    assert float(np.abs(off).max()) < 0.03
 
 
 def test_no_more_equilibria_than_temperatures(monkeypatch):
