@@ -22,9 +22,9 @@ CAPTION = (
     "L = 100, e = 1, four driving amplitudes. Circles: simulation, smoothed as in the "
     "paper; a thin line where circles would hide steps. Other lines: "
     f"{'; '.join(ELASTIC.values())}. Insets: the right edge, every bin. Below each: the difference "
-    "from the exact density in units of close packing. At e = 1 without a gap equation 19 (diff_gl) "
-    "is exact for the rods without their length, as points. What is approximate is to read rods "
-    "off a fluid by 1/(1 - 2 rho R); rod by rod it is exact."
+    "from the exact density in units of close packing. At e = 1 without a gap equation 19 "
+    "(diff_gl) is exact for the rods without their length, as points. What is approximate is to "
+    "read rods off a fluid by 1/(1 - 2 rho R); rod by rod it is exact."
 )
 
 _AMPLITUDES = (1.0, 3.0, 10.0, 30.0)
