@@ -140,13 +140,13 @@ def beta_scores(first: Array, second: Array) -> RodPlaces:
 
     ``second`` is ``first`` backwards.
     """
-    low = ndtri(betaincinv(first, second, _TAIL))
-    score = low[:, None] + np.linspace(0, 1, _NODES) * (-low[::-1] - low)[:, None]
+    low = np.asarray(ndtri(betaincinv(first, second, _TAIL)), dtype=float)
+    score: Array = low[:, None] + np.linspace(0.0, 1.0, _NODES) * (-low[::-1] - low)[:, None]
     first, second = first[:, None], second[:, None]
     log_share = (first - 1) * log_ndtr(score) + (second - 1) * log_ndtr(-score)
     density = np.exp(log_share - betaln(first, second)) * _normal(score)
     share = density / density.sum(axis=1, keepdims=True)
-    return RodPlaces(score, betainc(first, second, ndtr(score)), density, share)
+    return RodPlaces(score, np.asarray(betainc(first, second, ndtr(score))), density, share)
 
 
 @lru_cache(maxsize=4)

@@ -7,6 +7,7 @@ to the density at x.
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from crazybilliards.kinetic.rods.places import RodPlaces
 from crazybilliards.model import Chain
@@ -27,8 +28,8 @@ def over_positions(chain: Chain, x: Array, rods: RodPlaces) -> tuple[Array, Arra
         # Of a rod that the grid resolves, the sum is off by what the points are rough.
         held = spacing * np.bincount(rod, p, resolved[some].size)
         p = p / np.where(resolved[some] & (held > 0), held, 1.0)[rod]
-        np.add.at(density, node, p)
-        np.add.at(label, node, below)
+        density += np.bincount(node, p, x.size)
+        label += np.bincount(node, below, x.size)
     # A rod counts as one from the first node beyond its table.
     ends = np.searchsorted(x, rods.places[:, -1] + shift[:, 0], side="right")
     label += np.searchsorted(np.sort(ends), np.arange(x.size), side="right")
@@ -37,7 +38,7 @@ def over_positions(chain: Chain, x: Array, rods: RodPlaces) -> tuple[Array, Arra
 
 def _at_nodes(
     x: Array, places: Array, rods: RodPlaces, some: slice
-) -> tuple[Array, Array, Array, Array]:
+) -> tuple[NDArray[np.intp], NDArray[np.intp], Array, Array]:
     """Return rod, node, the probability below it and the density, of all nodes in the tables."""
     first = np.searchsorted(x, places[:, 0])
     count = np.searchsorted(x, places[:, -1], side="right") - first
