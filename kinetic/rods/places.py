@@ -123,8 +123,8 @@ def _mapped(rods: RodPlaces, places: Array, slope: Array) -> RodPlaces:
 
 
 def at_temperature(chain: Chain, temperature: float) -> Chain:
-    """Return the elastic chain with about this temperature, to a thousandth of the free one."""
-    ratio = max(round(temperature / chain.temperature, 3), 1e-3)
+    """Return the elastic chain with this temperature, to three digits, which few chains have."""
+    ratio = float(f"{temperature / chain.temperature:.3g}")
     return chain.replace(restitution=1.0, amplitude=chain.amplitude * math.sqrt(ratio))
 
 

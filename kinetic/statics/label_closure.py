@@ -25,6 +25,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 import xarray as xr
@@ -135,6 +136,7 @@ class Stationary:
         return density, L / 2 + np.sign(x) * L * (0.5 - share)
 
 
+@lru_cache(maxsize=8)
 def stationary(chain: Chain) -> Stationary:
     """Solve the boundary-value problem of this module for a chain at its temperature."""
     n, lam = chain.potential_exponent, chain.lattice_gap * chain.size / chain.thermal_length
