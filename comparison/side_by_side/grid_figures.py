@@ -13,7 +13,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.colors import LogNorm
+from matplotlib.colors import LogNorm, to_hex
 from matplotlib.figure import Figure
 
 from crazybilliards.comparison.coverage import smooth
@@ -128,15 +128,18 @@ def _panels(tree: xr.DataTree) -> tuple[Figure, list[list[Axes]]]:
 def draw_widths(tree: xr.DataTree) -> Figure:
     """W_v(i) and <dx_i> for every restitution, in units of the free rod; lines are theories."""
     figure, axes = panels(1, 2, height=2.5)
-    for number, group in enumerate(tree.children.values()):
+    count = len(tree.children)
+    many = plt.get_cmap("cividis")(np.linspace(0.0, 1.0, count))
+    colours = COLOURS if count <= len(COLOURS) else [to_hex(each) for each in many]
+    for number, (colour, group) in enumerate(zip(colours, tree.children.values(), strict=False)):
         run = group[SIMULATION].to_dataset()
         chain = chain_of(run)
-        colour = COLOURS[number % len(COLOURS)]
+        look: Any = {"number": number % len(COLOURS), "color": colour}
         units = (chain.free_velocity_width, chain.thermal_length)
         for ax, name, unit in zip(
             axes, ("velocity_width", "mean_displacement"), units, strict=True
         ):
-            draw_rods(ax, run, name, number=number, unit=unit, label=f"$e = {chain.restitution:g}$")
+            draw_rods(ax, run, name, unit=unit, label=f"$e = {chain.restitution:g}$", **look)
             for key, style in _STYLES.items():
                 if key in group:
                     theory = group[key].to_dataset()

@@ -8,6 +8,8 @@ from drawn_pictures import WAVES, X, drawn, simulated
 
 from crazybilliards.comparison import overlay, smooth
 from crazybilliards.comparison.drawing import mark_clipped
+from crazybilliards.comparison.side_by_side.grid import KINETIC, SIMULATION
+from crazybilliards.comparison.side_by_side.grid_figures import draw_widths
 from crazybilliards.kinetic import equilibrium, equilibrium_states, force_balance
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
@@ -99,6 +101,64 @@ def test_two_simulations_differ_and_keywords_are_passed_through():
     assert line.get_linewidth() == 5
     with pytest.raises(ValueError, match=r"style: .*, got 'seed 3'; did you mean 'seed [12]'"):
         overlay(runs, "velocity_width", style={"seed 3": {}})
+
+
+def looks_of(ax):
+    """Return colour with symbol of every simulation, and colour with line style of every theory."""
+    symbols = [each.lines[0] for each in ax.containers]
+    drawn = [(each.get_color(), each.get_marker()) for each in symbols]
+    lines = [each for each in ax.lines if each not in symbols]
+    return drawn, [(each.get_color(), each.get_linestyle()) for each in lines]
+
+
+def many(of, number):
+    return {str(label): of for label in range(number)}
+
+
+EXACT = equilibrium(Chain(size=3))
+ERRORS = {
+    f"{name}_error": 0.1 + 0 * EXACT[name] for name in ("velocity_width", "mean_displacement")
+}
+MEASURED = EXACT.assign(ERRORS).assign_attrs(source="simulation")
+
+
+@pytest.mark.parametrize("on_paper", [False, True])
+def test_every_curve_has_its_own_look(tmp_path, on_paper):
+    how = {"paper": tmp_path / "a.png"} if on_paper else {}
+    results = many(MEASURED, 7) | {f"theory {each}": EXACT for each in range(7)}
+    symbols, lines = looks_of(overlay(results, "velocity_width", **how))
+    assert len({colour for colour, _ in symbols}) == len({symbol for _, symbol in symbols}) == 7
+    assert len({colour for colour, _ in lines}) == 7
+    assert [symbol for _, symbol in symbols[:4]] == ["o", "s", "D", "^"]
+    assert [line for _, line in lines[:4]] == ["-", "--", ":", "-."]
+
+
+@pytest.mark.parametrize(
+    ("of", "number", "full"),
+    [
+        (MEASURED, 49, {"color": "red", "marker": "*"}),
+        (EXACT, 28, {"color": "red", "linestyle": "-"}),
+    ],
+)
+def test_there_are_as_many_looks_as_colours_times_symbols_or_line_styles(of, number, full):
+    symbols, lines = looks_of(overlay(many(of, number), "velocity_width"))
+    assert len({*symbols, *lines}) == number
+    before = plt.get_fignums()
+    with pytest.raises(ValueError, match=f"style= must give color and .* there are {number} looks"):
+        overlay(many(of, number + 1), "velocity_width", style={"3": {"color": "red"}})
+    assert plt.get_fignums() == before
+    symbols, lines = looks_of(overlay(many(of, number + 1), "velocity_width", style={"3": full}))
+    assert len({*symbols, *lines}) == number + 1
+
+
+def test_every_chain_of_a_picture_has_its_own_look():
+    theory = list(KINETIC)[-1]
+    groups = {f"restitution_{n}": {SIMULATION: MEASURED, theory: EXACT} for n in range(9)}
+    every = {f"{name}/{key}": each for name, group in groups.items() for key, each in group.items()}
+    for ax in draw_widths(xr.DataTree.from_dict(every)).axes:
+        symbols, lines = looks_of(ax)
+        solved = {look for look in lines if look[0] != "0.4"}  # that one is in the legend only
+        assert len(set(symbols)) == len(solved) == 9
 
 
 def test_symbols_beyond_the_frame_are_marked_on_it():
