@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping, Sequence
 from io import BytesIO
-from pathlib import Path
 from typing import Any, Literal, get_args
 
 import matplotlib.pyplot as plt
@@ -19,7 +18,7 @@ from numpy.typing import ArrayLike
 from crazybilliards.comparison.coverage import require_same_smoothing
 from crazybilliards.comparison.curves import Curve, axis_label, find_curve, is_of_one_rod
 from crazybilliards.comparison.layout import house_style, panels
-from crazybilliards.comparison.symbols import draw_measured
+from crazybilliards.comparison.symbols import MOST_SYMBOLS, draw_measured
 from crazybilliards.model.checks import check_choice, check_path, got, shown
 from crazybilliards.model.storage import write_atomically
 
@@ -28,6 +27,7 @@ Along = Literal["normalized_particle", "mean_position"]
 # Okabe and Ito's colours, distinct for any colour vision; symbols and line styles differ too.
 COLOURS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#D55E00", "#56B4E9", "#000000")
 SYMBOLS = "osD^v<>"
+_ON_PAPER = 200  # symbols of a curve at most
 
 
 def _looks(order: Sequence[int], ways: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
@@ -69,9 +69,10 @@ def overlay(
     results
         ``{label: result}``. Simulations are drawn as symbols with their standard errors, theories
         as lines, in the order given. Every simulation has its own colour and symbol, up to 49, and
-        every theory its own colour and line style, up to 28. Where the symbols of a simulation
-        would hide waves between them, all its values are drawn instead, as a thin line in a band of
-        one standard error.
+        every theory its own colour and line style, up to 28. Of more than 60 values (200 in a
+        picture for print) evenly spaced ones and the last are drawn as symbols. Where the symbols
+        of a simulation would hide waves between them, all its values are drawn instead, as a thin
+        line in a band of one standard error.
     quantity
         A variable over x, time, particle, contact, mode, separation, velocity or velocity_bin.
         Densities must be smoothed all or not at all. ``velocity_density`` is that of a rod picked
@@ -108,7 +109,8 @@ def overlay(
     if paper is not None:
         if ax is not None:
             raise ValueError("paper: the picture has axes of its own, and ax must be None")
-        return _on_paper(check_path("paper", paper), results, quantity, along, style)
+        file = check_path("paper", paper)
+        kind = check_choice("paper", file.suffix[1:], FigureCanvasBase.get_supported_filetypes())
     curves = _curves(results, quantity, along)
     if not (ax is None or isinstance(ax, Axes)):
         raise ValueError(f"ax must be Axes of matplotlib, got {shown(ax)}")
@@ -119,16 +121,35 @@ def overlay(
     for label in style:
         if label not in results:
             raise ValueError(f"style: the results are {got(label, list(results))}")
-    looks = _choose(results, style)
-    if ax is None:
-        _, ax = plt.subplots(layout="constrained")
-    for label, (abscissa, values, error) in curves.items():
-        own, look = dict(style.get(label, {})), looks.get(label, {}) | {"label": label}
+    looks = _choose(curves, style)
+    if paper is None:
+        if ax is None:
+            _, ax = plt.subplots(layout="constrained")
+        return _draw(ax, curves, looks, style)
+    picture = BytesIO()
+    with house_style():  # which acts when the file is written, too
+        figure, [ax] = panels(1, 1, wanted=1)
+        _draw(ax, curves, looks, style, most=_ON_PAPER).legend()
+        figure.savefig(picture, format=kind)
+    write_atomically(file, picture.getvalue())
+    return ax
+
+
+def _draw(
+    ax: Axes,
+    curves: Mapping[str, Curve],
+    looks: Mapping[str, Mapping[str, Any]],
+    style: Mapping[str, Mapping[str, Any]],
+    most: int = MOST_SYMBOLS,
+) -> Axes:
+    """Draw simulations as symbols, at most so many, and theories as lines."""
+    for label, (abscissa, values, error, measured) in curves.items():
+        own, look = dict(style.get(label, {})), dict(label=label, **looks.get(label, {}))
         try:
-            if _is_simulation(results[label]):
+            if measured:
                 look = {"markersize": 3.5, "zorder": 3} | look | own
                 spread = None if error is None else error.values
-                draw_measured(ax, abscissa.values, values.values, spread, look)
+                draw_measured(ax, abscissa.values, values.values, spread, look, most=most)
             else:
                 ax.plot(abscissa, values, **{"zorder": 2} | look | own)
         except (AttributeError, TypeError, ValueError) as problem:  # of matplotlib, for a keyword
@@ -140,38 +161,22 @@ def overlay(
     return ax
 
 
-def _is_simulation(result: xr.Dataset) -> bool:
-    return bool(result.attrs.get("source") == "simulation")
-
-
 def _choose(
-    results: Mapping[str, xr.Dataset], style: Mapping[str, Mapping[str, Any]]
+    curves: Mapping[str, Curve], style: Mapping[str, Mapping[str, Any]]
 ) -> dict[str, dict[str, Any]]:
     """Return a look for every curve; if too few are left, for those that ``style`` gives none."""
     chosen = {}
-    for simulated, looks, way in ((True, _SIMULATIONS, "marker"), (False, _LINES, "linestyle")):
-        labels = [label for label, each in results.items() if _is_simulation(each) == simulated]
+    for measured, looks, way in ((True, _SIMULATIONS, "marker"), (False, _LINES, "linestyle")):
+        labels = [label for label, each in curves.items() if each.measured == measured]
         if len(labels) > len(looks):
             labels = [each for each in labels if not {"color", way} <= style.get(each, {}).keys()]
         if len(labels) > len(looks):
             raise ValueError(
                 f"style= must give color and {way} of {len(labels) - len(looks)} more curves: "
-                f"there are {len(looks)} looks for {'simulations' if simulated else 'theories'}"
+                f"there are {len(looks)} looks for {'simulations' if measured else 'theories'}"
             )
         chosen |= dict(zip(labels, looks, strict=False))
     return chosen
-
-
-def _on_paper(file: Path, results: Any, quantity: str, along: Along, style: Any) -> Axes:
-    """Draw in the style of the package, which acts when the file is written, too."""
-    kind = check_choice("paper", file.suffix[1:], FigureCanvasBase.get_supported_filetypes())
-    picture = BytesIO()
-    with house_style():
-        figure, [ax] = panels(1, 1, wanted=1)
-        overlay(results, quantity, along=along, ax=ax, style=style).legend()
-        figure.savefig(picture, format=kind)
-    write_atomically(file, picture.getvalue())
-    return ax
 
 
 def _curves(results: Mapping[str, xr.Dataset], quantity: str, along: str) -> dict[str, Curve]:
@@ -217,8 +222,8 @@ def draw_rods(
     """
     look = {**_NUMBERED[number], "linewidth": 0.7, "label": label, **how}
     values, error = (run[name].values / unit for name in (quantity, f"{quantity}_error"))
-    spaced = np.geomspace if along == "particle" else np.linspace
-    draw_measured(ax, run[along].values, values, error, look, spaced=spaced)
+    logarithmic = along == "particle"
+    draw_measured(ax, run[along].values, values, error, look, logarithmic=logarithmic)
 
 
 def draw_points(

@@ -44,9 +44,24 @@ def test_overlay_draws_the_rods_at_both_ends_of_a_long_chain():
     run = simulate(Chain(size=107), duration=100, observe="widths", progress=False)
     ax = overlay({"rods": run}, "velocity_width")
     symbols = ax.containers[0].lines[0]
-    assert len(symbols.get_xdata()) == 60
+    assert len(symbols.get_xdata()) == 54
     assert symbols.get_xdata()[[0, -1]].tolist() == [-1, 1]
     assert symbols.get_ydata()[-1] == run.velocity_width[-1]
+
+
+@pytest.mark.parametrize("count", [2, 60, 61, 100, 101, 108, 200, 201, 300])
+@pytest.mark.parametrize("on_paper", [False, True])
+def test_symbols_are_evenly_spaced_and_all_are_drawn_where_there_is_room(tmp_path, count, on_paper):
+    run, how = simulated(np.arange(float(count)), np.ones(count)), {}
+    if on_paper:
+        how = {"paper": tmp_path / "a.png"}
+    symbols, _, _ = drawn(overlay({"rods": run}, **how))
+    most = 200 if on_paper else 60
+    assert symbols.size == count if count <= most else most / 2.1 < symbols.size <= most
+    assert np.unique(np.diff(symbols[:-1])).size <= 1
+    assert symbols[[0, -1]].tolist() == [0, count - 1]
+    if count in (101, 201):  # every second, or every fourth
+        assert np.unique(np.diff(symbols)).size == 1
 
 
 def test_overlay_draws_every_node_of_a_density_with_waves_between_the_symbols():
@@ -64,7 +79,7 @@ def test_overlay_draws_every_node_of_a_density_with_waves_between_the_symbols():
 def test_overlay_draws_symbols_where_straight_lines_between_them_follow_the_curve():
     smooth_curve = 0.4 / (1 + np.exp((np.abs(X) - 100) / 8))
     symbols, lined, curve = drawn(overlay({"rods": simulated(X, smooth_curve)}))
-    assert (symbols.size, lined.size) == (60, 0)
+    assert (symbols.size, lined.size) == (57, 0)
     assert np.abs(curve(X) - smooth_curve).max() < 0.01 * 0.4
     partly = np.where(X > 70, WAVES, 0.4)
     symbols, lined, curve = drawn(overlay({"rods": simulated(X, partly)}))
@@ -77,7 +92,7 @@ def test_noise_is_drawn_as_symbols_and_waves_within_it_as_a_line():
     """All nodes together show a wave of two standard errors; two of them do not."""
     noise = np.random.default_rng(1).normal(size=X.size)
     symbols, _, _ = drawn(overlay({"rods": simulated(X, 0.4 + 0.02 * noise, 0.02)}))
-    assert symbols.size == 60
+    assert symbols.size == 57
     faint = WAVES + 0.015 * noise
     symbols, lined, _ = drawn(overlay({"rods": simulated(X, faint, 0.015)}))
     assert (symbols.size, lined.size) == (0, X.size)
