@@ -165,7 +165,7 @@ def _choose(
     curves: Mapping[str, Curve], style: Mapping[str, Mapping[str, Any]]
 ) -> dict[str, dict[str, Any]]:
     """Return a look for every curve; if too few are left, for those that ``style`` gives none."""
-    chosen = {}
+    chosen: dict[str, dict[str, Any]] = {}
     for measured, looks, way in ((True, _SIMULATIONS, "marker"), (False, _LINES, "linestyle")):
         labels = [label for label, each in curves.items() if each.measured == measured]
         if len(labels) > len(looks):
