@@ -61,6 +61,7 @@ class Curve(NamedTuple):
     abscissa: xr.DataArray
     values: xr.DataArray
     error: xr.DataArray | None  # one standard error
+    measured: bool
 
 
 def find_curve(label: str, dataset: xr.Dataset, quantity: str, along: str) -> Curve:
@@ -89,7 +90,8 @@ def find_curve(label: str, dataset: xr.Dataset, quantity: str, along: str) -> Cu
         if visited.size:
             dataset = dataset.isel(velocity_bin=slice(visited[0], visited[-1] + 1))
     abscissa = dataset[abscissae[str(values.dims[0])]]
-    return Curve(abscissa, dataset[quantity], dataset.get(f"{quantity}_error"))
+    error = dataset.get(f"{quantity}_error")
+    return Curve(abscissa, dataset[quantity], error, dataset.attrs.get("source") == "simulation")
 
 
 def is_of_one_rod(dataset: xr.Dataset, quantity: str) -> bool:

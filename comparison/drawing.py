@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from io import BytesIO
-from itertools import cycle
-from pathlib import Path
 from typing import Any, Literal, get_args
 
 import matplotlib.pyplot as plt
@@ -20,7 +18,7 @@ from numpy.typing import ArrayLike
 from crazybilliards.comparison.coverage import require_same_smoothing
 from crazybilliards.comparison.curves import Curve, axis_label, find_curve, is_of_one_rod
 from crazybilliards.comparison.layout import house_style, panels
-from crazybilliards.comparison.symbols import draw_measured
+from crazybilliards.comparison.symbols import MOST_SYMBOLS, draw_measured
 from crazybilliards.model.checks import check_choice, check_path, got, shown
 from crazybilliards.model.storage import write_atomically
 
@@ -29,17 +27,29 @@ Along = Literal["normalized_particle", "mean_position"]
 # Okabe and Ito's colours, distinct for any colour vision; symbols and line styles differ too.
 COLOURS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#D55E00", "#56B4E9", "#000000")
 SYMBOLS = "osD^v<>"
-_SIMULATIONS: tuple[dict[str, Any], ...] = (
-    {"color": "#000000", "marker": "o"},
-    {"color": "#D55E00", "marker": "s"},
-    {"color": "#56B4E9", "marker": "D"},
-    {"color": "#0072B2", "marker": "^"},
-)
-_LINES: tuple[dict[str, Any], ...] = (
-    {"color": "#E69F00", "linestyle": "-", "linewidth": 2.0},
-    {"color": "#0072B2", "linestyle": "--", "linewidth": 1.4},
-    {"color": "#CC79A7", "linestyle": ":", "linewidth": 1.8},
-    {"color": "#009E73", "linestyle": "-.", "linewidth": 1.4},
+_ON_PAPER = 200  # symbols of a curve at most
+
+
+def _looks(order: Sequence[int], ways: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Return every colour in every way once; neighbours differ in both."""
+    return [
+        {"color": COLOURS[order[n]]} | ways[(n + turn) % len(ways)]
+        for turn in range(len(ways))
+        for n in range(len(order))
+    ]
+
+
+_MARKERS = [{"marker": symbol} for symbol in SYMBOLS]
+_NUMBERED = _looks(range(len(COLOURS)), _MARKERS)
+_SIMULATIONS = _looks((6, 4, 5, 0, 1, 2, 3), _MARKERS)
+_LINES = _looks(
+    (1, 0, 3, 2, 4, 5, 6),
+    (
+        {"linestyle": "-", "linewidth": 2.0},
+        {"linestyle": "--", "linewidth": 1.4},
+        {"linestyle": ":", "linewidth": 1.8},
+        {"linestyle": "-.", "linewidth": 1.4},
+    ),
 )
 
 
@@ -58,9 +68,11 @@ def overlay(
     ----------
     results
         ``{label: result}``. Simulations are drawn as symbols with their standard errors, theories
-        as lines, in the order given; every one has its own colour. Where the symbols of a
-        simulation would hide waves between them, all its values are drawn instead, as a thin line
-        in a band of one standard error.
+        as lines, in the order given. Every simulation has its own colour and symbol, up to 49, and
+        every theory its own colour and line style, up to 28. Of more than 60 values (200 in a
+        picture for print) evenly spaced ones and the last are drawn as symbols. Where the symbols
+        of a simulation would hide waves between them, all its values are drawn instead, as a thin
+        line in a band of one standard error.
     quantity
         A variable over x, time, particle, contact, mode, separation, velocity or velocity_bin.
         Densities must be smoothed all or not at all. ``velocity_density`` is that of a rod picked
@@ -73,7 +85,9 @@ def overlay(
         Axes to draw into; None: those of a new figure.
     style
         ``{label: keywords}`` for matplotlib, of ``errorbar`` for a simulation and of ``plot`` for
-        a theory, instead of those chosen here: ``{"run 2": {"color": "red", "alpha": 0.5}}``.
+        a theory, instead of those chosen here: ``{"run 2": {"color": "red", "alpha": 0.5}}``. More
+        than 49 simulations or 28 theories can be drawn if the others are given ``color`` and
+        ``marker``, or ``color`` and ``linestyle``.
     paper
         A file for the picture, e.g. ``"density.pdf"``. It is drawn for print, with a legend: one
         column of a journal wide (3.4 inches), in letters of 8 points, in a pdf as letters that can
@@ -84,7 +98,8 @@ def overlay(
     ValueError
         If ``results`` are not given by labels, if one lacks the quantity, or has it over several
         dimensions: one time of a density over time and x must be chosen first. If ``style`` names
-        no result. If ``paper`` is no name of a picture, or stands beside ``ax``.
+        no result, or lacks the looks of curves for which none is left. If ``paper`` is no name of a
+        picture, or stands beside ``ax``.
 
     Returns
     -------
@@ -94,7 +109,8 @@ def overlay(
     if paper is not None:
         if ax is not None:
             raise ValueError("paper: the picture has axes of its own, and ax must be None")
-        return _on_paper(check_path("paper", paper), results, quantity, along, style)
+        file = check_path("paper", paper)
+        kind = check_choice("paper", file.suffix[1:], FigureCanvasBase.get_supported_filetypes())
     curves = _curves(results, quantity, along)
     if not (ax is None or isinstance(ax, Axes)):
         raise ValueError(f"ax must be Axes of matplotlib, got {shown(ax)}")
@@ -105,19 +121,37 @@ def overlay(
     for label in style:
         if label not in results:
             raise ValueError(f"style: the results are {got(label, list(results))}")
-    if ax is None:
-        _, ax = plt.subplots(layout="constrained")
-    lines, symbols = cycle(_LINES), cycle(_SIMULATIONS)
-    for label, (abscissa, values, error) in curves.items():
-        own, look = dict(style.get(label, {})), dict[str, Any](label=label)
+    looks = _choose(curves, style)
+    if paper is None:
+        if ax is None:
+            _, ax = plt.subplots(layout="constrained")
+        return _draw(ax, curves, looks, style)
+    picture = BytesIO()
+    with house_style():  # which acts when the file is written, too
+        figure, [ax] = panels(1, 1, wanted=1)
+        _draw(ax, curves, looks, style, most=_ON_PAPER).legend()
+        figure.savefig(picture, format=kind)
+    write_atomically(file, picture.getvalue())
+    return ax
+
+
+def _draw(
+    ax: Axes,
+    curves: Mapping[str, Curve],
+    looks: Mapping[str, Mapping[str, Any]],
+    style: Mapping[str, Mapping[str, Any]],
+    most: int = MOST_SYMBOLS,
+) -> Axes:
+    """Draw simulations as symbols, at most so many, and theories as lines."""
+    for label, (abscissa, values, error, measured) in curves.items():
+        own, look = dict(style.get(label, {})), dict(label=label, **looks.get(label, {}))
         try:
-            if results[label].attrs.get("source") == "simulation":
-                look |= {"markersize": 3.5, "zorder": 3} | next(symbols) | own
+            if measured:
+                look = {"markersize": 3.5, "zorder": 3} | look | own
                 spread = None if error is None else error.values
-                draw_measured(ax, abscissa.values, values.values, spread, look)
+                draw_measured(ax, abscissa.values, values.values, spread, look, most=most)
             else:
-                look |= {"zorder": 2} | next(lines) | own
-                ax.plot(abscissa, values, **look)
+                ax.plot(abscissa, values, **{"zorder": 2} | look | own)
         except (AttributeError, TypeError, ValueError) as problem:  # of matplotlib, for a keyword
             if not own:
                 raise
@@ -127,16 +161,22 @@ def overlay(
     return ax
 
 
-def _on_paper(file: Path, results: Any, quantity: str, along: Along, style: Any) -> Axes:
-    """Draw in the style of the package, which acts when the file is written, too."""
-    kind = check_choice("paper", file.suffix[1:], FigureCanvasBase.get_supported_filetypes())
-    picture = BytesIO()
-    with house_style():
-        figure, [ax] = panels(1, 1, wanted=1)
-        overlay(results, quantity, along=along, ax=ax, style=style).legend()
-        figure.savefig(picture, format=kind)
-    write_atomically(file, picture.getvalue())
-    return ax
+def _choose(
+    curves: Mapping[str, Curve], style: Mapping[str, Mapping[str, Any]]
+) -> dict[str, dict[str, Any]]:
+    """Return a look for every curve; if too few are left, for those that ``style`` gives none."""
+    chosen: dict[str, dict[str, Any]] = {}
+    for measured, looks, way in ((True, _SIMULATIONS, "marker"), (False, _LINES, "linestyle")):
+        labels = [label for label, each in curves.items() if each.measured == measured]
+        if len(labels) > len(looks):
+            labels = [each for each in labels if not {"color", way} <= style.get(each, {}).keys()]
+        if len(labels) > len(looks):
+            raise ValueError(
+                f"style= must give color and {way} of {len(labels) - len(looks)} more curves: "
+                f"there are {len(looks)} looks for {'simulations' if measured else 'theories'}"
+            )
+        chosen |= dict(zip(labels, looks, strict=False))
+    return chosen
 
 
 def _curves(results: Mapping[str, xr.Dataset], quantity: str, along: str) -> dict[str, Curve]:
@@ -171,17 +211,19 @@ def draw_rods(
     label: str,
     unit: float = 1.0,
     along: str = "normalized_particle",
+    **how: Any,
 ) -> None:
     """Draw a quantity of the rods as symbols with error bars; a long chain shows some rods.
 
     As in :func:`overlay` a thin line shows all rods where the symbols would not. Make an axis
     logarithmic before, because that changes what can be seen. The values are divided by ``unit``.
     The abscissa ``along="particle"`` is meant for a logarithmic axis and spaces the symbols for it.
+    ``how``: keywords of ``errorbar``, in place of those of the look of that number as well.
     """
-    look = {**_look(number), "linewidth": 0.7, "label": label}
+    look = {**_NUMBERED[number], "linewidth": 0.7, "label": label, **how}
     values, error = (run[name].values / unit for name in (quantity, f"{quantity}_error"))
-    spaced = np.geomspace if along == "particle" else np.linspace
-    draw_measured(ax, run[along].values, values, error, look, spaced=spaced)
+    logarithmic = along == "particle"
+    draw_measured(ax, run[along].values, values, error, look, logarithmic=logarithmic)
 
 
 def draw_points(
@@ -198,12 +240,8 @@ def draw_points(
 
     ``how``: keywords of ``errorbar``, in place of those of that look as well.
     """
-    look = {"linestyle": "none", "markerfacecolor": "none", **_look(number)}
+    look = {"linestyle": "none", "markerfacecolor": "none", **_NUMBERED[number]}
     ax.errorbar(x, values, errors, **look | {"label": label} | how)
-
-
-def _look(number: int) -> dict[str, Any]:
-    return {"color": COLOURS[number % len(COLOURS)], "marker": SYMBOLS[number % len(SYMBOLS)]}
 
 
 def mark_clipped(ax: Axes) -> None:

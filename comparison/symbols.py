@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import math
+from collections.abc import Mapping
 from itertools import pairwise
 from typing import Any
 
@@ -12,7 +13,7 @@ from numpy.typing import NDArray
 
 from crazybilliards.model.arrays import Array
 
-_MOST_SYMBOLS = 60
+MOST_SYMBOLS = 60
 _SEEN = 0.01  # of the height of the picture, between a curve and a line
 # Standard errors between a curve and lines from node to node that noise makes: at most, of hundreds
 # of nodes whose errors are themselves uncertain, and their root mean square, 1.2 to 1.3.
@@ -26,14 +27,17 @@ def draw_measured(
     error: Array | None,
     look: Mapping[str, Any],
     *,
-    spaced: Callable[..., Array] = np.linspace,
+    most: int = MOST_SYMBOLS,
+    logarithmic: bool = False,
 ) -> None:
-    """Draw some nodes as symbols with error bars, and the stretches they hide as a line.
+    """Draw nodes as symbols with error bars, and the stretches they hide as a line.
+
+    Of more than ``most`` nodes some are drawn: every second, every third or so on, and the last.
+    ``logarithmic`` spaces them over the logarithms of their numbers.
 
     A node that is not known, or that a logarithmic axis cannot show, is left out. ``error`` None:
     standard errors are not known. ``look``: color, label and other keywords of ``errorbar``.
-    ``spaced`` spaces the symbols over the numbers of the nodes. The first and the last are always
-    drawn, because theories differ most at the border.
+    The first and the last are always drawn, because theories differ most at the border.
     """
     known = np.isfinite(values) & np.isfinite(x)
     if ax.get_xscale() == "log":
@@ -42,8 +46,9 @@ def draw_measured(
         return
     at, y = x[known], values[known]
     spread = np.zeros(y.size) if error is None else error[known]
-    places = spaced(1, y.size, min(y.size, _MOST_SYMBOLS))
-    shown = np.unique(np.round(places).astype(int)) - 1
+    shown = _every(y.size, most)
+    if logarithmic:
+        shown = np.unique(np.round(np.geomspace(1, y.size, min(y.size, most))).astype(int)) - 1
     kept = shown[_tell_the_curve(ax, at, y, spread, shown)] if y.size > 1 else shown
     look = {"linestyle": "none", "linewidth": 0.8, "markerfacecolor": "none", **look}
     if kept.size:
@@ -60,6 +65,13 @@ def draw_measured(
         ax.plot(x, curve, linewidth=0.8, label="" if kept.size else look["label"], **same)
         band = same | {"alpha": 0.3 * same.get("alpha", 1.0), "linewidth": 0}
         ax.fill_between(x, curve - width, curve + width, **band)
+
+
+def _every(count: int, most: int) -> NDArray[np.int64]:
+    """Return the numbers of evenly spaced nodes and the last, which the best spacing meets."""
+    least = max(1, math.ceil((count - 1) / (most - 1)))
+    meeting = (each for each in range(least, 2 * least) if (count - 1) % each == 0)
+    return np.unique([*range(0, count, next(meeting, least)), count - 1])
 
 
 def _tell_the_curve(

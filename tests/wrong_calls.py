@@ -45,6 +45,7 @@ cb.overlay({"a": exact}, "mean_displacement", along="x") | along must be one of.
 cb.overlay({"a": run}, ax=3) | ax must be Axes of matplotlib, got 3
 cb.overlay({"a": run}, style=3) | style must be keywords...by label, got 3
 cb.overlay({"a": exact}, style={"a": {"colour": "red"}}) | style of 'a': ...'colour'
+cb.overlay(dict.fromkeys(range(29), exact)) | style= must give color and linestyle of 1 more
 cb.overlay({"a": run}, style={"a": 3}) | style must be keywords...by label, got {'a': 3}
 cb.save(run, 3) | path must be a text or a Path, got 3
 cb.save(run, "a.csv") | must end in .nc, got 'a.csv'

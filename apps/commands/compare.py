@@ -67,7 +67,8 @@ def command(
     displacement. With it: chains of other restitutions, with the kinetic equation and, where it
     takes the chain, that with pair correlations, into which nothing from the simulation goes.
 
-    Draws everything over one another and prints how far apart it is.
+    Draws everything over one another and prints how far apart it is. A theory whose own stated
+    error is above a fifth of the axis is drawn faintly, in a band of that error.
 
     Each chain is written to FOLDER/cases when it is computed. After Ctrl-C, a crash, or with more
     chains, the same command computes what is missing. Ctrl-C or SIGTERM stops early: pictures of

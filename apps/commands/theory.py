@@ -188,7 +188,9 @@ def _write(theory: Theory, result: xr.Dataset, folder: Path, suffix: str) -> Non
 def _draw_density(theory: Theory, result: xr.Dataset) -> Figure:
     from crazybilliards.comparison.drawing import overlay
     from crazybilliards.comparison.layout import panels
+    from crazybilliards.comparison.side_by_side.grid_figures import fade, stated_error
 
     figure, [ax] = panels(1, 1, wanted=1)
     overlay({theory.title: result}, ax=ax).legend(loc="lower center")
+    fade([(ax.lines[0], stated_error(result, "density"))])
     return figure

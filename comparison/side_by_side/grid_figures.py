@@ -7,24 +7,28 @@ them, which are too small to be seen above; at e != 1 those from the simulation.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.colors import LogNorm
+from matplotlib.colors import LogNorm, to_hex
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from crazybilliards.comparison.coverage import smooth
 from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_rods, overlay
 from crazybilliards.comparison.layout import entitle, legend_above, letter, panels, picture_width
 from crazybilliards.comparison.side_by_side.grid import ELASTIC, KINETIC, SIMULATION, TITLES
 from crazybilliards.model import chain_of
+from crazybilliards.model.arrays import Array
 from crazybilliards.model.vocabulary import require
 
 _DECADES = 5  # of f in the image
 _VARIED = {"amplitude": "A", "restitution": "e"}
+_LARGE, _FAINT = 0.2, 0.25  # a stated error, as a share of the axis; the opacity of such a curve
 _STYLES = dict(zip(KINETIC, ("--", "-"), strict=True))
 
 
@@ -45,6 +49,7 @@ def draw_density(tree: xr.DataTree) -> Figure:
         ends = reference.x.values[inside][[0, -1]]
         axes[1].set_xlim(*ends)
         _draw_edge(axes[0], results, float(ends[1]))
+        _fade_as_in(axes[0], axes[0].child_axes[0])
     legend_above(figure, axes_of_all[0][0])
     return figure
 
@@ -95,6 +100,9 @@ def _draw(axes: list[Axes], results: dict[str, xr.Dataset], quantity: str, unit:
     """
     overlay(results, quantity, along="mean_position", ax=axes[0])
     axes[0].set_xlabel("")
+    lines = {str(line.get_label()): line for line in axes[0].lines}
+    theories = {name: each for name, each in results.items() if name != SIMULATION}
+    fade((lines[name], stated_error(each, quantity)) for name, each in theories.items())
     if len(results) == 1:
         return
     reference = results[_reference(results)][quantity]
@@ -105,6 +113,37 @@ def _draw(axes: list[Axes], results: dict[str, xr.Dataset], quantity: str, unit:
         if f"{quantity}_error" in result:
             differences[name][f"{quantity}_error"] = result[f"{quantity}_error"] / unit
     overlay(differences, quantity, along="mean_position", ax=axes[1])
+    _fade_as_in(axes[0], axes[1])
+
+
+def stated_error(theory: xr.Dataset, quantity: str) -> Array:
+    """Return the error that a theory states of a quantity, in its unit; 0 where it states none."""
+    chain = chain_of(theory)
+    name, whole = {
+        "velocity_width": ("model_error", np.abs(theory[quantity].values)),
+        "mean_displacement": ("mean_displacement_model_error", chain.thermal_length),
+        "density": ("density_model_error", chain.close_packed_density),
+    }[quantity]
+    return theory.attrs.get(name, 0.0) * whole * np.ones(theory[quantity].shape)
+
+
+def fade(drawn: Iterable[tuple[Line2D, Array]]) -> None:
+    """Make lines faint whose error is above a fifth of their axis, and draw it as a band."""
+    for line, error in drawn:
+        low, high = line.axes.get_ylim()
+        if np.max(error) > _LARGE * (high - low):
+            line.set_alpha(_FAINT)
+            x, y = line.get_data()
+            band = {"color": line.get_color(), "alpha": _FAINT / 2, "linewidth": 0}
+            line.axes.fill_between(x, y - error, y + error, **band)
+            line.axes.set_ylim(low, high)
+
+
+def _fade_as_in(above: Axes, ax: Axes) -> None:
+    """Draw lines as faintly as those with the same labels are above."""
+    opacities = {line.get_label(): line.get_alpha() for line in above.lines}
+    for line in ax.lines:
+        line.set_alpha(opacities.get(line.get_label()))
 
 
 def _panels(tree: xr.DataTree) -> tuple[Figure, list[list[Axes]]]:
@@ -128,24 +167,31 @@ def _panels(tree: xr.DataTree) -> tuple[Figure, list[list[Axes]]]:
 def draw_widths(tree: xr.DataTree) -> Figure:
     """W_v(i) and <dx_i> for every restitution, in units of the free rod; lines are theories."""
     figure, axes = panels(1, 2, height=2.5)
-    for number, group in enumerate(tree.children.values()):
+    count = len(tree.children)
+    many = plt.get_cmap("cividis")(np.linspace(0.0, 1.0, count))
+    colours = COLOURS if count <= len(COLOURS) else [to_hex(each) for each in many]
+    drawn = []
+    for number, (colour, group) in enumerate(zip(colours, tree.children.values(), strict=False)):
         run = group[SIMULATION].to_dataset()
         chain = chain_of(run)
-        colour = COLOURS[number % len(COLOURS)]
+        look: Any = {"number": number % len(COLOURS), "color": colour}
         units = (chain.free_velocity_width, chain.thermal_length)
         for ax, name, unit in zip(
             axes, ("velocity_width", "mean_displacement"), units, strict=True
         ):
-            draw_rods(ax, run, name, number=number, unit=unit, label=f"$e = {chain.restitution:g}$")
+            draw_rods(ax, run, name, unit=unit, label=f"$e = {chain.restitution:g}$", **look)
             for key, style in _STYLES.items():
                 if key in group:
                     theory = group[key].to_dataset()
                     values = theory[name] / unit
-                    ax.plot(theory.normalized_particle, values, style, color=colour, zorder=3)
+                    how = {"color": colour, "linestyle": style, "zorder": 3}
+                    [line] = ax.plot(theory.normalized_particle, values, **how)
+                    drawn.append((line, stated_error(theory, name) / unit))
     along_the_chain(axes[0])
     axes[0].set(ylabel="velocity width $W_v/W$", ylim=(0, None))
     along_the_chain(axes[1])
     axes[1].set(ylabel=r"displacement $\langle\Delta x\rangle/s$")
+    fade(drawn)
     for key, style in _STYLES.items():
         if any(key in group for group in tree.children.values()):
             axes[0].plot([], [], style, color="0.4", label=TITLES[key])
@@ -199,11 +245,13 @@ def draw_profile(theory: xr.Dataset, name: str) -> Figure:
     """W_v(i) and <dx_i> of a theory alone, called ``name`` in the legend."""
     chain = chain_of(theory)
     figure, axes = panels(1, 2)
+    drawn = []
     for ax, quantity, label in (
         (axes[0], "velocity_width", "velocity width $W_v$ [R/T]"),
         (axes[1], "mean_displacement", r"displacement $\langle\Delta x\rangle$ [R]"),
     ):
-        ax.plot(theory.normalized_particle, theory[quantity], color=COLOURS[0], label=name)
+        [line] = ax.plot(theory.normalized_particle, theory[quantity], color=COLOURS[0], label=name)
+        drawn.append((line, stated_error(theory, quantity)))
         along_the_chain(ax)
         ax.set(ylabel=label)
     axes[0].axhline(
@@ -211,4 +259,5 @@ def draw_profile(theory: xr.Dataset, name: str) -> Figure:
     )
     axes[0].legend()
     axes[0].set_ylim(bottom=0)
+    fade(drawn)
     return figure

@@ -8,6 +8,8 @@ from drawn_pictures import WAVES, X, drawn, simulated
 
 from crazybilliards.comparison import overlay, smooth
 from crazybilliards.comparison.drawing import mark_clipped
+from crazybilliards.comparison.side_by_side.grid import KINETIC, SIMULATION
+from crazybilliards.comparison.side_by_side.grid_figures import draw_widths
 from crazybilliards.kinetic import equilibrium, equilibrium_states, force_balance
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
@@ -42,9 +44,24 @@ def test_overlay_draws_the_rods_at_both_ends_of_a_long_chain():
     run = simulate(Chain(size=107), duration=100, observe="widths", progress=False)
     ax = overlay({"rods": run}, "velocity_width")
     symbols = ax.containers[0].lines[0]
-    assert len(symbols.get_xdata()) == 60
+    assert len(symbols.get_xdata()) == 54
     assert symbols.get_xdata()[[0, -1]].tolist() == [-1, 1]
     assert symbols.get_ydata()[-1] == run.velocity_width[-1]
+
+
+@pytest.mark.parametrize("count", [2, 60, 61, 100, 101, 108, 200, 201, 300])
+@pytest.mark.parametrize("on_paper", [False, True])
+def test_symbols_are_evenly_spaced_and_all_are_drawn_where_there_is_room(tmp_path, count, on_paper):
+    run, how = simulated(np.arange(float(count)), np.ones(count)), {}
+    if on_paper:
+        how = {"paper": tmp_path / "a.png"}
+    symbols, _, _ = drawn(overlay({"rods": run}, **how))
+    most = 200 if on_paper else 60
+    assert symbols.size == count if count <= most else most / 2.1 < symbols.size <= most
+    assert np.unique(np.diff(symbols[:-1])).size <= 1
+    assert symbols[[0, -1]].tolist() == [0, count - 1]
+    if count in (101, 201):  # every second, or every fourth
+        assert np.unique(np.diff(symbols)).size == 1
 
 
 def test_overlay_draws_every_node_of_a_density_with_waves_between_the_symbols():
@@ -62,7 +79,7 @@ def test_overlay_draws_every_node_of_a_density_with_waves_between_the_symbols():
 def test_overlay_draws_symbols_where_straight_lines_between_them_follow_the_curve():
     smooth_curve = 0.4 / (1 + np.exp((np.abs(X) - 100) / 8))
     symbols, lined, curve = drawn(overlay({"rods": simulated(X, smooth_curve)}))
-    assert (symbols.size, lined.size) == (60, 0)
+    assert (symbols.size, lined.size) == (57, 0)
     assert np.abs(curve(X) - smooth_curve).max() < 0.01 * 0.4
     partly = np.where(X > 70, WAVES, 0.4)
     symbols, lined, curve = drawn(overlay({"rods": simulated(X, partly)}))
@@ -75,7 +92,7 @@ def test_noise_is_drawn_as_symbols_and_waves_within_it_as_a_line():
     """All nodes together show a wave of two standard errors; two of them do not."""
     noise = np.random.default_rng(1).normal(size=X.size)
     symbols, _, _ = drawn(overlay({"rods": simulated(X, 0.4 + 0.02 * noise, 0.02)}))
-    assert symbols.size == 60
+    assert symbols.size == 57
     faint = WAVES + 0.015 * noise
     symbols, lined, _ = drawn(overlay({"rods": simulated(X, faint, 0.015)}))
     assert (symbols.size, lined.size) == (0, X.size)
@@ -99,6 +116,64 @@ def test_two_simulations_differ_and_keywords_are_passed_through():
     assert line.get_linewidth() == 5
     with pytest.raises(ValueError, match=r"style: .*, got 'seed 3'; did you mean 'seed [12]'"):
         overlay(runs, "velocity_width", style={"seed 3": {}})
+
+
+def looks_of(ax):
+    """Return colour with symbol of every simulation, and colour with line style of every theory."""
+    symbols = [each.lines[0] for each in ax.containers]
+    drawn = [(each.get_color(), each.get_marker()) for each in symbols]
+    lines = [each for each in ax.lines if each not in symbols]
+    return drawn, [(each.get_color(), each.get_linestyle()) for each in lines]
+
+
+def many(of, number):
+    return {str(label): of for label in range(number)}
+
+
+EXACT = equilibrium(Chain(size=3))
+ERRORS = {
+    f"{name}_error": 0.1 + 0 * EXACT[name] for name in ("velocity_width", "mean_displacement")
+}
+MEASURED = EXACT.assign(ERRORS).assign_attrs(source="simulation")
+
+
+@pytest.mark.parametrize("on_paper", [False, True])
+def test_every_curve_has_its_own_look(tmp_path, on_paper):
+    how = {"paper": tmp_path / "a.png"} if on_paper else {}
+    results = many(MEASURED, 7) | {f"theory {each}": EXACT for each in range(7)}
+    symbols, lines = looks_of(overlay(results, "velocity_width", **how))
+    assert len({colour for colour, _ in symbols}) == len({symbol for _, symbol in symbols}) == 7
+    assert len({colour for colour, _ in lines}) == 7
+    assert [symbol for _, symbol in symbols[:4]] == ["o", "s", "D", "^"]
+    assert [line for _, line in lines[:4]] == ["-", "--", ":", "-."]
+
+
+@pytest.mark.parametrize(
+    ("of", "number", "full"),
+    [
+        (MEASURED, 49, {"color": "red", "marker": "*"}),
+        (EXACT, 28, {"color": "red", "linestyle": "-"}),
+    ],
+)
+def test_there_are_as_many_looks_as_colours_times_symbols_or_line_styles(of, number, full):
+    symbols, lines = looks_of(overlay(many(of, number), "velocity_width"))
+    assert len({*symbols, *lines}) == number
+    before = plt.get_fignums()
+    with pytest.raises(ValueError, match=f"style= must give color and .* there are {number} looks"):
+        overlay(many(of, number + 1), "velocity_width", style={"3": {"color": "red"}})
+    assert plt.get_fignums() == before
+    symbols, lines = looks_of(overlay(many(of, number + 1), "velocity_width", style={"3": full}))
+    assert len({*symbols, *lines}) == number + 1
+
+
+def test_every_chain_of_a_picture_has_its_own_look():
+    theory = list(KINETIC)[-1]
+    groups = {f"restitution_{n}": {SIMULATION: MEASURED, theory: EXACT} for n in range(9)}
+    every = {f"{name}/{key}": each for name, group in groups.items() for key, each in group.items()}
+    for ax in draw_widths(xr.DataTree.from_dict(every)).axes:
+        symbols, lines = looks_of(ax)
+        solved = {look for look in lines if look[0] != "0.4"}  # that one is in the legend only
+        assert len(set(symbols)) == len(solved) == 9
 
 
 def test_symbols_beyond_the_frame_are_marked_on_it():

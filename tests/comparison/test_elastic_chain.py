@@ -1,8 +1,10 @@
 """The main comparison: what it promises about simulation and theory at e = 1."""
 
 import os
+import re
 import signal
 from dataclasses import replace
+from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -11,6 +13,7 @@ import xarray as xr
 
 from crazybilliards.comparison import compare_elastic, smooth
 from crazybilliards.comparison.side_by_side import grid
+from crazybilliards.comparison.side_by_side.grid import ELASTIC
 from crazybilliards.comparison.side_by_side.grid_deviations import deviations, largest_width_error
 from crazybilliards.comparison.side_by_side.grid_figures import draw_density, draw_displacement
 from crazybilliards.comparison.sweeps import case, running
@@ -23,6 +26,20 @@ pytestmark = pytest.mark.compiled
 @pytest.fixture(scope="module")
 def tree():
     return compare_elastic(Chain(), duration=30_000, seed=1, progress=False)
+
+
+@pytest.mark.validate
+def test_the_start_page_has_the_numbers_that_make_run_prints():
+    """Every number of its table, and the sentence below it."""
+    page = (Path(__file__).parents[2] / "docs/index.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| *(\d+) \|(.*)\|$", page, re.MULTILINE)
+    told = {f"amplitude_{a}": [float(cell) for cell in cells.split("|")] for a, cells in rows}
+    found = deviations(compare_elastic(Chain(), progress=False))
+    assert told == {
+        name: [round(100 * found[name][key].maximum, 2) for key in ELASTIC] for name in found
+    }
+    largest = max(by_theory["exact"].maximum_in_errors for by_theory in found.values())
+    assert f"by at most {largest:.1f} standard errors in any bin" in page
 
 
 def test_simulation_and_exact_density_agree(tree):

@@ -68,6 +68,41 @@ def test_without_a_steady_state_there_is_a_warning_and_no_theory():
     assert width_deviations(tree) == {"restitution_1.1": {}}
 
 
+def opacities(ax, label=None):
+    return [each.get_alpha() for each in ax.lines if label in (None, each.get_label())]
+
+
+def bands(ax):
+    return [each for each in ax.collections if each.get_alpha() == 0.125]
+
+
+@pytest.mark.parametrize("large", [False, True])
+def test_a_curve_is_faint_in_a_band_of_its_stated_error_if_that_is_large(tree, large):
+    """A fifth of the axis: the errors are made up, on one side of it."""
+    tree = tree.copy(deep=True)
+    names = ("mean_displacement_model_error", "model_error", "density_model_error")
+    for key in KINETIC:
+        tree[f"restitution_0.9/{key}"].attrs |= dict.fromkeys(names, 0.0)
+    before = [ax.get_ylim() for ax in (*draw_widths(tree).axes, *draw_density(tree).axes)]
+    stated = dict(zip(names, (2.0, 0.4, 0.4) if large else (0.01, 0.01, 0.01), strict=True))
+    tree["restitution_0.9/kinetic_equation"].attrs |= stated
+    widths, density = draw_widths(tree), draw_density(tree)
+    for ax in widths.axes:
+        assert opacities(ax).count(0.25) == len(bands(ax)) == large  # one of four theories
+    above, below = density.axes[:2]
+    theory, other = (TITLES[key] for key in KINETIC)
+    for ax in (above, above.child_axes[0], below):
+        assert opacities(ax, theory) == [0.25 if large else None]
+        assert opacities(ax, other) == [None]
+    assert len(bands(above)) == large
+    if large:
+        height = np.ptp(bands(above)[0].get_paths()[0].vertices[:, 1])
+        assert height > 2 * 0.4 * CHAIN.close_packed_density
+    assert [ax.get_ylim() for ax in (*widths.axes, *density.axes)] == before
+    profile = draw_profile(tree["restitution_0.9/kinetic_equation"].to_dataset(), "theory")
+    assert [opacities(ax)[0] for ax in profile.axes] == [0.25 if large else None] * 2
+
+
 def test_pictures(tree):
     widths = draw_widths(tree)
     assert widths.axes[0].get_ylabel() == "velocity width $W_v/W$"
