@@ -54,15 +54,9 @@ def coverage_density(source: xr.Dataset) -> xr.Dataset:
         If the result holds none of these, or is smoothed already, or if its grid was cut or
         thinned, so that it does not hold all rods.
     """
-    chain = chain_of(source)
     if "smoothed" in source.attrs:
         raise ValueError("the density is smoothed already")
-    if "density" not in source and "position" in source:
-        found = _hat_density_of_states(chain, source)
-    else:
-        source = _whole(source, "coverage_density")
-        found = _hat_density_of_theory(source) if "label" in source else source
-    return _box(found).assign_attrs(smoothed=_ONCE)
+    return _covered(source, "coverage_density")
 
 
 def smooth(source: xr.Dataset) -> xr.Dataset:
@@ -76,7 +70,7 @@ def smooth(source: xr.Dataset) -> xr.Dataset:
     if source.attrs.get("smoothed") == _ONCE:
         once = _whole(source, "smooth")
     else:
-        once = coverage_density(source)
+        once = _covered(source, "smooth")
     return _box(once).assign_attrs(smoothed=_TWICE)
 
 
@@ -88,6 +82,16 @@ def require_same_smoothing(results: Mapping[str, xr.Dataset]) -> None:
     if len(set(ways.values())) > 1:
         listed = "; ".join(f"{label}: {way}" for label, way in ways.items())
         raise ValueError(f"the densities are not smoothed alike ({listed}); take cb.smooth of all")
+
+
+def _covered(source: xr.Dataset, who: str) -> xr.Dataset:
+    chain = chain_of(source)
+    if "density" not in source and "position" in source:
+        found = _hat_density_of_states(chain, source)
+    else:
+        source = _whole(source, who)
+        found = _hat_density_of_theory(source) if "label" in source else source
+    return _box(found).assign_attrs(smoothed=_ONCE)
 
 
 def _whole(source: xr.Dataset, who: str) -> xr.Dataset:

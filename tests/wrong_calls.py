@@ -34,6 +34,10 @@ cb.chain_of(tree) | must be a result...tree['name'].to_dataset()...got a DataTre
 cb.chain_of(foreign) | not a crazybilliards result
 cb.deviation(foreign, foreign) | not a crazybilliards result
 cb.deviation(exact, exact, floor="a") | floor must be a number, got 'a'
+cb.deviation(run, exact, "velocity_width") | deviation compares densities only; for widths divide
+cb.deviation(exact, exact, [1]) | floor must be a number, got [1]
+cb.deviation(run, run) | not smoothed: take cb.smooth of both, or raw=True
+cb.smooth(run.sel(x=slice(-1, 1))) | of the chain's 5 rods: smooth needs the whole grid
 cb.fit_arctanh(foreign) | the result has no 'mean_displacement'
 cb.fit_arctanh(exact.isel(particle=slice(2))) | fit_arctanh: the result has 2 particles, the chain 5
 cb.fit_arctanh(exact.isel(particle=slice(None, None, -1))) | must ascend from 1 to 5
