@@ -5,6 +5,7 @@ that rods cover, divides by the number of samples and by 2R, and takes a running
 window of 2R (its figure ``fig:rho_num_sim`` and the text below). Both steps are convolutions of the
 density of the rods' centres with a box of length 2R. Densities should be compared only after the
 same steps: for small A the rods form a near-crystal, and their bare density is a row of spikes.
+Beyond its grid a density is 0, so each step needs a grid that holds all rods.
 
 On the package's grid (nodes at multiples of h = 2R/n, n odd) the first step is exact for points
 kept in hat weights, because the covered fraction of the bin around a node is the mean of the n hats
@@ -21,10 +22,12 @@ from scipy.ndimage import convolve1d
 
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.arrays import Array
-from crazybilliards.model.grid import deposit, position_grid
+from crazybilliards.model.grid import deposit, position_grid, require_all_held, require_even
 from crazybilliards.model.vocabulary import require, result
 
 _ONCE, _TWICE = "coverage", "coverage, running average"
+_SMOOTHED = {"density", "density_block"}
+_ROUGH = 0.01  # of the rods, by which the sum of a density of one's own may be wrong
 
 
 def coverage_density(source: xr.Dataset) -> xr.Dataset:
@@ -36,38 +39,38 @@ def coverage_density(source: xr.Dataset) -> xr.Dataset:
         One of three kinds of result: a *simulation* (``density``, ``density_error``,
         ``density_block`` over x), a *theory* (``density`` and ``label`` over x), or, without a
         density, *states* (``position``, averaged over replicas and times). Of states of some rods
-        it is the density of these rods. The other two may be over time.
+        it is the density of these rods. The other two may be over time. Their grid must be whole:
+        cut the result of this function, not its argument.
 
     Returns
     -------
     xarray.Dataset
         ``density`` over x. A simulation also has ``density_error``, that of the convolved
-        density, and ``density_block``.
+        density, ``density_block`` and ``outside``. ``rods``: how many rods the states had.
 
     Raises
     ------
     ValueError
-        If the result holds none of these, or is smoothed already.
+        If the result holds none of these, or is smoothed already, or if its grid was cut or
+        thinned, so that it does not hold all rods.
     """
-    chain = chain_of(source)
     if "smoothed" in source.attrs:
         raise ValueError("the density is smoothed already")
-    if "density" not in source and "position" in source:
-        found = _hat_density_of_states(chain, source)
-    else:
-        require(source, ("density",))
-        found = _hat_density_of_theory(source) if "label" in source else source
-    return _box(found).assign_attrs(smoothed=_ONCE)
+    return _covered(source, "coverage_density")
 
 
 def smooth(source: xr.Dataset) -> xr.Dataset:
     """Both steps of the paper: :func:`coverage_density`, then the running average over 2R.
 
-    What is smoothed already, which its attribute ``smoothed`` says, is not smoothed again.
+    What is smoothed already, which its attribute ``smoothed`` says, is not smoothed again. A grid
+    that was cut or thinned is refused: smooth the whole result first.
     """
     if source.attrs.get("smoothed") == _TWICE:
         return source
-    once = source if source.attrs.get("smoothed") == _ONCE else coverage_density(source)
+    if source.attrs.get("smoothed") == _ONCE:
+        once = _whole(source, "smooth")
+    else:
+        once = _covered(source, "smooth")
     return _box(once).assign_attrs(smoothed=_TWICE)
 
 
@@ -81,6 +84,43 @@ def require_same_smoothing(results: Mapping[str, xr.Dataset]) -> None:
         raise ValueError(f"the densities are not smoothed alike ({listed}); take cb.smooth of all")
 
 
+def _covered(source: xr.Dataset, who: str) -> xr.Dataset:
+    chain = chain_of(source)
+    if "density" not in source and "position" in source:
+        found = _hat_density_of_states(chain, source)
+    else:
+        source = _whole(source, who)
+        found = _hat_density_of_theory(source) if "label" in source else source
+    return _box(found).assign_attrs(smoothed=_ONCE)
+
+
+def _whole(source: xr.Dataset, who: str) -> xr.Dataset:
+    """Return a result with x as the last dimension, or raise a ValueError if its grid is cut."""
+    require(source, ("density",))
+    if "x" not in source.density.dims:
+        raise ValueError(f"density must be over x, got {source.density.dims}: {who} needs its grid")
+    source, chain = source.transpose(..., "x"), chain_of(source)
+    spacing = require_even(source.x.values, who)
+    nodes = 2 * chain.radius / spacing
+    if not abs(nodes - round(nodes)) < 1e-4 or round(nodes) % 2 == 0:
+        raise ValueError(
+            f"x must have an odd number of nodes in a rod's length, got {nodes:.4g}: {who} needs "
+            "the whole grid of the result"
+        )
+    rods = source.get("rods", xr.DataArray(chain.size)).values
+    if "label" in source:
+        require_all_held(source.label[..., -1] - source.label[..., 0], rods, who)
+        return source
+    lost, smoothed = float(source.get("outside", 0)), "smoothed" in source.attrs
+    # At which times they were outside is not known, nor where they are after the first step.
+    if lost == 0 or not ("time" in source.density.coords or smoothed):
+        held = source.density.values.sum(axis=-1) * spacing + lost
+        summed = smoothed or source.attrs.get("source") == "simulation"
+        unknown = np.isnan(held)  # at times that an interrupted run did not reach
+        require_all_held(np.where(unknown, rods, held), rods, who, *([] if summed else [_ROUGH]))
+    return source
+
+
 def _box(source: xr.Dataset) -> xr.Dataset:
     """Convolve density (and block densities, hence the error) with a box of length 2R."""
     length = 2 * chain_of(source).radius
@@ -89,8 +129,8 @@ def _box(source: xr.Dataset) -> xr.Dataset:
     def average(values: Array) -> Array:
         return convolve1d(values, np.full(n, 1 / n), axis=-1, mode="constant")
 
-    convolved = source.drop_vars(set(source.data_vars) - {"density", "density_block"})
-    for name in convolved.data_vars:
+    convolved = source.drop_vars(set(source.data_vars) - _SMOOTHED - {"outside", "rods"})
+    for name in _SMOOTHED & set(convolved.data_vars):
         convolved[name] = convolved[name].copy(data=average(source[name].values))
     if "density_block" in convolved:
         blocks = convolved.density_block
@@ -111,7 +151,7 @@ def _hat_density_of_states(chain: Chain, source: xr.Dataset) -> xr.Dataset:
     density = weights / (x[1] - x[0]) / (positions.size / observed.size)
     return result(
         chain,
-        {"density": ("x", density)},
+        {"density": ("x", density), "rods": ((), observed.size)},
         source=source.attrs["source"],
         method={"density": "of states"},
         coordinates={"x": x},

@@ -12,10 +12,13 @@ from crazybilliards.comparison.coverage import require_same_smoothing
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.arrays import Array
 from crazybilliards.model.calls import warn_user
-from crazybilliards.model.checks import check_real
+from crazybilliards.model.checks import check_real, shown
+from crazybilliards.model.grid import require_even
 from crazybilliards.model.vocabulary import require
 
 _SAME_RODS = 0.05  # of the number of rods, by which two densities of a chain may differ
+_WHOLE = 1e-3  # of the number of rods, by which they may if their grids end at other places
+_SAME_NODE = 1e-3  # of the spacing, by which nodes may differ
 _RELIABLE = 0.2  # of a density, up to which an error bar is
 
 
@@ -42,26 +45,49 @@ class Deviation:
     rms_in_errors: float | None
 
 
-def deviation(result: xr.Dataset, reference: xr.Dataset, floor: float = 1e-3) -> Deviation:
-    """Compare the densities of two results on their common grid.
+def deviation(
+    result: xr.Dataset, reference: xr.Dataset, floor: float = 1e-3, *, raw: bool = False
+) -> Deviation:
+    """Compare the densities of two results, and nothing else, on their common grid.
+
+    Widths, which have one value for each rod, are compared by a division:
+    ``run.velocity_width / theory.velocity_width - 1``.
 
     Parameters
     ----------
     result, reference
         Two results with ``density`` over x of one chain, smoothed in the same way. Beyond the end
-        of a grid the density is 0. A warning says in which parameters two chains differ.
+        of a whole grid the density is 0; if x was cut, it must be the same in both. A warning says
+        in which parameters two chains differ.
     floor
         Differences count where either density exceeds this fraction of close packing. Differences
         in units of errors count where both do and the error is at most a fifth of the density.
         Elsewhere a simulation has too few rods for a reliable error bar.
+    raw
+        Compare densities of which none is smoothed. In a near-crystal the smallest shift of their
+        spikes is then a large deviation.
 
     Raises
     ------
     ValueError
-        If a result has no density, if only one is smoothed, or if they are of other numbers of
-        rods, or of rods of other lengths.
+        If a result has no density, if only one is smoothed, or none unless ``raw``, or if they are
+        of other numbers of rods, or of rods of other lengths. For a quantity in place of ``floor``.
     """
-    _say_what_differs(chain_of(result), chain_of(reference))
+    if isinstance(floor, str):
+        raise ValueError(
+            f"floor must be a number, got {shown(floor)}: deviation compares densities only; for "
+            "widths divide them, run.velocity_width / theory.velocity_width - 1"
+        )
+    floor = check_real("floor", floor)
+    chains = chain_of(result), chain_of(reference)
+    for dataset in (result, reference):
+        require(dataset, ("density",))
+    require_same_smoothing({"result": result, "reference": reference})
+    if not raw and "smoothed" not in result.attrs:
+        raise ValueError(
+            "the densities are not smoothed: take cb.smooth of both, or raw=True to compare spikes"
+        )
+    _say_what_differs(*chains)
     difference, error, either = _differences(result, reference, floor)
     differences = difference[either] if either.any() else np.zeros(1)
     known = np.isfinite(error)
@@ -85,23 +111,17 @@ def _differences(
 
     In units of close packing, on the common grid. An error is infinite where it is not reliable.
     """
-    floor = check_real("floor", floor)
-    for dataset in (result, reference):
-        require(dataset, ("density",))
-    require_same_smoothing({"result": result, "reference": reference})
-    spacing = float(reference.x[1] - reference.x[0])
-    if not np.isclose(float(result.x[1] - result.x[0]), spacing, rtol=1e-9):
-        raise ValueError("the two densities lie on grids of different spacing")
+    result, reference = (each.transpose(..., "x") for each in (result, reference))
+    spacing = _common_spacing(result, reference)
     ours, theirs = (each.density.sum("x") * spacing for each in (result, reference))
     if ours.dims != theirs.dims or (ours.dims and not ours.time.equals(theirs.time)):
         raise ValueError("the densities are of several times; choose one of each: .isel(time=...)")
-    if (np.abs(ours.values - theirs.values) > _SAME_RODS * np.maximum(ours, theirs).values).any():
-        held = (f"{float(each.max()):.4g}" for each in (ours, theirs))
-        raise ValueError(f"the two densities hold {' and '.join(held)} rods")
+    _require_same_rods(result, reference, ours.values, theirs.values)
     unit = chain_of(reference).close_packed_density
-    # Nodes are whole multiples of the spacing, so their numbers align the grids exactly.
+    # The nodes of both are the same, so their numbers align the grids exactly.
+    first = float(reference.x[0])
     ours, theirs = (
-        dataset.assign_coords(x=np.rint(dataset.x / spacing).astype(int))
+        dataset.assign_coords(x=np.rint((dataset.x - first) / spacing).astype(int))
         for dataset in (result, reference)
     )
     a, b = xr.align(ours.density, theirs.density, join="outer", fill_value=0.0)
@@ -111,6 +131,30 @@ def _differences(
     known = high[0] & high[1] & (squared_error > 0) & reliable
     error = np.where(known, np.sqrt(squared_error), np.inf) / unit
     return (a - b).values / unit, error, high[0] | high[1]
+
+
+def _common_spacing(result: xr.Dataset, reference: xr.Dataset) -> float:
+    """Return the spacing of x, or raise a ValueError if the nodes of two grids differ."""
+    ours, theirs = (require_even(each.x.values, "deviation") for each in (result, reference))
+    if not np.isclose(ours, theirs, rtol=1e-9):
+        raise ValueError("the two densities lie on grids of different spacing")
+    apart = float(result.x[0] - reference.x[0]) / theirs
+    if abs(apart - round(apart)) > _SAME_NODE:
+        raise ValueError("the two densities lie on grids with other nodes")
+    return theirs
+
+
+def _require_same_rods(
+    result: xr.Dataset, reference: xr.Dataset, ours: Array, theirs: Array
+) -> None:
+    """Raise a ValueError if the grids of two results hold other numbers of rods."""
+    alike = result.x.size == reference.x.size and np.allclose(result.x, reference.x)
+    missing = any(each.get("outside", 0) > 0 for each in (result, reference))
+    tolerance = _SAME_RODS if alike or missing else _WHOLE
+    if (np.abs(ours - theirs) > tolerance * np.maximum(ours, theirs)).any():
+        held = (f"{float(each.max()):.4g}" for each in (ours, theirs))
+        where = "" if alike else "; their grids end at other places: if x was cut, cut both alike"
+        raise ValueError(f"the two densities hold {' and '.join(held)} rods{where}")
 
 
 def _say_what_differs(ours: Chain, theirs: Chain) -> None:

@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from crazybilliards.model.chain import Chain
 from crazybilliards.model.kernels import kernel
@@ -24,6 +24,9 @@ _BYTES_PER_NODE = 200  # some 25 arrays of a theory
 
 # In units of the chain's length: displacements of this size keep seven digits in a position.
 _SMALLEST_REACH = 1e-9
+
+# Of the rods, by which a whole grid may miss some: rounding, or single precision.
+_MISSED = 1e-5
 
 # exp(-40) = 4e-18: nothing that double precision sees lies further out than U(d) = 40 T.
 _TAIL = 40.0
@@ -85,6 +88,25 @@ def _half_width(chain: Chain, reach: float | None) -> float:
     # The two running averages, of a rod length each, spread a point by 2R to either side.
     margin = 4 * chain.radius
     return float(chain.anchors[-1]) + (thermal_reach(chain) if reach is None else reach) + margin
+
+
+def require_even(x: NDArray[np.float64], who: str) -> float:
+    """Return the spacing of positions, or raise a ValueError unless they ascend evenly."""
+    steps = np.diff(x)
+    if not (x.size > 1 and steps[0] > 0 and np.allclose(steps, steps[0], rtol=1e-6)):
+        raise ValueError(f"x must be even and ascend: {who} needs the whole grid of the result")
+    return float(steps[0])
+
+
+def require_all_held(held: ArrayLike, rods: ArrayLike, who: str, missed: float = _MISSED) -> None:
+    """Raise a ValueError unless a grid holds all rods at all times, but for a share ``missed``."""
+    held, rods = np.broadcast_arrays(held, rods)
+    worst = np.argmax(np.abs(held - rods))
+    if not abs(held.flat[worst] - rods.flat[worst]) <= missed * rods.flat[worst]:
+        raise ValueError(
+            f"the grid of x holds {held.flat[worst]:.6g} of the chain's {rods.flat[worst]:.6g} "
+            f"rods: {who} needs the whole grid of the result; cut what {who} returns"
+        )
 
 
 @kernel

@@ -246,6 +246,18 @@ def require(dataset: xr.Dataset, names: Iterable[str]) -> None:
             raise ValueError(f"the result has no {name!r}; it has {has}{meant(name, known)}")
 
 
+def require_all_particles(dataset: xr.Dataset, size: int, who: str) -> None:
+    """Raise a ValueError unless a result has all particles of a chain, in their order."""
+    given = dataset.sizes.get("particle")
+    if given != size:
+        raise ValueError(
+            f"{who}: the result has {given} particles, the chain {size}; give all particles"
+        )
+    numbers = np.arange(size) + 1
+    if not np.array_equal(dataset.coords.get("particle", numbers), numbers):
+        raise ValueError(f"{who}: the particles of the result must ascend from 1 to {size}")
+
+
 @cache
 def _versions() -> dict[str, str]:
     packages = ("crazybilliards", "numpy", "numba", "scipy", "xarray")

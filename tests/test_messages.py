@@ -127,7 +127,7 @@ def test_a_frozen_object_says_how_to_get_another(change, names):
             change(names["chain"], name)
         assert "\n" not in str(caught.value)
     with pytest.raises(FrozenInstanceError, match="rms: a Deviation cannot be changed"):
-        change(cb.deviation(names["exact"], names["exact"]), "rms")
+        change(cb.deviation(names["exact"], names["exact"], raw=True), "rms")
 
 
 @pytest.mark.parametrize("number", [np.array(0.5), np.float32(0.5), xr.DataArray([0.5, 1])[0]])

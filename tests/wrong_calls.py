@@ -34,7 +34,16 @@ cb.chain_of(tree) | must be a result...tree['name'].to_dataset()...got a DataTre
 cb.chain_of(foreign) | not a crazybilliards result
 cb.deviation(foreign, foreign) | not a crazybilliards result
 cb.deviation(exact, exact, floor="a") | floor must be a number, got 'a'
+cb.deviation(run, exact, "velocity_width") | deviation compares densities only; for widths divide
+cb.deviation(exact, exact, [1]) | floor must be a number, got [1]
+cb.deviation(run, run) | not smoothed: take cb.smooth of both, or raw=True
+cb.smooth(run.sel(x=slice(-1, 1))) | of the chain's 5 rods: smooth needs the whole grid
 cb.fit_arctanh(foreign) | the result has no 'mean_displacement'
+cb.fit_arctanh(exact.isel(particle=slice(2))) | fit_arctanh: the result has 2 particles, the chain 5
+cb.fit_arctanh(exact.isel(particle=slice(None, None, -1))) | must ascend from 1 to 5
+cb.fit_border_power_law(run.isel(particle=[0, 2, 1, 3, 4])) | must ascend from 1 to 5
+cb.force_balance(chain, displacement=exact.sortby("particle", ascending=False)) | must ascend from
+cb.rod_by_rod(cb.force_balance(chain).isel(particle=slice(None, None, -1))) | must ascend from
 cb.fit_border_power_law(foreign) | the result has no 'velocity_width'
 cb.overlay([run]) | overlay takes results by their labels...got a list
 cb.overlay(run) | overlay takes results by their labels...got a Dataset

@@ -12,7 +12,7 @@ from scipy.optimize import curve_fit
 from crazybilliards.comparison.fits.fit import Fit, least_squares, root_mean_square
 from crazybilliards.model import chain_of
 from crazybilliards.model.arrays import Array
-from crazybilliards.model.vocabulary import require
+from crazybilliards.model.vocabulary import require, require_all_particles
 
 _STEEPEST = -5.0  # of the exponents that are tried
 _STARTS = ((-0.5, 0.0), (-0.5, 0.8), (-1.0, -5.0), (-0.1, 0.0))  # of nu and c
@@ -29,7 +29,7 @@ def fit_arctanh(source: xr.Dataset) -> Fit:
     Parameters
     ----------
     source
-        A result with ``mean_displacement``.
+        A result with ``mean_displacement`` of all particles.
 
     Returns
     -------
@@ -46,6 +46,7 @@ def fit_arctanh(source: xr.Dataset) -> Fit:
     """
     require(source, ("mean_displacement",))
     chain = chain_of(source)
+    require_all_particles(source, chain.size, "fit_arctanh")
     displacement = source.mean_displacement.values
     x = chain.anchors + displacement
     if chain.size < 3:
@@ -124,8 +125,9 @@ def fit_border_power_law(
     """
     require(source, ("velocity_width",))
     size = chain_of(source).size
-    if source.sizes["particle"] != size or size < _LEAST_RODS:
-        raise ValueError(f"the fit needs the widths of all particles, at least {_LEAST_RODS}")
+    require_all_particles(source, size, "fit_border_power_law")
+    if size < _LEAST_RODS:
+        raise ValueError(f"the fit needs the widths of at least {_LEAST_RODS} particles")
     width = source.velocity_width.values
     weight = np.ones(size)
     if weighted:

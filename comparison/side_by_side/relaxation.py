@@ -136,7 +136,8 @@ def condensed(tree: xr.DataTree) -> xr.DataTree:
     for name, group in tree.children.items():
         result = group.to_dataset()
         if "density" in result:
-            density = smooth(result).drop_vars("density_block", errors="ignore")
+            density = smooth(result)
+            density = density.drop_vars(["density_block", "outside", "rods"], errors="ignore")
             result = result.drop_dims("x").merge(density.astype(np.float32))
             result.attrs["smoothed"] = density.attrs["smoothed"]
             for each in density.data_vars:

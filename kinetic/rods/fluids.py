@@ -15,9 +15,14 @@ from crazybilliards.kinetic.rods.profiles import over_positions
 from crazybilliards.kinetic.statics.label_closure import BY_LABELS
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.arrays import Array
-from crazybilliards.model.vocabulary import OF_RODS, VOCABULARY, described, require
-
-_ALL = 1e-4  # of the rods, which a grid may miss; those of the eulerian frame do
+from crazybilliards.model.grid import require_all_held, require_even
+from crazybilliards.model.vocabulary import (
+    OF_RODS,
+    VOCABULARY,
+    described,
+    require,
+    require_all_particles,
+)
 
 
 def rod_by_rod(theory: xr.Dataset) -> xr.Dataset:
@@ -99,20 +104,10 @@ def _check(theory: xr.Dataset) -> Chain:
     label = theory.label
     if label.dims not in (("x",), ("time", "x")) or theory.density.dims != label.dims:
         raise ValueError(f"density and label must be over x or (time, x), got {label.dims}")
-    held = np.ravel(np.diff(label.values[..., [0, -1]]))
-    worst = held[np.argmax(np.abs(held - chain.size))]
-    if not abs(worst - chain.size) <= _ALL * chain.size:
-        raise ValueError(
-            f"the grid of x holds {worst:.6g} of the chain's {chain.size} rods: rod_by_rod needs "
-            "the whole grid of the theory"
-        )
-    steps = np.diff(theory.x.values)
-    if not np.allclose(steps, steps[0], rtol=1e-6):
-        raise ValueError("x must be even: rod_by_rod needs the whole grid of the theory")
-    if theory.sizes.get("particle", chain.size) != chain.size:
-        raise ValueError(
-            f"the result has {theory.sizes['particle']} particles, the chain {chain.size}"
-        )
+    require_even(theory.x.values, "rod_by_rod")
+    require_all_held(label[..., -1] - label[..., 0], chain.size, "rod_by_rod")
+    if "particle" in theory.dims:
+        require_all_particles(theory, chain.size, "rod_by_rod")
     return chain
 
 

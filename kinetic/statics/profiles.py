@@ -22,7 +22,7 @@ from scipy.interpolate import PchipInterpolator
 from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array
 from crazybilliards.model.checks import check_real, shown
-from crazybilliards.model.vocabulary import require
+from crazybilliards.model.vocabulary import require, require_all_particles
 
 Prescribed = xr.Dataset | Sequence[ArrayLike] | Array | Callable[[ArrayLike], ArrayLike]
 
@@ -106,11 +106,7 @@ def _table(
     """Return x and values of a table, or of the particles of a result at their mean positions."""
     if isinstance(source, xr.Dataset):
         require(source, (variable, "mean_displacement"))
-        if source.sizes.get("particle") != chain.size:
-            raise ValueError(
-                f"{name}: the result has {source.sizes.get('particle')} particles, the chain "
-                f"{chain.size}"
-            )
+        require_all_particles(source, chain.size, name)
         return chain.anchors + source.mean_displacement.values, source[variable].values
     try:
         x, values = (np.asarray(column, dtype=float) for column in source)

@@ -5,9 +5,15 @@ import pytest
 import xarray as xr
 
 from crazybilliards.comparison import coverage_density, smooth
-from crazybilliards.kinetic import equilibrium, equilibrium_states, force_balance
+from crazybilliards.kinetic import (
+    displaced,
+    equilibrium,
+    equilibrium_states,
+    force_balance,
+    hydrodynamics,
+)
 from crazybilliards.model import Chain
-from crazybilliards.particles import simulate
+from crazybilliards.particles import Density, simulate
 
 
 def coverage_slowly(positions, x, radius):
@@ -101,3 +107,52 @@ def test_nothing_is_smoothed_twice():
     assert smooth(once) is once
     with pytest.raises(ValueError, match="smoothed already"):
         coverage_density(once)
+
+
+def _with_parts():
+    """Yield results whose density is known on their whole grid, with the rods that it has."""
+    chain = Chain(size=20, gap=0.3)
+    yield simulate(chain, duration=200, progress=False), 20
+    raw = {"duration": 4, "average": "ensemble", "observe": "density", "progress": False}
+    yield simulate(chain, **raw), 20
+    yield equilibrium(chain), 20
+    yield force_balance(chain).drop_vars("label"), 20
+    yield hydrodynamics(chain, displaced(chain, 1.0), 2.0, progress=False), 20
+    narrow, far = Density(reach=0.1), chain.replace(amplitude=6)
+    with pytest.warns(UserWarning, match="outside the grid"):
+        run = simulate(far, duration=200, observe=narrow, progress=False)
+    yield run, 20
+    yield coverage_density(equilibrium(chain)), 20
+    yield coverage_density(equilibrium_states(chain, 5).isel(particle=[1, 18])), 2
+
+
+def test_a_grid_that_was_cut_or_thinned_is_not_smoothed():
+    for result, rods in _with_parts():
+        _refused_in_part(result, rods)
+
+
+def _refused_in_part(result, rods):
+    whole = smooth(result)
+    if "outside" not in result or result.outside == 0:
+        held = whole.density.sum("x") * (whole.x[1] - whole.x[0])
+        np.testing.assert_allclose(held, rods, rtol=1e-3)
+    end, ways = float(result.x[-1]), [smooth]
+    if "smoothed" not in result.attrs:
+        ways.append(coverage_density)
+    for part in (slice(-9.0, 9.0), slice(-100, 5.0), slice(-3.0, 100)):
+        for way in ways:
+            with pytest.raises(
+                ValueError, match=rf"grid of x holds .* of .* {rods} rods: .*cut what"
+            ):
+                way(result.sel(x=part))
+    for way in ways:
+        with pytest.raises(ValueError, match="x must be even and ascend"):
+            way(result.isel(x=slice(None, None, -1)))
+        with pytest.raises(ValueError, match="x must have an odd number of nodes"):
+            way(result.isel(x=slice(None, None, 2)))
+        with pytest.raises(ValueError, match="density must be over x"):
+            way(result.isel(x=3))
+    xr.testing.assert_allclose(smooth(result.transpose("x", ...)), whole)
+    if rods == 20 and "outside" not in result:  # where there is nothing
+        less = result.sel(x=slice(-end + 1.0, end - 1.0))
+        xr.testing.assert_allclose(smooth(less).density, whole.density.sel(x=less.x))

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from crazybilliards.comparison import deviation, fit_arctanh, fit_border_power_law
+from crazybilliards.comparison import deviation, fit_arctanh, fit_border_power_law, smooth
 from crazybilliards.kinetic import equilibrium, force_balance
 from crazybilliards.model import Chain
 from crazybilliards.model.vocabulary import result
@@ -16,7 +16,45 @@ def flat(chain, height, width, error=None, spacing=0.5):
     variables = {"density": ("x", np.full(x.size, height))}
     if error is not None:
         variables["density_error"] = ("x", np.full(x.size, error))
-    return result(chain, variables, source="theory", method={}, coordinates={"x": x})
+    found = result(chain, variables, source="theory", method={}, coordinates={"x": x})
+    return found.assign_attrs(smoothed="coverage, running average")
+
+
+def test_densities_that_were_cut_are_compared_where_both_are_known():
+    chain = Chain(size=50)
+    one, other = smooth(equilibrium(chain)), smooth(force_balance(chain))
+    whole = deviation(one, other)
+    middle = deviation(one.sel(x=slice(-20, 20)), other.sel(x=slice(-20, 20)))
+    assert 0 < middle.integrated < whole.integrated
+    less = one.sel(x=slice(-20, 20))
+    for end in (19.8, 20.5):  # a hundredth of the rods, which was 0 in one and 1/2 in the other
+        with pytest.raises(ValueError, match="rods; their grids end at other places"):
+            deviation(less, other.sel(x=slice(-20, end)))
+    with pytest.raises(ValueError, match="grids with other nodes"):
+        deviation(one.isel(x=slice(0, None, 3)), other.isel(x=slice(1, None, 3)))
+    with pytest.raises(ValueError, match="even and ascend"):
+        deviation(one.isel(x=slice(None, None, -1)), other)
+    tails = one.sel(x=slice(-56, 56))
+    assert deviation(tails, other).maximum == pytest.approx(whole.maximum)
+
+
+def test_a_transposed_density_deviates_as_before():
+    chain = Chain(size=10)
+    runs = [
+        simulate(
+            chain, seed=seed, duration=2, average="ensemble", observe="density", progress=False
+        )
+        for seed in (1, 2)
+    ]
+    one, other = map(smooth, runs)
+    assert deviation(one.transpose("x", ...), other) == deviation(one, other)
+
+
+def test_spikes_are_compared_only_when_asked_for():
+    exact = equilibrium(Chain(size=10))
+    with pytest.raises(ValueError, match=r"not smoothed: .* or raw=True"):
+        deviation(exact, exact)
+    assert deviation(exact, exact, raw=True).maximum == 0
 
 
 def test_deviation_in_both_units():
