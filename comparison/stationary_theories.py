@@ -117,11 +117,11 @@ def theories(chain: Chain) -> xr.Dataset:
         Over ``theory``, the name of the function: ``takes`` (whether it takes the chain),
         ``reason`` (why not), the errors that its result states, and ``expected_seconds`` on one
         core, within a factor of three. The errors are the largest that simulations of chains like
-        this one, or exact solutions, showed: relative ones of W_v (``velocity_width_error`` of the
-        particles 3 to L - 2, ``border_error`` of the first and the last) and of W_x
-        (``displacement_width_error``), of the mean displacement in thermal lengths
-        (``mean_displacement_error``), and of the smoothed density relative to close packing
-        (``density_error``). They are NaN where none was measured or the chain is not taken.
+        this one, or exact solutions, showed: relative ones of W_v (``velocity_width_model_error``
+        of the particles 3 to L - 2, ``border_model_error`` of the first and the last) and of W_x
+        (``displacement_width_model_error``), of the mean displacement in thermal lengths
+        (``mean_displacement_model_error``), and of the smoothed density relative to close packing
+        (``density_model_error``). They are NaN where none was measured or the chain is not taken.
         ``attrs["best"]`` is the name of the theory with the smallest error of W_v, or empty if none
         takes the chain. A chain with e > 1 may turn out to have no steady state when a theory is
         solved (see ``critical_size``).
@@ -149,11 +149,11 @@ def theories(chain: Chain) -> xr.Dataset:
     columns = (
         ("takes", "whether the theory takes the chain", ""),
         ("reason", "why not", ""),
-        ("velocity_width_error", "expected relative error of W_v", "1"),
-        ("border_error", "expected relative error of W_v at the border", "1"),
-        ("displacement_width_error", "expected relative error of W_x", "1"),
-        ("mean_displacement_error", "expected error of the mean displacement, over s", "1"),
-        ("density_error", "expected error of the density, over close packing", "1"),
+        ("velocity_width_model_error", "expected relative error of W_v", "1"),
+        ("border_model_error", "expected relative error of W_v at the border", "1"),
+        ("displacement_width_model_error", "expected relative error of W_x", "1"),
+        ("mean_displacement_model_error", "expected error of the mean displacement, over s", "1"),
+        ("density_model_error", "expected error of the density, over close packing", "1"),
         ("expected_seconds", "expected computing time", "s"),
     )
     variables = {

@@ -46,15 +46,9 @@ class Accuracy(NamedTuple):
     mean_displacement: float = math.nan  # in thermal lengths, of any particle
     density: float = math.nan  # of the smoothed density, relative to close packing
 
-    def attributes(self, main: str = "velocity_width") -> dict[str, float]:
-        """Return the attributes of a result; ``model_error`` is that of the main quantity."""
-        return {
-            "model_error": getattr(self, main),
-            "border_error": self.border,
-            "displacement_error": self.displacement_width,
-            "mean_displacement_model_error": self.mean_displacement,
-            "density_model_error": self.density,
-        }
+    def named(self) -> dict[str, float]:
+        """Return the errors by the names that attributes of results and columns of tables have."""
+        return {f"{quantity}_model_error": error for quantity, error in self._asdict().items()}
 
 
 class UnmeasuredWarning(UserWarning):
@@ -65,7 +59,7 @@ def warn_if_unmeasured(theory: str, error: float) -> None:
     """Tell the caller of a theory, once, that its error is not known for this chain."""
     if math.isnan(error):
         warn_user(
-            f"the error of {theory} was not measured for chains like this one (model_error is "
+            f"the error of {theory} was not measured for chains like this one (it is "
             "NaN); crazybilliards.theories(chain) lists what is known",
             UnmeasuredWarning,
         )

@@ -4,7 +4,7 @@
 
 Prints kinetic/measured/relaxation.csv, from which the equation reads the error that it states, or
 docs/tables/kinetic_equation_in_time_held_out.csv: chains whose errors were looked at once, after
-the rule of ``model_error`` was final. An ensemble of chains is simulated from exact equilibrium
+the rule of ``kinetic_energy_model_error`` was final. An ensemble of chains is simulated from exact equilibrium
 states of the elastic chain, released with a restitution other than 1: as they are, or with y
 multiplied by 0.4. Simulations are kept in FOLDER. Takes about half an hour on one core, and a
 quarter with ``--held-out``.
@@ -71,7 +71,12 @@ def errors(chain: Chain, factor: float, folder: Path) -> tuple[float, float, flo
     error = flow.kinetic_energy.values / run.kinetic_energy.values - 1
     worst = int(np.argmax(np.abs(error)))
     noise = float(run.kinetic_energy_error[worst] / run.kinetic_energy[worst])
-    return float(error[worst]), noise, float(run.time[worst]), flow.attrs["model_error"]
+    return (
+        float(error[worst]),
+        noise,
+        float(run.time[worst]),
+        flow.attrs["kinetic_energy_model_error"],
+    )
 
 
 def table(folder: Path, held_out: bool) -> Table:

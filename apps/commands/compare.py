@@ -190,7 +190,7 @@ def _print_widths(tree: xr.DataTree) -> None:
         status = run.attrs["status"]
         shown = restitution + ("" if status == "completed" else f" ({status})")
         for key, found in by_theory.items():
-            stated = tree[name][key].attrs["model_error"]
+            stated = tree[name][key].attrs["velocity_width_model_error"]
             values = (f"{100 * value:.2f}" for value in (found[0], stated, *found[1:]))
             table.add_row(shown, KINETIC[key], *(each.replace("nan", "-") for each in values))
         if not by_theory:

@@ -132,7 +132,7 @@ def _list(chain: Chain) -> None:
     )
     rows = found.to_dataframe()
     for name, row in rows[rows.takes].iterrows():
-        errors = [_percent(row[column]) for column in row.index if column.endswith("_error")]
+        errors = [_percent(row[column]) for column in row.index if column.endswith("_model_error")]
         table.add_row(str(name), *errors, f"{row.expected_seconds:.2g} s")
     note(best=found.attrs["best"], theories=rows.reset_index().to_dict("records"))
     print_table(table)
@@ -154,7 +154,7 @@ def _print(theory: Theory, result: xr.Dataset) -> None:
     caption += "".join(f" {accuracy[name]}: {value:.1e}." for name, value in numbers.items())
     stated = theory.accuracy(chain)._asdict()
     known = {name: error for name, error in stated.items() if not math.isnan(error)}
-    numbers |= {f"{name}_error": error for name, error in known.items()}
+    numbers |= {f"{name}_model_error": error for name, error in known.items()}
     caption += "\n" + _caveat(known)
     note(theory=theory.name, free_velocity_width=chain.free_velocity_width, **numbers)
     title = f"{theory.title.capitalize()}, L = {chain.size}, e = {chain.restitution:g}"

@@ -120,7 +120,7 @@ def stated_error(theory: xr.Dataset, quantity: str) -> Array:
     """Return the error that a theory states of a quantity, in its unit; 0 where it states none."""
     chain = chain_of(theory)
     name, whole = {
-        "velocity_width": ("model_error", np.abs(theory[quantity].values)),
+        "velocity_width": ("velocity_width_model_error", np.abs(theory[quantity].values)),
         "mean_displacement": ("mean_displacement_model_error", chain.thermal_length),
         "density": ("density_model_error", chain.close_packed_density),
     }[quantity]

@@ -103,7 +103,7 @@ def _in_vocabulary(chain: Chain, recursion: Recursion) -> xr.Dataset:
         method={"theory": "exact equilibrium"},
         residual=float(np.ptp(log_z)),
     )
-    dataset.attrs |= expected("equilibrium", chain).attributes("density")
+    dataset.attrs |= expected("equilibrium", chain).named()
     return dataset.assign_attrs(density_of=OF_RODS)
 
 

@@ -108,7 +108,7 @@ def relax_phase_space(
         from f; over time ``rods``, ``centre``, ``cloud_width``, ``kinetic_energy`` and
         ``covariance``. ``attrs["status"]`` is ``diverged`` if the energy grew without bound, or
         ``interrupted`` if Ctrl-C ended it. The result then has the times before.
-        ``attrs["model_error"]`` is the largest relative error of ``kinetic_energy`` at any time
+        ``attrs["kinetic_energy_model_error"]`` is the largest relative error of ``kinetic_energy`` at any time
         that the theory had in simulations of chains like this one, released from their
         equilibrium at e = 1, or from there with y multiplied by 0.4 to 1. It is NaN, with an
         ``UnmeasuredWarning``, for other starts, and where none was measured.
@@ -171,7 +171,9 @@ def relax_phase_space(
         status = "interrupted"
     dataset = in_vocabulary(chain, units, outputs, times[: len(outputs)], flow.space, status)
     released = _compression(chain, outputs[0])
-    error = dataset.attrs["model_error"] = expected_relax_phase_space(chain, released)
+    error = dataset.attrs["kinetic_energy_model_error"] = expected_relax_phase_space(
+        chain, released
+    )
     warn_if_unmeasured("the kinetic equation in time", error)
     return dataset
 

@@ -93,11 +93,11 @@ def phase_space(
         ``attrs``: ``residual``, the last Newton step relative to max f; ``mesh_error``, the
         largest relative change of a velocity width in the last refinement (NaN if ``cells`` was
         given); ``cells``; and the errors of the theory in simulations of chains like this one,
-        NaN where none was measured: ``model_error`` and ``border_error``, relative, of W_v of the
-        particles 3 to L - 2 and of the first and the last; ``displacement_error``, relative, of
+        NaN where none was measured: ``velocity_width_model_error`` and ``border_model_error``, relative, of W_v of the
+        particles 3 to L - 2 and of the first and the last; ``displacement_width_model_error``, relative, of
         W_x; ``mean_displacement_model_error``, in thermal lengths; ``density_model_error``, of
         the smoothed density, relative to close packing. An ``UnmeasuredWarning`` says that
-        ``model_error`` is not known.
+        ``velocity_width_model_error`` is not known.
         The flow velocity should vanish, and is below 1e-9 W wherever there are rods.
 
     Notes
@@ -130,7 +130,7 @@ def phase_space(
             found = _assemble(*on_fine_mesh(state, _rods, tolerance, cells, _MOST_CELLS))
     except NotSolvedError as error:
         raise ValueError(f"{error}: {_out_of_range(chain, order)}") from error
-    warn_if_unmeasured("the kinetic equation", found.attrs["model_error"])
+    warn_if_unmeasured("the kinetic equation", found.attrs["velocity_width_model_error"])
     return found
 
 

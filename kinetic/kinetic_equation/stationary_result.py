@@ -66,7 +66,7 @@ def in_vocabulary(
         method={**method, "cells": state.space.cells},
         residual=residual,
     )
-    dataset.attrs |= {"mesh_error": mesh_error, "cells": state.space.cells, **expected.attributes()}
+    dataset.attrs |= {"mesh_error": mesh_error, "cells": state.space.cells, **expected.named()}
     return dataset.assign_attrs(density_of=OF_FLUID if rods is None else OF_RODS)
 
 

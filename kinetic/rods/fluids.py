@@ -149,7 +149,7 @@ def _temperature(chain: Chain, fluid: xr.Dataset) -> float:
 def _errors(theory: xr.Dataset, chain: Chain) -> dict[str, Any]:
     """Return the errors to state, of the kinds that the theory states."""
     by_labels = json.loads(theory.attrs["provenance"]).get("theory") == BY_LABELS
-    exact = by_labels and not math.isnan(theory.attrs.get("model_error", math.nan))
+    exact = by_labels and not math.isnan(theory.attrs.get("density_model_error", math.nan))
     accuracy = expected("equilibrium", chain) if exact else Accuracy()
-    stated = accuracy.attributes("density")
+    stated = accuracy.named()
     return {name: value for name, value in stated.items() if name in theory.attrs}

@@ -79,8 +79,8 @@ def force_balance(
         the conserved quantity of the equations (an error of ln rho), and with a prescribed
         displacement the relative error of the number of rods. By labels there are also the errors
         of the theory itself, its distance from the exact equilibrium for chains like this one: 2
-        to 1000 rods, linear springs, gaps up to 10 s, e = 1. ``attrs["model_error"]``, which is
-        ``attrs["density_model_error"]``, is the largest error of the smoothed density, relative to
+        to 1000 rods, linear springs, gaps up to 10 s, e = 1. ``attrs["density_model_error"]``
+        is the largest error of the smoothed density, relative to
         close packing, and ``attrs["mean_displacement_model_error"]`` that of ``mean_displacement``
         in thermal lengths. For others they are NaN, with an ``UnmeasuredWarning``.
 
@@ -105,8 +105,8 @@ def force_balance(
     else:
         found = solve_label_closure(chain)
     if velocity_variance is not None:  # measured for the free variance only
-        found.attrs |= Accuracy().attributes()
-    warn_if_unmeasured("the force balance", found.attrs["model_error"])
+        found.attrs |= Accuracy().named()
+    warn_if_unmeasured("the force balance", found.attrs["density_model_error"])
     return found.assign_attrs(density_of=OF_FLUID)
 
 

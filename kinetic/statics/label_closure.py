@@ -67,7 +67,7 @@ def solve_label_closure(chain: Chain) -> xr.Dataset:
         method={"theory": BY_LABELS},
         residual=state.residual,
     )
-    dataset.attrs |= expected("force_balance", chain).attributes("density")
+    dataset.attrs |= expected("force_balance", chain).named()
     return dataset
 
 

@@ -74,12 +74,19 @@ def test_errors_of_a_theory_are_variables_and_texts_that_differ_too(tmp_path):
             result.attrs["note"] = "by hand"
         save(result, case.file(tmp_path))
     loaded = load_sweep(tmp_path)
-    for name in ("model_error", "border_error", "mesh_error", "residual", "iterations", "cells"):
+    for name in (
+        "velocity_width_model_error",
+        "border_model_error",
+        "mesh_error",
+        "residual",
+        "iterations",
+        "cells",
+    ):
         own = [case.load(tmp_path).attrs.get(name) for case in cases]
         if own != [None, None]:
             np.testing.assert_array_equal(loaded[name], own)
             assert loaded[name].attrs["units"] == "1"
-    assert loaded.border_error.dims == ("restitution",)
+    assert loaded.border_model_error.dims == ("restitution",)
     assert loaded.package_version.values.tolist() == ["0.0", "0.1"]
     assert loaded.note.values.tolist() == ["", "by hand"]
     assert loaded.attrs["source"] == "theory"

@@ -80,7 +80,7 @@ def bands(ax):
 def test_a_curve_is_faint_in_a_band_of_its_stated_error_if_that_is_large(tree, large):
     """A fifth of the axis: the errors are made up, on one side of it."""
     tree = tree.copy(deep=True)
-    names = ("mean_displacement_model_error", "model_error", "density_model_error")
+    names = ("mean_displacement_model_error", "velocity_width_model_error", "density_model_error")
     for key in KINETIC:
         tree[f"restitution_0.9/{key}"].attrs |= dict.fromkeys(names, 0.0)
     before = [ax.get_ylim() for ax in (*draw_widths(tree).axes, *draw_density(tree).axes)]

@@ -74,7 +74,7 @@ def test_simulation(restitution, theory):
     run = simulate(chain, duration=8_000, seed=3, observe="widths", threads=1, progress=False)
     ratio = (found.velocity_width / run.velocity_width).values[2:-2] - 1
     error = (run.velocity_width_error / run.velocity_width).values[2:-2].max()
-    assert np.abs(ratio).max() < found.attrs["model_error"] + 5 * error
+    assert np.abs(ratio).max() < found.attrs["velocity_width_model_error"] + 5 * error
     wide = (found.displacement_width / run.displacement_width).values - 1
     error = (run.displacement_width_error / run.displacement_width).values.max()
     assert np.abs(wide).max() < 0.07 + 5 * error
@@ -146,7 +146,7 @@ def test_the_coldest_place_is_warmer_than_the_coldest_rods(theory):
     found, free = theory(0.75), CHAIN.free_velocity_width**2
     rod = float(found.velocity_width[CHAIN.size // 2]) ** 2 / free
     place = float(found.velocity_variance.interp(x=0)) / free
-    stated = 2 * found.attrs["model_error"]  # of squares
+    stated = 2 * found.attrs["velocity_width_model_error"]  # of squares
     assert rod == pytest.approx(0.162, rel=stated + 0.01)
     assert place == pytest.approx(0.182, rel=stated + 0.01)
     assert place > 1.05 * rod

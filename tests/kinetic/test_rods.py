@@ -189,11 +189,11 @@ def test_a_start_with_the_density_of_rods_is_that_of_their_fluid(gap):
 
 
 def test_its_errors_are_stated():
-    assert force_balance(TWELVE).attrs["model_error"] > 0.1
-    assert rod_by_rod(force_balance(TWELVE)).attrs["model_error"] == 0
+    assert force_balance(TWELVE).attrs["density_model_error"] > 0.1
+    assert rod_by_rod(force_balance(TWELVE)).attrs["density_model_error"] == 0
     with pytest.warns(UserWarning, match="not measured"):
         other = force_balance(TWELVE, velocity_variance=0.1)
-    assert math.isnan(rod_by_rod(other).attrs["model_error"])
+    assert math.isnan(rod_by_rod(other).attrs["density_model_error"])
 
 
 def test_more_rods_than_anybody_resolves_stay_a_fluid(monkeypatch):

@@ -75,7 +75,11 @@ def test_simulation(theory):
         progress=False,
     )
     own = theory.velocity_width**2
-    stated = 2 * max(theory.attrs["model_error"], theory.attrs["border_error"]) * own
+    stated = (
+        2
+        * max(theory.attrs["velocity_width_model_error"], theory.attrs["border_model_error"])
+        * own
+    )
     off = np.abs(theory.velocity_covariance - run.velocity_covariance)
     known = run.velocity_covariance.notnull().values
     assert (off <= 5 * run.velocity_covariance_error + stated).values[known].all()

@@ -157,7 +157,7 @@ def test_json_is_one_object_with_every_file_written(name, arguments, run, tmp_pa
         assert first["velocity_width_error"] == float(run_file.velocity_width_error[0])
         assert (facts["status"], facts["end_time"]) == ("completed", run_file.attrs["end_time"])
     if name == "theory":
-        assert facts["velocity_width_error"] == facts["density_error"] == 0
+        assert facts["velocity_width_model_error"] == facts["density_model_error"] == 0
     if name == "compare":
         tree = load(folder / "comparison.nc")
         [found] = facts["density_deviations"]
