@@ -5,9 +5,9 @@
 Prints kinetic/measured/relaxation.csv, from which the equation reads the error that it states, or
 docs/tables/kinetic_equation_in_time_held_out.csv: chains whose errors were looked at once, after
 the rule of ``kinetic_energy_model_error`` was final. An ensemble of chains is simulated from exact
-equilibrium states of the elastic chain, released with a restitution other than 1: as they are, or with y
-multiplied by 0.4. Simulations are kept in FOLDER. Takes about half an hour on one core, and a
-quarter with ``--held-out``.
+equilibrium states of the elastic chain, released with a restitution other than 1: as they are, or
+with y multiplied by 0.4. Simulations are kept in FOLDER. Takes about half an hour on one core, and
+a quarter with ``--held-out``.
 """
 
 import itertools

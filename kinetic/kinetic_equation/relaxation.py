@@ -109,9 +109,9 @@ def relax_phase_space(
         ``covariance``. ``attrs["status"]`` is ``diverged`` if the energy grew without bound, or
         ``interrupted`` if Ctrl-C ended it. The result then has the times before.
         ``attrs["kinetic_energy_model_error"]`` is the largest relative error of
-        ``kinetic_energy`` at any time that the theory had in simulations of chains like this one, released from their
-        equilibrium at e = 1, or from there with y multiplied by 0.4 to 1. It is NaN, with an
-        ``UnmeasuredWarning``, for other starts, and where none was measured.
+        ``kinetic_energy`` at any time that the theory had in simulations of chains like this one,
+        released from their equilibrium at e = 1, or from there with y multiplied by 0.4 to 1. It
+        is NaN, with an ``UnmeasuredWarning``, for other starts, and where none was measured.
 
     Notes
     -----

@@ -95,9 +95,9 @@ def phase_space(
         given); ``cells``; and the errors of the theory in simulations of chains like this one,
         NaN where none was measured: ``velocity_width_model_error`` and ``border_model_error``,
         relative, of W_v of the particles 3 to L - 2 and of the first and the last;
-        ``displacement_width_model_error``, relative, of W_x; ``mean_displacement_model_error``, in thermal lengths; ``density_model_error``, of
-        the smoothed density, relative to close packing. An ``UnmeasuredWarning`` says that
-        ``velocity_width_model_error`` is not known.
+        ``displacement_width_model_error``, relative, of W_x; ``mean_displacement_model_error``, in
+        thermal lengths; ``density_model_error``, of the smoothed density, relative to close
+        packing. An ``UnmeasuredWarning`` says that ``velocity_width_model_error`` is not known.
         The flow velocity should vanish, and is below 1e-9 W wherever there are rods.
 
     Notes
