@@ -130,16 +130,17 @@ def stated_error(theory: xr.Dataset, quantity: str) -> Array:
 def fade(drawn: Iterable[tuple[Line2D, Array]]) -> None:
     """Make lines faint whose error is above a fifth of their axis, and draw it as a band."""
     for line, error in drawn:
-        low, high = line.axes.get_ylim()
+        ax: Any = line.axes
+        low, high = ax.get_ylim()
         if np.max(error) > _LARGE * (high - low):
             line.set_alpha(_FAINT)
-            x, y = line.get_data()
+            x, y = (np.asarray(each) for each in line.get_data())
             band = {"color": line.get_color(), "alpha": _FAINT / 2, "linewidth": 0}
-            line.axes.fill_between(x, y - error, y + error, **band)
-            line.axes.set_ylim(low, high)
+            ax.fill_between(x, y - error, y + error, **band)
+            ax.set_ylim(low, high)
 
 
-def _fade_as_in(above: Axes, ax: Axes) -> None:
+def _fade_as_in(above: Axes, ax: Any) -> None:
     """Draw lines as faintly as those with the same labels are above."""
     opacities = {line.get_label(): line.get_alpha() for line in above.lines}
     for line in ax.lines:
