@@ -116,8 +116,9 @@ def simulate(
         equal times, for relaxation: widths, density, energy over (time, ...), the first time
         being the start or the end of a ``warmup``. Errors are then those of 32 groups of replicas.
     every
-        Time between snapshots [T]; None: 10 steps, for an ensemble a hundredth of the duration
-        (with exact flight as far apart as 10 steps of a chain with a gap would be).
+        Time between snapshots [T]; None: 10 steps, or less where ``"time-correlations"`` needs it,
+        for an ensemble a hundredth of the duration (with exact flight as far apart as 10 steps of a
+        chain with a gap would be).
         The time step is shortened to a whole fraction of it. At most a million steps may be
         shorter than a thousandth of what they would be without it.
     checkpoint
