@@ -92,13 +92,15 @@ def simulate(
         Any of ``"widths"`` (velocity_width, mean_velocity, mean_displacement, displacement_width
         and autocorrelation_time, which is infinite, thus not known, in a run of a single block),
         ``"density"``, ``"velocities"`` (velocity_density,
-        velocity_skewness, velocity_kurtosis), ``"energy"`` (kinetic_energy in time),
+        velocity_skewness, velocity_kurtosis), ``"energy"`` (kinetic_energy, spring_energy and
+        total_energy in time),
         ``"covariances"`` (velocity_covariance, gap_covariance, mean_gap, neighbour_covariance,
         relative_temperature), ``"modes"`` (mode_velocity_variance),
         ``"time-correlations"`` (velocity_autocorrelation, displacement_autocorrelation,
         mean_squared_displacement, velocity_spectrum, each also of waves and of the centre),
         ``"collisions"`` (collision_rate), ``"impacts"`` (contact_force, contact_loss,
-        contact_temperature, rebound_temperature), ``"avalanches"`` (avalanche_count),
+        contact_temperature, rebound_temperature, impact_speed_density),
+        ``"avalanches"`` (avalanche_count),
         ``"triggered-collisions"`` (triggered_count) and ``"snapshots"``
         (position and velocity as they are). Observers can also be given as objects,
         ``cb.Velocities(bins=801)`` or your own.
