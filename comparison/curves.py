@@ -22,6 +22,7 @@ _ABSCISSAE = {
     "separation": "separation",
     "velocity": "velocity",
     "velocity_bin": "velocity_bin",
+    "impact_speed": "impact_speed",
 }
 _OVER = ", ".join([*_ABSCISSAE, "or particle"])
 # Variables by their symbols; others by their long names.

@@ -105,6 +105,7 @@ class Run:
             stepper=self.stepper,
             exact=self.exact,
             started=self.start is not None,
+            finest=min(observer.interval(self.chain) for observer in self.observers),
         )
 
     @cached_property

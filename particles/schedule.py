@@ -9,8 +9,8 @@
   correlated. When there are 64 over all replicas, neighbours are added up in pairs, and the next
   blocks are twice as long. So a long run has 32 to 64 blocks, and what it has measured at a time
   does not depend on how long it goes on. From 64 replicas on each is one block.
-* snapshots: every 10 steps; for an ensemble every hundredth of the duration. With exact motion they
-  are as far apart as 10 steps would be.
+* snapshots: every 10 steps, or more often where an observer asks for it; for an ensemble every
+  hundredth of the duration. With exact motion they are as far apart as 10 steps would be.
 """
 
 from __future__ import annotations
@@ -103,13 +103,15 @@ def make_schedule(
     stepper: Stepper = "splitting",
     exact: bool = False,
     started: bool = False,
+    finest: float = math.inf,
 ) -> Schedule:
     """Check the given times, choose the others, and return whole numbers of steps.
 
     The measured duration is rounded up to whole snapshots. ``every``, the time between snapshots,
     is kept exactly, and the step becomes a whole fraction of it. An ``every``
     that makes it over a thousand times as short and the run over a million steps long is refused.
-    ``exact``: every step is right, whatever its length.
+    ``exact``: every step is right, whatever its length. ``finest``: what observers need
+    for ``every`` where it is not given.
     """
     ensemble = average == "ensemble"
     duration = check_real("duration", duration, positive=True)
@@ -119,7 +121,7 @@ def make_schedule(
         none = started or ensemble or chain.damping == 0
         warmup = 0.0 if none else RELAXATIONS * relaxation_time(chain)
     warmup = check_real("warmup", warmup)
-    needed, step, stride = _choose_step(chain, time_step, every, warmup, stepper, exact)
+    needed, step, stride = _choose_step(chain, time_step, every, warmup, stepper, exact, finest)
     _refuse_short_steps(step, needed, warmup + duration)
     if (warmup + duration) / step > 1e15:
         raise ValueError(f"time_step {step:g} is too small for {warmup + duration:g} time units")
@@ -181,6 +183,7 @@ def _choose_step(
     warmup: float,
     stepper: Stepper,
     exact: bool,
+    finest: float,
 ) -> tuple[float, float, int]:
     """Return the step without regard to snapshots, the step, and the steps between snapshots."""
     if every is not None:
@@ -197,12 +200,14 @@ def _choose_step(
             if not exact or every is None:
                 raise
             needed = every  # free rods have no time scale, and need none if snapshots have one
-        if exact:
-            every = every or STRIDE * needed
-            # The warm-up is a whole number of steps, which must not make it much longer.
-            longest = max(STRIDE * needed, warmup / 100) if warmup > 0 else every
+    least = needed / _MOST_SHORTENED if time_step is None else needed
+    finest = min(max(finest, least), STRIDE * needed)
+    if exact and time_step is None:
+        every = every or finest
+        # The warm-up is a whole number of steps, which must not make it much longer.
+        longest = max(STRIDE * needed, warmup / 100) if warmup > 0 else every
     if every is None:
-        return needed, needed, STRIDE
+        return needed, min(needed, finest), max(math.floor(finest / needed + 1e-9), 1)
     stride = max(math.ceil(every / longest - 1e-9), 1)
     return needed, every / stride, stride
 

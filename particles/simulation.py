@@ -92,13 +92,15 @@ def simulate(
         Any of ``"widths"`` (velocity_width, mean_velocity, mean_displacement, displacement_width
         and autocorrelation_time, which is infinite, thus not known, in a run of a single block),
         ``"density"``, ``"velocities"`` (velocity_density,
-        velocity_skewness, velocity_kurtosis), ``"energy"`` (kinetic_energy in time),
+        velocity_skewness, velocity_kurtosis), ``"energy"`` (kinetic_energy, spring_energy and
+        total_energy in time),
         ``"covariances"`` (velocity_covariance, gap_covariance, mean_gap, neighbour_covariance,
         relative_temperature), ``"modes"`` (mode_velocity_variance),
         ``"time-correlations"`` (velocity_autocorrelation, displacement_autocorrelation,
         mean_squared_displacement, velocity_spectrum, each also of waves and of the centre),
         ``"collisions"`` (collision_rate), ``"impacts"`` (contact_force, contact_loss,
-        contact_temperature, rebound_temperature), ``"avalanches"`` (avalanche_count),
+        contact_temperature, rebound_temperature, impact_speed_density),
+        ``"avalanches"`` (avalanche_count),
         ``"triggered-collisions"`` (triggered_count) and ``"snapshots"``
         (position and velocity as they are). Observers can also be given as objects,
         ``cb.Velocities(bins=801)`` or your own.
@@ -116,8 +118,9 @@ def simulate(
         equal times, for relaxation: widths, density, energy over (time, ...), the first time
         being the start or the end of a ``warmup``. Errors are then those of 32 groups of replicas.
     every
-        Time between snapshots [T]; None: 10 steps, for an ensemble a hundredth of the duration
-        (with exact flight as far apart as 10 steps of a chain with a gap would be).
+        Time between snapshots [T]; None: 10 steps, or less where ``"time-correlations"`` needs it,
+        for an ensemble a hundredth of the duration (with exact flight as far apart as 10 steps of a
+        chain with a gap would be).
         The time step is shortened to a whole fraction of it. At most a million steps may be
         shorter than a thousandth of what they would be without it.
     checkpoint

@@ -162,7 +162,8 @@ def record(  # type: ignore[no-untyped-def]
 
     Return the number of valid snapshots. It is smaller than the buffers if the chain diverged,
     because a drift had too many collisions or a rod became too fast. Contacts and impacts are then
-    those up to the last valid snapshot, but avalanches include those of diverging steps.
+    those up to the last valid snapshot, but avalanches and speeds of impacts
+    include those of diverging steps.
     """
     _keep(tally, scratch, tally)
     for snapshot in range(y_buffer.shape[0]):

@@ -47,6 +47,7 @@ cb.simulate(cb.Chain(size=1), observe="covariances") | 'covariances' needs...at 
 cb.simulate(cb.Chain(damping=0), observe="velocities") | 'velocities' needs
 cb.Covariances(separations=0) | separations must be
 cb.Velocities(bins=0) | bins must be an integer
+cb.Impacts(bins=0) | bins must be an integer
 cb.simulate(chain, particles="12") | particles must be a list
 cb.simulate(chain, particles=(6,)) | particles must ascend
 cb.simulate(chain, particles=(3, 2)) | particles must ascend

@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crazybilliards.model.kernels import inlined, kernel
-from crazybilliards.particles.laws.impacts import make_impacts
+from crazybilliards.particles.laws.impacts import Speeds, make_impacts, make_speeds
 
 Integers = NDArray[np.int64]
 
@@ -45,6 +45,7 @@ class Tally(NamedTuple):
     pushes: Waves
     triggered: Waves
     impacts: NDArray[np.float64]  # see ``impacts.py``, (4, L - 1)
+    speeds: Speeds
 
 
 def make_waves(size: int) -> Waves:
@@ -66,7 +67,8 @@ def make_tally(size: int, *, contacts: bool) -> Tally:
     """Return an empty tally for ``size`` rods, without waves and impacts."""
     counted = np.zeros(max(size - 1, 0) if contacts else 0, dtype=np.int64)
     total = np.zeros(2, dtype=np.int64)
-    return Tally(total, counted, make_waves(0), make_waves(0), make_impacts(0))
+    speeds = make_speeds(0, np.zeros(0))
+    return Tally(total, counted, make_waves(0), make_waves(0), make_impacts(0), speeds)
 
 
 @kernel

@@ -32,7 +32,7 @@ import numpy as np
 from crazybilliards.model.kernels import inlined, kernel
 from crazybilliards.particles.laws.avalanche import record_collision
 from crazybilliards.particles.laws.calendar import earliest, list_due, list_of, move, open_calendar
-from crazybilliards.particles.laws.impacts import record_impact
+from crazybilliards.particles.laws.impacts import record_impact, record_speed
 from crazybilliards.particles.laws.spring_correction import springs_ahead
 from crazybilliards.particles.laws.tournament import INDEX, climb, plant
 
@@ -143,6 +143,8 @@ def _collide(contact, now, y, v, anchors, dt, law, scratch, tally):  # type: ign
     if tally.impacts.size > 0:
         separating = 0.0 if merges else rebound
         record_impact(*indices, closing, separating, tally.impacts)
+    if tally.speeds.counts.size > 0:
+        record_speed(contact, closing, tally.speeds)
     if merges:
         first[b], last[a] = a, b
         new_left = new_right = common

@@ -13,6 +13,8 @@ with a gap that merge or hardly touch, whose w is corrected (``spring_correction
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -21,6 +23,18 @@ from crazybilliards.model.kernels import kernel
 # Rows of the sums: mu w, mu w^2/2, mu w', mu w'^2/2, momenta with what crosses within clusters.
 MOMENTUM_BEFORE, ENERGY_BEFORE, MOMENTUM_AFTER, ENERGY_AFTER = range(4)
 ROWS = 4
+
+
+class Speeds(NamedTuple):
+    """How often rods met at each contact with a speed between two edges, ascending from 0."""
+
+    edges: NDArray[np.float64]  # (bins + 1,)
+    counts: NDArray[np.int64]  # (L - 1, bins); of length 0: nothing is counted
+
+
+def make_speeds(contacts: int, edges: NDArray[np.float64]) -> Speeds:
+    """Return empty counts for ``contacts`` contacts."""
+    return Speeds(edges, np.zeros((contacts, max(edges.size - 1, 0)), dtype=np.int64))
 
 
 def make_impacts(size: int) -> NDArray[np.float64]:
@@ -42,3 +56,11 @@ def record_impact(contact, first, last, closing, separating, impacts):  # type: 
         impacts[MOMENTUM_AFTER, other] += beyond * mass * separating
     impacts[ENERGY_BEFORE, contact] += mass * closing * closing / 2
     impacts[ENERGY_AFTER, contact] += mass * separating * separating / 2
+
+
+@kernel
+def record_speed(contact, closing, speeds):  # type: ignore[no-untyped-def]
+    """Count the closing speed of a collision; one beyond the last edge is left out."""
+    place = np.searchsorted(speeds.edges, closing, side="right") - 1
+    if place < speeds.counts.shape[1]:
+        speeds.counts[contact, max(place, 0)] += 1

@@ -96,6 +96,10 @@ class Observer(ABC):
         )
         return f"{self.name}({given})" if given else self.name
 
+    def interval(self, chain: Chain) -> float:
+        """Return the longest time between snapshots that serves it where ``every`` is not given."""
+        return math.inf
+
     @abstractmethod
     def memory(self, run: Run) -> float:
         """Return the bytes that it keeps for one replica of the run, or one group of replicas."""

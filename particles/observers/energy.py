@@ -1,4 +1,4 @@
-"""Kinetic energy in time."""
+"""The energies of the rods and of the springs in time."""
 
 from __future__ import annotations
 
@@ -23,39 +23,42 @@ _MOST_TIMES = 1000
 
 
 class Energy(Observer):
-    """kinetic_energy: sum over the rods of m v^2/2 against time, averaged over the replicas.
+    """kinetic_energy, spring_energy and total_energy against time, averaged over the replicas.
+
+    They are the sums over the rods of m v^2/2, of the potential U(x - x0) of their springs, and of
+    both. On linear springs without a gap each of the first two is L T/2 at e = 1.
 
     Of 2, 4, 8, ... successive snapshots the average is kept, so that there are at most 1000 times.
-    An ensemble keeps all
-    times, and so does a run that observes the snapshots too. With two or more replicas
-    kinetic_energy_error is the standard error of their mean. Times that not every replica reached
-    are left out, or NaN beside snapshots.
+    An ensemble keeps all times, and so does a run that observes the snapshots too. With two or more
+    replicas each has its _error, the standard error of their mean. Times that not every replica
+    reached are left out, or NaN beside snapshots.
     """
 
     name = "energy"
-    gives = ("kinetic_energy",)
+    gives = ("kinetic_energy", "spring_energy", "total_energy")
     along = ("time",)
     shares_time = True
 
     def prepare(self, run: Run, copies: int) -> None:
         self.schedule = run.schedule
         self.every, self.together = self._keeps_every(run), 1
-        self.mass = run.chain.mass
+        self.chain = run.chain
         times = run.schedule.snapshots if self.every else _MOST_TIMES
-        self.sums = np.zeros((1, times))
+        self.sums = np.zeros((1, times, 2))  # of the rods and of the springs
         self.counts = np.zeros((1, times), dtype=np.int64)
 
     def memory(self, run: Run) -> float:
-        return 16.0 * (run.schedule.snapshots if self._keeps_every(run) else _MOST_TIMES)
+        return 24.0 * (run.schedule.snapshots if self._keeps_every(run) else _MOST_TIMES)
 
     def observe(self, snapshots: Snapshots) -> None:
-        energies = self.mass / 2 * np.einsum("sp,sp->s", snapshots.v, snapshots.v)
-        while snapshots.first + energies.size > self.sums.shape[1] * self.together:
+        kinetic = self.chain.mass / 2 * np.einsum("sp,sp->s", snapshots.v, snapshots.v)
+        springs = self.chain.potential(snapshots.y - self.chain.reduced_anchors).sum(axis=1)
+        while snapshots.first + kinetic.size > self.sums.shape[1] * self.together:
             merge_pairs(self.sums[0])
             merge_pairs(self.counts[0])
             self.together *= 2
-        place = (snapshots.first + np.arange(energies.size)) // self.together
-        np.add.at(self.sums[0], place, energies)
+        place = (snapshots.first + np.arange(kinetic.size)) // self.together
+        np.add.at(self.sums[0], place, np.stack([kinetic, springs], axis=1))
         np.add.at(self.counts[0], place, 1)
 
     def join(self, others: Sequence[Self]) -> None:
@@ -68,13 +71,15 @@ class Energy(Observer):
         else:
             reached = self._reached()
             energies, numbers = self.sums[:, reached], self.counts[:, reached]
-        value, error = jackknife(lambda average: average, energies, numbers)
+        value, error = jackknife(_with_total, energies, numbers)
         if not self.schedule.ensemble:
             unknown = (numbers == 0).any(axis=0)
             value[unknown] = error[unknown] = np.nan
-        variables: Variables = {"kinetic_energy": (("time",), value)}
-        if len(numbers) > 1:
-            variables["kinetic_energy_error"] = (("time",), error)
+        variables: Variables = {}
+        for place, name in enumerate(self.gives):
+            variables[name] = (("time",), value[:, place])
+            if len(numbers) > 1:
+                variables[f"{name}_error"] = (("time",), error[:, place])
         return variables
 
     def coordinates(self) -> dict[str, Array]:
@@ -93,3 +98,7 @@ class Energy(Observer):
     def _keeps_every(run: Run) -> bool:
         shared = sum(observer.shares_time for observer in run.observers) > 1
         return run.schedule.ensemble or shared
+
+
+def _with_total(energies: Array) -> Array:
+    return np.concatenate([energies, energies.sum(axis=-1, keepdims=True)], axis=-1)

@@ -6,12 +6,15 @@ import math
 
 import numpy as np
 
+from crazybilliards.model import Chain
 from crazybilliards.model.checks import check_integer, check_real
 from crazybilliards.particles.observers.base import Array, Averaged, Integers, Snapshots, Variables
 from crazybilliards.particles.run import Run
-from crazybilliards.particles.scales import relaxation_time
+from crazybilliards.particles.scales import first_decay, relaxation_time
 
-_RELAXATIONS = 5  # the longest lag unless it is given
+_RELAXATIONS = 5  # the longest lag unless it is given, and the shortest for a spectrum
+_INTERVALS = 5  # in the first decay of a velocity, unless the time between snapshots is given
+_LAGS = 300  # unless their number is given or follows from what is given
 # A block is longer than the lags, because blocks with pairs in common are not independent.
 _LAGS_OF_A_BLOCK, _FEWEST_BLOCKS = 2, 10
 _QUANTITIES = (
@@ -42,6 +45,12 @@ class TimeCorrelations(Averaged):
     In an ensemble the lag is counted from the first time. All quantities but the spectrum, which
     does not exist, then lie over ``time``, and <d_i(s)> <d_i(s+t)> is subtracted.
 
+    The shortest lag is ``every``, the time between snapshots of :func:`simulate`, and all lags are
+    multiples of it up to ``longest``. Where ``every`` is not given it is a fifth of the time in
+    which velocities decay first, which is the shortest of m/gamma, of the time scale of the springs
+    and of the time between two collisions. It is never above 10 steps, and never so short that
+    ``longest`` needs more than 300 lags.
+
     A buffer keeps the last snapshots. All lags are therefore exact, equally far apart as a spectrum
     needs them, and take 16 ``lags`` bytes per rod and wave, and as much per block. Snapshots are
     pairs with all earlier ones within reach, so a snapshot takes some ``lags`` operations per rod.
@@ -52,9 +61,11 @@ class TimeCorrelations(Averaged):
     Parameters
     ----------
     longest
-        Longest lag [T], below the duration. None: 5 relaxation times of the chain.
+        Longest lag [T], below the duration. None: 5 relaxation times of the chain, but at most 300
+        lags.
     lags
-        Most lags above 0. Where there are more snapshots, only every second, third, ... is used.
+        Most lags above 0. Where ``longest`` is more snapshots away, only every second, third, ...
+        snapshot is used. None: every snapshot is used.
     waves
         Number of waves, from q = 0 on; a shorter chain has as many as rods.
     """
@@ -64,21 +75,30 @@ class TimeCorrelations(Averaged):
     along = ("lag", "frequency", "wave")
     limit = False
 
-    def __init__(self, longest: float | None = None, lags: int = 100, waves: int = 8) -> None:
+    def __init__(
+        self, longest: float | None = None, lags: int | None = None, waves: int = 8
+    ) -> None:
         self.longest = None if longest is None else check_real("longest", longest, positive=True)
-        self.lags = check_integer("lags", lags, least=1, most=100_000)
+        self.lags = None if lags is None else check_integer("lags", lags, least=1, most=100_000)
         self.waves = check_integer("waves", waves, least=1, most=100_000)
+
+    def interval(self, chain: Chain) -> float:
+        finest = first_decay(chain) / _INTERVALS
+        if self.longest is self.lags is None:
+            return finest
+        return max(finest, (self.longest or _memory(chain)) / (self.lags or _LAGS))
 
     def _plan(self, run: Run) -> tuple[int, int]:
         """Return the number of snapshots from one lag to the next, and the number of lags."""
         if run.schedule.ensemble:
             return 1, 0
-        longest, duration = self.longest, run.schedule.duration
-        if longest is None:
-            longest = _RELAXATIONS * relaxation_time(run.chain)
+        longest, duration = self.longest or _memory(run.chain), run.schedule.duration
+        interval = run.schedule.stride * run.schedule.time_step
+        if self.longest is self.lags is None and longest < math.inf:
+            longest = min(longest, _LAGS * interval)
         if longest < duration:
-            interval = run.schedule.stride * run.schedule.time_step
-            spacing = max(math.ceil(longest / interval / self.lags - 1e-9), 1)
+            lags = self.lags or math.inf
+            spacing = max(math.ceil(longest / interval / lags - 1e-9), 1)
             last = max(math.ceil(longest / interval / spacing - 1e-9), 1)
             longest = spacing * last * interval  # rounded up
             if spacing * last < run.schedule.snapshots:
@@ -201,3 +221,8 @@ class TimeCorrelations(Averaged):
         lags = np.arange(self.last + 1.0)
         frequencies = np.pi * lags / (self.last * self._interval)
         return {"lag": self._interval * lags, "frequency": frequencies, **waves}
+
+
+def _memory(chain: Chain) -> float:
+    """Return the lag at which nothing is left of any correlation."""
+    return _RELAXATIONS * relaxation_time(chain)

@@ -11,9 +11,9 @@ from crazybilliards.model.checks import check_integer
 from crazybilliards.particles.observers.base import Array, Averaged, Integers, Snapshots, Variables
 from crazybilliards.particles.run import Run
 
-_MOST_BINS = 100_001
-_FINEST = 0.05  # of the free width: bins are equal below, grow in proportion to v above
-_LAST = np.arcsinh(1000.0 / _FINEST)  # edge of the last bin: 1000 free widths
+MOST_BINS = 100_001
+FINEST = 0.05  # of the free width: bins are equal below, grow in proportion to v above
+LAST = np.arcsinh(1000.0 / FINEST)  # edge of the last bin: 1000 free widths
 
 
 def _standardized(average: Array, order: int) -> Array:
@@ -56,7 +56,7 @@ class Velocities(Averaged):
     histograms = ("velocity_density",)
 
     def __init__(self, bins: int = 401) -> None:
-        self.bins = check_integer("bins", bins, least=1, most=_MOST_BINS)
+        self.bins = check_integer("bins", bins, least=1, most=MOST_BINS)
 
     def shape(self, run: Run) -> tuple[int, ...]:
         return 4, run.chosen.size  # sums of v, v^2, v^3 and v^4
@@ -68,8 +68,8 @@ class Velocities(Averaged):
             raise ValueError(
                 "observe: 'velocities' needs amplitude and damping above 0, to size its bins"
             )
-        self.scale = _FINEST * scale
-        self.edges = self.scale * np.sinh(np.linspace(-_LAST, _LAST, self.bins + 1))
+        self.scale = FINEST * scale
+        self.edges = self.scale * np.sinh(np.linspace(-LAST, LAST, self.bins + 1))
         self.chosen = run.chosen
         self.rows = np.arange(run.chosen.size) * self.bins
         self.counts = np.zeros(run.chosen.size * self.bins, dtype=np.int64)
@@ -85,7 +85,7 @@ class Velocities(Averaged):
         sums[1] += square.sum(axis=0)
         sums[2] += np.einsum("sp,sp->p", square, v)
         sums[3] += np.einsum("sp,sp->p", square, square)
-        place = (np.arcsinh(v / self.scale) / _LAST + 1) * (self.bins / 2)
+        place = (np.arcsinh(v / self.scale) / LAST + 1) * (self.bins / 2)
         inside = (place >= 0) & (place < self.bins)
         self.outside += int(inside.size - inside.sum())
         cells = (self.rows + place.astype(np.int64))[inside]

@@ -100,7 +100,7 @@ def simulate_limit(
     xarray.Dataset
         In the common vocabulary. Every NAME has a NAME_error, the root of the sum of the squares
         of one standard error and of the remaining bias. ``accuracy`` applies to
-        ``central_velocity_width``. ``kinetic_energy`` has no time. ``mean_velocity`` is left out,
+        ``central_velocity_width``. Energies have no time. ``mean_velocity`` is left out,
         because it is 0. Densities are sums of differences. Where hardly any rod comes they may be
         negative by about one error.
         ``attrs["status"]`` is as in :func:`simulate`; an interrupted run has the errors reached

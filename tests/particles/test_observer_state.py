@@ -27,7 +27,13 @@ def test_a_checkpoint_keeps_everything_that_observing_changes(observer, average)
     untouched = {name: np.array(value) for name, value in original.state().items()}
     original.observe(some_snapshots(run, generator, 0))
     tally = original.tally(make_tally(5, contacts=True))
-    for array in (tally.contacts, *tally.pushes, *tally.triggered, tally.impacts):
+    for array in (
+        tally.contacts,
+        *tally.pushes,
+        *tally.triggered,
+        tally.impacts,
+        tally.speeds.counts,
+    ):
         array += 1  # as the collision kernels do
     state = {name: np.array(value) for name, value in original.state().items()}
     assert any(not np.array_equal(state[name], untouched[name]) for name in state)

@@ -54,6 +54,32 @@ def test_energy_starts_at_the_start():
 
 
 @pytest.mark.compiled
+@pytest.mark.parametrize(("spring", "exponent"), [("linear", 2), ("quadratic", 3)])
+def test_energies_in_equilibrium_are_those_of_independent_rods(spring, exponent):
+    """T/2 and T/n a rod for U ~ |d|^n, because d U' is T on average; no gap, e = 1."""
+    chain = Chain(size=10, spring=spring)
+    start = cb.equilibrium_states(chain, 500, seed=2)
+    how = {"average": "ensemble", "duration": 5, "every": 1.0, "progress": False}
+    run = simulate(chain, start=start, replicas=500, observe="energy", **how)
+    shares = {"kinetic": 1 / 2, "spring": 1 / exponent, "total": 1 / 2 + 1 / exponent}
+    for name, share in shares.items():
+        found, error = run[f"{name}_energy"], run[f"{name}_energy_error"]
+        expected = share * chain.size * chain.temperature
+        assert (abs(found - expected) < 5 * error).all(), name
+        assert (error < 0.05 * expected).all(), name
+
+
+@pytest.mark.parametrize("gap", [0.0, 0.5])
+def test_what_the_rods_lose_without_noise_the_springs_gain(gap):
+    chain = Chain(size=3, gap=gap, damping=0, amplitude=0)
+    start = cb.given_start(chain, chain.anchors + np.array([-1.0, 0.5, 1.5]))
+    how = {"average": "ensemble", "duration": 10, "every": 0.5, "progress": False}
+    run = simulate(chain, start=start, observe="energy", **how)
+    np.testing.assert_allclose(run.total_energy, run.spring_energy[0], rtol=5e-3)
+    assert run.spring_energy.min() < 0.7 * run.total_energy[0]
+
+
+@pytest.mark.compiled
 def test_elastic_collisions_are_the_zero_crossings_of_gaussian_processes():
     """Rice: each of the L(L-1)/2 pairs of relabelled points meets w0/pi times a time unit."""
     chain = Chain(size=20)
@@ -179,6 +205,8 @@ def test_snapshots_are_recorded_beside_all_other_observers(tmp_path):
         if "time" not in values.dims:
             xr.testing.assert_identical(run[name], values)
     assert run.sizes["time"] > 1000 >= alone.sizes["time"]
+    stretched = chain.potential(run.position - chain.anchors).sum(axis=-1).mean(axis=0)
+    np.testing.assert_allclose(run.spring_energy, stretched, rtol=1e-9)
     energy = chain.mass / 2 * (run.velocity**2).sum("particle").mean("replica")
     np.testing.assert_allclose(run.kinetic_energy, energy.transpose("time"), rtol=1e-12)
     save(run, tmp_path / "run.nc")
@@ -208,6 +236,8 @@ def test_energies_beside_snapshots_that_not_all_replicas_reached_are_unknown():
     np.testing.assert_array_equal(*times)
     mass = run.chain.mass
     np.testing.assert_allclose(reports["kinetic_energy"][1], [mass, mass, np.nan])
+    unstretched = mass + run.chain.potential(run.chain.reduced_anchors).sum()
+    np.testing.assert_allclose(reports["total_energy"][1], [unstretched, unstretched, np.nan])
 
 
 @pytest.mark.parametrize("e", [0.0, 0.5, 1.0])

@@ -37,7 +37,9 @@ def pulls(run, of, expected):
 def test_the_centre_of_mass_is_a_damped_oscillator_at_any_restitution(damping, e):
     chain = Chain(size=5, restitution=e, damping=damping)
     how = {"duration": 20_000, "replicas": 2, "seed": 3, "progress": False}
-    run = simulate(chain, observe="time-correlations", **how)
+    longest = 5 * cb.relaxation_time(chain)
+    how["every"] = longest / 100
+    run = simulate(chain, observe=TimeCorrelations(longest=longest), **how)
     displacement, velocity = oscillator(chain, run.lag.values)
     displacement *= chain.temperature / chain.stiffness / chain.size
     velocity *= chain.temperature / chain.mass / chain.size
@@ -53,7 +55,8 @@ def test_the_centre_of_mass_is_a_damped_oscillator_at_any_restitution(damping, e
 def test_stated_errors_are_the_scatter_in_runs_of_twenty_longest_lags(damping):
     """The blocks that the schedule makes there are shorter than the longest lag."""
     chain = Chain(size=1, damping=damping)
-    how = {"duration": 1000, "observe": "time-correlations", "progress": False}
+    how = {"duration": 1000, "every": 0.5, "progress": False}
+    how["observe"] = TimeCorrelations(longest=5 * cb.relaxation_time(chain), lags=100)
     runs = [simulate(chain, seed=seed, **how) for seed in range(100)]
     for name in QUANTITIES:
         values, errors = (
@@ -147,6 +150,63 @@ def test_all_waves_together_remember_what_all_rods_do():
     run = simulate(chain, duration=1000, observe="time-correlations", progress=False)
     of_rods, of_waves = run.velocity_autocorrelation, run.wave_velocity_autocorrelation
     np.testing.assert_allclose(of_rods.sum("particle"), of_waves.sum("wave"), atol=1e-12)
+
+
+FINE = {"every": 0.1, "duration": 60, "replicas": 10}
+ASKED = [
+    ({"longest": 40}, FINE, 0.1, 40),
+    ({"longest": 42}, FINE | {"every": 0.05}, 0.05, 42),
+    ({"longest": 42, "lags": 100}, FINE, 0.5, 42),
+    ({}, FINE, 0.1, 30),  # at most 300
+    ({"longest": 50}, {"every": 0.25}, 0.25, 50),
+]
+
+
+@pytest.mark.filterwarnings("ignore:.*relaxation time")
+@pytest.mark.parametrize(("parameters", "how", "first", "last"), ASKED)
+def test_the_first_lag_is_the_time_between_snapshots_and_the_last_the_longest(
+    parameters, how, first, last
+):
+    run = a_run(Chain(size=3), observe=TimeCorrelations(**parameters), **how)
+    [own] = (each.prepared(run, 1) for each in run.observers)
+    lag = own.coordinates()["lag"]
+    assert lag[1] == pytest.approx(first)
+    assert lag[-1] == pytest.approx(last, abs=first)
+
+
+DECAYS = [
+    Chain(size=1),
+    Chain(size=1, damping=50.0),
+    Chain(size=30, restitution=0.8, gap=0.5),
+    Chain(size=30),
+    Chain(size=30, restitution=0.3),
+    Chain(size=10, spring="quadratic", gap=0.2),
+    Chain(size=10, spring="quadratic", damping=10.0),
+    Chain(size=30, damping=0.1, amplitude=3.0, gap=3.0),
+]
+
+
+@pytest.mark.compiled
+@pytest.mark.filterwarnings("ignore:.*relaxation time")
+@pytest.mark.parametrize("chain", DECAYS)
+@pytest.mark.parametrize("parameters", [{}, {"longest": 2.0}])
+def test_the_lags_of_nobody_s_choice_resolve_the_first_decay(chain, parameters):
+    how = {"duration": 300, "particles": [(chain.size + 1) // 2], "progress": False}
+    run = simulate(chain, observe=TimeCorrelations(**parameters), **how)
+    [speeds] = run.velocity_autocorrelation.values
+    assert (speeds[1:3] > [0.5 * speeds[0], 0.2 * speeds[0]]).all()
+
+
+def test_a_finer_time_between_snapshots_leaves_the_time_step_as_it_was():
+    chain = Chain(size=5, restitution=0.8)
+    widths, both = (
+        a_run(chain, observe=observe).schedule
+        for observe in ("widths", ["widths", "time-correlations"])
+    )
+    assert both.time_step == widths.time_step
+    assert both.stride < widths.stride
+    given = a_run(chain, observe="time-correlations", time_step=0.05).schedule
+    assert given.time_step == 0.05
 
 
 def test_lags_that_a_run_cannot_have_are_refused():
