@@ -12,7 +12,7 @@ from crazybilliards.comparison.coverage import require_same_smoothing
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.arrays import Array
 from crazybilliards.model.calls import warn_user
-from crazybilliards.model.checks import check_real
+from crazybilliards.model.checks import check_real, shown
 from crazybilliards.model.vocabulary import require
 
 _SAME_RODS = 0.05  # of the number of rods, by which two densities of a chain may differ
@@ -85,6 +85,11 @@ def _differences(
 
     In units of close packing, on the common grid. An error is infinite where it is not reliable.
     """
+    if isinstance(floor, str):
+        raise ValueError(
+            f"floor must be a number, got {shown(floor)}; only densities are compared, and overlay "
+            "draws other quantities"
+        )
     floor = check_real("floor", floor)
     for dataset in (result, reference):
         require(dataset, ("density",))

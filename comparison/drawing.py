@@ -129,7 +129,10 @@ def overlay(
 
 def _on_paper(file: Path, results: Any, quantity: str, along: Along, style: Any) -> Axes:
     """Draw in the style of the package, which acts when the file is written, too."""
-    kind = check_choice("paper", file.suffix[1:], FigureCanvasBase.get_supported_filetypes())
+    kinds = FigureCanvasBase.get_supported_filetypes()
+    if not file.suffix:
+        raise ValueError(f"paper must be a name that ends in .pdf or .png, got {shown(str(file))}")
+    kind = check_choice("paper", file.suffix[1:], kinds)
     picture = BytesIO()
     with house_style():
         figure, [ax] = panels(1, 1, wanted=1)
