@@ -13,6 +13,7 @@ from crazybilliards.model.vocabulary import VOCABULARY, chain_of, described, req
 # Dimension: abscissa. A quantity over the particle has the one that is asked for.
 _ABSCISSAE = {
     "x": "x",
+    "x_index": "x",  # of a sweep
     "time": "time",
     "contact": "normalized_contact",
     "mode": "mode",
@@ -24,7 +25,7 @@ _ABSCISSAE = {
     "velocity_bin": "velocity_bin",
     "impact_speed": "impact_speed",
 }
-_OVER = ", ".join([*_ABSCISSAE, "or particle"])
+_OVER = ", ".join([*sorted(set(_ABSCISSAE) - {"x_index"}), "or particle"])
 # Variables by their symbols; others by their long names.
 _LABELS = {
     "density": r"density $\rho$",
@@ -80,10 +81,16 @@ def find_curve(label: str, dataset: xr.Dataset, quantity: str, along: str) -> Cu
     abscissae = _ABSCISSAE | {"particle": along}
     if len(values.dims) != 1 or values.dims[0] not in abscissae:
         message = f"{label}: {quantity} is over ({', '.join(map(str, values.dims))})"
+        over = [name for name in values.dims if name in abscissae]
         for name in ("time", "particle", "wave"):
-            rest = set(values.dims) - {name}
-            if len(rest) == 1 < len(values.dims) and rest <= abscissae.keys():
-                raise ValueError(f"{message}; choose a {name}: .isel({name}=...)")
+            if len(over) > 1 and name in over:
+                over.remove(name)
+        if len(over) == 1:
+            others = [str(name) for name in values.dims if name not in over]
+            by_value = all(name in dataset.indexes and name not in abscissae for name in others)
+            how = "sel" if by_value else "isel"
+            ways = ", ".join(f"{name}=..." for name in others)
+            raise ValueError(f"{message}; choose a {' and a '.join(others)}: .{how}({ways})")
         raise ValueError(f"{message}; overlay draws what is over {_OVER}")
     require(dataset, (abscissae[str(values.dims[0])],))
     if values.dims == ("velocity_bin",):  # the outer bins are empty

@@ -110,6 +110,10 @@ def overlay(
         if ax is not None:
             raise ValueError("paper: the picture has axes of its own, and ax must be None")
         file = check_path("paper", paper)
+        if not file.suffix:
+            raise ValueError(
+                f"paper must be a name that ends in .pdf or .png, got {shown(str(file))}"
+            )
         kind = check_choice("paper", file.suffix[1:], FigureCanvasBase.get_supported_filetypes())
     curves = _curves(results, quantity, along)
     if not (ax is None or isinstance(ax, Axes)):

@@ -54,7 +54,7 @@ def film(
     path: str | os.PathLike[str] | None = None,
     *,
     seconds: float = 10.0,
-    duration: float = 20.0,
+    duration: float | None = None,
     springs: bool = False,
     progress: bool = True,
 ) -> Path | Player:
@@ -80,7 +80,7 @@ def film(
         Length of the film, up to 120. It is shorter if there are fewer snapshots than its 25
         pictures a second.
     duration
-        Time to simulate, of a chain [T].
+        Time to simulate, of a chain [T]; None: 20. A result has its own.
     springs
         Also draw the anchors, and a line from each to its rod.
     progress
@@ -104,7 +104,12 @@ def film(
     if suffix not in (".mp4", ".gif", ".html"):
         raise ValueError(f"path must end in .mp4, .gif or .html, got {file}")
     kind = kind_of_film(suffix)
-    duration = check_real("duration", duration, positive=True)
+    if duration is not None and not isinstance(run, Chain):
+        raise ValueError(
+            "duration is that of a chain to simulate, and this result has its own; "
+            "run.isel(time=slice(...)) is a part of it, and seconds the length of the film"
+        )
+    duration = check_real("duration", 20.0 if duration is None else duration, positive=True)
     seconds = check_real("seconds", seconds, positive=True)
     if seconds > _LONGEST:
         raise ValueError(f"seconds must be at most {_LONGEST:g}, got {seconds:g}")

@@ -18,7 +18,8 @@ from typing import Any
 
 import numpy as np
 
-from crazybilliards.model.checks import SYMBOLS, meant_argument, shown
+from crazybilliards.model.checks import meant, meant_argument, shown, with_meanings
+from crazybilliards.model.words import SYMBOLS, WORDS
 
 # numpy's own settings: solvers rely on them, whatever numpy.seterr the user has chosen.
 _NUMPY: Any = {"divide": "warn", "over": "warn", "under": "ignore", "invalid": "warn"}
@@ -92,6 +93,7 @@ def _check_class(owner: Any) -> None:
     if "__dataclass_fields__" in vars(owner):  # all of them are frozen
         owner.__setattr__ = _explained(owner.__setattr__)
         owner.__delattr__ = _explained(owner.__delattr__)
+        owner.__getattr__ = _missing
 
 
 def _start_of(owner: Any) -> Callable[..., None]:
@@ -155,10 +157,10 @@ def _problem(
     by_name = [each for each, argument in known.items() if argument.kind == argument.KEYWORD_ONLY]
     by_place = [each for each in known if each not in by_name]
     takes = ", ".join(known) or "no arguments"
-    for each in keywords:
-        if each not in known:
-            hint = meant_argument(each, known) or f"; it takes {takes}"
-            return f"{name} has no argument {each!r}{hint}"
+    if wrong := [each for each in keywords if each not in known]:
+        all_meant = all(meant_argument(each, known) for each in wrong)
+        said = f"argument{'s' * (len(wrong) > 1)} {with_meanings(wrong, known)}"
+        return f"{name} has no {said}" + ("" if all_meant else f"; it takes {takes}")
     if len(given) > len(by_place):
         more = shown(given[len(by_place)])
         free = [f"{each}={more}" for each in by_name if each not in keywords]
@@ -174,7 +176,37 @@ def _problem(
         for each in [*by_place[len(given) :], *by_name]
         if known[each].default is inspect.Parameter.empty and each not in keywords
     ]
-    return f"{name} needs {' and '.join(missing)}; it takes {takes}" if missing else ""
+    if not missing:
+        return ""
+    whole = [
+        f"; {each} must be numbers, such as one variable of the result, got {shown(value)}"
+        for each, value in zip(by_place, given, strict=False)
+        if known[each].annotation not in _OBJECTS and isinstance(value, _classes("xr.Dataset"))
+    ]
+    return f"{name} needs {' and '.join(missing)}; it takes {takes}{''.join(whole)}"
+
+
+def _missing(self: Any, name: str) -> Any:
+    """Raise the AttributeError with what was meant: another attribute, or a function of a chain."""
+    try:
+        return object.__getattribute__(self, name)
+    except AttributeError as error:
+        if name.startswith("_") or hasattr(type(self), name):  # that of a property
+            raise
+        known = [each for each in dir(self) if not each.startswith("_")]
+        hint = (_of_a_chain if "replace" in known else meant)(name, known)
+        raise AttributeError(f"{error}{hint}") from None
+
+
+def _of_a_chain(name: str, known: Sequence[str]) -> str:
+    """Return what is meant by an attribute that chains do not have."""
+    front = sys.modules[__name__.partition(".")[0]]
+    for each in WORDS.get(name, [name]):
+        if each in front.__all__:
+            arguments = inspect.signature(getattr(front, each)).parameters.values()
+            if "Chain" in str(next(iter(arguments), "")):
+                return f"; {front.__name__}.{each}(chain, ...) is a function"
+    return meant_argument(name, known)
 
 
 def _explained(refuse: Callable[..., None]) -> Callable[..., None]:

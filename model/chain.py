@@ -87,13 +87,17 @@ class Chain(Parameters):
         that everybody knows. A new parameter is then refused wherever nobody has thought of it yet,
         and never ignored.
         """
-        for each in fields(self):
-            value = getattr(self, each.name)
-            if each.name not in KNOWN and each.name not in also and value != each.default:
+        for name, default in self.unknown().items():
+            if name not in also:
                 raise ValueError(
-                    f"{by} does not know the chain's {each.name}: it must be "
-                    f"{shown(each.default)}, got {shown(value)}"
+                    f"{by} does not know the chain's {name}: it must be {shown(default)}, "
+                    f"got {shown(getattr(self, name))}"
                 )
+
+    def unknown(self) -> dict[str, Any]:
+        """Return the parameters beside the known ones that are not as by default: the defaults."""
+        own = (each for each in fields(self) if each.name not in KNOWN)
+        return {each.name: each.default for each in own if getattr(self, each.name) != each.default}
 
     # -- geometry ---------------------------------------------------------------------------
 

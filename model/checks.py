@@ -5,36 +5,16 @@ from __future__ import annotations
 import math
 import os
 import reprlib
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Sequence
 from difflib import get_close_matches
 from numbers import Integral, Real
 from pathlib import Path
 from typing import Any, TypeGuard
 
+from crazybilliards.model.words import NOTES, OWNERS, SYMBOLS, WORDS
+
 # Squares and ratios of parameters must neither overflow nor underflow.
 _SMALLEST, _LARGEST = 1e-60, 1e60
-
-# The symbols of the paper, and the names of their parameters of Chain and simulate.
-SYMBOLS = {
-    "L": "size",
-    "R": "radius",
-    "m": "mass",
-    "k": "stiffness",
-    "gamma": "damping",
-    "A": "amplitude",
-    "e": "restitution",
-    "g": "gap",
-    "dt": "time_step",
-    "\N{GREEK SMALL LETTER GAMMA}": "damping",
-}
-# Arguments that are often given to another function than this one.
-_OWNERS = dict.fromkeys((*SYMBOLS.values(), "spring"), "Chain") | {"time_step": "simulate"}
-
-# What replaces the arguments that 0.4.0 does not have any more; 0.5.0 says no more of them.
-_GONE = {
-    "rng": "seed takes what rng took",
-    "finished": "folder keeps every result as soon as it is there",
-}
 
 _SHORTLY = reprlib.Repr()
 _SHORTLY.maxstring = _SHORTLY.maxother = _SHORTLY.maxlong = 80
@@ -126,30 +106,48 @@ def got(value: object, choices: Iterable[str]) -> str:
 
 def meant(value: object, choices: Iterable[str]) -> str:
     """Return a question whether the nearest accepted name was meant, or nothing."""
-    near = get_close_matches(value, choices, 1) if isinstance(value, str) else []
-    return f"; did you mean {near[0]!r}?" if near else ""
+    near = nearest(value, choices)
+    return f"; did you mean {near!r}?" if near else ""
+
+
+def nearest(value: object, choices: Iterable[str]) -> str:
+    """Return the accepted name that a word stands for or that is spelled alike, or nothing."""
+    choices = tuple(choices)
+    if not isinstance(value, str):
+        return ""
+    if value in WORDS:
+        return next((name for name in WORDS[value] if name in choices), "")
+    return "".join(get_close_matches(value, choices, 1))
 
 
 def check_arguments(owner: str, given: Iterable[str], known: Iterable[str]) -> None:
-    """Raise a ValueError for the first name of an argument that ``owner`` does not take."""
+    """Raise a ValueError for the names of arguments that ``owner`` does not take."""
     known = tuple(known)
-    for name in given:
-        if name not in known:
-            hint = meant_argument(name, known)
-            raise ValueError(f"{owner} takes any of {known}, got {shown(name)}{hint}")
+    if wrong := [name for name in given if name not in known]:
+        raise ValueError(f"{owner} takes any of {known}, got {with_meanings(wrong, known)}")
 
 
-def meant_argument(name: str, known: Iterable[str]) -> str:
-    """Return the argument that was meant, by a symbol of the paper or nearly, or nothing.
+def with_meanings(wrong: Sequence[str], known: Collection[str]) -> str:
+    """Return wrong names of arguments, each with what was meant."""
+    hints = [(shown(name), meant_argument(name, known)) for name in wrong]
+    if len(hints) == 1:
+        return "".join(hints[0])
+    return ", ".join(f"{name} ({hint[2:]})" if hint else name for name, hint in hints)
+
+
+def meant_argument(name: str, known: Collection[str]) -> str:
+    """Return the argument that was meant, by a symbol of the paper, a word or nearly, or nothing.
 
     One that ``known`` lacks, because another function takes it, is named with this function.
     """
-    if name in _GONE:
-        return f"; {_GONE[name]}"
-    argument = SYMBOLS.get(name, name)
-    near = "" if name in SYMBOLS else meant(name, known)
-    if near or argument not in _OWNERS:
-        return near
-    facts = [f"{name} of the paper"] if name in SYMBOLS else []
-    facts += [] if argument in known else [f"an argument of {_OWNERS[argument]}"]
-    return f"; {argument} is {', '.join(facts)}"
+    if name in NOTES:
+        return f"; {NOTES[name]}"
+    if name in SYMBOLS:
+        argument = SYMBOLS[name]
+        here = "" if argument in known else f", an argument of {OWNERS[argument]}"
+        return f"; {argument} is {name} of the paper{here}"
+    near = meant(name, known) if name in WORDS or name not in OWNERS else ""
+    # Of words, only those for properties of a chain have one meaning wherever they are given.
+    other = [each for each in WORDS.get(name, ()) if OWNERS.get(each) == "Chain"]
+    argument = name if name in OWNERS else "".join(other)
+    return near or (f"; {argument} is an argument of {OWNERS[argument]}" if argument else "")

@@ -53,9 +53,18 @@ def hand_out(room: str) -> tuple[Callable[[str], Any], Callable[[], list[str]], 
     return __getattr__, lambda: list(module_of), list(module_of)
 
 
+# What lies in a folder below the rooms.
+_ELSEWHERE = {
+    "Observer": "from crazybilliards.particles.observers.base import Observer",
+    "sweep": "from crazybilliards.comparison.sweeps import Sweep, process_pool, run_cases",
+    "Sweep": "from crazybilliards.comparison.sweeps import Sweep",
+}
+
+
 def missing(module: str, name: str, known: Iterable[str]) -> AttributeError:
     """Return the error for a name that a module does not have, with the one to use."""
     from crazybilliards.model.checks import meant
 
     hint = f" any more: {_GONE[name]}" if name in _GONE else meant(name, known)
+    hint = f"; {_ELSEWHERE[name]}" if name in _ELSEWHERE else hint
     return AttributeError(f"module {module!r} has no attribute {name!r}{hint}")

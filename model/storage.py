@@ -63,7 +63,10 @@ def load(path: str | os.PathLike[str]) -> xr.Dataset | xr.DataTree:
     ValueError
         If the file is damaged, truncated, or was not written by :func:`save`.
     """
-    content = read_sealed(check_path("path", path))
+    file = check_path("path", path)
+    if file.is_dir():
+        raise ValueError(f"{file}: a folder, not a file; load_sweep reads the folder of a sweep")
+    content = read_sealed(file)
     try:
         if content.startswith(_CLASSIC):
             return _load_classic(content)

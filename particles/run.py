@@ -69,10 +69,11 @@ class Run:
     every: float | None = None
 
     def __post_init__(self) -> None:
-        read = (observer.knows for observer in self.observers)
-        self.chain.require_known("simulate", frozenset().union(law.knows, dynamics.knows, *read))
         for name, kinds in (("method", Method), ("stepper", Stepper), ("average", Average)):
             check_choice(name, getattr(self, name), get_args(kinds))
+        read = (observer.knows for observer in self.observers)
+        by = f"simulate ({law.NAMES[self.operator]})"
+        self.chain.require_known(by, self.moved_by.union(*read))
         merging = default_merging(self.chain) if self.merging is None else self.merging
         object.__setattr__(self, "merging", check_real("merging", merging))
         object.__setattr__(self, "seed", check_integer("seed", self.seed, least=0))
@@ -156,10 +157,21 @@ class Run:
         return -(-self.replicas // self.groups)
 
     @property
+    def operator(self) -> int:
+        """The operator that lets the rods of this run collide."""
+        kind = {"counted": self.counted, "halves": self.stepper == "splitting"}
+        return choose_operator(self.chain, self.method, **kind)
+
+    @property
+    def moved_by(self) -> frozenset[str]:
+        """Parameters beside the known ones that move the rods; exact flight takes no steps."""
+        steps = () if self.exact else dynamics.knows
+        return frozenset(steps).union(law.knows.get(self.operator, ()))
+
+    @property
     def exact(self) -> bool:
         """Whether every step is exact, whatever its length (``laws/exact_flight.py``)."""
-        kind = {"counted": self.counted, "halves": self.stepper == "splitting"}
-        return choose_operator(self.chain, self.method, **kind) == EXACT
+        return self.operator == EXACT
 
     @property
     def flight(self) -> str:

@@ -142,7 +142,8 @@ def simulate(
         has no variables (``warmup=0`` measures from the start). ``attrs["flight"]`` is ``exact``
         or ``in steps``. ``attrs["time_step_error"]`` is the estimated relative error of the
         smallest velocity width above 0 due to the time step: 0 if the flight was exact, NaN where
-        it is not known. ``attrs["relaxation_time"]`` is that of the chain.
+        it is not known, as for a collision law of your own. ``attrs["relaxation_time"]`` is that
+        of the chain.
 
         SIGTERM and SIGHUP end the program, once the checkpoint is written, unless the program
         ignores them or handles them itself. With the handler ``signal.default_int_handler`` they

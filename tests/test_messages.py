@@ -3,6 +3,7 @@
 import inspect
 import pickle
 import re
+from copy import copy
 from dataclasses import FrozenInstanceError
 from importlib import import_module
 
@@ -14,7 +15,9 @@ from wrong_calls import GAMMA, WRONG_CALLS, WRONG_SWEEPS
 import crazybilliards as cb
 from crazybilliards.apps.commands.line import main
 from crazybilliards.comparison.sweeps import Case, read_sweep
-from crazybilliards.model import checks
+from crazybilliards.model import checks, words
+from crazybilliards.model.vocabulary import VOCABULARY
+from crazybilliards.particles.observers import OBSERVERS
 from crazybilliards.particles.running.replica import Replica
 
 
@@ -171,6 +174,26 @@ def test_the_checks_of_calls_leave_everything_else_as_it_was():
     # An error within the function is not one of the call.
     with pytest.raises(TypeError, match="unsupported operand"):
         cb.force_balance(cb.Chain(size=3), displacement=lambda x: x + None)
+
+
+def test_every_other_word_is_one_for_a_name_that_there_is(names):
+    arguments = {name for each in CALLS for name in inspect.signature(getattr(cb, each)).parameters}
+    there = {*arguments, *dir(names["chain"]), *cb.__all__, *VOCABULARY, *OBSERVERS, "label"}
+    assert {name for meant in words.WORDS.values() for name in meant} <= there
+    for argument, owner in words.OWNERS.items():
+        assert argument in inspect.signature(getattr(cb, owner)).parameters
+    assert not {*words.NOTES} & {*words.WORDS}
+
+
+def test_an_error_within_a_property_stays_as_it_is():
+    class Own(cb.Chain):
+        @property
+        def broken(self):
+            return self.nonsense
+
+    with pytest.raises(AttributeError, match="'Own' object has no attribute 'nonsense'"):
+        Own().broken  # noqa: B018
+    assert pickle.loads(pickle.dumps(cb.Chain(size=3))) == copy(cb.Chain(size=3))
 
 
 def test_every_symbol_of_the_paper_says_which_parameter_it_is():

@@ -26,6 +26,72 @@ cb.two_clumps | has no attribute 'two_clumps' any more: displaced(chain, 0).assi
 cb.GrowthFit | has no attribute 'GrowthFit' any more: every fit is a Fit
 cb.kinetic.critical_damping | any more: critical_size(chain.replace(damping=...))
 cb.equilibrium(chain, gap=1) | gap is an argument of Chain
+cb.Chain(e=0.8, L=30, sise=3) | arguments 'e' (restitution is e ..., 'L' (size is ..., 'sise' (did
+cb.Chain(e=0.8, foo=1) | arguments 'e' (restitution is e of the paper), 'foo'; it takes size, rest
+chain.replace(e=0.8, g=1) | got 'e' (restitution is e of the paper), 'g' (gap is g of the paper)
+"""
+
+# Words for which the nearest name is the wrong one, or is far away.
+WORDS = """
+cb.Chain(N=30) | 'N'; did you mean 'size'?
+cb.Chain(coefficient_of_restitution=0.8) | did you mean 'restitution'?
+cb.Chain(temperature=1) | amplitude^2/(2 damping) is the temperature
+cb.Chain(T=1) | 'T'; it takes size
+cb.Chain(masses=[1, 2]) | all rods have one mass
+cb.Chain(walls=True) | has no walls, and it is no ring
+cb.Chain(duration=3) | duration is an argument of simulate
+cb.Chain(t_max=3) | 't_max'; it takes size
+cb.simulate(chain, time=3) | did you mean 'duration'?
+cb.simulate(chain, steps=3) | did you mean 'duration'?
+cb.simulate(chain, T=3) | did you mean 'duration'?
+cb.simulate(chain, n=3) | size is an argument of Chain
+cb.simulate_limit(chain, duration=3) | did you mean 'accuracy'?
+cb.hydrodynamics(chain, exact, 1, frame="lagrangian") | did you mean 'label'?
+cb.TimeCorrelations(every=3) | every is an argument of simulate
+cb.overlay({"a": run}, "W_v") | did you mean 'velocity_width'?
+cb.overlay({"a": run}, labels=["a"]) | did you mean 'results'?
+cb.overlay({"a": run}, save="a.png") | did you mean 'paper'?
+cb.film(run, fps=10) | seconds is its length
+cb.simulate(chain, observe="positions") | 'snapshots' gives 'position'
+cb.simulate(chain, observe="trajectory") | did you mean 'snapshots'?
+cb.simulate(chain, observe="velocity_autocorrelation") | 'time-correlations' gives 'velocity_auto
+cb.simulate(chain, observe="all") | 'widths') or a list of them, got 'all'
+cb.run | did you mean 'simulate'?
+cb.plot | did you mean 'overlay'?
+cb.sweep | from crazybilliards.comparison.sweeps import
+cb.Observer | from crazybilliards.particles.observers.base import Observer
+"""
+
+ATTRIBUTES = """
+chain.e | 'Chain' object has no attribute 'e'; restitution is e of the paper
+chain.dt | time_step is dt of the paper, an argument of simulate
+chain.N | did you mean 'size'?
+chain.W | did you mean 'free_velocity_width'?
+chain.positions | did you mean 'anchors'?
+chain.restituton | did you mean 'restitution'?
+chain.simulate(100) | crazybilliards.simulate(chain, ...) is a function
+chain.run(100) | crazybilliards.simulate(chain, ...) is a function
+chain.theories() | crazybilliards.theories(chain, ...) is a function
+chain.copy(size=3) | did you mean 'replace'?
+cb.deviation(exact, exact).maxmum | did you mean 'maximum'?
+"""
+
+# The right name, with the wrong kind of thing.
+KINDS = """
+cb.simulate(chain, observe=cb.Density) | got <class ...Density() makes one
+cb.simulate(chain, observe=[cb.Density]) | Density() makes one
+cb.load(".") | a folder, not a file; load_sweep reads
+cb.load_sweep("no/folder") | there is no such folder; load_sweep takes the folder
+cb.load_sweep(cb.__file__) | a file, not a folder; load_sweep takes the folder
+cb.overlay({"a": run}, paper="fig") | paper must be a name that ends in .pdf or .png, got 'fig'
+cb.overlay({"a": run.expand_dims(size=[1, 2])}) | choose a size: .sel(size=...)
+cb.overlay({"a": run.expand_dims(size=[1], gap=[2])}) | choose a size and a gap: .sel(size=..., gap=
+cb.overlay({"a": run.expand_dims(size=[1], time=[2])}) | .isel(size=..., time=...)
+cb.deviation(exact, exact, "velocity_width") | floor must be a number...overlay draws other
+cb.fit_exponential(run) | needs y and error...restitution must be numbers...got a Dataset
+cb.film(snapshots, duration=5) | duration is that of a chain to simulate
+cb.equilibrium_states(chain.replace(restitution=0.8), 4) | chain.replace(restitution=1)
+cb.compare_elastic(chain.replace(restitution=0.8), [3]) | compare_restitutions compares others
 """
 
 TYPES = """
@@ -114,7 +180,7 @@ cb.relax_phase_space(cb.Chain(size=20), crystal, 60) | spikes of a crystal...for
 
 WRONG_CALLS = [
     line.split(" | ")
-    for table in (SYMBOLS, NAMES, TYPES, STARTS, *VALUE_TABLES)
+    for table in (SYMBOLS, NAMES, WORDS, ATTRIBUTES, KINDS, TYPES, STARTS, *VALUE_TABLES)
     for line in table.strip().splitlines()
 ]
 

@@ -13,7 +13,7 @@ from crazybilliards.apps.commands import compare, explore, relax, reproduce, sim
 from crazybilliards.apps.commands.answers import with_json
 from crazybilliards.apps.commands.output import INTERRUPTED
 from crazybilliards.apps.commands.streams import READER_GONE, plain_streams
-from crazybilliards.model.checks import SYMBOLS
+from crazybilliards.model.words import SYMBOLS
 
 _LONGEST = 400  # characters of an error message
 

@@ -105,7 +105,10 @@ def compare_elastic(
         If a worker process dies. What was finished stays in ``folder``.
     """
     if chain.restitution != 1:
-        raise ValueError(f"the comparison is of elastic chains, got e={chain.restitution:g}")
+        raise ValueError(
+            f"the comparison is of elastic chains, restitution=1, got {chain.restitution:g}; "
+            "compare_restitutions compares others"
+        )
     cases = _simulations(chain, "amplitude", amplitudes, duration, seed_of(seed))
     results, status = _computed(cases, folder, processes, threads, keep_old, progress)
     with waiting_for("theories", progress):

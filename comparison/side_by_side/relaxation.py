@@ -84,7 +84,9 @@ def compare_relaxation(
     """
     check_choice("release", release, get_args(Release))
     if chain.restitution != 1:
-        raise ValueError(f"the comparison is of elastic chains, got e={chain.restitution:g}")
+        raise ValueError(
+            f"the comparison is of elastic chains, restitution=1, got {chain.restitution:g}"
+        )
     chain.require_steady_state()
     by = check_real("by", by, positive=release != "displaced", signed=release == "displaced")
     replicas = check_integer("replicas", replicas, least=2)

@@ -156,9 +156,14 @@ def load_sweep(folder: str | os.PathLike[str]) -> xr.Dataset:
         If a file is damaged, if there are no files, if they are not cases of one job, or if two
         files hold the same case.
     """
-    paths = sorted(check_path("folder", folder).glob("*.nc"))
+    place = check_path("folder", folder)
+    paths = sorted(place.glob("*.nc"))
     if not paths:
-        raise ValueError(f"{folder}: holds no case of a sweep")
+        wanted = "load_sweep takes the folder that crazybilliards sweep --output names"
+        if not place.is_dir():
+            found = "a file, not a folder" if place.exists() else "there is no such folder"
+            raise ValueError(f"{folder}: {found}; {wanted}")
+        raise ValueError(f"{folder}: holds no case of a sweep; {wanted}")
     points, results = zip(*map(_read_case, paths), strict=True)
     _check_points(paths, points)
     if len({result.attrs.get("source_fingerprint") for result in results}) > 1:

@@ -186,7 +186,8 @@ class Recursion:
 
 def check_equilibrium(chain: Chain) -> None:
     """Raise the ValueError that :func:`equilibrium` would raise, without the computation."""
-    require_chain(chain, "the exact equilibrium", elastic=True)
+    remedy = "; chain.replace(restitution=1) is the elastic chain"
+    require_chain(chain, "the exact equilibrium", elastic=True, remedy=remedy)
     require_resolved(chain, float(chain.reduced_anchors[-1]))
     require_memory(
         f"size={chain.size} (force_balance takes more): the exact equilibrium",

@@ -27,10 +27,11 @@ from crazybilliards.particles.noise import BLOCK
 
 Method = Literal["event-driven", "contact-dynamics"]
 
-# Parameters beside the known ones that a law of collisions takes from the chain.
-knows: frozenset[str] = frozenset()
-
 SORT, ISOTONIC, EVENTS, CONTACTS, EXACT = range(5)
+NAMES = ("the sort", "isotonic regression", "event-driven", "contact-dynamics", "exact flight")
+
+# Parameters beside the known ones that an operator takes from the chain: {EVENTS: {"my_own"}}.
+knows: dict[int, set[str]] = {}
 
 
 class Law(NamedTuple):

@@ -121,6 +121,8 @@ def _undeclared(
 
 def _time_step_error(run: Run, measured: xr.Dataset) -> float:
     """Return the relative error of the smallest velocity width above 0; NaN if it is not known."""
+    if run.moved_by & run.chain.unknown().keys():
+        return float("nan")  # nobody has measured it
     if run.exact:
         return 0.0
     width = centre_width(run.chain) * run.chain.free_velocity_width

@@ -136,7 +136,9 @@ def test_what_cannot_be_filmed_is_refused(run):
     with pytest.raises(ValueError, match="no snapshots in time"):
         film(run.drop_vars("velocity"))
     with pytest.raises(ValueError, match="duration must be positive"):
-        film(run, duration=-1)
+        film(CHAIN, duration=-1)
+    with pytest.raises(ValueError, match="duration is that of a chain to simulate"):
+        film(run, duration=5)
     with pytest.raises(ValueError, match="no steady state to film: its simulation diverged"):
         film(Chain(size=100, restitution=1.3), progress=False)
 

@@ -176,17 +176,43 @@ class Slopes(Widths):
     knows = frozenset({"tilt"})
 
 
-@pytest.mark.parametrize("owner", [law, dynamics, None])
-def test_a_simulation_takes_what_its_law_its_driving_or_an_observer_knows(owner, monkeypatch):
-    chain, how = Tilted(size=3, tilt=1.0), {"duration": 100, "progress": False}
-    if owner is None:
-        how["observe"] = ["density", Slopes()]
-    else:
-        monkeypatch.setattr(owner, "knows", frozenset({"tilt"}))
-    assert (
-        chain.parameters().items()
-        <= json.loads(simulate(chain, **how).attrs["provenance"])["chain"].items()
-    )
-    assert (
-        simulate(chain.replace(tilt=0), duration=100, progress=False).attrs["status"] == "completed"
-    )
+# What chooses each operator of collisions.
+OPERATORS = {
+    law.SORT: {"spring": "quadratic"},
+    law.ISOTONIC: {"restitution": 0.0},
+    law.EVENTS: {"restitution": 0.8},
+    law.CONTACTS: {"method": "contact-dynamics"},
+    law.EXACT: {},
+}
+
+
+def tilted_run(operator, tilt=1.0, **settings):
+    what = OPERATORS[operator].copy()
+    how = {"method": what.pop("method", "event-driven"), "duration": 100, "progress": False}
+    return simulate(Tilted(size=3, tilt=tilt, **what), **how | settings)
+
+
+@pytest.mark.parametrize("operator", OPERATORS)
+def test_an_operator_takes_what_it_knows_itself(operator, monkeypatch):
+    others = {each: {"tilt"} for each in OPERATORS if each != operator}
+    monkeypatch.setattr(law, "knows", others)
+    with pytest.raises(ValueError, match=f"{law.NAMES[operator]}. does not know the chain's tilt"):
+        tilted_run(operator)
+    known = tilted_run(operator, tilt=0)
+    monkeypatch.setattr(law, "knows", {operator: {"tilt"}})
+    run = tilted_run(operator)
+    assert json.loads(run.attrs["provenance"])["chain"]["tilt"] == 1
+    assert np.isnan(run.attrs["time_step_error"])
+    assert np.isnan(known.attrs["time_step_error"]) == (operator == law.CONTACTS)
+
+
+def test_exact_flight_takes_no_steps_that_know_a_parameter(monkeypatch):
+    monkeypatch.setattr(dynamics, "knows", {"tilt"})
+    with pytest.raises(ValueError, match=r"exact flight. does not know the chain's tilt"):
+        tilted_run(law.EXACT)
+    assert np.isnan(tilted_run(law.EVENTS).attrs["time_step_error"])
+
+
+def test_a_simulation_takes_what_an_observer_reads():
+    run = tilted_run(law.EVENTS, observe=["density", Slopes()])
+    assert np.isfinite(run.attrs["time_step_error"])

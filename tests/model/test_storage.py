@@ -104,7 +104,7 @@ def test_foreign_files_are_refused(dataset, tmp_path):
             load(foreign)
     with pytest.raises(FileNotFoundError):
         load(tmp_path / "missing.nc")
-    with pytest.raises(ValueError, match="a folder or a device, not a file"):
+    with pytest.raises(ValueError, match="a folder, not a file; load_sweep"):
         load(tmp_path)
     with pytest.raises(ValueError, match=r"must end in \.nc"):
         save(dataset, tmp_path / "run.txt")

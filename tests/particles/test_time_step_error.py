@@ -1,5 +1,7 @@
 """The stated error of a time step covers what was measured, and is not absurdly larger."""
 
+import math
+
 import pytest
 
 from crazybilliards.model import Chain
@@ -54,3 +56,7 @@ def test_a_single_rod_has_no_error_of_collisions(stepper, method):
 def test_at_restitution_one_there_is_no_error_of_the_noise():
     assert stated(1.0, 5.0) == 0
     assert stated(1 - 1e-9, 0.3) < 0.05
+
+
+def test_a_method_that_nobody_measured_has_no_stated_error():
+    assert math.isnan(time_step_error(Chain(size=30, restitution=0.8), 0.1, 0.3, method="my own"))
