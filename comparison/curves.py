@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import NamedTuple
 
 import numpy as np
@@ -26,6 +27,7 @@ _ABSCISSAE = {
     "impact_speed": "impact_speed",
 }
 _OVER = ", ".join([*sorted(set(_ABSCISSAE) - {"x_index"}), "or particle"])
+_RAISED = re.compile(r"([_^])(-?[\d.]+|[a-z](?:\+\w)?)(?![a-z])")
 # Variables by their symbols; others by their long names.
 _LABELS = {
     "density": r"density $\rho$",
@@ -109,10 +111,15 @@ def is_of_one_rod(dataset: xr.Dataset, quantity: str) -> bool:
 
 
 def axis_label(variable: xr.DataArray) -> str:
-    """Return the name and the unit of a variable."""
+    """Return the name and the unit of a variable, with indices and powers set as in print."""
     unit = unit_of(variable)
     name = _LABELS.get(str(variable.name), variable.attrs["long_name"])
-    return name + (f" [{unit}]" if unit != "1" else "")
+    return _set(name) + (f" [{_set(unit)}]" if unit != "1" else "")
+
+
+def _set(text: str) -> str:
+    """Return ``v_i+1`` and ``R^2`` in the mathtext of matplotlib; a text that has some as it is."""
+    return text if "$" in text else _RAISED.sub(r"$\1{\2}$", text)
 
 
 def _of_any_rod(dataset: xr.Dataset) -> xr.Dataset:

@@ -21,14 +21,14 @@ def nu(run: xr.Dataset) -> float:
 def fits_in_plot(runs: Iterable[xr.Dataset]) -> tuple[Estimate, float]:
     """Compare the fits with the widths in a plot of all runs, both axes logarithmic.
 
-    Returns the deviation that decides as a share of the plotted range, which ends at the free rod's
-    width, and the largest one in standard errors.
+    Returns the distance that decides as a share of the plotted range, which ends at the free rod's
+    width, and the largest vertical one in standard errors.
     """
     runs = list(runs)
     free = np.log(chain_of(runs[0]).free_velocity_width)
     lowest = np.log(min(float(run.velocity_width.min()) for run in runs))
     longest = np.log(max(run.sizes["particle"] for run in runs))
-    deviations, errors, significance = [], [], 0.0
+    deviations, errors, vertical = [], [], 0.0
     for run in runs:
         fit = fit_border_power_law(run)
         i, width = run.particle.values, run.velocity_width.values
@@ -44,5 +44,5 @@ def fits_in_plot(runs: Iterable[xr.Dataset]) -> tuple[Estimate, float]:
         )
         deviations.append(off)
         errors.append(error / width / (free - lowest))
-        significance = max(significance, float(np.abs((fit(i) - width) / error).max()))
-    return furthest_in_plot(*map(np.concatenate, (deviations, errors))), significance
+        vertical = max(vertical, float(np.abs((fit(i) - width) / error).max()))
+    return furthest_in_plot(*map(np.concatenate, (deviations, errors))), vertical

@@ -192,5 +192,5 @@ def _draw_density(theory: Theory, result: xr.Dataset) -> Figure:
 
     figure, [ax] = panels(1, 1, wanted=1)
     overlay({theory.title: result}, ax=ax).legend(loc="lower center")
-    fade([(ax.lines[0], stated_error(result, "density"))])
+    fade([(ax, ax.lines[0], stated_error(result, "density"))])
     return figure

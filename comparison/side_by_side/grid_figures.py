@@ -48,14 +48,13 @@ def draw_density(tree: xr.DataTree) -> Figure:
         inside = reference.density.values > 1e-4 * chain.close_packed_density
         ends = reference.x.values[inside][[0, -1]]
         axes[1].set_xlim(*ends)
-        _draw_edge(axes[0], results, float(ends[1]))
-        _fade_as_in(axes[0], axes[0].child_axes[0])
+        _fade_as_in(axes[0], _draw_edge(axes[0], results, float(ends[1])))
     legend_above(figure, axes_of_all[0][0])
     return figure
 
 
-def _draw_edge(ax: Axes, results: dict[str, xr.Dataset], end: float) -> None:
-    """Draw the outermost three thermal lengths, at least ten radii, into an inset."""
+def _draw_edge(ax: Axes, results: dict[str, xr.Dataset], end: float) -> Axes:
+    """Draw the outermost three thermal lengths, at least ten radii, into an inset; return it."""
     chain = chain_of(results[SIMULATION])
     begin = end - max(3 * chain.thermal_length, 10 * chain.radius)
     inset = ax.inset_axes((0.29, 0.13, 0.42, 0.56))
@@ -68,6 +67,7 @@ def _draw_edge(ax: Axes, results: dict[str, xr.Dataset], end: float) -> None:
     inset.tick_params(labelsize=6)
     inset.locator_params(nbins=3)
     ax.indicate_inset_zoom(inset, edgecolor="0.5")
+    return inset
 
 
 def draw_displacement(tree: xr.DataTree) -> Figure:
@@ -102,7 +102,7 @@ def _draw(axes: list[Axes], results: dict[str, xr.Dataset], quantity: str, unit:
     axes[0].set_xlabel("")
     lines = {str(line.get_label()): line for line in axes[0].lines}
     theories = {name: each for name, each in results.items() if name != SIMULATION}
-    fade((lines[name], stated_error(each, quantity)) for name, each in theories.items())
+    fade((axes[0], lines[name], stated_error(each, quantity)) for name, each in theories.items())
     if len(results) == 1:
         return
     reference = results[_reference(results)][quantity]
@@ -127,15 +127,14 @@ def stated_error(theory: xr.Dataset, quantity: str) -> Array:
     return theory.attrs.get(name, 0.0) * whole * np.ones(theory[quantity].shape)
 
 
-def fade(drawn: Iterable[tuple[Line2D, Array]]) -> None:
+def fade(drawn: Iterable[tuple[Axes, Line2D, Array]]) -> None:
     """Make lines faint whose error is above a fifth of their axis, and draw it as a band."""
-    for line, error in drawn:
-        ax: Any = line.axes
+    for ax, line, error in drawn:
         low, high = ax.get_ylim()
         if np.max(error) > _LARGE * (high - low):
             line.set_alpha(_FAINT)
-            x, y = (np.asarray(each) for each in line.get_data())
-            band = {"color": line.get_color(), "alpha": _FAINT / 2, "linewidth": 0}
+            x, y = np.asarray(line.get_data(), dtype=float)
+            band: Any = {"color": line.get_color(), "alpha": _FAINT / 2, "linewidth": 0}
             ax.fill_between(x, y - error, y + error, **band)
             ax.set_ylim(low, high)
 
@@ -169,7 +168,7 @@ def draw_widths(tree: xr.DataTree) -> Figure:
     """W_v(i) and <dx_i> for every restitution, in units of the free rod; lines are theories."""
     figure, axes = panels(1, 2, height=2.5)
     count = len(tree.children)
-    many = plt.get_cmap("cividis")(np.linspace(0.0, 1.0, count))
+    many = plt.get_cmap("cividis")(np.linspace(0.0, 0.9, count))
     colours = COLOURS if count <= len(COLOURS) else [to_hex(each) for each in many]
     drawn = []
     for number, (colour, group) in enumerate(zip(colours, tree.children.values(), strict=False)):
@@ -185,9 +184,9 @@ def draw_widths(tree: xr.DataTree) -> Figure:
                 if key in group:
                     theory = group[key].to_dataset()
                     values = theory[name] / unit
-                    how = {"color": colour, "linestyle": style, "zorder": 3}
-                    [line] = ax.plot(theory.normalized_particle, values, **how)
-                    drawn.append((line, stated_error(theory, name) / unit))
+                    place = theory.normalized_particle
+                    [line] = ax.plot(place, values, style, color=colour, zorder=3)
+                    drawn.append((ax, line, stated_error(theory, name) / unit))
     along_the_chain(axes[0])
     axes[0].set(ylabel="velocity width $W_v/W$", ylim=(0, None))
     along_the_chain(axes[1])
@@ -252,7 +251,7 @@ def draw_profile(theory: xr.Dataset, name: str) -> Figure:
         (axes[1], "mean_displacement", r"displacement $\langle\Delta x\rangle$ [R]"),
     ):
         [line] = ax.plot(theory.normalized_particle, theory[quantity], color=COLOURS[0], label=name)
-        drawn.append((line, stated_error(theory, quantity)))
+        drawn.append((ax, line, stated_error(theory, quantity)))
         along_the_chain(ax)
         ax.set(ylabel=label)
     axes[0].axhline(

@@ -30,11 +30,12 @@ three in one number: by 1.1 for two differences, by 1.6 for a thousand.
 Only if one of the numbers holds and another one fails, the verdict changes.
 
 **Statements to the eye.** That a curve "matches" points, or that they "can be fitted" or
-"described" by it, is a statement about a plot. It gets two numbers: the largest deviation in units
-of the plot, and its significance in standard errors. Only the first one decides. It has to be below
-2 % of the plotted range, which an eye cannot see in a plot like the paper's: of an axis of 5 to
-7 cm these are 1.0 to 1.4 mm, the size of a symbol. This limit was fixed before any deviation was
-worked out. A deviation is a distance in the plane of the plot (``distances_in_plot``).
+"described" by it, is a statement about a plot. What decides is the distance of a symbol from the
+nearest point of the line in the plane of the plot (``distances_in_plot``). It has to be below 2 %
+of the plotted range, which an eye cannot see in a plot like the paper's: of an axis of 5 to 7 cm
+these are 1.0 to 1.4 mm, the size of a symbol. This limit was fixed before any distance was worked
+out. Beside a steep line this distance is far shorter than the vertical one, of which the largest is
+told in standard errors.
 """
 
 from __future__ import annotations
@@ -209,22 +210,24 @@ def furthest_in_plot(deviations: Array, errors: Array) -> Estimate:
     return _decisive(each, around(0.0, EYE))
 
 
-def in_plot(quantity: str, deviation: Estimate, significance: float) -> Found:
+def in_plot(quantity: str, distance: Estimate, vertical: float | None = None) -> Found:
     """Return what decides whether an eye could see that a curve misses the points.
 
     Parameters
     ----------
     quantity
         Which points, which curve, and what axes the plot has.
-    deviation
-        The largest deviation as a share of the plotted range, with its standard error; of several
-        points :func:`furthest_in_plot`.
-    significance
-        The largest deviation in standard errors of the points, which may be that of another point.
+    distance
+        That of a symbol from the nearest point of the curve, as a share of the plotted range, with
+        its standard error; of several symbols :func:`furthest_in_plot`.
+    vertical
+        The largest vertical distance in standard errors, which may be that of another symbol.
     """
-    percent = Estimate(100 * deviation.value, 100 * deviation.error)
+    percent = Estimate(100 * distance.value, 100 * distance.error)
     words = (
-        f"{quantity}: off by {percent} % of the plotted range at the point that decides (visible: "
-        f"{100 * EYE:g} %); the largest deviation is {significance:.1f} standard errors"
+        f"{quantity}: the symbol that decides is {percent} % of the plotted range away from the "
+        f"nearest point of the line (visible: {100 * EYE:g} %)"
     )
-    return {"found": deviation, "within": around(0.0, EYE), "words": words}
+    if vertical is not None:
+        words += f"; the largest vertical distance is {vertical:.1f} standard errors"
+    return {"found": distance, "within": around(0.0, EYE), "words": words}

@@ -45,7 +45,6 @@ def claims(results: Results) -> list[Claim]:
         return (right_skewness - left_skewness) / 2
 
     skewness = _RUNS.estimate(results, both_ends)
-    kurtosis = _RUNS.estimate(results, lambda run: mean_shape(run, _BULK, "velocity_kurtosis"))
     border = _RUNS.estimate(results, border_width)
     return [
         Claim(
@@ -54,7 +53,6 @@ def claims(results: Results) -> list[Claim]:
                 "p(v) of the middle hundred rods and the Gaussian of best height, centre and "
                 f"width, both axes linear, v to {_SHOWN:g} widths",
                 Estimate(_off(_RUNS.pooled(results)), _RUNS.estimate(results, _off).error),
-                abs(kurtosis.value) / kurtosis.error,
             ),
             source=_SOURCE,
             ours="the time step, and whether the axes are linear",

@@ -19,7 +19,6 @@ from crazybilliards.reproduction.distributions import (
     draw_distributions,
     gaussian,
     histogram,
-    mean_shape,
     off_in_plot,
 )
 
@@ -60,9 +59,6 @@ def claims(results: Results) -> list[Claim]:
     run = _RUNS.pooled(results)
     unit = _RUNS.chain.free_velocity_width
     shares = (run.velocity_width / unit - 1, run.velocity_width_error / unit)
-    kurtosis = _RUNS.estimate(
-        results, lambda run: mean_shape(run, range(1, _SIZE + 1), "velocity_kurtosis")
-    )
     return [
         Claim(
             "W_v of every rod is that of a free rod",
@@ -74,7 +70,6 @@ def claims(results: Results) -> list[Claim]:
             **in_plot(
                 f"p(v) and the free rod's, both axes linear, v to {_SHOWN:g} W",
                 Estimate(_off(run), _RUNS.estimate(results, _off).error),
-                abs(kurtosis.value) / kurtosis.error,
             ),
             source=_SOURCE,
         ),

@@ -89,8 +89,9 @@ def _power_law_claim(results: Results) -> Claim:
         )
     return _claim(
         f"the convex profile at gamma = {_DAMPINGS[0]:g} cannot be described by a power law",
-        f"gamma W_v against i for the five dampings, both axes linear: {words}; by how much the "
-        f"largest deviation, as a share of the plotted range, exceeds what an eye sees, {EYE:g}:",
+        f"gamma W_v against i for the five dampings, both axes linear: {words}; how much "
+        f"further than an eye sees, {EYE:g} of the plotted range, the symbol that decides is away "
+        "from the nearest point of the line:",
         found=linear,
         ours="whether the axes are linear",
         elsewhere={"both axes logarithmic": logarithmic},

@@ -5,12 +5,15 @@ import re
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
+import xarray as xr
 from drawn_pictures import WAVES, X, drawn, simulated
 from scipy.integrate import trapezoid
 
 from crazybilliards.comparison import overlay
+from crazybilliards.comparison.curves import axis_label
 from crazybilliards.kinetic import correlated_phase_space, equilibrium
 from crazybilliards.model import Chain
+from crazybilliards.model.vocabulary import VOCABULARY
 from crazybilliards.particles import Covariances, simulate
 
 
@@ -38,6 +41,25 @@ def test_what_both_have_is_drawn_over_its_dimension(pair, quantity, abscissa, la
     for line, result in ((ax.containers[0].lines[0], pair["rods"]), (ax.lines[-1], pair["theory"])):
         np.testing.assert_array_equal(line.get_xdata(), result[abscissa])
         np.testing.assert_array_equal(line.get_ydata(), result[quantity])
+
+
+def test_labels_of_axes_are_set_as_in_print():
+    """Indices and powers of names and units; a name in mathtext stays as it is."""
+
+    def label(name, long_name, unit):
+        return axis_label(
+            xr.DataArray(0.0, name=name, attrs={"long_name": long_name, "units": unit})
+        )
+
+    for name, (long_name, unit) in VOCABULARY.items():
+        words = label(name, long_name, unit)
+        assert not set("_^") & set(re.sub(r"\$.*?\$", "", words)), words
+        plt.figtext(0, 0, words)
+    plt.gcf().draw_without_rendering()  # formulas are read only here
+    assert label("kinetic_energy", "", "M R^2/T^2") == "kinetic energy $E$ [M R$^{2}$/T$^{2}$]"
+    assert label("own", "<v_i v_i+1>", "1") == "<v$_{i}$ v$_{i+1}$>"
+    assert label("own", "my_value $E^2$", "kg m^-1") == "my_value $E^2$ [kg m$^{-1}$]"
+    assert label("own", "my_value", "R") == "my_value [R]"
 
 
 @pytest.mark.compiled

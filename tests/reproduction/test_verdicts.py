@@ -1,5 +1,8 @@
 """Claims get the verdict that their numbers deserve, by one rule for all kinds of claims."""
 
+import re
+from pathlib import Path
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -17,6 +20,7 @@ from crazybilliards.reproduction.claims.verdicts import (
     worst,
 )
 
+DOCS = Path(__file__).parents[2] / "docs"
 CONFIRMED = {True: "confirmed", False: "refuted", None: "undecided"}
 REPRODUCED = {True: "reproduced", False: "not reproduced", None: "undecided"}
 
@@ -137,6 +141,26 @@ def test_the_deviation_that_decides_need_not_be_the_largest(deviations, errors, 
     found = furthest_in_plot(EYE * np.array(deviations), EYE * np.array(errors))
     assert found.value == EYE * deviations[decides]
     assert Claim("it fits", **in_plot("rods", found, 5.0), source="fig.2").verdict == verdict
+
+
+def test_what_is_said_of_a_plot_is_what_was_measured():
+    """A steep line an eye does not tell from the symbols, though it is far off beside them."""
+    share = Estimate(0.00874, 0.00014)
+    words = in_plot("rho(x)", share, 1372.8)["words"]
+    assert words == (
+        "rho(x): the symbol that decides is 0.874 ± 0.014 % of the plotted range away from the "
+        "nearest point of the line (visible: 2 %); the largest vertical distance is 1372.8 "
+        "standard errors"
+    )
+    assert "standard errors" not in in_plot("p(v)", share)["words"]
+
+
+def test_the_page_of_claims_says_it_in_these_words():
+    told = (DOCS / "paper/claims.md").read_text(encoding="utf-8")
+    share = r"\S+: the symbol that decides is .*? away from the nearest point of the line \(vis"
+    assert len(re.findall(share, told)) == 9
+    for old in ("off by", "largest deviation", " 0.0 standard errors"):
+        assert old not in told
 
 
 @pytest.mark.parametrize("number", [1, 4, 1000])
