@@ -1,3 +1,4 @@
+from .combining import combine as combine
 from .coverage import coverage_density as coverage_density, smooth as smooth
 from .distances import Deviation as Deviation, deviation as deviation
 from .drawing import overlay as overlay

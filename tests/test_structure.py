@@ -41,7 +41,7 @@ FLOORS = {
         {"correlations"},
     ),
     "comparison": (
-        {"coverage", "distances", "drawing", "fits", "layout", "widths"}
+        {"combining", "coverage", "distances", "drawing", "fits", "layout", "widths"}
         | {"curves", "encoding", "rod_film", "stationary_theories", "symbols"},
         {"sweeps"},
         {"side_by_side"},

@@ -1,0 +1,146 @@
+"""The mean of several runs of one chain, with the errors of the mean."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from crazybilliards.model import chain_of
+from crazybilliards.model.checks import is_list, shown
+from crazybilliards.model.vocabulary import require
+
+_NO_RUN = "takes results of simulate: other error bars do not fall with the number of results"
+
+
+def combine(runs: Sequence[xr.Dataset] | xr.Dataset) -> xr.Dataset:
+    """Return the mean of runs of one chain with other seeds, as one result.
+
+    ``runs.mean("seed")`` of xarray takes the mean of the error bars too, which are those of one
+    run. Here a run has the weight w of its number of snapshots, and errors add as independent ones:
+    e^2 = sum w_i^2 e_i^2. Of a width, such as ``velocity_width``, the mean square is taken.
+
+    Parameters
+    ----------
+    runs
+        A list of results of ``simulate``, or what ``load_sweep`` returns of a sweep over ``seed``,
+        whose cases all have the same weight and may be missing.
+
+    Returns
+    -------
+    xarray.Dataset
+        The variables with error bars, and what ``smooth`` needs of a density. Others, such as
+        counts, are left out. ``density_block`` has deviations that give the error of the mean.
+
+    Raises
+    ------
+    ValueError
+        For runs of different chains, or of the same seed, which are no independent ones; if they
+        are not measured at the same particles, positions or times.
+    """
+    if isinstance(runs, xr.Dataset) and "seed" in runs.dims:
+        for text in runs.get("provenance", xr.DataArray("")).values.flat:
+            if text and "snapshots" not in json.loads(text):
+                raise ValueError(f"combine {_NO_RUN}")
+        return _mean(runs, xr.ones_like(runs.seed, dtype=float))
+    if isinstance(runs, xr.Dataset) or not is_list(runs) or len(runs) == 0:
+        raise ValueError(
+            "runs must be a list of results, or of a sweep over seed what load_sweep returns, got "
+            f"{shown(runs)}"
+        )
+    provenances = _check(runs)
+    snapshots = np.array([float(each["snapshots"]) for each in provenances])
+    parts = [run[_names(runs[0])] for run in runs]
+    for name in {*parts[0].coords} - {"mean_position"}:
+        if not all(np.array_equal(parts[0][name], part[name]) for part in parts):
+            raise ValueError(f"runs must have the same {name}")
+    joined = xr.concat(parts, "seed", coords="different", compat="equals", join="exact")
+    found = _mean(joined, xr.DataArray(snapshots, dims="seed"))
+    if all(run.sizes.get("block", 0) > 1 for run in runs):
+        found["density_block"] = _blocks(runs, snapshots / snapshots.sum(), found.density)
+    common = {k: v for k, v in provenances[0].items() if all(v == p.get(k) for p in provenances)}
+    common |= {"seed": [each["seed"] for each in provenances], "snapshots": int(snapshots.sum())}
+    errors = [run.attrs.get("time_step_error", np.nan) for run in runs]
+    return found.assign_attrs(
+        {k: v for k, v in runs[0].attrs.items() if all(v == run.attrs.get(k) for run in runs)},
+        status=next((s for run in runs if (s := run.attrs["status"]) != "completed"), "completed"),
+        time_step_error=float(max(errors)),
+        provenance=json.dumps(common, sort_keys=True),
+    )
+
+
+def _check(runs: Sequence[xr.Dataset]) -> list[dict[str, Any]]:
+    """Return what is known about the runs, or raise a ValueError if their mean has no meaning."""
+    first: xr.Dataset = runs[0]
+    seeds: list[int] = []
+    for number, run in enumerate(runs):
+        require(run, _names(first) if number else ())
+        chain, provenance = chain_of(run), json.loads(run.attrs["provenance"])
+        if run.attrs.get("source") != "simulation" or "snapshots" not in provenance:
+            raise ValueError(f"combine {_NO_RUN}")
+        if "smoothed" in run.attrs:
+            raise ValueError("combine takes runs before their densities are smoothed")
+        if chain != chain_of(first):
+            raise ValueError(f"runs must be of one chain, got {chain_of(first)} and {chain}")
+        if provenance["seed"] in seeds:
+            raise ValueError(f"runs must have other seeds, got {shown(provenance['seed'])} twice")
+        seeds.append(provenance["seed"])
+    return [json.loads(run.attrs["provenance"]) for run in runs]
+
+
+def _names(run: xr.Dataset) -> list[str]:
+    """Return the variables with errors, these errors, and how many rods a density lacks."""
+    found = [str(name) for name in run.data_vars if f"{name}_error" in run]
+    return found + [f"{name}_error" for name in found] + ["outside"] * ("outside" in run)
+
+
+def _mean(joined: xr.Dataset, weights: xr.DataArray) -> xr.Dataset:
+    """Return the weighted means over ``seed``, and their errors where there are any."""
+    found = joined.drop_dims("seed")
+
+    def mean(values: xr.DataArray, power: int = 1) -> xr.DataArray:
+        known = values.notnull()
+        weight = weights.where(known)
+        weight = (weight / weight.sum("seed")) ** power
+        return (weight * values).sum("seed", skipna=True).where(known.any("seed"))
+
+    for name in _names(joined):
+        if name.endswith("_error"):
+            continue
+        values, error = joined[name], joined.get(f"{name}_error", xr.DataArray(0.0))
+        if name.endswith("_width"):
+            square, slope = mean(values**2), values
+            if name == "displacement_width" and "mean_displacement" in joined:
+                centre = joined.mean_displacement  # which differs between the runs
+                square = square + mean(centre**2) - mean(centre) ** 2
+            value = np.sqrt(square)
+            error = error * slope / value.where(value > 0, 1.0)
+        else:
+            value = mean(values)
+        found[name] = value.assign_attrs(values.attrs)
+        if f"{name}_error" in joined:
+            variance = mean((error**2).where(error.notnull(), np.inf).where(values.notnull()), 2)
+            error = np.sqrt(variance).where(np.isfinite(variance))
+            found[f"{name}_error"] = error.assign_attrs(joined[f"{name}_error"].attrs)
+    for name, place in joined.coords.items():
+        if "seed" in place.dims and name != "seed":  # others than mean_position are all the same
+            moved = mean(place) if name == "mean_position" else place.max("seed")
+            found = found.assign_coords({name: moved.assign_attrs(place.attrs)})
+    return found
+
+
+def _blocks(
+    runs: Sequence[xr.Dataset], weights: np.ndarray[Any, Any], density: xr.DataArray
+) -> xr.DataArray:
+    """Return blocks about the common density whose scatter gives the error of the mean."""
+    total = sum(run.sizes["block"] for run in runs)
+    parts = []
+    for run, weight in zip(runs, weights, strict=True):
+        blocks, number = run.density_block, run.sizes["block"]
+        scale = weight * np.sqrt(total * (total - 1) / (number * (number - 1)))
+        parts.append(density + scale * (blocks - blocks.mean("block")))
+    joined = xr.concat(parts, "block").transpose("block", ...)
+    return joined.assign_attrs(runs[0].density_block.attrs)

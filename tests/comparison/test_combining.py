@@ -1,0 +1,111 @@
+"""The mean of runs against the scatter between runs, and against one run with replicas."""
+
+import numpy as np
+import pytest
+import xarray as xr
+from small_sweeps import AtOnce, sweep
+
+from crazybilliards.comparison import combine, load_sweep, overlay, smooth
+from crazybilliards.comparison.sweeps import run_cases
+from crazybilliards.kinetic import equilibrium
+from crazybilliards.model import Chain, load, save
+from crazybilliards.particles import simulate, simulate_limit
+
+QUIET = {"threads": 1, "progress": False}
+CHAIN = Chain(size=5, gap=0.3)
+
+
+@pytest.fixture(scope="module")
+def runs():
+    return [simulate(CHAIN, duration=400, seed=s, **QUIET) for s in range(16)]
+
+
+def test_the_errors_are_those_of_the_mean(runs):
+    found = combine(runs)
+    several = xr.concat(runs, "seed", coords="minimal", compat="override")
+    for name in ("velocity_width", "mean_displacement", "displacement_width", "density"):
+        scatter = several[name].std("seed", ddof=1) / 4
+        stated = found[f"{name}_error"]
+        ratio = np.sqrt(float((stated**2).mean() / (scatter**2).mean()))
+        assert 0.75 < ratio < 1.3  # 1 in the limit of many runs; the mean error is at 4
+        assert found[name].attrs == runs[0][name].attrs
+    pulls = (found.velocity_width - CHAIN.free_velocity_width) / found.velocity_width_error
+    assert 0.4 < float(np.sqrt((pulls**2).mean())) < 2
+    assert float(found.density.sum() * (found.x[1] - found.x[0])) == pytest.approx(5)
+    apart = (found.mean_position - found.mean_displacement).values
+    np.testing.assert_allclose(apart, CHAIN.anchors)
+
+
+def test_runs_are_weighted_by_their_snapshots(runs):
+    """A run of its own parts: two runs of 1 and 3 times the length."""
+    long = simulate(CHAIN, duration=1200, seed=20, **QUIET)
+    found = combine([runs[0], long])
+    w = np.array([1, 3]) / 4
+    v = [each.velocity_width.values for each in (runs[0], long)]
+    e = [each.velocity_width_error.values for each in (runs[0], long)]
+    width = np.sqrt(w[0] * v[0] ** 2 + w[1] * v[1] ** 2)
+    np.testing.assert_allclose(found.velocity_width, width, rtol=2e-3)
+    error = np.hypot(w[0] * v[0] * e[0], w[1] * v[1] * e[1]) / width
+    np.testing.assert_allclose(found.velocity_width_error, error, rtol=0.02)
+
+
+def test_a_combined_density_is_smoothed_with_its_error(runs):
+    few = runs[:3]
+    found, each = smooth(combine(few)), [smooth(run) for run in few]
+    np.testing.assert_allclose(
+        found.density, np.mean([run.density for run in each], axis=0), atol=1e-12
+    )
+    expected = np.sqrt(np.sum([run.density_error**2 for run in each], axis=0)) / 3
+    np.testing.assert_allclose(found.density_error, expected, atol=1e-12)
+    overlay({"mean": found, "one": each[0]})
+
+
+def test_one_run_is_itself_and_a_mean_can_be_stored(runs, tmp_path):
+    one = combine(runs[:1])
+    for name in one.data_vars:
+        np.testing.assert_allclose(one[name], runs[0][name], atol=1e-12)
+    found = combine(runs)
+    xr.testing.assert_identical(load(save(found, tmp_path / "mean.nc")), found)
+    ensemble = {"average": "ensemble", "duration": 2, "replicas": 8, **QUIET}
+    pair = [simulate(CHAIN, seed=s, **ensemble) for s in (1, 2)]
+    assert combine(pair).velocity_width_error.dims == ("time", "particle")
+
+
+def test_a_sweep_over_seeds(tmp_path):
+    cases = sweep(grid={"size": [3, 5], "seed": [1, 2, 3]}).cases()
+    run_cases(cases[:-1], tmp_path, AtOnce(), progress=False)
+    grid = load_sweep(tmp_path)
+    found = combine(grid)
+    assert found.velocity_width.dims == ("size", "particle")
+    for size in (3, 5):
+        own = [c.load(tmp_path) for c in cases[:-1] if c.chain.size == size]
+        alone = combine(own)
+        nodes = alone.sizes["x"]
+        np.testing.assert_array_equal(found.x.sel(size=size).values[:nodes], alone.x)
+        for name in ("velocity_width", "velocity_width_error", "displacement_width"):
+            here = found[name].sel(size=size).values[:size]
+            np.testing.assert_allclose(here, alone[name], rtol=1e-9)
+
+
+def test_what_cannot_be_combined_is_refused(runs):
+    one, two = runs[:2]
+    gap = simulate(CHAIN.replace(gap=0.4), duration=20, seed=8, **QUIET)
+    some = simulate(CHAIN, duration=20, seed=8, particles=[1, 2], **QUIET)
+    widths = simulate(CHAIN, duration=20, seed=8, observe="widths", **QUIET)
+    damped = CHAIN.replace(restitution=0.9)
+    limit = simulate_limit(damped, accuracy=0.1, observe="widths", **QUIET)
+    for wrong, said in (
+        ([one, gap], "of one chain, got .*gap=0.3.* and .*gap=0.4"),
+        ([one, one], "other seeds, got 0 twice"),
+        ([one, some], "have the same normalized_particle|have the same particle"),
+        ([one, widths], "no 'density'"),
+        ([one, equilibrium(CHAIN)], "takes results of simulate|has no"),
+        ([limit], "takes results of simulate"),
+        ([smooth(one), smooth(two)], "before their densities are smoothed"),
+        ([one, 3], "not a crazybilliards result: 3"),
+        (one, "runs must be a list of results, .* got a Dataset"),
+        ([], "runs must be a list"),
+        (3, "runs must be a list"),
+    ):
+        with pytest.raises(ValueError, match=said):
+            combine(wrong)
