@@ -51,6 +51,7 @@ def combine(runs: Sequence[xr.Dataset] | xr.Dataset) -> xr.Dataset:
             "runs must be a list of results, or of a sweep over seed what load_sweep returns, got "
             f"{shown(runs)}"
         )
+    runs = list[xr.Dataset](runs)
     provenances = _check(runs)
     snapshots = np.array([float(each["snapshots"]) for each in provenances])
     parts = [run[_names(runs[0])] for run in runs]
@@ -112,20 +113,22 @@ def _mean(joined: xr.Dataset, weights: xr.DataArray) -> xr.Dataset:
             continue
         values, error = joined[name], joined.get(f"{name}_error", xr.DataArray(0.0))
         if name.endswith("_width"):
-            square, slope = mean(values**2), values
+            square: Any = mean(values**2)
+            slope = values
             if name == "displacement_width" and "mean_displacement" in joined:
                 centre = joined.mean_displacement  # which differs between the runs
                 square = square + mean(centre**2) - mean(centre) ** 2
-            value = np.sqrt(square)
+            value: Any = np.sqrt(square)
             error = error * slope / value.where(value > 0, 1.0)
         else:
             value = mean(values)
         found[name] = value.assign_attrs(values.attrs)
         if f"{name}_error" in joined:
             variance = mean((error**2).where(error.notnull(), np.inf).where(values.notnull()), 2)
-            error = np.sqrt(variance).where(np.isfinite(variance))
+            error = variance.where(np.isfinite(variance)) ** 0.5
             found[f"{name}_error"] = error.assign_attrs(joined[f"{name}_error"].attrs)
-    for name, place in joined.coords.items():
+    for key, place in joined.coords.items():
+        name = str(key)
         if "seed" in place.dims and name != "seed":  # others than mean_position are all the same
             moved = mean(place) if name == "mean_position" else place.max("seed")
             found = found.assign_coords({name: moved.assign_attrs(place.attrs)})
