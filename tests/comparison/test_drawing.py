@@ -198,5 +198,5 @@ def test_overlay_takes_one_curve_a_result():
     ax = overlay({"exact": exact, "fluid": moving.isel(time=1)})
     assert len(ax.lines) == 2
     states = equilibrium_states(chain, 3)
-    with pytest.raises(ValueError, match=r"over \(replica, particle\); overlay draws what"):
+    with pytest.raises(ValueError, match=r"over \(replica, particle\); choose a replica: \.isel"):
         overlay({"states": states}, "position")
