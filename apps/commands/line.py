@@ -27,18 +27,18 @@ class _Commands(TyperGroup):
     No name of a command is the beginning of another.
     """
 
-    def parse_args(self, ctx: typer.Context, args: list[str]) -> list[str]:
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         return super().parse_args(ctx, [*args[1:2], "--help"] if args[:1] == ["help"] else args)
 
-    def resolve_command(self, ctx: typer.Context, args: list[str]) -> Any:
+    def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         name = args[0]
         near = [each for each in self.commands if each.startswith(name)]
         if len(near) == 1:
             return super().resolve_command(ctx, [*near, *args[1:]])
         if name in THEORIES:
             hint = f"; crazybilliards theory {name} solves it"
-        elif name in cb.__all__:
-            hint = f"; it is a function in Python: crazybilliards.{name}"
+        elif name in dir(cb):
+            hint = f"; in Python it is crazybilliards.{name}"
         else:
             hint = f"; did you mean {' or '.join(near)}?" if near else meant(name, self.commands)
         known = ", ".join(self.commands)

@@ -92,7 +92,7 @@ theory -o run.nc | output must be a folder, got run.nc; only simulate takes a fi
 sweep grid.toml -o run.nc | output must be a folder, got run.nc; only simulate takes a file
 simluate | no command 'simluate'; did you mean 'simulate'?
 re | no command 're'; did you mean relax or reproduce?
-film | no command 'film'; it is a function in Python: crazybilliards.film
+film | no command 'film'; in Python it is crazybilliards.film
 equilibrium | no command 'equilibrium'; crazybilliards theory equilibrium solves it
 theory fluid | name must be one of ('equilibrium',
 theory equilibrium --tolerance 0.1 | tolerance: equilibrium has no such setting
