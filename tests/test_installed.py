@@ -104,8 +104,13 @@ TYPED = """
 import crazybilliards as cb
 from crazybilliards.kinetic import force_balance
 
-chain: cb.Chain = cb.Chain(size=3)
-run = cb.simulate(chain, seed=1)
+class Whole:  # as numpy's integers are
+    def __index__(self) -> int:
+        return 3
+
+
+chain: cb.Chain = cb.Chain(size=Whole())
+run = cb.simulate(chain, seed=Whole())
 size: int = chain.size
 release: str = cb.__version__
 force_balance(chain)
