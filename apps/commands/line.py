@@ -13,10 +13,11 @@ from typer.core import TyperGroup
 import crazybilliards as cb
 from crazybilliards.apps.commands import compare, explore, relax, reproduce, simulate, sweep, theory
 from crazybilliards.apps.commands.answers import with_json
+from crazybilliards.apps.commands.mistakes import explained
 from crazybilliards.apps.commands.output import INTERRUPTED
 from crazybilliards.apps.commands.streams import READER_GONE, plain_streams
 from crazybilliards.comparison.stationary_theories import THEORIES
-from crazybilliards.model.checks import SYMBOLS, meant, shown
+from crazybilliards.model.checks import meant, shown
 
 _LONGEST = 400  # characters of an error message
 
@@ -119,22 +120,12 @@ def _run() -> int | None:
         if status == INTERRUPTED:
             print("crazybilliards: interrupted", file=sys.stderr)
     except typer.TyperException as error:
-        status = _complain(_with_symbol(error))
+        status = _complain(explained(error))
     except ValueError as error:
         status = _complain(str(error))
     except OSError as error:
         status = _complain(f"{error.filename or 'file'}: {error.strerror or error}")
     return status
-
-
-def _with_symbol(error: typer.TyperException) -> str:
-    """Return the message of an error; of an unknown option, which one a symbol stands for."""
-    symbol = getattr(error, "option_name", "").lstrip("-")
-    context = getattr(error, "ctx", None)
-    known = [each.name for each in context.command.params] if context else []
-    if (name := SYMBOLS.get(symbol, "")) not in known:
-        return error.format_message()
-    return f"{error}; --{name.replace('_', '-')} is {symbol} of the paper"
 
 
 def _complain(message: str) -> int:

@@ -79,7 +79,29 @@ compare --size 2 | size
 compare --amplitudes 1,x | amplitudes takes numbers
 compare --restitution 0.9 --amplitudes 1 | give restitution or amplitudes
 compare --colour | No such option
-compare extra | unexpected extra argument
+compare extra | unexpected extra argument 'extra'
+compare --restitution 0.9 --amplitudes 1 | with --restitution, --amplitude is that of all chains
+compare --amplitude 3 | amplitude needs --restitution; without, give --amplitudes 3
+compare --restitution 0.8 0.9 | restitution takes values separated by commas: --restitution 0.8,0.9
+compare --amplitudes=1 2 3 | amplitudes takes values separated by commas: --amplitudes 1,2
+simulate --observe widths energy | observe takes values separated by commas: --observe widths,energy
+simulate --observe widths --json energy | unexpected extra argument 'energy'
+simulate --size 5 6 | unexpected extra argument '6'
+simulate --size 1e3 | size must be an integer, got '1e3'; write 1000
+simulate --size 2.5 | size must be an integer, got '2.5'
+simulate --size x | size must be an integer, got 'x'
+simulate --amplitude 0,9 | amplitude must be a number, got '0,9'; write 0.9
+simulate --duration 1,500 | duration must be a number, got '1,500'
+simulate --duration long | duration must be a number, got 'long'
+explore --port abc | port must be an integer, got 'abc'
+reproduce --quality best | quality must be one of ('quick', 'full'), got 'best'
+reproduce --columns 3 | columns must be an integer from 1 to 2, got 3
+reproduce --vector png | vector must be one of ('pdf', 'svg'), got 'png'
+reproduce fig17 | no figure or study 'fig17'; did you mean 17?
+reproduce 3,fig17_density.png | no figure or study 'fig17_density.png'; did you mean 17?
+reproduce fig20 | no figure or study 'fig20'; there are: all, analytics, 1 model
+reproduce arctan | no figure or study 'arctan'; did you mean 'arctanh'?
+reproduce 16 17 | which takes values separated by commas: 16,17
 relax --seed -1 | seed must be
 simulate --particles 1,x | particles takes numbers
 simulate --particles 1.0 | particles takes numbers
@@ -110,7 +132,8 @@ def test_bad_input_is_one_line_exit_two_and_nothing_written(
 ):
     monkeypatch.chdir(tmp_path)
     command, *arguments = shlex.split(line)
-    refused(message, command, "--output", "results", *arguments)
+    output = [] if command == "explore" or "-o" in arguments else ["--output", "results"]
+    refused(message, command, *arguments, *([] if "--output" in arguments else output))
     assert list(tmp_path.iterdir()) == []
 
 
