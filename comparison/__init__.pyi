@@ -24,4 +24,9 @@ from .side_by_side.grid_deviations import width_deviations as width_deviations
 from .side_by_side.relaxation import compare_relaxation as compare_relaxation
 from .side_by_side.relaxation_figures import animate as animate
 from .stationary_theories import best_theory as best_theory, theories as theories
-from .sweeps import load_sweep as load_sweep
+from .sweeps import (
+    Sweep as Sweep,
+    load_sweep as load_sweep,
+    process_pool as process_pool,
+    run_cases as run_cases,
+)

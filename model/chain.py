@@ -24,14 +24,14 @@ from __future__ import annotations
 import math
 from collections.abc import Collection
 from dataclasses import dataclass, fields, replace
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self, SupportsIndex
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from crazybilliards.model import spring
 from crazybilliards.model.checks import check_arguments, shown
-from crazybilliards.model.parameters import KNOWN, Parameters
+from crazybilliards.model.parameters import KNOWN, Parameters, Spring
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -70,6 +70,22 @@ class Chain(Parameters):
     >>> chain.replace(gap=0.5).anchors[:2]
     array([-11.25,  -8.75])
     """
+
+    if TYPE_CHECKING:  # a dataclass would ask for an int of Python as size
+
+        def __init__(
+            self,
+            *,
+            size: SupportsIndex = 100,
+            restitution: float = 1.0,
+            amplitude: float = 1.0,
+            damping: float = 1.0,
+            stiffness: float = 1.0,
+            gap: float = 0.0,
+            radius: float = 1.0,
+            mass: float = 4 * math.pi / 3,
+            spring: Spring = "linear",
+        ) -> None: ...
 
     def replace(self, **changes: Any) -> Self:
         """Return the same chain with some parameters changed (and all checked again)."""

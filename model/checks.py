@@ -65,6 +65,18 @@ def _plain(value: Any) -> Any:
     return value.item() if whole else value
 
 
+def as_written(value: Any) -> Any:
+    """Return a number as a person writes it: .3 for .1 + .2 and for numpy's float32(.3)."""
+    kind = getattr(getattr(value, "dtype", None), "name", "")
+    value = (
+        float(str(_plain(value.astype(str)))) if kind in ("float16", "float32") else _plain(value)
+    )
+    if not isinstance(value, float) or not math.isfinite(value):
+        return value
+    short = float(f"{value:.10g}")
+    return short if math.isclose(value, short, rel_tol=1e-13) else value
+
+
 def check_integer(name: str, value: object, *, least: int, most: int | None = None) -> int:
     """Return ``value`` as an int, or raise one ValueError that says what ``name`` accepts."""
     wanted = f"an integer >= {least}" if most is None else f"an integer from {least} to {most}"

@@ -7,13 +7,15 @@ into the provenance nor divided reproducibly.
 
 from __future__ import annotations
 
+from typing import SupportsIndex
+
 import numpy as np
 
 from crazybilliards.model.checks import check_integer, shown
 
 _END = 2**4096  # the provenance holds the digits, of which Python writes 4300 at most
 
-Seed = int | np.random.SeedSequence | np.random.Generator
+Seed = SupportsIndex | np.random.SeedSequence | np.random.Generator
 
 
 def seed_of(seed: Seed) -> int:

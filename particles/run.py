@@ -8,14 +8,14 @@ from __future__ import annotations
 
 import hashlib
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from functools import cached_property
 from typing import Any, get_args
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array
@@ -59,7 +59,7 @@ class Run:
     seed: int
     time_step: float | None
     merging: float | None
-    particles: Sequence[int] | None
+    particles: ArrayLike | None
     warmup: float | None = None
     method: Method = "event-driven"
     stepper: Stepper = "splitting"

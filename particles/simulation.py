@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike
 
 from crazybilliards.model import Chain
 from crazybilliards.model.calls import warn_user
@@ -46,7 +47,7 @@ def simulate(
     seed: Seed = 0,
     observe: str | Observer | Sequence[str | Observer] = ("widths", "density"),
     start: xr.Dataset | None = None,
-    particles: Sequence[int] | None = None,
+    particles: ArrayLike | None = None,
     replicas: int = 1,
     average: Average = "time",
     every: float | None = None,

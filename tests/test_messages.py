@@ -3,6 +3,7 @@
 import inspect
 import pickle
 import re
+from concurrent.futures import Executor
 from copy import copy
 from dataclasses import FrozenInstanceError
 from importlib import import_module
@@ -48,6 +49,7 @@ def names():
         "tree": xr.DataTree.from_dict({"a": exact}),
         "foreign": xr.Dataset({"density": ("x", np.full(9, 0.1))}, {"x": np.arange(9.0)}),
         "Case": Case,
+        "Executor": Executor,
         "checks": checks,
         "xr": xr,
     }

@@ -79,6 +79,19 @@ Case("simulate", chain, {"length": 3}) | simulate takes any of
 Case("simulate", chain, {"duration": -1}) | duration must be
 Case("simulate", chain, {"duration": {"a": 1}}) | plain value
 Case("simulate_limit", chain, {"accuracy": 2}) | accuracy must lie between
+cb.Sweep({"restitution": [0.3, 0.1 + 0.2]}) | grid: restitution holds 0.3 twice
+cb.Sweep({"restitution": np.eye(2)}) | grid: restitution must be a list of values, got array([[1.
+cb.Sweep({"restitution": {"a": 1}}) | grid: restitution must be a list of values, got {'a': 1}
+cb.Sweep({"spring": "linear"}) | grid: spring must be a list of values, got 'linear'
+cb.Sweep([1, 2]) | grid must be a dict, as {'size': ...}, got [1, 2]
+cb.Sweep({}, chain=chain) | chain must be a dict, as {'size': ...}, got Chain(
+cb.Sweep({"e": [1]}) | restitution is e of the paper
+cb.process_pool(0) | processes must be an integer >= 1, got 0
+cb.run_cases(cb.Sweep({}), "a", None) | executor must be one, as in with process...got None
+cb.run_cases({"size": [3]}, "a", Executor()) | cases must be a Sweep or a list of Case, got {'size'
+cb.run_cases(3, "a", Executor()) | cases must be a Sweep or a list of Case, got 3
+cb.run_cases([], 3, Executor()) | folder must be a text or a Path, got 3
+cb.sweep | did you mean 'Sweep'?
 """
 
 # Descriptions of sweeps, as texts in quotes.

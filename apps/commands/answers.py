@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 _ANY_WIDTH = 10_000
 _COLUMNS = {"velocity_width": "W_v", "mean_displacement": "<dx>", "displacement_width": "W_x"}
+_SAID_ELSEWHERE = {*_COLUMNS, "central_velocity_width", "density_block"}
+_IN_THE_MIDDLE = {"particle", "contact", "x", "velocity_bin"}  # of other dimensions the first value
 # Facts that --json prints; None if text is printed.
 _facts: ContextVar[dict[str, Any] | None] = ContextVar("facts", default=None)
 _Option = Annotated[
@@ -113,10 +115,53 @@ def answer_rods(result: xr.Dataset, title: str, caption: str) -> None:
     print_table(table)
 
 
+def answer_measured(result: xr.Dataset, *, ensemble: bool) -> None:
+    """Print one value of everything that was measured; with ``--json`` all of them."""
+    from crazybilliards.comparison.coverage import smooth
+    from crazybilliards.model.vocabulary import unit_of
+
+    if _facts.get() is not None:
+        note(observed=result.to_dict())
+        return
+    table = empty_table(
+        ["measured", "at"],
+        ["value", "unit"],
+        title="What was measured, one value of each",
+        caption="+-: one standard error. --output keeps all values, --json prints them. The "
+        "density is smoothed as in the paper.",
+    )
+    table.columns[0].no_wrap = True
+    for name in result.data_vars:
+        if name in _SAID_ELSEWHERE or str(name).endswith("_error") or not result[name].size:
+            continue
+        source = smooth(result) if name == "density" else result
+        kept = [each for each in (name, f"{name}_error") if each in source]
+        chosen, at = _one_value(source[kept], ensemble)
+        table.add_row(str(name), at, _measured(chosen, str(name)), unit_of(result[name]))
+    if table.row_count:
+        print_table(table)
+
+
+def _one_value(result: xr.Dataset, ensemble: bool) -> tuple[xr.Dataset, str]:
+    """Return what is in the middle, or the mean over the time, and the words for that."""
+    words = []
+    for name, size in result.sizes.items():
+        if name == "time" and not ensemble:
+            # Snapshots are correlated: the error of one is not that of their mean.
+            kept = [each for each in result.data_vars if not str(each).endswith("_error")]
+            result = result[kept].mean(name, keep_attrs=True)
+            words.append("mean over time")
+            continue
+        place = -1 if name == "time" else (size - 1) // 2 if name in _IN_THE_MIDDLE else 0
+        at = result[name][place].item() if name in result.coords else place + 1
+        words.append(f"{str(name).replace('_', ' ')} {at:.4g}")
+        result = result.isel({name: place})
+    return result, ", ".join(words)
+
+
 def _measured(rod: xr.Dataset, name: str) -> str:
-    value = f"{float(rod[name]):.4g}"
-    error = rod.get(f"{name}_error")
-    return value if error is None else f"{value} +- {float(error):.1g}"
+    value, error = f"{float(rod[name]):.4g}", float(rod.get(f"{name}_error", math.nan))
+    return value if math.isnan(error) else f"{value} +- {error:.1g}"
 
 
 def print_table(table: Table) -> None:

@@ -47,6 +47,10 @@ def command(
             help="Restitutions e, separated by commas: compare with the kinetic equations instead."
         ),
     ] = None,
+    amplitude: Annotated[
+        float | None,
+        typer.Option(help="With --restitution: driving amplitude A [M R/T^(3/2)]; default: 1."),
+    ] = None,
     duration: Annotated[
         float | None,
         typer.Option(
@@ -79,7 +83,16 @@ def command(
     Example: crazybilliards compare --output results --restitution 0.9,0.95,0.98
     """
     if amplitudes is not None and restitution is not None:
-        raise ValueError("give restitution or amplitudes, not both")
+        raise ValueError(
+            "give restitution or amplitudes, not both; with --restitution, --amplitude is that of "
+            "all chains"
+        )
+    if amplitude is not None:
+        if restitution is None:
+            raise ValueError(
+                f"amplitude needs --restitution; without, give --amplitudes {amplitude:g}"
+            )
+        chain = chain.replace(amplitude=amplitude)
     if restitution is None and chain.size < 3:
         raise ValueError(
             f"size must be at least 3 to compare with an arctanh fit, got {chain.size}"

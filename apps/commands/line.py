@@ -5,19 +5,49 @@ from __future__ import annotations
 import inspect
 import sys
 import warnings
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
+from typer.core import TyperGroup
 
+import crazybilliards as cb
 from crazybilliards.apps.commands import compare, explore, relax, reproduce, simulate, sweep, theory
 from crazybilliards.apps.commands.answers import with_json
+from crazybilliards.apps.commands.mistakes import explained
 from crazybilliards.apps.commands.output import INTERRUPTED
 from crazybilliards.apps.commands.streams import READER_GONE, plain_streams
-from crazybilliards.model.words import SYMBOLS
+from crazybilliards.comparison.stationary_theories import THEORIES
+from crazybilliards.model.checks import meant, shown
 
 _LONGEST = 400  # characters of an error message
 
+
+class _Commands(TyperGroup):
+    """Takes the first letters of a command for it, and ``help`` for ``--help``.
+
+    No name of a command is the beginning of another.
+    """
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        return super().parse_args(ctx, [*args[1:2], "--help"] if args[:1] == ["help"] else args)
+
+    def resolve_command(self, ctx: Any, args: list[str]) -> Any:
+        name = args[0]
+        near = [each for each in self.commands if each.startswith(name)]
+        if len(near) == 1:
+            return super().resolve_command(ctx, [*near, *args[1:]])
+        if name in THEORIES:
+            hint = f"; crazybilliards theory {name} solves it"
+        elif name in dir(cb):
+            hint = f"; in Python it is crazybilliards.{name}"
+        else:
+            hint = f"; did you mean {' or '.join(near)}?" if near else meant(name, self.commands)
+        known = ", ".join(self.commands)
+        raise ValueError(f"no command {shown(name)}{hint or f'; the commands are {known}'}")
+
+
 app = typer.Typer(
+    cls=_Commands,
     add_completion=False,
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
@@ -38,7 +68,9 @@ def crazybilliards(
     context: typer.Context,
     version: Annotated[
         bool,
-        typer.Option("--version", callback=_show_version, is_eager=True, help="Show the version."),
+        typer.Option(
+            "--version", "-V", callback=_show_version, is_eager=True, help="Show the version."
+        ),
     ] = False,
 ) -> None:
     """Noisy rods on springs colliding in one dimension: simulation and theory side by side.
@@ -88,22 +120,12 @@ def _run() -> int | None:
         if status == INTERRUPTED:
             print("crazybilliards: interrupted", file=sys.stderr)
     except typer.TyperException as error:
-        status = _complain(_with_symbol(error))
+        status = _complain(explained(error))
     except ValueError as error:
         status = _complain(str(error))
     except OSError as error:
         status = _complain(f"{error.filename or 'file'}: {error.strerror or error}")
     return status
-
-
-def _with_symbol(error: typer.TyperException) -> str:
-    """Return the message of an error; of an unknown option, which one a symbol stands for."""
-    symbol = getattr(error, "option_name", "").lstrip("-")
-    context = getattr(error, "ctx", None)
-    known = [each.name for each in context.command.params] if context else []
-    if (name := SYMBOLS.get(symbol, "")) not in known:
-        return error.format_message()
-    return f"{error}; --{name.replace('_', '-')} is {symbol} of the paper"
 
 
 def _complain(message: str) -> int:

@@ -13,6 +13,7 @@ import typer
 from crazybilliards.model.checks import check_path
 from crazybilliards.model.parameters import Parameters
 
+OUTPUT = ("--output", "-o")
 Threads = Annotated[int | None, typer.Option(help="Threads to simulate in; default: one per core.")]
 Processes = Annotated[
     int | None, typer.Option(help="Processes to compute in; default: one per core.")
@@ -33,9 +34,9 @@ KeepOld = Annotated[
 ]
 
 
-def path_option(help: str, metavar: str = "FOLDER") -> Any:
+def path_option(help: str, metavar: str = "FOLDER", names: tuple[str, ...] = OUTPUT) -> Any:
     """Return the declaration of an option that takes the name of a folder, or of a file."""
-    return typer.Option(help=help, parser=_path, metavar=metavar)
+    return typer.Option(*names, help=help, parser=_path, metavar=metavar)
 
 
 def _path(text: str) -> Path:

@@ -40,7 +40,7 @@ def writing_to(output: Path | None, *, file: bool = False) -> Iterator[None]:
     Raises
     ------
     ValueError
-        Before any work, if ``output`` cannot become or is not a folder, or a result's file.
+        Before any work, if ``output`` cannot become or is not a folder, or a file.
     OSError
         If another process holds it, or nothing can be written there.
     """
@@ -50,8 +50,10 @@ def writing_to(output: Path | None, *, file: bool = False) -> Iterator[None]:
     from crazybilliards.model.locks import locked
     from crazybilliards.model.storage import make_folder
 
-    (check_file if file else check_folder)(output)
     folder = output.parent if file else output
+    check_folder(folder)
+    if file and output.is_dir():
+        raise ValueError(f"output must be a file, but {output} is a folder")
     made = [each for each in (folder, *folder.parents) if not each.exists()]
     make_folder(folder)
     try:
@@ -66,6 +68,8 @@ def writing_to(output: Path | None, *, file: bool = False) -> Iterator[None]:
 def check_folder(path: Path) -> None:
     """Raise, before any work, if ``path`` cannot become or is not a folder to write to."""
     found = next(each for each in (path, *path.absolute().parents) if os.path.lexists(each))
+    if path.suffix == ".nc" and not path.exists():
+        raise ValueError(f"output must be a folder, got {path}; only simulate takes a file FILE.nc")
     if not found.exists():
         raise ValueError(f"output must be a folder, but {found} is a link that leads nowhere")
     if not found.is_dir():
@@ -74,11 +78,13 @@ def check_folder(path: Path) -> None:
         raise ValueError(f"output: no permission to write to {found}")
 
 
-def check_file(path: Path) -> None:
-    """Raise, before any work, if ``path`` cannot become a result's file."""
-    if path.suffix != ".nc" or path.is_dir():
-        raise ValueError(f"output must be a file whose name ends in .nc, got {path}")
-    check_folder(path.parent)
+def result_file(output: Path, name: str) -> Path:
+    """Return ``output`` if it is FILE.nc, or the file ``name`` in it if it is a folder."""
+    if output.is_dir():
+        return output / name
+    if output.suffix[1:2].isalpha() and output.suffix != ".nc":  # a folder may be called e0.9
+        raise ValueError(f"output must be a folder or a file whose name ends in .nc, got {output}")
+    return output if output.suffix == ".nc" else output / name
 
 
 def write_figures(folder: Path, suffix: str, drawings: Mapping[str, Callable[[], Figure]]) -> None:

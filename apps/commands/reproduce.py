@@ -6,7 +6,7 @@ import shutil
 import textwrap
 from math import isfinite
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -14,6 +14,7 @@ from crazybilliards.apps.commands.answers import note, say, wrote
 from crazybilliards.apps.commands.options import Dask, KeepOld, Processes, Scheduler, path_option
 from crazybilliards.apps.commands.output import writing_to
 from crazybilliards.apps.commands.sweep import compute_cases, engine
+from crazybilliards.model.checks import check_choice, check_integer
 
 if TYPE_CHECKING:
     from crazybilliards.reproduction.claims.report import Reproduced
@@ -30,15 +31,18 @@ def command(
     which: Annotated[
         str,
         typer.Argument(
-            help="Number or name of a figure of the paper, all (figures of the paper), or "
-            "analytics (those of the paper's section of that name and the checks at restitution 1, "
-            "elastic-gaps among them, which is no figure of the paper)."
+            help="Numbers or names of figures of the paper, separated by commas, all (figures of "
+            "the paper), or analytics (those of the paper's section of that name and the checks "
+            "at restitution 1, elastic-gaps among them, which is no figure of the paper)."
         ),
     ] = "all",
     show_list: Annotated[bool, typer.Option("--list", help="List the figures, and stop.")] = False,
     quality: Annotated[
-        Literal["quick", "full"],
-        typer.Option(help="All figures take 2 minutes (quick) or 17 (full) on two cores."),
+        str,
+        typer.Option(
+            help="All figures take 2 minutes (quick) or 17 (full) on two cores.",
+            metavar="quick|full",
+        ),
     ] = "quick",
     output: Annotated[
         Path, path_option("Folder for pictures, report and results; made if missing.")
@@ -46,15 +50,13 @@ def command(
     columns: Annotated[
         int | None,
         typer.Option(
-            min=1,
-            max=2,
             help="Width of the pictures in columns of a journal, 1 (3.4 inches) or 2 (7 inches); "
-            "default: as their panels need.",
+            "default: as their panels need."
         ),
     ] = None,
     vector: Annotated[
-        Literal["pdf", "svg"] | None,
-        typer.Option(help="Write every picture as a vector graphic, too."),
+        str | None,
+        typer.Option(help="Write every picture as a vector graphic, too.", metavar="pdf|svg"),
     ] = None,
     processes: Processes = None,
     dask: Dask = False,
@@ -70,7 +72,7 @@ def command(
 
     Example: crazybilliards reproduce analytics
 
-    Example: crazybilliards reproduce 17 --output results/paper
+    Example: crazybilliards reproduce 16,17 --output results/paper
 
     Example: crazybilliards reproduce all --quality full
 
@@ -82,19 +84,24 @@ def command(
         _print_list()
         return
     wanted = find_studies(which)
+    chosen: Quality = check_choice("quality", quality, ("quick", "full"))  # type: ignore[assignment]
+    if columns is not None:
+        check_integer("columns", columns, least=1, most=2)
+    if vector is not None:
+        check_choice("vector", vector, ("pdf", "svg"))
     from crazybilliards.model.storage import write_atomically
     from crazybilliards.reproduction.claims.report import all_cases, html, markdown
 
     computing = engine(processes, dask, scheduler)
     with writing_to(output):
-        compute_cases(all_cases(wanted, quality), output / "cases", computing, keep_old)
+        compute_cases(all_cases(wanted, chosen), output / "cases", computing, keep_old)
         drawing = {"columns": columns, "formats": [] if vector is None else [vector]}
-        reproduced = _draw(wanted, quality, output, keep_old=keep_old, **drawing)
+        reproduced = _draw(wanted, chosen, output, keep_old=keep_old, **drawing)
         if which in _REPORTS:
             for name, written in zip(_REPORTS[which], (markdown, html), strict=True):
-                write_atomically(output / name, written(reproduced, quality).encode())
+                write_atomically(output / name, written(reproduced, chosen).encode())
                 wrote(output / name)
-        _print_claims(reproduced, quality)
+        _print_claims(reproduced, chosen)
 
 
 def _print_list() -> None:

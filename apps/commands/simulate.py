@@ -8,12 +8,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from crazybilliards.apps.commands.answers import answer_rods, note, say, wrote
+from crazybilliards.apps.commands.answers import answer_measured, answer_rods, note, say, wrote
 from crazybilliards.apps.commands.options import Threads, path_option, with_chain_options
 from crazybilliards.apps.commands.output import (
     complain_of_divergence,
     conclude,
     numbers,
+    result_file,
     writing_to,
 )
 
@@ -28,7 +29,11 @@ def command(
     chain: Chain,
     output: Annotated[
         Path | None,
-        path_option("NetCDF file for the result, FILE.nc; without it nothing is written.", "FILE"),
+        path_option(
+            "Folder for simulation.nc, made if missing, or another name for this file, FILE.nc; "
+            "without it nothing is written.",
+            "FOLDER|FILE.nc",
+        ),
     ] = None,
     observe: Annotated[
         str,
@@ -76,15 +81,21 @@ def command(
     threads: Threads = None,
     checkpoint: Annotated[
         Path | None,
-        path_option("File to keep the state in: the same command goes on from there.", "FILE"),
+        path_option(
+            "File to keep the state in: the same command goes on from there.",
+            "FILE",
+            ("--checkpoint",),
+        ),
     ] = None,
 ) -> None:
     """Simulate one chain and write what was measured to a file.
 
-    Prints how the run ended, and widths and displacements of some rods with their standard
-    errors. In Python, crazybilliards.load(FILE) gives the result.
+    Prints how the run ended, widths and displacements of some rods, and one value of everything
+    else that was measured, with standard errors. With --json it prints all values. In Python,
+    crazybilliards.load("FOLDER/simulation.nc") gives the result.
 
-    Ctrl-C or SIGTERM stops early: what has been measured is written to FILE-interrupted.nc.
+    Ctrl-C or SIGTERM stops early: what has been measured is written under the name with
+    "-interrupted".
 
     Example: crazybilliards simulate --size 50 --restitution 0.9 --output run.nc
 
@@ -106,7 +117,8 @@ def command(
     if accuracy is not None:
         _refuse(duration=duration, time_step=time_step, every=every, average=average)
         _refuse(method=method, stepper=stepper)
-    with writing_to(output, file=True):
+    file = output and result_file(output, "simulation.nc")
+    with writing_to(file, file=True):
         if accuracy is None:
             result = simulate(
                 chain,
@@ -120,7 +132,7 @@ def command(
             )
         else:
             result = simulate_limit(chain, accuracy=accuracy, **common)
-        conclude(output, result, _write, _print, kept="FILE.nc keeps the result")
+        conclude(file, result, _write, _print, kept="FOLDER keeps the result")
 
 
 def _write(result: xr.Dataset, file: Path, suffix: str) -> None:
@@ -169,3 +181,4 @@ def _print(result: xr.Dataset) -> None:
             "Some rods at the last time" if last else "Some rods",
             "+-: one standard error.",
         )
+    answer_measured(result, ensemble=how.get("schedule", {}).get("ensemble", False))

@@ -29,7 +29,11 @@ def command(
         ),
     ],
     output: Annotated[
-        Path, path_option("Folder for the results, one file a case; made if missing.")
+        Path,
+        path_option(
+            "Folder for the results, one file a case, and index.csv, which says which file holds "
+            "which case; made if missing."
+        ),
     ],
     processes: Processes = None,
     dask: Dask = False,
@@ -42,10 +46,10 @@ def command(
     the job. Every combination of them is a case. The tables [chain] and [simulate] (or
     the name of a theory, see crazybilliards theory --help) hold what is the same for all cases.
 
-    What the folder holds already is not computed again: after Ctrl-C, a crash, or with a larger
-    grid, the same command computes what is missing. Results are computed anew if the source code
-    that they depend on was changed since (unless --keep-old is given). In Python,
-    crazybilliards.load_sweep(FOLDER) reads all of them as one Dataset.
+    The shortest cases come first. What the folder holds already is not computed again: after
+    Ctrl-C, a crash, or with a larger grid, the same command computes what is missing. Results are
+    computed anew if the source code that they depend on was changed since (unless --keep-old is
+    given). In Python, crazybilliards.load_sweep(FOLDER) reads all of them as one Dataset.
 
     Example: crazybilliards sweep grid.toml --output results/grid
     """
@@ -61,14 +65,11 @@ def engine(
 ) -> AbstractContextManager[Executor]:
     """Return what computes cases, as the options say."""
     from crazybilliards.comparison.sweeps import dask_cluster, process_pool
-    from crazybilliards.model.checks import check_integer
 
     if dask or scheduler is not None:
         if processes is not None:
             raise ValueError("processes: a dask cluster decides that itself")
         return dask_cluster(scheduler)
-    if processes is not None:
-        check_integer("processes", processes, least=1)
     return process_pool(processes)
 
 
@@ -76,6 +77,7 @@ def compute_cases(
     cases: Iterable[Case], folder: Path, executor: AbstractContextManager[Executor], keep_old: bool
 ) -> None:
     """Compute what is missing; end the command, and say why, unless all succeed."""
+    from crazybilliards.comparison.sweeps.index import write_index
     from crazybilliards.comparison.sweeps.missing import check_cases, find_missing
     from crazybilliards.comparison.sweeps.running import Outcome, compute_missing
     from crazybilliards.model.locks import locked
@@ -90,6 +92,7 @@ def compute_cases(
         say(f"{len(checked)} cases, {len(checked) - len(missing)} of them in {folder} already")
         note(cases=len(checked), folder=str(folder), computed=0, failed=[])
         if not len(missing):
+            write_index(folder)
             return
         outcome, reason, status = Outcome(), "", 0
         try:

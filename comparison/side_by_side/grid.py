@@ -12,13 +12,14 @@ as it is computed, and the same call takes it from there.
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from concurrent.futures import Executor
 from contextlib import AbstractContextManager, ExitStack
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import xarray as xr
+from numpy.typing import ArrayLike
 
 from crazybilliards.comparison.fits import fit_arctanh
 from crazybilliards.comparison.stationary_theories import THEORIES
@@ -29,7 +30,14 @@ from crazybilliards.kinetic import equilibrium, force_balance, rod_by_rod
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.calls import warn_user
-from crazybilliards.model.checks import check_integer, check_path, check_real, is_list, shown
+from crazybilliards.model.checks import (
+    as_written,
+    check_integer,
+    check_path,
+    check_real,
+    is_list,
+    shown,
+)
 from crazybilliards.model.process import announced, cores
 from crazybilliards.model.progress import waiting_for
 from crazybilliards.model.randomness import Seed, seed_of
@@ -56,7 +64,7 @@ _REPLICAS = 2
 
 def compare_elastic(
     chain: Chain,
-    amplitudes: Sequence[float] = (1.0, 3.0, 10.0, 30.0),
+    amplitudes: ArrayLike = (1.0, 3.0, 10.0, 30.0),
     *,
     folder: Folder | None = None,
     duration: float = 100_000.0,
@@ -71,7 +79,8 @@ def compare_elastic(
     Parameters
     ----------
     chain
-        The chain, with restitution 1; its amplitude is replaced by each of ``amplitudes``.
+        The chain, with restitution 1; its amplitude is replaced by each of ``amplitudes``,
+        which are taken as ``restitutions`` of :func:`compare_restitutions`.
     folder
         Folder for the simulations, one file each, written as soon as it is done. The same call
         takes them from there, so nothing is lost when the program is killed. None: a folder that
@@ -117,7 +126,7 @@ def compare_elastic(
 
 def compare_restitutions(
     chain: Chain,
-    restitutions: Sequence[float],
+    restitutions: ArrayLike,
     *,
     folder: Folder | None = None,
     duration: float = 5_000.0,
@@ -134,7 +143,9 @@ def compare_restitutions(
     chain
         The chain; its restitution is replaced by each of ``restitutions``.
     restitutions
-        Different values of e. ``theories`` tells how good the kinetic equations are there.
+        Different values of e, a list or an array; errors of rounding are taken away, so that
+        ``numpy.arange`` gives 0.3 and not 0.30000000000000004. ``theories`` tells how good the
+        kinetic equations are there.
     duration
         Simulated time of each of two replicas [T].
     folder, seed, processes, threads, keep_old, progress
@@ -174,12 +185,12 @@ def elastic_tree(runs: Mapping[str, xr.Dataset], status: str = "completed") -> x
 
 
 def _simulations(
-    chain: Chain, name: str, values: Sequence[float], duration: float, seed: int
+    chain: Chain, name: str, values: ArrayLike, duration: float, seed: int
 ) -> dict[str, dict[str, Case]]:
     """Return the simulation at every value of a parameter; all are checked before any work."""
     if not is_list(values):
         raise ValueError(f"{name}s must be a list of numbers, got {shown(values)}")
-    checked = [check_real(name, value) for value in values]
+    checked = [check_real(name, as_written(value)) for value in values]
     if not checked:
         raise ValueError(f"{name}s must hold at least one number")
     if len(set(checked)) != len(checked):

@@ -57,7 +57,7 @@ class Case:
     Attributes
     ----------
     work
-        Number of particle steps, to put long cases first and to estimate the total time.
+        Number of particle steps, to put short cases first and to estimate the total time.
 
     Raises
     ------

@@ -10,13 +10,14 @@ import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from functools import partial
 from multiprocessing.synchronize import Event
 from typing import Any
 
 from tqdm import tqdm
 
+from crazybilliards.model.checks import check_integer
 from crazybilliards.model.process import cores, end_with_parent
 
 _UNGUARDED = (
@@ -49,18 +50,27 @@ class _Later(Future[Any]):
         return self.call()
 
 
-@contextmanager
-def process_pool(processes: int | None = None) -> Iterator[Executor]:
+def process_pool(processes: int | None = None) -> AbstractContextManager[Executor]:
     """Run cases in processes of this machine, one for each core unless told otherwise.
 
     An exception in the block, such as Ctrl-C, kills them.
+
+    Examples
+    --------
+    A script that starts processes must do so under ``if __name__ == "__main__":``.
+
+    >>> with process_pool(2) as pool:  # doctest: +SKIP
+    ...     failed = run_cases(Sweep({"restitution": [0.5, 1]}), "results", pool)
     """
+    return _pool(cores() if processes is None else check_integer("processes", processes, least=1))
+
+
+@contextmanager
+def _pool(processes: int) -> Iterator[Executor]:
     before = set(multiprocessing.active_children())
     context = multiprocessing.get_context("spawn")
     started = context.Event()  # whether a worker did
-    pool = ProcessPoolExecutor(
-        processes or cores(), context, initializer=_prepare_worker, initargs=(started,)
-    )
+    pool = ProcessPoolExecutor(processes, context, initializer=_prepare_worker, initargs=(started,))
     try:
         yield pool
     except BaseException as error:

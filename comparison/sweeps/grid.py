@@ -22,8 +22,8 @@ import math
 import numbers
 import os
 import tomllib
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, fields
+from collections.abc import Iterator, Mapping, Sequence, Set
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -32,15 +32,23 @@ import pandas as pd
 import xarray as xr
 
 from crazybilliards.comparison.sweeps.case import Case, plain, stored_parameters
+from crazybilliards.comparison.sweeps.index import CHAIN, scalar, varied
 from crazybilliards.comparison.sweeps.jobs import JOBS
 from crazybilliards.model import Chain, load
 from crazybilliards.model.calls import warn_user
-from crazybilliards.model.checks import check_arguments, check_choice, check_path, got, shown
+from crazybilliards.model.checks import (
+    as_written,
+    check_arguments,
+    check_choice,
+    check_path,
+    got,
+    is_list,
+    shown,
+)
 from crazybilliards.model.vocabulary import ATTRIBUTES, described
 
 _MOST_CASES = 1_000_000
-_TEXTS = ("status", "provenance")  # are always variables
-_CHAIN = [field.name for field in fields(Chain)]
+_TEXTS = ("status", "provenance", "file")  # are always variables
 
 
 @dataclass(frozen=True)
@@ -50,7 +58,9 @@ class Sweep:
     Parameters
     ----------
     grid
-        ``{parameter: values}`` for parameters of the chain and settings of the job.
+        ``{parameter: values}`` for parameters of the chain and settings of the job. The values are
+        a list, an array of numpy or a column of pandas. Errors of rounding are taken away:
+        ``numpy.arange(0.1, 0.35, 0.1)`` gives 0.1, 0.2 and 0.3.
     job
         As in :class:`Case`.
     chain, settings
@@ -62,24 +72,25 @@ class Sweep:
         For an unknown name, for repeated values, for an empty grid, for more than a million cases.
     """
 
-    grid: Mapping[str, Sequence[Any]]
-    job: str
-    chain: Mapping[str, Any]
-    settings: Mapping[str, Any]
+    grid: Mapping[str, Any]
+    job: str = "simulate"
+    chain: Mapping[str, Any] = field(default_factory=dict)
+    settings: Mapping[str, Any] = field(default_factory=dict)
     # The common parameters of the cases.
     _chain: Chain = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
+        for name in ("grid", "chain", "settings"):
+            if not isinstance(given := getattr(self, name), Mapping):
+                raise ValueError(f"{name} must be a dict, as {{'size': ...}}, got {shown(given)}")
         settings = list(JOBS[check_choice("job", self.job, sorted(JOBS))].settings)
-        check_arguments("[grid]", self.grid, [*_CHAIN, *settings])
+        check_arguments("[grid]", self.grid, [*CHAIN, *settings])
         check_arguments(f"[{self.job}]", self.settings, settings)
-        for name, values in self.grid.items():
-            if not isinstance(values, list | tuple) or not values:
-                raise ValueError(f"grid: {name} must be a list of values, got {shown(values)}")
+        grid = {name: _values(name, values) for name, values in self.grid.items()}
+        object.__setattr__(self, "grid", grid)
+        for name in grid:
             if name in self.chain or name in self.settings:
                 raise ValueError(f"{name} is given twice: in the grid, and the same for all")
-            if len({_scalar(plain(name, value)) for value in values}) < len(values):
-                raise ValueError(f"grid: {name} holds a value twice")
         if len(self) > _MOST_CASES:
             raise ValueError(f"the grid has {len(self)} cases, more than {_MOST_CASES}")
         object.__setattr__(self, "_chain", Chain().replace(**self.chain))
@@ -100,12 +111,26 @@ class Sweep:
         for name in reversed(list(self.grid)):
             values = self.grid[name]
             number, place = divmod(number, len(values))
-            (here if name in _CHAIN else settings)[name] = values[place]
+            (here if name in CHAIN else settings)[name] = values[place]
         return Case(self.job, self._chain.replace(**here) if here else self._chain, settings)
 
     def cases(self) -> list[Case]:
         """Return all cases; raises a ValueError for the first one that is wrong."""
         return list(self)
+
+
+def _values(name: str, given: Any) -> list[Any]:
+    """Return the values of a parameter as a person writes them, or raise a ValueError."""
+    ordered = is_list(given) and not isinstance(given, Mapping | Set)
+    if not ordered or getattr(given, "ndim", 1) != 1 or len(given) == 0:
+        raise ValueError(f"grid: {name} must be a list of values, got {shown(given)}")
+    values = [
+        as_written(each) for each in (np.asarray(given) if hasattr(given, "dtype") else given)
+    ]
+    found = [scalar(plain(name, each)) for each in values]
+    if twice := [each for place, each in enumerate(found) if each in found[:place]]:
+        raise ValueError(f"grid: {name} holds {shown(twice[0])} twice")
+    return values
 
 
 def read_sweep(path: str | os.PathLike[str]) -> Sweep:
@@ -146,9 +171,9 @@ def load_sweep(folder: str | os.PathLike[str]) -> xr.Dataset:
         padded with NaN. Coordinates that depend on the case, such as x or the mean position,
         have those dimensions too, and the dimension of x is then ``x_index``. The attributes that
         belong to a case are variables without own dimensions: every number (``end_time``,
-        ``time_step_error``, ``mesh_error``, ...; NaN where a case has none), ``status`` and
-        ``provenance``, and every other text that differs between the cases. The attribute
-        ``parameters`` holds the common parameters as JSON.
+        ``time_step_error``, ``mesh_error``, ...; NaN where a case has none), ``status``,
+        ``provenance`` and ``file``, the name of its file, and every other text that differs between
+        the cases. The attribute ``parameters`` holds the common parameters as JSON.
 
     Raises
     ------
@@ -168,11 +193,10 @@ def load_sweep(folder: str | os.PathLike[str]) -> xr.Dataset:
     _check_points(paths, points)
     if len({result.attrs.get("source_fingerprint") for result in results}) > 1:
         warn_user(f"{folder}: different source code computed these cases")
-    table = pd.DataFrame([{k: _scalar(v) for k, v in point.items()} for point in points])
-    names = [*_CHAIN, *(name for name in points[0] if name not in _CHAIN)]
-    varied = [name for name in names if table[name].nunique(dropna=False) > 1]
-    fixed = {name: value for name, value in points[0].items() if name not in varied}
-    results = _with_attributes(results, leave=varied)
+    table = varied(points)
+    names = [str(name) for name in table]
+    fixed = {name: value for name, value in points[0].items() if name not in names}
+    results = _with_attributes(results, leave=names)
     texts = [str(name) for name in results[0].data_vars if results[0][name].dtype == object]
     joined = xr.concat(
         _alike(results),
@@ -183,11 +207,11 @@ def load_sweep(folder: str | os.PathLike[str]) -> xr.Dataset:
         compat="equals",
         combine_attrs="drop_conflicts",
     )
-    if varied:
-        index = pd.MultiIndex.from_frame(table[varied])
+    if names:
+        index = pd.MultiIndex.from_frame(table)
         coordinates = xr.Coordinates.from_pandas_multiindex(index, "case")
         joined = joined.assign_coords(coordinates).unstack("case")
-        joined = joined.transpose(*varied, ...)
+        joined = joined.transpose(*names, ...)
         for name in texts:  # of missing cases
             joined[name] = joined[name].fillna("")
     else:
@@ -202,7 +226,7 @@ def _read_case(path: Path) -> tuple[dict[str, Any], xr.Dataset]:
     complete = point and {"status", "provenance"} <= result.attrs.keys()
     if not complete or isinstance(result, xr.DataTree):
         raise ValueError(f"{path}: not a case of a sweep")
-    return point, result
+    return point, result.assign_attrs(file=path.name)
 
 
 def _check_points(paths: Sequence[Path], points: Sequence[dict[str, Any]]) -> None:
@@ -221,11 +245,6 @@ def _check_points(paths: Sequence[Path], points: Sequence[dict[str, Any]]) -> No
         if canonical in first:
             raise ValueError(f"{first[canonical]} and {path}: hold the same case; remove one")
         first[canonical] = path
-
-
-def _scalar(value: Any) -> Any:
-    """Return a value that can be a coordinate; a list becomes text."""
-    return json.dumps(value) if isinstance(value, list) else value
 
 
 def _with_attributes(results: Sequence[xr.Dataset], leave: Sequence[str]) -> list[xr.Dataset]:

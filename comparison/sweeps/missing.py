@@ -13,6 +13,7 @@ from crazybilliards.comparison.sweeps.case import Case, OutdatedError
 from crazybilliards.comparison.sweeps.grid import Sweep
 from crazybilliards.model.arrays import Array
 from crazybilliards.model.calls import warn_user
+from crazybilliards.model.checks import shown
 from crazybilliards.model.progress import progress_bar
 from crazybilliards.particles import ShortRunWarning
 
@@ -43,7 +44,10 @@ def check_cases(cases: Iterable[Case], *, progress: bool = True) -> Cases:
     if isinstance(cases, Sweep):
         source, work = cases, _check_sweep(cases, progress)
     else:
-        source = list(dict.fromkeys(cases))
+        given = list(cases) if isinstance(cases, Iterable) else [None]
+        if not all(isinstance(each, Case) for each in given):
+            raise ValueError(f"cases must be a Sweep or a list of Case, got {shown(cases)}")
+        source = list(dict.fromkeys(given))
         work = np.array([case.work for case in source], dtype=float)
     return Cases(source, np.arange(work.size), work)
 
@@ -79,7 +83,10 @@ def warn_of_short_runs(short: Sequence[str], number: int) -> None:
 def find_missing(
     cases: Cases, folder: Path, *, keep_old: bool = False, progress: bool = True
 ) -> Cases:
-    """Return the cases that have no valid file in ``folder``, the longest first.
+    """Return the cases that have no valid file in ``folder``, the shortest first.
+
+    A sweep that is stopped then has results. The order costs little: with the work of the figures
+    of the paper 2 % of the time in two processes and 17 % in eight.
 
     A file is valid if it is undamaged, holds the case, and was computed by the current source code
     (or, with ``keep_old``, by other source code).
@@ -104,8 +111,8 @@ def find_missing(
             "computing them anew (keep_old=True or --keep-old: take them as they are)"
         )
     numbers, work = cases.numbers[is_missing], cases.work[is_missing]
-    longest_first = np.argsort(-work, kind="stable")
-    return Cases(cases.source, numbers[longest_first], work[longest_first], replaced)
+    shortest_first = np.argsort(work, kind="stable")
+    return Cases(cases.source, numbers[shortest_first], work[shortest_first], replaced)
 
 
 def _bar(cases: Sweep | Cases, title: str, progress: bool) -> Iterable[Case]:

@@ -7,14 +7,16 @@ workers of a cluster need no common file system.
 
 from __future__ import annotations
 
+import os
 import shutil
 import signal
 import sys
 import textwrap
+import time
 from collections.abc import Iterable, Iterator
 from concurrent.futures import CancelledError, Executor, Future
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from queue import SimpleQueue
@@ -23,8 +25,9 @@ from typing import Any
 from tqdm import tqdm
 
 from crazybilliards.comparison.sweeps.case import Case, compute
+from crazybilliards.comparison.sweeps.index import write_index
 from crazybilliards.comparison.sweeps.missing import Cases, check_cases, find_missing
-from crazybilliards.model.checks import check_path
+from crazybilliards.model.checks import check_path, shown
 from crazybilliards.model.locks import locked
 from crazybilliards.model.process import interrupts_held_back
 from crazybilliards.model.progress import progress_bar
@@ -33,6 +36,8 @@ from crazybilliards.model.storage import make_folder, write_sealed
 # Cases that are submitted and have not returned: enough for a cluster, few in memory.
 _MOST_UNDER_WAY = 1000
 _BESIDE = len("100%|          | 1:00:00<1:00:00, last ")  # what stands beside a case's title
+_LEAST_WAIT, _SHARE = 5.0, 50  # seconds between two writings of the index, and times their length
+_WITH = "with process_pool() as executor: run_cases(cases, folder, executor)"
 _LEAST_ROOM = 10  # letters for the name of a case; a narrower terminal does not show it
 
 
@@ -46,7 +51,7 @@ class Outcome:
 
 def run_cases(
     cases: Iterable[Case],
-    folder: Path,
+    folder: str | os.PathLike[str],
     executor: Executor,
     *,
     keep_old: bool = False,
@@ -62,7 +67,8 @@ def run_cases(
     cases
         Cases; equal ones are computed once. Few cases of a :class:`Sweep` are in memory at a time.
     folder
-        Folder of the files, one per case and named by its key; made if missing.
+        Folder of the files, one per case and named by its key; made if missing. Its ``index.csv``
+        says which file holds which case.
     executor
         Executor of the cases: :func:`process_pool`, :func:`dask_cluster`, or any other.
     keep_old
@@ -81,13 +87,15 @@ def run_cases(
     OSError
         If the folder cannot be written to, or another process is filling it.
     """
-    folder = check_path("folder", folder)
+    place = check_path("folder", folder)
+    if not isinstance(executor, Executor):
+        raise ValueError(f"executor must be one, as in {_WITH}; got {shown(executor)}")
     checked = check_cases(cases, progress=progress)
-    make_folder(folder)
-    with locked(folder):
-        missing = find_missing(checked, folder, keep_old=keep_old, progress=progress)
+    make_folder(place)
+    with locked(place):
+        missing = find_missing(checked, place, keep_old=keep_old, progress=progress)
         outcome = Outcome()
-        compute_missing(missing, folder, executor, outcome, progress=progress)
+        compute_missing(missing, place, executor, outcome, progress=progress)
     return outcome.failed
 
 
@@ -100,12 +108,15 @@ def compute_missing(
     """
     for what in missing.replaced:
         print(f"crazybilliards: {what}", file=sys.stderr)
-    with progress_bar(
-        progress,
-        total=float(missing.work.sum()),
-        desc=f"0 of {len(missing)} cases",
-        bar_format="{l_bar}{bar:10}| {elapsed}<{remaining}{postfix}",
-    ) as bar:
+    with (
+        _index_at_end(folder),
+        progress_bar(
+            progress,
+            total=float(missing.work.sum()),
+            desc=f"0 of {len(missing)} cases",
+            bar_format="{l_bar}{bar:10}| {elapsed}<{remaining}{postfix}",
+        ) as bar,
+    ):
         under_way = _UnderWay(executor, folder, len(missing), outcome, bar)
         for case in missing:
             try:
@@ -130,6 +141,16 @@ def compute_missing(
         ) from under_way.lost
 
 
+@contextmanager
+def _index_at_end(folder: Path) -> Iterator[None]:
+    """Write the index of the cases also if the computation is interrupted."""
+    try:
+        yield
+    finally:
+        with suppress(OSError):  # a full disk is told of by what came before
+            write_index(folder)
+
+
 class _UnderWay:
     """Submitted cases that have not returned; each is written when it is taken back."""
 
@@ -140,6 +161,7 @@ class _UnderWay:
         self.folder, self.number = folder, number
         self.cases: dict[Future[bytes], Case] = {}
         self.back: SimpleQueue[Future[bytes]] = SimpleQueue()
+        self.next_index = 0.0  # when the index is written again
         self.lost: Exception | None = None  # why the executor cannot be used any more
 
     def __len__(self) -> int:
@@ -169,6 +191,7 @@ class _UnderWay:
         else:
             _write(case.file(self.folder), content)
             self.outcome.written += 1
+            self._keep_index()
         done = self.outcome.written + len(self.outcome.failed)
         self.bar.set_description(f"{done} of {self.number} cases", refresh=False)
         room = shutil.get_terminal_size().columns - len(self.bar.desc) - _BESIDE
@@ -176,6 +199,15 @@ class _UnderWay:
             last = textwrap.shorten(case.title, room, placeholder=" ...")
             self.bar.set_postfix_str(f"last {last}", refresh=False)
         self.bar.update(case.work)
+
+    def _keep_index(self) -> None:
+        """Write the index now and then: it reads all files, which may be many."""
+        begin = time.monotonic()
+        if begin >= self.next_index:
+            with suppress(OSError):
+                write_index(self.folder)
+            end = time.monotonic()
+            self.next_index = end + _LEAST_WAIT + _SHARE * (end - begin)
 
 
 def _write(path: Path, content: bytes) -> None:

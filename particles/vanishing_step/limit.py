@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike
 
 from crazybilliards.model import Chain
 from crazybilliards.model.calls import warn_user
@@ -61,7 +62,7 @@ def simulate_limit(
     merging: float | None = None,
     seed: Seed = 0,
     observe: str | Observer | Sequence[str | Observer] = ("widths", "density"),
-    particles: Sequence[int] | None = None,
+    particles: ArrayLike | None = None,
     replicas: int = 1,
     threads: int | None = None,
     checkpoint: str | os.PathLike[str] | None = None,

@@ -96,18 +96,25 @@ def test_ctrl_c_ends_a_sweep_without_another_look_at_its_cases(planned, tmp_path
     assert len(planned) <= 1
 
 
-def test_the_longest_cases_come_first(tmp_path):
+def test_the_shortest_cases_come_first(tmp_path):
     class Noting(Executor):
         def submit(self, function, /, case, source):
-            sizes.append(case.chain.size)
+            seen.append(case)
             future = Future()
             future.set_exception(ValueError("not computed"))
             return future
 
-    sizes = []
-    grid = {"seed": [1, 2], "size": [5, 50, 10]}
-    run_cases(Sweep(grid, "simulate", {}, {"duration": 100}), tmp_path, Noting(), progress=False)
-    assert sizes == [50, 50, 10, 10, 5, 5]
+    seen = []
+    for name, values, order in (
+        ("size", [5, 50, 10], [5, 5, 10, 10, 50, 50]),
+        ("duration", [900, 100, 400], [100, 100, 400, 400, 900, 900]),
+        ("restitution", [0.0, 0.5, 0.9], [0.9, 0.9, 0.5, 0.5, 0.0, 0.0]),
+    ):
+        seen.clear()
+        settings = {} if name == "duration" else {"duration": 100}
+        grid = {"seed": [1, 2], name: values}
+        run_cases(Sweep(grid, settings=settings), tmp_path, Noting(), progress=False)
+        assert [each.parameters[name] for each in seen] == order
 
 
 def test_a_wrong_case_at_the_end_of_a_grid_is_found_before_any_work(counting, tmp_path):

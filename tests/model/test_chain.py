@@ -1,5 +1,7 @@
 """The chain: what it accepts, and the scales it derives."""
 
+import ast
+import inspect
 import math
 
 import numpy as np
@@ -8,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from crazybilliards.model import Chain
+from crazybilliards.model import chain as chain_module
 from crazybilliards.model.chain import middle_tenth
 
 positive = st.floats(min_value=1e-6, max_value=1e6)
@@ -96,3 +99,12 @@ def test_the_middle_tenth_is_within_a_twentieth_of_the_middle():
         taken = np.zeros(places, dtype=bool)
         taken[middle_tenth(places)] = True
         np.testing.assert_array_equal(taken, 20 * off <= places)
+
+
+def test_type_checkers_read_the_parameters_that_there_are():
+    """They read an ``__init__`` of their own, which takes integers of numpy."""
+    tree = ast.parse(inspect.getsource(chain_module))
+    [start] = [each for each in ast.walk(tree) if getattr(each, "name", "") == "__init__"]
+    names = [each.arg for each in start.args.kwonlyargs]
+    values = [eval(ast.unparse(each)) for each in start.args.kw_defaults]
+    assert dict(zip(names, values, strict=True)) == Chain().parameters()

@@ -40,11 +40,12 @@ def test_all_nineteen_figures_are_there_in_order_and_everything_has_a_name_of_it
 
 def test_figures_and_studies_are_found_by_number_name_or_group():
     assert find_studies("17") == find_studies("density") == [FIGURES[16]]
+    assert find_studies("16, density,17") == [FIGURES[15], FIGURES[16]]
     assert find_studies("all") == list(FIGURES)
     assert find_studies("elastic-gaps") == [elastic_gaps.STUDY]
     analytics = find_studies("analytics")
     assert [study.label.split()[0] for study in analytics] == ["8", "16", "17", "elastic-gaps"]
-    for nothing in ("colour", "20", "", "17 density"):
+    for nothing in ("colour", "20", "", "fig20", "17th"):
         with pytest.raises(ValueError, match=f"no figure or study '{nothing}'.* elastic-gaps"):
             find_studies(nothing)
 

@@ -90,6 +90,17 @@ def test_compare_restitutions_and_ctrl_c_while_a_picture_is_drawn(
     assert "theory minus simulation" in " ".join(done.stdout.split())
 
 
+def test_the_driving_amplitude_of_dissipative_chains_is_an_option(refused, monkeypatch):
+    def stop(chain, restitutions, **settings):
+        raise ValueError(f"amplitude {chain.amplitude:g} at {restitutions}")
+
+    monkeypatch.setattr("crazybilliards.comparison.side_by_side.grid.compare_restitutions", stop)
+    some = ("compare", "--restitution", "0.8")
+    refused("amplitude 3 at [0.8]", *some, "--amplitude", 3)
+    refused("amplitude 1 at [0.8]", *some)
+    refused("amplitude must be 0 or more", *some, "--amplitude=-1")
+
+
 @pytest.mark.compiled
 def test_a_chain_that_diverges_is_told_and_drawn_as_far_as_it_can_be(run, tmp_path, without_pairs):
     arguments = ["--restitution", "1.5,0.9", "--size", "30", "--damping", "0.1"]

@@ -1,5 +1,7 @@
 """The command ``simulate``: what the function returns, in a file."""
 
+import json
+
 import pytest
 import xarray as xr
 
@@ -48,6 +50,44 @@ def test_an_accuracy_gives_the_limit(run, tmp_path):
     xr.testing.assert_identical(load(tmp_path / "limit.nc"), expected)
     width = expected.central_velocity_width.item()
     assert f"W_v in the centre as dt -> 0: {width:.5g} +- " in done.stdout
+
+
+OBSERVED = {
+    "impacts": "contact_force | contact 2 | M R/T^2",
+    "energy": "kinetic_energy | mean over time | M R^2/T^2",
+    "time-correlations": "wave_displacement_autocorrelation | wave 0, lag 0 | R^2",
+    "velocities": "velocity_kurtosis | particle 2 | 1",
+    "avalanches": "avalanche_count | particle 2, avalanche size 1 | 1",
+    "density": "density | x 0 | 1/R",
+}
+
+
+@pytest.mark.compiled
+def test_everything_observed_is_printed_and_in_the_json(run, tmp_path, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "200")
+    small = ["simulate", "--size", 4, "--duration", 200, "--observe", ",".join(OBSERVED)]
+    done = run(*small, "-o", tmp_path)
+    result = load(tmp_path / "simulation.nc")
+    rows = [[cell.strip() for cell in line.split("│")[1:-1]] for line in done.stdout.splitlines()]
+    rows = {row[0]: row[1:] for row in rows if len(row) == 4}
+    for name, at, unit in (line.split(" | ") for line in OBSERVED.values()):
+        assert (rows[name][0], rows[name][2]) == (at, unit)
+    force = result.isel(contact=1)
+    said = f"{force.contact_force:.4g} +- {force.contact_force_error:.1g}"
+    assert rows["contact_force"][1] == said
+    assert rows["kinetic_energy"][1] == f"{result.kinetic_energy.mean():.4g}"
+    quantities = {str(name) for name in result if not str(name).endswith("_error")}
+    assert set(rows) - {"measured"} == quantities - {"density_block"}
+    facts = json.loads(run(*small, "--json").stdout)
+    again = xr.Dataset.from_dict(facts["observed"])
+    xr.testing.assert_equal(again.map(lambda each: each.astype(float)), result.astype(float))
+
+
+def test_simulate_writes_to_a_folder_as_all_commands_do(run, tmp_path):
+    options = ["--size", 3, "--duration", 50]
+    for output, file in (("e0.9", "e0.9/simulation.nc"), ("a/b.nc", "a/b.nc")):
+        assert str(tmp_path / file) in run("simulate", *options, "-o", tmp_path / output).stdout
+        assert load(tmp_path / file).sizes["particle"] == 3
 
 
 def test_simulate_an_ensemble_without_a_file(run, tmp_path, monkeypatch):
