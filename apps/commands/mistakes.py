@@ -8,7 +8,8 @@ from typing import Any
 
 import typer
 
-from crazybilliards.model.checks import SYMBOLS, shown
+from crazybilliards.model.checks import shown
+from crazybilliards.model.words import SYMBOLS
 
 _WANTED = {"int_parsing": "an integer", "float_parsing": "a number"}
 _LISTS = "separated by commas"  # stands in the help of every list
