@@ -203,16 +203,28 @@ class Chain(Parameters):
             return math.inf
         return float(spring.root(self.temperature / self.stiffness, self.potential_exponent))
 
+    @property
+    def spreads(self) -> bool:
+        """Whether noise drives the rods ever farther, without a spring or without damping."""
+        return self.amplitude > 0 == self.damping * self.stiffness
+
+    @property
+    def why_unsteady(self) -> str:
+        """The reason why this chain has no steady state; empty if it has one."""
+        if self.amplitude == 0 < self.damping + self.stiffness:
+            return "amplitude=0: without noise the rods come to rest, the density is singular"
+        if self.stiffness == 0:
+            return "stiffness=0: nothing ties the rods, they spread for ever"
+        if self.damping == 0:
+            return (
+                "damping=0: nothing takes out the energy that the noise puts in, and the chain "
+                "never forgets its start"
+            )
+        return ""
+
     def require_steady_state(self) -> None:
         """Raise a ValueError with the reason if this chain has no steady state."""
-        reason = None
-        if self.amplitude == 0:
-            reason = "amplitude=0: without noise the rods come to rest, the density is singular"
-        elif self.damping == 0:
-            reason = "damping=0: nothing takes out the energy that the noise puts in"
-        elif self.stiffness == 0:
-            reason = "stiffness=0: nothing ties the rods, they spread for ever"
-        if reason:
+        if reason := self.why_unsteady:
             raise ValueError(f"this chain has no steady state: {reason}")
 
 

@@ -186,11 +186,24 @@ class Run:
     @property
     def too_short(self) -> str:
         """In what averages over time are too short for the memory of the chain, or nothing."""
-        if self.average != "time" or all(observer.shares_time for observer in self.observers):
+        if (
+            self.average != "time"
+            or self.stays_at_rest
+            or all(observer.shares_time for observer in self.observers)
+        ):
             return ""
         at_rest = self.start is None or self.start.attrs.get("source") == "start"
         warmup = self.schedule.warmup if self.warmup is None else float(self.warmup)
         return too_short(self.chain, float(self.duration), warmup, self.replicas, at_rest)
+
+    @property
+    def stays_at_rest(self) -> bool:
+        """Whether there is neither noise nor a velocity nor a stretched spring."""
+        chain, tolerance = self.chain, 1e-9 * self.chain.radius  # positions x are rounded
+        return chain.amplitude == 0 and not any(
+            v.any() or (chain.stiffness > 0 and np.abs(y - chain.reduced_anchors).max() > tolerance)
+            for y, v in self.starts
+        )
 
     def dynamics(self) -> Dynamics:
         """Return the numbers and arrays that the kernels need."""

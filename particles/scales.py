@@ -122,7 +122,9 @@ def time_step_error(
 
 
 def relaxation_time(chain: Chain) -> float:
-    """Time in which a chain forgets its start [T], but for a factor e; infinite without damping.
+    """Time in which a chain forgets its start [T], but for a factor e.
+
+    It is infinite without damping and without springs.
 
     It is the time constant of the chain's slowest mode. With linear springs this is the motion of
     the centre of mass, on which collisions do not act: exactly 2m/gamma for weak damping, and about
@@ -141,6 +143,11 @@ def relaxation_time(chain: Chain) -> float:
     >>> round(relaxation_time(Chain(damping=10)), 2)
     9.56
     """
+    return math.inf if chain.stiffness == 0 else settling_time(chain)
+
+
+def settling_time(chain: Chain) -> float:
+    """Return the relaxation time or, where nothing ties the rods, that of velocities [T]."""
     if chain.damping == 0:
         return math.inf
     half_damping = chain.damping / (2 * chain.mass)

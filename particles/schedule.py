@@ -25,7 +25,12 @@ from numpy.typing import NDArray
 from crazybilliards.model import Chain
 from crazybilliards.model.checks import check_real
 from crazybilliards.particles.dynamics import Stepper, longest_step
-from crazybilliards.particles.scales import correlation_time, default_time_step, relaxation_time
+from crazybilliards.particles.scales import (
+    correlation_time,
+    default_time_step,
+    relaxation_time,
+    settling_time,
+)
 
 STRIDE = 10  # steps from snapshot to snapshot
 RELAXATIONS = 12  # of the warm-up
@@ -119,7 +124,7 @@ def make_schedule(
         every = duration / _OUTPUTS
     if warmup is None:
         none = started or ensemble or chain.damping == 0
-        warmup = 0.0 if none else RELAXATIONS * relaxation_time(chain)
+        warmup = 0.0 if none else RELAXATIONS * settling_time(chain)
     warmup = check_real("warmup", warmup)
     needed, step, stride = _choose_step(chain, time_step, every, warmup, stepper, exact, finest)
     _refuse_short_steps(step, needed, warmup + duration)
@@ -151,14 +156,14 @@ def too_short(chain: Chain, duration: float, warmup: float, replicas: int, at_re
     """Return in what an average over time is too short for the memory of the chain, or nothing.
 
     ``at_rest``: the start is no state of the steady state, so that the warm-up must forget it.
-    A chain without noise has one motion for a start and nothing to be averaged over its noise.
+    A chain that neither gains nor loses energy has averages over time, which its start decides.
     """
-    if chain.amplitude == 0:
+    if chain.amplitude == chain.damping == 0 < chain.stiffness:
         return ""
-    if chain.damping == 0:
+    if reason := chain.why_unsteady:
         return (
-            "damping=0: the chain never forgets its start, so that the error bars of averages over "
-            "time mean nothing; average='ensemble' averages over replicas at equal times"
+            f"{reason}. Without a steady state the error bars of averages over time mean nothing; "
+            "average='ensemble' averages over replicas at equal times"
         )
     memory = f"is short for a chain with the relaxation time {relaxation_time(chain):.3g}: "
     least = _BLOCK * correlation_time(chain) * math.ceil(_FEWEST_BLOCKS / replicas)

@@ -188,7 +188,7 @@ def simulate(
     )
     if run.too_short:
         warn_user(run.too_short, ShortRunWarning)
-    if _stays_at_rest(run):
+    if run.stays_at_rest:
         warn_user("amplitude=0 and a start at rest: nothing will move")
     copies = _replicas(run)
     with announced(bool(progress)):
@@ -212,15 +212,6 @@ def make_run(chain: Chain, *, observe: Any, **arguments: Any) -> Run:
         For a wrong argument, or if the run would not fit into memory.
     """
     return Run(chain=chain, observers=find_observers(observe), **arguments)
-
-
-def _stays_at_rest(run: Run) -> bool:
-    """Return whether there is neither noise nor a velocity nor a stretched spring."""
-    chain, tolerance = run.chain, 1e-9 * run.chain.radius  # positions x are rounded
-    return chain.amplitude == 0 and not any(
-        v.any() or (chain.stiffness > 0 and np.abs(y - chain.reduced_anchors).max() > tolerance)
-        for y, v in run.starts
-    )
 
 
 def _replicas(run: Run) -> list[Replica]:

@@ -10,7 +10,7 @@ from crazybilliards.model import Chain
 from crazybilliards.model.checks import check_integer, check_real
 from crazybilliards.particles.observers.base import Array, Averaged, Integers, Snapshots, Variables
 from crazybilliards.particles.run import Run
-from crazybilliards.particles.scales import first_decay, relaxation_time
+from crazybilliards.particles.scales import first_decay, settling_time
 
 _RELAXATIONS = 5  # the longest lag unless it is given, and the shortest for a spectrum
 _INTERVALS = 5  # in the first decay of a velocity, unless the time between snapshots is given
@@ -41,6 +41,9 @@ class TimeCorrelations(Averaged):
     ``wave_velocity_autocorrelation`` and so on, over ``wave`` q, are those of the waves that
     :class:`Modes` defines, and ``centre_velocity_autocorrelation`` and so on those of the centre of
     mass. On linear springs the latter are those of a damped oscillator, at any restitution.
+
+    Without a spring, and without damping, the noise drives the rods ever farther. The average of
+    displacements over time then does not exist, and ``displacement_autocorrelation`` is NaN.
 
     In an ensemble the lag is counted from the first time. All quantities but the spectrum, which
     does not exist, then lie over ``time``, and <d_i(s)> <d_i(s+t)> is subtracted.
@@ -124,6 +127,7 @@ class TimeCorrelations(Averaged):
         super().prepare(run, copies)
         self.spacing, self.last = self._plan(run)
         self.size, self.anchors, self.chosen = run.chain.size, run.chain.reduced_anchors, run.chosen
+        self.spreads = run.chain.spreads and not run.schedule.ensemble
         self.before = np.zeros((2, max(self.last, 1), self.sums.shape[-1] - 1))
 
     def observe(self, snapshots: Snapshots) -> None:
@@ -175,7 +179,8 @@ class TimeCorrelations(Averaged):
 
     def _displacements(self, average: Array) -> Array:
         mean, square = (self._means(average, row) for row in (slice(-2, -1), slice(-1, None)))
-        return (square[:1] + square - self._increments(average)) / 2 - mean[:1] * mean
+        found = (square[:1] + square - self._increments(average)) / 2 - mean[:1] * mean
+        return np.full_like(found, np.nan) if self.spreads else found
 
     def _spectrum(self, average: Array) -> Array:
         from scipy.fft import dct
@@ -225,4 +230,4 @@ class TimeCorrelations(Averaged):
 
 def _memory(chain: Chain) -> float:
     """Return the lag at which nothing is left of any correlation."""
-    return _RELAXATIONS * relaxation_time(chain)
+    return _RELAXATIONS * settling_time(chain)

@@ -24,7 +24,7 @@ class Widths(Averaged):
     The autocorrelation time follows from the error of a mean displacement averaged in time. Over a
     duration t the mean of a fluctuating quantity of standard deviation w and integrated
     autocorrelation time tau has the variance 2 tau w^2/t. One free rod on a linear spring has
-    tau = gamma/k.
+    tau = gamma/k. It is infinite for rods that no spring ties.
 
     The sums of d, d^2, v and v^2 take 32 L bytes per block.
     """
@@ -38,6 +38,7 @@ class Widths(Averaged):
     def prepare(self, run: Run, copies: int) -> None:
         super().prepare(run, copies)
         self.anchors = run.chain.reduced_anchors
+        self.spreads = run.chain.spreads
 
     def observe(self, snapshots: Snapshots) -> None:
         d = snapshots.y - self.anchors
@@ -56,5 +57,7 @@ class Widths(Averaged):
         duration = counts.sum() * self.schedule.stride * self.schedule.time_step
         # A rod that never moves has no autocorrelation time: 0.
         time = np.divide(spread * duration, 2 * variance, where=variance > 0, out=0 * variance)
+        if self.spreads:
+            time[:] = np.inf
         variables["autocorrelation_time"] = (("particle",), time)
         return variables

@@ -24,7 +24,7 @@ from crazybilliards.particles.scales import (
     centre_width,
     correlation_time,
     default_time_step,
-    relaxation_time,
+    settling_time,
     spring_rate,
     time_step_error,
 )
@@ -78,7 +78,7 @@ def plan_steps(chain: Chain, accuracy: float, warmup: float | None) -> Steps:
     time_steps = [step * math.prod(ratios[level + 1 :]) for level in range(len(ratios))]
     first = time_steps[0]
     stride = max(round(interval / first), 1)
-    warm = math.ceil((RELAXATIONS * relaxation_time(chain) if warmup is None else warmup) / first)
+    warm = math.ceil((RELAXATIONS * settling_time(chain) if warmup is None else warmup) / first)
     least, pilot = (
         max(math.ceil(each * correlation_time(chain) / (stride * first)), 1)
         for each in (_LEAST, _PILOT)

@@ -77,6 +77,7 @@ def test_blocks_are_added_up_in_pairs_and_stay_longer_than_the_memory():
     assert found == pytest.approx(known, rel=5 * np.sqrt(2 / 40 / 32))
 
 
+@pytest.mark.filterwarnings("ignore:stiffness=0")
 @pytest.mark.parametrize(
     ("observe", "reason"), [("density", "'density' cannot continue, because its x"), (None, "held")]
 )

@@ -7,7 +7,7 @@ from scipy.linalg import eigh_tridiagonal
 from crazybilliards.kinetic import equilibrium_states
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
-from crazybilliards.particles.scales import relaxation_time
+from crazybilliards.particles.scales import relaxation_time, settling_time
 
 
 @pytest.mark.parametrize("damping", [0.1, 4.0, 50.0])
@@ -33,11 +33,17 @@ def test_strongly_damped_quadratic_springs_relax_by_diffusion():
     assert relaxation_time(chain) == pytest.approx(expected, rel=1e-3)
 
 
-@pytest.mark.parametrize("still", [{"stiffness": 0.0}, {"amplitude": 0.0}])
-def test_without_a_scale_of_the_spring_the_velocity_relaxes(still):
-    chain = Chain(spring="quadratic", **still)
+def test_without_a_scale_of_the_spring_the_velocity_relaxes():
+    chain = Chain(spring="quadratic", amplitude=0.0)
     assert relaxation_time(chain) == pytest.approx(chain.mass / chain.damping)
     assert relaxation_time(chain.replace(damping=0.0)) == np.inf
+
+
+@pytest.mark.parametrize("spring", ["linear", "quadratic"])
+def test_without_a_spring_nothing_is_forgotten(spring):
+    chain = Chain(spring=spring, stiffness=0.0)
+    assert relaxation_time(chain) == np.inf
+    assert settling_time(chain) == pytest.approx(chain.mass / chain.damping)
 
 
 def measured_over_expected(chain, replicas, times):

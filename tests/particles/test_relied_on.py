@@ -11,6 +11,7 @@ from crazybilliards.model import Chain
 from crazybilliards.particles import (
     Density,
     ShortRunWarning,
+    TimeCorrelations,
     given_start,
     relaxation_time,
     simulate,
@@ -93,7 +94,11 @@ SHORT = [
     (Chain(size=3, damping=0.01), {"duration": 5000}, "duration=5000 .* at least 1.676e"),
     (Chain(size=3), {"warmup": 1}, "warmup=1 .* at least 41.89"),
     (Chain(size=3), {"start": "shifted"}, "warmup=0 .* at least 41.89"),
-    (Chain(size=3, damping=0), {"time_step": 0.1}, "never forgets"),
+    (Chain(size=3, damping=0), {"time_step": 0.1}, "damping=0: .* never forgets"),
+    (Chain(size=3, stiffness=0), {}, "stiffness=0: .* spread .* mean nothing"),
+    (Chain(size=1, stiffness=0), {"duration": 5000}, "stiffness=0: .* spread .* mean nothing"),
+    (Chain(size=3, spring="quadratic", stiffness=0, restitution=0.5), {}, "stiffness=0"),
+    (Chain(size=3, amplitude=0), {"start": "shifted"}, "amplitude=0: .* rest.* mean nothing"),
 ]
 
 
@@ -105,6 +110,26 @@ def test_an_average_that_is_too_short_says_so_once(chain, settings, message):
         simulate(chain, **({"duration": 200, "observe": "widths"} | settings), **QUIET)
     assert len(caught) == 1
     assert caught[0].filename == __file__
+
+
+def test_what_free_rods_do_not_have_is_not_given():
+    """Of a free rod the velocity has a steady state, and its displacement has none."""
+    chain = Chain(size=1, stiffness=0)
+    observe = ["widths", TimeCorrelations(longest=20)]
+    with pytest.warns(ShortRunWarning, match="stiffness=0"):
+        run = simulate(chain, duration=5000, observe=observe, **QUIET)
+    assert np.isinf(run.autocorrelation_time).all()
+    assert run.attrs["relaxation_time"] == np.inf
+    for of in ("", "wave_", "centre_"):
+        assert run[f"{of}displacement_autocorrelation"].isnull().all()
+        assert run[f"{of}mean_squared_displacement"].notnull().all()
+        assert run[f"{of}velocity_autocorrelation"].notnull().all()
+    grown = run.mean_squared_displacement.isel(particle=0, lag=-1)
+    time, decay = float(run.lag[-1]), chain.mass / chain.damping
+    expected = 2 * chain.temperature / chain.damping
+    expected *= time - decay * (1 - np.exp(-time / decay))
+    error = run.mean_squared_displacement_error.isel(particle=0, lag=-1)
+    assert abs(grown - expected) < 5 * error
 
 
 def test_a_limit_with_a_short_warm_up_says_so():
