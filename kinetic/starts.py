@@ -18,7 +18,7 @@ from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.kinetic.statics.label_closure import fluid_reach, stationary
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.arrays import Array
-from crazybilliards.model.checks import check_real, shown
+from crazybilliards.model.checks import check_real, refuse_units, shown
 from crazybilliards.model.grid import position_grid, thermal_reach
 from crazybilliards.model.vocabulary import OF_FLUID, OF_RODS, require, result
 
@@ -153,6 +153,7 @@ def require_rods(chain: Chain, name: str, rods: float) -> None:
 
 
 def _numbers(start: xr.Dataset, name: str) -> Array:
+    refuse_units(f"start: {name}", start[name])
     values = start[name].values
     if not np.issubdtype(values.dtype, np.number):
         raise ValueError(f"start: {name} must be numbers, got {values.dtype}")

@@ -5,13 +5,14 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from crazybilliards.model.checks import shown
+from crazybilliards.model.checks import refuse_units, shown
 
 Array = NDArray[np.float64]
 
 
 def check_numbers(name: str, values: object) -> Array:
     """Return ``values`` as an array of floats, or raise a ValueError that names the argument."""
+    refuse_units(name, values)
     try:
         # numpy would make numbers of None, texts and dates, and of what lies under a mask.
         kind = np.asarray(values).dtype.kind

@@ -30,7 +30,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from crazybilliards.model import spring
-from crazybilliards.model.checks import check_arguments, shown
+from crazybilliards.model.checks import check_arguments, refuse_units, shown
 from crazybilliards.model.parameters import KNOWN, Parameters, Spring
 
 
@@ -139,10 +139,12 @@ class Chain(Parameters):
 
     def reduced(self, x: ArrayLike) -> NDArray[np.float64]:
         """Reduced coordinates y of rod centres ``x``, shape (..., L)."""
+        refuse_units("x", x)
         return np.asarray(x) - 2 * self.radius * self.rank
 
     def physical(self, y: ArrayLike) -> NDArray[np.float64]:
         """Rod centres x of reduced coordinates ``y``, shape (..., L)."""
+        refuse_units("y", y)
         return np.asarray(y) + 2 * self.radius * self.rank
 
     @property
@@ -159,11 +161,13 @@ class Chain(Parameters):
 
     def force(self, displacement: ArrayLike) -> NDArray[np.float64]:
         """Restoring force F(d) = k d or k d |d|, with the sign of d [M R/T^2]."""
+        refuse_units("displacement", displacement)
         d = np.asarray(displacement, dtype=float)
         return self.stiffness * spring.force(d, self.potential_exponent)
 
     def potential(self, displacement: ArrayLike) -> NDArray[np.float64]:
         """Spring energy U(d) = k |d|^n / n [M R^2/T^2]."""
+        refuse_units("displacement", displacement)
         d = np.asarray(displacement, dtype=float)
         return self.stiffness * spring.potential(d, self.potential_exponent)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+import re
 import reprlib
 from collections.abc import Collection, Iterable, Sequence
 from difflib import get_close_matches
@@ -15,6 +16,9 @@ from crazybilliards.model.words import NOTES, OWNERS, SYMBOLS, WORDS
 
 # Squares and ratios of parameters must neither overflow nor underflow.
 _SMALLEST, _LARGEST = 1e-60, 1e60
+
+# A unit as `vocabulary.described` writes it, or did up to version 0.3.
+_OWN_UNIT = re.compile(r"[RMT\d_^/ ]*")
 
 _SHORTLY = reprlib.Repr()
 _SHORTLY.maxstring = _SHORTLY.maxother = _SHORTLY.maxlong = 80
@@ -39,6 +43,7 @@ def check_real(name: str, value: object, *, positive: bool = False, signed: bool
     and whose magnitude lies within 1e-60..1e60, or 0 unless ``positive``; negative ones only if
     ``signed``.
     """
+    refuse_units(name, value)
     number = _plain(value)
     if not _is_a(Real, number):
         wanted = "a number"
@@ -51,6 +56,36 @@ def check_real(name: str, value: object, *, positive: bool = False, signed: bool
     else:
         return float(number)
     raise ValueError(f"{name} must be {wanted}, got {shown(value)}")
+
+
+def refuse_units(name: str, value: Any) -> None:
+    """Raise a ValueError if numbers carry a unit of another library, which would be lost.
+
+    Those of this package are in the chain's own units, and its DataArrays say so.
+    """
+    if type(value).__module__.startswith("xarray."):
+        own = _OWN_UNIT.fullmatch(str(value.attrs.get("units", "")))
+        foreign = not own or _unit(getattr(value, "data", None)) is not None
+    elif (
+        isinstance(value, list | tuple) or getattr(getattr(value, "dtype", None), "kind", "") == "O"
+    ):
+        for each in value if is_list(value) else ():
+            if not isinstance(each, float | int):
+                refuse_units(name, each)
+        return
+    else:
+        foreign = _unit(value) is not None
+    if foreign:
+        raise ValueError(
+            f"{name} must be plain numbers, in the chain's own units, and not carry a unit, got "
+            f"{shown(value)}"
+        )
+
+
+def _unit(value: Any) -> Any:
+    """Return the unit that an object of astropy, pint, unyt and others has, or None."""
+    units = getattr(value, "units", None)
+    return getattr(value, "unit", None) if units is None else units
 
 
 def _is_a(kind: type, number: Any) -> bool:
@@ -80,6 +115,7 @@ def as_written(value: Any) -> Any:
 def check_integer(name: str, value: object, *, least: int, most: int | None = None) -> int:
     """Return ``value`` as an int, or raise one ValueError that says what ``name`` accepts."""
     wanted = f"an integer >= {least}" if most is None else f"an integer from {least} to {most}"
+    refuse_units(name, value)
     number = _plain(value)
     if not _is_a(Integral, number) or number < least or (most is not None and number > most):
         raise ValueError(f"{name} must be {wanted}, got {shown(value)}")

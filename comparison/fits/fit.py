@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from scipy.optimize import OptimizeWarning, curve_fit
 
 from crazybilliards.model.arrays import Array, check_numbers
-from crazybilliards.model.checks import shown
+from crazybilliards.model.checks import refuse_units, shown
 
 
 @dataclass(frozen=True)
@@ -49,6 +49,7 @@ class Fit:
 
     def __call__(self, x: ArrayLike) -> Array:
         """Return the values of the curve."""
+        refuse_units("x", x)
         return np.asarray(self.curve(np.asarray(x, dtype=float), **self.parameters))
 
 

@@ -13,8 +13,8 @@ and these fields in the chain's units, R and T, and with these names.
 **Discretisation.** The finite volumes (:mod:`.finite_volumes`) are of second order and well
 balanced, and n always stays positive and below close packing. The walls are far out, where the
 density vanishes, and no flux passes them. The time steps are Runge-Kutta steps of four stages and
-of fixed length. If the flow is faster than the step allows, the solution is computed again with
-half the step.
+of fixed length, which resolve the speed that the springs give the rods. If the flow is faster, the
+solution is computed again with half the step.
 """
 
 from __future__ import annotations
@@ -42,6 +42,9 @@ from crazybilliards.model.grid import position_grid, thermal_reach
 _COURANT = 0.5
 _MOST_COURANT = 1.0  # beyond, four-stage Runge-Kutta with second-order fluxes is not stable
 _HALVINGS = 6
+# Speed of the rods [W] times the width of a cell [s], from which no step keeps the solution finite;
+# with a temperature, which is what the energy of the flow leaves, it is less (7 and 1.7 work).
+_SWIFTEST, _SWIFTEST_THERMAL = 8.0, 2.5
 # Widths of a cell, by default and at most, in units of what it has to resolve (``_finest``). With
 # the widest cells the scheme's error is 0.01 to 0.03 of s.
 _CELL, _WIDEST_CELL = 0.1, 0.5
@@ -77,8 +80,11 @@ def solve_on_positions(
         fields = starting_fields(chain, start, faces, thermal=thermal)
         constants = make_constants(chain, faces, variance, displacement)
         solution = _integrate(fields, times, faces, constants, progress=progress)
-        at_the_wall = max(solution[:, 0, 0].max(), solution[:, 0, -1].max())
-        if at_the_wall < _AT_THE_WALL * constants.dilute:
+        away = solution[:, 0][:, [0, -1]].max(axis=1) < _AT_THE_WALL * constants.dilute
+        if len(solution) < times.size:
+            solution = _before_the_first(away, solution)
+            break
+        if away.all():
             break
     else:
         raise ValueError("the rods spread without end on the grid of positions")
@@ -118,8 +124,17 @@ def _integrate(
 ) -> Array:
     """Take steps that resolve the fastest signal, whose speed is certain only afterwards."""
     rate = make_rate(constants)
-    h, interval = constants.spacing, times[1] - times[0]
-    fastest = _fastest(np.array(list(fields.values())), constants)
+    h, s, interval = constants.spacing, constants.size / constants.dilute, times[1] - times[0]
+    start = np.array(list(fields.values()))
+    fastest = _fastest(start, constants)
+    drawn, W = _drawn(start, float(times[-1]), constants), math.sqrt(constants.heat)
+    if drawn * h > (_SWIFTEST_THERMAL if len(start) == 3 else _SWIFTEST) * W * s:
+        raise ValueError(
+            f"the springs move the rods at up to {drawn / W:.3g} times the free velocity width, "
+            "too fast for cells of this width in frame='eulerian'; use frame='label'"
+        )
+    if drawn > _MOST_COURANT / _COURANT * fastest:
+        fastest += drawn
     for _ in range(_HALVINGS):
         steps = math.ceil(interval * fastest / (_COURANT * h))
         work = float(steps * (times.size - 1) * constants.x.size)
@@ -138,13 +153,34 @@ def _integrate(
             backend="numba" if steps * (times.size - 1) > _MANY_STEPS else "numpy",
             dt=interval / steps,
         )
-        reached = math.inf
-        if np.isfinite(solution).all():
-            reached = max(_fastest(each, constants) for each in solution)
-        if reached * interval / steps < _MOST_COURANT * h:
+        speeds = [_fastest(f, constants) if np.isfinite(f).all() else math.inf for f in solution]
+        resolved = np.array(speeds) * interval / steps < _MOST_COURANT * h
+        if len(solution) < times.size:  # Ctrl-C ended it
+            return _before_the_first(resolved, solution)
+        if resolved.all():
             return solution
-        fastest = max(2 * fastest, reached if reached < math.inf else 0.0)
+        fastest = max(2 * fastest, max(speeds) if max(speeds) < math.inf else 0.0)
     raise ValueError("the flow gets too fast for the grid: give fewer cells or frame='label'")
+
+
+def _before_the_first(sound: NDArray[np.bool_], solution: Array) -> Array:
+    """Return the times of a solution before the first one that is not sound."""
+    if not (number := int(np.argmin(np.append(sound, False)))):
+        raise KeyboardInterrupt("nothing was computed yet")
+    return solution[:number]
+
+
+def _drawn(fields: Array, duration: float, constants: Constants) -> float:
+    """Return the speed that the springs give the centre of mass, at most."""
+    rods = fields[0] * constants.spacing
+    labels = np.cumsum(rods) - rods / 2 - constants.size / 2
+    u = constants.frozen if constants.frozen.size else constants.x - constants.lattice * labels
+    centre, v = (
+        abs(each) / constants.size for each in (rods @ u, fields[1].sum() * constants.spacing)
+    )
+    n, pull = constants.exponent, constants.stiffness * centre ** (constants.exponent - 1)
+    gained = min(pull * duration, pull / constants.damping if constants.damping else math.inf)
+    return min(v + gained, math.hypot(v, math.sqrt(2 * pull * centre / n)))
 
 
 def _frozen(profile: Profile, x: Array) -> Array:

@@ -13,6 +13,7 @@ from crazybilliards.kinetic.kinetic_equation.weak_form import Units
 from crazybilliards.kinetic.starts import read_start, require_rods
 from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array
+from crazybilliards.model.checks import refuse_units
 
 REACH = 6.5  # of a mesh, in widths of a Gaussian
 
@@ -36,6 +37,7 @@ def read_phase_space(chain: Chain, units: Units, start: xr.Dataset) -> PhaseSpac
         raise ValueError(
             f"start: phase_space_density must be over y and velocity, got {density.dims}"
         )
+    refuse_units("start: phase_space_density", density)
     y, v = start.y.values / length, start.velocity.values / velocity
     values = density.values
     if not (np.isfinite(values).all() and values.max() > 0):

@@ -21,7 +21,7 @@ from scipy.interpolate import PchipInterpolator
 
 from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array
-from crazybilliards.model.checks import check_real, shown
+from crazybilliards.model.checks import check_real, refuse_units, shown
 from crazybilliards.model.vocabulary import require, require_all_particles
 
 Prescribed = xr.Dataset | Sequence[ArrayLike] | Array | Callable[[ArrayLike], ArrayLike]
@@ -90,6 +90,7 @@ def _numbers(name: str, function: Callable[[ArrayLike], ArrayLike]) -> Callable[
 
     def checked(x: ArrayLike) -> Array:
         values = function(x)
+        refuse_units(name, values)
         try:
             return np.broadcast_to(np.asarray(values, dtype=float), np.shape(x))
         except (TypeError, ValueError) as error:
@@ -107,7 +108,9 @@ def _table(
     if isinstance(source, xr.Dataset):
         require(source, (variable, "mean_displacement"))
         require_all_particles(source, chain.size, name)
+        refuse_units(name, source[variable])
         return chain.anchors + source.mean_displacement.values, source[variable].values
+    refuse_units(name, source)
     try:
         x, values = (np.asarray(column, dtype=float) for column in source)
     except (TypeError, ValueError, OverflowError) as error:

@@ -8,6 +8,7 @@ from pde import MemoryStorage
 from scipy.optimize import elementwise
 
 from crazybilliards.kinetic import displaced, force_balance, hydrodynamics, relax_phase_space
+from crazybilliards.kinetic.fluids import eulerian_frame
 from crazybilliards.kinetic.fluids.pde_solver import make_state, solve
 from crazybilliards.model import Chain
 
@@ -50,6 +51,62 @@ def test_ctrl_c_keeps_the_times_before(ctrl_c):
     assert flow.attrs["end_time"] == flow.time[-1]
     assert 5 <= flow.sizes["time"] < 1001
     assert np.isfinite(flow.density).all()
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("variance", [None, "evolving"])
+def test_what_ctrl_c_ended_is_not_solved_again(variance, monkeypatch):
+    """It has the times that its steps resolve, whatever came after."""
+    chain, whole, calls = Chain(size=5), eulerian_frame.solve, []
+    change = {"factor": 1.0, "first": 6}
+
+    def interrupted(*arguments, **how):
+        calls.append(how["dt"])
+        part = whole(*arguments, **how)[:6]
+        part[change["first"] :, 1] *= change["factor"]
+        return part
+
+    monkeypatch.setattr(eulerian_frame, "solve", interrupted)
+    arguments = {"duration": 1.0, "every": 0.1, "frame": "eulerian", "velocity_variance": variance}
+    for factor, left in ((1.0, 6), (np.nan, 4), (1e5, 2)):
+        calls.clear()
+        change.update(factor=factor, first=left)
+        flow = hydrodynamics(chain, displaced(chain, 1.0), **arguments, **QUIET)
+        assert flow.attrs["status"] == "interrupted"
+        assert flow.sizes["time"] == left
+        assert flow.attrs["end_time"] == pytest.approx(0.1 * (left - 1))
+        assert len(calls) == 1
+    change.update(factor=np.nan, first=0)
+    with pytest.raises(KeyboardInterrupt, match="nothing was computed"):
+        hydrodynamics(chain, displaced(chain, 1.0), **arguments, **QUIET)
+
+
+@pytest.mark.parametrize("spring", ["linear", "quadratic"])
+@pytest.mark.parametrize("variance", [None, "evolving"])
+def test_rods_that_are_too_fast_are_refused_before_any_work(spring, variance, monkeypatch):
+    monkeypatch.setattr(eulerian_frame, "solve", lambda *_, **__: pytest.fail("it works"))
+    chain = Chain(size=10, spring=spring)
+    arguments = {"velocity_variance": variance, "frame": "eulerian"} | QUIET
+    moving = displaced(chain, 0.0)
+    moving = moving.assign(flow_velocity=moving.flow_velocity + 100.0)
+    for start in (displaced(chain, 200.0), displaced(chain, -80.0), moving):
+        with pytest.raises(ValueError, match=r"up to .* times the free velocity .*frame='label'"):
+            hydrodynamics(chain, start, 6.0, **arguments)
+    if variance and spring == "linear":
+        with pytest.raises(ValueError, match="too fast"):
+            hydrodynamics(chain, displaced(chain, 30.0), 6.0, **arguments)
+
+
+@pytest.mark.compiled
+def test_the_first_steps_resolve_what_the_springs_draw(monkeypatch):
+    chain, whole, calls = Chain(size=5), eulerian_frame.solve, []
+    monkeypatch.setattr(
+        eulerian_frame, "solve", lambda *a, **how: calls.append(how["dt"]) or whole(*a, **how)
+    )
+    flow = hydrodynamics(chain, displaced(chain, 25.0), 4.0, every=1.0, frame="eulerian", **QUIET)
+    assert len(calls) == 1
+    exact = hydrodynamics(chain, displaced(chain, 25.0), 4.0, every=1.0, **QUIET)
+    np.testing.assert_allclose(flow.centre, exact.centre, atol=0.02 * 25)
 
 
 def test_a_label_that_is_not_found_is_an_error(monkeypatch):
