@@ -115,7 +115,7 @@ def test_an_average_that_is_too_short_says_so_once(chain, settings, message):
 def test_what_free_rods_do_not_have_is_not_given():
     """Of a free rod the velocity has a steady state, and its displacement has none."""
     chain = Chain(size=1, stiffness=0)
-    observe = ["widths", TimeCorrelations(longest=20)]
+    observe = ["widths", TimeCorrelations(longest=25)]
     with pytest.warns(ShortRunWarning, match="stiffness=0"):
         run = simulate(chain, duration=5000, observe=observe, **QUIET)
     assert np.isinf(run.autocorrelation_time).all()
