@@ -197,8 +197,8 @@ class Chain(Parameters):
             return "stiffness=0: nothing ties the rods, they spread for ever"
         if self.damping == 0:
             return (
-                "damping=0: the chain never forgets its start, because nothing takes out the energy "
-                "that the noise puts in"
+                "damping=0: the chain never forgets its start, because nothing takes out the "
+                "energy that the noise puts in"
             )
         return ""
 
