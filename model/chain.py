@@ -221,8 +221,8 @@ class Chain(Parameters):
             return "stiffness=0: nothing ties the rods, they spread for ever"
         if self.damping == 0:
             return (
-                "damping=0: nothing takes out the energy that the noise puts in, and the chain "
-                "never forgets its start"
+                "damping=0: the chain never forgets its start, because nothing takes out the "
+                "energy that the noise puts in"
             )
         return ""
 

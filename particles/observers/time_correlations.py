@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from crazybilliards.model import Chain
+from crazybilliards.model.calls import warn_user
 from crazybilliards.model.checks import check_integer, check_real
 from crazybilliards.particles.observers.base import Array, Averaged, Integers, Snapshots, Variables
 from crazybilliards.particles.run import Run
@@ -37,6 +38,8 @@ class TimeCorrelations(Averaged):
     * ``velocity_spectrum`` is 2 int cos(w t) <v_i(s) v_i(s+t)> dt over the lags, by the
       trapezoidal rule, over the angular ``frequency`` w. Its integral over w from 0 on is pi
       <v_i^2>. It includes what aliasing folds down from frequencies above pi over the lag spacing.
+      It is NaN, with a warning, where the longest lag is below 5 relaxation times (without springs
+      5 m/gamma), because correlations that are cut off would falsify it, even to negative values.
 
     ``wave_velocity_autocorrelation`` and so on, over ``wave`` q, are those of the waves that
     :class:`Modes` defines, and ``centre_velocity_autocorrelation`` and so on those of the centre of
@@ -128,6 +131,7 @@ class TimeCorrelations(Averaged):
         self.spacing, self.last = self._plan(run)
         self.size, self.anchors, self.chosen = run.chain.size, run.chain.reduced_anchors, run.chosen
         self.spreads = run.chain.spreads and not run.schedule.ensemble
+        self.needed = _memory(run.chain)  # of a spectrum
         self.before = np.zeros((2, max(self.last, 1), self.sums.shape[-1] - 1))
 
     def observe(self, snapshots: Snapshots) -> None:
@@ -185,6 +189,8 @@ class TimeCorrelations(Averaged):
     def _spectrum(self, average: Array) -> Array:
         from scipy.fft import dct
 
+        if self._cut_off:
+            return np.full_like(self._velocities(average), np.nan)
         return np.asarray(self._interval * dct(self._velocities(average), type=1, axis=0))
 
     def report(self, counts: Integers) -> Variables:
@@ -193,6 +199,13 @@ class TimeCorrelations(Averaged):
         kinds = dict(zip(_QUANTITIES, quantities, strict=True))
         if ensemble:
             del kinds["velocity_spectrum"]
+        elif self._cut_off:
+            longer = f"; longest={1.01 * self.needed:.3g} gives them" * math.isfinite(self.needed)
+            warn_user(
+                f"observe: {self.name!r}: spectra are NaN, because the longest lag "
+                f"{self.last * self._interval:.4g} is below {_RELAXATIONS} relaxation times, "
+                f"{self.needed:.4g}{longer}"
+            )
         variables: Variables = {}
         for name, (_, found) in self.averages(kinds, self._joined(counts)).items():
             values = np.asarray(found)
@@ -218,6 +231,11 @@ class TimeCorrelations(Averaged):
     @property
     def _interval(self) -> float:
         return self.spacing * self.schedule.stride * self.schedule.time_step
+
+    @property
+    def _cut_off(self) -> bool:
+        """Whether velocities are still correlated at the longest lag."""
+        return self.last * self._interval < self.needed * (1 - 1e-9)
 
     def coordinates(self) -> dict[str, Array]:
         waves = {"wave": np.arange(self.sums.shape[-1] - 1.0 - self.chosen.size)}

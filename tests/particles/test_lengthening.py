@@ -16,6 +16,7 @@ from crazybilliards.particles.observers import OBSERVERS
 from crazybilliards.particles.observers.base import Averaged
 
 
+@pytest.mark.filterwarnings("ignore:.*spectra are NaN")
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="forks, reads /proc")
 @pytest.mark.compiled
 @pytest.mark.parametrize(

@@ -94,7 +94,7 @@ SHORT = [
     (Chain(size=3, damping=0.01), {"duration": 5000}, "duration=5000 .* at least 1.676e"),
     (Chain(size=3), {"warmup": 1}, "warmup=1 .* at least 41.89"),
     (Chain(size=3), {"start": "shifted"}, "warmup=0 .* at least 41.89"),
-    (Chain(size=3, damping=0), {"time_step": 0.1}, "damping=0: .* never forgets"),
+    (Chain(size=3, damping=0), {"time_step": 0.1}, "damping=0: .* never forgets .* mean nothing"),
     (Chain(size=3, stiffness=0), {}, "stiffness=0: .* spread .* mean nothing"),
     (Chain(size=1, stiffness=0), {"duration": 5000}, "stiffness=0: .* spread .* mean nothing"),
     (Chain(size=3, spring="quadratic", stiffness=0, restitution=0.5), {}, "stiffness=0"),
@@ -115,7 +115,7 @@ def test_an_average_that_is_too_short_says_so_once(chain, settings, message):
 def test_what_free_rods_do_not_have_is_not_given():
     """Of a free rod the velocity has a steady state, and its displacement has none."""
     chain = Chain(size=1, stiffness=0)
-    observe = ["widths", TimeCorrelations(longest=20)]
+    observe = ["widths", TimeCorrelations(longest=25)]
     with pytest.warns(ShortRunWarning, match="stiffness=0"):
         run = simulate(chain, duration=5000, observe=observe, **QUIET)
     assert np.isinf(run.autocorrelation_time).all()

@@ -50,6 +50,45 @@ def test_the_centre_of_mass_is_a_damped_oscillator_at_any_restitution(damping, e
     assert (run.centre_velocity_autocorrelation_error[0] < 0.02 * velocity[0]).all()
 
 
+def exact_spectrum(chain, w):
+    """A^2 w^2/((k - m w^2)^2 + (gamma w)^2), the spectrum of the velocity of one rod."""
+    force = chain.stiffness - chain.mass * w**2
+    return (chain.amplitude * w) ** 2 / (force**2 + (chain.damping * w) ** 2)
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("relaxations", [0.5, 1, 4.9, 5, None])
+@pytest.mark.parametrize(
+    "chain",
+    [
+        Chain(size=1, mass=1.0, damping=0.2),
+        Chain(size=1, mass=1.0, damping=0.5),
+        Chain(size=1, mass=1.0, damping=3.0),
+    ],
+)
+def test_a_spectrum_is_right_or_not_given(chain, relaxations):
+    memory = cb.relaxation_time(chain)
+    longest = None if relaxations is None else relaxations * memory
+    how = {"duration": 1000 * memory, "every": memory / 40, "progress": False}
+    observe = TimeCorrelations(longest=longest)
+    if relaxations is not None and relaxations < 5:
+        with pytest.warns(
+            UserWarning, match=rf"spectra .* longest lag .* {5 * memory:.4g}; longest="
+        ):
+            run = simulate(chain, observe=observe, **how)
+        for of in ("", "wave_", "centre_"):
+            assert run[f"{of}velocity_spectrum"].isnull().all()
+            assert run[f"{of}velocity_autocorrelation"].notnull().all()
+        return
+    run = simulate(chain, observe=observe, **how)
+    low = run.frequency < 0.1 * run.frequency[-1]  # far from what is folded down
+    found, error = (
+        run[name].isel(particle=0)[low] for name in ("velocity_spectrum", "velocity_spectrum_error")
+    )
+    folded = 0.01 * found.max()
+    assert (abs(found - exact_spectrum(chain, run.frequency[low])) < 5 * error + folded).all()
+
+
 @pytest.mark.validate
 @pytest.mark.parametrize("damping", [1.0, 10.0])
 def test_stated_errors_are_the_scatter_in_runs_of_twenty_longest_lags(damping):
@@ -111,6 +150,7 @@ def test_two_elastic_rods_remember_what_the_modulus_of_an_oscillator_does(averag
         assert np.nanmax(abs(each)) < 5
 
 
+@pytest.mark.filterwarnings("ignore:.*spectra are NaN")
 def test_pairs_are_those_of_all_snapshots_however_they_come():
     """Against sums over all pairs, with every third snapshot used and parts of any length."""
     observer = TimeCorrelations(longest=30, lags=10, waves=3)
@@ -144,6 +184,7 @@ def test_pairs_are_those_of_all_snapshots_however_they_come():
     assert report["wave_velocity_autocorrelation"][1].shape == (3, 11)
 
 
+@pytest.mark.filterwarnings("ignore:.*spectra are NaN")
 @pytest.mark.compiled
 def test_all_waves_together_remember_what_all_rods_do():
     chain = Chain(size=6, restitution=0.7)
@@ -209,6 +250,7 @@ def test_a_finer_time_between_snapshots_leaves_the_time_step_as_it_was():
     assert given.time_step == 0.05
 
 
+@pytest.mark.filterwarnings("ignore:.*spectra are NaN")
 def test_lags_that_a_run_cannot_have_are_refused():
     with pytest.raises(ValueError, match=r"duration above the longest lag 41\.89, got 20"):
         simulate(Chain(size=2), duration=20, observe="time-correlations", progress=False)
