@@ -77,10 +77,10 @@ coverage: $(VENV)/installed-coverage
 	$(BIN)/coverage combine -q
 	$(BIN)/coverage report --skip-covered
 
-check: $(VENV)/installed-check build/types
+check: $(VENV)/installed-check
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
-	MYPYPATH=build/types $(BIN)/mypy -p crazybilliards
+	MYPYPATH=$(LINKS) $(BIN)/mypy -p crazybilliards
 
 # --strict: a package that could not be looked up is a failure.
 audit: $(VENV)/installed-test $(VENV)/installed-docs $(VENV)/installed-audit
@@ -144,12 +144,16 @@ package: $(VENV)/installed-package
 	$(BIN)/python -m build --outdir build/package
 	$(BIN)/python -m twine check --strict build/package/*
 
-# mypy cannot read an editable install. It reads the rooms through these links.
-build/types: Makefile
+# Type checkers and editors do not find an editable install: a finder hides the folders. A .pth file
+# leads them, and Python, to links to the rooms. Links to folders have new files at once.
+LINKS := build/links
+$(LINKS): Makefile $(BIN)/uv
 	mkdir -p $@/crazybilliards
 	for file in __init__.py __init__.pyi __main__.py py.typed; do \
-	  ln -sfn ../../../api/$$file $@/crazybilliards/$$file; done
-	for room in $(ROOMS); do ln -sfn ../../../$$room $@/crazybilliards/$$room; done
+	  ln -sfn "$(CURDIR)/api/$$file" $@/crazybilliards/$$file; done
+	for room in $(ROOMS); do ln -sfn "$(CURDIR)/$$room" $@/crazybilliards/$$room; done
+	$(BIN)/python -c "from pathlib import Path; from sysconfig import get_path; \
+	  Path(get_path('purelib'), 'crazybilliards.pth').write_text(f'{Path(\"$@\").resolve()}\n')"
 	touch $@
 
 # uv installs in seconds what pip installs in a minute, and compiles no module that nobody imports.
@@ -162,11 +166,11 @@ $(BIN)/uv:
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install -qq uv
 
-$(VENV)/installed: pyproject.toml $(BIN)/uv
+$(VENV)/installed: pyproject.toml $(BIN)/uv | $(LINKS)
 	$(INSTALL) .
 	touch $@
 
-$(VENV)/installed-%: pyproject.toml $(BIN)/uv
+$(VENV)/installed-%: pyproject.toml $(BIN)/uv | $(LINKS)
 	$(INSTALL) ".[$*]"
 	touch $@
 

@@ -129,6 +129,28 @@ def test_type_checkers_see_through(installed, tmp_path):
     run(sys.executable, "-m", "mypy", "--config-file", "mypy.ini", *python, "user.py", cwd=tmp_path)
 
 
+FIND = """
+import sys
+from importlib.machinery import PathFinder
+from pathlib import Path
+[place] = PathFinder.find_spec("crazybilliards").submodule_search_locations
+assert Path(place, "__init__.pyi").is_file() and Path(place, "py.typed").is_file()
+for room in sys.argv[1:]:
+    [folder] = PathFinder.find_spec(f"crazybilliards{room}", [place]).submodule_search_locations
+    assert Path(folder, "__init__.py").is_file()
+"""
+
+
+@pytest.mark.posix
+def test_type_checkers_find_the_rooms_in_the_environment_of_make(tmp_path):
+    """They look into folders on the path, and never ask a finder of an editable install."""
+    binaries, links = tmp_path / "venv" / "bin", tmp_path / "links"
+    run(sys.executable, "-m", "venv", "--without-pip", binaries.parent)
+    (binaries / "uv").touch()
+    run("make", "-C", ROOT, f"VENV={binaries.parent}", f"LINKS={links}", links)
+    run(binaries / "python", "-I", "-c", FIND, *filter(None, FOLDERS.values()), cwd=tmp_path)
+
+
 # -- where users run it ------------------------------------------------------------------------
 
 # `make run`, smaller. Kernels, a theory, pictures and a file.
