@@ -54,11 +54,7 @@ def hand_out(room: str) -> tuple[Callable[[str], Any], Callable[[], list[str]], 
 
 
 # What lies in a folder below the rooms.
-_ELSEWHERE = {
-    "Observer": "from crazybilliards.particles.observers.base import Observer",
-    "sweep": "from crazybilliards.comparison.sweeps import Sweep, process_pool, run_cases",
-    "Sweep": "from crazybilliards.comparison.sweeps import Sweep",
-}
+_ELSEWHERE = {"Observer": "from crazybilliards.particles.observers.base import Observer"}
 
 
 def missing(module: str, name: str, known: Iterable[str]) -> AttributeError:

@@ -1,7 +1,6 @@
 """The description of a run: the checked arguments of ``simulate`` that determine its numbers.
 
-A :class:`Run` is made once, before any work. Observers, kernels, checkpoints and the provenance of
-the result read it.
+It is made once, before any work. Observers, kernels, checkpoints and the provenance read it.
 """
 
 from __future__ import annotations
@@ -71,15 +70,13 @@ class Run:
     def __post_init__(self) -> None:
         for name, kinds in (("method", Method), ("stepper", Stepper), ("average", Average)):
             check_choice(name, getattr(self, name), get_args(kinds))
-        read = (observer.knows for observer in self.observers)
-        by = f"simulate ({law.NAMES[self.operator]})"
-        self.chain.require_known(by, self.moved_by.union(*read))
+        known = self.moved_by.union(*(observer.knows for observer in self.observers))
+        self.chain.require_known(f"simulate ({law.NAMES[self.operator]})", known)
         merging = default_merging(self.chain) if self.merging is None else self.merging
         object.__setattr__(self, "merging", check_real("merging", merging))
         object.__setattr__(self, "seed", check_integer("seed", self.seed, least=0))
-        object.__setattr__(
-            self, "replicas", check_integer("replicas", self.replicas, least=1, most=MOST_REPLICAS)
-        )
+        replicas = check_integer("replicas", self.replicas, least=1, most=MOST_REPLICAS)
+        object.__setattr__(self, "replicas", replicas)
         # Each of these properties checks its own arguments and raises if they are wrong.
         own = self.replicas * (_BYTES_PER_ROD * float(self.chain.size) + _BYTES_PER_REPLICA)
         require_memory(f"replicas={self.replicas} of {self.chain.size} rods", own + _CHUNKS)
@@ -159,14 +156,13 @@ class Run:
     @property
     def operator(self) -> int:
         """The operator that lets the rods of this run collide."""
-        kind = {"counted": self.counted, "halves": self.stepper == "splitting"}
-        return choose_operator(self.chain, self.method, **kind)
+        halves = self.stepper == "splitting"
+        return choose_operator(self.chain, self.method, counted=self.counted, halves=halves)
 
     @property
     def moved_by(self) -> frozenset[str]:
         """Parameters beside the known ones that move the rods; exact flight takes no steps."""
-        steps = () if self.exact else dynamics.knows
-        return frozenset(steps).union(law.knows.get(self.operator, ()))
+        return frozenset(() if self.exact else dynamics.knows) | law.knows.get(self.operator, set())
 
     @property
     def exact(self) -> bool:
@@ -186,11 +182,8 @@ class Run:
     @property
     def too_short(self) -> str:
         """In what averages over time are too short for the memory of the chain, or nothing."""
-        if (
-            self.average != "time"
-            or self.stays_at_rest
-            or all(observer.shares_time for observer in self.observers)
-        ):
+        shared = all(observer.shares_time for observer in self.observers)
+        if self.average != "time" or shared or self.stays_at_rest:
             return ""
         at_rest = self.start is None or self.start.attrs.get("source") == "start"
         warmup = self.schedule.warmup if self.warmup is None else float(self.warmup)
@@ -199,11 +192,10 @@ class Run:
     @property
     def stays_at_rest(self) -> bool:
         """Whether there is neither noise nor a velocity nor a stretched spring."""
-        chain, tolerance = self.chain, 1e-9 * self.chain.radius  # positions x are rounded
-        return chain.amplitude == 0 and not any(
-            v.any() or (chain.stiffness > 0 and np.abs(y - chain.reduced_anchors).max() > tolerance)
-            for y, v in self.starts
-        )
+        if self.chain.amplitude > 0 or any(v.any() for _, v in self.starts):
+            return False
+        stretched = (np.abs(y - self.chain.reduced_anchors).max() for y, _ in self.starts)
+        return self.chain.stiffness == 0 or max(stretched) <= 1e-9 * self.chain.radius
 
     def dynamics(self) -> Dynamics:
         """Return the numbers and arrays that the kernels need."""

@@ -55,6 +55,7 @@ def names():
     }
 
 
+@pytest.mark.filterwarnings("ignore:.*Without a steady state")
 @pytest.mark.parametrize(("call", "said"), WRONG_CALLS)
 def test_a_wrong_call_says_in_one_line_what_is_wanted_before_any_work(
     call, said, names, monkeypatch

@@ -58,7 +58,6 @@ cb.simulate(chain, observe="velocity_autocorrelation") | 'time-correlations' giv
 cb.simulate(chain, observe="all") | 'widths') or a list of them, got 'all'
 cb.run | did you mean 'simulate'?
 cb.plot | did you mean 'overlay'?
-cb.sweep | from crazybilliards.comparison.sweeps import
 cb.Observer | from crazybilliards.particles.observers.base import Observer
 """
 
@@ -73,7 +72,7 @@ chain.simulate(100) | crazybilliards.simulate(chain, ...) is a function
 chain.run(100) | crazybilliards.simulate(chain, ...) is a function
 chain.theories() | crazybilliards.theories(chain, ...) is a function
 chain.copy(size=3) | did you mean 'replace'?
-cb.deviation(exact, exact).maxmum | did you mean 'maximum'?
+cb.deviation(exact, exact, raw=True).maxmum | did you mean 'maximum'?
 """
 
 # The right name, with the wrong kind of thing.
@@ -87,7 +86,7 @@ cb.overlay({"a": run}, paper="fig") | paper must be a name that ends in .pdf or 
 cb.overlay({"a": run.expand_dims(size=[1, 2])}) | choose a size: .sel(size=...)
 cb.overlay({"a": run.expand_dims(size=[1], gap=[2])}) | choose a size and a gap: .sel(size=..., gap=
 cb.overlay({"a": run.expand_dims(size=[1], time=[2])}) | .isel(size=..., time=...)
-cb.deviation(exact, exact, "velocity_width") | floor must be a number...overlay draws other
+cb.deviation(exact, exact, "velocity_width") | floor must be a number...densities only
 cb.fit_exponential(run) | needs y and error...restitution must be numbers...got a Dataset
 cb.film(snapshots, duration=5) | duration is that of a chain to simulate
 cb.equilibrium_states(chain.replace(restitution=0.8), 4) | chain.replace(restitution=1)

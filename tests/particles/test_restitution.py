@@ -54,6 +54,7 @@ DIVERGING = {  # a chain, how it is simulated, and before when it diverges
 }
 
 
+@pytest.mark.filterwarnings("ignore:.*Without a steady state")
 @pytest.mark.compiled
 @pytest.mark.parametrize("name", DIVERGING)
 def test_a_chain_that_diverges_keeps_what_was_measured(name):

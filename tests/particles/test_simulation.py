@@ -53,6 +53,7 @@ def test_an_equilibrium_start_needs_no_warm_up():
         assert float(np.abs((run[name] - exact[name]) / run[f"{name}_error"]).max()) < 5
 
 
+@pytest.mark.filterwarnings("ignore:.*Without a steady state")
 @pytest.mark.parametrize("stepper", ["splitting", "euler"])
 @pytest.mark.parametrize(("damping", "stiffness"), [(0, 1), (1, 1), (9, 0.5), (3, 0)])
 def test_a_step_is_refused_just_where_it_gets_unstable(stepper, damping, stiffness):
@@ -83,6 +84,7 @@ def test_a_step_is_refused_just_where_it_gets_unstable(stepper, damping, stiffne
     simulate(pair, duration=2e4, start=start, **longest)
 
 
+@pytest.mark.filterwarnings("ignore:.*Without a steady state")
 def test_a_spring_without_a_rate_takes_a_time_step():
     chain = Chain(size=3, spring="quadratic", damping=0)
     with pytest.raises(ValueError, match="give time_step"):
@@ -101,6 +103,7 @@ def test_ctrl_c_keeps_what_was_measured(ctrl_c):
     assert (run.velocity_width_error > 0).all()
 
 
+@pytest.mark.filterwarnings("ignore:.*Without a steady state")
 @pytest.mark.parametrize(
     ("average", "observe"),
     [
