@@ -68,7 +68,7 @@ def combine(runs: Sequence[xr.Dataset] | xr.Dataset) -> xr.Dataset:
     return found.assign_attrs(
         {k: v for k, v in runs[0].attrs.items() if all(v == run.attrs.get(k) for run in runs)},
         status=next((s for run in runs if (s := run.attrs["status"]) != "completed"), "completed"),
-        time_step_error=float(max(errors)),
+        time_step_error=float(np.max(errors)),  # NaN, not known, if one of them is
         provenance=json.dumps(common, sort_keys=True),
     )
 
@@ -114,12 +114,11 @@ def _mean(joined: xr.Dataset, weights: xr.DataArray) -> xr.Dataset:
         values, error = joined[name], joined.get(f"{name}_error", xr.DataArray(0.0))
         if name.endswith("_width"):
             square: Any = mean(values**2)
-            slope = values
             if name == "displacement_width" and "mean_displacement" in joined:
                 centre = joined.mean_displacement  # which differs between the runs
                 square = square + mean(centre**2) - mean(centre) ** 2
             value: Any = np.sqrt(square)
-            error = error * slope / value.where(value > 0, 1.0)
+            error = error * values / value.where(value > 0, 1.0)
         else:
             value = mean(values)
         found[name] = value.assign_attrs(values.attrs)

@@ -25,7 +25,7 @@ def over_positions(chain: Chain, x: Array, rods: RodPlaces) -> tuple[Array, Arra
     for first in range(0, chain.size, _TOGETHER):
         some = slice(first, first + _TOGETHER)
         rod, node, below, p = _at_nodes(x, rods.places[some] + shift[some], rods, some)
-        # Of a rod that the grid resolves, the sum is off by what the points are rough.
+        # The points come from a grid and are a little rough: a rod that x resolves is made 1.
         held = spacing * np.bincount(rod, p, resolved[some].size)
         p = p / np.where(resolved[some] & (held > 0), held, 1.0)[rod]
         density += np.bincount(node, p, x.size)

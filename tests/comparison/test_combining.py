@@ -60,6 +60,15 @@ def test_a_combined_density_is_smoothed_with_its_error(runs):
     overlay({"mean": found, "one": each[0]})
 
 
+@pytest.mark.parametrize("place", [0, 1, 2])
+def test_an_unknown_time_step_error_is_that_of_the_mean(runs, place):
+    errors = [0.1, 0.2, 0.3]
+    some = [run.assign_attrs(time_step_error=e) for run, e in zip(runs, errors, strict=False)]
+    assert combine(some).time_step_error == 0.3
+    some[place] = some[place].assign_attrs(time_step_error=np.nan)
+    assert np.isnan(combine(some).time_step_error)
+
+
 def test_one_run_is_itself_and_a_mean_can_be_stored(runs, tmp_path):
     one = combine(runs[:1])
     for name in one.data_vars:
