@@ -7,21 +7,21 @@ ones. Units: free rod, T = k = m = 1; Gamma: damping. The wave q has the tempera
 
 that of the noise for the centre of mass, q = 0, whatever e is, and the relative temperature Theta
 of neighbours for the shortest ones. Between the two the viscosity of a gas that cools decides. With
-the mean distance g of neighbouring points, n = 1/g, and W_v^2 for the velocity variance of a rod,
-collisions take Lambda = 2 Gamma (1 - W_v^2), what the noise brings. A compression heats the gas,
-and the heat is gone at the rate 2 Gamma + 3/2 Lambda/Theta. Until then its pressure resists. As a
-viscosity, over Gamma, this is
+the mean distance a of neighbouring points, n = 1/a, and W_v^2 for the velocity variance of a rod,
+collisions take Q = 2 Gamma (1 - W_v^2), what the noise brings. A compression heats the gas, and the
+heat is gone at the rate 2 Gamma + 3/2 Q/Theta. Until then its pressure resists. As a viscosity,
+over Gamma, this is
 
-    xi^2 = (2 Theta/g^2)/(Gamma (2 Gamma + 3/2 Lambda/Theta)).
+    xi^2 = (2 Theta/a^2)/(Gamma (2 Gamma + 3/2 Q/Theta)).
 
 The mean of T_q is the mean W_v^2. This fixes Theta, for each rod by its own W_v. xi^2 is at least
-what it is for Theta = 0. The stiffness of the wave is 1 + kappa D_q with kappa = W_v^2/g^2. The
+what it is for Theta = 0. The stiffness of the wave is 1 + kappa D_q with kappa = W_v^2/a^2. The
 points of a theory have the same temperature w^2 in all waves, W_v^2 less the centre of mass, and
-the widths q_i. So
+the widths b_i. So
 
-    W_x(i)^2 = q_i^2 + sum over waves of c_q(i)^2 (T_q - w^2)/(1 + kappa D_q).
+    W_x(i)^2 = b_i^2 + sum over waves of c_q(i)^2 (T_q - w^2)/(1 + kappa D_q).
 
-This is exact at e = 1, and where rods do not meet. g, kappa, xi, Theta and w are those of the
+This is exact at e = 1, and where rods do not meet. a, kappa, xi, Theta and w are those of the
 place: the D_q are a matrix of differences along the chain, and both denominators its tridiagonal
 functions. Nothing is fitted.
 """
