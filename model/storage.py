@@ -27,6 +27,7 @@ from xarray.backends import ScipyDataStore
 
 from crazybilliards.model.checks import check_path
 from crazybilliards.model.locks import open_locked
+from crazybilliards.model.process import interrupts_held_back
 
 _CLASSIC, _NETCDF_4 = b"CDF", b"\x89HDF"  # the first bytes of a file
 _MARK = b"\ncrazybilliards-1 sha256 "
@@ -53,6 +54,8 @@ def save(result: xr.Dataset | xr.DataTree, path: str | os.PathLike[str]) -> Path
     return path
 
 
+# A Ctrl-C would be lost in __del__ of a file, or become another error in what h5py calls.
+@interrupts_held_back()
 def load(path: str | os.PathLike[str]) -> xr.Dataset | xr.DataTree:
     """Read a result that :func:`save` wrote, all of it into memory.
 
@@ -78,6 +81,7 @@ def load(path: str | os.PathLike[str]) -> xr.Dataset | xr.DataTree:
     return tree if tree.children else tree.to_dataset()
 
 
+@interrupts_held_back()  # as in ``load``
 def load_attributes(path: str | os.PathLike[str]) -> dict[str, Any]:
     """Read only the attributes of a result that :func:`save` wrote; raises as :func:`load`.
 

@@ -1,18 +1,21 @@
 """Signals: which are taken, what they do afterwards, and that handlers are restored."""
 
+import io
 import signal
+from types import SimpleNamespace
 
 import pytest
 from forked import forked
 
 from crazybilliards.kinetic import displaced, hydrodynamics
-from crazybilliards.model import Chain
+from crazybilliards.model import Chain, storage
 from crazybilliards.model.process import (
     announce_compilation,
     announced,
     interrupts_noted,
     terminated_like_interrupted,
 )
+from crazybilliards.model.storage import load, load_attributes, small_netcdf, write_sealed
 from crazybilliards.particles import simulate
 
 ENDING = [getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name)]
@@ -139,3 +142,21 @@ def test_compiling_is_said_once_and_only_to_those_who_asked(capsys):
         announce_compilation()
     announce_compilation()
     assert capsys.readouterr().err.count("compiling the kernels") == 1
+
+
+@pytest.mark.parametrize("read", [load, load_attributes])
+def test_ctrl_c_is_not_lost_where_a_file_is_closed(read, tmp_path, monkeypatch):
+    """Python ignores an error in ``__del__``, which scipy and xarray have for files."""
+    file = tmp_path / "classic.nc"
+    write_sealed(file, small_netcdf(displaced(Chain(size=2), 1.0)))
+    came = []
+
+    class Dropped(io.BytesIO):
+        def __del__(self):
+            came.append(True)
+            signal.raise_signal(signal.SIGINT)
+
+    monkeypatch.setattr(storage, "io", SimpleNamespace(BytesIO=Dropped))
+    with pytest.raises(KeyboardInterrupt):
+        read(file)
+    assert came
