@@ -56,6 +56,13 @@ class Chain(Parameters):
         Half a rod's length R > 0 and its mass m > 0; 4 pi/3 is a sphere of unit density.
     spring
         ``"linear"``: F = k d; ``"quadratic"``: F = k d |d|.
+    box
+        X >= 0, the distance between two walls at -X/2 and X/2 [R]; 0: there are no walls. It must
+        be above 2RL. Without springs a gas in a box has a steady state.
+    wall_restitution
+        Restitution of the walls, >= 0.
+    mass_ratio
+        Mass of the rods 2, 4, ... over that of the rods 1, 3, ..., which have ``mass``.
 
     Raises
     ------
@@ -85,7 +92,23 @@ class Chain(Parameters):
             radius: float = 1.0,
             mass: float = 4 * math.pi / 3,
             spring: Spring = "linear",
+            box: float = 0.0,
+            wall_restitution: float = 1.0,
+            mass_ratio: float = 1.0,
         ) -> None: ...
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        least = 2 * self.radius * self.size
+        if 0 < self.box <= least:
+            raise ValueError(
+                f"box must be above {least:g}, the length of all rods, or 0 for no walls, got "
+                f"{shown(self.box)}"
+            )
+        if self.wall_restitution != 1 and not self.box:
+            raise ValueError(
+                "wall_restitution: without walls it must be 1; box=... gives a chain two walls"
+            )
 
     def replace(self, **changes: Any) -> Self:
         """Return the same chain with some parameters changed (and all checked again)."""
@@ -131,6 +154,17 @@ class Chain(Parameters):
     def reduced_anchors(self) -> NDArray[np.float64]:
         """Anchors in the reduced coordinate, y0_i = g (i - (L+1)/2) [R], shape (L,)."""
         return self.gap * self.rank
+
+    @property
+    def walls(self) -> tuple[float, float]:
+        """Where the walls are in the reduced coordinate, -+(X/2 - RL) [R]; -+inf without walls."""
+        end = self.box / 2 - self.radius * self.size if self.box else math.inf
+        return -end, end
+
+    @property
+    def rod_masses(self) -> NDArray[np.float64]:
+        """Masses of the rods [M], shape (L,)."""
+        return self.mass * np.where(np.arange(self.size) % 2, self.mass_ratio, 1.0)
 
     @property
     def lattice_gap(self) -> float:
@@ -210,14 +244,15 @@ class Chain(Parameters):
     @property
     def spreads(self) -> bool:
         """Whether noise drives the rods ever farther, without a spring or without damping."""
-        return self.amplitude > 0 == self.damping * self.stiffness
+        tied = self.stiffness if not self.box else 1.0
+        return self.amplitude > 0 == self.damping * tied
 
     @property
     def why_unsteady(self) -> str:
         """The reason why this chain has no steady state; empty if it has one."""
         if self.amplitude == 0 < self.damping + self.stiffness:
             return "amplitude=0: without noise the rods come to rest, the density is singular"
-        if self.stiffness == 0:
+        if self.stiffness == 0 and not self.box:
             return "stiffness=0: nothing ties the rods, they spread for ever"
         if self.damping == 0:
             return (

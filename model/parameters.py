@@ -56,6 +56,13 @@ class Parameters:
         "Force of the springs: linear or quadratic",
         check=partial(check_choice, choices=get_args(Spring)),
     )
+    box: float = _parameter(0.0, "Distance between two walls; 0: there are none", "R")
+    wall_restitution: float = _parameter(1.0, "Restitution of the walls")
+    mass_ratio: float = _parameter(
+        1.0,
+        "Mass of every second rod over that of the others",
+        check=partial(check_real, positive=True),
+    )
 
     def __post_init__(self) -> None:
         for each in fields(self):

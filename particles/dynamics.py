@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from crazybilliards.model import Chain
 from crazybilliards.particles.laws.closed_contacts import CLOSED_KICK, CRITICAL_RESTITUTION
 from crazybilliards.particles.laws.exact_flight import Propagator, make_propagator
-from crazybilliards.particles.laws.law import Law, Method, make_law
+from crazybilliards.particles.laws.law import TURN, Law, Method, inverse_masses, make_law
 from crazybilliards.particles.scales import spring_rate
 
 # In velocity kicks of one step: rods that separate more slowly move as one. Below the critical
@@ -24,7 +24,7 @@ Stepper = Literal["splitting", "euler"]
 
 # Parameters beside the known ones that the springs, the damping or the noise take from the chain,
 # in steps. Exact flight has its own (``laws/law.py``).
-knows: frozenset[str] = frozenset()
+knows: frozenset[str] = frozenset({"box", "wall_restitution", "mass_ratio"})
 
 
 class Step(NamedTuple):
@@ -47,9 +47,11 @@ class Dynamics(NamedTuple):
 
     anchors: NDArray[np.float64]  # reduced, (L,)
     step: Step
+    second: Step  # of the rods 2, 4, ..., whose mass may be another one
     law: Law
     propagator: Propagator  # of a step, if the law is EXACT
     fastest: float  # with a faster rod the chain has diverged
+    inverse: NDArray[np.float64]  # inverse masses for ``make_scratch``
 
 
 def make_dynamics(
@@ -61,26 +63,34 @@ def make_dynamics(
     stepper: Stepper = "splitting",
     merging: float | None = None,
     counted: bool = False,
+    struck: bool = False,
 ) -> Dynamics:
     """Return the numbers and arrays that the kernels need of a chain; see ``simulate``.
 
     ``speed`` is typical of the rods [R/T]. ``counted``: every collision is to be recorded at its
-    contact.
+    contact, and ``struck`` every impulse on a wall.
     """
+    law = make_law(
+        chain,
+        time_step,
+        method,
+        default_merging(chain) if merging is None else merging,
+        speed,
+        counted=counted,
+        struck=struck,
+        halves=stepper == "splitting",
+    )
+    second = chain.replace(mass=chain.mass * chain.mass_ratio, mass_ratio=1.0)
+    steps = [make_step(each, time_step, stepper, method) for each in (chain, second)]
+    if law.operator == TURN:  # which has the springs in its flight
+        steps = [each._replace(kick=0.0) for each in steps]
     return Dynamics(
         chain.reduced_anchors,
-        make_step(chain, time_step, stepper, method),
-        make_law(
-            chain,
-            time_step,
-            method,
-            default_merging(chain) if merging is None else merging,
-            speed,
-            counted=counted,
-            halves=stepper == "splitting",
-        ),
+        *steps,
+        law,
         make_propagator(chain, time_step),
         _DIVERGED * speed if speed > 0 else math.inf,
+        inverse_masses(chain),
     )
 
 

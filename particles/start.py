@@ -66,8 +66,12 @@ def replica_starts(
     chain: Chain, start: xr.Dataset | None, replicas: int
 ) -> list[tuple[Array, Array]]:
     """Return each replica's own reduced positions and velocities, checked."""
+    low, high = chain.walls
     if start is None:
-        return [(chain.reduced_anchors, np.zeros(chain.size))] * replicas
+        y = np.clip(chain.reduced_anchors, low, high)
+        if chain.box and chain.stiffness == 0:  # anchors mean nothing
+            y = np.linspace(low, high, chain.size + 2)[1:-1]
+        return [(y, np.zeros(chain.size))] * replicas
     x, v = _states(start)
     if x.shape[1] != chain.size:
         raise ValueError(f"start has {x.shape[1]} rods, the chain {chain.size}")
@@ -80,7 +84,13 @@ def replica_starts(
     tolerance = 1e-12 * max(float(np.abs(x).max()), chain.radius)
     if (np.diff(y, axis=1) < -tolerance).any():
         raise ValueError("start must hold rods in order that do not overlap")
-    return list(zip(np.maximum.accumulate(y, axis=1), v, strict=True))
+    if (y[:, 0] < low - tolerance).any() or (y[:, -1] > high + tolerance).any():
+        raise ValueError(
+            f"start must hold rods between the walls: their centres lie within "
+            f"{chain.box / 2 - chain.radius:g} of the middle"
+        )
+    y = np.clip(np.maximum.accumulate(y, axis=1), low, high)
+    return list(zip(y, v, strict=True))
 
 
 def _states(start: xr.Dataset) -> list[Array]:

@@ -24,10 +24,12 @@ import numpy as np
 
 from crazybilliards.model import spring
 from crazybilliards.model.kernels import copy, inlined, kernel
+from crazybilliards.particles.laws import unequal
 from crazybilliards.particles.laws.closed_contacts import find_clusters, strengthen
 from crazybilliards.particles.laws.exact_flight import propagate
 from crazybilliards.particles.laws.law import EXACT, drift
 from crazybilliards.particles.laws.sort import sort_pairs
+from crazybilliards.particles.laws.walls import fold
 from crazybilliards.particles.noise import fill
 
 FIRST, WHOLE, LAST = range(3)  # parts of a kick
@@ -51,6 +53,17 @@ def kick(y, v, anchors, kicks, step, part):  # type: ignore[no-untyped-def]
         v[i] = decay * (v[i] - before * pull) - after * pull + noise * kicks[i]
 
 
+@inlined
+def _kick_all(y, v, kicks, part, dynamics):  # type: ignore[no-untyped-def]
+    """Kick the rods; those of unequal masses one sort after the other."""
+    anchors, step, second = dynamics.anchors, dynamics.step, dynamics.second
+    if dynamics.law.unequal:
+        kick(y[::2], v[::2], anchors[::2], kicks[::2], step, part)
+        kick(y[1::2], v[1::2], anchors[1::2], kicks[1::2], second, part)
+    else:
+        kick(y, v, anchors, kicks, step, part)
+
+
 @kernel
 def draw_kicks(noise, kicks, width, due):  # type: ignore[no-untyped-def]
     """Fill ``kicks`` for as many of the ``due`` steps of ``width`` numbers as have room.
@@ -70,12 +83,14 @@ def take_step(y, v, kicks, part, dynamics, scratch, tally):  # type: ignore[no-u
     """
     step = dynamics.step
     if part == LAST:
-        kick(y, v, dynamics.anchors, kicks, step, LAST)
+        _kick_all(y, v, kicks, LAST, dynamics)
         return 0
     strength = step.closed_outer if part == FIRST else step.closed
-    if strength != 1.0:
+    if strength != 1.0 and dynamics.law.unequal:
+        unequal.strengthen(kicks, y, strength, dynamics.law, scratch)
+    elif strength != 1.0:
         strengthen(kicks, scratch.clusters, strength)
-    kick(y, v, dynamics.anchors, kicks, step, part)
+    _kick_all(y, v, kicks, part, dynamics)
     return drift(y, v, dynamics.anchors, step.time_step, dynamics.law, scratch, tally)
 
 
@@ -88,6 +103,8 @@ def _fly(y, v, noise, dynamics, scratch, steps):  # type: ignore[no-untyped-def]
             row, rows = 0, draw_kicks(noise, scratch.kicks, width, steps - taken)
         kicks = scratch.kicks[row * width : (row + 1) * width]
         propagate(y, v, kicks, dynamics.propagator)
+        if dynamics.law.high < np.inf:
+            fold(y, v, dynamics.law.low, dynamics.law.high)
         sort_pairs(y, v, scratch)
         row += 1
     return 0
@@ -100,7 +117,7 @@ def _step(y, v, noise, dynamics, scratch, tally, steps):  # type: ignore[no-unty
         return 0
     step, size = dynamics.step, y.size
     if step.closed != 1.0:
-        find_clusters(y, scratch.clusters)
+        find_clusters(y, scratch.clusters, dynamics.law.low, dynamics.law.high)
     collisions, row, rows = 0, 0, 0
     # The second half kick of a step is merged into the first one of the next.
     part = FIRST
@@ -152,6 +169,9 @@ def _keep(source, target, tally):  # type: ignore[no-untyped-def]
     for row in range(tally.impacts.shape[0]):
         for contact in range(tally.impacts.shape[1]):
             target.impacts[row, contact] = source.impacts[row, contact]
+    for row in range(tally.struck.shape[0]):
+        for wall in range(tally.struck.shape[1]):
+            target.struck[row, wall] = source.struck[row, wall]
 
 
 @kernel

@@ -46,6 +46,7 @@ class Tally(NamedTuple):
     triggered: Waves
     impacts: NDArray[np.float64]  # see ``impacts.py``, (4, L - 1)
     speeds: Speeds
+    struck: NDArray[np.float64]  # momentum on and collisions with each wall, (2, 2)
 
 
 def make_waves(size: int) -> Waves:
@@ -68,7 +69,7 @@ def make_tally(size: int, *, contacts: bool) -> Tally:
     counted = np.zeros(max(size - 1, 0) if contacts else 0, dtype=np.int64)
     total = np.zeros(2, dtype=np.int64)
     speeds = make_speeds(0, np.zeros(0))
-    return Tally(total, counted, make_waves(0), make_waves(0), make_impacts(0), speeds)
+    return Tally(total, counted, make_waves(0), make_waves(0), make_impacts(0), speeds, np.zeros((2, 0)))
 
 
 @kernel

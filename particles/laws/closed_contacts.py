@@ -38,12 +38,12 @@ def make_clusters(size: int) -> Clusters:
 
 
 @kernel
-def find_clusters(y, clusters):  # type: ignore[no-untyped-def]
-    """Record the rods in contact: those with exactly the same reduced coordinate."""
+def find_clusters(y, clusters, low=-np.inf, high=np.inf):  # type: ignore[no-untyped-def]
+    """Record the rods in contact with each other or a wall: those exactly at one coordinate."""
     number, first = 0, 0
     for i in range(1, y.size + 1):
         if i == y.size or y[i] != y[first]:
-            if i - first > 1:
+            if i - first > 1 or y[first] == low or y[first] == high:
                 clusters.firsts[number], clusters.lasts[number] = first, i
                 number += 1
             first = i

@@ -25,11 +25,15 @@ has to be moved before the end of the step.
 
 **Springs that differ.** With a gap the velocities of two rods that meet, but not of clusters, are
 corrected for what their springs have not given them yet (``spring_correction.py``).
+
+**Unequal masses and walls** have a collision of their own (``unequal.py``), because a branch in the
+one of equal rods would make every chain slower.
 """
 
 import numpy as np
 
 from crazybilliards.model.kernels import inlined, kernel
+from crazybilliards.particles.laws import unequal
 from crazybilliards.particles.laws.avalanche import record_collision
 from crazybilliards.particles.laws.calendar import earliest, list_due, list_of, move, open_calendar
 from crazybilliards.particles.laws.impacts import record_impact, record_speed
@@ -87,6 +91,9 @@ def _finish(y, v, dt, merged, scratch):  # type: ignore[no-untyped-def]
         if b > a:
             clusters.firsts[number], clusters.lasts[number] = a, b + 1
             number += 1
+            if scratch.joint.size > 0:
+                for i in range(a, b + 1):
+                    scratch.joint[i] = scratch.inverse[i]
             for i in range(a + 1, b + 1):
                 y[i] = position
                 v[i] = v[a]
@@ -121,6 +128,11 @@ def _collide(contact, now, y, v, anchors, dt, law, scratch, tally):  # type: ign
     """
     first, last, neighbour = scratch.first, scratch.last, contact + _1
     a, b = INDEX(first[contact]), INDEX(last[neighbour])
+    if law.unequal:
+        merges = unequal.collide(contact, a, b, now, y, v, anchors, dt, law, scratch, tally)
+        if merges:
+            first[b], last[a] = a, b
+        return a, b, merges
     left, right = float(neighbour - a), float(b - contact)
     single = (a == contact) & (b == neighbour)
     v_left, v_right = v[contact], v[neighbour]

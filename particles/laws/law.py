@@ -19,19 +19,24 @@ from numpy.typing import NDArray
 
 from crazybilliards.model import Chain
 from crazybilliards.model.kernels import inlined
-from crazybilliards.particles.laws import contact_dynamics, event_driven, isotonic, sort
-from crazybilliards.particles.laws.closed_contacts import Clusters, make_clusters
+from crazybilliards.particles.laws import contact_dynamics, event_driven, isotonic, sort, walls
+from crazybilliards.particles.laws.closed_contacts import Clusters, find_clusters, make_clusters
 from crazybilliards.particles.laws.exact_flight import independent_rods
 from crazybilliards.particles.laws.impacts import make_impacts
 from crazybilliards.particles.noise import BLOCK
 
 Method = Literal["event-driven", "contact-dynamics"]
 
-SORT, ISOTONIC, EVENTS, CONTACTS, EXACT = range(5)
-NAMES = ("the sort", "isotonic regression", "event-driven", "contact-dynamics", "exact flight")
+SORT, ISOTONIC, EVENTS, CONTACTS, EXACT, TURN = range(6)
+NAMES = (
+    *("the sort", "isotonic regression", "event-driven", "contact-dynamics", "exact flight"),
+    "exact flight between walls",
+)
 
 # Parameters beside the known ones that an operator takes from the chain: {EVENTS: {"my_own"}}.
-knows: dict[int, set[str]] = {}
+_WALLS = {"box", "wall_restitution"}
+knows: dict[int, set[str]] = {each: {*_WALLS} for each in (ISOTONIC, CONTACTS, EXACT, TURN)}
+knows[EVENTS] = {*_WALLS, "mass_ratio"}
 
 
 class Law(NamedTuple):
@@ -43,6 +48,10 @@ class Law(NamedTuple):
     most: int  # collisions in one step after which the chain counts as diverged
     pull: float = 0.0  # k/m if springs that meet may differ and are kicked in halves
     exponent: int = 2  # of the spring's potential
+    low: float = -math.inf  # the walls in the reduced coordinate
+    high: float = math.inf
+    wall_restitution: float = 1.0
+    unequal: bool = False  # masses differ, or there are walls
 
 
 class Scratch(NamedTuple):
@@ -62,14 +71,27 @@ class Scratch(NamedTuple):
     kicks: NDArray[np.float64]  # of the noise, for one step or several, one after the other
     contacts: NDArray[np.int64]  # a copy of what was counted up to the last snapshot, (L,)
     impacts: NDArray[np.float64]  # the same of what was summed, (4, L)
+    inverse: NDArray[np.float64]  # inverse masses, with the walls; empty: all 1, and no walls
+    joint: NDArray[np.float64]  # the same of clusters, at their outermost rods
+    walled: NDArray[np.float64]  # y, v and anchors of rods and walls, (3, L + 2)
+    struck: NDArray[np.float64]  # a copy of what the walls received, (2, 2)
 
 
-def make_scratch(size: int) -> Scratch:
-    """Return the scratch space for ``size`` rods: 220 bytes a rod."""
+def inverse_masses(chain: Chain) -> NDArray[np.float64]:
+    """Return 1/m of the rods and, between them, of the walls, for ``make_scratch``."""
+    if not chain.box and chain.mass_ratio == 1:
+        return np.zeros(0)
+    inverse = chain.mass / chain.rod_masses
+    return np.array([0.0, *inverse, 0.0]) if chain.box else inverse
+
+
+def make_scratch(rods: int, inverse: NDArray[np.float64] = np.zeros(0)) -> Scratch:  # noqa: B008
+    """Return the scratch space for so many rods, with two walls or not: 220 bytes a rod."""
+    size = max(rods, inverse.size)
     nodes = np.arange(2 * size, dtype=np.uint64)
     return Scratch(
         np.zeros((3, size), dtype=np.int64),
-        np.zeros((4, size)),
+        np.zeros((4, rods)),
         np.arange(size),
         np.arange(size),
         np.zeros(2 * size),
@@ -80,22 +102,34 @@ def make_scratch(size: int) -> Scratch:
         np.zeros(sort.BUCKETS * size, dtype=np.int32),
         make_clusters(size),
         # The exact flight takes two numbers a rod.
-        np.zeros(max(2, BLOCK // size) * size),
-        np.zeros(size, dtype=np.int64),
-        make_impacts(size + 1),
+        np.zeros(max(2, BLOCK // rods) * rods),
+        np.zeros(rods, dtype=np.int64),
+        make_impacts(rods + 1),
+        inverse,
+        inverse.copy(),
+        np.zeros((3, size if size > rods else 0)),
+        np.zeros((2, walls.WALLS)),
     )
 
 
-def choose_operator(chain: Chain, method: Method, *, counted: bool, halves: bool) -> int:
+def choose_operator(
+    chain: Chain, method: Method, *, counted: bool, halves: bool, struck: bool = False
+) -> int:
     """Return the operator for the chain.
 
-    ``counted``: every collision has to be recorded. ``halves``: springs kick before and after the
-    drift. With a gap, collisions are then corrected one by one, so e = 1 cannot be sorted.
+    ``counted``: every collision has to be recorded. ``struck``: so has every impulse on a wall.
+    ``halves``: springs kick before and after the drift. With a gap, collisions are then corrected
+    one by one, so e = 1 cannot be sorted.
     """
     if method == "contact-dynamics":
         return CONTACTS
-    if counted:
+    if counted or chain.mass_ratio != 1:
         return EVENTS
+    if chain.box:
+        if halves and chain.wall_restitution == 1 and independent_rods(chain):
+            return TURN if chain.stiffness > 0 or struck else EXACT
+        inelastic = chain.restitution == chain.wall_restitution == 0
+        return ISOTONIC if inelastic and not struck else EVENTS
     if halves and independent_rods(chain):
         return EXACT
     if halves and chain.restitution == 1 and chain.gap * chain.stiffness > 0:
@@ -112,20 +146,25 @@ def make_law(
     *,
     counted: bool = False,
     halves: bool = True,
+    struck: bool = False,
 ) -> Law:
-    """Return the law of the chain; for ``counted`` and ``halves`` see :func:`choose_operator`.
+    """Return the law of the chain; for the last three see :func:`choose_operator`.
 
     ``merging`` is in velocity kicks of one step's noise. With little or no noise 1e-9 of the
     typical ``speed`` is used, so that inelastic collapse stays finite.
     """
     pull = chain.stiffness / chain.mass if halves else 0.0
-    operator = choose_operator(chain, method, counted=counted, halves=halves)
+    operator = choose_operator(chain, method, counted=counted, halves=halves, struck=struck)
     kick = chain.amplitude / chain.mass * math.sqrt(time_step)
-    merge_speed = max(merging * kick, 1e-9 * speed) if chain.restitution < 1 else 0.0
-    if operator == EVENTS and chain.gap == 0:
+    inelastic = min(chain.restitution, chain.wall_restitution) < 1
+    merge_speed = max(merging * kick, 1e-9 * speed) if inelastic else 0.0
+    unequal = chain.box > 0 or chain.mass_ratio != 1
+    if operator == EVENTS and chain.gap == 0 and not unequal:
         pull = 0.0  # rods with one anchor have the same acceleration where they meet
     most = 1_000 * chain.size + 1_000_000
-    return Law(operator, chain.restitution, merge_speed, most, pull, chain.potential_exponent)
+    around = *chain.walls, chain.wall_restitution, unequal
+    exponent = chain.potential_exponent
+    return Law(operator, chain.restitution, merge_speed, most, pull, exponent, *around)
 
 
 @inlined
@@ -135,8 +174,20 @@ def drift(y, v, anchors, dt, law, scratch, tally):  # type: ignore[no-untyped-de
         sort.drift(y, v, dt, scratch)
         return 0
     if law.operator == ISOTONIC:
-        return isotonic.drift(y, v, dt, scratch.integers[0], scratch.floats, scratch.clusters)
+        met = isotonic.drift(y, v, dt, scratch.integers[0], scratch.floats, scratch.clusters)
+        if law.high < np.inf and walls.stop(y, v, law.low, law.high) > 0:
+            find_clusters(y, scratch.clusters, law.low, law.high)
+        return met
     if law.operator == CONTACTS:
         spring_and_scratch = law.pull, law.exponent, scratch.integers, scratch.floats
-        return contact_dynamics.drift(y, v, anchors, dt, law.restitution, *spring_and_scratch)
+        bounds = law.low, law.high, law.wall_restitution
+        return contact_dynamics.drift(
+            y, v, anchors, dt, law.restitution, *spring_and_scratch, *bounds
+        )
+    if law.operator == TURN:
+        walls.turn(y, v, dt, law.pull, law.low, law.high, tally.struck)
+        sort.sort_pairs(y, v, scratch)
+        return 0
+    if law.high < np.inf:
+        return walls.drift(y, v, anchors, dt, law, scratch, tally)
     return event_driven.drift(y, v, anchors, dt, law, scratch, tally)

@@ -201,7 +201,7 @@ class Replica:
 
     def _scratch(self) -> Any:
         """Return the arrays that the kernels work in."""
-        return make_scratch(self.y.shape[-1])
+        return make_scratch(self.y.shape[-1], self.dynamics.inverse)
 
     def _advance(self, scratch: Any, tally: Tally, steps: int) -> bool:
         """Take steps without snapshots; return False if the chain diverged."""

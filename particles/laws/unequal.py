@@ -1,0 +1,142 @@
+r"""Collisions of rods of unequal masses, and of rods with a wall.
+
+A wall is a rod of infinite mass at rest, without a spring. In a collision of two rods or clusters
+with the inverse masses w and w' (0 for a wall, and for a cluster that rests at one), the left one
+takes the share w/(w + w') of the change of their relative velocity, and the right one the rest.
+Momentum is conserved, and the reduced mass is 1/(w + w'). Rods that merge have the inverse mass
+w w'/(w + w'). The springs of the two give different accelerations (``spring_correction.py``), also
+without a gap, and that of a wall is 0. Masses are in units of the first rod's.
+
+The threshold below which two rods merge is in kicks of the noise, so it is in proportion to the
+mean of the inverse masses of the two rods.
+"""
+
+import numpy as np
+
+from crazybilliards.model.kernels import kernel
+from crazybilliards.particles.laws.avalanche import record_collision
+from crazybilliards.particles.laws.impacts import (
+    ENERGY_AFTER,
+    ENERGY_BEFORE,
+    MOMENTUM_AFTER,
+    MOMENTUM_BEFORE,
+    record_speed,
+)
+from crazybilliards.particles.laws.spring_correction import springs_ahead
+from crazybilliards.particles.laws.tournament import INDEX
+
+_0, _1 = INDEX(0), INDEX(1)
+
+WALLS = 2  # the left one, the right one
+
+
+@kernel
+def collide(contact, a, b, now, y, v, anchors, dt, law, scratch, tally):  # type: ignore[no-untyped-def]
+    """Let two rods or clusters collide as ``event_driven`` says; return whether they merge.
+
+    The rods ``a`` and ``b`` are the outermost ones of the two. Between walls the first and the last
+    rod are the walls.
+    """
+    single, joint, neighbour = scratch.inverse, scratch.joint, contact + _1
+    w, w_right = joint[contact], joint[neighbour]
+    v_left, v_right = v[contact], v[neighbour]
+    ahead = 0.0
+    if law.pull > 0.0 and a == contact and b == neighbour:
+        here, since = y[contact] + v_left * now, now - dt / 2
+        ahead = springs_ahead(here - anchors[contact], 0.0, law.pull * w, law.exponent, since)
+        ahead += springs_ahead(
+            0.0, here - anchors[neighbour], law.pull * w_right, law.exponent, since
+        )
+    wall = single[contact] == 0.0 or single[neighbour] == 0.0
+    e = law.wall_restitution if wall else law.restitution
+    e = min(e, 1.0) if now == 0.0 else e
+    closing = v_left - v_right - ahead
+    rebound = e * closing
+    least = law.merge_speed * 0.5 * (single[contact] + single[neighbour]) if e < 1.0 else 0.0
+    merges = rebound <= least
+    _record(contact, a, b, closing, 0.0 if merges else rebound, v_left, v_right, scratch, tally)
+    share, other_share = w / (w + w_right), w_right / (w + w_right)
+    common = v_left + share * (v_right - v_left)
+    apart = 0.0 if merges else max(rebound - ahead, 0.0)  # no rod passes another
+    new_left, new_right = common - share * apart, common + other_share * apart
+    y_left = y_right = y[contact] + (v_left - new_left) * now
+    if not merges:
+        y_right = y[neighbour] + (v_right - new_right) * now
+    else:
+        joint[a] = joint[b] = share * w_right
+    v[a] = v[contact] = new_left
+    v[b] = v[neighbour] = new_right
+    y[a] = y[contact] = y_left
+    y[b] = y[neighbour] = y_right
+    return merges
+
+
+@kernel
+def _record(contact, a, b, closing, separating, v_left, v_right, scratch, tally):  # type: ignore[no-untyped-def]
+    """Count a collision at its contact or wall, and add up what it exchanges and takes."""
+    single, joint, neighbour = scratch.inverse, scratch.joint, contact + _1
+    w, w_right = joint[contact], joint[neighbour]
+    at_wall = single[contact] == 0.0 or single[neighbour] == 0.0
+    mass = 1.0 / (w + w_right)
+    if tally.struck.size > 0 and w * w_right == 0.0:
+        side = 0 if w == 0.0 else 1
+        tally.struck[0, side] += mass * (closing + separating)
+        tally.struck[1, side] += 1.0 if at_wall else 0.0
+    before = INDEX(1) if single[_0] == 0.0 else _0  # contacts with the left wall
+    if tally.contacts.size > 0 and not at_wall:
+        own = np.int64(contact - before)
+        record_collision(own, np.int64(a - before), np.int64(b - before), v_left, v_right, tally)
+        if tally.speeds.counts.size > 0:
+            record_speed(own, closing, tally.speeds)
+    if tally.impacts.size > 0:
+        _record_impact(contact, a, b, mass, closing, separating, before, scratch, tally.impacts)
+
+
+@kernel
+def _record_impact(contact, a, b, mass, closing, separating, before, scratch, impacts):  # type: ignore[no-untyped-def]
+    """Add what a collision exchanges at every contact of its two clusters; see ``impacts.py``.
+
+    Rods beyond a contact get their share of the mass of the cluster of the impulse, and all of it
+    if a wall is among them.
+    """
+    single, joint = scratch.inverse, scratch.joint
+    beyond = 0.0
+    for other in range(np.int64(a), np.int64(b)):
+        if other == contact:
+            share = 1.0
+        elif other < contact:
+            beyond += 1.0 / single[other] if single[other] > 0.0 else 0.0
+            share = beyond * joint[contact] if joint[contact] > 0.0 else 1.0
+        else:
+            if other == contact + _1:
+                beyond = 0.0
+            beyond += 1.0 / single[other] if single[other] > 0.0 else 0.0
+            share = 1.0 - beyond * joint[contact + _1]
+        own = other - np.int64(before)
+        if 0 <= own < impacts.shape[1]:
+            impacts[MOMENTUM_BEFORE, own] += share * mass * closing
+            impacts[MOMENTUM_AFTER, own] += share * mass * separating
+    if single[contact] > 0.0 and single[contact + _1] > 0.0:
+        own = np.int64(contact - before)
+        impacts[ENERGY_BEFORE, own] += mass * closing * closing / 2
+        impacts[ENERGY_AFTER, own] += mass * separating * separating / 2
+
+
+@kernel
+def strengthen(kicks, y, strength, law, scratch):  # type: ignore[no-untyped-def]
+    """Multiply the velocities that kicks give to rods in contact, without their mean.
+
+    It is ``closed_contacts.strengthen`` for unequal masses. The mean of rods at a wall is 0.
+    """
+    clusters, before = scratch.clusters, 1 if law.high < np.inf else 0
+    for k in range(clusters.number[0]):
+        first, last = clusters.firsts[k], clusters.lasts[k]
+        total = mass = 0.0
+        for i in range(first, last):
+            total += kicks[i]
+            mass += 1.0 / scratch.inverse[i + before]
+        rests = y[first] == law.low or y[first] == law.high
+        mean = 0.0 if rests else total / mass
+        for i in range(first, last):
+            own = mean / scratch.inverse[i + before]
+            kicks[i] = own + strength * (kicks[i] - own)

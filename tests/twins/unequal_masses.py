@@ -1,0 +1,100 @@
+"""Collisions of unequal masses between walls, as one would write them down.
+
+The slow twin of ``laws/unequal.py`` and ``laws/walls.py``: bodies are a list, with their inverse
+masses, 0 for a wall and for what rests at one. All contacts are looked through for every collision.
+The arithmetic of a collision is the same, so that results must agree to the last bit.
+"""
+
+import math
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+from next_collision import meeting
+
+from crazybilliards.model import spring
+
+
+class Body(NamedTuple):
+    y: float  # where it would have been at the beginning of the step, with its velocity
+    v: float
+    inverse: float  # mass, in units of the first rod's
+    rods: tuple[int, ...]  # counted from 0; -1 is the left wall, L the right one
+
+
+class Drifted(NamedTuple):
+    y: list[float]
+    v: list[float]
+    contacts: list[int]  # collisions
+    impulses: list[float]  # on the walls
+    hits: list[int]
+    clusters: list[tuple[int, ...]]
+
+
+def drift(y, v, masses, anchors, dt, law):
+    """Move the rods of a chain; the first rod's mass is the unit of ``law.pull``."""
+    size = len(y)
+    bodies = [Body(float(y[i]), float(v[i]), float(masses[0] / masses[i]), (i,)) for i in range(size)]
+    if law.high < math.inf:
+        ends = Body(law.low, 0.0, 0.0, (-1,)), Body(law.high, 0.0, 0.0, (size,))
+        bodies = [ends[0], *bodies, ends[1]]
+    contacts, impulses, hits = [0] * (size - 1), [0.0, 0.0], [0, 0]
+    due = [meeting(*pair, 0.0, dt) for pair in pairwise(bodies)]
+    while min(due, default=math.inf) < math.inf:
+        speeds = [one.v - other.v for one, other in pairwise(bodies)]
+        k = min(range(len(due)), key=lambda k: (due[k], -speeds[k]))
+        left, right, now = bodies[k], bodies[k + 1], due[k]
+        new, impulse = collided(left, right, masses, anchors, now, dt, law)
+        if 0 <= left.rods[-1] < size - 1:
+            contacts[left.rods[-1]] += 1
+        else:
+            hits[left.rods[-1] >= 0] += 1
+        for side, body in enumerate((left, right)):
+            impulses[side] += impulse if body.inverse == 0 else 0.0
+        bodies[k : k + 2] = new
+        due[k : k + 1] = [math.inf] * (len(new) - 1)
+        for contact in {k - 1, k + len(new) - 1}:
+            if 0 <= contact < len(due):
+                due[contact] = meeting(*bodies[contact : contact + 2], now, dt)
+    ends = np.zeros((2, size))
+    for body in bodies:
+        own = [rod for rod in body.rods if 0 <= rod < size]
+        ends[0, own], ends[1, own] = body.y + dt * body.v, body.v
+    clusters = [body.rods for body in bodies if len(body.rods) > 1]
+    return Drifted(*ends, contacts, impulses, hits, clusters)
+
+
+def collided(left, right, masses, anchors, now, dt, law):
+    """The one or two bodies after a collision, and the impulse that they exchange."""
+    ahead = 0.0
+    if len(left.rods) == len(right.rods) == 1 and law.pull > 0:
+        a, b = (acceleration(each, anchors, now, law) for each in (left, right))
+        ahead = (b - a) * (now - dt / 2)
+    meet = left.rods[-1], right.rods[0]
+    at_wall = meet[0] == -1 or meet[1] == len(masses)
+    e = law.wall_restitution if at_wall else law.restitution
+    e = min(e, 1.0) if now == 0 else e
+    closing = left.v - right.v - ahead
+    rebound = e * closing
+    kicks = sum(masses[0] / masses[rod] for rod in meet if 0 <= rod < len(masses))
+    both = left.inverse + right.inverse
+    shares = left.inverse / both, right.inverse / both
+    common = left.v + shares[0] * (right.v - left.v)
+    merges = rebound <= (law.merge_speed * kicks / 2 if e < 1 else 0.0)
+    if merges:
+        y, rods = left.y + (left.v - common) * now, left.rods + right.rods
+        return [Body(y, common, shares[0] * right.inverse, rods)], closing / both
+    apart = max(rebound - ahead, 0.0)
+    after = []
+    for body, v in ((left, common - shares[0] * apart), (right, common + shares[1] * apart)):
+        after.append(body._replace(v=v, y=body.y + (body.v - v) * now))
+    return after, (closing + rebound) / both
+
+
+def acceleration(body, anchors, now, law):
+    """The acceleration of a single rod by its spring."""
+    (rod,) = body.rods
+    if not 0 <= rod < len(anchors):
+        return 0.0
+    displacement = body.y + body.v * now - anchors[rod]
+    return -law.pull * body.inverse * spring.force(displacement, law.exponent)
