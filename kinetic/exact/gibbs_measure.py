@@ -18,7 +18,8 @@ Soc. 59, 779 (1963)).
 The integrals are on one uniform grid in y and are kept as logarithms, because the Z_i span hundreds
 of decades. Within a cell the logarithm of the integrand is a parabola, which stays accurate if the
 integrand changes by large factors from one node to the next. Z must be the same for every i.
-Its spread is the residual that :func:`equilibrium` reports.
+Its spread is the residual that :func:`equilibrium` reports. ``between_walls.py`` has the same for a
+chain in a box.
 """
 
 from __future__ import annotations
@@ -31,6 +32,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from crazybilliards.kinetic.accuracy import expected, expected_seconds
+from crazybilliards.kinetic.exact.between_walls import BoxRecursion, box_recursion, nodes_of
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array
@@ -48,7 +50,7 @@ _MOST_STATES = 10**15  # more than any memory holds, and still exact as a float
 
 
 def equilibrium(chain: Chain) -> xr.Dataset:
-    """Exact stationary state of the elastic chain: any gap, both springs.
+    """Exact stationary state of the elastic chain: any gap, both springs, also in a box.
 
     It costs O(L^1.5) time and memory: 5 ms for L = 20, 1 s and 40 MB for L = 1000.
 
@@ -56,7 +58,7 @@ def equilibrium(chain: Chain) -> xr.Dataset:
     -------
     xarray.Dataset
         ``density`` and ``label`` over x; ``mean_displacement``, ``displacement_width`` and
-        ``velocity_width`` over particle. ``attrs["residual"]`` is the spread of log Z over the
+        ``velocity_width`` over particle; in a box ``wall_force`` over wall. ``attrs["residual"]`` is the spread of log Z over the
         particles. It is normally 1e-6 or less, and relative errors are of this order.
 
     Raises
@@ -76,27 +78,33 @@ def equilibrium(chain: Chain) -> xr.Dataset:
         return _in_vocabulary(chain, recursion_of(chain))
 
 
-def _in_vocabulary(chain: Chain, recursion: Recursion) -> xr.Dataset:
+def _in_vocabulary(chain: Chain, recursion: Recursion | BoxRecursion) -> xr.Dataset:
     x = position_grid(chain)
     density, label = np.zeros((2, x.size))
     mean, width, log_z = np.zeros((3, chain.size))
+    at_the_walls = []
     for i in range(chain.size):
         d, log_p = recursion.log_density(i)
         top = np.max(log_p)
         p = np.exp(log_p - top)
         log_z[i] = top + np.log(p.sum())
         p /= p.sum()
+        at_the_walls += [2 * p[0], 2 * p[-1]]  # half a cell has the probability of an end
         mean[i] = d @ p
         width[i] = np.sqrt((d - mean[i]) ** 2 @ p)
         _add_rod(x, chain.anchors[i] + d, p, density, label)
+    spacing = recursion.nodes(0)[1] - recursion.nodes(0)[0]
+    force = chain.temperature / spacing * np.array([at_the_walls[0], at_the_walls[-1]])
+    walls = {"wall_force": ("wall", force)} if chain.box else {}
     dataset = result(
         chain,
         {
+            **walls,
             "density": ("x", density),
             "label": ("x", label),
             "mean_displacement": ("particle", mean),
             "displacement_width": ("particle", width),
-            "velocity_width": ("particle", np.full(chain.size, chain.free_velocity_width)),
+            "velocity_width": ("particle", np.sqrt(chain.temperature / chain.rod_masses)),
         },
         coordinates={"x": x},
         source="theory",
@@ -135,12 +143,12 @@ def equilibrium_states(chain: Chain, replicas: int, seed: Seed = 0) -> xr.Datase
     below = np.full(replicas, np.inf)
     for i in reversed(range(chain.size)):
         nodes = recursion.nodes(i)
-        log_f = recursion.log_f[i]
+        log_f = recursion.log_z(i)
         # 1 - U lies in (0, 1]: its logarithm is finite.
         target = np.interp(below, nodes, log_f) + np.log1p(-generator.random(replicas))
         # Linear in log Z_i between nodes, in both directions, so that the order is kept exactly.
         y[:, i] = below = np.minimum(np.interp(target, log_f, nodes), below)
-    velocity = chain.free_velocity_width * generator.standard_normal((replicas, chain.size))
+    velocity = np.sqrt(chain.temperature / chain.rod_masses) * generator.standard_normal((replicas, chain.size))
     dims = ("replica", "particle")
     return result(
         chain,
@@ -165,6 +173,10 @@ class Recursion:
         first = self.centres[i] - self.half
         return self.spacing * np.arange(first, first + 2 * self.half + 1)
 
+    def log_z(self, i: int) -> Array:
+        """Return log Z of the rods up to number i, counted from 0, on the window of i."""
+        return np.asarray(self.log_f[i])
+
     def log_weight(self, i: int) -> tuple[Array, Array]:
         """Displacements d on window i (i from 0) and log w(d) = -U(d)/T."""
         d = self.nodes(i) - self.chain.reduced_anchors[i]
@@ -188,10 +200,15 @@ def check_equilibrium(chain: Chain) -> None:
     """Raise the ValueError that :func:`equilibrium` would raise, without the computation."""
     remedy = "; chain.replace(restitution=1) is the elastic chain"
     require_chain(chain, "the exact equilibrium", elastic=True, remedy=remedy)
+    if chain.wall_restitution != 1:
+        raise ValueError(
+            "the exact equilibrium holds for elastic walls only: wall_restitution must be 1, got "
+            f"{chain.wall_restitution:g}"
+        )
     require_resolved(chain, float(chain.reduced_anchors[-1]))
+    rods, nodes = nodes_of(chain) if chain.box else (chain.size, 2 * _half_window(chain) + 1)
     require_memory(
-        f"size={chain.size} (force_balance takes more): the exact equilibrium",
-        8.0 * chain.size * (2 * _half_window(chain) + 1),
+        f"size={chain.size} (force_balance takes more): the exact equilibrium", 8.0 * rods * nodes
     )
 
 
@@ -202,9 +219,11 @@ def _half_window(chain: Chain) -> int:
     return int(np.ceil(thermal_reach(chain) / narrowest * _NODES_PER_WIDTH))
 
 
-def recursion_of(chain: Chain) -> Recursion:
+def recursion_of(chain: Chain) -> Recursion | BoxRecursion:
     """Compute log Z_i of all rods."""
     check_equilibrium(chain)
+    if chain.box:
+        return box_recursion(chain)
     reach, half = thermal_reach(chain), _half_window(chain)
     spacing = reach / half
     # Rounding halves to even keeps the centres antisymmetric, as log_density needs.
