@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from crazybilliards.apps.commands.answers import note, say, wrote
-from crazybilliards.apps.commands.options import Dask, KeepOld, Processes, Scheduler, path_option
+from crazybilliards.apps.commands.options import KeepOld, Processes, Scheduler, path_option
 from crazybilliards.apps.commands.output import writing_to
 from crazybilliards.apps.commands.sweep import compute_cases, engine
 from crazybilliards.model.checks import check_choice, check_integer
@@ -59,7 +59,6 @@ def command(
         typer.Option(help="Write every picture as a vector graphic, too.", metavar="pdf|svg"),
     ] = None,
     processes: Processes = None,
-    dask: Dask = False,
     scheduler: Scheduler = None,
     keep_old: KeepOld = False,
 ) -> None:
@@ -92,7 +91,7 @@ def command(
     from crazybilliards.model.storage import write_atomically
     from crazybilliards.reproduction.claims.report import all_cases, html, markdown
 
-    computing = engine(processes, dask, scheduler)
+    computing = engine(processes, scheduler)
     with writing_to(output):
         compute_cases(all_cases(wanted, chosen), output / "cases", computing, keep_old)
         drawing = {"columns": columns, "formats": [] if vector is None else [vector]}

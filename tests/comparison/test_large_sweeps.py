@@ -9,9 +9,8 @@ import pytest
 import xarray as xr
 from small_sweeps import AtOnce
 
-from crazybilliards.comparison.sweeps import Case, Sweep, run_cases, running
+from crazybilliards.comparison.sweeps import Case, Sweep, engines, run_cases
 from crazybilliards.comparison.sweeps.jobs import JOBS
-from crazybilliards.comparison.sweeps.missing import check_cases
 from crazybilliards.model import Chain, load
 from crazybilliards.model.storage import read_sealed
 
@@ -38,7 +37,7 @@ class Counting(Executor):
                     counting.give_back()
                 return super().get()
 
-        monkeypatch.setattr(running, "SimpleQueue", Queue)
+        monkeypatch.setattr(engines, "SimpleQueue", Queue)
 
     def submit(self, function, /, *arguments):
         self.submitted += 1
@@ -114,7 +113,7 @@ def test_the_shortest_cases_come_first(tmp_path):
         settings = {} if name == "duration" else {"duration": 100}
         grid = {"seed": [1, 2], name: values}
         run_cases(Sweep(grid, settings=settings), tmp_path, Noting(), progress=False)
-        assert [each.parameters[name] for each in seen] == order
+        assert [each.arguments[name] for each in seen] == order
 
 
 def test_a_wrong_case_at_the_end_of_a_grid_is_found_before_any_work(counting, tmp_path):
@@ -122,16 +121,6 @@ def test_a_wrong_case_at_the_end_of_a_grid_is_found_before_any_work(counting, tm
     with pytest.raises(ValueError, match="restitution must be 1"):
         run_cases(Sweep(grid, "equilibrium", {}, {}), tmp_path / "results", counting)
     assert not (tmp_path / "results").exists()
-
-
-def test_all_seeds_and_all_chains_are_checked_and_their_work_known(tmp_path):
-    """Not every chain with every seed: a million such cases are checked in a moment."""
-    settings = {"duration": 100}
-    sweep = Sweep({"size": [3, 9], "seed": [1, 2, 3], "gap": [0, 1]}, "simulate", {}, settings)
-    assert check_cases(sweep).work.tolist() == [case.work for case in sweep]
-    for wrong in ({"size": [3, 4], "seed": [1, -2]}, {"seed": [1, 2], "gap": [0, -1]}):
-        with pytest.raises(ValueError, match=r"(seed|gap) must be .*, got -"):
-            check_cases(Sweep(wrong, "simulate", {}, settings))
 
 
 def test_a_sweep_gives_the_cases_of_its_grid():
