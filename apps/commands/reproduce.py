@@ -32,8 +32,8 @@ def command(
         str,
         typer.Argument(
             help="Numbers or names of figures of the paper, separated by commas, all (figures of "
-            "the paper), or analytics (those of the paper's section of that name and the checks "
-            "at restitution 1, elastic-gaps among them, which is no figure of the paper)."
+            "the paper), or analytics (those of the paper's section of that name and of the "
+            "velocities at restitution 1)."
         ),
     ] = "all",
     show_list: Annotated[bool, typer.Option("--list", help="List the figures, and stop.")] = False,
@@ -74,8 +74,6 @@ def command(
     Example: crazybilliards reproduce 16,17 --output results/paper
 
     Example: crazybilliards reproduce all --quality full
-
-    Example: crazybilliards reproduce elastic-gaps
     """
     from crazybilliards.reproduction.reproducible import find_studies
 
@@ -104,12 +102,12 @@ def command(
 
 
 def _print_list() -> None:
-    from crazybilliards.reproduction.reproducible import EVERYTHING
+    from crazybilliards.reproduction.figures import FIGURES
 
     listed = []
-    for study in EVERYTHING:
+    for study in FIGURES:
         listed.append({"number": study.number, "name": study.name, "title": study.title})
-        say(f"{study.number or '':3}  {study.name:28s} {study.title}")
+        say(f"{study.number:3}  {study.name:28s} {study.title}")
     note(studies=listed)
 
 
