@@ -247,7 +247,7 @@ def _joined(paths: Sequence[Path], results: Sequence[xr.Dataset]) -> xr.Dataset:
             if different := each.variables.keys() ^ results[0].variables.keys():
                 names = ", ".join(sorted(map(str, different)))
                 raise ValueError(
-                    f"{paths[0]} and {path}: only one has {names}; load runs of one observe="
+                    f"{paths[0]} and {path}: only one has {names}; observe= must be the same"
                 ) from error
         raise
 
