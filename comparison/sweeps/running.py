@@ -172,7 +172,8 @@ def _checked(cases: Iterable[Case], progress: bool) -> tuple[Sweep | list[Case],
     work, short = [], []
     for case in _checking(cases, progress):
         work.append(case.work)
-        short += [case.too_short] if case.too_short else []
+        if reason := case.too_short:
+            short.append(reason)
     warn_of_short_runs(short, len(work))
     return cases, work
 

@@ -23,38 +23,32 @@ def many(number=CASES):
 
 
 class Counting(Executor):
-    """Computes nothing; what is submitted comes back when somebody waits for it."""
+    """Its cases fail as soon as somebody waits for one; it keeps how many there were then."""
 
-    def __init__(self, monkeypatch):
-        self.submitted, self.most_under_way = 0, 0
-        self.waiting = []
-
-        counting = self
-
-        class Queue(SimpleQueue):
-            def get(self):
-                if self.empty():
-                    counting.give_back()
-                return super().get()
-
-        monkeypatch.setattr(engines, "SimpleQueue", Queue)
+    def __init__(self):
+        self.waiting, self.under_way = [], []
 
     def submit(self, function, /, *arguments):
-        self.submitted += 1
-        future = Future()
-        self.waiting.append(future)
-        self.most_under_way = max(self.most_under_way, len(self.waiting))
-        return future
+        self.waiting.append(Future())
+        return self.waiting[-1]
 
     def give_back(self):
-        waiting, self.waiting = self.waiting, []
-        for each in waiting:
-            each.set_exception(ValueError("not computed"))
+        self.under_way.append(len(self.waiting))
+        while self.waiting:
+            self.waiting.pop().set_exception(ValueError("not computed"))
 
 
 @pytest.fixture
 def counting(monkeypatch):
-    return Counting(monkeypatch)
+    class Queue(SimpleQueue):
+        def get(self):
+            if self.empty():
+                executor.give_back()
+            return super().get()
+
+    monkeypatch.setattr(engines, "SimpleQueue", Queue)
+    executor = Counting()
+    return executor
 
 
 @pytest.fixture
@@ -71,16 +65,11 @@ def planned(monkeypatch):
     return calls
 
 
-def test_few_cases_are_submitted_at_a_time(counting, tmp_path):
+def test_few_cases_are_submitted_at_a_time_and_each_is_looked_at_twice(planned, counting, tmp_path):
+    """When it is checked, and when it is computed."""
     failed = run_cases(many(), tmp_path, counting, progress=False)
-    assert len(failed) == counting.submitted == CASES
-    assert counting.most_under_way == 1000
-
-
-def test_a_case_of_a_grid_is_planned_when_it_is_checked_and_when_it_is_computed(
-    planned, counting, tmp_path
-):
-    run_cases(many(), tmp_path, counting, progress=False)
+    assert len(failed) == sum(counting.under_way) == CASES
+    assert max(counting.under_way) == 1000
     assert len(planned) == 2 * CASES
 
 
