@@ -216,7 +216,7 @@ def _computed(
     if processes is not None:
         check_integer("processes", processes, least=1)
     every = [case for found in cases.values() for case in found.values()]
-    warn_of_short_runs([case.too_short for case in every if case.too_short], len(cases))
+    warn_of_short_runs([found[SIMULATION].too_short for found in cases.values()])
     with ExitStack() as stack:
         place = stack.enter_context(TemporaryDirectory()) if folder is None else folder
         place = check_path("folder", place)

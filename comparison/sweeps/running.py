@@ -151,10 +151,10 @@ def compute_missing(
     return outcome
 
 
-def warn_of_short_runs(short: Sequence[str], number: int) -> None:
-    """Warn of the simulations, of ``number`` cases, that are too short, and say in what."""
-    if short:
-        many = f"{len(short)} of {number} cases; the first: " if number > 1 else ""
+def warn_of_short_runs(reasons: Sequence[str]) -> None:
+    """Warn of the simulations that are too short, and say in what; others have no reason."""
+    if short := [*filter(None, reasons)]:
+        many = f"{len(short)} of {len(reasons)} cases; the first: " if len(reasons) > 1 else ""
         warn_user(many + short[0], ShortRunWarning)
 
 
@@ -169,12 +169,12 @@ def _checked(cases: Iterable[Case], progress: bool) -> tuple[Sweep | list[Case],
             raise ValueError(f"cases must be a Sweep or a list of Case, got {shown(cases)}")
         different = list(dict.fromkeys(given))
         return different, [case.work for case in different]
-    work, short = [], []
+    work, reasons, seed = [], [], cases.case(0).settings.get("seed")
     for case in _checking(cases, progress):
         work.append(case.work)
-        if reason := case.too_short:
-            short.append(reason)
-    warn_of_short_runs(short, len(work))
+        if case.settings.get("seed") == seed:  # with another one it is as long
+            reasons.append(case.too_short)
+    warn_of_short_runs(reasons)
     return cases, work
 
 
