@@ -9,6 +9,7 @@ import pytest
 import xarray as xr
 from small_sweeps import AtOnce
 
+import crazybilliards as cb
 from crazybilliards.comparison.sweeps import Case, Sweep, engines, run_cases
 from crazybilliards.comparison.sweeps.jobs import JOBS
 from crazybilliards.model import Chain, load
@@ -110,6 +111,12 @@ def test_a_wrong_case_at_the_end_of_a_grid_is_found_before_any_work(counting, tm
     with pytest.raises(ValueError, match="restitution must be 1"):
         run_cases(Sweep(grid, "equilibrium", {}, {}), tmp_path / "results", counting)
     assert not (tmp_path / "results").exists()
+
+
+def test_runs_that_are_too_short_are_counted_once_for_all_seeds(counting, tmp_path):
+    grid = {"size": [10, 20], "seed": [1, 2, 3], "duration": [20, 1000]}
+    with pytest.warns(cb.ShortRunWarning, match=r"^2 of 4 cases; the first: duration=20 is short"):
+        run_cases(Sweep(grid), tmp_path, counting, progress=False)
 
 
 def test_a_sweep_gives_the_cases_of_its_grid():
