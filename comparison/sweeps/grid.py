@@ -277,7 +277,7 @@ def _with_attributes(results: Sequence[xr.Dataset], leave: Sequence[str]) -> lis
     return made
 
 
-def _alike(results: Sequence[xr.Dataset]) -> list[xr.Dataset]:
+def _alike(results: Sequence[xr.Dataset]) -> Sequence[xr.Dataset]:
     """Make other dimensions than the particle fit; differing coordinates become numbers."""
     for dimension in sorted({str(name) for each in results for name in each.dims} - {"particle"}):
         values = [each[dimension] for each in results if dimension in each.dims]
