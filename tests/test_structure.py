@@ -50,7 +50,7 @@ FLOORS = {
         {"claims"},
         {"chains", "distributions", "power_laws", "vanishing_step"},
         {"predictions"},
-        {"elastic_gaps", "figures"},
+        {"figures"},
         {"reproducible"},
     ),
     "apps": ({"explore"}, {"commands"}),

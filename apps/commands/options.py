@@ -18,12 +18,12 @@ Threads = Annotated[int | None, typer.Option(help="Threads to simulate in; defau
 Processes = Annotated[
     int | None, typer.Option(help="Processes to compute in; default: one per core.")
 ]
-Dask = Annotated[
-    bool, typer.Option("--dask", help="Compute on a dask cluster of this machine instead.")
-]
 Scheduler = Annotated[
     str | None,
-    typer.Option(help="Compute on the dask cluster with this scheduler, tcp://HOST:PORT say."),
+    typer.Option(
+        help="Compute on the dask cluster with this scheduler, tcp://HOST:PORT say; "
+        "local: on a cluster that is started on this machine."
+    ),
 ]
 KeepOld = Annotated[
     bool,

@@ -14,7 +14,7 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from concurrent.futures import Executor
-from contextlib import AbstractContextManager, ExitStack
+from contextlib import AbstractContextManager, ExitStack, nullcontext
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -23,9 +23,8 @@ from numpy.typing import ArrayLike
 
 from crazybilliards.comparison.fits import fit_arctanh
 from crazybilliards.comparison.stationary_theories import THEORIES
-from crazybilliards.comparison.sweeps import Case, process_pool, run_cases
-from crazybilliards.comparison.sweeps.engines import ThisProcess
-from crazybilliards.comparison.sweeps.missing import warn_of_short_runs
+from crazybilliards.comparison.sweeps import Case, process_pool
+from crazybilliards.comparison.sweeps.running import compute_missing, warn_of_short_runs
 from crazybilliards.kinetic import equilibrium, force_balance, rod_by_rod
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain, chain_of
@@ -217,33 +216,33 @@ def _computed(
     if processes is not None:
         check_integer("processes", processes, least=1)
     every = [case for found in cases.values() for case in found.values()]
-    warn_of_short_runs([case.too_short for case in every if case.too_short], len(cases))
-    failed: dict[Case, str] = {}
-    status = "completed"
+    warn_of_short_runs([found[SIMULATION].too_short for found in cases.values()])
     with ExitStack() as stack:
         place = stack.enter_context(TemporaryDirectory()) if folder is None else folder
         place = check_path("folder", place)
-        workers: AbstractContextManager[Executor] = ThisProcess(threads)
+        workers: AbstractContextManager[Executor | None] = nullcontext()
         if processes is not None:
             workers = process_pool(min(processes, len(every)))
         if not all(case.file(place).exists() for case in every):
             with announced(progress):
                 compile_kernels()
-        try:
-            with workers as executor:
-                failed = run_cases(every, place, executor, keep_old=keep_old, progress=progress)
-        except KeyboardInterrupt:
-            status = "interrupted"
+        outcome = compute_missing(
+            every, place, workers, threads=threads, keep_old=keep_old, progress=progress
+        )
+        if isinstance(outcome.stopped, RuntimeError):
+            raise outcome.stopped
         results = {name: _read(found, place, keep_old) for name, found in cases.items()}
-    for case, reason in failed.items():
+    for case, reason in outcome.failed.items():
         if case.job not in THEORIES:
             raise ValueError(reason)
         _warn_of_no_theory(case.chain, case.job, reason.removeprefix("ValueError: "))
     results = {name: found for name, found in results.items() if SIMULATION in found}
     if not results:
         raise KeyboardInterrupt
+    if outcome.stopped is not None:
+        return results, "interrupted"
     diverged = any(each[SIMULATION].attrs["status"] == "diverged" for each in results.values())
-    return results, "diverged" if diverged and status == "completed" else status
+    return results, "diverged" if diverged else "completed"
 
 
 def _warn_of_no_theory(chain: Chain, job: str, reason: str) -> None:

@@ -126,7 +126,7 @@ def markdown(reproduced: list[Reproduced], quality: Quality) -> str:
         "",
         *(f"* {line}" for line in summary(reproduced)),
         "",
-        "| figure or study | verdicts |",
+        "| figure | verdicts |",
         "|---|---|",
     ]
     for each in reproduced:
@@ -177,10 +177,6 @@ def html(reproduced: list[Reproduced], quality: Quality) -> str:
 
 
 def summary(reproduced: list[Reproduced]) -> list[str]:
-    """Count the verdicts, of statements of the paper and of our own findings."""
+    """Count the verdicts in a line, if there are any."""
     claims = [claim for each in reproduced for claim in each.claims]
-    kinds = {
-        "Statements of the paper": [claim for claim in claims if claim.source],
-        "Our own findings": [claim for claim in claims if not claim.source],
-    }
-    return [f"{title}: {_counted(those)}" for title, those in kinds.items() if those]
+    return [f"Statements of the paper: {_counted(claims)}"] if claims else []

@@ -176,7 +176,7 @@ def test_ctrl_c_before_anything_is_computed_is_ctrl_c(monkeypatch):
     def stop(*arguments, **settings):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(grid, "run_cases", stop)
+    monkeypatch.setattr(grid, "compute_missing", stop)
     with pytest.raises(KeyboardInterrupt):
         compare_elastic(Chain(size=5), (1.0,), duration=500, progress=False)
 

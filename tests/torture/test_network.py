@@ -170,7 +170,7 @@ def test_every_module_and_the_python_interface(guarded):
         ["relax", "--size", "10", "--duration", "4", "--replicas", "8", "--output", "o"],
         ["reproduce", "arctanh", "--processes", "2", "--output", "o"],
         ["sweep", "grid.toml", "--processes", "2", "--output", "o"],
-        ["sweep", "grid.toml", "--dask", "--output", "o"],
+        ["sweep", "grid.toml", "--scheduler", "local", "--output", "o"],
     ],
     ids=lambda arguments: "-".join(arguments[:2]),
 )

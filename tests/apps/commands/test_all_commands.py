@@ -97,10 +97,10 @@ explore --port abc | port must be an integer, got 'abc'
 reproduce --quality best | quality must be one of ('quick', 'full'), got 'best'
 reproduce --columns 3 | columns must be an integer from 1 to 2, got 3
 reproduce --vector png | vector must be one of ('pdf', 'svg'), got 'png'
-reproduce fig17 | no figure or study 'fig17'; did you mean 17?
-reproduce 3,fig17_density.png | no figure or study 'fig17_density.png'; did you mean 17?
-reproduce fig20 | no figure or study 'fig20'; there are: all, analytics, 1 model
-reproduce arctan | no figure or study 'arctan'; did you mean 'arctanh'?
+reproduce fig17 | no figure 'fig17'; did you mean 17?
+reproduce 3,fig17_density.png | no figure 'fig17_density.png'; did you mean 17?
+reproduce fig20 | no figure 'fig20'; there are: all, analytics, 1 model
+reproduce arctan | no figure 'arctan'; did you mean 'arctanh'?
 reproduce 16 17 | which takes values separated by commas: 16,17
 relax --seed -1 | seed must be
 simulate --particles 1,x | particles takes numbers
