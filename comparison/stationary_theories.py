@@ -230,8 +230,8 @@ def _choose(table: xr.Dataset, chain: Chain, quantity: str) -> Choice:
             raise ValueError(refusals.popitem()[1])
         listed = "; ".join(f"{name}: {reason}" for name, reason in refusals.items())
         raise ValueError(f"no theory takes this chain for its {quantity}: {listed}")
-    stated = table[f"{quantity}_model_error"].to_series()
-    errors = {name: error for name, error in stated.items() if not refusals[name]}
+    stated = zip(refusals, table[f"{quantity}_model_error"].values.tolist(), strict=True)
+    errors = {name: error for name, error in stated if not refusals[name]}
     best = min(errors, key=lambda name: (math.isnan(errors[name]), errors[name]))
     named = quantity.replace("_", " ")
     listed = ", ".join(

@@ -146,7 +146,7 @@ def _print(over: str, tree: xr.DataTree) -> None:
         if len(group.children) == 1 or status == "diverged":
             rows.append(here)
     named = {row.get("theory") for row in rows} - {"exact"}
-    columns = {
+    columns: dict[str, tuple[str, Callable[[Any], str]]] = {
         over: (_SYMBOLS[over], "{:g}".format),
         "theory": ("theory", str),
         "density_maximum": ("rho\nmax", percent),

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -93,7 +93,7 @@ def _list(chain: Chain) -> None:
     from crazybilliards.comparison import theories
 
     found = theories(chain)
-    rows = found.to_dataframe().reset_index().to_dict("records")
+    rows: list[dict[Any, Any]] = found.to_dataframe().reset_index().to_dict("records")
     headings = ("W_v", "border", "W_x", "<dx>", "density")
     errors = [str(name) for name in found if str(name).endswith("_model_error")]
     columns = {name: (head, _percent) for name, head in zip(errors, headings, strict=True)}

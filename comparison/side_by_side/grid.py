@@ -82,7 +82,7 @@ def compare(
         None: a folder that is removed at the end.
     duration
         Simulated time of each of two replicas [T]; 100 000 takes 2 s for 100 rods at e = 1, and
-        SLOW at other e.
+        25 s at e = 0.9.
     seed
         As in ``simulate``. Every chain has its own random numbers.
     processes

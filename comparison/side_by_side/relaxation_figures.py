@@ -104,8 +104,8 @@ def relaxation_pictures(tree: xr.DataTree, most: int) -> tuple[Iterator[Picture]
     densities = {name: each[["density"]].sel(x=slice(*extent)) for name, each in densities.items()}
     last = densities[SIMULATION].time.size - 1
     chosen = np.unique(np.linspace(0, last, most).round().astype(int))
-    chosen = {name: each.isel(time=chosen) for name, each in densities.items()}
-    return _pictures(chosen), chosen[SIMULATION].time.size
+    shown = {name: each.isel(time=chosen) for name, each in densities.items()}
+    return _pictures(shown), chosen.size
 
 
 def _pictures(densities: dict[str, xr.Dataset]) -> Iterator[Picture]:
