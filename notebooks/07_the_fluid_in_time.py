@@ -303,7 +303,7 @@ assert abs(warm.mean_displacement - exact.mean_displacement).max() > 0.05 * s
 # ## 4. The animation
 
 # %% tags=["hide-input"]
-film = cb.film(tree, progress=False)
+film = cb.film(tree, seconds=6, progress=False)
 film
 
 # %% tags=["remove-cell"]

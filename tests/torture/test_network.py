@@ -167,7 +167,7 @@ def test_every_module_and_the_python_interface(guarded):
     [
         ["compare", "--size", "10", "--duration", "1000", "--amplitude", "1,5", "--output", "o"],
         ["theory", "--size", "10", "--restitution", "0.95", "--output", "o"],
-        ["relax", "--size", "10", "--duration", "4", "--replicas", "8", "--output", "o"],
+        ["relax", "--size", "10", "--duration", "4", "--replicas", "8", "--film", "--output", "o"],
         ["reproduce", "arctanh", "--processes", "2", "--output", "o"],
         ["sweep", "grid.toml", "--processes", "2", "--output", "o"],
         ["sweep", "grid.toml", "--dask", "--output", "o"],
