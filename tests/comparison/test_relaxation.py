@@ -5,7 +5,6 @@ from base64 import b64decode
 import imageio_ffmpeg
 import numpy as np
 import pytest
-from PIL import Image
 
 from crazybilliards.comparison import compare_relaxation, film
 from crazybilliards.comparison.side_by_side.relaxation import cloud, condensed, label_distances
@@ -100,20 +99,14 @@ def test_a_film_has_lines_through_every_bin_which_move(tree):
         first = other
 
 
-@pytest.mark.parametrize("kind", ["mp4", "gif", "html"])
-def test_the_film_of_a_relaxation_is_as_long_as_asked_for(tree, kind, tmp_path):
-    path = film(tree, tmp_path / f"relaxation.{kind}", seconds=0.4, progress=False)
-    if kind == "html":
-        text = path.read_text()
-        assert "<h1>50 rods, A = 20, g = 0, compressed by 0.3 and released at t = 0</h1>" in text
-        assert "://" not in text  # it plays without a network
-        path = tmp_path / "inside.mp4"
-        path.write_bytes(b64decode(text.partition("base64,")[2].partition('"')[0]))
-    if kind == "gif":
-        with Image.open(path) as pictures:
-            assert (pictures.n_frames, pictures.info["duration"]) == (10, 40)
-    else:
-        assert imageio_ffmpeg.count_frames_and_secs(str(path)) == (10, pytest.approx(0.4, abs=0.01))
+def test_the_film_of_a_relaxation_is_as_long_as_asked_for(tree, tmp_path):
+    """And a page plays it without a network."""
+    page = film(tree, tmp_path / "relaxation.html", seconds=10, progress=False).read_text()
+    assert "<h1>50 rods, A = 20, g = 0, compressed by 0.3 and released at t = 0</h1>" in page
+    assert "://" not in page
+    path = tmp_path / "inside.mp4"
+    path.write_bytes(b64decode(page.partition("base64,")[2].partition('"')[0]))
+    assert imageio_ffmpeg.count_frames_and_secs(str(path)) == (41, pytest.approx(10, abs=0.1))
 
 
 def test_what_is_no_relaxation_is_not_filmed(tree):
