@@ -37,27 +37,19 @@ _OBJECTS = {
     ),
     "xr.DataTree": (
         ("xarray:DataTree",),
-        "an xarray.DataTree, which compare_elastic, compare_relaxation and compare_restitutions "
-        "return",
+        "an xarray.DataTree, which compare and compare_relaxation return",
     ),
     "xr.Dataset | xr.DataTree": (
         ("xarray:Dataset", "xarray:DataTree"),
         "a result or a tree of results, an xarray.Dataset or xarray.DataTree",
     ),
-    "xr.Dataset | Chain": (
-        ("xarray:Dataset", "crazybilliards.model.chain:Chain"),
-        "a result with snapshots, of simulate(chain, observe='snapshots'), or a Chain",
-    ),
-    "Relaxation": (
-        ("xarray:DataTree",),
-        "what compare_relaxation returns; film(run) shows the rods of one run",
+    "xr.Dataset | xr.DataTree | Chain": (
+        ("xarray:Dataset", "xarray:DataTree", "crazybilliards.model.chain:Chain"),
+        "a result with snapshots, of simulate(chain, observe='snapshots'), what compare_relaxation "
+        "returns, or a Chain",
     ),
     "bool": (("builtins:int", "numpy:bool"), "True or False"),
     "bool | str": (("builtins:int", "numpy:bool", "builtins:str"), "True, False or a text"),
-    "FuncAnimation": (
-        ("matplotlib.animation:FuncAnimation",),
-        "a FuncAnimation of matplotlib, which animate(tree) returns",
-    ),
 }
 
 

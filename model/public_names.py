@@ -26,6 +26,16 @@ _GONE = {
 for _fit in ("Arctanh", "Avalanche", "Exponential", "Growth", "PowerLaw", "Scaling", "Singularity"):
     _GONE[f"{_fit}Fit"] = "every fit is a Fit, with the same attributes"
 
+# The same for 0.5.0.
+_GONE |= {
+    "animate": "film(tree) films what compare_relaxation returns",
+    "compare_elastic": "compare(chain, {'amplitude': [1, 3, 10, 30]})",
+    "compare_restitutions": "compare(chain, {'restitution': [0.9, 0.95]})",
+    "standalone_page": "film(tree, 'relaxation.html') writes a page",
+    "width_deviations": "velocity widths are compared by a division, run.velocity_width / "
+    "theory.velocity_width - 1",
+}
+
 
 def hand_out(room: str) -> tuple[Callable[[str], Any], Callable[[], list[str]], list[str]]:
     """Return ``__getattr__``, ``__dir__`` and ``__all__`` of a room."""
@@ -55,6 +65,9 @@ def hand_out(room: str) -> tuple[Callable[[str], Any], Callable[[], list[str]], 
 
 # What lies in a folder below the rooms.
 _ELSEWHERE = {"Observer": "from crazybilliards.particles.observers.base import Observer"}
+for _fit in ("avalanches", "exponential", "growth", "scaling", "singularity"):
+    _ELSEWHERE[f"fit_{_fit}"] = f"from crazybilliards.reproduction.fits import fit_{_fit}"
+_ELSEWHERE["tail_length"] = "from crazybilliards.reproduction.fits import tail_length"
 
 
 def missing(module: str, name: str, known: Iterable[str]) -> AttributeError:

@@ -114,7 +114,7 @@ class Killed(NamedTuple):
 
 ALL = {"observe": ("widths", "density", "energy", "velocities")}
 INELASTIC = Chain(size=40, restitution=0.9, gap=0.1)
-COMPARE = ("compare", "--size", "10", "--duration", "1000", "--amplitudes", "1,2,5")
+COMPARE = ("compare", "--size", "10", "--duration", "1000", "--amplitude", "1,2,5")
 RUN = simulated(simulate, INELASTIC, duration=3000.0, replicas=3, **ALL)
 ELASTIC = simulated(simulate, INELASTIC.replace(restitution=1.0), duration=2e4, replicas=3, **ALL)
 HALF = {"accuracy": 0.01, "replicas": 2, "threads": 2, "seed": 4} | ALL

@@ -20,6 +20,7 @@ from crazybilliards.model import checks, words
 from crazybilliards.model.vocabulary import VOCABULARY
 from crazybilliards.particles.observers import OBSERVERS
 from crazybilliards.particles.running.replica import Replica
+from crazybilliards.reproduction import fits
 
 
 class Unknown(cb.Widths):
@@ -49,6 +50,7 @@ def names():
         "tree": xr.DataTree.from_dict({"a": exact}),
         "foreign": xr.Dataset({"density": ("x", np.full(9, 0.1))}, {"x": np.arange(9.0)}),
         "Case": Case,
+        "fits": fits,
         "Executor": Executor,
         "checks": checks,
         "xr": xr,
@@ -71,7 +73,7 @@ WANTED = {
     "xr.Dataset": "a result, an",
     "xr.DataTree": "an xarray.DataTree, which",
     "xr.Dataset | xr.DataTree": "a result or a tree",
-    "FuncAnimation": "a FuncAnimation",
+    "xr.Dataset | xr.DataTree | Chain": "a result with snapshots",
 }
 CALLS = [
     name
@@ -92,7 +94,7 @@ def test_every_public_call_is_checked(name, names):
     placed = [names[right[each.annotation]] if each.annotation in right else 3 for each in own]
     way = f": write {by_name[0]}=3 with its name" if by_name else "; it takes "
     takes = ", ".join(each.name for each in own) or "no argument"
-    if name not in ("animate", "film", "standalone_page"):  # which look at the objects before
+    if name != "film":  # which looks at the object before
         with pytest.raises(TypeError, match=f"^{name} takes {takes} without a name, got 3{way}"):
             call(*placed, 3)
     last = next(reversed(arguments), "")
@@ -243,5 +245,5 @@ def test_a_class_without_a_start_of_its_own_runs_that_of_a_base():
 
 def test_a_warning_names_the_line_of_the_user():
     with pytest.warns(UserWarning, match="relaxation time|not measured") as caught:
-        cb.compare_restitutions(cb.Chain(size=3), [0.9], duration=20, progress=False)
+        cb.compare(cb.Chain(size=3), {"restitution": [0.9]}, duration=20, progress=False)
     assert {each.filename for each in caught} == {__file__}

@@ -45,9 +45,10 @@ FLOORS = {
         | {"curves", "encoding", "rod_film", "stationary_theories", "symbols"},
         {"sweeps"},
         {"side_by_side"},
+        {"moving_pictures"},
     ),
     "reproduction": (
-        {"claims"},
+        {"claims", "fits"},
         {"chains", "distributions", "power_laws", "vanishing_step"},
         {"predictions"},
         {"figures"},

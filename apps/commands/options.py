@@ -72,12 +72,19 @@ def with_chain_options(
         parameters: list[inspect.Parameter] = []
         for name, each in signature.parameters.items():
             parameters += options if name == "chain" else [each]
-        with_options.__signature__ = signature.replace(parameters=parameters)  # type: ignore[attr-defined]
-        with_options.__annotations__ = {each.name: each.annotation for each in parameters}
-        with_options.__doc__ = command.__doc__
-        return with_options
+        return in_its_place(with_options, command, parameters)
 
     return decorated
+
+
+def in_its_place(
+    wrapper: Callable[..., None], command: Callable[..., None], parameters: list[inspect.Parameter]
+) -> Callable[..., None]:
+    """Return the wrapper of a command, with these parameters, as typer reads it."""
+    wrapper.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
+    wrapper.__annotations__ = {each.name: each.annotation for each in parameters}
+    wrapper.__doc__ = command.__doc__
+    return wrapper
 
 
 def _option(field: Field[Any], defaults: dict[str, Any]) -> inspect.Parameter:

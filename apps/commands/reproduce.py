@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from crazybilliards.apps.commands.answers import note, say, wrote
-from crazybilliards.apps.commands.options import KeepOld, Processes, Scheduler, path_option
+from crazybilliards.apps.commands.options import Processes, Scheduler, path_option
 from crazybilliards.apps.commands.output import writing_to
 from crazybilliards.apps.commands.sweep import compute_cases, engine
 from crazybilliards.model.checks import check_choice, check_integer
@@ -60,7 +60,6 @@ def command(
     ] = None,
     processes: Processes = None,
     scheduler: Scheduler = None,
-    keep_old: KeepOld = False,
 ) -> None:
     """Reproduce the figures of arXiv:1404.7460, and check what the paper claims.
 
@@ -91,9 +90,9 @@ def command(
 
     computing = engine(processes, scheduler)
     with writing_to(output):
-        compute_cases(all_cases(wanted, chosen), output / "cases", computing, keep_old)
+        compute_cases(all_cases(wanted, chosen), output / "cases", computing, keep_old=False)
         drawing = {"columns": columns, "formats": [] if vector is None else [vector]}
-        reproduced = _draw(wanted, chosen, output, keep_old=keep_old, **drawing)
+        reproduced = _draw(wanted, chosen, output, **drawing)
         if which in _REPORTS:
             for name, written in zip(_REPORTS[which], (markdown, html), strict=True):
                 write_atomically(output / name, written(reproduced, chosen).encode())

@@ -67,17 +67,16 @@ def reproduce(
     quality: Quality,
     folder: Path,
     *,
-    keep_old: bool = False,
     columns: Columns | None = None,
     formats: Collection[str] = (),
 ) -> Iterator[Reproduced]:
     """Draw studies and check their claims, one after another, from the cases in ``folder``.
 
-    ``keep_old`` as in :func:`crazybilliards.comparison.sweeps.run_cases`. ``columns``: the width
-    of the pictures, as :func:`crazybilliards.comparison.layout.house_style` takes it. ``formats``:
-    file formats of matplotlib, besides PNG.
+    ``columns``: the width of the pictures, as
+    :func:`crazybilliards.comparison.layout.house_style` takes it. ``formats``: file formats of
+    matplotlib, besides PNG.
     """
-    load = cache(lambda case: case.load(folder, keep_old=keep_old))  # many studies share cases
+    load = cache(lambda case: case.load(folder))  # many studies share cases
     for study in studies:
         cases = study.cases(quality)
         results = {name: load(case) for name, case in cases.items()}

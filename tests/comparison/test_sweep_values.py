@@ -31,10 +31,9 @@ SHORT = {"duration": 100, "observe": ["widths"]}
 )
 def test_values_are_those_that_a_person_writes(values):
     assert cb.Sweep({"restitution": values}).grid == {"restitution": [0.1, 0.2, 0.3]}
-    with pytest.raises(ValueError, match="restitutions must differ from one another"):
-        cb.compare_restitutions(cb.Chain(size=3), [*values, 0.3])
-    with pytest.raises(ValueError, match="amplitudes must differ from one another"):
-        cb.compare_elastic(cb.Chain(size=3), [*values, 0.3])
+    for name in ("restitution", "amplitude"):
+        with pytest.raises(ValueError, match=f"the values of {name} must differ"):
+            cb.compare(cb.Chain(size=3), {name: [*values, 0.3]})
 
 
 def test_only_errors_of_rounding_are_taken_away():

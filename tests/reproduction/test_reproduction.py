@@ -131,10 +131,9 @@ def test_a_figure_its_claims_and_nothing_computed_twice(command, tmp_path, monke
     number = claim["number"]
     assert 0 < number["value"] + 3 * number["error"] < EYE
     assert claim["within"] == [-EYE, EYE]
-    # After an edit of the simulation: with --keep-old the same, otherwise it is computed anew.
+    # After an edit of the simulation it is computed anew.
     other = replace(JOBS["simulate"], source="other source code")
     monkeypatch.setitem(JOBS, "simulate", other)
-    assert command("16", "--keep-old") == (0, again, "")
     status, printed, errors = command("16")
     assert status == 0
     assert "1 cases, 0 of them" in printed
