@@ -20,7 +20,7 @@ def free_displacement(chain):
 
 @pytest.mark.parametrize("amplitude", [0.1, 100.0])
 @pytest.mark.parametrize("spring", ["linear", "quadratic"])
-@pytest.mark.parametrize("size", [1, 2, 20, 300])
+@pytest.mark.parametrize("size", [1, 2, 20, 100])
 def test_without_gap_displacements_are_order_statistics(size, spring, amplitude):
     chain = Chain(size=size, spring=spring, amplitude=amplitude)
     exact = equilibrium(chain)
