@@ -79,7 +79,7 @@ def squeeze(request, tmp_path):
         limit = before[0] if number is None else number
         resource.setrlimit(resource.RLIMIT_FSIZE, (limit, before[1]))
 
-    yield tmp_path, leave, 20
+    yield tmp_path, leave, 12
     leave(None)
 
 

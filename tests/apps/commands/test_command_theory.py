@@ -57,7 +57,7 @@ def test_the_settings_of_a_theory_reach_it(refused, monkeypatch):
 
 
 def test_without_a_name_it_is_the_best_theory_and_says_so(run, solved):
-    done = run("theory", "--size", 30, "--restitution", 0.5, "--cells", 8)
+    done = run("theory", "--size", 12, "--restitution", 0.5, "--cells", 8)
     assert done.returncode == 0
     assert done.stdout.startswith("correlated_phase_space has the smallest stated error")
     [(_, _, result)] = solved

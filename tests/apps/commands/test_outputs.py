@@ -21,7 +21,7 @@ from crazybilliards.model.locks import locked
 
 SMALL = {
     "compare": ["--size", "4", "--duration", "300", "--amplitudes", "10"],
-    "relax": ["--size", "4", "--duration", "1", "--replicas", "2", "--every", "0.5"],
+    "relax": ["--size", "4", "--duration", "1", "--replicas", "2", "--every", "1"],
     "reproduce": ["1"],
     "simulate": ["--size", "4", "--duration", "100"],
     "theory": ["equilibrium", "--size", "4"],
