@@ -32,6 +32,7 @@ from crazybilliards.comparison.encoding import (
 )
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.arrays import Array
+from crazybilliards.model.calls import public
 from crazybilliards.model.checks import check_path, check_real
 from crazybilliards.model.progress import progress_bar
 from crazybilliards.model.storage import make_folder, write_atomically
@@ -49,6 +50,7 @@ _LOOK: Any = {"font.size": 12} | {f"axes.spines.{side}": False for side in ("lef
 _COLOURS, _SPRING = "PuOr", "#777777"  # told apart with any colour vision
 
 
+@public
 def film(
     run: xr.Dataset | Chain,
     path: str | os.PathLike[str] | None = None,
@@ -177,6 +179,7 @@ def _motion(run: xr.Dataset, pictures: int) -> _Motion:
             f"has {', '.join(map(str, run)) or 'nothing'} and is {run.attrs.get('status')}"
         )
     chain = chain_of(run)
+    chain.require_known("film")
     run = run.isel(replica=0) if "replica" in run.dims else run
     rods = run.dropna("time", subset=["velocity"]).transpose("time", "particle", ...)
     time, x, v = rods.time.values, rods.position.values, rods.velocity.values

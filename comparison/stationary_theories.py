@@ -15,6 +15,8 @@ from dataclasses import dataclass
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from crazybilliards import model
+from crazybilliards.model.calls import public
 from crazybilliards.model.checks import check_choice
 from crazybilliards.model.progress import silent, watched
 
@@ -101,7 +103,8 @@ THEORIES = {
 }
 
 
-def theories(chain: Chain) -> xr.Dataset:
+@public
+def theories(chain: model.Chain) -> xr.Dataset:
     """List the theories of the steady state: which take a chain, their errors, what they cost.
 
     Nothing is solved. ``theories(chain).to_dataframe()`` is a table.
@@ -164,8 +167,9 @@ def theories(chain: Chain) -> xr.Dataset:
     return xr.Dataset(variables, {"theory": list(THEORIES)}, {"best": best})
 
 
+@public
 def best_theory(
-    chain: Chain,
+    chain: model.Chain,
     quantity: str = "velocity_width",
     *,
     tolerance: float | None = None,

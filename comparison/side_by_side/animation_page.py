@@ -10,6 +10,8 @@ from html import escape
 
 from matplotlib.animation import FuncAnimation
 
+from crazybilliards.model.calls import public
+
 # The classes of matplotlib's buttons, and the characters shown instead.
 _SIGNS = {
     "minus": r"\2212",
@@ -37,6 +39,7 @@ _PLAYING = (
 )
 
 
+@public
 def standalone_page(
     animation: FuncAnimation, fps: int | None = None, *, title: str = "", text: str = ""
 ) -> str:

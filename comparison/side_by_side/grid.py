@@ -29,7 +29,7 @@ from crazybilliards.comparison.sweeps.missing import warn_of_short_runs
 from crazybilliards.kinetic import equilibrium, force_balance, rod_by_rod
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain, chain_of
-from crazybilliards.model.calls import warn_user
+from crazybilliards.model.calls import public, warn_user
 from crazybilliards.model.checks import (
     as_written,
     check_integer,
@@ -62,6 +62,7 @@ TITLES = (
 _REPLICAS = 2
 
 
+@public
 def compare_elastic(
     chain: Chain,
     amplitudes: ArrayLike = (1.0, 3.0, 10.0, 30.0),
@@ -124,6 +125,7 @@ def compare_elastic(
         return elastic_tree({name: found[SIMULATION] for name, found in results.items()}, status)
 
 
+@public
 def compare_restitutions(
     chain: Chain,
     restitutions: ArrayLike,

@@ -13,6 +13,7 @@ from crazybilliards.comparison.distances import Deviation, deviation
 from crazybilliards.comparison.side_by_side.grid import ELASTIC, KINETIC, SIMULATION
 from crazybilliards.comparison.widths import WidthDeviation, width_deviation
 from crazybilliards.model import chain_of
+from crazybilliards.model.calls import public
 
 _Found = TypeVar("_Found")
 
@@ -29,6 +30,7 @@ def largest_width_error(group: xr.DataTree) -> float:
     return float(np.abs((run.velocity_width - width) / run.velocity_width_error).max())
 
 
+@public
 def width_deviations(tree: xr.DataTree) -> dict[str, dict[str, WidthDeviation]]:
     """Compare velocity widths of simulation and theories, by group and theory.
 

@@ -18,8 +18,7 @@ from crazybilliards.comparison.layout import entitle, legend_above, panels
 from crazybilliards.comparison.side_by_side.grid import SIMULATION
 from crazybilliards.comparison.side_by_side.relaxation import LEGEND, PARTICLES, cloud
 from crazybilliards.model import Chain, chain_of
-
-Relaxation = xr.DataTree
+from crazybilliards.model.calls import public
 
 _NAMES = {PARTICLES: SIMULATION} | LEGEND
 _DENSITY = r"density $\rho$ [1/R]"
@@ -96,7 +95,8 @@ def draw_cloud(tree: xr.DataTree) -> Figure:
     return figure
 
 
-def animate(tree: Relaxation) -> FuncAnimation:
+@public
+def animate(tree: xr.DataTree) -> FuncAnimation:
     """rho(x, t) of the simulation and the fluids as an animation.
 
     ``standalone_page(animate(tree))`` plays in a notebook or a browser.

@@ -17,6 +17,7 @@ from typing import Any
 
 from tqdm import tqdm
 
+from crazybilliards.model.calls import public
 from crazybilliards.model.checks import check_integer
 from crazybilliards.model.process import cores, end_with_parent
 
@@ -50,6 +51,7 @@ class _Later(Future[Any]):
         return self.call()
 
 
+@public
 def process_pool(processes: int | None = None) -> AbstractContextManager[Executor]:
     """Run cases in processes of this machine, one for each core unless told otherwise.
 

@@ -35,7 +35,7 @@ from crazybilliards.comparison.sweeps.case import Case, plain, stored_parameters
 from crazybilliards.comparison.sweeps.index import CHAIN, scalar, varied
 from crazybilliards.comparison.sweeps.jobs import JOBS
 from crazybilliards.model import Chain, load
-from crazybilliards.model.calls import warn_user
+from crazybilliards.model.calls import public, warn_user
 from crazybilliards.model.checks import (
     as_written,
     check_arguments,
@@ -51,6 +51,7 @@ _MOST_CASES = 1_000_000
 _TEXTS = ("status", "provenance", "file")  # are always variables
 
 
+@public
 @dataclass(frozen=True)
 class Sweep:
     """A grid of cases. Each case is made and checked when it is needed.
@@ -157,6 +158,7 @@ def read_sweep(path: str | os.PathLike[str]) -> Sweep:
     return Sweep(tables.get("grid", {}), job, tables.get("chain", {}), tables.get(job, {}))
 
 
+@public
 def load_sweep(folder: str | os.PathLike[str]) -> xr.Dataset:
     """Read all cases of a folder into one Dataset over the parameters in which they differ.
 

@@ -27,6 +27,7 @@ from tqdm import tqdm
 from crazybilliards.comparison.sweeps.case import Case, compute
 from crazybilliards.comparison.sweeps.index import write_index
 from crazybilliards.comparison.sweeps.missing import Cases, check_cases, find_missing
+from crazybilliards.model.calls import public
 from crazybilliards.model.checks import check_path, shown
 from crazybilliards.model.locks import locked
 from crazybilliards.model.process import interrupts_held_back
@@ -49,6 +50,7 @@ class Outcome:
     failed: dict[Case, str] = field(default_factory=dict)  # and the reasons
 
 
+@public
 def run_cases(
     cases: Iterable[Case],
     folder: str | os.PathLike[str],
