@@ -10,7 +10,6 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from copy import copy
-from inspect import isabstract
 from types import BuiltinFunctionType, FunctionType, NoneType
 from typing import Any, ClassVar, NamedTuple, Self
 
@@ -96,9 +95,9 @@ class Observer(ABC):
     knows: ClassVar[frozenset[str]] = frozenset()
 
     def __init_subclass__(cls, **keywords: Any) -> None:
-        """Check what the class declares, unless it is a base of others."""
+        """Check what the class declares, unless it has no name and is a base of others."""
         super().__init_subclass__(**keywords)
-        if not isabstract(cls):
+        if hasattr(cls, "name"):
             check_declarations(cls)
 
     def __str__(self) -> str:
