@@ -90,7 +90,7 @@ def _classes(annotation: Any, space: dict[str, Any]) -> tuple[type, ...]:
     """Return the classes of an annotation if a message says what is wanted, or nothing."""
     if annotation is inspect.Parameter.empty:
         return ()
-    kind = eval(annotation, space)
+    kind = eval(annotation, space) if isinstance(annotation, str) else annotation
     classes = kind.__args__ if isinstance(kind, UnionType) else (kind,)
     told = all(inspect.isclass(each) and each.__name__ in _WANTED for each in classes)
     return classes if told and classes != (str,) else ()  # texts have checks of their own

@@ -113,7 +113,7 @@ def test_every_public_call_is_checked(name, names):
     for argument, kind in kinds.items():
         if set(classes(kind)) <= set(WANTED):
             for wrong in (None, {}, "a.nc", np.zeros(3), cb.Widths):
-                said = ", or .*".join(WANTED[each] for each in classes(kind))
+                said = ".*, or ".join(WANTED[each] for each in classes(kind))
                 with pytest.raises(ValueError, match=f"^{argument} must be {said}.*; got "):
                     call(**{argument: wrong})
 

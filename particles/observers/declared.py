@@ -38,13 +38,9 @@ def _check_vocabulary(owner: str, said: Any) -> None:
     entries = said.items() if isinstance(said, Mapping) else [(None, None)]
     for name, entry in entries:
         texts = [name, *entry] if isinstance(entry, tuple | list) else []
-        if len(texts) != 3 or not all(isinstance(each, str) for each in texts):
+        right = len(texts) == 3 and all(isinstance(each, str) for each in texts)
+        if not right or not _UNIT.fullmatch(texts[2]):
             raise ValueError(
-                f"vocabulary of {owner} must be {{name: (meaning, unit)}}, all of them texts, got "
-                f"{shown(said)}"
-            )
-        if not _UNIT.fullmatch(texts[2]):
-            raise ValueError(
-                f"vocabulary of {owner}: the unit of {name!r} must consist of R, M and T, such as "
-                f"R^2/T, or be 1, got {shown(texts[2])}"
+                f"vocabulary of {owner} must be {{name: (meaning, unit)}}, all of them texts, and "
+                f"units of R, M and T, such as R^2/T, or 1, got {shown(said)}"
             )

@@ -66,7 +66,7 @@ HOW = {"duration": 200, "progress": False}
         (["my_mean"], r"all of them texts, got \['my_mean'\]"),
         (None, "all of them texts, got None"),
         ({}, "gives 'my_mean', which has no meaning and unit"),
-        ({"my_mean": ("velocity", "m/s")}, "unit of 'my_mean' .* of R, M and T.*got 'm/s'"),
+        ({"my_mean": ("velocity", "m/s")}, "units of R, M and T, .*got .*'m/s'"),
     ],
 )
 def test_a_wrong_vocabulary_is_refused_where_the_class_is_defined(vocabulary, said):
