@@ -14,8 +14,8 @@ import sys
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache, wraps
-from types import UnionType
-from typing import Any, TypeVar
+from types import SimpleNamespace, UnionType
+from typing import Any, TypeVar, get_type_hints
 
 from crazybilliards.model.checks import meant_argument, shown, with_meanings
 from crazybilliards.model.words import WORDS
@@ -62,9 +62,12 @@ def _checked(function: Callable[..., Any], name: str) -> Any:
         """Return numpy's errstate, and the arguments of certain classes: place, name, classes."""
         from numpy import errstate
 
-        space = inspect.unwrap(function).__globals__
-        arguments = enumerate(signature.parameters.values())
-        found = [(place, each.name, _classes(each.annotation, space)) for place, each in arguments]
+        inner = inspect.unwrap(function)
+        # Without what it returns: a module that loads quickly does not know this class.
+        own = {name: kind for name, kind in inner.__annotations__.items() if name != "return"}
+        kinds = get_type_hints(SimpleNamespace(__annotations__=own), inner.__globals__)
+        places = enumerate(signature.parameters)
+        found = [(place, name, _classes(kinds.get(name))) for place, name in places]
         return errstate, [each for each in found if each[2]]
 
     @wraps(function)
@@ -86,11 +89,8 @@ def _checked(function: Callable[..., Any], name: str) -> Any:
     return checked
 
 
-def _classes(annotation: Any, space: dict[str, Any]) -> tuple[type, ...]:
+def _classes(kind: Any) -> tuple[type, ...]:
     """Return the classes of an annotation if a message says what is wanted, or nothing."""
-    if annotation is inspect.Parameter.empty:
-        return ()
-    kind = eval(annotation, space) if isinstance(annotation, str) else annotation
     classes = kind.__args__ if isinstance(kind, UnionType) else (kind,)
     told = all(inspect.isclass(each) and each.__name__ in _WANTED for each in classes)
     return classes if told and classes != (str,) else ()  # texts have checks of their own
