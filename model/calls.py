@@ -3,8 +3,6 @@
 Python says of ``Chain(restituton=0.9)`` only that this argument is unexpected. The message made
 here names the nearest argument, or the one that a symbol of the paper stands for. Objects of the
 wrong type are refused by the annotation of the argument. A right call takes a microsecond more.
-
-This module does not import numpy, so that the command line shows its ``--help`` without a delay.
 """
 
 from __future__ import annotations
@@ -13,9 +11,11 @@ import inspect
 import sys
 import warnings
 from collections.abc import Callable, Mapping, Sequence
-from functools import cache, wraps
-from types import SimpleNamespace, UnionType
-from typing import Any, TypeVar, get_type_hints
+from functools import wraps
+from types import UnionType
+from typing import Any, TypeVar
+
+import numpy as np
 
 from crazybilliards.model.checks import meant_argument, shown, with_meanings
 from crazybilliards.model.words import WORDS
@@ -30,8 +30,7 @@ _WANTED = {
     "Chain": "a Chain: Chain(size=60) makes one, chain_of(result) gives that of a result",
     "Dataset": "a result, an xarray.Dataset: simulate(chain), a theory or load(path) returns one, "
     "tree['name'].to_dataset() gives one of a tree",
-    "DataTree": "an xarray.DataTree, which a comparison returns",
-    "FuncAnimation": "a FuncAnimation of matplotlib",
+    "DataTree": "an xarray.DataTree, which compare and compare_relaxation return",
     "bool": "True or False",
     "str": "a text",
 }
@@ -55,31 +54,22 @@ def warn_user(message: str, category: type[Warning] = UserWarning) -> None:
 
 
 def _checked(function: Callable[..., Any], name: str) -> Any:
-    signature = inspect.signature(function)
-
-    @cache  # at the first call: modules that load quickly have no classes of arrays before
-    def prepared() -> tuple[Any, list[tuple[int, str, tuple[type, ...]]]]:
-        """Return numpy's errstate, and the arguments of certain classes: place, name, classes."""
-        from numpy import errstate
-
-        inner = inspect.unwrap(function)
-        # Without what it returns: a module that loads quickly does not know this class.
-        own = {name: kind for name, kind in inner.__annotations__.items() if name != "return"}
-        kinds = get_type_hints(SimpleNamespace(__annotations__=own), inner.__globals__)
-        places = enumerate(signature.parameters)
-        found = [(place, name, _classes(kinds.get(name))) for place, name in places]
-        return errstate, [each for each in found if each[2]]
+    signature = inspect.signature(function, eval_str=True)
+    objects = [  # real classes: an annotation that names none is an error where the function stands
+        (place, each.name, classes)
+        for place, each in enumerate(signature.parameters.values())
+        if (classes := _classes(each.annotation))
+    ]
 
     @wraps(function)
     def checked(*given: Any, **named: Any) -> Any:
-        errstate, objects = prepared()
         for place, argument, classes in objects:
             if place < len(given):
                 _require(argument, given[place], classes)
             elif argument in named:
                 _require(argument, named[argument], classes)
         try:
-            with errstate(**_NUMPY):
+            with np.errstate(**_NUMPY):
                 return function(*given, **named)
         except TypeError:
             if problem := _problem(name, signature, given, named):
@@ -98,9 +88,7 @@ def _classes(kind: Any) -> tuple[type, ...]:
 
 def _require(argument: str, value: object, classes: tuple[type, ...]) -> None:
     """Raise a ValueError unless the value is of one of the classes; numbers are truth values."""
-    if isinstance(value, classes):
-        return
-    if bool in classes and (isinstance(value, int) or type(value).__name__ == "bool"):  # numpy's
+    if isinstance(value, classes) or (bool in classes and isinstance(value, int | np.bool_)):
         return
     wanted = ", or ".join(_WANTED[each.__name__] for each in classes)
     raise ValueError(f"{argument} must be {wanted}; got {shown(value)}")

@@ -13,11 +13,20 @@ from collections.abc import Callable, Iterable
 from importlib import import_module
 from typing import Any
 
-# What replaces the names that this version does not have any more; the next one says no more of
-# them.
-_GONE: dict[str, str] = {}
+# What replaces the names that 0.5.0 does not have any more; 0.6.0 says no more of them.
+_GONE = {
+    "animate": "film(tree) films what compare_relaxation returns",
+    "compare_elastic": "compare(chain, {'amplitude': [1, 3, 10, 30]})",
+    "compare_restitutions": "compare(chain, {'restitution': [0.9, 0.95]})",
+    "standalone_page": "film(tree, 'relaxation.html') writes a page",
+    "width_deviations": "velocity widths are compared by a division, run.velocity_width / "
+    "theory.velocity_width - 1",
+}
 # What lies in a folder below the rooms.
 _ELSEWHERE = {"Observer": "from crazybilliards.particles.observers.base import Observer"}
+for _fit in ("avalanches", "exponential", "growth", "scaling", "singularity"):
+    _ELSEWHERE[f"fit_{_fit}"] = f"from crazybilliards.reproduction.fits import fit_{_fit}"
+_ELSEWHERE["tail_length"] = "from crazybilliards.reproduction.fits import tail_length"
 
 
 def hand_out(room: str) -> tuple[Callable[[str], Any], Callable[[], list[str]], list[str]]:

@@ -43,6 +43,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 from teaching import BLUE, GREEN, ORANGE, PINK, agree, check, mean_and_error, panels, right
 
+from crazybilliards.reproduction.fits import fit_avalanches, fit_scaling
+
 # %%
 import crazybilliards as cb
 
@@ -382,7 +384,7 @@ plt.show()
 sizes = np.array(list(runs_of))
 table = [mean_and_error([centre_width(run) for run in runs]) for runs in runs_of.values()]
 centre, centre_error = np.transpose(table)
-scaling = cb.fit_scaling(sizes, centre, centre_error)
+scaling = fit_scaling(sizes, centre, centre_error)
 print(f"exponent {scaling.exponent:.3f} ± {scaling.exponent_error:.3f}")
 for size, value in zip(sizes, centre, strict=True):
     print(f"L = {size}: as slow as a block of {(W / value) ** 2:.1f} rods that move as one")
@@ -481,7 +483,7 @@ counts_of, tau = {}, defaultdict(dict)
 for name, chosen in origins.items():
     counts = np.array([run.sel(particle=chosen).sum("particle").values for run in waves], float)
     for sizes in ((3, 10), (10, 25), (25, 60), (SMALLEST, LARGEST)):
-        fits = [cb.fit_avalanches(each, smallest=sizes[0], largest=sizes[1]) for each in counts]
+        fits = [fit_avalanches(each, smallest=sizes[0], largest=sizes[1]) for each in counts]
         tau[name][sizes] = mean_and_error([fit.exponent for fit in fits])
     counts_of[name] = counts, fits
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from crazybilliards.model.vocabulary import VOCABULARY
-from crazybilliards.reproduction.reproducible import groups
+from crazybilliards.reproduction.figures import FIGURES
 
 ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "docs" / "paper" / "concordance.md"
@@ -66,9 +66,8 @@ def test_every_figure_has_a_row_and_a_module():
     numbers = [int(cell.split()[0]) for cell in first_cells("Figures")]
     assert numbers == list(range(1, FIGURE_COUNT + 1))
     modules = re.findall(r"`(fig\d\d_\w+)`", section("Figures"))
-    figures = groups()["all"]
-    assert modules == [figure.stem.replace("-", "_") for figure in figures]
-    assert numbers == [figure.number for figure in figures]
+    assert modules == [figure.stem.replace("-", "_") for figure in FIGURES]
+    assert numbers == [figure.number for figure in FIGURES]
 
 
 def test_the_sections_of_notebook_11_exist():

@@ -76,7 +76,6 @@ def command(
     method: Annotated[
         str, typer.Option(help="Collisions: event-driven or contact-dynamics.")
     ] = "event-driven",
-    stepper: Annotated[str, typer.Option(help="Time stepping: splitting or euler.")] = "splitting",
     seed: Annotated[int, typer.Option(help="Seed of the random numbers.")] = 0,
     threads: Threads = None,
     checkpoint: Annotated[
@@ -115,8 +114,7 @@ def command(
         "checkpoint": checkpoint,
     }
     if accuracy is not None:
-        _refuse(duration=duration, time_step=time_step, every=every, average=average)
-        _refuse(method=method, stepper=stepper)
+        _refuse(duration=duration, time_step=time_step, every=every, average=average, method=method)
     file = output and result_file(output, "simulation.nc")
     with writing_to(file, file=True):
         if accuracy is None:
@@ -125,7 +123,6 @@ def command(
                 duration=duration,
                 time_step=time_step,
                 method=method,  # type: ignore[arg-type]
-                stepper=stepper,  # type: ignore[arg-type]
                 average=average,  # type: ignore[arg-type]
                 every=every,
                 **common,

@@ -1,18 +1,16 @@
 """Sweeps: a grid over any parameters, described by a TOML file, read back as one Dataset.
 
-    [grid]                            # every combination of these
-    size = [30, 100, 300]
-    restitution = [0.0, 0.5, 0.95]
-    seed = [1, 2]
+[grid]                            # every combination of these
+size = [30, 100, 300]
+restitution = [0.0, 0.5, 0.95]
+seed = [1, 2]
 
-    [chain]                           # the same for all
-    damping = 2.0
+[chain]                           # the same for all
+damping = 2.0
 
-    [simulate]                        # the job, and its settings the same for all
-    duration = 1000
-    observe = ["widths"]
-
-``crazybilliards sweep`` computes such a grid, and :func:`load_sweep` reads the results.
+[simulate]                        # the job, and its settings the same for all
+duration = 1000
+observe = ["widths"]
 """
 
 from __future__ import annotations
@@ -180,8 +178,8 @@ def load_sweep(folder: str | os.PathLike[str]) -> xr.Dataset:
     Raises
     ------
     ValueError
-        If a file is damaged, if there are no files, if they are not cases of one job, or if two
-        files hold the same case.
+        If a file is damaged, if there are no files, if they are not cases of one job, if two files
+        hold the same case, or if runs with different observers do not fit together.
     """
     place = check_path("folder", folder)
     paths = sorted(place.glob("*.nc"))
@@ -200,15 +198,7 @@ def load_sweep(folder: str | os.PathLike[str]) -> xr.Dataset:
     fixed = {name: value for name, value in points[0].items() if name not in names}
     results = _with_attributes(results, leave=names)
     texts = [str(name) for name in results[0].data_vars if results[0][name].dtype == object]
-    joined = xr.concat(
-        _alike(results),
-        dim="case",
-        join="outer",
-        data_vars="all",
-        coords="different",
-        compat="equals",
-        combine_attrs="drop_conflicts",
-    )
+    joined = _joined(paths, results)
     if names:
         index = pd.MultiIndex.from_frame(table)
         coordinates = xr.Coordinates.from_pandas_multiindex(index, "case")
@@ -249,6 +239,21 @@ def _check_points(paths: Sequence[Path], points: Sequence[dict[str, Any]]) -> No
         first[canonical] = path
 
 
+def _joined(paths: Sequence[Path], results: Sequence[xr.Dataset]) -> xr.Dataset:
+    """Join results along ``case``; a ValueError says which cases do not have the same variables."""
+    how: dict[str, Any] = {"join": "outer", "compat": "equals", "combine_attrs": "drop_conflicts"}
+    try:
+        return xr.concat(_alike(results), "case", data_vars="all", coords="different", **how)
+    except ValueError as error:
+        for path, each in zip(paths, results, strict=True):
+            if different := each.variables.keys() ^ results[0].variables.keys():
+                names = ", ".join(sorted(map(str, different)))
+                raise ValueError(
+                    f"{paths[0]} and {path}: only one has {names}; observe= must be the same"
+                ) from error
+        raise
+
+
 def _with_attributes(results: Sequence[xr.Dataset], leave: Sequence[str]) -> list[xr.Dataset]:
     """Turn the attributes of single cases into variables, except those named in ``leave``.
 
@@ -274,7 +279,7 @@ def _with_attributes(results: Sequence[xr.Dataset], leave: Sequence[str]) -> lis
     return made
 
 
-def _alike(results: list[xr.Dataset]) -> list[xr.Dataset]:
+def _alike(results: Sequence[xr.Dataset]) -> Sequence[xr.Dataset]:
     """Make other dimensions than the particle fit; differing coordinates become numbers."""
     for dimension in sorted({str(name) for each in results for name in each.dims} - {"particle"}):
         values = [each[dimension] for each in results if dimension in each.dims]

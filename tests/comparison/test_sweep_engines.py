@@ -156,7 +156,7 @@ def test_the_command_computes_what_is_missing(run, grid, tmp_path):
     ("arguments", "message"),
     [
         (["--processes", "0"], "processes must be"),
-        (["--dask", "--processes", "2"], "a dask cluster decides"),
+        (["--scheduler", "local", "--processes", "2"], "a dask cluster decides"),
         (["--scheduler", "nowhere"], "no dask scheduler"),
     ],
 )

@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from crazybilliards.comparison import compare_elastic, compare_relaxation, compare_restitutions
+from crazybilliards.comparison import compare, compare_relaxation
 from crazybilliards.kinetic import equilibrium_states
 from crazybilliards.model import Chain
 from crazybilliards.model.randomness import seed_of
@@ -19,8 +19,7 @@ FUNCTIONS = {
         CHAIN, accuracy=0.1, threads=1, progress=False, **how
     ),
     "equilibrium_states": lambda **how: equilibrium_states(CHAIN, 2, **how),
-    "compare_elastic": lambda **how: compare_elastic(CHAIN, [2.0], **SHORT, **how),
-    "compare_restitutions": lambda **how: compare_restitutions(CHAIN, [1.0], **SHORT, **how),
+    "compare": lambda **how: compare(CHAIN, {"amplitude": [2.0]}, **SHORT, **how),
     "compare_relaxation": lambda **how: compare_relaxation(
         CHAIN, duration=1.0, replicas=2, progress=False, **how
     ),

@@ -67,9 +67,11 @@ def test_few_runs_have_an_error_of_student_or_none():
 
 
 def test_all_of_few_runs_are_not_all_runs():
-    for diverged, verdict in ((4, "confirmed"), (1, "undecided")):
+    for diverged, verdict in ((4, "reproduced"), (1, "undecided")):
         share = share_of_runs(diverged, 4)
-        assert Claim("they diverge", found=share, within=POSITIVE).verdict == verdict
+        assert (
+            Claim("they diverge", source="fig.2", found=share, within=POSITIVE).verdict == verdict
+        )
     value, error = share_of_runs(500, 1000)
     assert (value, error) == pytest.approx((0.5, 0.5 / 1000**0.5), rel=1e-2)
 

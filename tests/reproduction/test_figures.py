@@ -14,11 +14,11 @@ from crazybilliards.comparison.sweeps import Case
 from crazybilliards.comparison.sweeps.jobs import JOBS
 from crazybilliards.particles.vanishing_step import level_steps
 from crazybilliards.reproduction.claims.verdicts import Verdict
-from crazybilliards.reproduction.reproducible import EVERYTHING
+from crazybilliards.reproduction.figures import FIGURES
 
 QUICK = [
     study
-    for study in EVERYTHING
+    for study in FIGURES
     if not any(
         case.job == "phase_space" and case.chain.size > 100
         for case in study.cases("quick").values()

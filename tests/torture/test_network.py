@@ -165,12 +165,12 @@ def test_every_module_and_the_python_interface(guarded):
 @pytest.mark.parametrize(
     "arguments",
     [
-        ["compare", "--size", "10", "--duration", "1000", "--amplitudes", "1,5", "--output", "o"],
+        ["compare", "--size", "10", "--duration", "1000", "--amplitude", "1,5", "--output", "o"],
         ["theory", "--size", "10", "--restitution", "0.95", "--output", "o"],
-        ["relax", "--size", "10", "--duration", "4", "--replicas", "8", "--output", "o"],
+        ["relax", "--size", "10", "--duration", "4", "--replicas", "8", "--film", "--output", "o"],
         ["reproduce", "arctanh", "--processes", "2", "--output", "o"],
         ["sweep", "grid.toml", "--processes", "2", "--output", "o"],
-        ["sweep", "grid.toml", "--dask", "--output", "o"],
+        ["sweep", "grid.toml", "--scheduler", "local", "--output", "o"],
     ],
     ids=lambda arguments: "-".join(arguments[:2]),
 )

@@ -13,7 +13,7 @@ def test_simulate_writes_what_the_function_returns(run, tmp_path):
     file = tmp_path / "new" / "run.nc"
     options = ["--size", 6, "--restitution", 0.9, "--duration", 30, "--warmup", 3, "--seed", 7]
     options += ["--time-step", 0.01, "--every", 0.5, "--replicas", 2, "--particles", "1,6"]
-    options += ["--observe", "widths, energy", "--stepper", "euler", "--threads", 1]
+    options += ["--observe", "widths, energy", "--threads", 1]
     options += ["--method", "contact-dynamics", "--checkpoint", tmp_path / "state"]
     done = run("simulate", *options, "--output", file)
     assert done.returncode == 0, done.stderr
@@ -27,7 +27,6 @@ def test_simulate_writes_what_the_function_returns(run, tmp_path):
         particles=[1, 6],
         observe=["widths", "energy"],
         method="contact-dynamics",
-        stepper="euler",
         seed=7,
         progress=False,
     )

@@ -14,13 +14,13 @@ from forked import command, forked
 from rich.table import Table
 
 from crazybilliards.apps.commands.answers import print_table
-from crazybilliards.comparison.side_by_side.grid_deviations import deviations
+from crazybilliards.comparison.distances import deviations
 from crazybilliards.comparison.side_by_side.relaxation import label_distances
 from crazybilliards.model import load
 from crazybilliards.model.locks import locked
 
 SMALL = {
-    "compare": ["--size", "4", "--duration", "300", "--amplitudes", "10"],
+    "compare": ["--size", "4", "--duration", "300", "--amplitude", "10"],
     "relax": ["--size", "4", "--duration", "1", "--replicas", "2", "--every", "0.5"],
     "reproduce": ["1"],
     "simulate": ["--size", "4", "--duration", "100"],
@@ -160,16 +160,22 @@ def test_json_is_one_object_with_every_file_written(name, arguments, run, tmp_pa
         assert facts["velocity_width_model_error"] == facts["density_model_error"] == 0
     if name == "compare":
         tree = load(folder / "comparison.nc")
-        [found] = facts["density_deviations"]
-        assert found["exact"] == asdict(deviations(tree)["amplitude_10"]["exact"])
+        [exact] = [row for row in facts["deviations"] if row["theory"] == "exact"]
+        found = deviations(tree["amplitude_10"])["exact"]
+        assert exact["amplitude"] == 10
+        for name, value in asdict(found.density).items():
+            assert exact[f"density_{name}"] == value
+        for name, value in found.velocity_width._asdict().items():
+            assert exact[f"velocity_width_{name}"] == value
     if name == "relax":
-        assert facts["distances"] == label_distances(load(folder / "relaxation.nc"))
+        found = {row["theory"]: row["distance"] for row in facts["distances"]}
+        assert found == label_distances(load(folder / "relaxation.nc"))
 
 
 def test_a_warning_is_one_plain_line(run):
     with warnings.catch_warnings():
         warnings.simplefilter("default")
-        done = run("compare", "--size", "3", "--amplitudes", "0.1", "--duration", "2000")
+        done = run("compare", "--size", "3", "--amplitude", "0.1", "--duration", "2000")
     assert done.returncode == 0
     lines = [line for line in done.stderr.splitlines() if "compiling" not in line]
     (line,) = lines

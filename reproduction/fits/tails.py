@@ -10,11 +10,9 @@ from scipy.optimize import minimize_scalar
 
 from crazybilliards.comparison.fits.fit import Fit, check_points
 from crazybilliards.model.arrays import Array
-from crazybilliards.model.calls import public
 from crazybilliards.model.checks import check_integer, check_real
 
 
-@public
 def fit_avalanches(count: ArrayLike, *, smallest: int = 1, largest: int | None = None) -> Fit:
     """Fit a power law p(N) ~ N^-exponent to avalanche counts by maximum likelihood.
 
@@ -88,7 +86,6 @@ def _probability(size: Array, exponent: float, *, sizes: Array) -> Array:
     return np.asarray(size**-exponent / np.sum(sizes**-exponent))
 
 
-@public
 def tail_length(velocity: ArrayLike, density: ArrayLike, beyond: float) -> float:
     """Length w of the exponential tails p(v) ~ exp(-|v|/w) for |v| > ``beyond``, of both sides.
 

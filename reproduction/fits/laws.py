@@ -7,12 +7,10 @@ from numpy.typing import ArrayLike
 
 from crazybilliards.comparison.fits.fit import Fit, check_points, least_squares, root_mean_square
 from crazybilliards.model.arrays import Array
-from crazybilliards.model.calls import public
 
 _OVERFLOW = 700.0  # of exp
 
 
-@public
 def fit_singularity(time: ArrayLike, energy: ArrayLike) -> Fit:
     """Fit E(t) = C (t_c - t)^-a to an energy that grows towards a divergence after the last time.
 
@@ -69,7 +67,6 @@ def _singularity(t: Array, scale: float, time: float, exponent: float) -> Array:
     return np.asarray(scale * (time - t) ** -exponent)
 
 
-@public
 def fit_growth(time: ArrayLike, energy: ArrayLike) -> Fit:
     """Fit E(t) = C exp(rate t) to an energy, by a straight line through ln E.
 
@@ -115,7 +112,6 @@ def _logarithm(time: ArrayLike, energy: ArrayLike, least: int) -> tuple[Array, A
     return t, np.log(E)
 
 
-@public
 def fit_scaling(x: ArrayLike, y: ArrayLike, error: ArrayLike) -> Fit:
     """Fit y = B x^a to points with standard errors, all positive.
 
@@ -169,7 +165,6 @@ def _power_law(x: Array, scale: float, exponent: float) -> Array:
     return np.asarray(scale * x**exponent)
 
 
-@public
 def fit_exponential(restitution: ArrayLike, y: ArrayLike, error: ArrayLike) -> Fit:
     """Fit y = a exp(-rate (1 - e)) + d to points with standard errors.
 
