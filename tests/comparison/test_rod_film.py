@@ -126,18 +126,17 @@ def test_the_order_of_dimensions_does_not_matter(run):
 
 
 def test_what_cannot_be_filmed_is_refused(run):
-    with pytest.raises(ValueError, match="no snapshots in time"):
-        film(run.isel(particle=0))
-    with pytest.raises(ValueError, match="no snapshot in which all velocities are known"):
-        film(run * np.nan)
-    with pytest.raises(ValueError, match="no snapshots in time"):
-        film(run.drop_vars("velocity"))
-    with pytest.raises(ValueError, match="duration must be positive"):
-        film(CHAIN, duration=-1)
-    with pytest.raises(ValueError, match="duration is that of a chain to simulate"):
-        film(run, duration=5)
-    with pytest.raises(ValueError, match="no steady state to film: its simulation diverged"):
-        film(Chain(size=100, restitution=1.3), progress=False)
+    hot, none = Chain(size=100, restitution=1.3), "no snapshots in time"
+    for what, how, said in (
+        (run.isel(particle=0), {}, none),
+        (run.drop_vars("velocity"), {}, none),
+        (run * np.nan, {}, "no snapshot in which all velocities are known"),
+        (CHAIN, {"duration": -1}, "duration must be positive"),
+        (run, {"duration": 5}, "duration is that of a chain to simulate"),
+        (hot, {"progress": False}, "no steady state to film: its simulation diverged"),
+    ):
+        with pytest.raises(ValueError, match=said):
+            film(what, **how)
 
 
 @pytest.mark.parametrize("place", ["folder.gif", "file/rods.gif", "locked/rods.gif"])

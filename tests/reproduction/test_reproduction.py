@@ -94,18 +94,9 @@ def test_pictures_come_in_other_widths_and_as_vector_graphics(command, tmp_path)
         svg = (tmp_path / "reproduced" / "fig01_model.svg").read_text()
         sizes[columns] = float(re.search(r'width="([0-9.]+)pt"', svg)[1]) / 72
     assert sizes == pytest.approx({"1": 3.4, "2": 7.0})
-    assert command("1", "--columns", "3")[0] == 2
     # Drawn again, it is the same file.
     assert command("1", "--columns", "2", "--vector", "svg")[0] == 0
     assert (tmp_path / "reproduced" / "fig01_model.svg").read_text() == svg
-
-
-def test_an_unknown_figure_is_one_line_and_nothing_written(command, tmp_path):
-    status, _, errors = command("20")
-    assert status == 2
-    assert errors.count("\n") == 1
-    assert "no figure '20'" in errors
-    assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.compiled

@@ -93,24 +93,20 @@ def test_a_choice_decides_only_where_it_was_varied_and_changed_the_verdict():
 
     flat, right, steep, poor = (-1.6, 0.01), (-2.2, 0.01), (-3.0, 0.1), (-2.3, 0.2)
     said = {"source": "fig:trigger", "ours": "the time step"}
-    assert verdict(flat, **said) == "not reproduced"
-    assert verdict(flat, steep, **said) == "not reproduced"
-    assert verdict(flat, poor, **said) == "not reproduced"
+    for those in ((flat,), (flat, steep), (flat, poor)):
+        assert verdict(*those, **said) == "not reproduced"
     assert verdict(right, poor, **said) == "reproduced"
     assert verdict(poor, right, **said) == "undecided"
-    for both in ((flat, right), (right, flat), (flat, poor, right), (poor, right, steep)):
-        assert verdict(*both, **said) == "cannot be decided"
+    for those in ((flat, right), (right, flat), (flat, poor, right), (poor, right, steep)):
+        assert verdict(*those, **said) == "cannot be decided"
 
 
-def test_other_choices_are_named_with_their_numbers_and_verdicts():
+def test_the_number_is_told_with_its_limits_and_with_that_at_other_choices():
     number = {"found": Estimate(-1.6, 0.01), "within": around(-2.2, 0.05), "source": "fig:trigger"}
     elsewhere = {"dt = 0.02": Estimate(-2.21, 0.01)}
     claim = Claim("exponent", **number, elsewhere=elsewhere)
     assert claim.details["at other choices"] == "dt = 0.02: -2.210 ± 0.010, reproduced"
     assert "at other choices" not in Claim("it", **number).details
-
-
-def test_the_number_is_told_with_its_limits():
     measured = Estimate(0.1, 0.02)
 
     def told(within):
@@ -139,36 +135,26 @@ def test_the_deviation_that_decides_need_not_be_the_largest(deviations, errors, 
     assert Claim("it fits", **in_plot("rods", found, 5.0), source="fig.2").verdict == verdict
 
 
-def test_what_is_said_of_a_plot_is_what_was_measured():
+def test_what_is_said_of_a_plot_and_on_the_page_of_claims_is_what_was_measured():
     """A steep line an eye does not tell from the symbols, though it is far off beside them."""
     share = Estimate(0.00874, 0.00014)
-    words = in_plot("rho(x)", share, 1372.8)["words"]
-    assert words == (
+    assert in_plot("rho(x)", share, 1372.8)["words"] == (
         "rho(x): the symbol that decides is 0.874 ± 0.014 % of the plotted range away from the "
         "nearest point of the line (visible: 2 %); the largest vertical distance is 1372.8 "
         "standard errors"
     )
     assert "standard errors" not in in_plot("p(v)", share)["words"]
-
-
-def test_the_page_of_claims_says_it_in_these_words():
     told = (DOCS / "paper/claims.md").read_text(encoding="utf-8")
-    share = r"\S+: the symbol that decides is .*? away from the nearest point of the line \(vis"
-    assert len(re.findall(share, told)) == 9
-    for old in ("off by", "largest deviation", " 0.0 standard errors"):
-        assert old not in told
+    words = r"\S+: the symbol that decides is .*? away from the nearest point of the line \(vis"
+    assert len(re.findall(words, told)) == 9
 
 
-@pytest.mark.parametrize("number", [1, 4, 1000])
-def test_the_worst_of_many_is_as_rare_as_one(number):
+def test_sameness_is_confirmed_only_if_a_difference_would_have_been_seen():
     """Chance takes the largest of many beyond three enlarged errors as often as one beyond 3."""
-    _, error = worst("both", [Estimate(0.0, 1.0)] * number, 1.0)["found"]
-    each = norm.cdf(3 * error) - norm.cdf(-3 * error)
-    assert 1 - each**number == pytest.approx(2 * norm.sf(3), rel=2e-3)
-
-
-def test_sameness():
-    """Reproduced only if a difference beyond the limit would have been seen."""
+    for number in (1, 4, 1000):
+        _, error = worst("both", [Estimate(0.0, 1.0)] * number, 1.0)["found"]
+        each = norm.cdf(3 * error) - norm.cdf(-3 * error)
+        assert 1 - each**number == pytest.approx(2 * norm.sf(3), rel=2e-3)
     near, poor, off = Estimate(0.01, 0.002), Estimate(0.01, 0.05), Estimate(-0.3, 0.01)
 
     def verdict(*differences):

@@ -8,6 +8,8 @@ import signal
 import subprocess
 import sys
 from dataclasses import dataclass, field, fields, replace
+from itertools import product
+from pathlib import Path
 from typing import get_args
 
 import pytest
@@ -66,15 +68,6 @@ def test_an_error_that_quotes_an_endless_argument_is_cut(run):
     assert len(done.stderr) < 500
 
 
-def test_an_unusable_folder_is_one_line(run, tmp_path):
-    file = tmp_path / "file"
-    file.write_text("mine")
-    done = run("compare", "--output", str(file))
-    assert (done.returncode, done.stderr.count("\n")) == (2, 1)
-    assert str(file) in done.stderr
-    assert file.read_text() == "mine"
-
-
 REFUSED = """
 compare --amplitude 1,x | amplitude takes numbers
 compare --amplitudes 1 | No such option
@@ -119,6 +112,10 @@ equilibrium | no command 'equilibrium'; crazybilliards theory equilibrium solves
 theory fluid | name must be one of ('equilibrium',
 theory equilibrium --restitution 0.9 | the exact equilibrium
 theory --restitution 1.3 --damping 4 | the energy grows without bound
+sweep none.toml | none.toml
+sweep wrong.toml | size must be
+sweep grid.toml --processes 0 | processes must be
+sweep grid.toml --scheduler local --processes 2 | a dask cluster decides
 """
 
 
@@ -129,42 +126,54 @@ def test_bad_input_is_one_line_exit_two_and_nothing_written(
     refused, line, message, tmp_path, monkeypatch
 ):
     monkeypatch.chdir(tmp_path)
+    for name, sizes in (("grid", [3]), ("wrong", [3, 0])):
+        Path(f"{name}.toml").write_text(f"[grid]\nsize = {sizes}\n[simulate]\nduration = 100\n")
     command, *arguments = shlex.split(line)
     output = [] if command == "explore" or "-o" in arguments else ["--output", "results"]
     refused(message, command, *arguments, *([] if "--output" in arguments else output))
-    assert list(tmp_path.iterdir()) == []
+    assert {path.name for path in tmp_path.iterdir()} == {"grid.toml", "wrong.toml"}
 
 
-LONG = ["--size", "10", "--replicas", "100", "--duration", "40", "--every", "10"]
+# What is interrupted, a finished result of before, and what there is afterwards.
+INTERRUPTED = {
+    "simulate": ("--size 10 --duration 1e9 --output run.nc", "run.nc", {"run-interrupted.nc"}),
+    "compare": (
+        "--size 10 --duration 1e9 --output .",
+        "comparison.nc",
+        {"cases"},  # the first chain was not done
+    ),
+    "relax": (
+        "--size 10 --replicas 100 --duration 40 --every 10 --output .",
+        "relaxation.nc",
+        {f"{name}-interrupted.png" for name in ("cloud", "profiles", "spacetime")}
+        | {f"relaxation-interrupted.{kind}" for kind in ("gif", "html", "nc")},
+    ),
+}
 
 
 @pytest.mark.compiled
 @pytest.mark.posix
-def test_ctrl_c_saves_what_was_computed_beside_a_finished_result(interrupted, tmp_path):
-    (tmp_path / "relaxation.nc").write_text("finished")
-    done = interrupted("relax", *LONG, "--output", tmp_path)
-    assert done.returncode == -signal.SIGINT, done.stderr
-    assert "Traceback" not in done.stderr
-    assert load(tmp_path / "relaxation-interrupted.nc").attrs["status"] == "interrupted"
-    assert (tmp_path / "cloud-interrupted.png").exists()
-    assert (tmp_path / "relaxation.nc").read_text() == "finished"
-    assert "minus" in done.stdout
-    assert not [path for path in tmp_path.iterdir() if path.suffix == ".part"]
-
-
-@pytest.mark.compiled
-@pytest.mark.posix
-@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])
-def test_ctrl_c_saves_what_was_simulated(name, interrupted, tmp_path):
-    """So do what batch systems send before they kill, and a lost connection."""
-    number = getattr(signal, name)
-    arguments = ("--size", 10, "--duration", 1e9, "--output", tmp_path / "run.nc")
-    done = interrupted("simulate", *arguments, number=number)
+@pytest.mark.parametrize(
+    ("name", "sent"),
+    [*product(INTERRUPTED, ["SIGINT"]), ("simulate", "SIGTERM"), ("simulate", "SIGHUP")],
+)
+def test_a_signal_saves_what_was_computed_beside_a_finished_result(
+    name, sent, interrupted, tmp_path, monkeypatch
+):
+    """Ctrl-C, what batch systems send before they kill, and a lost connection."""
+    monkeypatch.chdir(tmp_path)
+    (line, finished, left), number = INTERRUPTED[name], getattr(signal, sent)
+    (tmp_path / finished).write_text("finished")
+    done = interrupted(name, *line.split(), number=number)
     # Ctrl-C must also end a loop of a shell, which looks for the signal.
-    assert done.returncode == (-number if name == "SIGINT" else 128 + number), done.stderr
+    assert done.returncode == (-number if sent == "SIGINT" else 128 + number), done.stderr
     assert done.stderr == "crazybilliards: interrupted\n"
-    assert load(tmp_path / "run-interrupted.nc").attrs["status"] == "interrupted"
-    assert [path.name for path in tmp_path.iterdir()] == ["run-interrupted.nc"]
+    assert {path.name for path in tmp_path.iterdir()} == left | {finished}
+    assert (tmp_path / finished).read_text() == "finished"
+    for path in tmp_path.glob("*-interrupted.nc"):
+        assert load(path).attrs["status"] == "interrupted"
+    assert not list(tmp_path.glob("cases/*"))
+    assert name != "relax" or "minus" in done.stdout
 
 
 # What a command chooses itself.
