@@ -123,9 +123,8 @@ def _values(name: str, given: Any) -> list[Any]:
     ordered = is_list(given) and not isinstance(given, Mapping | Set)
     if not ordered or getattr(given, "ndim", 1) != 1 or len(given) == 0:
         raise ValueError(f"grid: {name} must be a list of values, got {shown(given)}")
-    values = [
-        as_written(each) for each in (np.asarray(given) if hasattr(given, "dtype") else given)
-    ]
+    listed = np.asarray(given) if hasattr(given, "dtype") else given
+    values = [as_written(each) for each in listed]
     found = [scalar(plain(name, each)) for each in values]
     if twice := [each for place, each in enumerate(found) if each in found[:place]]:
         raise ValueError(f"grid: {name} holds {shown(twice[0])} twice")
