@@ -18,6 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
+from crazybilliards.model.calls import public
+
 Picture = NDArray[np.uint8]  # (height, width, 4)
 
 PICTURES_A_SECOND = 25
@@ -27,6 +29,7 @@ _NO_FFMPEG = (
 )
 
 
+@public
 class Player:
     """A film in HTML, which a notebook shows; ``html`` is the text."""
 

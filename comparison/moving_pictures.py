@@ -12,6 +12,7 @@ from crazybilliards.comparison.encoding import PICTURES_A_SECOND, Player, encode
 from crazybilliards.comparison.rod_film import motion_of, rod_pictures
 from crazybilliards.comparison.side_by_side.relaxation_figures import relaxation_pictures, title
 from crazybilliards.model import Chain
+from crazybilliards.model.calls import public
 from crazybilliards.model.checks import check_path, check_real
 from crazybilliards.model.progress import progress_bar
 from crazybilliards.model.storage import make_folder, write_atomically
@@ -21,6 +22,7 @@ _LONGEST = 120.0  # s
 _FINER = 4  # snapshots for one picture, of a chain that is simulated
 
 
+@public
 def film(
     run: xr.Dataset | xr.DataTree | Chain,
     path: str | os.PathLike[str] | None = None,

@@ -26,6 +26,7 @@ from crazybilliards.kinetic.kinetic_equation.stationary import check_phase_space
 from crazybilliards.kinetic.rods.places import are_resolved
 from crazybilliards.kinetic.statics.balance import check_force_balance, force_balance
 from crazybilliards.model import Chain
+from crazybilliards.model.calls import public
 from crazybilliards.model.checks import check_choice
 from crazybilliards.model.progress import silent, watched
 
@@ -101,6 +102,7 @@ _COLUMNS = (
 )
 
 
+@public
 def theories(chain: Chain) -> xr.Dataset:
     """List the theories of the steady state: which take a chain, their errors, what they cost.
 
@@ -154,6 +156,7 @@ def _table(chain: Chain, settings: Mapping[str, Any]) -> xr.Dataset:
     return xr.Dataset(variables, {"theory": list(THEORIES)})
 
 
+@public
 def best_theory(
     chain: Chain,
     quantity: str = "velocity_width",

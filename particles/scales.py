@@ -17,7 +17,11 @@ import numpy as np
 
 from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array
+from crazybilliards.model.calls import public
 from crazybilliards.particles.laws.closed_contacts import CRITICAL_RESTITUTION
+
+# Parameters beside ``KNOWN`` with which these scales are right; every scale refuses others.
+knows: frozenset[str] = frozenset()
 
 _RESOLUTION = 0.05
 _KICK = 0.3
@@ -30,6 +34,7 @@ _SLOWEST_MODE = 1.241  # rate of a strongly damped rod on a quadratic spring, in
 
 def spring_rate(chain: Chain) -> float:
     """w0 = sqrt(F'(d)/m) [1/T]; a quadratic spring's is taken at U(d) = 10 T, the temperature."""
+    chain.require_known("the rate of the springs", knows)
     if chain.spring == "linear":
         return math.sqrt(chain.stiffness / chain.mass)
     if chain.stiffness == 0 or chain.temperature == 0:
@@ -51,6 +56,7 @@ def centre_width(chain: Chain) -> float:
     lie within a few thermal lengths. c = 0.1 + 0.14 e^4 fits simulations from L = 10 to 1000. For
     e >= 1, where collisions do not cool, w = 1.
     """
+    chain.require_known("the width in the centre", knows)
     e = chain.restitution
     if e >= 1 or chain.damping == 0 or chain.stiffness == 0:
         return 1.0
@@ -61,6 +67,7 @@ def centre_width(chain: Chain) -> float:
 
 def default_time_step(chain: Chain) -> float:
     """Return a step that resolves spring, damping and, for e != 1, the noise; see the module."""
+    chain.require_known("the default time step", knows)
     fastest = max(spring_rate(chain), chain.damping / chain.mass)
     if fastest == 0:
         raise ValueError(
@@ -93,6 +100,7 @@ def time_step_error(
     3e-3 w0 (w0 dt)^4 of its energy per time, measured at dt = 0.1 and 0.5 for gaps of one and two
     radii, which damping limits.
     """
+    chain.require_known("the time-step error", knows)
     e, gap = chain.restitution, chain.lattice_gap
     if chain.size == 1:  # it never collides
         e, method = 1.0, "event-driven"
@@ -121,6 +129,7 @@ def time_step_error(
     return springs + max(_REBOUNDS * abs(1 - e) * ratio**1.5, _LONG * ratio**4)
 
 
+@public
 def relaxation_time(chain: Chain) -> float:
     """Time in which a chain forgets its start [T], but for a factor e.
 
@@ -143,11 +152,13 @@ def relaxation_time(chain: Chain) -> float:
     >>> round(relaxation_time(Chain(damping=10)), 2)
     9.56
     """
+    chain.require_known("relaxation_time", knows)
     return math.inf if chain.stiffness == 0 else settling_time(chain)
 
 
 def settling_time(chain: Chain) -> float:
     """Return the relaxation time or, where nothing ties the rods, that of velocities [T]."""
+    chain.require_known("the settling time", knows)
     if chain.damping == 0:
         return math.inf
     half_damping = chain.damping / (2 * chain.mass)
@@ -167,6 +178,7 @@ def correlation_time(chain: Chain) -> float:
     damping. With the critical damping, displacements are correlated for twice
     :func:`relaxation_time`.
     """
+    chain.require_known("the correlation time", knows)
     if chain.damping == 0:
         return 0.0
     stiffness = _relaxing_stiffness(chain)
@@ -196,6 +208,7 @@ def first_decay(chain: Chain) -> float:
     in the middle of a cloud of the width that a free rod has, or on the lattice of the gap.
     Infinite without damping.
     """
+    chain.require_known("the first decay", knows)
     if chain.damping == 0:
         return math.inf
     width = centre_width(chain)
@@ -208,6 +221,7 @@ def first_decay(chain: Chain) -> float:
 
 def typical_speed(chain: Chain, duration: float, y: Array, v: Array) -> float:
     """Upper estimate of the speed that noise and the start's own energy give a rod [R/T]."""
+    chain.require_known("the typical speed", knows)
     heating = min(duration, chain.mass / (2 * chain.damping) if chain.damping else np.inf)
     noise = chain.amplitude / chain.mass * np.sqrt(heating)
     spring = np.sqrt(2 * chain.potential(y - chain.reduced_anchors).max() / chain.mass)
@@ -216,6 +230,7 @@ def typical_speed(chain: Chain, duration: float, y: Array, v: Array) -> float:
 
 def start_swing(chain: Chain, duration: float, y: Array, v: Array) -> float:
     """Largest displacement of a free rod with the start's energy, in this time if unbound [R]."""
+    chain.require_known("the swing of a start", knows)
     displacement = y - chain.reduced_anchors
     if chain.stiffness == 0:
         flight = min(duration, chain.mass / chain.damping) if chain.damping else duration

@@ -18,16 +18,13 @@ cb.simulate(chain, restitution=0.9) | restitution is an argument of Chain
 NAMES = """
 cb.Chain(restituton=0.9) | Chain has no argument 'restituton'; did you mean 'restitution'?
 cb.Chain(nonsense=3) | 'nonsense'; it takes size, restitution, amplitude
-cb.simulate(chain, chain=chain) | simulate got chain twice
+cb.simulate(chain, chain=chain) | simulate: multiple values for argument 'chain'
 cb.Density(-3) | reach must be positive, got -3
 cb.simulate(chain, observe=cb.Density(reach=1e12)) | reach=1e+12 is too large for a grid
 cb.simulate_limit(chain, accuracy=0.1, replicas=10**400) | replicas must be an integer from 1 to
-cb.two_clumps | has no attribute 'two_clumps' any more: displaced(chain, 0).assign(flow_velocity
 cb.compare_elastic | any more: compare(chain, {'amplitude': [1, 3, 10, 30]})
 cb.animate | any more: film(tree) films what compare_relaxation returns
 cb.fit_growth | ; from crazybilliards.reproduction.fits import fit_growth
-cb.GrowthFit | has no attribute 'GrowthFit' any more: every fit is a Fit
-cb.kinetic.critical_damping | any more: critical_size(chain.replace(damping=...))
 cb.equilibrium(chain, gap=1) | gap is an argument of Chain
 cb.Chain(e=0.8, L=30, sise=3) | arguments 'e' (restitution is e ..., 'L' (size is ..., 'sise' (did
 cb.Chain(e=0.8, foo=1) | arguments 'e' (restitution is e of the paper), 'foo'; it takes size, rest
@@ -75,7 +72,6 @@ chain.simulate(100) | crazybilliards.simulate(chain, ...) is a function
 chain.run(100) | crazybilliards.simulate(chain, ...) is a function
 chain.theories() | crazybilliards.theories(chain, ...) is a function
 chain.copy(size=3) | did you mean 'replace'?
-cb.deviation(exact, exact, raw=True).maxmum | did you mean 'maximum'?
 """
 
 # The right name, with the wrong kind of thing.
@@ -149,7 +145,7 @@ fits.fit_growth([1, 2, 3], [1, 2]) | time, energy must have
 fits.fit_singularity([1, 2, 3], {}) | energy must be numbers, got {}
 fits.fit_growth([1, 2, np.nan], [1, 2, 3]) | time must be finite, got [1, 2, nan]
 cb.fit_border_power_law(run, weighted="no") | weighted must be True or False; got 'no'
-cb.simulate(chain, progress=np.zeros(3)) | progress must be True, False or a text; got array
+cb.simulate(chain, progress=np.zeros(3)) | progress must be True or False, or a text; got array
 fits.fit_avalanches([4, 2, 1], smallest=10**400) | no avalanches of sizes 1000
 cb.Chain(restitution=np.ma.masked) | restitution must be a number, got masked
 fits.fit_avalanches(3) | count must have one dimension

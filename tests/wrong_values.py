@@ -11,8 +11,6 @@ cb.simulate(chain, seed=[1, 2]) | a Generator of numpy...got [1, 2]
 cb.equilibrium_states(chain, 3, seed="a") | a Generator of numpy...got 'a'
 cb.simulate(chain, seed=10**5000) | seed must be...up to 4096 bits...got a number of 16610 bits
 cb.Chain(amplitude=10**5000) | amplitude must be between...got a number of 16610 bits
-cb.simulate(chain, rng=1) | seed takes what rng took
-cb.simulate(chain, observe=Unknown()) | observe: 'unknown' gives 'my_variable', which has no
 cb.compare_relaxation(chain, "dropped") | release must be one of
 cb.compare_relaxation(chain, by=-1) | by must be
 cb.compare_relaxation(chain, duration=-1) | duration must be

@@ -28,7 +28,7 @@ from crazybilliards.comparison.sweeps.running import compute_missing, warn_of_sh
 from crazybilliards.kinetic import equilibrium, force_balance, rod_by_rod
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain, chain_of
-from crazybilliards.model.calls import warn_user
+from crazybilliards.model.calls import public, warn_user
 from crazybilliards.model.checks import as_written, check_integer, check_path, is_list, shown
 from crazybilliards.model.process import announced, cores
 from crazybilliards.model.progress import waiting_for
@@ -54,6 +54,7 @@ TITLES = (
 _REPLICAS = 2
 
 
+@public
 def compare(
     chain: Chain,
     over: Mapping[str, ArrayLike],

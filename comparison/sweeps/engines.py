@@ -17,6 +17,7 @@ from queue import SimpleQueue
 from tqdm import tqdm
 
 from crazybilliards.comparison.sweeps.case import Case, compute
+from crazybilliards.model.calls import public
 from crazybilliards.model.checks import check_integer
 from crazybilliards.model.process import cores, end_with_parent, interrupts_held_back
 
@@ -29,6 +30,7 @@ _PATIENCE = "20s"  # to wait for the answer of a scheduler
 _MOST_UNDER_WAY = 1000
 
 
+@public
 def process_pool(processes: int | None = None) -> AbstractContextManager[Executor]:
     """Run cases in processes of this machine, one for each core unless told otherwise.
 

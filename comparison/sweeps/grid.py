@@ -33,7 +33,7 @@ from crazybilliards.comparison.sweeps.case import Case, plain, stored_parameters
 from crazybilliards.comparison.sweeps.index import CHAIN, scalar, varied
 from crazybilliards.comparison.sweeps.jobs import JOBS
 from crazybilliards.model import Chain, load
-from crazybilliards.model.calls import warn_user
+from crazybilliards.model.calls import public, warn_user
 from crazybilliards.model.checks import (
     as_written,
     check_arguments,
@@ -49,6 +49,7 @@ _MOST_CASES = 1_000_000
 _TEXTS = ("status", "provenance", "file")  # are always variables
 
 
+@public
 @dataclass(frozen=True)
 class Sweep:
     """A grid of cases. Each case is made and checked when it is needed.
@@ -122,9 +123,8 @@ def _values(name: str, given: Any) -> list[Any]:
     ordered = is_list(given) and not isinstance(given, Mapping | Set)
     if not ordered or getattr(given, "ndim", 1) != 1 or len(given) == 0:
         raise ValueError(f"grid: {name} must be a list of values, got {shown(given)}")
-    values = [
-        as_written(each) for each in (np.asarray(given) if hasattr(given, "dtype") else given)
-    ]
+    listed = np.asarray(given) if hasattr(given, "dtype") else given
+    values = [as_written(each) for each in listed]
     found = [scalar(plain(name, each)) for each in values]
     if twice := [each for place, each in enumerate(found) if each in found[:place]]:
         raise ValueError(f"grid: {name} holds {shown(twice[0])} twice")
@@ -155,6 +155,7 @@ def read_sweep(path: str | os.PathLike[str]) -> Sweep:
     return Sweep(tables.get("grid", {}), job, tables.get("chain", {}), tables.get(job, {}))
 
 
+@public
 def load_sweep(folder: str | os.PathLike[str]) -> xr.Dataset:
     """Read all cases of a folder into one Dataset over the parameters in which they differ.
 

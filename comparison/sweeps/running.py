@@ -25,7 +25,7 @@ from crazybilliards.comparison.sweeps.case import Case, OutdatedError
 from crazybilliards.comparison.sweeps.engines import computed_by, computed_here
 from crazybilliards.comparison.sweeps.grid import Sweep
 from crazybilliards.comparison.sweeps.index import write_index
-from crazybilliards.model.calls import warn_user
+from crazybilliards.model.calls import public, warn_user
 from crazybilliards.model.checks import check_path, shown
 from crazybilliards.model.locks import locked
 from crazybilliards.model.progress import progress_bar
@@ -49,6 +49,7 @@ class Outcome:
     stopped: KeyboardInterrupt | RuntimeError | None = None  # what ended it early
 
 
+@public
 def run_cases(
     cases: Iterable[Case],
     folder: str | os.PathLike[str],

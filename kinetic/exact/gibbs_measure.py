@@ -34,6 +34,7 @@ from crazybilliards.kinetic.accuracy import expected, expected_seconds
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array
+from crazybilliards.model.calls import public
 from crazybilliards.model.checks import check_integer
 from crazybilliards.model.grid import position_grid, require_resolved, thermal_reach
 from crazybilliards.model.memory import require_memory
@@ -47,6 +48,7 @@ _NODES_PER_WIDTH = 10
 _MOST_STATES = 10**15  # more than any memory holds, and still exact as a float
 
 
+@public
 def equilibrium(chain: Chain) -> xr.Dataset:
     """Exact stationary state of the elastic chain: any gap, both springs.
 
@@ -107,6 +109,7 @@ def _in_vocabulary(chain: Chain, recursion: Recursion) -> xr.Dataset:
     return dataset.assign_attrs(density_of=OF_RODS)
 
 
+@public
 def equilibrium_states(chain: Chain, replicas: int, seed: Seed = 0) -> xr.Dataset:
     """Draw ``replicas`` independent states of the elastic chain in its stationary state.
 

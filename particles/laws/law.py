@@ -30,7 +30,8 @@ Method = Literal["event-driven", "contact-dynamics"]
 SORT, ISOTONIC, EVENTS, CONTACTS, EXACT = range(5)
 NAMES = ("the sort", "isotonic regression", "event-driven", "contact-dynamics", "exact flight")
 
-# Parameters beside the known ones that an operator takes from the chain: {EVENTS: {"my_own"}}.
+# Parameters beside ``KNOWN`` with which an operator is right, because it reads them or does not
+# depend on them: {EVENTS: {"my_own"}}.
 knows: dict[int, set[str]] = {}
 
 
@@ -87,20 +88,27 @@ def make_scratch(size: int) -> Scratch:
 
 
 def choose_operator(chain: Chain, method: Method, *, counted: bool, halves: bool) -> int:
-    """Return the operator for the chain.
+    """Return the fastest operator that is right for the chain and knows all of its parameters.
 
     ``counted``: every collision has to be recorded. ``halves``: springs kick before and after the
     drift. With a gap, collisions are then corrected one by one, so e = 1 cannot be sorted.
+
+    Raises
+    ------
+    ValueError
+        If none of them knows a parameter of the chain.
     """
-    if method == "contact-dynamics":
-        return CONTACTS
-    if counted:
-        return EVENTS
-    if halves and independent_rods(chain):
-        return EXACT
-    if halves and chain.restitution == 1 and chain.gap * chain.stiffness > 0:
-        return EVENTS
-    return {1.0: SORT, 0.0: ISOTONIC}.get(chain.restitution, EVENTS)
+    right = [CONTACTS if method == "contact-dynamics" else EVENTS]
+    if method == "event-driven" and not counted:
+        corrected = halves and chain.restitution == 1 and chain.gap * chain.stiffness > 0
+        if chain.restitution in (0, 1) and not corrected:
+            right.insert(0, SORT if chain.restitution == 1 else ISOTONIC)
+        if halves and independent_rods(chain):
+            right.insert(0, EXACT)
+    unknown = chain.unknown().keys()
+    operator = next((each for each in right if unknown <= knows.get(each, set())), right[-1])
+    chain.require_known(f"simulate ({NAMES[operator]})", knows.get(operator, ()))
+    return operator
 
 
 def make_law(

@@ -51,6 +51,8 @@ def find_observers(observe: str | Observer | Collection[str | Observer]) -> tupl
     for each in observe:
         if not isinstance(each, str | Observer):
             raise ValueError(f"observe takes names and observers, got {shown(each)}{_made(each)}")
+        if isinstance(each, Observer) and not hasattr(each, "name"):
+            raise ValueError(f"observe: {type(each).__name__} must have a name")
         if isinstance(each, str) and each not in OBSERVERS:
             given = {name: of for of, observer in OBSERVERS.items() for name in observer.gives}
             near = nearest(each, [*OBSERVERS, *given])

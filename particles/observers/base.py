@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array
 from crazybilliards.particles.laws.avalanche import Tally
+from crazybilliards.particles.observers.declared import check_declarations
 from crazybilliards.particles.observers.error_bars import jackknife
 from crazybilliards.particles.run import Run
 from crazybilliards.particles.schedule import Schedule
@@ -73,8 +74,11 @@ class Observer(ABC):
         place that was hardly ever visited is unknown.
     shares_time
         Whether it has the times of all snapshots if another observer has them too.
+    reads_chain
+        Whether it reads more of the chain than the places of its anchors. It then refuses a chain
+        with a new parameter. One that only averages ``y`` and ``v`` says False.
     knows
-        Parameters of a chain of your own that it reads; see ``add_a_chain_parameter``.
+        New parameters with which it is right all the same; see ``add_a_chain_parameter``.
     """
 
     name: ClassVar[str]
@@ -87,7 +91,14 @@ class Observer(ABC):
     limit: ClassVar[bool] = True
     histograms: ClassVar[tuple[str, ...]] = ()
     shares_time: ClassVar[bool] = False
+    reads_chain: ClassVar[bool] = True
     knows: ClassVar[frozenset[str]] = frozenset()
+
+    def __init_subclass__(cls, **keywords: Any) -> None:
+        """Check what the class declares, unless it has no name and is a base of others."""
+        super().__init_subclass__(**keywords)
+        if hasattr(cls, "name"):
+            check_declarations(cls)
 
     def __str__(self) -> str:
         """Return the name and, if there are any, the parameters."""

@@ -18,6 +18,7 @@ class Collisions(Averaged):
     single_collisions = True
     ensemble = False
     limit = False
+    reads_chain = False
 
     def observe(self, snapshots: Snapshots) -> None:
         self.sums[snapshots.block, :-1] += snapshots.collisions

@@ -16,7 +16,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from crazybilliards.model import Chain
-from crazybilliards.model.calls import warn_user
+from crazybilliards.model.calls import public, warn_user
 from crazybilliards.model.checks import check_integer, check_path, check_real
 from crazybilliards.model.memory import require_memory
 from crazybilliards.model.process import announced, cores, interrupts_noted
@@ -54,6 +54,7 @@ class LevelRun(Run):
         return Schedule(self.time_step, self.warmup_steps, self.stride, 1, _OPEN)
 
 
+@public
 def simulate_limit(
     chain: Chain,
     *,

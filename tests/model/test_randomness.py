@@ -42,12 +42,6 @@ def test_what_is_no_seed_is_refused(name, seed):
         FUNCTIONS[name](seed=seed)
 
 
-@pytest.mark.parametrize("name", FUNCTIONS)
-def test_the_former_name_says_what_replaces_it(name):
-    with pytest.raises(TypeError, match="no argument 'rng'; seed takes what rng took"):
-        FUNCTIONS[name](rng=5)
-
-
 def test_a_number_that_is_too_long_for_the_provenance_is_mixed_to_a_shorter_one():
     assert seed_of(np.random.SeedSequence(2**4096)) < 2**128
     assert seed_of(np.random.SeedSequence(2**4095)) == 2**4095
