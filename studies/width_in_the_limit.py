@@ -39,15 +39,15 @@ def central(limit: xr.Dataset) -> tuple[float, float]:
 
 
 def of_limit(size: int, limit: xr.Dataset) -> list[str]:
-    levels = json.loads(limit.attrs["provenance"])["levels"]
+    step = json.loads(limit.attrs["provenance"])["schedule"]["time_step"]
     width, error = central(limit)
     return [
         f"{size}",
         f"{width:.6f} ± {error:.6f}",
         f"{error / width:.2%}",
         f"{limit.attrs['time_step_error']:.2%}",
-        ", ".join(f"{level['time_step']:.2g}" for level in levels),
-        f"{sum(level['rod_steps'] for level in levels):.1e}",
+        f"{step:.2g}",
+        f"{size * limit.attrs['end_time'] / step:.1e}",
     ]
 
 
@@ -67,7 +67,7 @@ def tables(results: Results) -> dict[str, Table]:
         [f"{size}", f"{fit.exponent:.4f} ± {fit.exponent_error:.4f}", f"{fit.origin:.2f}"]
         for size, fit in fits.items()
     ]
-    heads = ["L", "$W_v$, centre", "error", "bias", "steps", "rod-steps"]
+    heads = ["L", "$W_v$, centre", "error", "bias", "step", "rod-steps"]
     return {
         "central_width": [heads, *(of_limit(*each) for each in by_size.items())],
         "central_slopes_of_limits": [["L", "slope"], *map(slope, limits, limits[APART:])],

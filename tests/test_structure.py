@@ -30,7 +30,7 @@ FLOORS = {
         {"observers"},
         {"running"},
         {"simulation"},
-        {"vanishing_step"},
+        {"limit"},
     ),
     "kinetic": (
         {"accuracy", "requirements"},

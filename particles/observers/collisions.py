@@ -17,7 +17,6 @@ class Collisions(Averaged):
     gives = ("collision_rate",)
     single_collisions = True
     ensemble = False
-    limit = False
 
     def observe(self, snapshots: Snapshots) -> None:
         self.sums[snapshots.block, :-1] += snapshots.collisions

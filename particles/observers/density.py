@@ -48,7 +48,6 @@ class Density(Averaged):
     name = "density"
     gives = ("density", "density_block", "outside")
     along = ("x",)
-    histograms = ("density",)
 
     def __init__(self, reach: float | None = None) -> None:
         self.reach = None if reach is None else check_real("reach", reach, positive=True)

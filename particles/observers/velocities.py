@@ -53,7 +53,6 @@ class Velocities(Averaged):
     gives = ("velocity_density", "velocity_outside", *_QUANTITIES)
     along = ("velocity_bin",)
     ensemble = False
-    histograms = ("velocity_density",)
 
     def __init__(self, bins: int = 401) -> None:
         self.bins = check_integer("bins", bins, least=1, most=MOST_BINS)
