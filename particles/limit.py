@@ -13,7 +13,7 @@ step have the wanted accuracy, sqrt(s^2 + b^2). How long it goes on is looked at
 each look may end it by chance, where s seems small.
 
 **Check.** A second run at twice the step, a quarter as long, shows whether W_v in the centre
-changes as expected. If it changes by four standard errors more than that, the change is the stated
+changes as expected. If it changes by five standard errors more than that, the change is the stated
 error of the step, and a warning says so.
 """
 
@@ -60,7 +60,7 @@ _LEAST = 320.0  # duration, in correlation times, of all replicas together
 _GROWTH = 1.25  # of the duration from look to look
 _MOST = 2**30  # snapshots: how many there will be turns out later
 _CHECK = 0.25  # duration of the check over that of the run
-_SIGNIFICANT = 4.0  # standard errors
+_SIGNIFICANT = 5.0  # standard errors
 # Variables that linear springs do not make wrong.
 _VELOCITIES = {CENTRAL, "velocity_width"}
 

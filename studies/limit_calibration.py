@@ -19,14 +19,14 @@ from studies.common import options, print_heads, print_row
 
 # Chain, accuracy, and, except at e = 1, W_v in the centre with its standard error.
 CHAINS = [
-    (Chain(size=300, restitution=0), 0.015, 0.0, 0.0),
-    (Chain(size=3, restitution=0, damping=0.1), 0.01, 0.0, 0.0),
-    (Chain(size=30, restitution=0.1), 0.015, 0.0, 0.0),
-    (Chain(size=100, restitution=0.3), 0.025, 0.0, 0.0),
-    (Chain(size=10, restitution=0.5, gap=1), 0.01, 0.0, 0.0),
-    (Chain(size=30, restitution=0.5, spring="quadratic"), 0.02, 0.0, 0.0),
-    (Chain(size=30, restitution=0.9), 0.01, 0.0, 0.0),
-    (Chain(size=100, restitution=0.95, damping=0.2), 0.01, 0.0, 0.0),
+    (Chain(size=300, restitution=0), 0.015, 0.048813, 0.000108),
+    (Chain(size=3, restitution=0, damping=0.1), 0.01, 0.66172, 0.00108),
+    (Chain(size=30, restitution=0.1), 0.015, 0.118008, 0.000288),
+    (Chain(size=100, restitution=0.3), 0.025, 0.075533, 0.000315),
+    (Chain(size=10, restitution=0.5, gap=1), 0.01, 0.31295, 0.00033),
+    (Chain(size=30, restitution=0.5, spring="quadratic"), 0.02, 0.13672, 0.00021),
+    (Chain(size=30, restitution=0.9), 0.01, 0.192517, 0.000249),
+    (Chain(size=100, restitution=0.95, damping=0.2), 0.01, 0.176892, 0.000235),
     (Chain(size=10, gap=1, amplitude=3), 0.007, 0.0, 0.0),
     (Chain(size=30, spring="quadratic"), 0.007, 0.0, 0.0),
 ]

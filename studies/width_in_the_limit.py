@@ -67,7 +67,7 @@ def tables(results: Results) -> dict[str, Table]:
         [f"{size}", f"{fit.exponent:.4f} ± {fit.exponent_error:.4f}", f"{fit.origin:.2f}"]
         for size, fit in fits.items()
     ]
-    heads = ["L", "$W_v$, centre", "error", "bias", "step", "rod-steps"]
+    heads = ["L", "$W_v$, centre", "error", "bias", "steps", "rod-steps"]
     return {
         "central_width": [heads, *(of_limit(*each) for each in by_size.items())],
         "central_slopes_of_limits": [["L", "slope"], *map(slope, limits, limits[APART:])],
