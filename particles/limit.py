@@ -258,8 +258,9 @@ def _centre(copies: Sequence[Replica]) -> tuple[float, float]:
     counts = np.concatenate([copy.counts for copy in copies])
     if not counts.any():
         return math.nan, math.inf
-    sums = np.concatenate([copy.observers[-1].sums for copy in copies])
-    width, error = jackknife(np.sqrt, sums, counts)
+    observers = [observer for copy in copies for observer in copy.observers]
+    sums = [observer.sums for observer in observers if isinstance(observer, Centre)]
+    width, error = jackknife(np.sqrt, np.concatenate(sums), counts)
     return float(width), float(error)
 
 
@@ -280,6 +281,6 @@ def _with_bias(run: LimitRun, limit: xr.Dataset, checks: Sequence[Replica]) -> x
             velocities, others = abs(change), others - velocities + abs(change)
     for name in [str(each) for each in limit if f"{each}_error" in limit]:
         bias = (velocities if name in _VELOCITIES else others) * abs(limit[name])
-        error_bar = limit[f"{name}_error"]
-        limit[f"{name}_error"] = np.hypot(error_bar, bias).assign_attrs(error_bar.attrs)
+        bar = limit[f"{name}_error"]
+        limit[f"{name}_error"] = bar.copy(data=np.hypot(bar.values, bias.values))
     return limit.assign_attrs(time_step_error=velocities)
