@@ -1,3 +1,4 @@
+from .limit import simulate_limit as simulate_limit
 from .observers.avalanches import (
     Avalanches as Avalanches,
     TriggeredCollisions as TriggeredCollisions,
@@ -15,4 +16,3 @@ from .observers.widths import Widths as Widths
 from .scales import relaxation_time as relaxation_time
 from .simulation import ShortRunWarning as ShortRunWarning, simulate as simulate
 from .start import given_start as given_start
-from .vanishing_step.limit import simulate_limit as simulate_limit

@@ -34,7 +34,7 @@ FLOORS = {
         {"observers"},
         {"running"},
         {"simulation"},
-        {"vanishing_step"},
+        {"limit"},
     ),
     "kinetic": (
         {"accuracy", "requirements"},

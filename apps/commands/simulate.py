@@ -153,12 +153,10 @@ def _print(result: xr.Dataset) -> None:
     import json
 
     how = json.loads(result.attrs["provenance"])
-    runs = how.get("levels", [how.get("schedule")])
-    steps = [each["time_step"] for each in runs if each]
+    step = how["schedule"]["time_step"]
     status, end = result.attrs["status"], result.attrs["end_time"]
-    note(end_time=end, time_steps=steps)
-    listed = ", ".join(f"{step:.3g}" for step in steps)
-    say(f"{status} at t = {end:g} T, time step{'s' * (len(steps) > 1)} {listed} T")
+    note(end_time=end, time_steps=[step])
+    say(f"{status} at t = {end:g} T, time step {step:.3g} T")
     if status == "diverged":
         complain_of_divergence(result)
     if "central_velocity_width" in result:
@@ -178,4 +176,4 @@ def _print(result: xr.Dataset) -> None:
             "Some rods at the last time" if last else "Some rods",
             "+-: one standard error.",
         )
-    answer_measured(result, ensemble=how.get("schedule", {}).get("ensemble", False))
+    answer_measured(result, ensemble=how["schedule"]["ensemble"])

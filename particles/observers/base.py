@@ -69,9 +69,6 @@ class Observer(ABC):
         Whether it can be averaged over replicas at equal times.
     limit
         Whether it reports averages that have a limit of a vanishing time step.
-    histograms
-        Its variables that count how often rods visit nodes or bins. In a limit, the error of a
-        place that was hardly ever visited is unknown.
     shares_time
         Whether it has the times of all snapshots if another observer has them too.
     reads_chain
@@ -89,7 +86,6 @@ class Observer(ABC):
     single_collisions: ClassVar[bool] = False
     ensemble: ClassVar[bool] = True
     limit: ClassVar[bool] = True
-    histograms: ClassVar[tuple[str, ...]] = ()
     shares_time: ClassVar[bool] = False
     reads_chain: ClassVar[bool] = True
     knows: ClassVar[frozenset[str]] = frozenset()
@@ -215,10 +211,6 @@ class Averaged(Observer):
         """Append the blocks of other replicas, or the groups."""
         parts = [self.sums, *(other.sums for other in others)]
         self.sums = np.stack(parts) if self.schedule.ensemble else np.concatenate(parts)
-
-    def pool(self) -> None:
-        """Add all blocks up into one: averages are the same, and nothing is known of errors."""
-        self.sums = self.sums.sum(axis=0, keepdims=True)
 
     def averages(
         self, quantities: Mapping[str, Callable[[Array], Array]], counts: Integers, *dimensions: str

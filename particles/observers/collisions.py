@@ -17,7 +17,6 @@ class Collisions(Averaged):
     gives = ("collision_rate",)
     single_collisions = True
     ensemble = False
-    limit = False
     reads_chain = False
 
     def observe(self, snapshots: Snapshots) -> None:

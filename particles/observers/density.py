@@ -49,7 +49,6 @@ class Density(Averaged):
     name = "density"
     gives = ("density", "density_block", "outside")
     along = ("x",)
-    histograms = ("density",)
     reads_chain = False  # but for the grid: rods beyond it are counted
 
     def __init__(self, reach: float | None = None) -> None:

@@ -55,7 +55,6 @@ class Velocities(Averaged):
     gives = ("velocity_density", "velocity_outside", *_QUANTITIES)
     along = ("velocity_bin",)
     ensemble = False
-    histograms = ("velocity_density",)
     reads_chain = False  # but for the bins: velocities beyond are counted
 
     def __init__(self, bins: int = 401) -> None:

@@ -126,8 +126,7 @@ def test_the_centre_is_the_same_rods_everywhere():
     """Four of 30 rods in claims, in comparisons with a theory, and in limits of the step."""
     chain = Chain(size=30, restitution=0.9)
     limit = simulate_limit(chain, accuracy=0.05, progress=False)
-    # The sum over levels of roots is not the root of the sum, to second order in the bias.
-    assert central_width(limit) == pytest.approx(float(limit.central_velocity_width), rel=1e-3)
+    assert central_width(limit) == pytest.approx(float(limit.central_velocity_width), rel=1e-12)
     middle = (limit.velocity_width.values[13:17] ** 2).mean()
     assert central_width(limit) == pytest.approx(float(np.sqrt(middle)), rel=1e-12)
     double = limit.assign(velocity_width=2 * limit.velocity_width)
