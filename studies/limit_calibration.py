@@ -34,7 +34,7 @@ CHAINS = [
 
 def main() -> None:
     seeds = range(options(__doc__, seeds=40).seeds)
-    print_heads("chain", "accuracy", "rms", "bias", "stated bias", "s")
+    print_heads("chain", "accuracy", "seeds", "rms", "bias", "stated bias", "s")
     for chain, accuracy, width, uncertain in CHAINS:
         truth = width or chain.free_velocity_width
         how = {"accuracy": accuracy, "observe": "widths", "threads": 1, "progress": False}
@@ -49,6 +49,7 @@ def main() -> None:
             f"{chain.size} rods, e = {chain.restitution:g}, g = {chain.gap:g}, "
             f"gamma = {chain.damping:g}, A = {chain.amplitude:g}, {chain.spring}",
             f"{accuracy:g}",
+            f"{len(seeds)}",
             f"{np.sqrt(np.mean((off / stated) ** 2)):.2f}",
             f"{off.mean() / truth / accuracy:+.2f} ± {error / truth / accuracy:.2f}",
             f"{np.mean(biases) / accuracy:.2f}",
