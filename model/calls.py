@@ -99,7 +99,12 @@ def _problem(
 ) -> str:
     """Return why these arguments do not fit a function; nothing if they do."""
     known = [each for each in signature.parameters if each != "self"]
-    takes = f"; it takes {', '.join(known) or 'no arguments'}"
+    kinds: dict[bool, list[str]] = {True: [], False: []}
+    for each in known:
+        by_name = signature.parameters[each].kind == inspect.Parameter.KEYWORD_ONLY
+        kinds[by_name].append(each)
+    told = [", ".join(kinds[False]), f"by name {', '.join(kinds[True])}" if kinds[True] else ""]
+    takes = f"; it takes {', and '.join(filter(None, told)) or 'no arguments'}"
     if wrong := [each for each in named if each not in known]:
         all_meant = all(meant_argument(each, known) for each in wrong)
         said = f"argument{'s' * (len(wrong) > 1)} {with_meanings(wrong, known)}"
