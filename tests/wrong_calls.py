@@ -17,7 +17,7 @@ cb.simulate(chain, restitution=0.9) | restitution is an argument of Chain
 
 NAMES = """
 cb.Chain(restituton=0.9) | Chain has no argument 'restituton'; did you mean 'restitution'?
-cb.Chain(nonsense=3) | 'nonsense'; it takes size, restitution, amplitude
+cb.Chain(nonsense=3) | 'nonsense'; it takes by name size, restitution, amplitude
 cb.simulate(chain, chain=chain) | simulate: multiple values for argument 'chain'
 cb.Density(-3) | reach must be positive, got -3
 cb.simulate(chain, observe=cb.Density(reach=1e12)) | reach=1e+12 is too large for a grid
@@ -27,7 +27,7 @@ cb.animate | any more: film(tree) films what compare_relaxation returns
 cb.fit_growth | ; from crazybilliards.reproduction.fits import fit_growth
 cb.equilibrium(chain, gap=1) | gap is an argument of Chain
 cb.Chain(e=0.8, L=30, sise=3) | arguments 'e' (restitution is e ..., 'L' (size is ..., 'sise' (did
-cb.Chain(e=0.8, foo=1) | arguments 'e' (restitution is e of the paper), 'foo'; it takes size, rest
+cb.Chain(e=0.8, foo=1) | arguments 'e' (restitution is e of the paper), 'foo'; it takes by name size, rest
 chain.replace(e=0.8, g=1) | got 'e' (restitution is e of the paper), 'g' (gap is g of the paper)
 """
 
@@ -36,11 +36,11 @@ WORDS = """
 cb.Chain(N=30) | 'N'; did you mean 'size'?
 cb.Chain(coefficient_of_restitution=0.8) | did you mean 'restitution'?
 cb.Chain(temperature=1) | amplitude^2/(2 damping) is the temperature
-cb.Chain(T=1) | 'T'; it takes size
+cb.Chain(T=1) | 'T'; it takes by name size
 cb.Chain(masses=[1, 2]) | all rods have one mass
 cb.Chain(walls=True) | has no walls, and it is no ring
 cb.Chain(duration=3) | duration is an argument of simulate
-cb.Chain(t_max=3) | 't_max'; it takes size
+cb.Chain(t_max=3) | 't_max'; it takes by name size
 cb.simulate(chain, time=3) | did you mean 'duration'?
 cb.simulate(chain, steps=3) | did you mean 'duration'?
 cb.simulate(chain, T=3) | did you mean 'duration'?
