@@ -10,12 +10,14 @@ import numpy as np
 import xarray as xr
 
 from crazybilliards.model import chain_of
+from crazybilliards.model.calls import public
 from crazybilliards.model.checks import is_list, shown
 from crazybilliards.model.vocabulary import require
 
 _NO_RUN = "takes results of simulate: other error bars do not fall with the number of results"
 
 
+@public
 def combine(runs: Sequence[xr.Dataset] | xr.Dataset) -> xr.Dataset:
     """Return the mean of runs of one chain with other seeds, as one result.
 
@@ -43,7 +45,7 @@ def combine(runs: Sequence[xr.Dataset] | xr.Dataset) -> xr.Dataset:
     """
     if isinstance(runs, xr.Dataset) and "seed" in runs.dims:
         for text in runs.get("provenance", xr.DataArray("")).values.flat:
-            if text and "snapshots" not in json.loads(text):
+            if text and not _is_run(json.loads(text)):
                 raise ValueError(f"combine {_NO_RUN}")
         return _mean(runs, xr.ones_like(runs.seed, dtype=float))
     if isinstance(runs, xr.Dataset) or not is_list(runs) or len(runs) == 0:
@@ -73,6 +75,11 @@ def combine(runs: Sequence[xr.Dataset] | xr.Dataset) -> xr.Dataset:
     )
 
 
+def _is_run(provenance: dict[str, Any]) -> bool:
+    """Return whether it is that of a simulation; limits of a vanishing step share their bias."""
+    return "snapshots" in provenance and "accuracy" not in provenance
+
+
 def _check(runs: Sequence[xr.Dataset]) -> list[dict[str, Any]]:
     """Return what is known about the runs, or raise a ValueError if their mean has no meaning."""
     first: xr.Dataset = runs[0]
@@ -80,7 +87,7 @@ def _check(runs: Sequence[xr.Dataset]) -> list[dict[str, Any]]:
     for number, run in enumerate(runs):
         require(run, _names(first) if number else ())
         chain, provenance = chain_of(run), json.loads(run.attrs["provenance"])
-        if run.attrs.get("source") != "simulation" or "snapshots" not in provenance:
+        if run.attrs.get("source") != "simulation" or not _is_run(provenance):
             raise ValueError(f"combine {_NO_RUN}")
         if "smoothed" in run.attrs:
             raise ValueError("combine takes runs before their densities are smoothed")

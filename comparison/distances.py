@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
-from crazybilliards.comparison.coverage import require_same_smoothing
+from crazybilliards.comparison.coverage import require_same_smoothing, smooth
+from crazybilliards.comparison.widths import WidthDeviation, width_deviation
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.arrays import Array
-from crazybilliards.model.calls import warn_user
+from crazybilliards.model.calls import public, warn_user
 from crazybilliards.model.checks import check_real, shown
 from crazybilliards.model.grid import require_even
 from crazybilliards.model.vocabulary import require
@@ -45,6 +47,7 @@ class Deviation:
     rms_in_errors: float | None
 
 
+@public
 def deviation(
     result: xr.Dataset, reference: xr.Dataset, floor: float = 1e-3, *, raw: bool = False
 ) -> Deviation:
@@ -102,6 +105,29 @@ def deviation(
         maximum_in_errors=float(np.abs(in_errors).max()) if in_errors.size else None,
         rms_in_errors=float(np.sqrt((in_errors**2).mean())) if in_errors.size else None,
     )
+
+
+class Deviations(NamedTuple):
+    """How far a theory is from the simulation of the same chain."""
+
+    density: Deviation  # smoothed
+    velocity_width: WidthDeviation | None  # if the theory has one
+
+
+def deviations(group: xr.DataTree) -> dict[str, Deviations]:
+    """Compare each theory with the ``simulation`` beside it, unless this diverged."""
+    results = {str(name): each.to_dataset() for name, each in group.children.items()}
+    run = results.pop("simulation")
+    if run.attrs["status"] == "diverged":
+        return {}
+    smoothed = smooth(run)
+    return {
+        name: Deviations(
+            deviation(smoothed, smooth(theory)),
+            width_deviation(run, theory) if "velocity_width" in theory else None,
+        )
+        for name, theory in results.items()
+    }
 
 
 def _differences(

@@ -18,6 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
+from crazybilliards.model.calls import public
+
 Picture = NDArray[np.uint8]  # (height, width, 4)
 
 PICTURES_A_SECOND = 25
@@ -27,6 +29,7 @@ _NO_FFMPEG = (
 )
 
 
+@public
 class Player:
     """A film in HTML, which a notebook shows; ``html`` is the text."""
 
@@ -61,9 +64,9 @@ def kind_of_film(suffix: str) -> str:
     return "gif" if suffix == ".gif" or _ffmpeg() is None else "mp4"
 
 
-def encoded(pictures: Iterator[Picture], kind: str) -> bytes:
-    """Return the pictures as the content of a file."""
-    return _as_mp4(pictures) if kind == "mp4" else _as_gif(pictures)
+def encoded(pictures: Iterator[Picture], kind: str, a_second: float = PICTURES_A_SECOND) -> bytes:
+    """Return the pictures, so many of which are shown in a second, as the content of a file."""
+    return _as_mp4(pictures, a_second) if kind == "mp4" else _as_gif(pictures, a_second)
 
 
 def _ffmpeg() -> Any:
@@ -76,12 +79,12 @@ def _ffmpeg() -> Any:
     return package
 
 
-def _as_mp4(pictures: Iterator[Picture]) -> bytes:
+def _as_mp4(pictures: Iterator[Picture], a_second: float) -> bytes:
     """Return the pictures as an mp4, or raise an OSError, as for a full temporary folder."""
     ffmpeg, first, sent = _ffmpeg(), next(pictures), 0
     height, width, _ = first.shape
     # Players begin before they have all of the file.
-    how = {"pix_fmt_in": "rgba", "fps": PICTURES_A_SECOND, "macro_block_size": 2}
+    how = {"pix_fmt_in": "rgba", "fps": a_second, "macro_block_size": 2}
     options = ["-preset", "veryfast", "-movflags", "+faststart"]
     with tempfile.TemporaryDirectory() as scratch:
         film = Path(scratch, "film.mp4")
@@ -101,7 +104,7 @@ def _as_mp4(pictures: Iterator[Picture]) -> bytes:
         return film.read_bytes()
 
 
-def _as_gif(pictures: Iterator[Picture]) -> bytes:
+def _as_gif(pictures: Iterator[Picture], a_second: float) -> bytes:
     # The first picture has all colours, because it shows their key.
     # Of a palette for the median the rare colours, which are those of the rods, would be wrong.
     method = Image.Quantize.MAXCOVERAGE
@@ -116,7 +119,7 @@ def _as_gif(pictures: Iterator[Picture]) -> bytes:
         "gif",
         save_all=True,
         append_images=others,
-        duration=1000 // PICTURES_A_SECOND,
+        duration=round(1000 / a_second),
         loop=0,
         optimize=False,
     )

@@ -6,11 +6,8 @@ therefore takes some seconds.
 
 from __future__ import annotations
 
-import errno
 import math
-import os
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import matplotlib.pyplot as plt
@@ -23,22 +20,10 @@ from matplotlib.colors import CenteredNorm
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from crazybilliards.comparison.encoding import (
-    PICTURES_A_SECOND,
-    Picture,
-    Player,
-    encoded,
-    kind_of_film,
-)
+from crazybilliards.comparison.encoding import Picture
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.arrays import Array
-from crazybilliards.model.checks import check_path, check_real
-from crazybilliards.model.progress import progress_bar
-from crazybilliards.model.storage import make_folder, write_atomically
-from crazybilliards.particles import simulate
 
-_LONGEST = 120.0  # s
-_FINER = 4  # snapshots for one picture, of a chain that is simulated
 _FADING = 0.7  # of a flash, from one picture to the next
 _FAINT = 0.1  # a flash that is not shown any more
 _BEYOND = 0.01  # share of the velocities beyond the ends of the colours
@@ -49,116 +34,7 @@ _LOOK: Any = {"font.size": 12} | {f"axes.spines.{side}": False for side in ("lef
 _COLOURS, _SPRING = "PuOr", "#777777"  # told apart with any colour vision
 
 
-def film(
-    run: xr.Dataset | Chain,
-    path: str | os.PathLike[str] | None = None,
-    *,
-    seconds: float = 10.0,
-    duration: float | None = None,
-    springs: bool = False,
-    progress: bool = True,
-) -> Path | Player:
-    """Film the rods of a run, or of a chain that is simulated for it.
-
-    Every rod is drawn in its place, 2R long (a pixel if that is more), in the colour of its
-    velocity. A star flashes where two rods met since the last picture: where they approached in one
-    snapshot and separate in the next, and a straight flight would have led them through one
-    another. The time between snapshots should therefore be shorter than that between two collisions
-    of a rod; of several meetings between two snapshots one star is seen.
-
-    Parameters
-    ----------
-    run
-        A result with snapshots, e.g. ``simulate(chain, observe="snapshots", duration=20,
-        every=0.02)``, of which the first replica is shown. Or a chain: ``duration`` of its steady
-        state is simulated.
-    path
-        The file, whose name ends in ``.mp4``, ``.gif`` or ``.html``. None: a player for a notebook.
-        An mp4 needs ffmpeg, which ``pip install 'crazybilliards[film]'`` brings. A page and a
-        player hold an mp4, or without ffmpeg a gif.
-    seconds
-        Length of the film, up to 120. It is shorter if there are fewer snapshots than its 25
-        pictures a second.
-    duration
-        Time to simulate, of a chain [T]; None: 20. A result has its own.
-    springs
-        Also draw the anchors, and a line from each to its rod.
-    progress
-        Show a progress bar, on a terminal or in a notebook.
-
-    Returns
-    -------
-    pathlib.Path or Player
-        Where the film was written; or the player, which a notebook shows.
-
-    Raises
-    ------
-    ValueError
-        Before any work: for a result without snapshots, another name, an mp4 without ffmpeg.
-        For a chain whose simulation diverges, because it has no steady state.
-    OSError
-        If the file cannot be written. A former one stays as it was.
-    """
-    file = None if path is None else check_path("path", path)
-    suffix = ".html" if file is None else file.suffix
-    if suffix not in (".mp4", ".gif", ".html"):
-        raise ValueError(f"path must end in .mp4, .gif or .html, got {file}")
-    kind = kind_of_film(suffix)
-    if duration is not None and not isinstance(run, Chain):
-        raise ValueError(
-            "duration is that of a chain to simulate, and this result has its own; "
-            "run.isel(time=slice(...)) is a part of it, and seconds the length of the film"
-        )
-    duration = check_real("duration", 20.0 if duration is None else duration, positive=True)
-    seconds = check_real("seconds", seconds, positive=True)
-    if seconds > _LONGEST:
-        raise ValueError(f"seconds must be at most {_LONGEST:g}, got {seconds:g}")
-    pictures = max(round(PICTURES_A_SECOND * seconds), 1)
-    if file is not None:
-        _require_place(file)
-    if isinstance(run, Chain):
-        run = _short_run(run, duration, pictures, progress)
-    motion = _motion(run, pictures)
-    drawn = _pictures(motion, springs)
-    shown = progress_bar(progress, drawn, desc="film", total=motion.time.size, leave=False)
-    with plt.rc_context(_LOOK):
-        content = encoded(iter(shown), kind)
-    if file is None:
-        return Player(content, kind)
-    if suffix == ".html":
-        content = Player(content, kind).page(f"{motion.chain.size} rods").encode()
-    write_atomically(file, content)
-    return file
-
-
-def _short_run(chain: Chain, duration: float, pictures: int, progress: bool) -> xr.Dataset:
-    """Simulate a chain with snapshots that are close enough to see collisions in them."""
-    run = simulate(
-        chain,
-        duration=duration,
-        every=duration / (_FINER * pictures),
-        observe="snapshots",
-        progress=progress,
-    )
-    if run.attrs["status"] == "interrupted":
-        raise KeyboardInterrupt
-    if run.attrs["status"] == "diverged":
-        raise ValueError(
-            "run: this chain has no steady state to film: its simulation diverged at "
-            f"t = {run.attrs['end_time']:.4g} T"
-        )
-    return run.assign_coords(time=run.time - run.time[0])
-
-
-def _require_place(file: Path) -> None:
-    """Raise an OSError unless the file can be written, before the work for it."""
-    make_folder(file.parent)
-    problem = errno.EISDIR if file.is_dir() else errno.EACCES
-    if file.is_dir() or not os.access(file.parent, os.W_OK | os.X_OK):
-        raise OSError(problem, os.strerror(problem), str(file))
-
-
-class _Motion(NamedTuple):
+class Motion(NamedTuple):
     """What the pictures show, each over (picture, rod or pair of neighbours)."""
 
     chain: Chain
@@ -169,7 +45,7 @@ class _Motion(NamedTuple):
     anchors: Array  # over rod
 
 
-def _motion(run: xr.Dataset, pictures: int) -> _Motion:
+def motion_of(run: xr.Dataset, pictures: int) -> Motion:
     """Read the snapshots, and choose those that are shown."""
     if not {"position", "velocity"} <= set(run) or {"time", "particle"} - set(run.position.dims):
         raise ValueError(
@@ -177,6 +53,7 @@ def _motion(run: xr.Dataset, pictures: int) -> _Motion:
             f"has {', '.join(map(str, run)) or 'nothing'} and is {run.attrs.get('status')}"
         )
     chain = chain_of(run)
+    chain.require_known("film")
     run = run.isel(replica=0) if "replica" in run.dims else run
     rods = run.dropna("time", subset=["velocity"]).transpose("time", "particle", ...)
     time, x, v = rods.time.values, rods.position.values, rods.velocity.values
@@ -191,7 +68,7 @@ def _motion(run: xr.Dataset, pictures: int) -> _Motion:
         just = _met(chain, time[since], x[since], v[since]).any(axis=0) & neighbours
         flash[now] = np.where(just, 1.0, _FADING * flash[now - 1])
     flash[flash < _FAINT] = 0.0
-    return _Motion(chain, time[chosen], x[chosen], v[chosen], flash, chain.anchors[number - 1])
+    return Motion(chain, time[chosen], x[chosen], v[chosen], flash, chain.anchors[number - 1])
 
 
 def _met(chain: Chain, time: Array, x: Array, v: Array) -> NDArray[np.bool_]:
@@ -205,8 +82,14 @@ def _met(chain: Chain, time: Array, x: Array, v: Array) -> NDArray[np.bool_]:
     return crossed & (apart[:-1] < 0) & (apart[1:] > 0)
 
 
-def _pictures(motion: _Motion, springs: bool) -> Iterator[Picture]:
-    """Draw one picture after the other on the same background."""
+def rod_pictures(motion: Motion, springs: bool) -> Iterator[Picture]:
+    """Draw one picture after the other; with the anchors, and the springs as lines, if wanted."""
+    with plt.rc_context(_LOOK):
+        yield from _pictures(motion, springs)
+
+
+def _pictures(motion: Motion, springs: bool) -> Iterator[Picture]:
+    """Draw what moves, in one picture after the other, on the same background."""
     figure = Figure(figsize=_SIZE, dpi=100, layout="constrained")
     canvas, ax = FigureCanvasAgg(figure), figure.subplots()
     rods = PolyCollection([], cmap=_COLOURS, edgecolor="black")
@@ -253,7 +136,7 @@ def _digits(time: Array) -> int:
     return max(2, math.ceil(-math.log10(step))) if step > 0 else 2
 
 
-def _furnish(ax: Axes, motion: _Motion, springs: bool) -> None:
+def _furnish(ax: Axes, motion: Motion, springs: bool) -> None:
     """Set what does not move: the axes, the anchors, the meaning of a star."""
     R = motion.chain.radius
     seen = np.concatenate([motion.x.ravel(), motion.anchors if springs else []])

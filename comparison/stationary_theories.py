@@ -1,7 +1,6 @@
 """The stationary theories: which of them take a chain, how good each is there, and the best one.
 
-A theory is one line of ``THEORIES``. A module is imported when it is first used, so the command
-line can list the theories in its ``--help`` without a delay.
+A theory is one line of ``THEORIES``.
 """
 
 from __future__ import annotations
@@ -12,52 +11,52 @@ import sys
 from collections.abc import Callable, Mapping
 from contextlib import nullcontext
 from dataclasses import dataclass
-from importlib import import_module
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
+import numpy as np
+import xarray as xr
+
+from crazybilliards.kinetic.accuracy import Accuracy, expected, expected_seconds
+from crazybilliards.kinetic.correlations.stationary import (
+    check_correlated_phase_space,
+    correlated_phase_space,
+)
+from crazybilliards.kinetic.exact.gibbs_measure import check_equilibrium, equilibrium
+from crazybilliards.kinetic.kinetic_equation.stationary import check_phase_space, phase_space
+from crazybilliards.kinetic.rods.places import are_resolved
+from crazybilliards.kinetic.statics.balance import check_force_balance, force_balance
+from crazybilliards.model import Chain
+from crazybilliards.model.calls import public
 from crazybilliards.model.checks import check_choice
 from crazybilliards.model.progress import silent, watched
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-    from crazybilliards.kinetic.accuracy import Accuracy
-    from crazybilliards.model import Chain
 
 
 @dataclass(frozen=True)
 class Theory:
     """A theory of a chain's steady state."""
 
-    name: str  # of the function in ``crazybilliards.kinetic``, e.g. "equilibrium"
     title: str  # in tables and legends
-    module: str  # below ``crazybilliards.kinetic``, with the function and ``check_NAME``
+    solve: Callable[..., xr.Dataset]  # of a chain and settings, gives a result
+    check: Callable[..., Any]  # raises the ValueError that solve would raise for its arguments
 
     @property
-    def solve(self) -> Callable[..., xr.Dataset]:
-        """The function: ``solve(chain, **settings)`` gives a result in the common vocabulary."""
-        return self._find(self.name)
-
-    @property
-    def check(self) -> Callable[..., Any]:
-        """Raise the ValueError that ``solve`` would raise for a wrong argument."""
-        return self._find(f"check_{self.name}")
+    def name(self) -> str:
+        """The name of the function in ``crazybilliards.kinetic``, e.g. "equilibrium"."""
+        return self.solve.__name__
 
     def accuracy(self, chain: Chain) -> Accuracy:
         """Return the errors that the theory states for a chain that it takes."""
-        from crazybilliards.kinetic.accuracy import expected
-
         return expected(self.name, chain)
 
     def seconds(self, chain: Chain) -> float:
         """Return the computing time on one core, within a factor of three."""
-        from crazybilliards.kinetic.accuracy import expected_seconds
-
         return expected_seconds(self.name, chain)
 
     def refusal(self, chain: Chain, settings: Mapping[str, Any] | None = None) -> str:
         """Return why the theory does not take the chain and these settings, or nothing."""
-        defaults, given = self._defaults, dict(settings or {})
+        arguments = inspect.signature(self.solve).parameters.items()
+        defaults = {name: each.default for name, each in arguments if name != "chain"}
+        given = dict(settings or {})
         if unknown := sorted(set(given) - set(defaults)):
             return f"{unknown[0]}: {self.name} has no such setting"
         try:
@@ -69,38 +68,41 @@ class Theory:
     def lacks(self, chain: Chain, quantity: str) -> str:
         """Return why the result has no such quantity, or nothing."""
         if quantity == "displacement_width":
-            from crazybilliards.kinetic.rods.places import are_resolved
-
             if self.name == "force_balance":
                 return "it gives no displacement_width"
             if self.name == "phase_space" and chain.lattice_gap > 0 and not are_resolved(chain):
                 return "it gives no displacement_width of so many rods with a gap"
         return ""
 
-    @property
-    def _defaults(self) -> dict[str, Any]:
-        arguments = inspect.signature(self.solve).parameters.values()
-        return {each.name: each.default for each in arguments if each.default is not each.empty}
-
-    def _find(self, name: str) -> Any:
-        return getattr(import_module(f"crazybilliards.kinetic.{self.module}"), name)
-
 
 THEORIES = {
     theory.name: theory
     for theory in (
-        Theory("equilibrium", "exact equilibrium", "exact.gibbs_measure"),
-        Theory("force_balance", "force balance", "statics.balance"),
-        Theory("phase_space", "kinetic equation", "kinetic_equation.stationary"),
+        Theory("exact equilibrium", equilibrium, check_equilibrium),
+        Theory("force balance", force_balance, check_force_balance),
+        Theory("kinetic equation", phase_space, check_phase_space),
         Theory(
-            "correlated_phase_space",
             "kinetic equation with pair correlations",
-            "correlations.stationary",
+            correlated_phase_space,
+            check_correlated_phase_space,
         ),
     )
 }
 
 
+_COLUMNS = (
+    ("takes", "whether the theory takes the chain", ""),
+    ("reason", "why not", ""),
+    ("velocity_width_model_error", "expected relative error of W_v", "1"),
+    ("border_model_error", "expected relative error of W_v at the border", "1"),
+    ("displacement_width_model_error", "expected relative error of W_x", "1"),
+    ("mean_displacement_model_error", "expected error of the mean displacement, over s", "1"),
+    ("density_model_error", "expected error of the density, over close packing", "1"),
+    ("expected_seconds", "expected computing time", "s"),
+)
+
+
+@public
 def theories(chain: Chain) -> xr.Dataset:
     """List the theories of the steady state: which take a chain, their errors, what they cost.
 
@@ -135,35 +137,26 @@ def theories(chain: Chain) -> xr.Dataset:
     >>> table.takes.values
     array([False, False,  True,  True])
     """
-    import numpy as np
-    import xarray as xr
+    table = _table(chain, {})
+    best = _choose(table, chain, "velocity_width").theory.name if table.takes.any() else ""
+    return table.assign_attrs(best=best)
 
-    from crazybilliards.kinetic.accuracy import Accuracy
 
+def _table(chain: Chain, settings: Mapping[str, Any]) -> xr.Dataset:
     rows = []
     for theory in THEORIES.values():
-        reason = theory.refusal(chain)
-        errors = Accuracy() if reason else theory.accuracy(chain)
-        seconds = math.nan if reason else theory.seconds(chain)
-        rows.append((not reason, reason, *errors, seconds))
-    columns = (
-        ("takes", "whether the theory takes the chain", ""),
-        ("reason", "why not", ""),
-        ("velocity_width_model_error", "expected relative error of W_v", "1"),
-        ("border_model_error", "expected relative error of W_v at the border", "1"),
-        ("displacement_width_model_error", "expected relative error of W_x", "1"),
-        ("mean_displacement_model_error", "expected error of the mean displacement, over s", "1"),
-        ("density_model_error", "expected error of the density, over close packing", "1"),
-        ("expected_seconds", "expected computing time", "s"),
-    )
+        if reason := theory.refusal(chain, settings):
+            rows.append((False, reason, *Accuracy(), math.nan))
+        else:
+            rows.append((True, "", *theory.accuracy(chain), theory.seconds(chain)))
     variables = {
         name: ("theory", np.array(values), {"long_name": title, "units": unit})
-        for (name, title, unit), values in zip(columns, zip(*rows, strict=True), strict=True)
+        for (name, title, unit), values in zip(_COLUMNS, zip(*rows, strict=True), strict=True)
     }
-    best = choose_theory(chain).theory.name if any(takes for takes, *_ in rows) else ""
-    return xr.Dataset(variables, {"theory": list(THEORIES)}, {"best": best})
+    return xr.Dataset(variables, {"theory": list(THEORIES)})
 
 
+@public
 def best_theory(
     chain: Chain,
     quantity: str = "velocity_width",
@@ -228,23 +221,20 @@ def choose_theory(
     chain: Chain, quantity: str = "velocity_width", settings: Mapping[str, Any] | None = None
 ) -> Choice:
     """Choose the theory for :func:`best_theory` without solving it."""
-    from crazybilliards.kinetic.accuracy import Accuracy
-
     check_choice("quantity", quantity, Accuracy._fields)
-    refusals = {
-        theory.name: theory.refusal(chain, settings) or theory.lacks(chain, quantity)
-        for theory in THEORIES.values()
-    }
+    return _choose(_table(chain, settings or {}), chain, quantity)
+
+
+def _choose(table: xr.Dataset, chain: Chain, quantity: str) -> Choice:
+    reasons = zip(table.theory.values.tolist(), table.reason.values.tolist(), strict=True)
+    refusals = {name: reason or THEORIES[name].lacks(chain, quantity) for name, reason in reasons}
     if all(refusals.values()):
         if len(set(refusals.values())) == 1:  # it has no steady state
             raise ValueError(refusals.popitem()[1])
-        reasons = "; ".join(f"{name}: {reason}" for name, reason in refusals.items())
-        raise ValueError(f"no theory takes this chain for its {quantity}: {reasons}")
-    errors = {
-        name: getattr(THEORIES[name].accuracy(chain), quantity)
-        for name, refusal in refusals.items()
-        if not refusal
-    }
+        listed = "; ".join(f"{name}: {reason}" for name, reason in refusals.items())
+        raise ValueError(f"no theory takes this chain for its {quantity}: {listed}")
+    stated = zip(refusals, table[f"{quantity}_model_error"].values.tolist(), strict=True)
+    errors = {name: error for name, error in stated if not refusals[name]}
     best = min(errors, key=lambda name: (math.isnan(errors[name]), errors[name]))
     named = quantity.replace("_", " ")
     listed = ", ".join(

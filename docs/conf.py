@@ -37,7 +37,7 @@ extensions = [
     "sphinx.ext.napoleon",
     "sphinx.ext.viewcode",
 ]
-exclude_patterns = ["_static", "**.ipynb_checkpoints"]
+exclude_patterns = ["_static", "**.ipynb_checkpoints", "package_index.md", "paper/paper.md"]
 html_theme = "furo"
 html_title = f"{project} {release}"
 html_theme_options = {"navigation_with_keys": True}

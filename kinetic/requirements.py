@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
+
 import numpy as np
 
 from crazybilliards.model import Chain
@@ -20,6 +22,7 @@ def require_chain(
     gapless: bool = False,
     steady: bool = True,
     remedy: str = "",
+    knows: Collection[str] = (),
 ) -> None:
     """Raise a ValueError with the reason if ``theory`` does not hold for this chain.
 
@@ -28,9 +31,10 @@ def require_chain(
 
     ``theory`` is its name in the error. It needs restitution 1 (``elastic``), linear springs, no
     gap, or a steady state, where these are True. ``remedy`` says what to do for another
-    restitution, at the end of that error.
+    restitution, at the end of that error. ``knows``: parameters beside ``KNOWN`` that this theory
+    takes; all others go on refusing them.
     """
-    chain.require_known(theory)
+    chain.require_known(theory, knows)
     if elastic and chain.restitution != 1:
         raise ValueError(
             f"{theory} holds for elastic collisions only: restitution must be 1, got "

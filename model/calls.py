@@ -11,69 +11,38 @@ import inspect
 import sys
 import warnings
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import FrozenInstanceError
-from functools import cache, wraps
-from pkgutil import resolve_name
-from typing import Any
+from functools import wraps
+from types import UnionType
+from typing import Any, TypeVar
 
 import numpy as np
 
-from crazybilliards.model.checks import meant, meant_argument, shown, with_meanings
-from crazybilliards.model.words import SYMBOLS, WORDS
+from crazybilliards.model.checks import meant_argument, shown, with_meanings
+from crazybilliards.model.words import WORDS
+
+Item = TypeVar("Item", bound=Callable[..., Any])
 
 # numpy's own settings: solvers rely on them, whatever numpy.seterr the user has chosen.
 _NUMPY: Any = {"divide": "warn", "over": "warn", "under": "ignore", "invalid": "warn"}
 
-# annotation: (the classes it stands for, what is wanted)
-_OBJECTS = {
-    "Chain": (
-        ("crazybilliards.model.chain:Chain",),
-        "a Chain: Chain(size=60) makes one, chain_of(result) gives that of a result",
-    ),
-    "xr.Dataset": (
-        ("xarray:Dataset",),
-        "a result, an xarray.Dataset: simulate(chain), a theory or load(path) returns one, "
-        "tree['name'].to_dataset() gives one of a tree",
-    ),
-    "xr.DataTree": (
-        ("xarray:DataTree",),
-        "an xarray.DataTree, which compare_elastic, compare_relaxation and compare_restitutions "
-        "return",
-    ),
-    "xr.Dataset | xr.DataTree": (
-        ("xarray:Dataset", "xarray:DataTree"),
-        "a result or a tree of results, an xarray.Dataset or xarray.DataTree",
-    ),
-    "xr.Dataset | Chain": (
-        ("xarray:Dataset", "crazybilliards.model.chain:Chain"),
-        "a result with snapshots, of simulate(chain, observe='snapshots'), or a Chain",
-    ),
-    "Relaxation": (
-        ("xarray:DataTree",),
-        "what compare_relaxation returns; film(run) shows the rods of one run",
-    ),
-    "bool": (("builtins:int", "numpy:bool"), "True or False"),
-    "bool | str": (("builtins:int", "numpy:bool", "builtins:str"), "True, False or a text"),
-    "FuncAnimation": (
-        ("matplotlib.animation:FuncAnimation",),
-        "a FuncAnimation of matplotlib, which animate(tree) returns",
-    ),
+# What is wanted for an argument that is annotated with these classes, or with several of them.
+_WANTED = {
+    "Chain": "a Chain: Chain(size=60) makes one, chain_of(result) gives that of a result",
+    "Dataset": "a result, an xarray.Dataset: simulate(chain), a theory or load(path) returns one, "
+    "tree['name'].to_dataset() gives one of a tree",
+    "DataTree": "an xarray.DataTree, which compare and compare_relaxation return",
+    "bool": "True or False",
+    "str": "a text",
 }
 
 
-def checked(item: Any, room: str) -> Any:
-    """Return a public function or class of a room that refuses wrong calls.
-
-    A function is wrapped, a class gets another ``__init__``. Exceptions stay as they are.
-    """
-    if not inspect.isclass(item):
-        public = _checked(item, inspect.signature(item))
-        public.__module__ = room  # where pickle finds it
-        return public
-    if issubclass(item, BaseException):
+def public(item: Item) -> Item:
+    """Let a public function, or the ``__init__`` of a public class, refuse wrong calls."""
+    if inspect.isclass(item):
+        owner: Any = item
+        owner.__init__ = _checked(owner.__init__, owner.__name__)
         return item
-    _check_class(item)
-    return item
+    return _checked(item, item.__name__)
 
 
 def warn_user(message: str, category: type[Warning] = UserWarning) -> None:
@@ -84,142 +53,86 @@ def warn_user(message: str, category: type[Warning] = UserWarning) -> None:
     warnings.warn(message, category, stacklevel=level)
 
 
-def _check_class(owner: Any) -> None:
-    signature = inspect.signature(owner)
-    itself = inspect.Parameter("self", inspect.Parameter.POSITIONAL_ONLY)
-    start: Any = _checked(_start_of(owner), signature, owner.__name__)
-    start.__signature__ = signature.replace(parameters=[itself, *signature.parameters.values()])
-    owner.__init__ = start
-    if "__dataclass_fields__" in vars(owner):  # all of them are frozen
-        owner.__setattr__ = _explained(owner.__setattr__)
-        owner.__delattr__ = _explained(owner.__delattr__)
-        owner.__getattr__ = _missing
-
-
-def _start_of(owner: Any) -> Callable[..., None]:
-    """Return ``__init__`` of a class; of one without its own what calls the next one of a base."""
-    if "__init__" in vars(owner):
-        own: Callable[..., None] = owner.__init__
-        return own
-
-    def inherited(self: Any, *arguments: Any, **keywords: Any) -> None:
-        super(owner, self).__init__(*arguments, **keywords)
-
-    return inherited
-
-
-def _checked(
-    function: Callable[..., Any], signature: inspect.Signature, owner: str = ""
-) -> Callable[..., Any]:
-    """Wrap a function, or the ``__init__`` of the class ``owner``."""
-    name = owner or function.__name__
-    objects = [
-        (place, argument.name, argument.annotation)
-        for place, argument in enumerate(signature.parameters.values())
-        if argument.annotation in _OBJECTS
+def _checked(function: Callable[..., Any], name: str) -> Any:
+    signature = inspect.signature(function, eval_str=True)
+    objects = [  # real classes: an annotation that names none is an error where the function stands
+        (place, each.name, classes)
+        for place, each in enumerate(signature.parameters.values())
+        if (classes := _classes(each.annotation))
     ]
 
     @wraps(function)
-    def public(*arguments: Any, **keywords: Any) -> Any:
-        given = arguments[1:] if owner else arguments
-        for place, argument, kind in objects:
+    def checked(*given: Any, **named: Any) -> Any:
+        for place, argument, classes in objects:
             if place < len(given):
-                _require(argument, given[place], kind)
-            elif argument in keywords:
-                _require(argument, keywords[argument], kind)
+                _require(argument, given[place], classes)
+            elif argument in named:
+                _require(argument, named[argument], classes)
         try:
             with np.errstate(**_NUMPY):
-                return function(*arguments, **keywords)
+                return function(*given, **named)
         except TypeError:
-            if problem := _problem(name, signature, given, keywords):
+            if problem := _problem(name, signature, given, named):
                 raise TypeError(problem) from None
             raise
 
-    return public
+    return checked
 
 
-def _require(argument: str, value: object, kind: str) -> None:
-    """Raise a ValueError unless the value is of a class that the annotation ``kind`` names."""
-    if not isinstance(value, _classes(kind)):
-        raise ValueError(f"{argument} must be {_OBJECTS[kind][1]}; got {shown(value)}")
+def _classes(kind: Any) -> tuple[type, ...]:
+    """Return the classes of an annotation if a message says what is wanted, or nothing."""
+    classes = kind.__args__ if isinstance(kind, UnionType) else (kind,)
+    told = all(inspect.isclass(each) and each.__name__ in _WANTED for each in classes)
+    return classes if told and classes != (str,) else ()  # texts have checks of their own
 
 
-@cache
-def _classes(kind: str) -> tuple[type, ...]:
-    return tuple(resolve_name(name) for name in _OBJECTS[kind][0])
+def _require(argument: str, value: object, classes: tuple[type, ...]) -> None:
+    """Raise a ValueError unless the value is of one of the classes; numbers are truth values."""
+    if isinstance(value, classes) or (bool in classes and isinstance(value, int | np.bool_)):
+        return
+    wanted = ", or ".join(_WANTED[each.__name__] for each in classes)
+    raise ValueError(f"{argument} must be {wanted}; got {shown(value)}")
 
 
 def _problem(
-    name: str, signature: inspect.Signature, given: Sequence[Any], keywords: Mapping[str, Any]
+    name: str, signature: inspect.Signature, given: Sequence[Any], named: Mapping[str, Any]
 ) -> str:
     """Return why these arguments do not fit a function; nothing if they do."""
-    known = signature.parameters
-    by_name = [each for each, argument in known.items() if argument.kind == argument.KEYWORD_ONLY]
-    by_place = [each for each in known if each not in by_name]
-    takes = ", ".join(known) or "no arguments"
-    if wrong := [each for each in keywords if each not in known]:
+    known = [each for each in signature.parameters if each != "self"]
+    kinds: dict[bool, list[str]] = {True: [], False: []}
+    for each in known:
+        by_name = signature.parameters[each].kind == inspect.Parameter.KEYWORD_ONLY
+        kinds[by_name].append(each)
+    told = [", ".join(kinds[False]), f"by name {', '.join(kinds[True])}" if kinds[True] else ""]
+    takes = f"; it takes {', and '.join(filter(None, told)) or 'no arguments'}"
+    if wrong := [each for each in named if each not in known]:
         all_meant = all(meant_argument(each, known) for each in wrong)
         said = f"argument{'s' * (len(wrong) > 1)} {with_meanings(wrong, known)}"
-        return f"{name} has no {said}" + ("" if all_meant else f"; it takes {takes}")
-    if len(given) > len(by_place):
-        more = shown(given[len(by_place)])
-        free = [f"{each}={more}" for each in by_name if each not in keywords]
-        way = f": write {free[0]} with its name" if free else f"; it takes {takes}"
-        return (
-            f"{name} takes {', '.join(by_place) or 'no argument'} without a name, got {more}{way}"
-        )
-    for each in by_place[: len(given)]:
-        if each in keywords:
-            return f"{name} got {each} twice, by its place and by its name"
-    missing = [
-        each
-        for each in [*by_place[len(given) :], *by_name]
-        if known[each].default is inspect.Parameter.empty and each not in keywords
-    ]
-    if not missing:
-        return ""
-    whole = [
-        f"; {each} must be numbers, such as one variable of the result, got {shown(value)}"
-        for each, value in zip(by_place, given, strict=False)
-        if known[each].annotation not in _OBJECTS and isinstance(value, _classes("xr.Dataset"))
-    ]
-    return f"{name} needs {' and '.join(missing)}; it takes {takes}{''.join(whole)}"
+        return f"{name} has no {said}" + ("" if all_meant else takes)
+    try:
+        signature.bind(*given, **named)
+    except TypeError as error:
+        return f"{name}: {error}{takes}"
+    return ""
 
 
-def _missing(self: Any, name: str) -> Any:
+def missing_attribute(self: Any, name: str) -> Any:
     """Raise the AttributeError with what was meant: another attribute, or a function of a chain."""
     try:
         return object.__getattribute__(self, name)
     except AttributeError as error:
         if name.startswith("_") or hasattr(type(self), name):  # that of a property
             raise
-        known = [each for each in dir(self) if not each.startswith("_")]
-        hint = (_of_a_chain if "replace" in known else meant)(name, known)
+        hint = _of_a_chain(name) or meant_argument(
+            name, [each for each in dir(self) if each[0] != "_"]
+        )
         raise AttributeError(f"{error}{hint}") from None
 
 
-def _of_a_chain(name: str, known: Sequence[str]) -> str:
-    """Return what is meant by an attribute that chains do not have."""
+def _of_a_chain(name: str) -> str:
+    """Return the public function of a chain that is meant by an attribute, or nothing."""
     front = sys.modules[__name__.partition(".")[0]]
     for each in WORDS.get(name, [name]):
-        if each in front.__all__:
-            arguments = inspect.signature(getattr(front, each)).parameters.values()
-            if "Chain" in str(next(iter(arguments), "")):
-                return f"; {front.__name__}.{each}(chain, ...) is a function"
-    return meant_argument(name, known)
-
-
-def _explained(refuse: Callable[..., None]) -> Callable[..., None]:
-    """Return the method of a frozen class that refuses a change, with a message of what to do."""
-
-    @wraps(refuse)
-    def change(self: Any, name: str, *value: Any) -> None:
-        try:
-            refuse(self, name, *value)
-        except FrozenInstanceError:
-            name = SYMBOLS.get(name, name)
-            way = f"; chain.replace({name}=...) returns another" if hasattr(self, "replace") else ""
-            kind = type(self).__name__
-            raise FrozenInstanceError(f"{name}: a {kind} cannot be changed{way}") from None
-
-    return change
+        if each in front.__all__ and "chain" in inspect.signature(getattr(front, each)).parameters:
+            return f"; {front.__name__}.{each}(chain, ...) is a function"
+    return ""

@@ -30,10 +30,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from crazybilliards.model import spring
+from crazybilliards.model.calls import missing_attribute, public
 from crazybilliards.model.checks import check_arguments, refuse_units, shown
 from crazybilliards.model.parameters import KNOWN, Parameters, Spring
 
 
+@public
 @dataclass(frozen=True, kw_only=True)
 class Chain(Parameters):
     """The checked parameters of one chain; the defaults are the paper's reference at e = 1.
@@ -96,6 +98,9 @@ class Chain(Parameters):
             wall_restitution: float = 1.0,
             mass_ratio: float = 1.0,
         ) -> None: ...
+
+    else:  # type checkers would take every attribute to be there
+        __getattr__ = missing_attribute
 
     def __post_init__(self) -> None:
         super().__post_init__()

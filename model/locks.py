@@ -1,4 +1,4 @@
-"""Locks: one process at a time writes a file, keeps a checkpoint or fills a folder.
+"""Locks: one process at a time keeps a checkpoint or fills a folder.
 
 The operating system holds a lock on an open file and frees it when the process ends, however it
 ends. A dead process therefore blocks nobody. A kill leaves a small lock file, which the next run
@@ -17,7 +17,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from filelock import FileLock, Timeout, lock_descriptor
+from filelock import FileLock, Timeout
 
 # Errors of file systems without locks.
 _NO_LOCKS = {errno.ENOLCK, errno.ENOSYS, errno.ENOTSUP, errno.EOPNOTSUPP}
@@ -60,46 +60,6 @@ def locked(path: Path) -> Iterator[None]:
             yield
         finally:
             _remove_held(file)
-
-
-def open_locked(path: Path) -> int | None:
-    """Open a file for writing, make it if needed, and lock it; None if there are no locks.
-
-    The file is renamed while its writer holds the lock, so it cannot be a ``FileLock``: a process
-    that waited would lock the renamed file and believe it holds this one. Here the name of the
-    open file is checked. Windows does not rename open files, so it has no such locks.
-
-    Raises
-    ------
-    BlockingIOError
-        If another process holds the lock.
-    OSError
-        If the file cannot be opened.
-    """
-    if sys.platform == "win32":
-        return None
-    while True:
-        # O_NOFOLLOW: somebody's link of this name must not make us write to another file.
-        descriptor = os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o666)
-        try:
-            free = lock_descriptor(descriptor, blocking=False)
-        except OSError:
-            path.unlink(missing_ok=True)
-            os.close(descriptor)
-            return None
-        if free and _is_named(descriptor, path):
-            return descriptor
-        os.close(descriptor)
-        if not free:
-            raise BlockingIOError(errno.EAGAIN, os.strerror(errno.EAGAIN), str(path))
-        # Its holder renamed or removed the file at this moment: try again.
-
-
-def _is_named(descriptor: int, path: Path) -> bool:
-    try:
-        return os.path.samestat(os.fstat(descriptor), path.lstat())
-    except FileNotFoundError:
-        return False
 
 
 def _sign(descriptor: int, file: Path) -> None:

@@ -16,8 +16,8 @@ from crazybilliards.model.checks import check_choice, check_integer, check_real
 
 Spring = Literal["linear", "quadratic"]
 
-# The parameters that simulations and theories know. A new one is refused by each of them, unless it
-# says that it knows it.
+# The parameters that everything knows. A new one is refused by every operator of collisions, by the
+# steps, the scales, the starts, every observer and every theory, unless its own ``knows`` names it.
 KNOWN = frozenset(
     {"size", "restitution", "amplitude", "damping", "stiffness", "gap", "radius", "mass", "spring"}
 )

@@ -15,8 +15,6 @@ import hashlib
 import io
 import os
 import secrets
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -25,8 +23,8 @@ import numpy as np
 import xarray as xr
 from xarray.backends import ScipyDataStore
 
+from crazybilliards.model.calls import public
 from crazybilliards.model.checks import check_path
-from crazybilliards.model.locks import open_locked
 from crazybilliards.model.process import interrupts_held_back
 
 _CLASSIC, _NETCDF_4 = b"CDF", b"\x89HDF"  # the first bytes of a file
@@ -34,6 +32,7 @@ _MARK = b"\ncrazybilliards-1 sha256 "
 _TRAILER = len(_MARK) + 64 + 1  # hexadecimal digest and a newline
 
 
+@public
 def save(result: xr.Dataset | xr.DataTree, path: str | os.PathLike[str]) -> Path:
     """Write a result, or a tree of results, to a NetCDF file; return its path.
 
@@ -55,6 +54,7 @@ def save(result: xr.Dataset | xr.DataTree, path: str | os.PathLike[str]) -> Path
 
 
 # A Ctrl-C would be lost in __del__ of a file, or become another error in what h5py calls.
+@public
 @interrupts_held_back()
 def load(path: str | os.PathLike[str]) -> xr.Dataset | xr.DataTree:
     """Read a result that :func:`save` wrote, all of it into memory.
@@ -141,19 +141,26 @@ def read_sealed(path: Path) -> bytes:
 def write_atomically(path: Path, content: bytes) -> None:
     """Write ``content`` beside ``path``, then rename: readers see the old file or the new one.
 
+    The unfinished file has a name that no other write has, and is removed if writing fails. A kill
+    leaves it behind.
+
     Raises
     ------
     OSError
         If it cannot be written, naming ``path``; a former file stays as it was.
     """
+    unfinished = path.with_name(f".{path.name}.{secrets.token_hex(4)}.part")
     try:
         make_folder(path.parent)
-        with _unfinished(path) as name:
-            with open(name, "wb") as file:
+        try:
+            with open(unfinished, "xb") as file:
                 file.write(content)
                 file.flush()
                 os.fsync(file.fileno())
-            os.replace(name, path)
+            os.replace(unfinished, path)
+        except BaseException:
+            unfinished.unlink(missing_ok=True)
+            raise
     except OSError as error:
         raise OSError(error.errno, error.strerror or str(error), str(path)) from error
 
@@ -164,27 +171,3 @@ def make_folder(path: Path) -> None:
         path.mkdir(parents=True, exist_ok=True)
     except FileExistsError as error:
         raise NotADirectoryError(errno.ENOTDIR, os.strerror(errno.ENOTDIR), str(path)) from error
-
-
-@contextmanager
-def _unfinished(path: Path) -> Iterator[Path]:
-    """Yield the name for the unfinished file of ``path``; remove the file if writing fails.
-
-    The name is always the same, so that the next write takes over a file that a kill left. If
-    another process is writing at this moment, or there are no locks, the name is a random one.
-    """
-    name = path.with_name(f".{path.name}.part")
-    try:
-        lock = open_locked(name)
-    except OSError:
-        lock = None
-    if lock is None:
-        name = path.with_name(f".{path.name}.{secrets.token_hex(4)}.part")
-    try:
-        yield name
-    except BaseException:
-        name.unlink(missing_ok=True)
-        raise
-    finally:
-        if lock is not None:
-            os.close(lock)

@@ -18,6 +18,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
+from crazybilliards.model.calls import public
 from crazybilliards.model.chain import Chain
 from crazybilliards.model.checks import meant, shown
 
@@ -107,8 +108,8 @@ ATTRIBUTES = {
     "residual": ("how far the equations are from satisfied", "1"),
     "time_step_error": ("relative error of W_v due to the time step", "1"),
     "relaxation_time": ("time in which the chain forgets its start", "T"),
-    "correlation": ("correlation of the widths at the last two time steps", "1"),
-    "saving": ("work of a plain run over that of the levels, estimated", "1"),
+    "double_step_change": ("relative change of W_v in the centre at twice the time step", "1"),
+    "double_step_change_error": ("standard error of this change", "1"),
     "mesh_error": ("largest relative error of W_v due to the mesh", "1"),
     "velocity_width_model_error": ("relative error of W_v of the theory itself", "1"),
     "border_model_error": ("relative error of W_v at the border of the theory itself", "1"),
@@ -235,6 +236,7 @@ def _require_all_rods(chain: Chain, label: ArrayLike) -> None:
         )
 
 
+@public
 def chain_of(dataset: xr.Dataset) -> Chain:
     """Return the chain a result was computed for, read from its provenance."""
     try:

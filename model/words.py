@@ -80,7 +80,4 @@ NOTES = dict.fromkeys(("walls", "wall", "box", "periodic", "pbc", "ring", "bound
     "radii": "all rods have one radius",
     "diameter": "a rod is two radius long",
     "fps": "a film has 25 pictures a second, and seconds is its length",
-    # What 0.4.0 does not have any more; 0.5.0 says no more of them.
-    "rng": "seed takes what rng took",
-    "finished": "folder keeps every result as soon as it is there",
 }

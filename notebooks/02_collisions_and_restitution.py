@@ -33,11 +33,9 @@
 # %% tags=["hide-input"]
 import matplotlib.pyplot as plt
 import numpy as np
-from IPython.display import HTML
-from matplotlib.animation import FuncAnimation
 from matplotlib.patches import Rectangle
 from scipy.optimize import isotonic_regression
-from teaching import COLOURS, RED, agree, check, panels, right
+from teaching import COLOURS, RED, agree, check, panels, played, right
 
 
 def film(chain, x, v, *, duration, every, time_step=None, **settings):
@@ -429,7 +427,7 @@ axes[0].set_ylabel("time t [T]")
 plt.show()
 
 # %% tags=["hide-input"]
-fig, axes = plt.subplots(3, 1, figsize=(7, 2.4), sharex=True, dpi=60)
+fig, axes = plt.subplots(3, 1, figsize=(7, 2.4), sharex=True, dpi=100)
 patches = {}
 for ax, e in zip(axes, restitutions, strict=True):
     patches[e] = [
@@ -445,9 +443,7 @@ def show(frame):
             patch.set_x(centre - 1)
 
 
-animation = FuncAnimation(fig, show, frames=len(films[0][0]), interval=100)
-plt.close(fig)
-HTML(cb.standalone_page(animation))
+played(fig, show, range(len(films[0][0])), a_second=10)
 
 # %% [markdown]
 # <details><summary>Explain</summary>

@@ -39,7 +39,6 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pde
 import sympy as sp
-from IPython.display import HTML
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 from scipy.stats import norm
@@ -304,15 +303,11 @@ assert abs(warm.mean_displacement - exact.mean_displacement).max() > 0.05 * s
 # ## 4. The animation
 
 # %% tags=["hide-input"]
-every_second = tree.map_over_datasets(
-    lambda data: data.isel(time=slice(None, None, 2)) if "time" in data.dims else data
-)
-with plt.rc_context({"figure.dpi": 64}):
-    page = cb.standalone_page(cb.animate(every_second), fps=6)
-HTML(page)
+film = cb.film(tree, seconds=6, progress=False)
+film
 
 # %% tags=["remove-cell"]
-assert len(page) < 1e6
+assert len(film.html) < 1e6
 
 # %% [markdown]
 # ## 5. A motion without compression

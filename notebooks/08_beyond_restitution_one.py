@@ -42,6 +42,8 @@ import numpy as np
 from matplotlib.colors import LogNorm
 from teaching import BLUE, GREEN, ORANGE, PINK, check, mean_and_error, panels, right
 
+from crazybilliards.reproduction.fits import fit_growth
+
 # %% [markdown]
 # ## 1. A collision, seen differently
 #
@@ -457,7 +459,7 @@ def minus_growth(chain):
         t, E = run.time.values, run.kinetic_energy.values
         late = E / chain.size > 1e3  # the noise no longer matters
         assert E[-1] > 1e5 * chain.size
-        rates.append(cb.fit_growth(t[late], E[late]).rate)
+        rates.append(fit_growth(t[late], E[late]).rate)
     rate, error = mean_and_error(rates)
     return -chain.mass / chain.damping * rate, chain.mass / chain.damping * error
 

@@ -37,11 +37,11 @@
 # %% tags=["hide-input"]
 import matplotlib.pyplot as plt
 import numpy as np
-from IPython.display import HTML
-from matplotlib.animation import FuncAnimation
 from scipy.integrate import quad
 from scipy.optimize import linear_sum_assignment
-from teaching import BLUE, GREEN, ORANGE, check, mean_and_error, panels, right
+from teaching import BLUE, GREEN, ORANGE, check, mean_and_error, panels, played, right
+
+from crazybilliards.reproduction.fits import fit_growth, fit_singularity, tail_length
 
 # %% [markdown]
 # ## 1. Two springs
@@ -168,7 +168,7 @@ check(growth_rate, growth_rate_solution, at=chains, hint=hint)
 
 # %%
 late = [run.sel(time=slice(150, None)) for run in slow]
-fits = [cb.fit_growth(run.time.values, run.kinetic_energy.values) for run in late]
+fits = [fit_growth(run.time.values, run.kinetic_energy.values) for run in late]
 rate, rate_error = mean_and_error([fit.rate for fit in fits])
 print(f"measured rate: {rate:.5f} +- {rate_error:.5f} per T, from twelve runs")
 print(f"balance: {unexpanded:.5f} with e^2 - 1, {first_order:.5f} with e - 1")
@@ -217,7 +217,7 @@ for later in cloud[1:]:
 points = np.array(points)
 
 # %% tags=["hide-input"]
-picture, ax = plt.subplots(figsize=(4.6, 4.6), dpi=60)
+picture, ax = plt.subplots(figsize=(4.6, 4.6), dpi=100)
 reach = 1.05 * abs(points).max()
 look = {"cmap": "twilight", "s": 18, "edgecolors": "0.3", "linewidths": 0.4}
 dots = ax.scatter(points[0].real, points[0].imag * frequency, c=np.angle(points[0]), **look)
@@ -230,13 +230,10 @@ def draw(number):
     """Move the points of the picture to those of one snapshot."""
     dots.set_offsets(np.column_stack([points[number].real, points[number].imag * frequency]))
     title.set_text(f"t = {film.time.values[number]:.1f} T")
-    return dots, title
 
 
-animation = FuncAnimation(picture, draw, frames=range(0, frames, 2), interval=200)
-film_of_the_cloud = cb.standalone_page(animation)
-plt.close(picture)
-HTML(film_of_the_cloud)
+film_of_the_cloud = played(picture, draw, range(frames), a_second=10)
+film_of_the_cloud
 
 # %% tags=["hide-input"]
 # A turn back by the angle travelled should leave every point where it was, except for the growth.
@@ -248,7 +245,7 @@ expected_growth = np.exp(unexpanded / 2 * every * (frames - 1))
 print(f"the cloud grew {growth:.2f} times; exp(rate t/2) = {expected_growth:.2f}")
 
 # %% tags=["remove-cell"]
-assert len(film_of_the_cloud) < 1e6
+assert len(film_of_the_cloud.html) < 1e6
 assert np.median(kept) < 0.5
 assert abs(growth / expected_growth - 1) < 0.15
 
@@ -364,7 +361,7 @@ def exponents(run, threshold):
     t, E = beyond(run.time, run.kinetic, threshold)
     theta = 6 / beta * (1 - np.exp(-beta * (t - t[0]) / 6))
     G = E * np.exp(beta * (t - t[0]))
-    return cb.fit_singularity(t, E).exponent, cb.fit_singularity(theta, G).exponent
+    return fit_singularity(t, E).exponent, fit_singularity(theta, G).exponent
 
 
 fitted = {
@@ -618,7 +615,7 @@ axes[0].set_ylabel(r"probability density $W_v\,p(v)$")
 v, p = border_density(weak)
 w = border_width(weak)
 out = v < 0
-length = cb.tail_length(v[out], p[out], 3 * w)
+length = tail_length(v[out], p[out], 3 * w)
 share = (p * np.gradient(v))[v < -3 * w].sum()
 x = np.linspace(-11, -3, 50)
 tail = share * w / length * np.exp((x + 3) * w / length)
@@ -631,7 +628,7 @@ tails = []
 for run in weak:
     v, p = border_density([run])
     v, p, w = v[v < 0], p[v < 0], border_width([run])
-    tails.append(cb.tail_length(v, p, 5 * w) / cb.tail_length(v, p, 3 * w))
+    tails.append(tail_length(v, p, 5 * w) / tail_length(v, p, 3 * w))
 ratio, ratio_error = mean_and_error(tails)
 print(f"length of the tail beyond 5 widths over that beyond 3: {ratio:.2f} +- {ratio_error:.2f}")
 print("(an exponential has 1, a Gaussian 0.65)")

@@ -1,4 +1,4 @@
-"""What the lessons share: colours, panels, a comparison in standard errors, a check of answers.
+"""What the lessons share: colours, panels, films, a comparison in standard errors, checked answers.
 
 The lessons import this file from their own folder.
 """
@@ -6,6 +6,8 @@ The lessons import this file from their own folder.
 import matplotlib.pyplot as plt
 import numpy as np
 
+from crazybilliards.comparison import Player
+from crazybilliards.comparison.encoding import encoded, kind_of_film
 from crazybilliards.reproduction.claims.repetition import error_of_mean
 
 BLUE, ORANGE, GREEN, PINK, RED, SKY = COLOURS = (
@@ -23,6 +25,21 @@ def panels(number=1, width=10, height=3.6, **settings):
     """Return the axes of a row of panels; a single panel comes without a list around it."""
     _, axes = plt.subplots(1, number, figsize=(width, height), **settings)
     return axes
+
+
+def played(figure, show, frames, a_second):
+    """Return a film of a figure, in which ``show(frame)`` moves what moves."""
+
+    def pictures():
+        for frame in frames:
+            show(frame)
+            figure.canvas.draw()
+            yield np.array(figure.canvas.buffer_rgba())
+
+    kind = kind_of_film(".html")
+    film = Player(encoded(pictures(), kind, a_second), kind)
+    plt.close(figure)  # or the notebook would also show the last picture
+    return film
 
 
 def mean_and_error(values):

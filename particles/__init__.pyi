@@ -1,3 +1,4 @@
+from .limit import simulate_limit as simulate_limit
 from .observers.avalanches import (
     Avalanches as Avalanches,
     TriggeredCollisions as TriggeredCollisions,
@@ -11,8 +12,8 @@ from .observers.modes import Modes as Modes
 from .observers.raw import Raw as Raw
 from .observers.time_correlations import TimeCorrelations as TimeCorrelations
 from .observers.velocities import Velocities as Velocities
+from .observers.walls import Walls as Walls
 from .observers.widths import Widths as Widths
 from .scales import relaxation_time as relaxation_time
 from .simulation import ShortRunWarning as ShortRunWarning, simulate as simulate
 from .start import given_start as given_start
-from .vanishing_step.limit import simulate_limit as simulate_limit

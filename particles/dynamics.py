@@ -22,8 +22,8 @@ _DIVERGED = 1e6
 
 Stepper = Literal["splitting", "euler"]
 
-# Parameters beside the known ones that the springs, the damping or the noise take from the chain,
-# in steps. Exact flight has its own (``laws/law.py``).
+# Parameters beside ``KNOWN`` with which the steps of springs, damping and noise are right. Exact
+# flight has its own (``laws/law.py``).
 knows: frozenset[str] = frozenset({"box", "wall_restitution", "mass_ratio"})
 
 

@@ -6,8 +6,6 @@ It is made once, before any work. Observers, kernels, checkpoints and the proven
 from __future__ import annotations
 
 import hashlib
-import re
-from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from functools import cached_property
 from typing import Any, get_args
@@ -21,16 +19,13 @@ from crazybilliards.model.arrays import Array
 from crazybilliards.model.checks import check_choice, check_integer, check_real, is_list, shown
 from crazybilliards.model.grid import require_resolved
 from crazybilliards.model.memory import require_memory
-from crazybilliards.model.vocabulary import VOCABULARY
-from crazybilliards.particles import dynamics
+from crazybilliards.particles import dynamics, scales
 from crazybilliards.particles.dynamics import Dynamics, Stepper, default_merging, make_dynamics
-from crazybilliards.particles.laws import law
 from crazybilliards.particles.laws.law import EXACT, Method, choose_operator
 from crazybilliards.particles.scales import start_swing, typical_speed
 from crazybilliards.particles.schedule import Average, Schedule, make_schedule, too_short
 from crazybilliards.particles.start import MOST_REPLICAS, replica_starts
 
-_UNIT = r"[RMT\d /^().*-]+"
 _GROUPS = 32  # of an ensemble: enough for an error bar good to an eighth
 
 # Measured peak memory: copies while observers are joined and averaged, and chunks of snapshots.
@@ -70,8 +65,7 @@ class Run:
     def __post_init__(self) -> None:
         for name, kinds in (("method", Method), ("stepper", Stepper), ("average", Average)):
             check_choice(name, getattr(self, name), get_args(kinds))
-        known = self.moved_by.union(*(observer.knows for observer in self.observers))
-        self.chain.require_known(f"simulate ({law.NAMES[self.operator]})", known)
+        self._require_known()
         merging = default_merging(self.chain) if self.merging is None else self.merging
         object.__setattr__(self, "merging", check_real("merging", merging))
         object.__setattr__(self, "seed", check_integer("seed", self.seed, least=0))
@@ -88,6 +82,19 @@ class Run:
         names = ", ".join(observer.name for observer in self.observers)
         few = "ask for fewer particles, replicas or times"
         require_memory(f"observe ({few}): {names}", own + _CHUNKS + _COPIES * kept)
+
+    def _require_known(self) -> None:
+        """Raise a ValueError if anything that reads the chain does not know a parameter of it.
+
+        The start refuses by itself, see :attr:`starts`.
+        """
+        if self.operator != EXACT:  # which refuses by itself, too
+            self.chain.require_known("simulate (springs, damping and noise)", dynamics.knows)
+        self.chain.require_known("simulate (its time scales)", scales.knows)
+        for observer in self.observers:
+            if observer.reads_chain:
+                by = f"observe: {observer.name!r} (by knows and reads_chain of its class)"
+                self.chain.require_known(by, observer.knows)
 
     @cached_property
     def schedule(self) -> Schedule:
@@ -157,12 +164,8 @@ class Run:
     def operator(self) -> int:
         """The operator that lets the rods of this run collide."""
         halves = self.stepper == "splitting"
-        return choose_operator(self.chain, self.method, counted=self.counted, halves=halves)
-
-    @property
-    def moved_by(self) -> frozenset[str]:
-        """Parameters beside the known ones that move the rods; exact flight takes no steps."""
-        return frozenset(() if self.exact else dynamics.knows) | law.knows.get(self.operator, set())
+        counted = {"counted": self.counted, "struck": self.struck}
+        return choose_operator(self.chain, self.method, halves=halves, **counted)
 
     @property
     def exact(self) -> bool:
@@ -178,6 +181,11 @@ class Run:
     def counted(self) -> bool:
         """Whether an observer needs every single collision."""
         return any(observer.single_collisions for observer in self.observers)
+
+    @property
+    def struck(self) -> bool:
+        """Whether an observer needs every impulse on a wall."""
+        return any(observer.meets_walls for observer in self.observers)
 
     @property
     def too_short(self) -> str:
@@ -208,6 +216,7 @@ class Run:
             stepper=self.stepper,
             merging=self.merging,
             counted=self.counted,
+            struck=self.struck,
         )
 
     @property
@@ -238,17 +247,6 @@ def _check_observers(run: Run) -> None:
     """Raise if an observer cannot work in this run, or if two report the same variable."""
     given: dict[str, Any] = {}
     for observer in run.observers:
-        for what in ("gives", "along"):
-            names = getattr(observer, what, None)
-            if not is_list(names) or not all(isinstance(name, str) for name in names):
-                raise ValueError(
-                    f"observe: {what} of {type(observer).__name__} must be a tuple of names, such "
-                    f"as ('my_variable',), got {shown(names)}"
-                )
-        if not isinstance(name := getattr(observer, "name", None), str):
-            raise ValueError(
-                f"observe: name of {type(observer).__name__} must be a text, got {shown(name)}"
-            )
         if run.chain.size < observer.least_rods:
             raise ValueError(
                 f"observe: {observer.name!r} needs a chain of at least {observer.least_rods} rods"
@@ -257,18 +255,15 @@ def _check_observers(run: Run) -> None:
             raise ValueError(
                 f"observe: {observer.name!r} is averaged over time only, not over an ensemble"
             )
-        if observer.single_collisions and run.method != "event-driven":
+        if observer.meets_walls and not run.chain.box:
+            raise ValueError(
+                f"observe: {observer.name!r} needs a chain between walls, Chain(box=...)"
+            )
+        if (observer.single_collisions or observer.meets_walls) and run.method != "event-driven":
             raise ValueError(
                 f"observe: {observer.name!r} needs single collisions, which only "
                 "method='event-driven' sees"
             )
-        _check_vocabulary(observer)
-        for name in (*observer.along, *observer.gives):
-            if name.removesuffix("_error") not in {**observer.vocabulary, **VOCABULARY}:
-                raise ValueError(
-                    f"observe: {observer.name!r} gives {name!r}, which has no meaning and unit: "
-                    f"vocabulary = {{{name!r}: (meaning, unit)}} in its class says them"
-                )
         # The times of an ensemble are the same for all observers.
         own = set(observer.along) - ({"time"} if run.average == "ensemble" else set())
         for name in sorted(own | set(observer.gives)):
@@ -279,21 +274,3 @@ def _check_observers(run: Run) -> None:
                     f"observe: {other.name!r} and {observer.name!r} would both give {name!r}; "
                     "take one of them"
                 )
-
-
-def _check_vocabulary(observer: Any) -> None:
-    """Raise unless the meanings and units that an observer brings can be written into a result."""
-    said = observer.vocabulary
-    entries = said.items() if isinstance(said, Mapping) else [(None, None)]
-    for name, entry in entries:
-        texts = [name, *entry] if isinstance(entry, tuple | list) else []
-        if len(texts) != 3 or not all(isinstance(each, str) for each in texts):
-            raise ValueError(
-                f"observe: vocabulary of {observer.name!r} must be {{name: (meaning, unit)}}, all "
-                f"of them texts, got {shown(said)}"
-            )
-        if not re.fullmatch(_UNIT, texts[2]):
-            raise ValueError(
-                f"observe: the unit of {name!r} in the vocabulary of {observer.name!r} must "
-                f"consist of R, M and T, such as R^2/T, or be 1, got {shown(texts[2])}"
-            )

@@ -6,7 +6,10 @@ is at most 0.3 W_v in the centre, as :func:`centre_width` estimates it, and the 
 1 %. docs/particles.md says why.
 
 **Relaxation time.** It is that of a rod on a linear spring, whose stiffness is estimated for
-quadratic springs. docs/particles.md derives it.
+quadratic springs. docs/particles.md derives it. In a box it is at most that of a gas without
+springs.
+
+**Unequal masses.** The step resolves the lightest rod, and the relaxation waits for the heaviest.
 """
 
 from __future__ import annotations
@@ -17,7 +20,12 @@ import numpy as np
 
 from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array
+from crazybilliards.model.calls import public
 from crazybilliards.particles.laws.closed_contacts import CRITICAL_RESTITUTION
+from crazybilliards.particles.laws.exact_flight import independent_rods
+
+# Parameters beside ``KNOWN`` with which these scales are right; every scale refuses others.
+knows: frozenset[str] = frozenset({"box", "wall_restitution", "mass_ratio"})
 
 _RESOLUTION = 0.05
 _KICK = 0.3
@@ -30,8 +38,10 @@ _SLOWEST_MODE = 1.241  # rate of a strongly damped rod on a quadratic spring, in
 
 def spring_rate(chain: Chain) -> float:
     """w0 = sqrt(F'(d)/m) [1/T]; a quadratic spring's is taken at U(d) = 10 T, the temperature."""
+    chain.require_known("the rate of the springs", knows)
+    lightest = chain.rod_masses[:2].min()
     if chain.spring == "linear":
-        return math.sqrt(chain.stiffness / chain.mass)
+        return math.sqrt(chain.stiffness / lightest)
     if chain.stiffness == 0 or chain.temperature == 0:
         return 0.0
     if math.isinf(chain.temperature):
@@ -40,7 +50,7 @@ def spring_rate(chain: Chain) -> float:
             "a step from; give time_step"
         )
     displacement = chain.reach(10 * chain.temperature)
-    return math.sqrt(2 * chain.stiffness * displacement / chain.mass)
+    return math.sqrt(2 * chain.stiffness * displacement / lightest)
 
 
 def centre_width(chain: Chain) -> float:
@@ -50,18 +60,37 @@ def centre_width(chain: Chain) -> float:
     and contracts: 1/w^2 = 1 + q with q = c (1 - e^2) n sqrt(k m)/gamma, n the number of rods that
     lie within a few thermal lengths. c = 0.1 + 0.14 e^4 fits simulations from L = 10 to 1000. For
     e >= 1, where collisions do not cool, w = 1.
+
+    In a box the collisions of uncorrelated rods in a free length l are at least as frequent as
+    these: w^2 - 1 + (1 - e^2) w^3 W m L/(sqrt(pi) gamma l) = 0.
     """
+    chain.require_known("the width in the centre", knows)
     e = chain.restitution
-    if e >= 1 or chain.damping == 0 or chain.stiffness == 0:
+    if e >= 1 or chain.damping == 0 or chain.stiffness == chain.box == 0:
         return 1.0
+    in_box = _width_in_box(chain) if chain.box else 1.0
+    if chain.stiffness == 0:
+        return in_box
     neighbours = chain.size / (1 + chain.gap * chain.size / max(2.5 * chain.thermal_length, 1e-60))
     rate = spring_rate(chain) * chain.mass / chain.damping
-    return 1 / math.sqrt(1 + (0.1 + 0.14 * e**4) * (1 - e**2) * neighbours * rate)
+    alone = 1 / math.sqrt(1 + (0.1 + 0.14 * e**4) * (1 - e**2) * neighbours * rate)
+    return min(alone, in_box)
+
+
+def _width_in_box(chain: Chain) -> float:
+    """Return the root w of the energy balance of a gas in a box, at e < 1."""
+    mass = float(chain.rod_masses.mean())
+    free_path = 2 * chain.walls[1] / chain.size * chain.damping / math.sqrt(mass)
+    loss = (1 - chain.restitution**2) * math.sqrt(chain.temperature / math.pi) / free_path
+    roots = np.roots([loss, 1.0, 0.0, -1.0])
+    return float(roots.real[np.isreal(roots) & (roots.real > 0)][0])
 
 
 def default_time_step(chain: Chain) -> float:
     """Return a step that resolves spring, damping and, for e != 1, the noise; see the module."""
-    fastest = max(spring_rate(chain), chain.damping / chain.mass)
+    chain.require_known("the default time step", knows)
+    lightest = chain.rod_masses[:2].min()
+    fastest = max(spring_rate(chain), chain.damping / lightest)
     if fastest == 0:
         raise ValueError(
             "time_step: a chain without damping and without a working spring has no time scale "
@@ -72,7 +101,7 @@ def default_time_step(chain: Chain) -> float:
         return step
     # A sqrt(dt)/m = ratio * W, W = A/sqrt(2 m gamma)
     ratio = _KICK * centre_width(chain)
-    return min(step, ratio**2 * chain.mass / (2 * chain.damping))
+    return min(step, ratio**2 * lightest / (2 * chain.damping))
 
 
 def time_step_error(
@@ -93,7 +122,12 @@ def time_step_error(
     3e-3 w0 (w0 dt)^4 of its energy per time, measured at dt = 0.1 and 0.5 for gaps of one and two
     radii, which damping limits.
     """
+    chain.require_known("the time-step error", knows)
     e, gap = chain.restitution, chain.lattice_gap
+    if chain.box or chain.mass_ratio != 1:
+        free = chain.stiffness == 0 or (independent_rods(chain) and chain.mass_ratio == 1)
+        elastic = chain.restitution == chain.wall_restitution == 1 and stepper == "splitting"
+        return 0.0 if free and elastic and method == "event-driven" else math.nan
     if chain.size == 1:  # it never collides
         e, method = 1.0, "event-driven"
     unclear = not 0 < velocity_width < math.inf or (chain.amplitude == 0 and e != 1)
@@ -121,6 +155,7 @@ def time_step_error(
     return springs + max(_REBOUNDS * abs(1 - e) * ratio**1.5, _LONG * ratio**4)
 
 
+@public
 def relaxation_time(chain: Chain) -> float:
     """Time in which a chain forgets its start [T], but for a factor e.
 
@@ -143,15 +178,33 @@ def relaxation_time(chain: Chain) -> float:
     >>> round(relaxation_time(Chain(damping=10)), 2)
     9.56
     """
-    return math.inf if chain.stiffness == 0 else settling_time(chain)
+    chain.require_known("relaxation_time", knows)
+    return math.inf if chain.stiffness == chain.box == 0 else settling_time(chain)
 
 
 def settling_time(chain: Chain) -> float:
     """Return the relaxation time or, where nothing ties the rods, that of velocities [T]."""
+    chain.require_known("the settling time", knows)
     if chain.damping == 0:
         return math.inf
-    half_damping = chain.damping / (2 * chain.mass)
-    rate = math.sqrt(_relaxing_stiffness(chain) / chain.mass)
+    times = [_settling_time(chain, float(mass)) for mass in chain.rod_masses[:2]]
+    if chain.box and chain.temperature > 0:
+        in_box = max(2 * chain.rod_masses[:2].max() / chain.damping, _crossing_time(chain))
+        return float(in_box if chain.stiffness == 0 else min(max(times), in_box))
+    return max(times)
+
+
+def _crossing_time(chain: Chain) -> float:
+    """Time constant of the slowest wave of density in a box: of diffusion, or of free flight [T]."""
+    wave_number = math.pi / (2 * chain.walls[1])
+    slowest = math.sqrt(chain.temperature / chain.rod_masses[:2].max())
+    diffusion = chain.damping / (wave_number**2 * chain.temperature)
+    return max(diffusion, math.sqrt(2) / (wave_number * slowest))
+
+
+def _settling_time(chain: Chain, mass: float) -> float:
+    half_damping = chain.damping / (2 * mass)
+    rate = math.sqrt(_relaxing_stiffness(chain) / mass)
     if rate == 0:
         return 1 / (2 * half_damping)
     if rate >= half_damping:
@@ -167,11 +220,14 @@ def correlation_time(chain: Chain) -> float:
     damping. With the critical damping, displacements are correlated for twice
     :func:`relaxation_time`.
     """
+    chain.require_known("the correlation time", knows)
     if chain.damping == 0:
         return 0.0
     stiffness = _relaxing_stiffness(chain)
     swings = chain.damping / stiffness if stiffness > 0 else 0.0
-    return max(chain.mass / chain.damping, swings)
+    if chain.box and chain.temperature > 0:
+        swings = min(swings or math.inf, _crossing_time(chain))
+    return max(float(chain.rod_masses[:2].max()) / chain.damping, swings)
 
 
 def _relaxing_stiffness(chain: Chain) -> float:
@@ -196,29 +252,36 @@ def first_decay(chain: Chain) -> float:
     in the middle of a cloud of the width that a free rod has, or on the lattice of the gap.
     Infinite without damping.
     """
+    chain.require_known("the first decay", knows)
     if chain.damping == 0:
         return math.inf
     width = centre_width(chain)
-    rates = [chain.damping / chain.mass, spring_rate(chain)]
+    rates = [chain.damping / chain.rod_masses[:2].min(), spring_rate(chain)]
     if chain.size > 1 and chain.temperature > 0:
         room = 2.5 * width * chain.thermal_length / chain.size + chain.gap
+        room = min(room, 2 * chain.walls[1] / chain.size)
         rates.append(width * chain.free_velocity_width / room)
     return 1 / max(rates)
 
 
 def typical_speed(chain: Chain, duration: float, y: Array, v: Array) -> float:
     """Upper estimate of the speed that noise and the start's own energy give a rod [R/T]."""
-    heating = min(duration, chain.mass / (2 * chain.damping) if chain.damping else np.inf)
-    noise = chain.amplitude / chain.mass * np.sqrt(heating)
-    spring = np.sqrt(2 * chain.potential(y - chain.reduced_anchors).max() / chain.mass)
+    chain.require_known("the typical speed", knows)
+    lightest = chain.rod_masses[:2].min()
+    heating = min(duration, lightest / (2 * chain.damping) if chain.damping else np.inf)
+    noise = chain.amplitude / lightest * np.sqrt(heating)
+    spring = np.sqrt(2 * chain.potential(y - chain.reduced_anchors).max() / lightest)
     return float(noise + spring + np.abs(v).max())
 
 
 def start_swing(chain: Chain, duration: float, y: Array, v: Array) -> float:
     """Largest displacement of a free rod with the start's energy, in this time if unbound [R]."""
+    chain.require_known("the swing of a start", knows)
+    if chain.box:
+        return chain.box
     displacement = y - chain.reduced_anchors
     if chain.stiffness == 0:
         flight = min(duration, chain.mass / chain.damping) if chain.damping else duration
         return float(np.abs(displacement).max() + np.abs(v).max() * flight)
-    energy = chain.potential(displacement) + chain.mass / 2 * v**2
+    energy = chain.potential(displacement) + chain.rod_masses / 2 * v**2
     return chain.reach(float(energy.max()))

@@ -126,10 +126,7 @@ def make_schedule(
         none = started or ensemble or chain.damping == 0
         warmup = 0.0 if none else RELAXATIONS * settling_time(chain)
     warmup = check_real("warmup", warmup)
-    needed, step, stride = _choose_step(chain, time_step, every, warmup, stepper, exact, finest)
-    _refuse_short_steps(step, needed, warmup + duration)
-    if (warmup + duration) / step > 1e15:
-        raise ValueError(f"time_step {step:g} is too small for {warmup + duration:g} time units")
+    step, stride = _choose_step(chain, time_step, every, warmup, duration, stepper, exact, finest)
     warmup_steps = math.ceil(warmup / step - 1e-9)
     snapshots = duration / (stride * step)
     if ensemble:
@@ -186,42 +183,43 @@ def _choose_step(
     time_step: float | None,
     every: float | None,
     warmup: float,
+    duration: float,
     stepper: Stepper,
     exact: bool,
     finest: float,
-) -> tuple[float, float, int]:
-    """Return the step without regard to snapshots, the step, and the steps between snapshots."""
-    if every is not None:
-        every = check_real("every", every, positive=True)
+) -> tuple[float, int]:
+    """Return the step and the steps between snapshots; refuse a run that would not end."""
+    every = None if every is None else check_real("every", every, positive=True)
     if time_step is not None:
-        needed = longest = check_real("time_step", time_step, positive=True)
+        needed = least = check_real("time_step", time_step, positive=True)
         limit = math.inf if exact else longest_step(chain, stepper)
         if needed >= limit:
             raise ValueError(f"time_step must be below {limit:.3g} to be stable, got {needed:g}")
     else:
         try:
-            needed = longest = default_time_step(chain)
+            needed = default_time_step(chain)
         except ValueError:
             if not exact or every is None:
                 raise
             needed = every  # free rods have no time scale, and need none if snapshots have one
-    least = needed / _MOST_SHORTENED if time_step is None else needed
-    finest = min(max(finest, least), STRIDE * needed)
+        least = needed / _MOST_SHORTENED
+    longest, finest = needed, min(max(finest, least), STRIDE * needed)
     if exact and time_step is None:
         every = every or finest
         # The warm-up is a whole number of steps, which must not make it much longer.
         longest = max(STRIDE * needed, warmup / 100) if warmup > 0 else every
     if every is None:
-        return needed, min(needed, finest), max(math.floor(finest / needed + 1e-9), 1)
-    stride = max(math.ceil(every / longest - 1e-9), 1)
-    return needed, every / stride, stride
-
-
-def _refuse_short_steps(step: float, needed: float, time: float) -> None:
-    """Refuse a run that would not end because ``every`` has made its step far too short."""
+        step, stride = min(needed, finest), max(math.floor(finest / needed + 1e-9), 1)
+    else:
+        stride = max(math.ceil(every / longest - 1e-9), 1)
+        step = every / stride
+    time = warmup + duration
     if needed > _MOST_SHORTENED * step and time > _MOST_SHORT_STEPS * step:
         raise ValueError(
             f"every = {step:g} is too small: the time step would be as short, where {needed:.3g} "
             f"is enough, and warm-up and duration would take {time / step:.1g} steps; at most "
             f"{_MOST_SHORT_STEPS} may be shorter than {needed / _MOST_SHORTENED:.3g}"
         )
+    if time / step > 1e15:
+        raise ValueError(f"time_step {step:g} is too small for {time:g} time units")
+    return step, stride

@@ -12,7 +12,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from crazybilliards.model import Chain
-from crazybilliards.model.calls import warn_user
+from crazybilliards.model.calls import public, warn_user
 from crazybilliards.model.checks import check_integer, check_path, check_real
 from crazybilliards.model.grid import deposit
 from crazybilliards.model.process import announced, cores
@@ -35,6 +35,7 @@ class ShortRunWarning(UserWarning):
     """An average over time is too short for the memory of the chain."""
 
 
+@public
 def simulate(
     chain: Chain,
     *,
@@ -190,7 +191,7 @@ def simulate(
         warn_user(run.too_short, ShortRunWarning)
     if run.stays_at_rest:
         warn_user("amplitude=0 and a start at rest: nothing will move")
-    copies = _replicas(run)
+    copies = make_replicas(run)
     with announced(bool(progress)):
         compile_kernels()
     keeper = None
@@ -214,7 +215,7 @@ def make_run(chain: Chain, *, observe: Any, **arguments: Any) -> Run:
     return Run(chain=chain, observers=find_observers(observe), **arguments)
 
 
-def _replicas(run: Run) -> list[Replica]:
+def make_replicas(run: Run) -> list[Replica]:
     """Distribute the replicas over groups, each with observers of its own."""
     streams = run.streams()
     dynamics = run.dynamics()

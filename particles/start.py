@@ -8,13 +8,18 @@ from numpy.typing import ArrayLike
 
 from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array, check_numbers
+from crazybilliards.model.calls import public
 from crazybilliards.model.checks import check_integer, shown
 from crazybilliards.model.memory import require_memory
 from crazybilliards.model.vocabulary import result
 
+# Parameters beside ``KNOWN`` with which a start is right: at the anchors, or where rods are put.
+knows: frozenset[str] = frozenset({"box", "wall_restitution", "mass_ratio"})
+
 MOST_REPLICAS = 10**15  # more than any memory holds, and still exact as a float
 
 
+@public
 def given_start(
     chain: Chain, position: ArrayLike, velocity: ArrayLike = 0.0, *, replicas: int = 1
 ) -> xr.Dataset:
@@ -66,6 +71,7 @@ def replica_starts(
     chain: Chain, start: xr.Dataset | None, replicas: int
 ) -> list[tuple[Array, Array]]:
     """Return each replica's own reduced positions and velocities, checked."""
+    chain.require_known("a start", knows)
     low, high = chain.walls
     if start is None:
         y = np.clip(chain.reduced_anchors, low, high)

@@ -135,7 +135,6 @@ def _step(y, v, noise, dynamics, scratch, tally, steps):  # type: ignore[no-unty
         collisions += met
         if step.symmetric:
             part = WHOLE
-    tally.collisions[0] += collisions
     return collisions
 
 

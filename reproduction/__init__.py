@@ -1,7 +1,7 @@
 """The paper, arXiv:1404.7460, reproduced: its figures and claims.
 
-``figures`` has one module for each figure of the paper, and ``elastic_gaps`` checks displacements
-with gaps at e = 1, which the paper does not show. ``claims`` compares what they find with what is
-claimed. The other modules hold the chains, fits and predictions that several figures share.
+``figures`` has one module for each figure of the paper, and ``claims`` compares what they find with
+what is claimed. ``fits`` and the other modules hold what several figures share: fits, chains,
+predictions.
 ``crazybilliards reproduce`` runs it all.
 """

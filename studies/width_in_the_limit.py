@@ -39,15 +39,15 @@ def central(limit: xr.Dataset) -> tuple[float, float]:
 
 
 def of_limit(size: int, limit: xr.Dataset) -> list[str]:
-    levels = json.loads(limit.attrs["provenance"])["levels"]
+    step = json.loads(limit.attrs["provenance"])["schedule"]["time_step"]
     width, error = central(limit)
     return [
         f"{size}",
         f"{width:.6f} ± {error:.6f}",
         f"{error / width:.2%}",
         f"{limit.attrs['time_step_error']:.2%}",
-        ", ".join(f"{level['time_step']:.2g}" for level in levels),
-        f"{sum(level['rod_steps'] for level in levels):.1e}",
+        f"{step:.2g}",
+        f"{size * limit.attrs['end_time'] / step:.1e}",
     ]
 
 

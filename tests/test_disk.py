@@ -10,7 +10,6 @@ without, a limit to the size of a file does for a full one.
 
 import os
 import subprocess
-import sys
 
 import numpy as np
 import pytest
@@ -21,8 +20,6 @@ from crazybilliards.particles import simulate
 resource = pytest.importorskip("resource")  # not on Windows
 torture = pytest.mark.torture
 
-COMMAND = [sys.executable, "-c", "from crazybilliards.apps.commands.line import main; main()"]
-PATIENCE = 600.0
 GRID = """
 [grid]
 size = [4, 10, 30]
@@ -30,17 +27,13 @@ restitution = [0.5, 1.0]
 [simulate]
 duration = {duration}
 """
+COMMANDS = {
+    "sweep": ["grid.toml"],
+    "compare": ["--size", "30", "--duration", "2000"],
+    "theory": [],
+    "reproduce": ["1"],
+}
 RUN = {"duration": 2000.0, "replicas": 2, "progress": False}
-
-
-def run(*arguments):
-    return subprocess.run(
-        [*COMMAND, *map(str, arguments)],
-        capture_output=True,
-        text=True,
-        timeout=PATIENCE,
-        check=False,
-    )
 
 
 def mount(*arguments):
@@ -86,7 +79,7 @@ def squeeze(request, tmp_path):
         limit = before[0] if number is None else number
         resource.setrlimit(resource.RLIMIT_FSIZE, (limit, before[1]))
 
-    yield tmp_path, leave, 20
+    yield tmp_path, leave, 12
     leave(None)
 
 
@@ -143,54 +136,41 @@ def test_a_disk_full_in_the_middle_of_a_run(squeeze, e, monkeypatch):
 
 
 @torture
-def test_a_sweep_on_a_full_disk_keeps_what_fits_and_goes_on_with_more_room(small, tmp_path):
-    (small / "filler").write_bytes(b"x" * 800_000)
-    grid = tmp_path / "grid.toml"
-    grid.write_text(GRID.format(duration=300))
-    full = run("sweep", grid, "--output", small)
+@pytest.mark.parametrize("name", COMMANDS)
+def test_a_command_on_a_full_disk_says_so_and_goes_on_with_more_room(
+    name, small, tmp_path, run, monkeypatch
+):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "grid.toml").write_text(GRID.format(duration=300))
+    (small / "filler").write_bytes(b"x" * (800_000 if name == "sweep" else 1_040_000))
+    full = run(name, *COMMANDS[name], "--output", small)
     assert (full.returncode, full.stderr.count("\n")) == (2, 1), full.stderr
     assert f"error: {small}" in full.stderr
-    assert "No space left on device; finished cases are kept" in full.stderr
-    (small / "filler").unlink()
-    kept = {path: path.read_bytes() for path in small.iterdir()}
-    assert 0 < len(kept) < 6
-    mount("-o", "remount,size=10m", small)
-    done = run("sweep", grid, "--output", small)
-    assert f"6 cases, {len(kept)} of them" in done.stdout
-    assert (done.returncode, done.stderr) == (0, "")
-    assert kept.items() <= {path: path.read_bytes() for path in small.iterdir()}.items()
-    assert len(list(small.iterdir())) == 6
-
-
-@torture
-@pytest.mark.parametrize(
-    "arguments",
-    [["compare", "--size", "30", "--duration", "2000"], ["theory"], ["reproduce", "1"]],
-    ids=lambda arguments: arguments[0],
-)
-def test_commands_on_a_full_disk_say_so(arguments, small):
-    (small / "filler").write_bytes(b"x" * 1_040_000)
-    done = run(*arguments, "--output", small)
-    assert (done.returncode, done.stderr.count("\n")) == (2, 1), done.stderr
-    assert f"error: {small}" in done.stderr
-    assert "No space left on device" in done.stderr
+    assert "No space left on device" in full.stderr
+    assert ("finished cases are kept" in full.stderr) == (name in ("sweep", "compare"))
     assert [path.name for path in small.iterdir() if path.suffix == ".part"] == []
-    if arguments[0] == "compare":
-        assert "finished cases are kept" in done.stderr
+    (small / "filler").unlink()
+    kept = {path: path.read_bytes() for path in small.glob("*.nc")}
+    mount("-o", "remount,size=10m", small)
+    done = run(name, *COMMANDS[name], "--output", small)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert kept.items() <= {path: path.read_bytes() for path in small.glob("*.nc")}.items()
+    if name == "sweep":
+        assert 0 < len(kept) < 6
+        assert f"6 cases, {len(kept)} of them" in done.stdout
 
 
 # -- places that cannot be written ------------------------------------------------------------
 
 
 @torture
-@pytest.mark.parametrize("command", ["sweep", "reproduce", "compare", "theory"])
-def test_a_read_only_disk_is_an_error_before_any_work(command, small, tmp_path):
-    grid = tmp_path / "grid.toml"
-    grid.write_text(GRID.format(duration=1e9))
+@pytest.mark.parametrize("name", COMMANDS)
+def test_a_read_only_disk_is_an_error_before_any_work(name, small, tmp_path, run, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "grid.toml").write_text(GRID.format(duration=1e9))
     mount("-o", "remount,ro", small)
     for folder in (small, small / "new"):
-        arguments = [grid] if command == "sweep" else []
-        done = run(command, *arguments, "--output", folder)
+        done = run(name, *COMMANDS[name], "--output", folder)
         assert (done.returncode, done.stderr.count("\n")) == (2, 1), done.stderr
         assert str(small) in done.stderr
         assert done.stdout == ""

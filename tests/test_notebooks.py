@@ -14,83 +14,69 @@ FOLDER = Path(__file__).parents[1] / "notebooks"
 NOTEBOOKS = sorted(FOLDER.glob("*.ipynb"))
 LONGEST_CELL = 15
 OF_A_MACHINE = re.compile(r"(?<![\w.])/(?:home|Users|root|tmp|var/folders)\b|[A-Za-z]:\\+Users\b")
-each_notebook = pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
 
 
-def visible_code(notebook):
-    """Return the lines of code of every cell that a student sees."""
-    return [
-        [line for line in cell.source.splitlines() if line.strip()]
-        for cell in notebook.cells
-        if cell.cell_type == "code" and not HIDDEN.intersection(cell.metadata.get("tags", []))
-    ]
+@pytest.fixture(scope="module", params=NOTEBOOKS, ids=lambda path: path.stem)
+def lesson(request):
+    """Return the name of a lesson, its notebook and its script."""
+    path = request.param
+    return path.name, *(jupytext.read(path.with_suffix(end)) for end in (".ipynb", ".py"))
 
 
-def test_they_are_numbered_and_paired():
+def tags(cell):
+    return cell.metadata.get("tags", [])
+
+
+def test_they_are_numbered_paired_and_small():
     names = [path.stem for path in NOTEBOOKS]
     assert len({name[:3] for name in names}) == len(names)
-    assert all(re.match(r"\d\d_", name) for name in names)
-    assert [path.stem for path in sorted(FOLDER.glob("[0-9]*.py"))] == names
-
-
-@each_notebook
-def test_a_lesson_is_in_the_list_of_lessons(path):
-    table = (FOLDER.parent / "docs" / "notebooks.md").read_text(encoding="utf-8")
-    assert re.search(rf"\n\| \[{int(path.stem[:2])}\. .*\]\(\.\./notebooks/{path.name}\) \|", table)
-
-
-@each_notebook
-def test_a_notebook_is_its_script(path):
-    """Mend with: make render LESSON=NN."""
-    notebook, script = (jupytext.read(path.with_suffix(end)) for end in (".ipynb", ".py"))
-    assert [(cell.cell_type, cell.source) for cell in notebook.cells] == [
-        (cell.cell_type, cell.source) for cell in script.cells
-    ]
-    assert [cell.metadata.get("tags", []) for cell in notebook.cells] == [
-        cell.metadata.get("tags", []) for cell in script.cells
-    ]
-
-
-@each_notebook
-def test_outputs_belong_to_the_code(path):
-    """Mend with: make render LESSON=NN."""
-    notebook = jupytext.read(path)
-    assert notebook.metadata.get("executed") == fingerprint(jupytext.read(path.with_suffix(".py")))
-    code = [cell for cell in notebook.cells if cell.cell_type == "code"]
-    assert [cell.execution_count for cell in code] == list(range(1, len(code) + 1))
-    hidden = [cell for cell in code if HIDDEN.intersection(cell.metadata.get("tags", []))]
-    assert hidden
-    assert all(cell.metadata.jupyter.source_hidden for cell in hidden)  # for JupyterLab
-    outputs = [output for cell in code for output in cell.outputs]
-    assert any("image/png" in output.get("data", {}) for output in outputs)
-    assert not any(output.get("name") == "stderr" for output in outputs)
-    assert not any(output.output_type == "error" for output in outputs)
-    assert str(FOLDER.parent) not in str(outputs)
-    assert not [text for output in outputs for text in texts(output) if OF_A_MACHINE.search(text)]
-
-
-def texts(output):
-    """Return what an output says, without its pictures."""
-    data = output.get("data", {}).items()
-    return [output.get("text", ""), *(str(each) for kind, each in data if "image/png" not in kind)]
-
-
-def test_the_outputs_are_small():
+    assert [path.stem for path in sorted(FOLDER.glob("[0-9][0-9]_*.py"))] == names
     assert sum(path.stat().st_size for path in NOTEBOOKS) < 4e6
 
 
-@each_notebook
-def test_what_a_student_sees(path):
+def test_a_notebook_is_its_script_and_in_the_list_of_lessons(lesson):
+    """Mend with: make render LESSON=NN."""
+    name, *both = lesson
+    cells, expected = ([(c.cell_type, c.source, tags(c)) for c in each.cells] for each in both)
+    assert cells == expected
+    table = (FOLDER.parent / "docs" / "notebooks.md").read_text(encoding="utf-8")
+    assert re.search(rf"\n\| \[{int(name[:2])}\. .*\]\(\.\./notebooks/{name}\) \|", table)
+
+
+def test_outputs_belong_to_the_code(lesson):
+    """Mend with: make render LESSON=NN."""
+    _, notebook, script = lesson
+    assert notebook.metadata.get("executed") == fingerprint(script)
+    code = [cell for cell in notebook.cells if cell.cell_type == "code"]
+    assert [cell.execution_count for cell in code] == list(range(1, len(code) + 1))
+    hidden = [cell for cell in code if HIDDEN.intersection(tags(cell))]
+    assert hidden
+    assert all(cell.metadata.jupyter.source_hidden for cell in hidden)  # for JupyterLab
+    outputs = [output for cell in code for output in cell.outputs]
+    kinds = {kind for output in outputs for kind in output.get("data", {})}
+    assert "image/png" in kinds
+    assert not any(output.get("name") == "stderr" for output in outputs)
+    assert not any(output.output_type == "error" for output in outputs)
+    assert str(FOLDER.parent) not in str(outputs)
+    for output in outputs:
+        data = output.get("data", {}).items()
+        texts = [str(each) for kind, each in data if kind != "image/png"]
+        assert not OF_A_MACHINE.search("\n".join([output.get("text", ""), *texts]))
+
+
+def test_what_a_student_sees(lesson):
     """A few lines that carry the idea, no assertions, and a task with a check."""
-    notebook = jupytext.read(path.with_suffix(".py"))
-    cells = visible_code(notebook)
+    _, _, script = lesson
+    code = [cell for cell in script.cells if cell.cell_type == "code"]
+    seen = [cell.source.splitlines() for cell in code if not HIDDEN.intersection(tags(cell))]
+    cells = [[line for line in cell if line.strip()] for cell in seen]
     assert max(map(len, cells)) <= LONGEST_CELL
     lines = [line for cell in cells for line in cell]
     assert not any(line.lstrip().startswith("assert ") for line in lines)
     assert any("your code here" in line for line in lines)
     assert "import crazybilliards as cb" in lines
     assert any(line.startswith("check(") for line in lines)
-    text = "\n".join(cell.source for cell in notebook.cells if cell.cell_type == "markdown")
+    text = "\n".join(cell.source for cell in script.cells if cell.cell_type == "markdown")
     assert 0 < text.count("<details>") == text.count("</details>")
     assert 0 < text.count("**Predict") <= text.count("**Run")
     assert "hint=" in "\n".join(lines)
@@ -104,10 +90,9 @@ def test_copies_have_no_outputs_and_keep_answers(tmp_path, capsys):
     assert [path.name for path in sorted(tmp_path.glob("*.ipynb"))] == [p.name for p in NOTEBOOKS]
     for path in NOTEBOOKS:
         copy, original = (nbformat.read(file, 4) for file in (tmp_path / path.name, path))
-        assert [cell.source for cell in copy.cells] == [cell.source for cell in original.cells]
-        assert [cell.metadata for cell in copy.cells] == [cell.metadata for cell in original.cells]
-        code = [cell for cell in copy.cells if cell.cell_type == "code"]
-        assert not any(cell.outputs or cell.execution_count for cell in code)
+        kept = [[(cell.source, cell.metadata) for cell in each.cells] for each in (copy, original)]
+        assert kept[0] == kept[1]
+        assert not any(cell.get("outputs") or cell.get("execution_count") for cell in copy.cells)
         nbformat.validate(copy)
     answered = tmp_path / NOTEBOOKS[0].name
     answered.write_text("answers")
@@ -116,18 +101,6 @@ def test_copies_have_no_outputs_and_keep_answers(tmp_path, capsys):
     assert answered.read_text() == "answers"
     assert (tmp_path / NOTEBOOKS[1].name).exists()
     assert f"{len(NOTEBOOKS) - 1} lessons were there" in capsys.readouterr().out
-
-
-def wrong(x):
-    return x + 1
-
-
-def missing(x):
-    return ...
-
-
-def without_return(x):
-    abs(x)
 
 
 def broken(x):
@@ -139,9 +112,9 @@ def broken(x):
     [
         (abs, "Right."),
         (lambda x: -abs(x), "Right."),
-        (wrong, "Not yet: for (-1) you have 0, and right is 1. Hint: sign"),
-        (missing, "Your turn"),
-        (without_return, "returns nothing: write return"),
+        (lambda x: x + 1, "Not yet: for (-1) you have 0, and right is 1. Hint: sign"),
+        (lambda x: ..., "Your turn"),
+        (lambda x: None, "returns nothing: write return"),
         (broken, "no root"),
     ],
 )

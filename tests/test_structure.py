@@ -1,17 +1,21 @@
-"""The house stands: nothing imports upwards, nothing is hidden by its module, no file is long."""
+"""The house stands: nothing imports upwards, no file is long, the front door has all names."""
 
 import ast
 import doctest
 import graphlib
-import importlib
+import pydoc
+import sys
+import tomllib
+from importlib import import_module
+from importlib.metadata import version
 from pathlib import Path
 
 import architecture
 import pytest
+from installation import EXPECTED, ROOT, run
 
 import crazybilliards as cb
 
-ROOT = Path(__file__).parent.parent
 STANDS_ON = {
     "model": {"model"},
     "particles": {"model", "particles"},
@@ -30,7 +34,7 @@ FLOORS = {
         {"observers"},
         {"running"},
         {"simulation"},
-        {"vanishing_step"},
+        {"limit"},
     ),
     "kinetic": (
         {"accuracy", "requirements"},
@@ -45,12 +49,13 @@ FLOORS = {
         | {"curves", "encoding", "rod_film", "stationary_theories", "symbols"},
         {"sweeps"},
         {"side_by_side"},
+        {"moving_pictures"},
     ),
     "reproduction": (
-        {"claims"},
+        {"claims", "fits"},
         {"chains", "distributions", "power_laws", "vanishing_step"},
         {"predictions"},
-        {"elastic_gaps", "figures"},
+        {"figures"},
         {"reproducible"},
     ),
     "apps": ({"explore"}, {"commands"}),
@@ -60,30 +65,21 @@ VALIDATED = {"kinetic": pytest.mark.validate}  # its examples take seconds
 MODULES = architecture.modules()
 
 
-def test_no_room_imports_what_stands_above_it():
-    upwards = [
-        (name, each)
-        for name, imported in architecture.imports().items()
-        for each in imported
-        if each.split(".")[0] not in STANDS_ON[name.split(".")[0]]
-    ]
-    assert not upwards
+def test_rooms_import_modules_of_the_rooms_that_they_stand_on():
+    """Not the names of their own room, which would hide from which floor they come."""
+    for name, imported in architecture.imports().items():
+        room = name.split(".")[0]
+        assert {each.split(".")[0] for each in imported} <= STANDS_ON[room], name
+        assert room not in imported, name
 
 
 @pytest.mark.parametrize("room", FLOORS)
 def test_no_folder_imports_what_stands_above_it(room):
     graph = architecture.unit_imports(room)
-    floor = {
-        f"{room}.{unit}": number for number, units in enumerate(FLOORS[room]) for unit in units
-    }
+    floor = {f"{room}.{unit}": at for at, units in enumerate(FLOORS[room]) for unit in units}
     assert set(graph) == set(floor), "every module and folder of a room has its floor"
-    upwards = [
-        (name, target)
-        for name, targets in graph.items()
-        for target in targets
-        if floor[target] > floor[name]
-    ]
-    assert not upwards
+    for name, targets in graph.items():
+        assert not [target for target in targets if floor[target] > floor[name]], name
 
 
 @pytest.mark.parametrize("room", STANDS_ON)
@@ -92,34 +88,18 @@ def test_nothing_imports_in_a_circle(room):
     graphlib.TopologicalSorter(architecture.imports()).prepare()
 
 
-def test_within_a_room_modules_import_modules():
-    """Not the names of the room, which would hide from which floor they come."""
-    imports = architecture.imports().items()
-    assert not [name for name, imported in imports if name.split(".")[0] in imported]
-
-
 def test_nothing_is_named_like_its_module():
     """Importing the module would hide the function or class behind it."""
-    definitions = (ast.FunctionDef, ast.ClassDef)
-    hidden = [
-        name
-        for name, path in MODULES.items()
-        for node in ast.parse(path.read_text(encoding="utf-8")).body
-        if isinstance(node, definitions) and node.name == name.split(".")[-1]
-    ]
-    assert not hidden
+    for name, path in MODULES.items():
+        body = ast.parse(path.read_text(encoding="utf-8")).body
+        assert name.split(".")[-1] not in {getattr(node, "name", "") for node in body}, path
 
 
 def test_no_file_is_long():
-    folders = (*STANDS_ON, "api", "benchmarks", "docs", "studies", "tests")
-    files = [path for folder in folders for path in (ROOT / folder).rglob("*.py")]
-    lengths = {
-        path.relative_to(ROOT).as_posix(): len(path.read_text(encoding="utf-8").splitlines())
-        for path in files
-        if "docs/notebooks" not in path.as_posix()
-    }
-    long = {name: length for name, length in lengths.items() if length >= LINES}
-    assert not long
+    for folder in (*STANDS_ON, "api", "benchmarks", "docs", "studies", "tests"):
+        for path in (ROOT / folder).rglob("*.py"):
+            short = len(path.read_text(encoding="utf-8").splitlines()) < LINES
+            assert short or "docs/notebooks" in path.as_posix(), path
 
 
 def test_the_picture_of_the_architecture_shows_the_imports():
@@ -135,5 +115,44 @@ def test_examples_in_docstrings(room):
     # The names that a room hands out have their examples where they are defined.
     names = [name for name in MODULES if name.split(".")[0] == room and name not in cb._ROOMS]
     modules = [f"crazybilliards.{name}".removesuffix(".") for name in names or [""]]
-    failed = {name: doctest.testmod(importlib.import_module(name)).failed for name in modules}
+    failed = {name: doctest.testmod(import_module(name)).failed for name in modules}
     assert not any(failed.values()), failed
+
+
+# -- ``import crazybilliards as cb``: all public names, loaded late -----------------------------
+
+PUBLIC = [f"crazybilliards.{room}" for room in cb._ROOMS]  # rooms with public names
+
+
+def test_all_names_of_all_rooms_are_there():
+    names = [(room, name) for room in PUBLIC for name in import_module(room).__all__]
+    assert len({name for _, name in names}) == len(names), "two rooms share a name"
+    assert {name for _, name in names} == set(cb.__all__) < set(dir(cb))
+    for room, name in names:
+        assert getattr(cb, name) is getattr(import_module(room), name)
+    assert set(EXPECTED) <= set(cb.__all__)
+    with pytest.raises(AttributeError, match="no attribute 'nonsense'"):
+        cb.nonsense  # noqa: B018
+    told = pydoc.render_doc(cb, renderer=pydoc.plaintext)
+    assert not [name for name in (*cb.__all__, version("crazybilliards")) if name not in told]
+
+
+@pytest.mark.parametrize("name", ["crazybilliards", *PUBLIC])
+def test_a_public_name_is_no_module(name):
+    """Importing a module of that name would put it in the place of the function."""
+    assert not (ROOT / "crazybilliards").exists()  # which would shadow the package
+    package = import_module(name)
+    for public in package.__all__:
+        assert not any(list(Path(folder).glob(f"{public}*")) for folder in package.__path__)
+
+
+def test_the_import_is_quick():
+    script = "import time; t = time.process_time(); import crazybilliards; "
+    script += "print(time.process_time() - t)"
+    assert min(float(run(sys.executable, "-c", script).stdout) for _ in range(3)) < 0.05
+
+
+def test_the_citation_has_the_version_of_the_project():
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8").splitlines()
+    assert f"version: {project['version']}" in citation

@@ -9,10 +9,18 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from crazybilliards.comparison.sweeps.jobs import JOBS
 from crazybilliards.kinetic.kinetic_equation import criticality
 from crazybilliards.kinetic.kinetic_equation.weak_damping import weak_damping_drag
 from crazybilliards.model import Chain
-from studies import critical_size, neighbours, validity, validity_picture, width_in_the_limit
+from studies import (
+    critical_size,
+    elastic_gaps,
+    neighbours,
+    validity,
+    validity_picture,
+    width_in_the_limit,
+)
 
 TABLES = Path(__file__).parents[1] / "docs" / "tables"
 STUDIES = (critical_size, neighbours, validity, width_in_the_limit)
@@ -128,3 +136,22 @@ def test_errors_of_the_theories_are_those_of_their_widths(monkeypatch):
             assert found[f"W_v {place} without, %"] == "-10.0"
             assert found[f"W_v {place}, %"] == "+4.0"
         assert found["W_v largest, %"] == "4.0"
+
+
+# -- elastic chains with gaps -------------------------------------------------------------------
+
+
+@pytest.mark.compiled
+@pytest.mark.validate
+def test_rods_with_gaps_are_where_the_exact_solution_has_them():
+    """Within 5 errors, and below 2 % of s; if the rods were those of another gap, far off."""
+    results = {
+        name: JOBS[case.job].function(case.chain, **case.settings)
+        for name, case in elastic_gaps.cases().items()
+    }
+    _, *rows = elastic_gaps.tables(results)["elastic_gaps"]
+    assert all(float(row[2]) < 0.02 and float(row[3]) < 5 for row in rows)
+    plt.close(elastic_gaps.draw(results))
+    results["rods 0.0"], results["rods 2.0"] = results["rods 2.0"], results["rods 0.0"]
+    _, *rows = elastic_gaps.tables(results)["elastic_gaps"]
+    assert [float(row[3]) > 5 for row in rows] == [True, True, False, False, True, True]

@@ -6,35 +6,29 @@ import sys
 import zipfile
 from pathlib import Path
 
+import installation
 import numpy as np
 import pytest
 from every_solver import SOLVERS, Given
 from small_sweeps import AtOnce
 
 import crazybilliards as cb
-from crazybilliards.apps.commands.line import main
 from crazybilliards.comparison.sweeps import read_sweep, run_cases
 from crazybilliards.model import process
+from crazybilliards.model.fingerprint import room_fingerprint
 from crazybilliards.model.vocabulary import VOCABULARY, described, unit_of
 
-ROOT = Path(__file__).parents[1]
+ROOT = installation.ROOT
 CHAIN = cb.Chain(size=3)
 
 
-@pytest.fixture
-def home(tmp_path, monkeypatch):
-    """Return a home folder of its own; the current folder is another."""
+def test_a_tilde_is_the_home_folder(tmp_path, monkeypatch, run):
     home, here = tmp_path / "home", tmp_path / "here"
-    home.mkdir()
-    here.mkdir()
+    for folder in (home, here):
+        folder.mkdir()
     for name in ("HOME", "USERPROFILE"):
         monkeypatch.setenv(name, str(home))
     monkeypatch.chdir(here)
-    yield home
-    assert not list(here.iterdir())
-
-
-def test_a_tilde_is_the_home_folder(home, monkeypatch, capsys):
     exact = cb.equilibrium(CHAIN)
     assert cb.save(exact, "~/a/exact.nc") == home / "a" / "exact.nc"
     assert cb.load("~/a/exact.nc").identical(exact)
@@ -43,13 +37,11 @@ def test_a_tilde_is_the_home_folder(home, monkeypatch, capsys):
     sweep = read_sweep("~/grid.toml")
     assert not run_cases(sweep, "~/sweep", AtOnce(), progress=False)
     assert cb.load_sweep("~/sweep").sizes["size"] == 2
-    command = ["crazybilliards", "theory", "equilibrium", "--size=3", "--output=~/figures"]
-    monkeypatch.setattr(sys, "argv", command)
-    with pytest.raises(SystemExit) as ended:
-        main()
-    assert not ended.value.code, capsys.readouterr().err
+    done = run("theory", "equilibrium", "--size=3", "--output=~/figures")
+    assert done.returncode == 0, done.stderr
     assert (home / "figures" / "theory.nc").exists()
     assert (home / "run.ckpt").exists()
+    assert not list(here.iterdir())
 
 
 @pytest.mark.parametrize("name", ["hydrodynamics, label", "phase_space", "equilibrium", "simulate"])
@@ -76,8 +68,6 @@ print(room_fingerprint("model", "kinetic"), len(cb.__all__))
 
 
 def test_it_is_imported_from_a_zip_archive(tmp_path):
-    from crazybilliards.model.fingerprint import room_fingerprint
-
     archive = tmp_path / "crazybilliards.zip"
     with zipfile.ZipFile(archive, "w") as file:
         for folder in ("api", *cb._ROOMS):
@@ -86,9 +76,7 @@ def test_it_is_imported_from_a_zip_archive(tmp_path):
                 if "__pycache__" not in path.parts:
                     file.write(path, inside / path.relative_to(ROOT / folder))
     quiet = {**os.environ, "PYTHONWARNINGS": "ignore"}
-    command = [sys.executable, "-c", IN_ARCHIVE, str(archive)]
-    done = subprocess.run(command, capture_output=True, text=True, env=quiet, cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
+    done = installation.run(sys.executable, "-c", IN_ARCHIVE, archive, env=quiet, cwd=tmp_path)
     assert done.stdout.split() == [room_fingerprint("model", "kinetic"), str(len(cb.__all__))]
 
 

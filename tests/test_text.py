@@ -1,20 +1,26 @@
-"""What no other tool finds in the texts: stale numbers, dead paths in code, text that is not shown.
+"""What no other tool finds in the texts: stale numbers, dead names, text that is not shown.
 
 Sphinx checks the links of the documentation. How a text is written says CONTRIBUTING.md.
 """
 
 import re
+import runpy
+from html import escape
 from math import ceil
 from pathlib import Path
+from pkgutil import resolve_name
 
 import jupytext
 import pandas as pd
 import pytest
+import qr_code
 
 import crazybilliards as cb
+from crazybilliards.model.vocabulary import VOCABULARY
+from crazybilliards.reproduction.figures import FIGURES
 
 ROOT = Path(__file__).parents[1]
-FRONT = sorted(ROOT.glob("*.md"))
+FRONT = sorted([*ROOT.glob("*.md"), *ROOT.glob(".github/*.md")])
 PAGES = [*FRONT, *sorted((ROOT / "docs").rglob("*.md"))]
 ROOMS = ("api", "model", "particles", "kinetic", "comparison", "reproduction", "apps")
 CODE = (*ROOMS, "benchmarks", "docs", "notebooks", "studies")
@@ -48,7 +54,7 @@ def held_out():
             f"is {single[small & (found.e > 0.5)].max()} % for $e > 0.5$, "
             f"{single[small & (found.e < 0.5)].max()} % below, and {single[longest].item()} % with",
         ],
-        "paper.md": [
+        "docs/paper/paper.md": [
             f"within {centre[~apart].max()} % in fifteen of them and {centre[apart].item()} % off",
             f"up to {without:.0f} % off",
         ],
@@ -113,7 +119,7 @@ def verdicts():
     [counts] = re.findall(r"Statements of the paper: (.*?) \|", words("docs/paper/claims.md"))
     number = [int(part.split()[0]) for part in counts.split(", ")]
     told = f"Of {sum(number)} statements {number[0]} are reproduced, {number[1]} are not"
-    return {"paper.md": [told]}
+    return {"docs/paper/paper.md": [told]}
 
 
 @pytest.mark.parametrize(
@@ -135,7 +141,7 @@ def test_a_file_that_code_or_a_front_page_names_exists():
             continue
         text = file.read_text(encoding="utf-8")
         targets = [] if file.suffix == ".md" else named.findall(text)
-        targets += link.findall(text) if file in FRONT else []
+        targets += [file.parent / each for each in link.findall(text) if file in FRONT]
         for each in command.findall(text):
             script = each.split()[-1]
             targets.append(script if "/" in script else f"{script.replace('.', '/')}.py")
@@ -174,6 +180,67 @@ def test_newcomers_see_one_way_to_import():
 
 
 def test_the_draft_of_the_paper_cites_what_its_bibliography_holds():
-    cited = set(re.findall(r"@(\w+)", (ROOT / "paper.md").read_text(encoding="utf-8")))
-    entries = re.findall(r"^@\w+\{(\w+),", (ROOT / "paper.bib").read_text(), re.MULTILINE)
-    assert sorted(cited) == sorted(entries)
+    text, sources = ((ROOT / f"docs/paper/paper.{end}").read_text("utf-8") for end in ("md", "bib"))
+    cited, entries = re.findall(r"@(\w+)", text), re.findall(r"(?m)^@\w+\{(\w+),", sources)
+    assert sorted(set(cited)) == sorted(entries)
+
+
+# -- the concordance --------------------------------------------------------------------------
+
+CONCORDANCE = (ROOT / "docs/paper/concordance.md").read_text(encoding="utf-8")
+
+
+def rows(heading):
+    """Return the section of a heading, and the first cells of its table."""
+    section = CONCORDANCE.split(f"\n## {heading}\n")[1].split("\n## ")[0]
+    lines = [line for line in section.splitlines() if line.startswith("|")]
+    return section, [line.split("|")[1] for line in lines[2:]]
+
+
+def test_the_concordance_names_what_exists():
+    for name in set(re.findall(rf"`((?:{'|'.join(ROOMS[1:])})(?:\.\w+)+)`", CONCORDANCE)):
+        resolve_name(f"crazybilliards.{name}")
+    assert VOCABULARY.keys() >= {*re.findall(r"(?:variable|coordinate)s? `(\w+)`", CONCORDANCE)}
+    [lesson] = (ROOT / "notebooks").glob("11_*.py")
+    headings = re.findall(r"(?m)^# ## (\d+)\. ", lesson.read_text(encoding="utf-8"))
+    pairs = r"notebook 11[^|.;\n]*?sections? (\d+)(?: (?:and|to) (\d+))?"
+    named = [number for pair in re.findall(pairs, CONCORDANCE) for number in pair if number]
+    assert len(named) > 10
+    assert set(named) <= set(headings)
+
+
+def test_the_concordance_has_every_equation_and_figure():
+    numbers = []
+    for cell in rows("Equations")[1]:
+        found = [int(number) for number in re.findall(r"\((\d+)\)", cell)]
+        whole = re.fullmatch(r"\(\d+\) to \(\d+\)", re.sub(r"`.*`", "", cell).strip())
+        numbers += range(found[0], found[1] + 1) if whole else found
+    assert numbers == list(range(1, 53))
+    section, cells = rows("Figures")
+    assert [int(cell.split()[0]) for cell in cells] == [figure.number for figure in FIGURES]
+    modules = re.findall(r"`(fig\d\d_\w+)`", section)
+    assert modules == [figure.stem.replace("-", "_") for figure in FIGURES]
+
+
+# -- formulas and the code for a class --------------------------------------------------------
+
+
+def test_formulas_are_set_as_they_are_meant():
+    """A short fraction like a long one, and a power of a modulus as that of all of it."""
+    pytest.importorskip("sphinx")
+    from docutils.nodes import math
+
+    mathml = runpy.run_path(str(ROOT / "docs/conf.py"))["mathml"]
+    for short in (r"\tfrac12 x", r"\dfrac 12 x", r"\frac12 x"):
+        long = re.sub(r"(frac) ?12", r"\1{1}{2}", short)
+        assert mathml(math("", short)) == mathml(math("", long))
+        assert "<mfrac" in mathml(math("", short))
+    for power in (r"\lvert v - u\rvert^3", "|d|^n"):
+        written = mathml(math("", power))
+        assert re.search(r"<msup>\s*<mrow>.*\|.*\|.*</mrow>", written, re.DOTALL)
+
+
+def test_the_qr_code_leads_to_the_documentation_that_the_project_names():
+    """If it does not, draw it again: python docs/figures/qr_code.py."""
+    picture = (ROOT / "docs/figures/qr_code.svg").read_text(encoding="utf-8")
+    assert f"<title>{escape(qr_code.address())}</title>" in picture

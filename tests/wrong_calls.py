@@ -17,17 +17,17 @@ cb.simulate(chain, restitution=0.9) | restitution is an argument of Chain
 
 NAMES = """
 cb.Chain(restituton=0.9) | Chain has no argument 'restituton'; did you mean 'restitution'?
-cb.Chain(nonsense=3) | 'nonsense'; it takes size, restitution, amplitude
-cb.simulate(chain, chain=chain) | simulate got chain twice
+cb.Chain(nonsense=3) | 'nonsense'; it takes by name size, restitution, amplitude
+cb.simulate(chain, chain=chain) | simulate: multiple values for argument 'chain'
 cb.Density(-3) | reach must be positive, got -3
 cb.simulate(chain, observe=cb.Density(reach=1e12)) | reach=1e+12 is too large for a grid
 cb.simulate_limit(chain, accuracy=0.1, replicas=10**400) | replicas must be an integer from 1 to
-cb.two_clumps | has no attribute 'two_clumps' any more: displaced(chain, 0).assign(flow_velocity
-cb.GrowthFit | has no attribute 'GrowthFit' any more: every fit is a Fit
-cb.kinetic.critical_damping | any more: critical_size(chain.replace(damping=...))
+cb.compare_elastic | any more: compare(chain, {'amplitude': [1, 3, 10, 30]})
+cb.animate | any more: film(tree) films what compare_relaxation returns
+cb.fit_growth | ; from crazybilliards.reproduction.fits import fit_growth
 cb.equilibrium(chain, gap=1) | gap is an argument of Chain
 cb.Chain(e=0.8, L=30, sise=3) | arguments 'e' (restitution is e ..., 'L' (size is ..., 'sise' (did
-cb.Chain(e=0.8, foo=1) | arguments 'e' (restitution is e of the paper), 'foo'; it takes size, rest
+cb.Chain(e=0.8, foo=1) | arguments 'e' (restitution is e of the paper), 'foo'; it takes by name size, rest
 chain.replace(e=0.8, g=1) | got 'e' (restitution is e of the paper), 'g' (gap is g of the paper)
 """
 
@@ -36,11 +36,11 @@ WORDS = """
 cb.Chain(N=30) | 'N'; did you mean 'size'?
 cb.Chain(coefficient_of_restitution=0.8) | did you mean 'restitution'?
 cb.Chain(temperature=1) | amplitude^2/(2 damping) is the temperature
-cb.Chain(T=1) | 'T'; it takes size
+cb.Chain(T=1) | 'T'; it takes by name size
 cb.Chain(masses=[1, 2]) | all rods have one mass
 cb.Chain(walls=True) | has no walls, and it is no ring
 cb.Chain(duration=3) | duration is an argument of simulate
-cb.Chain(t_max=3) | 't_max'; it takes size
+cb.Chain(t_max=3) | 't_max'; it takes by name size
 cb.simulate(chain, time=3) | did you mean 'duration'?
 cb.simulate(chain, steps=3) | did you mean 'duration'?
 cb.simulate(chain, T=3) | did you mean 'duration'?
@@ -72,7 +72,6 @@ chain.simulate(100) | crazybilliards.simulate(chain, ...) is a function
 chain.run(100) | crazybilliards.simulate(chain, ...) is a function
 chain.theories() | crazybilliards.theories(chain, ...) is a function
 chain.copy(size=3) | did you mean 'replace'?
-cb.deviation(exact, exact, raw=True).maxmum | did you mean 'maximum'?
 """
 
 # The right name, with the wrong kind of thing.
@@ -87,10 +86,8 @@ cb.overlay({"a": run.expand_dims(size=[1, 2])}) | choose a size: .sel(size=...)
 cb.overlay({"a": run.expand_dims(size=[1], gap=[2])}) | choose a size and a gap: .sel(size=..., gap=
 cb.overlay({"a": run.expand_dims(size=[1], time=[2])}) | .isel(size=..., time=...)
 cb.deviation(exact, exact, "velocity_width") | floor must be a number...densities only
-cb.fit_exponential(run) | needs y and error...restitution must be numbers...got a Dataset
 cb.film(snapshots, duration=5) | duration is that of a chain to simulate
 cb.equilibrium_states(chain.replace(restitution=0.8), 4) | chain.replace(restitution=1)
-cb.compare_elastic(chain.replace(restitution=0.8), [3]) | compare_restitutions compares others
 """
 
 TYPES = """
@@ -129,31 +126,31 @@ cb.simulate(chain, start=exact) | start must be a result with position and veloc
 cb.simulate(chain, observe=[cb.Density]) | observe takes names and observers, got <class
 cb.simulate(chain, observe=np.array(2.0)) | observe takes a list of names or observers, got array(2.
 cb.simulate(chain, particles=np.array(2.0)) | particles must be a list of numbers, got array(2.
-cb.compare_elastic(chain, np.array(3.0)) | amplitudes must be a list of numbers, got array(3.
 cb.simulate(chain, particles=3) | particles must be a list of numbers, got 3
 cb.relax_phase_space(chain, xr.Dataset(), 1) | no 'density'
 cb.hydrodynamics(chain, foreign, 1) | start: the density must add up to the chain's 5 rods
 cb.force_balance(chain, displacement=3) | displacement takes a table (x, values)...got 3
-cb.animate(run) | tree must be what compare_relaxation returns; film(run) shows...got a Dataset
 cb.film(exact) | run has no snapshots in time, which simulate(chain, observe='snapshots') records
 cb.film(chain, "rods.avi") | path must end in .mp4, .gif or .html, got rods.avi
 cb.film(chain, "rods.gif", seconds=1e4) | seconds must be at most 120
-cb.width_deviations(tree) | tree must be what compare_restitutions returns
-cb.compare_elastic(chain, 3) | amplitudes must be a list of numbers, got 3
-cb.compare_restitutions(chain, "0.5") | restitutions must be a list of numbers, got '0.5'
-cb.fit_scaling("a", [1], [1]) | x must be numbers, got 'a'
-cb.fit_scaling([1, 2, 3], [1, 2], [1, 1]) | x, y, error must have one dimension and the same length
-cb.fit_exponential([1, 2, 3], [1, 2], [1, 1]) | restitution, y, error must have
-cb.fit_growth([1, 2, 3], [1, 2]) | time, energy must have
-cb.fit_singularity([1, 2, 3], {}) | energy must be numbers, got {}
-cb.fit_growth([1, 2, np.nan], [1, 2, 3]) | time must be finite, got [1, 2, nan]
+cb.compare(chain, 3) | over must be one parameter of the chain and its values...got 3
+cb.compare(chain, {"restitution": "0.5"}) | over: restitution must be a list, got '0.5'
+cb.compare(chain, {"amplitude": np.array(3.0)}) | over: amplitude must be a list, got array(3.
+cb.compare(chain, {"amplitude": [1], "gap": [0]}) | over must be one parameter
+cb.compare(chain, {"e": [0.9]}) | restitution is e of the paper
+fits.fit_scaling("a", [1], [1]) | x must be numbers, got 'a'
+fits.fit_scaling([1, 2, 3], [1, 2], [1, 1]) | x, y, error must have one dimension and the same
+fits.fit_exponential([1, 2, 3], [1, 2], [1, 1]) | restitution, y, error must have
+fits.fit_growth([1, 2, 3], [1, 2]) | time, energy must have
+fits.fit_singularity([1, 2, 3], {}) | energy must be numbers, got {}
+fits.fit_growth([1, 2, np.nan], [1, 2, 3]) | time must be finite, got [1, 2, nan]
 cb.fit_border_power_law(run, weighted="no") | weighted must be True or False; got 'no'
-cb.simulate(chain, progress=np.zeros(3)) | progress must be True, False or a text; got array
-cb.fit_avalanches([4, 2, 1], smallest=10**400) | no avalanches of sizes 1000
+cb.simulate(chain, progress=np.zeros(3)) | progress must be True or False, or a text; got array
+fits.fit_avalanches([4, 2, 1], smallest=10**400) | no avalanches of sizes 1000
 cb.Chain(restitution=np.ma.masked) | restitution must be a number, got masked
-cb.fit_avalanches(3) | count must have one dimension
-cb.tail_length([1, 2], [1], 3) | velocity, density must have
-cb.tail_length([1, 2, 3], [1, 1, 1], "a") | beyond must be a number, got 'a'
+fits.fit_avalanches(3) | count must have one dimension
+fits.tail_length([1, 2], [1], 3) | velocity, density must have
+fits.tail_length([1, 2, 3], [1, 1, 1], "a") | beyond must be a number, got 'a'
 """
 
 STARTS = """

@@ -5,12 +5,14 @@ from __future__ import annotations
 import inspect
 import json
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Mapping, Sequence
 from contextvars import ContextVar
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+
+from crazybilliards.apps.commands.options import in_its_place
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -22,7 +24,7 @@ _SAID_ELSEWHERE = {*_COLUMNS, "central_velocity_width", "density_block"}
 _IN_THE_MIDDLE = {"particle", "contact", "x", "velocity_bin"}  # of other dimensions the first value
 # Facts that --json prints; None if text is printed.
 _facts: ContextVar[dict[str, Any] | None] = ContextVar("facts", default=None)
-_Option = Annotated[
+_Json = Annotated[
     bool, typer.Option("--json", help="Print one JSON object instead of text, numbers in full.")
 ]
 
@@ -39,15 +41,13 @@ def with_json(command: Callable[..., None]) -> Callable[..., None]:
                 print(json.dumps(_plain(facts), indent=1))
             _facts.reset(before)
 
-    signature = inspect.signature(command, eval_str=True)
-    option = inspect.Parameter(
-        "as_json", inspect.Parameter.KEYWORD_ONLY, default=False, annotation=_Option
-    )
-    parameters = [*signature.parameters.values(), option]
-    with_option.__signature__ = signature.replace(parameters=parameters)  # type: ignore[attr-defined]
-    with_option.__annotations__ = {each.name: each.annotation for each in parameters}
-    with_option.__doc__ = command.__doc__
-    return with_option
+    parameters = [
+        *inspect.signature(command, eval_str=True).parameters.values(),
+        inspect.Parameter(
+            "as_json", inspect.Parameter.KEYWORD_ONLY, default=False, annotation=_Json
+        ),
+    ]
+    return in_its_place(with_option, command, parameters)
 
 
 def note(**facts: Any) -> None:
@@ -81,38 +81,67 @@ def _plain(value: Any) -> Any:
         value = value.item()
     if value is None or isinstance(value, str | bool | int):
         return value
-    number = float(value)
-    return number if math.isfinite(number) else None
+    return float(value) if math.isfinite(value) else None
 
 
-def empty_table(
-    words: Iterable[str], numbers: Iterable[str], *, caption: str, title: str | None = None
-) -> Table:
-    """Return a table with columns of words, then of numbers, by their headings."""
+def table_of(
+    columns: Mapping[str, tuple[str, Callable[[Any], str]]],
+    rows: Sequence[Mapping[str, Any]],
+    *,
+    caption: str,
+    fact: str = "",
+    title: str | None = None,
+) -> None:
+    """Print rows as a table; or note all that they hold, as the fact of this name.
+
+    ``columns`` has the heading of each printed value and what shows it, ``str`` for words, by its
+    name in the rows. What is missing or NaN is "-", and a standard error NAME_error is added to
+    NAME if ``number`` shows it. No line of the first column is broken.
+    """
     from rich.table import Table
 
-    table = Table(*words, title=title, caption=caption)
-    for heading in numbers:
-        table.add_column(heading, justify="right")
-    return table
+    if fact:
+        note(**{fact: list(rows)})
+    table = Table(title=title, caption=caption)
+    for heading, show in columns.values():
+        justify: Any = "left" if show is str else "right"
+        table.add_column(heading, justify=justify, no_wrap=not table.columns)
+    for row in rows:
+        table.add_row(*(_cell(row, name, show) for name, (_, show) in columns.items()))
+    if rows:
+        print_table(table)
+
+
+def percent(share: float) -> str:
+    """Return a share in per cent, without the sign."""
+    return f"{100 * share:.2f}"
+
+
+def number(value: float) -> str:
+    """Return a number, which in a table has its standard error beside it."""
+    return f"{value:.4g}"
+
+
+def _cell(row: Mapping[str, Any], name: str, show: Callable[[Any], str]) -> str:
+    value, error = row.get(name), row.get(f"{name}_error", math.nan)
+    if value is None or value != value:  # NaN
+        return "-"
+    return show(value) + (f" +- {error:.1g}" if show is number and not math.isnan(error) else "")
 
 
 def answer_rods(result: xr.Dataset, title: str, caption: str) -> None:
     """Print widths and displacements of some rods, with their standard errors if there are any."""
     from crazybilliards.model.vocabulary import unit_of
 
-    columns = {name: text for name, text in _COLUMNS.items() if name in result}
-    units = {name: unit_of(result[name]) for name in columns}
-    headings = [f"{text} [{units[name]}]" for name, text in columns.items()]
-    table = empty_table([], ["particle", *headings], title=title, caption=caption)
-    L, noted = result.sizes["particle"], []
-    for i in sorted({1, 2, max(L // 10, 1), max(L // 4, 1), max(L // 2, 1)} & set(range(1, L + 1))):
-        rod = result.isel(particle=i - 1)
-        table.add_row(str(rod.particle.item()), *(_measured(rod, name) for name in columns))
-        errors = [f"{name}_error" for name in columns if f"{name}_error" in rod]
-        noted.append({name: rod[name].item() for name in ("particle", *columns, *errors)})
-    note(rods=noted, units=units)
-    print_table(table)
+    units = {name: unit_of(result[name]) for name in _COLUMNS if name in result}
+    columns = {name: (f"{_COLUMNS[name]} [{unit}]", number) for name, unit in units.items()}
+    L = result.sizes["particle"]
+    some = {i - 1 for i in (1, 2, L // 10, L // 4, L // 2) if 1 <= i <= L}
+    kept = [each for name in units for each in (name, f"{name}_error") if each in result]
+    rows = [{name: result[name][i].item() for name in ("particle", *kept)} for i in sorted(some)]
+    note(units=units)
+    columns = {"particle": ("particle", "{:d}".format)} | columns
+    table_of(columns, rows, fact="rods", title=title, caption=caption)
 
 
 def answer_measured(result: xr.Dataset, *, ensemble: bool) -> None:
@@ -123,23 +152,28 @@ def answer_measured(result: xr.Dataset, *, ensemble: bool) -> None:
     if _facts.get() is not None:
         note(observed=result.to_dict())
         return
-    table = empty_table(
-        ["measured", "at"],
-        ["value", "unit"],
-        title="What was measured, one value of each",
-        caption="+-: one standard error. --output keeps all values, --json prints them. The "
-        "density is smoothed as in the paper.",
-    )
-    table.columns[0].no_wrap = True
+    rows = []
     for name in result.data_vars:
         if name in _SAID_ELSEWHERE or str(name).endswith("_error") or not result[name].size:
             continue
         source = smooth(result) if name == "density" else result
         kept = [each for each in (name, f"{name}_error") if each in source]
         chosen, at = _one_value(source[kept], ensemble)
-        table.add_row(str(name), at, _measured(chosen, str(name)), unit_of(result[name]))
-    if table.row_count:
-        print_table(table)
+        error = float(chosen.get(f"{name}_error", math.nan))
+        row = {"name": name, "at": at, "value": float(chosen[name]), "value_error": error}
+        rows.append(row | {"unit": unit_of(result[name])})
+    table_of(
+        {
+            "name": ("measured", str),
+            "at": ("at", str),
+            "value": ("value", number),
+            "unit": ("unit", str),
+        },
+        rows,
+        title="What was measured, one value of each",
+        caption="+-: one standard error. --output keeps all values, --json prints them. The "
+        "density is smoothed as in the paper.",
+    )
 
 
 def _one_value(result: xr.Dataset, ensemble: bool) -> tuple[xr.Dataset, str]:
@@ -157,11 +191,6 @@ def _one_value(result: xr.Dataset, ensemble: bool) -> tuple[xr.Dataset, str]:
         words.append(f"{str(name).replace('_', ' ')} {at:.4g}")
         result = result.isel({name: place})
     return result, ", ".join(words)
-
-
-def _measured(rod: xr.Dataset, name: str) -> str:
-    value, error = f"{float(rod[name]):.4g}", float(rod.get(f"{name}_error", math.nan))
-    return value if math.isnan(error) else f"{value} +- {error:.1g}"
 
 
 def print_table(table: Table) -> None:

@@ -16,7 +16,6 @@ from crazybilliards.apps.commands.answers import with_json
 from crazybilliards.apps.commands.mistakes import explained
 from crazybilliards.apps.commands.output import INTERRUPTED
 from crazybilliards.apps.commands.streams import READER_GONE, plain_streams
-from crazybilliards.comparison.stationary_theories import THEORIES
 from crazybilliards.model.checks import meant, shown
 
 _LONGEST = 400  # characters of an error message
@@ -36,10 +35,11 @@ class _Commands(TyperGroup):
         near = [each for each in self.commands if each.startswith(name)]
         if len(near) == 1:
             return super().resolve_command(ctx, [*near, *args[1:]])
-        if name in THEORIES:
-            hint = f"; crazybilliards theory {name} solves it"
-        elif name in dir(cb):
-            hint = f"; in Python it is crazybilliards.{name}"
+        if name in dir(cb):
+            from crazybilliards.comparison.stationary_theories import THEORIES
+
+            solved = f"crazybilliards theory {name} solves it"
+            hint = f"; {solved if name in THEORIES else f'in Python it is crazybilliards.{name}'}"
         else:
             hint = f"; did you mean {' or '.join(near)}?" if near else meant(name, self.commands)
         known = ", ".join(self.commands)

@@ -18,12 +18,12 @@ Threads = Annotated[int | None, typer.Option(help="Threads to simulate in; defau
 Processes = Annotated[
     int | None, typer.Option(help="Processes to compute in; default: one per core.")
 ]
-Dask = Annotated[
-    bool, typer.Option("--dask", help="Compute on a dask cluster of this machine instead.")
-]
 Scheduler = Annotated[
     str | None,
-    typer.Option(help="Compute on the dask cluster with this scheduler, tcp://HOST:PORT say."),
+    typer.Option(
+        help="Compute on the dask cluster with this scheduler, tcp://HOST:PORT say; "
+        "local: on a cluster that is started on this machine."
+    ),
 ]
 KeepOld = Annotated[
     bool,
@@ -72,12 +72,19 @@ def with_chain_options(
         parameters: list[inspect.Parameter] = []
         for name, each in signature.parameters.items():
             parameters += options if name == "chain" else [each]
-        with_options.__signature__ = signature.replace(parameters=parameters)  # type: ignore[attr-defined]
-        with_options.__annotations__ = {each.name: each.annotation for each in parameters}
-        with_options.__doc__ = command.__doc__
-        return with_options
+        return in_its_place(with_options, command, parameters)
 
     return decorated
+
+
+def in_its_place(
+    wrapper: Callable[..., None], command: Callable[..., None], parameters: list[inspect.Parameter]
+) -> Callable[..., None]:
+    """Return the wrapper of a command, with these parameters, as typer reads it."""
+    wrapper.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
+    wrapper.__annotations__ = {each.name: each.annotation for each in parameters}
+    wrapper.__doc__ = command.__doc__
+    return wrapper
 
 
 def _option(field: Field[Any], defaults: dict[str, Any]) -> inspect.Parameter:

@@ -28,21 +28,16 @@ def numbers(name: str, text: str, kind: Callable[[str], Number]) -> list[Number]
     """Read numbers separated by commas."""
     try:
         return [kind(part) for part in text.split(",")]
-    except ValueError as error:
-        message = f"{name} takes numbers separated by commas, got {shown(text)}"
-        raise ValueError(message) from error
+    except ValueError:
+        raise ValueError(f"{name} takes numbers separated by commas, got {shown(text)}") from None
 
 
 @contextmanager
 def writing_to(output: Path | None, *, file: bool = False) -> Iterator[None]:
     """Hold what a command writes to, a folder or a file, against other processes meanwhile.
 
-    Raises
-    ------
-    ValueError
-        Before any work, if ``output`` cannot become or is not a folder, or a file.
-    OSError
-        If another process holds it, or nothing can be written there.
+    Raises a ValueError before any work if ``output`` cannot become or is not a folder, or a file;
+    an OSError if another process holds it, or nothing can be written there.
     """
     if output is None:
         yield
@@ -70,10 +65,9 @@ def check_folder(path: Path) -> None:
     found = next(each for each in (path, *path.absolute().parents) if os.path.lexists(each))
     if path.suffix == ".nc" and not path.exists():
         raise ValueError(f"output must be a folder, got {path}; only simulate takes a file FILE.nc")
-    if not found.exists():
-        raise ValueError(f"output must be a folder, but {found} is a link that leads nowhere")
     if not found.is_dir():
-        raise ValueError(f"output must be a folder, but {found} is a file")
+        kind = "a file" if found.exists() else "a link that leads nowhere"
+        raise ValueError(f"output must be a folder, but {found} is {kind}")
     if not os.access(found, os.W_OK | os.X_OK):
         raise ValueError(f"output: no permission to write to {found}")
 

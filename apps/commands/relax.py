@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from crazybilliards.apps.commands.answers import empty_table, note, print_table, wrote
+from crazybilliards.apps.commands.answers import table_of, wrote
 from crazybilliards.apps.commands.options import Threads, path_option, with_chain_options
 from crazybilliards.apps.commands.output import conclude, write_figures, writing_to
 
@@ -18,21 +18,15 @@ if TYPE_CHECKING:
     from crazybilliards.model import Chain
 
 
-_WHAT_TO_SEE = (
-    "Density of the rods in time. Watch when and where the lines leave the symbols: a fluid whose "
-    "temperature is held constant swings, rods that collide heat up and do not."
-)
-
-
 @with_chain_options(without=("restitution",), amplitude=30.0)
 def command(
     chain: Chain,
     output: Annotated[
         Path | None,
         path_option(
-            "Folder for relaxation.nc, spacetime.png, profiles.png, cloud.png, relaxation.html and "
-            "relaxation.gif, made if missing; without it nothing is written. The first holds "
-            "smoothed densities, all that the pictures show."
+            "Folder for relaxation.nc, spacetime.png, profiles.png and cloud.png, made if missing; "
+            "without it nothing is written. The first holds smoothed densities, all that the "
+            "pictures show."
         ),
     ] = None,
     release: Annotated[
@@ -50,6 +44,9 @@ def command(
     replicas: Annotated[int, typer.Option(help="Simulated chains to average over.")] = 300,
     seed: Annotated[int, typer.Option(help="Seed of the random numbers.")] = 0,
     threads: Threads = None,
+    film: Annotated[
+        bool, typer.Option("--film", help="Also write relaxation.html, a film of the densities.")
+    ] = False,
 ) -> None:
     """Release an elastic chain and follow it: rods, two fluids, and the exact solution.
 
@@ -64,6 +61,8 @@ def command(
     """
     from crazybilliards.comparison.side_by_side.relaxation import compare_relaxation
 
+    if film and output is None:
+        raise ValueError("film needs --output FOLDER, into which it is written")
     defaults = {"compressed": 0.3, "displaced": 2.0, "quenched": 3.0}
     with writing_to(output):
         tree = compare_relaxation(
@@ -76,18 +75,14 @@ def command(
             seed=seed,
             threads=threads,
         )
-        conclude(output, tree, _write, _print)
+        conclude(output, tree, partial(_write, film), _print)
 
 
-def _write(tree: xr.DataTree, folder: Path, suffix: str) -> None:
-    import tempfile
-
+def _write(film: bool, tree: xr.DataTree, folder: Path, suffix: str) -> None:
+    from crazybilliards.comparison.moving_pictures import film as write_film
     from crazybilliards.comparison.side_by_side import relaxation_figures as figures
-    from crazybilliards.comparison.side_by_side.animation_page import standalone_page
     from crazybilliards.comparison.side_by_side.relaxation import condensed
     from crazybilliards.model import save
-    from crazybilliards.model.progress import waiting_for
-    from crazybilliards.model.storage import write_atomically
 
     tree = condensed(tree)
     wrote(save(tree, folder / f"relaxation{suffix}.nc"))
@@ -97,31 +92,22 @@ def _write(tree: xr.DataTree, folder: Path, suffix: str) -> None:
         "cloud": figures.draw_cloud,
     }
     write_figures(folder, suffix, {name: partial(draw, tree) for name, draw in drawings.items()})
-    animation = figures.animate(tree)
-    page, gif = (folder / f"relaxation{suffix}.{kind}" for kind in ("html", "gif"))
-    with waiting_for(f"drawing {page.name}"):
-        text = standalone_page(animation, title=figures.title(tree), text=_WHAT_TO_SEE)
-    write_atomically(page, text.encode())
-    wrote(page)
-    # matplotlib wants a name, not a stream.
-    with waiting_for(f"drawing {gif.name}"), tempfile.TemporaryDirectory() as scratch:
-        drawn = Path(scratch, gif.name)
-        animation.save(drawn, writer="pillow", dpi=100)
-        write_atomically(gif, drawn.read_bytes())
-    wrote(gif)
+    if film:
+        path = folder / f"relaxation{suffix}.html"
+        write_film(tree, path)
+        wrote(path)
 
 
 def _print(tree: xr.DataTree) -> None:
     from crazybilliards.comparison.side_by_side.relaxation import LEGEND, label_distances
 
-    table = empty_table(
-        ["theory"],
-        ["rms distance / s"],
+    table_of(
+        {"title": ("theory", str), "distance": ("rms distance / s", "{:.3f}".format)},
+        [
+            {"theory": key, "title": LEGEND[key], "distance": distance}
+            for key, distance in label_distances(tree).items()
+        ],
+        fact="distances",
         caption="Rms over the rods of their mean position in theory minus simulation, in thermal "
         "lengths, at the time when it is largest.",
     )
-    distances = label_distances(tree)
-    note(distances=distances)
-    for key, distance in distances.items():
-        table.add_row(LEGEND[key], f"{distance:.3f}")
-    print_table(table)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from crazybilliards.apps.commands.answers import note, say, wrote
-from crazybilliards.apps.commands.options import Dask, KeepOld, Processes, Scheduler, path_option
+from crazybilliards.apps.commands.options import Processes, Scheduler, path_option
 from crazybilliards.apps.commands.output import writing_to
 from crazybilliards.apps.commands.sweep import compute_cases, engine
 from crazybilliards.model.checks import check_choice, check_integer
@@ -32,8 +32,8 @@ def command(
         str,
         typer.Argument(
             help="Numbers or names of figures of the paper, separated by commas, all (figures of "
-            "the paper), or analytics (those of the paper's section of that name and the checks "
-            "at restitution 1, elastic-gaps among them, which is no figure of the paper)."
+            "the paper), or analytics (those of the paper's section of that name and of the "
+            "velocities at restitution 1)."
         ),
     ] = "all",
     show_list: Annotated[bool, typer.Option("--list", help="List the figures, and stop.")] = False,
@@ -59,9 +59,7 @@ def command(
         typer.Option(help="Write every picture as a vector graphic, too.", metavar="pdf|svg"),
     ] = None,
     processes: Processes = None,
-    dask: Dask = False,
     scheduler: Scheduler = None,
-    keep_old: KeepOld = False,
 ) -> None:
     """Reproduce the figures of arXiv:1404.7460, and check what the paper claims.
 
@@ -75,8 +73,6 @@ def command(
     Example: crazybilliards reproduce 16,17 --output results/paper
 
     Example: crazybilliards reproduce all --quality full
-
-    Example: crazybilliards reproduce elastic-gaps
     """
     from crazybilliards.reproduction.reproducible import find_studies
 
@@ -92,11 +88,11 @@ def command(
     from crazybilliards.model.storage import write_atomically
     from crazybilliards.reproduction.claims.report import all_cases, html, markdown
 
-    computing = engine(processes, dask, scheduler)
+    computing = engine(processes, scheduler)
     with writing_to(output):
-        compute_cases(all_cases(wanted, chosen), output / "cases", computing, keep_old)
+        compute_cases(all_cases(wanted, chosen), output / "cases", computing, keep_old=False)
         drawing = {"columns": columns, "formats": [] if vector is None else [vector]}
-        reproduced = _draw(wanted, chosen, output, keep_old=keep_old, **drawing)
+        reproduced = _draw(wanted, chosen, output, **drawing)
         if which in _REPORTS:
             for name, written in zip(_REPORTS[which], (markdown, html), strict=True):
                 write_atomically(output / name, written(reproduced, chosen).encode())
@@ -105,12 +101,12 @@ def command(
 
 
 def _print_list() -> None:
-    from crazybilliards.reproduction.reproducible import EVERYTHING
+    from crazybilliards.reproduction.figures import FIGURES
 
     listed = []
-    for study in EVERYTHING:
+    for study in FIGURES:
         listed.append({"number": study.number, "name": study.name, "title": study.title})
-        say(f"{study.number or '':3}  {study.name:28s} {study.title}")
+        say(f"{study.number:3}  {study.name:28s} {study.title}")
     note(studies=listed)
 
 

@@ -76,7 +76,6 @@ def command(
     method: Annotated[
         str, typer.Option(help="Collisions: event-driven or contact-dynamics.")
     ] = "event-driven",
-    stepper: Annotated[str, typer.Option(help="Time stepping: splitting or euler.")] = "splitting",
     seed: Annotated[int, typer.Option(help="Seed of the random numbers.")] = 0,
     threads: Threads = None,
     checkpoint: Annotated[
@@ -115,8 +114,7 @@ def command(
         "checkpoint": checkpoint,
     }
     if accuracy is not None:
-        _refuse(duration=duration, time_step=time_step, every=every, average=average)
-        _refuse(method=method, stepper=stepper)
+        _refuse(duration=duration, time_step=time_step, every=every, average=average, method=method)
     file = output and result_file(output, "simulation.nc")
     with writing_to(file, file=True):
         if accuracy is None:
@@ -125,7 +123,6 @@ def command(
                 duration=duration,
                 time_step=time_step,
                 method=method,  # type: ignore[arg-type]
-                stepper=stepper,  # type: ignore[arg-type]
                 average=average,  # type: ignore[arg-type]
                 every=every,
                 **common,
@@ -156,12 +153,10 @@ def _print(result: xr.Dataset) -> None:
     import json
 
     how = json.loads(result.attrs["provenance"])
-    runs = how.get("levels", [how.get("schedule")])
-    steps = [each["time_step"] for each in runs if each]
+    step = how["schedule"]["time_step"]
     status, end = result.attrs["status"], result.attrs["end_time"]
-    note(end_time=end, time_steps=steps)
-    listed = ", ".join(f"{step:.3g}" for step in steps)
-    say(f"{status} at t = {end:g} T, time step{'s' * (len(steps) > 1)} {listed} T")
+    note(end_time=end, time_steps=[step])
+    say(f"{status} at t = {end:g} T, time step {step:.3g} T")
     if status == "diverged":
         complain_of_divergence(result)
     if "central_velocity_width" in result:
@@ -181,4 +176,4 @@ def _print(result: xr.Dataset) -> None:
             "Some rods at the last time" if last else "Some rods",
             "+-: one standard error.",
         )
-    answer_measured(result, ensemble=how.get("schedule", {}).get("ensemble", False))
+    answer_measured(result, ensemble=how["schedule"]["ensemble"])

@@ -5,8 +5,8 @@ from __future__ import annotations
 import os
 import sys
 import warnings
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, redirect_stderr, redirect_stdout
 from typing import Any, TextIO
 
 READER_GONE = 141  # as if the signal SIGPIPE had ended it, like other programs
@@ -23,52 +23,35 @@ class _Stream:
         return getattr(self.stream, name)
 
     def write(self, text: str) -> int:
-        try:
-            return self.stream.write(text)
-        except OSError as error:
-            self._give_up(error)
-            return len(text)
+        self._try(self.stream.write, text)
+        return len(text)
 
     def flush(self) -> None:
-        try:
-            self.stream.flush()
-        except OSError as error:
-            self._give_up(error)
-            self.stream.flush()
+        self._try(self.stream.flush)
 
-    def _give_up(self, error: OSError) -> None:
-        # What the stream still holds is written when Python ends, and must not fail then either.
-        self.failed = error
-        nowhere = os.open(os.devnull, os.O_WRONLY)
-        os.dup2(nowhere, self.stream.fileno())
-        os.close(nowhere)
+    def _try(self, send: Callable[..., object], *text: str) -> None:
+        try:
+            send(*text)
+        except OSError as error:
+            # What the stream still holds is written when Python ends, and must not fail then.
+            self.failed = error
+            with open(os.devnull, "w") as nowhere:
+                os.dup2(nowhere.fileno(), self.stream.fileno())
 
 
 @contextmanager
 def plain_streams() -> Iterator[_Stream]:
     """Let commands go on where nobody reads them, and show warnings in one line; give stdout."""
-    _open_closed()
-    before = sys.stdout, sys.stderr
-    output, errors = map(_Stream, before)
-    with warnings.catch_warnings():
-        warnings.showwarning = _show_warning
-        sys.stdout, sys.stderr = output, errors
-        try:
-            yield output
-            output.flush()
-        finally:
-            sys.stdout, sys.stderr = before
-
-
-def _open_closed() -> None:
-    """Open a standard stream that was closed, by ``>&-`` in a shell say, to nowhere.
-
-    Otherwise the next file that is opened would get its number, and what a library writes to
-    standard output would go into that file.
-    """
+    # A stream that was closed, by >&- in a shell say, goes to nowhere. Otherwise the next file that
+    # is opened would get its number, and what a library writes to standard output.
     for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
         if getattr(sys, name) is None:
             setattr(sys, name, open(os.devnull, mode))  # noqa: SIM115
+    output, errors = _Stream(sys.stdout), _Stream(sys.stderr)
+    with warnings.catch_warnings(), redirect_stdout(output), redirect_stderr(errors):
+        warnings.showwarning = _show_warning
+        yield output
+        output.flush()
 
 
 def _show_warning(message: Warning | str, *_: object, **__: object) -> None:

@@ -3,21 +3,21 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from crazybilliards.apps.commands.answers import note, say
-from crazybilliards.apps.commands.options import Dask, KeepOld, Processes, Scheduler, path_option
+from crazybilliards.apps.commands.options import KeepOld, Processes, Scheduler, path_option
 from crazybilliards.apps.commands.output import INTERRUPTED, check_folder
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
     from contextlib import AbstractContextManager
 
-    from crazybilliards.comparison.sweeps import Case
+    from crazybilliards.comparison.sweeps import Case, Sweep
+    from crazybilliards.comparison.sweeps.running import Outcome
 
 
 def command(
@@ -36,7 +36,6 @@ def command(
         ),
     ],
     processes: Processes = None,
-    dask: Dask = False,
     scheduler: Scheduler = None,
     keep_old: KeepOld = False,
 ) -> None:
@@ -56,64 +55,55 @@ def command(
     check_folder(output)
     from crazybilliards.comparison.sweeps import read_sweep
 
-    compute_cases(read_sweep(file), output, engine(processes, dask, scheduler), keep_old)
+    compute_cases(read_sweep(file), output, engine(processes, scheduler), keep_old)
     say(f"All of them as one Dataset: crazybilliards.load_sweep({str(output)!r})")
 
 
-def engine(
-    processes: int | None, dask: bool, scheduler: str | None
-) -> AbstractContextManager[Executor]:
+def engine(processes: int | None, scheduler: str | None) -> AbstractContextManager[Executor]:
     """Return what computes cases, as the options say."""
     from crazybilliards.comparison.sweeps import dask_cluster, process_pool
 
-    if dask or scheduler is not None:
-        if processes is not None:
-            raise ValueError("processes: a dask cluster decides that itself")
-        return dask_cluster(scheduler)
-    return process_pool(processes)
+    if scheduler is None:
+        return process_pool(processes)
+    if processes is not None:
+        raise ValueError("processes: a dask cluster decides that itself")
+    return dask_cluster(None if scheduler == "local" else scheduler)
 
 
 def compute_cases(
-    cases: Iterable[Case], folder: Path, executor: AbstractContextManager[Executor], keep_old: bool
+    cases: Sweep | list[Case],
+    folder: Path,
+    workers: AbstractContextManager[Executor],
+    keep_old: bool,
 ) -> None:
     """Compute what is missing; end the command, and say why, unless all succeed."""
-    from crazybilliards.comparison.sweeps.index import write_index
-    from crazybilliards.comparison.sweeps.missing import check_cases, find_missing
-    from crazybilliards.comparison.sweeps.running import Outcome, compute_missing
-    from crazybilliards.model.locks import locked
-    from crazybilliards.model.storage import make_folder
+    from crazybilliards.comparison.sweeps.running import compute_missing
 
-    checked = check_cases(cases)
-    if not len(checked):
+    if not len(cases):
         return
-    make_folder(folder)
-    with locked(folder):
-        missing = find_missing(checked, folder, keep_old=keep_old)
-        say(f"{len(checked)} cases, {len(checked) - len(missing)} of them in {folder} already")
-        note(cases=len(checked), folder=str(folder), computed=0, failed=[])
-        if not len(missing):
-            write_index(folder)
-            return
-        outcome, reason, status = Outcome(), "", 0
-        try:
-            with executor as workers:
-                compute_missing(missing, folder, workers, outcome)
-        except KeyboardInterrupt:
-            status = INTERRUPTED  # which says so itself
-        except RuntimeError as error:
-            reason, status = str(error), 1
+
+    def tell(outcome: Outcome) -> None:
+        say(f"{outcome.number} cases, {outcome.found} of them in {folder} already")
+        note(cases=outcome.number, folder=str(folder), computed=0, failed=[])
+
+    outcome = compute_missing(cases, folder, workers, keep_old=keep_old, tell=tell)
+    if outcome.found == outcome.number:
+        return
+    reason, status = "", 0
     if outcome.failed:
         case, first = next(iter(outcome.failed.items()))
-        reason = reason or (
-            f"{len(outcome.failed)} cases failed, the first, {case.canonical}, with {first}"
-        )
-        status = status or 1
+        reason = f"{len(outcome.failed)} cases failed, the first, {case.canonical}, with {first}"
+        status = 1
+    if isinstance(outcome.stopped, RuntimeError):
+        reason, status = str(outcome.stopped), 1
+    elif outcome.stopped is not None:
+        status = INTERRUPTED  # which says so itself
     say(f"computed {outcome.written} cases into {folder}")
-    failed = [{**case.parameters, "reason": why} for case, why in outcome.failed.items()]
+    failed = [{**case.arguments, "reason": why} for case, why in outcome.failed.items()]
     note(computed=outcome.written, failed=failed)
     if reason:
         print(f"crazybilliards: {reason}", file=sys.stderr)
     if status:
-        if outcome.written < len(missing):
+        if outcome.found + outcome.written < outcome.number:
             print("The same command computes what is missing.", file=sys.stderr)
         raise typer.Exit(status)

@@ -6,21 +6,13 @@ import math
 from collections.abc import Mapping
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from crazybilliards.apps.commands.answers import (
-    answer_rods,
-    empty_table,
-    note,
-    print_table,
-    say,
-    wrote,
-)
+from crazybilliards.apps.commands.answers import answer_rods, note, say, table_of, wrote
 from crazybilliards.apps.commands.options import path_option, with_chain_options
 from crazybilliards.apps.commands.output import conclude, write_figures, writing_to
-from crazybilliards.comparison.stationary_theories import THEORIES, choose_theory
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -36,7 +28,6 @@ _IN_WORDS = {
     "mean_displacement": "<dx> (of s)",
     "density": "smoothed density (of close packing)",
 }
-_NAMES = ", ".join(f"{name} ({theory.title})" for name, theory in THEORIES.items())
 
 
 @with_chain_options()
@@ -45,7 +36,9 @@ def command(
     name: Annotated[
         str | None,
         typer.Argument(
-            help=f"{_NAMES}; default: the one with the smallest expected error for the chain.",
+            help="equilibrium, force_balance, phase_space (the kinetic equation) or "
+            "correlated_phase_space (that with pair correlations); default: the one with the "
+            "smallest expected error for the chain.",
             show_default=False,
         ),
     ] = None,
@@ -62,20 +55,6 @@ def command(
             "phase_space.png, made if missing; without it nothing is written."
         ),
     ] = None,
-    tolerance: Annotated[
-        float | None,
-        typer.Option(
-            help="Of the kinetic equation: largest relative error of a width due to the mesh.",
-            show_default="2e-3",
-        ),
-    ] = None,
-    cells: Annotated[
-        int | None,
-        typer.Option(help="Of the kinetic equation: cells of the mesh, instead of a tolerance."),
-    ] = None,
-    critical: Annotated[
-        bool, typer.Option(help="For e > 1 also work out the critical size (some 20 s).")
-    ] = False,
 ) -> None:
     """Predict a chain's steady state from a theory, without a simulation.
 
@@ -85,31 +64,25 @@ def command(
 
     Example: crazybilliards theory --list --restitution 0.5
 
-    Example: crazybilliards theory --output results --restitution 1.05 --damping 4 --critical
+    Example: crazybilliards theory --output results --restitution 1.05 --damping 4
 
     Example: crazybilliards theory equilibrium --amplitude 10 --gap 0.2
     """
-    from crazybilliards.kinetic import critical_size
+    from crazybilliards.comparison.stationary_theories import THEORIES, choose_theory
     from crazybilliards.model.checks import check_choice
 
     if listed:
         _list(chain)
         return
-    given = {"tolerance": tolerance, "cells": cells}
-    settings = {key: value for key, value in given.items() if value is not None}
     why = ""
     if name is None:
-        theory, why = choose_theory(chain, settings=settings)
+        theory, why = choose_theory(chain)
     else:
         theory = THEORIES[check_choice("name", name, tuple(THEORIES))]
-        if reason := theory.refusal(chain, settings):
+        if reason := theory.refusal(chain):
             raise ValueError(reason)
     with writing_to(output):
-        if critical:
-            value, error = critical_size(chain)
-            note(critical_size=value, critical_size_error=error)
-            say(f"critical size: {value:.1f} +- {error:.1f} rods")
-        result = theory.solve(chain, **settings)
+        result = theory.solve(chain)
         if why:
             say(f"{why}.")
         conclude(output, result, partial(_write, theory), partial(_print, theory))
@@ -120,9 +93,14 @@ def _list(chain: Chain) -> None:
     from crazybilliards.comparison import theories
 
     found = theories(chain)
-    table = empty_table(
-        ["theory"],
-        ["W_v", "border", "W_x", "<dx>", "density", "time"],
+    rows: list[dict[Any, Any]] = found.to_dataframe().reset_index().to_dict("records")
+    headings = ("W_v", "border", "W_x", "<dx>", "density")
+    errors = [str(name) for name in found if str(name).endswith("_model_error")]
+    columns = {name: (head, _percent) for name, head in zip(errors, headings, strict=True)}
+    note(best=found.attrs["best"], theories=rows)
+    table_of(
+        {"theory": ("theory", str)} | columns | {"expected_seconds": ("time", "{:.2g} s".format)},
+        [row for row in rows if row["takes"]],
         title=f"Theories for L = {chain.size}, e = {chain.restitution:g}; best of W_v: "
         + (found.attrs["best"] or "none"),
         caption="Largest errors of the theory itself on chains like this one: relative ones of W_v "
@@ -130,18 +108,13 @@ def _list(chain: Chain) -> None:
         "in thermal lengths; of the smoothed density, of close packing. -: not measured. "
         "Times on one core, within a factor of three.",
     )
-    rows = found.to_dataframe()
-    for name, row in rows[rows.takes].iterrows():
-        errors = [_percent(row[column]) for column in row.index if column.endswith("_model_error")]
-        table.add_row(str(name), *errors, f"{row.expected_seconds:.2g} s")
-    note(best=found.attrs["best"], theories=rows.reset_index().to_dict("records"))
-    print_table(table)
-    for name, row in rows[~rows.takes].iterrows():
-        say(f"{name} does not take the chain: {row.reason}")
+    for row in rows:
+        if not row["takes"]:
+            say(f"{row['theory']} does not take the chain: {row['reason']}")
 
 
 def _percent(error: float) -> str:
-    return "-" if math.isnan(error) else f"{100 * error:.2g} %"
+    return f"{100 * error:.2g} %"
 
 
 def _print(theory: Theory, result: xr.Dataset) -> None:

@@ -27,9 +27,9 @@ from crazybilliards.model.arrays import Array
 from crazybilliards.model.vocabulary import require
 
 _DECADES = 5  # of f in the image
-_VARIED = {"amplitude": "A", "restitution": "e"}
+_SYMBOLS = {"amplitude": "A", "restitution": "e", "size": "L", "gap": "g", "damping": r"\gamma"}
 _LARGE, _FAINT = 0.2, 0.25  # a stated error, as a share of the axis; the opacity of such a curve
-_STYLES = dict(zip(KINETIC, ("--", "-"), strict=True))
+_STYLES = {"exact": "-"} | dict(zip(KINETIC, ("--", "-"), strict=True))
 
 
 def draw_density(tree: xr.DataTree) -> Figure:
@@ -71,7 +71,7 @@ def _draw_edge(ax: Axes, results: dict[str, xr.Dataset], end: float) -> Axes:
 
 
 def draw_displacement(tree: xr.DataTree) -> Figure:
-    """<dx> at the rods' mean positions, with the paper's arctanh fit, for each amplitude."""
+    """<dx> of simulation and theories at the rods' mean positions, for each chain."""
     figure, axes_of_all = _panels(tree)
     for axes, group in zip(axes_of_all, tree.children.values(), strict=True):
         results = _results(group)
@@ -158,14 +158,19 @@ def _panels(tree: xr.DataTree) -> tuple[Figure, list[list[Axes]]]:
     if number > 1:
         letter([above for above, _ in made])
     for (above, _), group in zip(made, tree.children.values(), strict=True):
-        name, _, value = str(group.name).rpartition("_")
         s = chain_of(group[SIMULATION].to_dataset()).thermal_length
-        entitle(above, rf"${_VARIED[name]} = {value}$,  $s = {s:.3g}\,R$")
+        entitle(above, rf"{_varied(group)},  $s = {s:.3g}\,R$")
     return figure, made
 
 
+def _varied(group: xr.DataTree) -> str:
+    """Return what is special about a chain, from a name such as amplitude_3."""
+    name, _, value = str(group.name).rpartition("_")
+    return f"${_SYMBOLS[name]} = {value}$" if name in _SYMBOLS else f"{name} {value}"
+
+
 def draw_widths(tree: xr.DataTree) -> Figure:
-    """W_v(i) and <dx_i> for every restitution, in units of the free rod; lines are theories."""
+    """W_v(i) and <dx_i> of every chain, in units of the free rod; lines are theories."""
     figure, axes = panels(1, 2, height=2.5)
     count = len(tree.children)
     many = plt.get_cmap("cividis")(np.linspace(0.0, 0.9, count))
@@ -179,7 +184,7 @@ def draw_widths(tree: xr.DataTree) -> Figure:
         for ax, name, unit in zip(
             axes, ("velocity_width", "mean_displacement"), units, strict=True
         ):
-            draw_rods(ax, run, name, unit=unit, label=f"$e = {chain.restitution:g}$", **look)
+            draw_rods(ax, run, name, unit=unit, label=_varied(group), **look)
             for key, style in _STYLES.items():
                 if key in group:
                     theory = group[key].to_dataset()

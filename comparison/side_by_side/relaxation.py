@@ -24,6 +24,7 @@ from crazybilliards.kinetic import (
 )
 from crazybilliards.kinetic.exact.breathing import breathing_cloud
 from crazybilliards.model import Chain, chain_of
+from crazybilliards.model.calls import public
 from crazybilliards.model.checks import check_choice, check_integer, check_real
 from crazybilliards.model.progress import waiting_for
 from crazybilliards.model.randomness import Seed, seed_of
@@ -42,6 +43,7 @@ LEGEND = {
 }
 
 
+@public
 def compare_relaxation(
     chain: Chain,
     release: Release = "compressed",

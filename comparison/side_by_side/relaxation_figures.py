@@ -1,25 +1,25 @@
-"""Pictures of a relaxation: space and time, profiles, width and centre, and an animation."""
+"""Pictures of a relaxation: space and time, profiles, width and centre, and those of a film."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
 import xarray as xr
-from matplotlib.animation import FuncAnimation
-from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from crazybilliards.comparison.coverage import smooth
 from crazybilliards.comparison.drawing import overlay
+from crazybilliards.comparison.encoding import Picture
 from crazybilliards.comparison.layout import entitle, legend_above, panels
 from crazybilliards.comparison.side_by_side.grid import SIMULATION
 from crazybilliards.comparison.side_by_side.relaxation import LEGEND, PARTICLES, cloud
 from crazybilliards.model import Chain, chain_of
-
-Relaxation = xr.DataTree
 
 _NAMES = {PARTICLES: SIMULATION} | LEGEND
 _DENSITY = r"density $\rho$ [1/R]"
@@ -29,6 +29,7 @@ _ON_A_SCREEN: Any = {
     "legend.fontsize": 12,
     "legend.frameon": False,
 }
+_FILM = 8, 4.5  # inches of 100 dots; the encoder needs even numbers of dots
 _MOMENTS = (0.0, 0.05, 0.1, 1.0)  # of the duration, for the profiles
 _LEAST_DRAWN = 2e-3  # of close packing: pictures end where every density is lower
 
@@ -96,39 +97,49 @@ def draw_cloud(tree: xr.DataTree) -> Figure:
     return figure
 
 
-def animate(tree: Relaxation) -> FuncAnimation:
-    """rho(x, t) of the simulation and the fluids as an animation.
-
-    ``standalone_page(animate(tree))`` plays in a notebook or a browser.
-    ``.save("relaxation.gif", writer="pillow")`` makes a file.
-    """
+def relaxation_pictures(tree: xr.DataTree, most: int) -> tuple[Iterator[Picture], int]:
+    """Return pictures of rho(x, t) of the simulation and the fluids, and how many there are."""
     densities = _densities(tree)
-    times = densities[SIMULATION].time.values
     extent = _extent(densities)
     densities = {name: each[["density"]].sel(x=slice(*extent)) for name, each in densities.items()}
-    rods = densities[SIMULATION]
+    last = densities[SIMULATION].time.size - 1
+    chosen = np.unique(np.linspace(0, last, most).round().astype(int))
+    shown = {name: each.isel(time=chosen) for name, each in densities.items()}
+    return _pictures(shown), chosen.size
+
+
+def _pictures(densities: dict[str, xr.Dataset]) -> Iterator[Picture]:
     with plt.rc_context(_ON_A_SCREEN):
-        figure, ax = plt.subplots(figsize=(8, 4.5), layout="constrained")
-        # Every bin: symbols that tell the curve at one time may show false waves at another.
-        ax.plot(rods.x, rods.density[0], color="black", linewidth=1, label=SIMULATION, zorder=3)
-        fluids = {name: each for name, each in densities.items() if name != SIMULATION}
-        overlay({name: each.isel(time=0) for name, each in fluids.items()}, ax=ax)
-        high = max(float(each.density.max()) for each in densities.values())
-        ax.set(xlim=extent, ylim=(0, 1.05 * high), xlabel="position $x$ [R]", ylabel=_DENSITY)
-        legend_above(figure, ax)
-        clock = ax.set_title(" ")
-        figure.draw_without_rendering()  # ticks take the size of their letters when they are drawn
-    lines = {str(line.get_label()): line for line in ax.lines}
+        canvas, ax = _stage(densities)
+        lines = {str(line.get_label()): line for line in ax.lines}
+        for number, time in enumerate(densities[SIMULATION].time.values):
+            ax.set_title(f"$t = {time:.2f}$ T")
+            for name, each in densities.items():
+                lines[name].set_ydata(each.density.values[number])
+            canvas.draw()
+            canvas.figure.set_layout_engine("none")  # after the first picture nothing moves
+            yield np.array(canvas.buffer_rgba())
 
-    def show(frame: int) -> list[Artist]:
-        clock.set_text(f"$t = {times[frame]:.2f}$ T")
-        for name, each in densities.items():
-            lines[name].set_ydata(each.density.values[frame])
-        return []
 
-    animation = FuncAnimation(figure, show, frames=times.size, interval=80)
-    plt.close(figure)  # the animation keeps the figure; notebooks would show it twice
-    return animation
+def _stage(densities: dict[str, xr.Dataset]) -> tuple[FigureCanvasAgg, Axes]:
+    """Draw the lines at the first time."""
+    figure = Figure(figsize=_FILM, dpi=100, layout="constrained")
+    canvas, ax = FigureCanvasAgg(figure), figure.subplots()
+    rods = densities[SIMULATION]
+    # Every bin: symbols that tell the curve at one time may show false waves at another.
+    ax.plot(rods.x, rods.density[0], color="black", linewidth=1, label=SIMULATION, zorder=3)
+    fluids = {name: each.isel(time=0) for name, each in densities.items() if name != SIMULATION}
+    overlay(fluids, ax=ax)
+    high = max(float(each.density.max()) for each in densities.values())
+    ends = [float(end) for each in densities.values() for end in each.x[[0, -1]]]
+    ax.set(
+        xlim=(min(ends), max(ends)),
+        ylim=(0, 1.05 * high),
+        xlabel="position $x$ [R]",
+        ylabel=_DENSITY,
+    )
+    legend_above(figure, ax)
+    return canvas, ax
 
 
 def title(tree: xr.DataTree) -> str:
@@ -144,8 +155,7 @@ def _densities(tree: xr.DataTree) -> dict[str, xr.Dataset]:
     """Return the available smoothed densities by the names they are drawn with."""
     if PARTICLES not in tree:
         raise ValueError(
-            "tree must be what compare_relaxation returns; film(run) shows the rods of one run, "
-            f"got {list(tree.children)}"
+            f"run must be what compare_relaxation returns, got a tree of {list(tree.children)}"
         )
     return {
         name: smooth(tree[key].to_dataset())

@@ -18,7 +18,7 @@ import warnings
 from collections.abc import Mapping
 from contextlib import nullcontext
 from dataclasses import dataclass, field
-from functools import cache, cached_property, lru_cache
+from functools import cache, cached_property
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -84,7 +84,7 @@ class Case:
         object.__setattr__(self, "work", job.work(self.chain, **self.settings))
 
     @property
-    def parameters(self) -> dict[str, Any]:
+    def arguments(self) -> dict[str, Any]:
         """Everything that determines the result, in a form for JSON."""
         return {"job": self.job, **_plain_all(self.chain.parameters()), **self.settings}
 
@@ -92,7 +92,7 @@ class Case:
     def changed(self) -> dict[str, Any]:
         """The parameters that differ from their defaults."""
         defaults = _defaults(self.job)
-        return {name: value for name, value in self.parameters.items() if value != defaults[name]}
+        return {name: value for name, value in self.arguments.items() if value != defaults[name]}
 
     @property
     def title(self) -> str:
@@ -107,7 +107,7 @@ class Case:
     @cached_property
     def canonical(self) -> str:
         """All parameters as text, the same for equal cases."""
-        return json.dumps(self.parameters, sort_keys=True)
+        return json.dumps(self.arguments, sort_keys=True)
 
     @cached_property
     def _digest(self) -> str:
@@ -161,7 +161,7 @@ class Case:
         """
         path = self.file(folder)
         attributes = load_attributes(path)
-        if stored_parameters(attributes) != self.parameters:
+        if stored_parameters(attributes) != self.arguments:
             raise ValueError(f"{path}: not the case that its name says")
         if not keep_old and attributes.get("source_fingerprint") != self.source:
             raise OutdatedError(
@@ -192,7 +192,7 @@ def compute(case: Case, source: str, threads: int = 1) -> bytes:
     own: dict[str, int] = {"seed": case.own_seed} if "seed" in case.settings else {}
     own |= {"threads": threads} if case.job.startswith("simulate") else {}
     # Linear algebra in threads sums in another order, and it would make other workers wait.
-    with _libraries(len(sys.modules)).limit(limits=1), warnings.catch_warnings(), silent():
+    with _libraries().limit(limits=1), warnings.catch_warnings(), silent():
         # The result states that its error is unknown; a line per process would not say of which.
         warnings.simplefilter("ignore", UnmeasuredWarning)
         warnings.simplefilter("ignore", ShortRunWarning)  # said of the whole sweep
@@ -211,9 +211,9 @@ def compute(case: Case, source: str, threads: int = 1) -> bytes:
         return small_netcdf(result)
 
 
-@lru_cache(maxsize=1)
-def _libraries(modules: int) -> ThreadpoolController:
-    """Find the linear-algebra libraries again if modules were imported that may load one."""
+@cache
+def _libraries() -> ThreadpoolController:
+    """Find the linear-algebra libraries; the jobs, which are imported, have loaded all of them."""
     return ThreadpoolController()
 
 

@@ -1,4 +1,4 @@
-"""Executors of cases: this process, processes of this machine, or a dask cluster."""
+"""What computes cases: this process, processes of this machine, or a dask cluster."""
 
 from __future__ import annotations
 
@@ -7,49 +7,30 @@ import multiprocessing
 import signal
 import sys
 import threading
-from collections.abc import Callable, Iterator
-from concurrent.futures import Executor, Future, ProcessPoolExecutor
+from collections.abc import Iterable, Iterator
+from concurrent.futures import CancelledError, Executor, Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import AbstractContextManager, contextmanager
-from functools import partial
 from multiprocessing.synchronize import Event
-from typing import Any
+from queue import SimpleQueue
 
 from tqdm import tqdm
 
+from crazybilliards.comparison.sweeps.case import Case, compute
+from crazybilliards.model.calls import public
 from crazybilliards.model.checks import check_integer
-from crazybilliards.model.process import cores, end_with_parent
+from crazybilliards.model.process import cores, end_with_parent, interrupts_held_back
 
 _UNGUARDED = (
     "no worker process could start: each of them imports the script, which must therefore start "
     "them under if __name__ == '__main__': only"
 )
 _PATIENCE = "20s"  # to wait for the answer of a scheduler
+# Cases that are submitted and have not returned: enough for a cluster, few in memory.
+_MOST_UNDER_WAY = 1000
 
 
-class ThisProcess(Executor):
-    """Computes a case here when its result is asked for, a simulation in several threads."""
-
-    def __init__(self, threads: int) -> None:
-        self.threads = threads
-
-    def submit(self, function: Callable[..., Any], /, *arguments: Any, **how: Any) -> Future[Any]:
-        """Return what calls the function."""
-        return _Later(partial(function, *arguments, threads=self.threads, **how))
-
-
-class _Later(Future[Any]):
-    """Done from the start, so that it can be asked: Ctrl-C then stops the computation itself."""
-
-    def __init__(self, call: Callable[[], Any]) -> None:
-        super().__init__()
-        self.call = call
-        self.set_result(None)
-
-    def result(self, timeout: float | None = None) -> Any:
-        return self.call()
-
-
+@public
 def process_pool(processes: int | None = None) -> AbstractContextManager[Executor]:
     """Run cases in processes of this machine, one for each core unless told otherwise.
 
@@ -127,3 +108,68 @@ def dask_cluster(address: str | None = None) -> Iterator[Executor]:
             yield client.get_executor(pure=False)
     finally:
         log.setLevel(before)
+
+
+def computed_here(cases: Iterable[Case], threads: int) -> Iterator[tuple[Case, bytes | Exception]]:
+    """Compute cases in this process; yield each with its file, or with the error instead."""
+    for case in cases:
+        result: bytes | Exception
+        try:
+            result = compute(case, case.source, threads)
+        except Exception as error:
+            result = error
+        yield case, result
+
+
+def computed_by(
+    executor: Executor, cases: Iterator[Case]
+) -> Iterator[tuple[Case, bytes | Exception]]:
+    """Submit cases; yield each, as it comes back, with its file, or with the error instead."""
+    under_way: dict[Future[bytes], Case] = {}
+    back: SimpleQueue[Future[bytes]] = SimpleQueue()
+    lost: Exception | None = None  # why the executor cannot be used any more
+    case = next(cases, None)
+    while case or under_way:
+        if case and len(under_way) < _MOST_UNDER_WAY and back.empty():
+            try:
+                with interrupts_held_back(), _ctrl_c_blocked():
+                    future = executor.submit(compute, case, case.source)
+                    under_way[future] = case
+                    future.add_done_callback(back.put)
+                case = next(cases, None)
+            except BrokenProcessPool as error:
+                lost, case = error, None
+            continue
+        future = back.get()
+        returned, result = under_way.pop(future), _result(future)
+        if isinstance(result, BrokenProcessPool | CancelledError):
+            lost, case = result, None  # other cases may have finished before
+        else:
+            yield returned, result
+    if lost is not None:
+        cancelled = isinstance(lost, CancelledError)
+        gone = "the dask scheduler is gone" if cancelled else "a worker process died"
+        hint = "" if cancelled else " (out of memory?)"
+        raise RuntimeError(
+            f"{gone}{hint}; finished cases are kept, and the same call computes the rest"
+        ) from lost
+
+
+def _result(future: Future[bytes]) -> bytes | Exception:
+    try:
+        return future.result()
+    except Exception as error:
+        return error
+
+
+@contextmanager
+def _ctrl_c_blocked() -> Iterator[None]:
+    """Start workers that never receive Ctrl-C: they inherit what this thread blocks."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)

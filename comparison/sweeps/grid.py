@@ -1,18 +1,16 @@
 """Sweeps: a grid over any parameters, described by a TOML file, read back as one Dataset.
 
-    [grid]                            # every combination of these
-    size = [30, 100, 300]
-    restitution = [0.0, 0.5, 0.95]
-    seed = [1, 2]
+[grid]                            # every combination of these
+size = [30, 100, 300]
+restitution = [0.0, 0.5, 0.95]
+seed = [1, 2]
 
-    [chain]                           # the same for all
-    damping = 2.0
+[chain]                           # the same for all
+damping = 2.0
 
-    [simulate]                        # the job, and its settings the same for all
-    duration = 1000
-    observe = ["widths"]
-
-``crazybilliards sweep`` computes such a grid, and :func:`load_sweep` reads the results.
+[simulate]                        # the job, and its settings the same for all
+duration = 1000
+observe = ["widths"]
 """
 
 from __future__ import annotations
@@ -35,7 +33,7 @@ from crazybilliards.comparison.sweeps.case import Case, plain, stored_parameters
 from crazybilliards.comparison.sweeps.index import CHAIN, scalar, varied
 from crazybilliards.comparison.sweeps.jobs import JOBS
 from crazybilliards.model import Chain, load
-from crazybilliards.model.calls import warn_user
+from crazybilliards.model.calls import public, warn_user
 from crazybilliards.model.checks import (
     as_written,
     check_arguments,
@@ -51,6 +49,7 @@ _MOST_CASES = 1_000_000
 _TEXTS = ("status", "provenance", "file")  # are always variables
 
 
+@public
 @dataclass(frozen=True)
 class Sweep:
     """A grid of cases. Each case is made and checked when it is needed.
@@ -124,9 +123,8 @@ def _values(name: str, given: Any) -> list[Any]:
     ordered = is_list(given) and not isinstance(given, Mapping | Set)
     if not ordered or getattr(given, "ndim", 1) != 1 or len(given) == 0:
         raise ValueError(f"grid: {name} must be a list of values, got {shown(given)}")
-    values = [
-        as_written(each) for each in (np.asarray(given) if hasattr(given, "dtype") else given)
-    ]
+    listed = np.asarray(given) if hasattr(given, "dtype") else given
+    values = [as_written(each) for each in listed]
     found = [scalar(plain(name, each)) for each in values]
     if twice := [each for place, each in enumerate(found) if each in found[:place]]:
         raise ValueError(f"grid: {name} holds {shown(twice[0])} twice")
@@ -157,6 +155,7 @@ def read_sweep(path: str | os.PathLike[str]) -> Sweep:
     return Sweep(tables.get("grid", {}), job, tables.get("chain", {}), tables.get(job, {}))
 
 
+@public
 def load_sweep(folder: str | os.PathLike[str]) -> xr.Dataset:
     """Read all cases of a folder into one Dataset over the parameters in which they differ.
 
@@ -178,8 +177,8 @@ def load_sweep(folder: str | os.PathLike[str]) -> xr.Dataset:
     Raises
     ------
     ValueError
-        If a file is damaged, if there are no files, if they are not cases of one job, or if two
-        files hold the same case.
+        If a file is damaged, if there are no files, if they are not cases of one job, if two files
+        hold the same case, or if runs with different observers do not fit together.
     """
     place = check_path("folder", folder)
     paths = sorted(place.glob("*.nc"))
@@ -198,15 +197,7 @@ def load_sweep(folder: str | os.PathLike[str]) -> xr.Dataset:
     fixed = {name: value for name, value in points[0].items() if name not in names}
     results = _with_attributes(results, leave=names)
     texts = [str(name) for name in results[0].data_vars if results[0][name].dtype == object]
-    joined = xr.concat(
-        _alike(results),
-        dim="case",
-        join="outer",
-        data_vars="all",
-        coords="different",
-        compat="equals",
-        combine_attrs="drop_conflicts",
-    )
+    joined = _joined(paths, results)
     if names:
         index = pd.MultiIndex.from_frame(table)
         coordinates = xr.Coordinates.from_pandas_multiindex(index, "case")
@@ -247,6 +238,21 @@ def _check_points(paths: Sequence[Path], points: Sequence[dict[str, Any]]) -> No
         first[canonical] = path
 
 
+def _joined(paths: Sequence[Path], results: Sequence[xr.Dataset]) -> xr.Dataset:
+    """Join results along ``case``; a ValueError says which cases do not have the same variables."""
+    how: dict[str, Any] = {"join": "outer", "compat": "equals", "combine_attrs": "drop_conflicts"}
+    try:
+        return xr.concat(_alike(results), "case", data_vars="all", coords="different", **how)
+    except ValueError as error:
+        for path, each in zip(paths, results, strict=True):
+            if different := each.variables.keys() ^ results[0].variables.keys():
+                names = ", ".join(sorted(map(str, different)))
+                raise ValueError(
+                    f"{paths[0]} and {path}: only one has {names}; observe= must be the same"
+                ) from error
+        raise
+
+
 def _with_attributes(results: Sequence[xr.Dataset], leave: Sequence[str]) -> list[xr.Dataset]:
     """Turn the attributes of single cases into variables, except those named in ``leave``.
 
@@ -272,7 +278,7 @@ def _with_attributes(results: Sequence[xr.Dataset], leave: Sequence[str]) -> lis
     return made
 
 
-def _alike(results: list[xr.Dataset]) -> list[xr.Dataset]:
+def _alike(results: Sequence[xr.Dataset]) -> Sequence[xr.Dataset]:
     """Make other dimensions than the particle fit; differing coordinates become numbers."""
     for dimension in sorted({str(name) for each in results for name in each.dims} - {"particle"}):
         values = [each[dimension] for each in results if dimension in each.dims]

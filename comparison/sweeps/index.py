@@ -14,6 +14,7 @@ import pandas as pd
 from crazybilliards.comparison.sweeps.case import stored_parameters
 from crazybilliards.model import Chain
 from crazybilliards.model.checks import as_written
+from crazybilliards.model.process import interrupts_held_back
 from crazybilliards.model.storage import load_attributes, write_atomically
 
 INDEX = "index.csv"
@@ -37,15 +38,18 @@ def write_index(folder: Path) -> None:
             names.append(path.name)
     if not points:
         return
-    table = varied(points).assign(file=names)
-    first = table.iloc[:, 0]
-    order = np.argsort(first.astype(str) if first.dtype == object else first, kind="stable")
-    text = table.iloc[order].to_csv(index=False)
+    with interrupts_held_back():  # as in ``varied``
+        table = varied(points).assign(file=names)
+        first = table.iloc[:, 0]
+        order = np.argsort(first.astype(str) if first.dtype == object else first, kind="stable")
+        text = table.iloc[order].to_csv(index=False)
     content, file = text.encode(), folder / INDEX
     if not file.is_file() or file.read_bytes() != content:
         write_atomically(file, content)
 
 
+# A Ctrl-C in Python code that numpy calls to look at a kind of data would be lost.
+@interrupts_held_back()
 def varied(points: Sequence[Mapping[str, Any]]) -> pd.DataFrame:
     """Return a column for each parameter that differs between the cases, those of a chain first."""
     table = pd.DataFrame([{name: scalar(value) for name, value in each.items()} for each in points])

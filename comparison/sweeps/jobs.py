@@ -18,9 +18,8 @@ from crazybilliards.comparison.stationary_theories import THEORIES, Theory
 from crazybilliards.model import Chain
 from crazybilliards.model.fingerprint import room_fingerprint
 from crazybilliards.particles import simulate, simulate_limit
+from crazybilliards.particles.limit import limit_run
 from crazybilliards.particles.simulation import make_run
-from crazybilliards.particles.vanishing_step.level_steps import GROUPS
-from crazybilliards.particles.vanishing_step.limit import make_runs
 
 # Arguments that do not change the numbers, and arguments that are not plain values.
 _NO_SETTINGS = {"chain", "start", "threads", "checkpoint", "checkpoint_interval"} | {"progress"}
@@ -74,14 +73,11 @@ def _too_short(chain: Chain, **settings: Any) -> str:
 
 def _limit_steps(chain: Chain, **settings: Any) -> float:
     """Return the steps before the measurement plus an estimate of those that are measured."""
-    steps, runs = make_runs(chain, **settings)
-    begun = runs[:-1] or runs
-    warm_up = float(sum(run.warmup_steps for run in begun)) * settings["replicas"]
+    run = limit_run(chain, **settings)
     # W_v in the centre fluctuates by a half per time unit, to a factor of 2 for 10 to 1000 rods.
-    measured = 2 * (0.5 / settings["accuracy"]) ** 2 / steps.time_steps[0]
-    # That is less than the pilot round if little is asked for.
-    pilot = steps.least * begun[0].stride + sum(steps.pilot * run.stride for run in begun[1:])
-    return chain.size * (warm_up + max(measured, float(GROUPS * pilot)))
+    measured = 2 * (0.5 / run.accuracy) ** 2 / run.schedule.time_step
+    least = next(run.looks()) * run.schedule.stride * run.replicas
+    return chain.size * (run.schedule.warmup_steps * run.replicas + max(measured, float(least)))
 
 
 def _theory_work(theory: Theory, chain: Chain, **settings: Any) -> float:

@@ -1,4 +1,4 @@
-"""Computation of cases: each is sent to an executor, and its file is written when it returns.
+"""Computation of the cases that a folder lacks; the file of each is written when it returns.
 
 Workers send their results back as NetCDF bytes. The caller writes each result atomically when it
 arrives. A kill at any moment therefore loses only the cases that are being computed, and the
@@ -9,32 +9,29 @@ from __future__ import annotations
 
 import os
 import shutil
-import signal
 import sys
 import textwrap
 import time
-from collections.abc import Iterable, Iterator
-from concurrent.futures import CancelledError, Executor, Future
-from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import Executor
+from contextlib import AbstractContextManager, nullcontext, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
-from queue import SimpleQueue
 from typing import Any
 
 from tqdm import tqdm
 
-from crazybilliards.comparison.sweeps.case import Case, compute
+from crazybilliards.comparison.sweeps.case import Case, OutdatedError
+from crazybilliards.comparison.sweeps.engines import computed_by, computed_here
+from crazybilliards.comparison.sweeps.grid import Sweep
 from crazybilliards.comparison.sweeps.index import write_index
-from crazybilliards.comparison.sweeps.missing import Cases, check_cases, find_missing
+from crazybilliards.model.calls import public, warn_user
 from crazybilliards.model.checks import check_path, shown
 from crazybilliards.model.locks import locked
-from crazybilliards.model.process import interrupts_held_back
 from crazybilliards.model.progress import progress_bar
 from crazybilliards.model.storage import make_folder, write_sealed
+from crazybilliards.particles import ShortRunWarning
 
-# Cases that are submitted and have not returned: enough for a cluster, few in memory.
-_MOST_UNDER_WAY = 1000
 _BESIDE = len("100%|          | 1:00:00<1:00:00, last ")  # what stands beside a case's title
 _LEAST_WAIT, _SHARE = 5.0, 50  # seconds between two writings of the index, and times their length
 _WITH = "with process_pool() as executor: run_cases(cases, folder, executor)"
@@ -43,12 +40,16 @@ _LEAST_ROOM = 10  # letters for the name of a case; a narrower terminal does not
 
 @dataclass
 class Outcome:
-    """The outcome of the cases so far."""
+    """What became of the cases of a sweep."""
 
+    number: int  # of different cases
+    found: int = 0  # cases that the folder held
     written: int = 0  # cases that were computed and written
     failed: dict[Case, str] = field(default_factory=dict)  # and the reasons
+    stopped: KeyboardInterrupt | RuntimeError | None = None  # what ended it early
 
 
+@public
 def run_cases(
     cases: Iterable[Case],
     folder: str | os.PathLike[str],
@@ -90,124 +91,170 @@ def run_cases(
     place = check_path("folder", folder)
     if not isinstance(executor, Executor):
         raise ValueError(f"executor must be one, as in {_WITH}; got {shown(executor)}")
-    checked = check_cases(cases, progress=progress)
-    make_folder(place)
-    with locked(place):
-        missing = find_missing(checked, place, keep_old=keep_old, progress=progress)
-        outcome = Outcome()
-        compute_missing(missing, place, executor, outcome, progress=progress)
+    outcome = compute_missing(
+        cases, place, nullcontext(executor), keep_old=keep_old, progress=progress
+    )
+    if outcome.stopped is not None:
+        raise outcome.stopped
     return outcome.failed
 
 
 def compute_missing(
-    missing: Cases, folder: Path, executor: Executor, outcome: Outcome, *, progress: bool = True
-) -> None:
-    """Compute cases and write each when it arrives; errors are those of :func:`run_cases`.
+    cases: Iterable[Case],
+    folder: Path,
+    workers: AbstractContextManager[Executor | None],
+    *,
+    threads: int = 1,
+    keep_old: bool = False,
+    progress: bool = True,
+    tell: Callable[[Outcome], None] = lambda outcome: None,
+) -> Outcome:
+    """Compute the cases that ``folder`` lacks, the shortest first, so that a stop leaves results.
 
-    ``outcome`` records what happened to each case, also if this raises.
+    The order costs little: with the work of the figures of the paper 2 % of the time in two
+    processes and 17 % in eight.
+
+    Parameters
+    ----------
+    workers
+        Gives the executor, and is entered if a case is missing. If it gives None, the cases are
+        computed in this process, in ``threads`` threads.
+    tell
+        Is called before the computation, when it is known how many cases the folder holds.
+
+    Returns
+    -------
+    Outcome
+        Also if Ctrl-C, or workers that died, ended it early. Other errors are those of
+        :func:`run_cases`.
     """
-    for what in missing.replaced:
-        print(f"crazybilliards: {what}", file=sys.stderr)
-    with (
-        _index_at_end(folder),
-        progress_bar(
-            progress,
-            total=float(missing.work.sum()),
-            desc=f"0 of {len(missing)} cases",
-            bar_format="{l_bar}{bar:10}| {elapsed}<{remaining}{postfix}",
-        ) as bar,
-    ):
-        under_way = _UnderWay(executor, folder, len(missing), outcome, bar)
-        for case in missing:
-            try:
-                under_way.submit(case)
-            except BrokenProcessPool as error:
-                under_way.lost = error
-                break
-            while under_way.arrived or len(under_way) >= _MOST_UNDER_WAY:
-                under_way.take_one()
-            if under_way.lost is not None:
-                break
-        while len(under_way):
-            under_way.take_one()
-    if under_way.lost is not None:
-        what = (
-            "the dask scheduler is gone"
-            if isinstance(under_way.lost, CancelledError)
-            else "a worker process died (out of memory?)"
-        )
-        raise RuntimeError(
-            f"{what}; finished cases are kept, and the same call computes the rest"
-        ) from under_way.lost
-
-
-@contextmanager
-def _index_at_end(folder: Path) -> Iterator[None]:
-    """Write the index of the cases also if the computation is interrupted."""
-    try:
-        yield
-    finally:
-        with suppress(OSError):  # a full disk is told of by what came before
-            write_index(folder)
-
-
-class _UnderWay:
-    """Submitted cases that have not returned; each is written when it is taken back."""
-
-    def __init__(
-        self, executor: Executor, folder: Path, number: int, outcome: Outcome, bar: tqdm[Any]
-    ) -> None:
-        self.executor, self.outcome, self.bar = executor, outcome, bar
-        self.folder, self.number = folder, number
-        self.cases: dict[Future[bytes], Case] = {}
-        self.back: SimpleQueue[Future[bytes]] = SimpleQueue()
-        self.next_index = 0.0  # when the index is written again
-        self.lost: Exception | None = None  # why the executor cannot be used any more
-
-    def __len__(self) -> int:
-        return len(self.cases)
-
-    @property
-    def arrived(self) -> bool:
-        """Return whether a case can be taken back without waiting."""
-        return not self.back.empty()
-
-    def submit(self, case: Case) -> None:
-        with interrupts_held_back(), _ctrl_c_blocked():
-            future = self.executor.submit(compute, case, case.source)
-            self.cases[future] = case
-            future.add_done_callback(self.back.put)
-
-    def take_one(self) -> None:
-        """Wait for the next case and write it, or record why it has no result."""
-        future = self.back.get()
-        case = self.cases.pop(future)
+    given, work = _checked(cases, progress)
+    make_folder(folder)
+    outcome = Outcome(len(given))
+    with locked(folder):
         try:
-            content = future.result()
-        except (BrokenProcessPool, CancelledError) as error:
-            self.lost = error  # other cases may have finished before
-        except Exception as error:  # an error in one case must not stop the others
-            self.outcome.failed[case] = f"{type(error).__name__}: {error}"
+            missing = _missing(given, folder, keep_old, progress)
+            outcome.found = len(given) - len(missing)
+            tell(outcome)
+            if missing:
+                missing.sort(key=work.__getitem__)
+                todo = map(given.case if isinstance(given, Sweep) else given.__getitem__, missing)
+                total = sum(work[number] for number in missing)
+                with workers as executor, _progress(progress, total, len(missing)) as bar:
+                    arriving = (
+                        computed_by(executor, todo) if executor else computed_here(todo, threads)
+                    )
+                    _write_all(arriving, folder, outcome, bar)
+        except (KeyboardInterrupt, RuntimeError) as error:
+            outcome.stopped = error
+        finally:
+            _write_index(folder)
+    return outcome
+
+
+def warn_of_short_runs(reasons: Sequence[str]) -> None:
+    """Warn of the simulations that are too short, and say in what; others have no reason."""
+    if short := [*filter(None, reasons)]:
+        many = f"{len(short)} of {len(reasons)} cases; the first: " if len(reasons) > 1 else ""
+        warn_user(many + short[0], ShortRunWarning)
+
+
+def _checked(cases: Iterable[Case], progress: bool) -> tuple[Sweep | list[Case], list[float]]:
+    """Return the different cases, all of them checked, and the particle steps of each.
+
+    Those of a sweep, which may be a million, are made again when they are needed.
+    """
+    if not isinstance(cases, Sweep):
+        given = list(cases) if isinstance(cases, Iterable) else [None]
+        if not all(isinstance(each, Case) for each in given):
+            raise ValueError(f"cases must be a Sweep or a list of Case, got {shown(cases)}")
+        different = list(dict.fromkeys(given))
+        return different, [case.work for case in different]
+    work, reasons, seed = [], [], cases.case(0).settings.get("seed")
+    for case in _checking(cases, progress):
+        work.append(case.work)
+        if case.settings.get("seed") == seed:  # with another one it is as long
+            reasons.append(case.too_short)
+    warn_of_short_runs(reasons)
+    return cases, work
+
+
+def _missing(cases: Sweep | list[Case], folder: Path, keep_old: bool, progress: bool) -> list[int]:
+    """Return the places of the cases that have no valid file in ``folder``.
+
+    A file is valid if it is undamaged, holds the case, and was computed by the current source code
+    (or, with ``keep_old``, by other source code). A line says which files will be replaced.
+    """
+    if not any(folder.glob("*.nc")):
+        return [*range(len(cases))]
+    missing, damaged, outdated = [], [], 0
+    for place, case in enumerate(_checking(cases, progress)):
+        try:
+            case.check_file(folder, keep_old=keep_old)
+            continue
+        except OutdatedError:
+            outdated += 1
+        except ValueError as error:
+            damaged.append(f"{error}; computing it anew")
+        except FileNotFoundError:
+            pass
+        missing.append(place)
+    if outdated:
+        damaged.append(
+            f"other source code of crazybilliards computed {outdated} cases in {folder}; "
+            "computing them anew (keep_old=True or --keep-old: take them as they are)"
+        )
+    for what in damaged:
+        print(f"crazybilliards: {what}", file=sys.stderr)
+    return missing
+
+
+def _checking(cases: Sweep | list[Case], progress: bool) -> Iterable[Case]:
+    """Show the progress of a loop that takes longer than a second."""
+    return progress_bar(progress, cases, desc=f"checking {len(cases)} cases", unit="", delay=1)
+
+
+def _progress(progress: bool, total: float, number: int) -> tqdm[Any]:
+    return progress_bar(
+        progress,
+        total=total,
+        desc=f"0 of {number} cases",
+        bar_format="{l_bar}{bar:10}| {elapsed}<{remaining}{postfix}",
+    )
+
+
+def _write_all(
+    arriving: Iterable[tuple[Case, bytes | Exception]],
+    folder: Path,
+    outcome: Outcome,
+    bar: tqdm[Any],
+) -> None:
+    """Write each case when it arrives; an error in one does not stop the others."""
+    number, next_index = outcome.number - outcome.found, 0.0
+    for case, result in arriving:
+        if isinstance(result, Exception):
+            outcome.failed[case] = f"{type(result).__name__}: {result}"
         else:
-            _write(case.file(self.folder), content)
-            self.outcome.written += 1
-            self._keep_index()
-        done = self.outcome.written + len(self.outcome.failed)
-        self.bar.set_description(f"{done} of {self.number} cases", refresh=False)
-        room = shutil.get_terminal_size().columns - len(self.bar.desc) - _BESIDE
+            _write(case.file(folder), result)
+            outcome.written += 1
+            if time.monotonic() >= next_index:
+                next_index = _write_index(folder)
+        done = outcome.written + len(outcome.failed)
+        bar.set_description(f"{done} of {number} cases", refresh=False)
+        room = shutil.get_terminal_size().columns - len(bar.desc) - _BESIDE
         if room >= _LEAST_ROOM:
             last = textwrap.shorten(case.title, room, placeholder=" ...")
-            self.bar.set_postfix_str(f"last {last}", refresh=False)
-        self.bar.update(case.work)
+            bar.set_postfix_str(f"last {last}", refresh=False)
+        bar.update(case.work)
 
-    def _keep_index(self) -> None:
-        """Write the index now and then: it reads all files, which may be many."""
-        begin = time.monotonic()
-        if begin >= self.next_index:
-            with suppress(OSError):
-                write_index(self.folder)
-            end = time.monotonic()
-            self.next_index = end + _LEAST_WAIT + _SHARE * (end - begin)
+
+def _write_index(folder: Path) -> float:
+    """Write the index, which reads all files, and return when it is to be written again."""
+    begin = time.monotonic()
+    with suppress(OSError):  # a full disk is told of by what came before, or comes next
+        write_index(folder)
+    end = time.monotonic()
+    return end + _LEAST_WAIT + _SHARE * (end - begin)
 
 
 def _write(path: Path, content: bytes) -> None:
@@ -216,16 +263,3 @@ def _write(path: Path, content: bytes) -> None:
     except OSError as error:
         what = f"{error.strerror}; finished cases are kept, and the same call computes the rest"
         raise OSError(error.errno, what, str(path)) from error
-
-
-@contextmanager
-def _ctrl_c_blocked() -> Iterator[None]:
-    """Start workers that never receive Ctrl-C: they inherit what this thread blocks."""
-    if not hasattr(signal, "pthread_sigmask"):
-        yield
-        return
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)

@@ -42,7 +42,9 @@ class BoxRecursion:
 
     def log_weight(self, i: int) -> Array:
         """Return log w = -U(d)/T of rod i, counted from 0."""
-        return -self.chain.potential(self.y - self.chain.reduced_anchors[i]) / self.chain.temperature
+        return (
+            -self.chain.potential(self.y - self.chain.reduced_anchors[i]) / self.chain.temperature
+        )
 
     def log_z(self, i: int) -> Array:
         """Return log Z of the rods up to number i, counted from 0; of none at -1."""

@@ -36,6 +36,7 @@ from crazybilliards.kinetic.exact.between_walls import BoxRecursion, box_recursi
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array
+from crazybilliards.model.calls import public
 from crazybilliards.model.checks import check_integer
 from crazybilliards.model.grid import position_grid, require_resolved, thermal_reach
 from crazybilliards.model.memory import require_memory
@@ -46,9 +47,12 @@ from crazybilliards.model.vocabulary import OF_RODS, result
 # Grid nodes in the width of the narrowest rod, which is the middle one without a gap.
 _NODES_PER_WIDTH = 10
 
+# In equilibrium masses change the velocities only.
+_KNOWS = ("box", "wall_restitution", "mass_ratio")
 _MOST_STATES = 10**15  # more than any memory holds, and still exact as a float
 
 
+@public
 def equilibrium(chain: Chain) -> xr.Dataset:
     """Exact stationary state of the elastic chain: any gap, both springs, also in a box.
 
@@ -115,6 +119,7 @@ def _in_vocabulary(chain: Chain, recursion: Recursion | BoxRecursion) -> xr.Data
     return dataset.assign_attrs(density_of=OF_RODS)
 
 
+@public
 def equilibrium_states(chain: Chain, replicas: int, seed: Seed = 0) -> xr.Dataset:
     """Draw ``replicas`` independent states of the elastic chain in its stationary state.
 
@@ -148,7 +153,9 @@ def equilibrium_states(chain: Chain, replicas: int, seed: Seed = 0) -> xr.Datase
         target = np.interp(below, nodes, log_f) + np.log1p(-generator.random(replicas))
         # Linear in log Z_i between nodes, in both directions, so that the order is kept exactly.
         y[:, i] = below = np.minimum(np.interp(target, log_f, nodes), below)
-    velocity = np.sqrt(chain.temperature / chain.rod_masses) * generator.standard_normal((replicas, chain.size))
+    velocity = np.sqrt(chain.temperature / chain.rod_masses) * generator.standard_normal(
+        (replicas, chain.size)
+    )
     dims = ("replica", "particle")
     return result(
         chain,
@@ -199,7 +206,7 @@ class Recursion:
 def check_equilibrium(chain: Chain) -> None:
     """Raise the ValueError that :func:`equilibrium` would raise, without the computation."""
     remedy = "; chain.replace(restitution=1) is the elastic chain"
-    require_chain(chain, "the exact equilibrium", elastic=True, remedy=remedy)
+    require_chain(chain, "the exact equilibrium", elastic=True, remedy=remedy, knows=_KNOWS)
     if chain.wall_restitution != 1:
         raise ValueError(
             "the exact equilibrium holds for elastic walls only: wall_restitution must be 1, got "

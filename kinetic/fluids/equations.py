@@ -54,6 +54,7 @@ from crazybilliards.kinetic.statics.profiles import (
 )
 from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array
+from crazybilliards.model.calls import public
 from crazybilliards.model.checks import check_choice, check_integer, shown
 from crazybilliards.model.grid import position_grid
 from crazybilliards.model.memory import require_memory
@@ -66,6 +67,7 @@ _OUTPUTS = 100
 _BYTES_PER_NODE = 100  # and output: the fields while they are computed, and in the result
 
 
+@public
 def hydrodynamics(
     chain: Chain,
     start: xr.Dataset | None = None,

@@ -201,8 +201,7 @@ def on_fine_mesh(
         if more * _FINER > most_cells:
             raise ValueError(
                 f"the kinetic equation's widths are accurate to {error:.1e} only, not to "
-                f"tolerance={tolerance:g}; cells={more} in Python or crazybilliards theory "
-                f"--cells {more} accepts that"
+                f"tolerance={tolerance:g}; cells={more} accepts that"
             )
 
 

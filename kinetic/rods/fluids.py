@@ -15,6 +15,7 @@ from crazybilliards.kinetic.rods.profiles import over_positions
 from crazybilliards.kinetic.statics.label_closure import BY_LABELS
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.arrays import Array
+from crazybilliards.model.calls import public
 from crazybilliards.model.grid import require_all_held, require_even
 from crazybilliards.model.vocabulary import (
     OF_RODS,
@@ -25,6 +26,7 @@ from crazybilliards.model.vocabulary import (
 )
 
 
+@public
 def rod_by_rod(theory: xr.Dataset) -> xr.Dataset:
     """Return a result with the density of the rods in place of that of a fluid.
 
@@ -96,6 +98,7 @@ def _check(theory: xr.Dataset) -> Chain:
     """Return the chain of a theory, or raise for what it is not."""
     require(theory, ("density",))
     chain = chain_of(theory)
+    chain.require_known("rod_by_rod")
     if theory.attrs.get("source") == "simulation":
         raise ValueError("rod_by_rod takes a theory; a simulation has the density of its rods")
     if "smoothed" in theory.attrs:

@@ -40,7 +40,6 @@ class Waves(NamedTuple):
 class Tally(NamedTuple):
     """The record of single collisions. Arrays of length 0: there is no record."""
 
-    collisions: Integers  # of all steps, for the planning of work; two coupled chains: (2,)
     contacts: Integers  # collisions at each contact, (L - 1,)
     pushes: Waves
     triggered: Waves
@@ -67,9 +66,9 @@ def make_waves(size: int) -> Waves:
 def make_tally(size: int, *, contacts: bool) -> Tally:
     """Return an empty tally for ``size`` rods, without waves and impacts."""
     counted = np.zeros(max(size - 1, 0) if contacts else 0, dtype=np.int64)
-    total = np.zeros(2, dtype=np.int64)
     speeds = make_speeds(0, np.zeros(0))
-    return Tally(total, counted, make_waves(0), make_waves(0), make_impacts(0), speeds, np.zeros((2, 0)))
+    nowhere = np.zeros((2, 0))
+    return Tally(counted, make_waves(0), make_waves(0), make_impacts(0), speeds, nowhere)
 
 
 @kernel

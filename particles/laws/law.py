@@ -33,7 +33,8 @@ NAMES = (
     "exact flight between walls",
 )
 
-# Parameters beside the known ones that an operator takes from the chain: {EVENTS: {"my_own"}}.
+# Parameters beside ``KNOWN`` with which an operator is right, because it reads them or does not
+# depend on them: {EVENTS: {"my_own"}}.
 _WALLS = {"box", "wall_restitution"}
 knows: dict[int, set[str]] = {each: {*_WALLS} for each in (ISOTONIC, CONTACTS, EXACT, TURN)}
 knows[EVENTS] = {*_WALLS, "mass_ratio"}
@@ -115,26 +116,33 @@ def make_scratch(rods: int, inverse: NDArray[np.float64] = np.zeros(0)) -> Scrat
 def choose_operator(
     chain: Chain, method: Method, *, counted: bool, halves: bool, struck: bool = False
 ) -> int:
-    """Return the operator for the chain.
+    """Return the fastest operator that is right for the chain and knows all of its parameters.
 
     ``counted``: every collision has to be recorded. ``struck``: so has every impulse on a wall.
     ``halves``: springs kick before and after the drift. With a gap, collisions are then corrected
     one by one, so e = 1 cannot be sorted.
+
+    Raises
+    ------
+    ValueError
+        If none of them knows a parameter of the chain.
     """
-    if method == "contact-dynamics":
-        return CONTACTS
-    if counted or chain.mass_ratio != 1:
-        return EVENTS
-    if chain.box:
+    right = [CONTACTS if method == "contact-dynamics" else EVENTS]
+    if method == "event-driven" and not counted and chain.box:
+        if chain.restitution == chain.wall_restitution == 0 and not struck:
+            right.insert(0, ISOTONIC)
         if halves and chain.wall_restitution == 1 and independent_rods(chain):
-            return TURN if chain.stiffness > 0 or struck else EXACT
-        inelastic = chain.restitution == chain.wall_restitution == 0
-        return ISOTONIC if inelastic and not struck else EVENTS
-    if halves and independent_rods(chain):
-        return EXACT
-    if halves and chain.restitution == 1 and chain.gap * chain.stiffness > 0:
-        return EVENTS
-    return {1.0: SORT, 0.0: ISOTONIC}.get(chain.restitution, EVENTS)
+            right.insert(0, TURN if chain.stiffness > 0 or struck else EXACT)
+    elif method == "event-driven" and not counted:
+        corrected = halves and chain.restitution == 1 and chain.gap * chain.stiffness > 0
+        if chain.restitution in (0, 1) and not corrected:
+            right.insert(0, SORT if chain.restitution == 1 else ISOTONIC)
+        if halves and independent_rods(chain):
+            right.insert(0, EXACT)
+    unknown = chain.unknown().keys()
+    operator = next((each for each in right if unknown <= knows.get(each, set())), right[-1])
+    chain.require_known(f"simulate ({NAMES[operator]})", knows.get(operator, ()))
+    return operator
 
 
 def make_law(

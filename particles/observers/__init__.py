@@ -19,6 +19,7 @@ from crazybilliards.particles.observers.modes import Modes
 from crazybilliards.particles.observers.raw import Raw
 from crazybilliards.particles.observers.time_correlations import TimeCorrelations
 from crazybilliards.particles.observers.velocities import Velocities
+from crazybilliards.particles.observers.walls import Walls
 from crazybilliards.particles.observers.widths import Widths
 
 OBSERVERS: dict[str, type[Observer]] = {
@@ -35,6 +36,7 @@ OBSERVERS: dict[str, type[Observer]] = {
         Impacts,
         Avalanches,
         TriggeredCollisions,
+        Walls,
         Raw,
     )
 }
@@ -51,6 +53,8 @@ def find_observers(observe: str | Observer | Collection[str | Observer]) -> tupl
     for each in observe:
         if not isinstance(each, str | Observer):
             raise ValueError(f"observe takes names and observers, got {shown(each)}{_made(each)}")
+        if isinstance(each, Observer) and not hasattr(each, "name"):
+            raise ValueError(f"observe: {type(each).__name__} must have a name")
         if isinstance(each, str) and each not in OBSERVERS:
             given = {name: of for of, observer in OBSERVERS.items() for name in observer.gives}
             near = nearest(each, [*OBSERVERS, *given])

@@ -17,7 +17,6 @@ class _CountedWaves(Observer):
 
     single_collisions = True
     ensemble = False
-    limit = False
     smallest: ClassVar[int]  # least N_c
     record: ClassVar[str]  # name of the waves in the tally
 

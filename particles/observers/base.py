@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array
 from crazybilliards.particles.laws.avalanche import Tally
+from crazybilliards.particles.observers.declared import check_declarations
 from crazybilliards.particles.observers.error_bars import jackknife
 from crazybilliards.particles.run import Run
 from crazybilliards.particles.schedule import Schedule
@@ -68,13 +69,15 @@ class Observer(ABC):
         Whether it can be averaged over replicas at equal times.
     limit
         Whether it reports averages that have a limit of a vanishing time step.
-    histograms
-        Its variables that count how often rods visit nodes or bins. In a limit, the error of a
-        place that was hardly ever visited is unknown.
     shares_time
         Whether it has the times of all snapshots if another observer has them too.
+    meets_walls
+        Whether it needs every impulse on a wall, and a chain in a box.
+    reads_chain
+        Whether it reads more of the chain than the places of its anchors. It then refuses a chain
+        with a new parameter. One that only averages ``y`` and ``v`` says False.
     knows
-        Parameters of a chain of your own that it reads; see ``add_a_chain_parameter``.
+        New parameters with which it is right all the same; see ``add_a_chain_parameter``.
     """
 
     name: ClassVar[str]
@@ -85,9 +88,16 @@ class Observer(ABC):
     single_collisions: ClassVar[bool] = False
     ensemble: ClassVar[bool] = True
     limit: ClassVar[bool] = True
-    histograms: ClassVar[tuple[str, ...]] = ()
     shares_time: ClassVar[bool] = False
+    meets_walls: ClassVar[bool] = False
+    reads_chain: ClassVar[bool] = True
     knows: ClassVar[frozenset[str]] = frozenset()
+
+    def __init_subclass__(cls, **keywords: Any) -> None:
+        """Check what the class declares, unless it has no name and is a base of others."""
+        super().__init_subclass__(**keywords)
+        if hasattr(cls, "name"):
+            check_declarations(cls)
 
     def __str__(self) -> str:
         """Return the name and, if there are any, the parameters."""
@@ -204,10 +214,6 @@ class Averaged(Observer):
         """Append the blocks of other replicas, or the groups."""
         parts = [self.sums, *(other.sums for other in others)]
         self.sums = np.stack(parts) if self.schedule.ensemble else np.concatenate(parts)
-
-    def pool(self) -> None:
-        """Add all blocks up into one: averages are the same, and nothing is known of errors."""
-        self.sums = self.sums.sum(axis=0, keepdims=True)
 
     def averages(
         self, quantities: Mapping[str, Callable[[Array], Array]], counts: Integers, *dimensions: str

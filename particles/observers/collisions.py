@@ -17,7 +17,7 @@ class Collisions(Averaged):
     gives = ("collision_rate",)
     single_collisions = True
     ensemble = False
-    limit = False
+    reads_chain = False
 
     def observe(self, snapshots: Snapshots) -> None:
         self.sums[snapshots.block, :-1] += snapshots.collisions

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from crazybilliards.model.calls import public
 from crazybilliards.model.checks import check_integer
 from crazybilliards.particles.observers.base import Array, Averaged, Integers, Snapshots, Variables
 from crazybilliards.particles.run import Run
@@ -11,6 +12,7 @@ from crazybilliards.particles.run import Run
 _MOST = 100_000
 
 
+@public
 class Covariances(Averaged):
     """Covariances of velocities and of gaps, over rods up to ``separations`` places apart.
 
@@ -40,6 +42,7 @@ class Covariances(Averaged):
     )
     along = ("separation",)
     least_rods = 2
+    reads_chain = False
 
     def __init__(self, separations: int = 10) -> None:
         self.separations = check_integer("separations", separations, least=1, most=_MOST)

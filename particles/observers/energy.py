@@ -38,6 +38,7 @@ class Energy(Observer):
     gives = ("kinetic_energy", "spring_energy", "total_energy")
     along = ("time",)
     shares_time = True
+    knows = frozenset({"box", "wall_restitution", "mass_ratio"})
 
     def prepare(self, run: Run, copies: int) -> None:
         self.schedule = run.schedule
@@ -51,7 +52,7 @@ class Energy(Observer):
         return 24.0 * (run.schedule.snapshots if self._keeps_every(run) else _MOST_TIMES)
 
     def observe(self, snapshots: Snapshots) -> None:
-        kinetic = self.chain.mass / 2 * np.einsum("sp,sp->s", snapshots.v, snapshots.v)
+        kinetic = np.einsum("sp,sp,p->s", snapshots.v, snapshots.v, self.chain.rod_masses / 2)
         springs = self.chain.potential(snapshots.y - self.chain.reduced_anchors).sum(axis=1)
         while snapshots.first + kinetic.size > self.sums.shape[1] * self.together:
             merge_pairs(self.sums[0])

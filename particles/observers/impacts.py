@@ -8,6 +8,7 @@ from typing import Self
 
 import numpy as np
 
+from crazybilliards.model.calls import public
 from crazybilliards.model.checks import check_integer
 from crazybilliards.particles.laws.avalanche import Tally
 from crazybilliards.particles.laws.impacts import (
@@ -26,6 +27,7 @@ from crazybilliards.particles.run import Run
 from crazybilliards.particles.scales import typical_speed
 
 
+@public
 class Impacts(Averaged):
     """Force, loss, relative temperatures and speeds at each contact, from every single collision.
 
@@ -75,6 +77,7 @@ class Impacts(Averaged):
     least_rods = 2
     single_collisions = True
     ensemble = False
+    knows = frozenset({"box", "wall_restitution", "mass_ratio"})
 
     def __init__(self, bins: int = 200) -> None:
         self.bins = check_integer("bins", bins, least=1, most=MOST_BINS)

@@ -22,6 +22,7 @@ class Modes(Averaged):
     name = "modes"
     gives = ("mode_velocity_variance",)
     along = ("mode",)
+    reads_chain = False
 
     def observe(self, snapshots: Snapshots) -> None:
         from scipy.fft import dct  # takes half a second, and few runs observe modes

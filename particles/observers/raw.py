@@ -28,6 +28,7 @@ class Raw(Observer):
     along = ("time",)
     limit = False
     shares_time = True
+    reads_chain = False
 
     def prepare(self, run: Run, copies: int) -> None:
         self.schedule = run.schedule

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from crazybilliards.model import Chain
-from crazybilliards.model.calls import warn_user
+from crazybilliards.model.calls import public, warn_user
 from crazybilliards.model.checks import check_integer, check_real
 from crazybilliards.particles.observers.base import Array, Averaged, Integers, Snapshots, Variables
 from crazybilliards.particles.run import Run
@@ -26,6 +26,7 @@ _QUANTITIES = (
 )
 
 
+@public
 class TimeCorrelations(Averaged):
     """Autocorrelations in time of every chosen rod, of long waves and of the centre of mass.
 

@@ -7,6 +7,7 @@ from typing import Self
 
 import numpy as np
 
+from crazybilliards.model.calls import public
 from crazybilliards.model.checks import check_integer
 from crazybilliards.particles.observers.base import Array, Averaged, Integers, Snapshots, Variables
 from crazybilliards.particles.run import Run
@@ -32,6 +33,7 @@ _QUANTITIES = {
 }
 
 
+@public
 class Velocities(Averaged):
     """velocity_density: probability density of each chosen particle's velocity.
 
@@ -53,7 +55,7 @@ class Velocities(Averaged):
     gives = ("velocity_density", "velocity_outside", *_QUANTITIES)
     along = ("velocity_bin",)
     ensemble = False
-    histograms = ("velocity_density",)
+    reads_chain = False  # but for the bins: velocities beyond are counted
 
     def __init__(self, bins: int = 401) -> None:
         self.bins = check_integer("bins", bins, least=1, most=MOST_BINS)

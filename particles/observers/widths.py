@@ -31,6 +31,7 @@ class Widths(Averaged):
 
     name = "widths"
     gives = (*_QUANTITIES, "autocorrelation_time")
+    reads_chain = False
 
     def shape(self, run: Run) -> tuple[int, ...]:
         return 4, run.chain.size  # sums of d, d^2, v and v^2

@@ -39,7 +39,7 @@ _SOURCE = room_fingerprint("model", "particles")
 
 
 # Planned from the other arguments. Where these differ, they say nothing more.
-_PLANNED = ("time_step", "every", "warmup", "duration", "levels")
+_PLANNED = ("time_step", "every", "warmup", "duration")
 
 
 class Checkpoint:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterable, Mapping
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -19,7 +19,6 @@ from crazybilliards.particles.run import Run
 from crazybilliards.particles.running.replica import NEVER, Replica
 from crazybilliards.particles.scales import centre_width, relaxation_time, time_step_error
 
-T = TypeVar("T")
 # The coordinates that the result itself has.
 _EVERY_RESULT = {
     *("particle", "normalized_particle", "mean_position", "contact", "normalized_contact")
@@ -58,9 +57,10 @@ def collect(run: Run, replicas: list[Replica], interrupted: bool) -> xr.Dataset:
             if diverged:  # that rods lie outside of every grid then is no news
                 warnings.simplefilter("ignore")
             reported = _require_variables(first, first.report(counts))
-        taken = given | {*variables, *coordinates}
-        variables |= (reported := _own_names(first, reported, taken))
-        coordinates |= (along := _own_names(first, first.coordinates(), taken))
+        along = first.coordinates()
+        _require_own(first, [*reported, *along], given | {*variables, *coordinates})
+        variables |= reported
+        coordinates |= along
         vocabulary |= _undeclared(first, [*reported, *along], vocabulary)
     if schedule.ensemble:
         coordinates["time"] = times
@@ -95,14 +95,14 @@ def _require_variables(observer: Observer, reported: Any) -> Variables:
     return dict(items)
 
 
-def _own_names(observer: Observer, found: Mapping[str, T], taken: set[str]) -> dict[str, T]:
-    """Return what an observer found, renamed if it has not said so and the name is another's."""
+def _require_own(observer: Observer, names: Iterable[str], taken: set[str]) -> None:
+    """Raise a ValueError if an observer reports what another one, or every result, has."""
     own = {*observer.gives, *observer.along}
-    return {
-        f"{base}_of_{observer.name}{name[len(base) :]}" if base in taken - own else name: each
-        for name, each in found.items()
-        for base in [name.removesuffix("_error")]
-    }
+    if others := sorted(name for name in names if name.removesuffix("_error") in taken - own):
+        raise ValueError(
+            f"observe: {observer.name!r} reports {', '.join(map(repr, others))}, which the result "
+            "has already and the observer does not give"
+        )
 
 
 def _undeclared(
@@ -121,7 +121,7 @@ def _undeclared(
 
 def _time_step_error(run: Run, measured: xr.Dataset) -> float:
     """Return the relative error of the smallest velocity width above 0; NaN if it is not known."""
-    if run.moved_by & run.chain.unknown().keys():
+    if run.chain.unknown():
         return float("nan")  # nobody has measured it
     if run.exact:
         return 0.0

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from threading import Event, Lock
 from typing import Any, ClassVar
 
@@ -95,6 +95,12 @@ class Replica:
             for name in observer.state():
                 restore(observer, name, state[f"observer {number} {name}"])
 
+    def extend(self, snapshots: int) -> None:
+        """Go on up to this number of snapshots, to the bits of one run of this length."""
+        self.restore({name: np.array(value) for name, value in self.state().items()})
+        self.before_the_end = None
+        self.schedule = replace(self.schedule, snapshots=snapshots)
+
     def require_continuing(self, shorter: Run) -> None:
         """Raise unless the observers, which have seen nothing, continue those of a shorter run.
 
@@ -151,7 +157,7 @@ class Replica:
 
     def _warm_up(self, stop: Event) -> Iterator[int]:
         scratch = self._scratch()
-        uncounted = make_tally(self.y.shape[-1], contacts=False)
+        uncounted = make_tally(self.y.size, contacts=False)
         while self.steps < self.schedule.warmup_steps and not (self.over or stop.is_set()):
             steps = min(self._chunk(), self.schedule.warmup_steps - self.steps)
             if not self._advance(scratch, uncounted, steps):
@@ -163,8 +169,8 @@ class Replica:
     def _measure(self, stop: Event) -> Iterator[int]:
         schedule, chunk = self.schedule, self._chunk()
         scratch, tally = self._scratch(), self._tally()
-        rows = max(min(chunk // schedule.stride, _ROOM // self.y.shape[-1]), 1)
-        y_buffer, v_buffer = np.empty((2, *self.y.shape[:-1], rows, self.y.shape[-1]))
+        rows = max(min(chunk // schedule.stride, _ROOM // self.y.size), 1)
+        y_buffer, v_buffer = np.empty((2, rows, self.y.size))
         while self.snapshots < schedule.snapshots and not (self.over or stop.is_set()):
             block, left = self._block()
             n = min(rows, left)
@@ -184,7 +190,7 @@ class Replica:
             else:
                 good = self._record(scratch, tally, due, n, y_buffer, v_buffer)
                 steps = good * due
-            self._observe(block, y_buffer[..., :good, :], v_buffer[..., :good, :], tally)
+            self._observe(block, y_buffer[:good], v_buffer[:good], tally)
             # All updates come before the yield, where a checkpoint may be saved.
             self.counts[block] += good
             self.snapshots += good
@@ -193,19 +199,17 @@ class Replica:
                 self._diverge(block)
             yield steps
 
-    # A pair of coupled chains overrides the following methods, see ``sampler.py``.
-
     def _chunk(self) -> int:
         """Return the steps between two checks for Ctrl-C."""
-        return max(_CHUNK // self.y.shape[-1], 1)
+        return max(_CHUNK // self.y.size, 1)
 
     def _scratch(self) -> Any:
         """Return the arrays that the kernels work in."""
-        return make_scratch(self.y.shape[-1], self.dynamics.inverse)
+        return make_scratch(self.y.size, self.dynamics.inverse)
 
     def _advance(self, scratch: Any, tally: Tally, steps: int) -> bool:
         """Take steps without snapshots; return False if the chain diverged."""
-        last = np.empty((2, *self.y.shape[:-1], 1, self.y.shape[-1]))
+        last = np.empty((2, 1, self.y.size))
         return self._record(scratch, tally, steps, 1, *last) == 1
 
     def _record(self, scratch: Any, tally: Tally, due: int, n: int, y: Array, v: Array) -> int:
@@ -238,7 +242,7 @@ class Replica:
     def _tally(self) -> Tally:
         """Return the record of collisions: counts, and the arrays that observers add."""
         counted = any(observer.single_collisions for observer in self.observers)
-        tally = make_tally(self.y.shape[-1], contacts=counted)
+        tally = make_tally(self.y.size, contacts=counted)
         for observer in self.observers:
             tally = observer.tally(tally)
         return tally

@@ -14,11 +14,7 @@ from crazybilliards.particles.running.replica import Replica
 
 
 def run_all(
-    replicas: Sequence[Replica],
-    threads: int,
-    keeper: Checkpoint | None,
-    progress: bool | str,
-    unit: str = " time units",
+    replicas: Sequence[Replica], threads: int, keeper: Checkpoint | None, progress: bool | str
 ) -> bool:
     """Run the replicas in threads; return whether Ctrl-C, or a signal like it, stopped them.
 
@@ -33,7 +29,7 @@ def run_all(
             total=total,
             initial=sum(replica.done for replica in replicas),
             desc=progress if isinstance(progress, str) else "simulating",
-            unit=unit,
+            unit=" time units",
             unit_scale=True,
             bar_format="{l_bar}{bar}| {elapsed}<{remaining}, {rate_fmt}",
         ) as bar,

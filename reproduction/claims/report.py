@@ -67,17 +67,16 @@ def reproduce(
     quality: Quality,
     folder: Path,
     *,
-    keep_old: bool = False,
     columns: Columns | None = None,
     formats: Collection[str] = (),
 ) -> Iterator[Reproduced]:
     """Draw studies and check their claims, one after another, from the cases in ``folder``.
 
-    ``keep_old`` as in :func:`crazybilliards.comparison.sweeps.run_cases`. ``columns``: the width
-    of the pictures, as :func:`crazybilliards.comparison.layout.house_style` takes it. ``formats``:
-    file formats of matplotlib, besides PNG.
+    ``columns``: the width of the pictures, as
+    :func:`crazybilliards.comparison.layout.house_style` takes it. ``formats``: file formats of
+    matplotlib, besides PNG.
     """
-    load = cache(lambda case: case.load(folder, keep_old=keep_old))  # many studies share cases
+    load = cache(lambda case: case.load(folder))  # many studies share cases
     for study in studies:
         cases = study.cases(quality)
         results = {name: load(case) for name, case in cases.items()}
@@ -126,7 +125,7 @@ def markdown(reproduced: list[Reproduced], quality: Quality) -> str:
         "",
         *(f"* {line}" for line in summary(reproduced)),
         "",
-        "| figure or study | verdicts |",
+        "| figure | verdicts |",
         "|---|---|",
     ]
     for each in reproduced:
@@ -177,10 +176,6 @@ def html(reproduced: list[Reproduced], quality: Quality) -> str:
 
 
 def summary(reproduced: list[Reproduced]) -> list[str]:
-    """Count the verdicts, of statements of the paper and of our own findings."""
+    """Count the verdicts in a line, if there are any."""
     claims = [claim for each in reproduced for claim in each.claims]
-    kinds = {
-        "Statements of the paper": [claim for claim in claims if claim.source],
-        "Our own findings": [claim for claim in claims if not claim.source],
-    }
-    return [f"{title}: {_counted(those)}" for title, those in kinds.items() if those]
+    return [f"Statements of the paper: {_counted(claims)}"] if claims else []

@@ -1,4 +1,4 @@
-"""What a study is: the cases it needs, its picture, its claims. A figure of the paper is one."""
+"""What a study is, a figure of the paper computed anew: its cases, its picture, its claims."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Study:
     Attributes
     ----------
     number
-        Of the figure in the paper, arXiv:1404.7460, that it computes anew, if it is one.
+        Of the figure in the paper, arXiv:1404.7460, that it computes anew.
     name
         A short name for the command line and for files.
     title, caption
@@ -49,7 +49,7 @@ class Study:
         ``claims(results)`` sets what is claimed beside what was found.
     """
 
-    number: int | None = None
+    number: int
     name: str
     title: str
     caption: str
@@ -60,17 +60,17 @@ class Study:
     @property
     def label(self) -> str:
         """What it is called in lists and tables."""
-        return f"{self.number} {self.name}" if self.number else self.name
+        return f"{self.number} {self.name}"
 
     @property
     def heading(self) -> str:
         """The heading of its part of a report."""
-        return f"{self.number}. {self.title}" if self.number else self.title
+        return f"{self.number}. {self.title}"
 
     @property
     def stem(self) -> str:
         """The name of its picture without the ending."""
-        return f"fig{self.number:02d}_{self.name}" if self.number else f"study_{self.name}"
+        return f"fig{self.number:02d}_{self.name}"
 
     @property
     def file_name(self) -> str:

@@ -9,8 +9,6 @@ the figure, equation or section. It comes out as
 * ``cannot be decided``, where it holds at one value of a parameter that the paper does not give,
   and fails at another (``elsewhere`` says at which, with both numbers).
 
-A claim without a source is a finding of our own: ``confirmed``, ``refuted`` or ``undecided``.
-
 **The rule.** Every claim comes down to one measured number and the interval in which it has to
 lie. It holds if the number lies inside with three standard errors to spare at either end. It fails
 if the number lies outside with three standard errors to spare. Otherwise it is undecided, and a
@@ -49,9 +47,7 @@ from scipy.stats import norm
 
 from crazybilliards.model.arrays import Array
 
-Verdict = Literal[
-    "reproduced", "not reproduced", "cannot be decided", "confirmed", "refuted", "undecided"
-]
+Verdict = Literal["reproduced", "not reproduced", "cannot be decided", "undecided"]
 
 EYE = 0.02  # of the plotted range: what no eye sees
 POSITIVE = (0.0, math.inf)
@@ -98,7 +94,7 @@ def around(value: float, limit: float) -> Interval:
 
 @dataclass(frozen=True)
 class Claim:
-    """One statement and what became of it.
+    """One statement of the paper and what became of it.
 
     Attributes
     ----------
@@ -112,8 +108,7 @@ class Claim:
     within
         Where it has to lie: above zero, or :func:`around` a number.
     source
-        Where the paper says so: labels of its source, ``fig. 3, eq:power_law``. Empty: a finding
-        of our own.
+        Where the paper says so: labels of its source, ``fig. 3, eq:power_law``.
     words
         What is written in place of quantity and number.
     elsewhere
@@ -127,9 +122,9 @@ class Claim:
     statement: str
     quantity: str = ""
     _: KW_ONLY
+    source: str
     found: Estimate
     within: Interval = POSITIVE
-    source: str = ""
     words: str = ""
     elsewhere: Mapping[str, Estimate] = field(default_factory=dict)
     ours: str = ""
@@ -139,7 +134,7 @@ class Claim:
     def verdict(self) -> Verdict:
         """That of its number, unless the number at another choice contradicts it."""
         others = {each.lies(self.within) for each in self.elsewhere.values()}
-        if self.source and {True, False} <= {self.found.lies(self.within), *others}:
+        if {True, False} <= {self.found.lies(self.within), *others}:
             return "cannot be decided"
         return self._named(self.found)
 
@@ -147,9 +142,7 @@ class Claim:
         holds = found.lies(self.within)
         if holds is None:
             return "undecided"
-        yes: Verdict = "reproduced" if self.source else "confirmed"
-        no: Verdict = "not reproduced" if self.source else "refuted"
-        return yes if holds else no
+        return "reproduced" if holds else "not reproduced"
 
     @property
     def details(self) -> dict[str, str]:
@@ -167,7 +160,7 @@ class Claim:
                 f"{choice}: {found}, {self._named(found)}"
                 for choice, found in self.elsewhere.items()
             ),
-            "why": "" if self.verdict in ("reproduced", "confirmed") else self.reason,
+            "why": "" if self.verdict == "reproduced" else self.reason,
         }
         return {name: text for name, text in told.items() if text}
 

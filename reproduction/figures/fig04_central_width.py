@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from crazybilliards.comparison.drawing import draw_points, mark_clipped
-from crazybilliards.comparison.fits import Fit, fit_scaling
+from crazybilliards.comparison.fits import Fit
 from crazybilliards.comparison.layout import legend_above, panels
 from crazybilliards.comparison.widths import central_width
 from crazybilliards.model import Chain
@@ -18,6 +18,7 @@ from crazybilliards.reproduction.chains import SIZES, STEPS, at_step, at_steps
 from crazybilliards.reproduction.claims.repetition import Granted, Runs
 from crazybilliards.reproduction.claims.study import Results, all_of
 from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, around
+from crazybilliards.reproduction.fits import fit_scaling
 from crazybilliards.reproduction.vanishing_step import LABEL, central_limit, limits
 
 TITLE = "The central width against the size at e = 0"

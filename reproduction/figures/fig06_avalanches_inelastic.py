@@ -9,7 +9,6 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from crazybilliards.comparison.fits import fit_avalanches
 from crazybilliards.comparison.layout import at_the_left, entitle, panels
 from crazybilliards.model import Chain
 from crazybilliards.reproduction.chains import LARGE
@@ -17,6 +16,7 @@ from crazybilliards.reproduction.claims.repetition import Granted, Runs
 from crazybilliards.reproduction.claims.study import Results, all_of
 from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, around
 from crazybilliards.reproduction.distributions import COUNTS, draw_sizes, waves
+from crazybilliards.reproduction.fits import fit_avalanches
 
 TITLE = "Avalanche sizes at e = 0"
 CAPTION = (

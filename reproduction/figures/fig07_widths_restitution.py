@@ -10,13 +10,14 @@ from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 
 from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_points, draw_rods
-from crazybilliards.comparison.fits import Fit, fit_exponential
+from crazybilliards.comparison.fits import Fit
 from crazybilliards.comparison.layout import legend_above, mosaic
 from crazybilliards.comparison.widths import central_width
 from crazybilliards.reproduction.chains import LARGE, RESTITUTIONS, dissipative, elastic
 from crazybilliards.reproduction.claims.study import Cases, Quality, Results, all_of
 from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, in_plot, worst
 from crazybilliards.reproduction.figures.fig12_widths_damping import bulge
+from crazybilliards.reproduction.fits import fit_exponential
 from crazybilliards.reproduction.power_laws import fits_in_plot, nu
 from crazybilliards.reproduction.predictions import CROSSES, LINES, by_restitution, predicted
 from crazybilliards.reproduction.vanishing_step import LABEL, central_limit, limits

@@ -6,13 +6,13 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from crazybilliards.comparison.fits import tail_length
 from crazybilliards.comparison.layout import legend_above, panels
 from crazybilliards.comparison.widths import border_width, central_width
 from crazybilliards.reproduction.chains import flippers
 from crazybilliards.reproduction.claims.study import Results
 from crazybilliards.reproduction.claims.verdicts import Claim, Estimate
 from crazybilliards.reproduction.distributions import draw_distributions, mean_shape
+from crazybilliards.reproduction.fits import tail_length
 
 TITLE = "Velocity distributions at e = 1.05, gamma = 4"
 CAPTION = (

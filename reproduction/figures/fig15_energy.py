@@ -11,7 +11,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from crazybilliards.comparison.drawing import COLOURS
-from crazybilliards.comparison.fits import fit_growth, fit_singularity
 from crazybilliards.comparison.layout import panels
 from crazybilliards.kinetic.kinetic_equation.weak_damping import weak_damping_growth_rate
 from crazybilliards.model import Chain
@@ -19,6 +18,7 @@ from crazybilliards.model.arrays import Array
 from crazybilliards.reproduction.claims.repetition import Runs
 from crazybilliards.reproduction.claims.study import Results, all_of
 from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, around
+from crazybilliards.reproduction.fits import fit_growth, fit_singularity
 
 TITLE = "Kinetic energy of flippers in time"
 CAPTION = (

@@ -11,21 +11,26 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from crazybilliards.comparison import compare_elastic, smooth
+from crazybilliards.comparison import compare, smooth
+from crazybilliards.comparison.distances import deviations
 from crazybilliards.comparison.side_by_side import grid
 from crazybilliards.comparison.side_by_side.grid import ELASTIC
-from crazybilliards.comparison.side_by_side.grid_deviations import deviations, largest_width_error
 from crazybilliards.comparison.side_by_side.grid_figures import draw_density, draw_displacement
 from crazybilliards.comparison.sweeps import case, running
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.process import terminated_like_interrupted
 
 pytestmark = pytest.mark.compiled
+AMPLITUDES = {"amplitude": [1, 3, 10, 30]}
 
 
 @pytest.fixture(scope="module")
 def tree():
-    return compare_elastic(Chain(), duration=30_000, seed=1, progress=False)
+    return compare(Chain(), AMPLITUDES, duration=30_000, seed=1, progress=False)
+
+
+def all_deviations(tree):
+    return {name: deviations(group) for name, group in tree.children.items()}
 
 
 @pytest.mark.validate
@@ -34,26 +39,29 @@ def test_the_start_page_has_the_numbers_that_make_run_prints():
     page = (Path(__file__).parents[2] / "docs/index.md").read_text(encoding="utf-8")
     rows = re.findall(r"^\| *(\d+) \|(.*)\|$", page, re.MULTILINE)
     told = {f"amplitude_{a}": [float(cell) for cell in cells.split("|")] for a, cells in rows}
-    found = deviations(compare_elastic(Chain(), progress=False))
+    found = all_deviations(compare(Chain(), AMPLITUDES, progress=False))
     assert told == {
-        name: [round(100 * found[name][key].maximum, 2) for key in ELASTIC] for name in found
+        name: [round(100 * found[name][key].density.maximum, 2) for key in ELASTIC]
+        for name in found
     }
-    largest = max(by_theory["exact"].maximum_in_errors for by_theory in found.values())
+    largest = max(by_theory["exact"].density.maximum_in_errors for by_theory in found.values())
     assert f"by at most {largest:.1f} standard errors in any bin" in page
 
 
 def test_simulation_and_exact_density_agree(tree):
     """Within 1 % of close packing, and within 5 standard errors everywhere."""
-    for by_theory in deviations(tree).values():
-        exact = by_theory["exact"]
+    for by_theory in all_deviations(tree).values():
+        exact = by_theory["exact"].density
         assert exact.maximum < 0.01
         assert exact.maximum_in_errors < 5
         assert exact.rms_in_errors < 1.5
 
 
 def test_every_velocity_width_is_the_free_one(tree):
-    for group in tree.children.values():
-        assert largest_width_error(group) < 5
+    for by_theory in all_deviations(tree).values():
+        assert by_theory["arctanh"].velocity_width is None
+        for name in ("exact", "labels", "rods"):
+            assert by_theory[name].velocity_width.largest_in_errors < 5
 
 
 def test_the_force_balance_is_as_good_as_it_was_measured(tree):
@@ -68,7 +76,8 @@ def test_the_force_balance_is_as_good_as_it_was_measured(tree):
         "10": (0.027, 0.032),
         "30": (0.007, 0.014),
     }
-    for name, by_theory in deviations(tree).items():
+    for name, by_theory in all_deviations(tree).items():
+        by_theory = {key: found.density for key, found in by_theory.items()}
         amplitude = name.removeprefix("amplitude_")
         labels, arctanh = measured[amplitude]
         assert by_theory["labels"].maximum == pytest.approx(labels, abs=0.004)
@@ -102,15 +111,16 @@ def test_the_tree_holds_everything_with_its_chain(tree):
 
 def test_rods_that_hardly_touch_go_without_the_arctanh_but_lose_nothing():
     with pytest.warns(UserWarning, match="has no arctanh fit: no arctanh fits"):
-        tree = compare_elastic(Chain(size=20, gap=5), (1.0,), duration=5000, seed=1, progress=False)
+        tree = compare(
+            Chain(size=20, gap=5), {"amplitude": [1]}, duration=5000, seed=1, progress=False
+        )
     assert list(tree["amplitude_1"].children) == ["simulation", "exact", "labels", "rods"]
-    assert set(deviations(tree)["amplitude_1"]) == {"exact", "labels", "rods"}
+    assert set(deviations(tree["amplitude_1"])) == {"exact", "labels", "rods"}
 
 
 @pytest.mark.parametrize(
     ("chain", "amplitudes", "message"),
     [
-        (Chain(restitution=0.9), (1,), "elastic"),
         (Chain(), (), "at least one"),
         (Chain(), (1, 0), "no steady state: amplitude=0"),
         (Chain(), (1, -1), "amplitude must be"),
@@ -120,7 +130,7 @@ def test_rods_that_hardly_touch_go_without_the_arctanh_but_lose_nothing():
 )
 def test_wrong_arguments_are_refused(chain, amplitudes, message):
     with pytest.raises(ValueError, match=message):
-        compare_elastic(chain, amplitudes, progress=False)
+        compare(chain, {"amplitude": amplitudes}, progress=False)
 
 
 @pytest.fixture
@@ -139,14 +149,14 @@ def computed(monkeypatch):
 def test_what_the_folder_holds_is_not_computed_again(computed, tmp_path):
     """A larger comparison computes what is new; other settings and random numbers are new."""
     how = {"folder": tmp_path, "progress": False, "duration": 500}
-    first = compare_elastic(Chain(size=5), (1.0, 2.0), **how)
-    assert compare_elastic(Chain(size=5), (1.0, 2.0), **how).identical(first)
+    first = compare(Chain(size=5), {"amplitude": [1, 2]}, **how)
+    assert compare(Chain(size=5), {"amplitude": [1, 2]}, **how).identical(first)
     assert computed == [1, 2]
-    assert compare_elastic(Chain(size=5), (2.0,), **how, processes=1).equals(
+    assert compare(Chain(size=5), {"amplitude": [2]}, **how, processes=1).equals(
         first.filter(lambda node: "amplitude_1" not in node.path)
     )
-    compare_elastic(Chain(size=5), (1.0, 3.0), **how)
-    compare_elastic(Chain(size=5), (1.0,), seed=1, **how)
+    compare(Chain(size=5), {"amplitude": [1, 3]}, **how)
+    compare(Chain(size=5), {"amplitude": [1]}, seed=1, **how)
     assert computed == [1, 2, 3, 1]
 
 
@@ -163,11 +173,11 @@ def test_a_signal_keeps_what_was_computed(number, monkeypatch, tmp_path):
     how = {"folder": tmp_path, "progress": False, "duration": 500}
     with monkeypatch.context() as patch, terminated_like_interrupted():
         patch.setattr(running, "_write", stop)
-        cut = compare_elastic(Chain(size=5), (1.0, 2.0), **how)
+        cut = compare(Chain(size=5), {"amplitude": [1, 2]}, **how)
     assert cut.attrs["status"] == "interrupted"
     assert list(cut.children) == ["amplitude_1"]
     assert list(cut["amplitude_1"].children) == ["simulation", "exact", "labels", "rods", "arctanh"]
-    whole = compare_elastic(Chain(size=5), (1.0, 2.0), **how)
+    whole = compare(Chain(size=5), {"amplitude": [1, 2]}, **how)
     assert whole.attrs["status"] == "completed"
     assert whole["amplitude_1/simulation"].identical(cut["amplitude_1/simulation"])
 
@@ -176,9 +186,9 @@ def test_ctrl_c_before_anything_is_computed_is_ctrl_c(monkeypatch):
     def stop(*arguments, **settings):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(grid, "run_cases", stop)
+    monkeypatch.setattr(grid, "compute_missing", stop)
     with pytest.raises(KeyboardInterrupt):
-        compare_elastic(Chain(size=5), (1.0,), duration=500, progress=False)
+        compare(Chain(size=5), {"amplitude": [1]}, duration=500, progress=False)
 
 
 def test_a_simulation_without_theories_can_be_drawn(tree):

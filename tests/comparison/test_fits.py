@@ -4,18 +4,17 @@ import numpy as np
 import pytest
 from scipy.stats import laplace, norm
 
-from crazybilliards.comparison import (
-    fit_arctanh,
+from crazybilliards.comparison import fit_arctanh, fit_border_power_law
+from crazybilliards.model import Chain
+from crazybilliards.model.vocabulary import result
+from crazybilliards.reproduction.fits import (
     fit_avalanches,
-    fit_border_power_law,
     fit_exponential,
     fit_growth,
     fit_scaling,
     fit_singularity,
     tail_length,
 )
-from crazybilliards.model import Chain
-from crazybilliards.model.vocabulary import result
 
 TRIALS = 200
 

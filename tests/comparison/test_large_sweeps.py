@@ -9,9 +9,9 @@ import pytest
 import xarray as xr
 from small_sweeps import AtOnce
 
-from crazybilliards.comparison.sweeps import Case, Sweep, run_cases, running
+import crazybilliards as cb
+from crazybilliards.comparison.sweeps import Case, Sweep, engines, run_cases
 from crazybilliards.comparison.sweeps.jobs import JOBS
-from crazybilliards.comparison.sweeps.missing import check_cases
 from crazybilliards.model import Chain, load
 from crazybilliards.model.storage import read_sealed
 
@@ -24,38 +24,32 @@ def many(number=CASES):
 
 
 class Counting(Executor):
-    """Computes nothing; what is submitted comes back when somebody waits for it."""
+    """Its cases fail as soon as somebody waits for one; it keeps how many there were then."""
 
-    def __init__(self, monkeypatch):
-        self.submitted, self.most_under_way = 0, 0
-        self.waiting = []
-
-        counting = self
-
-        class Queue(SimpleQueue):
-            def get(self):
-                if self.empty():
-                    counting.give_back()
-                return super().get()
-
-        monkeypatch.setattr(running, "SimpleQueue", Queue)
+    def __init__(self):
+        self.waiting, self.under_way = [], []
 
     def submit(self, function, /, *arguments):
-        self.submitted += 1
-        future = Future()
-        self.waiting.append(future)
-        self.most_under_way = max(self.most_under_way, len(self.waiting))
-        return future
+        self.waiting.append(Future())
+        return self.waiting[-1]
 
     def give_back(self):
-        waiting, self.waiting = self.waiting, []
-        for each in waiting:
-            each.set_exception(ValueError("not computed"))
+        self.under_way.append(len(self.waiting))
+        while self.waiting:
+            self.waiting.pop().set_exception(ValueError("not computed"))
 
 
 @pytest.fixture
 def counting(monkeypatch):
-    return Counting(monkeypatch)
+    class Queue(SimpleQueue):
+        def get(self):
+            if self.empty():
+                executor.give_back()
+            return super().get()
+
+    monkeypatch.setattr(engines, "SimpleQueue", Queue)
+    executor = Counting()
+    return executor
 
 
 @pytest.fixture
@@ -72,17 +66,12 @@ def planned(monkeypatch):
     return calls
 
 
-def test_few_cases_are_submitted_at_a_time(counting, tmp_path):
+def test_few_cases_are_submitted_at_a_time_and_each_is_looked_at_twice(planned, counting, tmp_path):
+    """When it is checked, and when it is computed."""
     failed = run_cases(many(), tmp_path, counting, progress=False)
-    assert len(failed) == counting.submitted == CASES
-    assert counting.most_under_way == 1000
-
-
-def test_a_case_of_a_grid_is_planned_when_it_is_checked_and_when_it_is_computed(
-    planned, counting, tmp_path
-):
-    run_cases(many(), tmp_path, counting, progress=False)
-    assert len(planned) == 2 * CASES
+    assert len(failed) == sum(counting.under_way) == CASES
+    assert max(counting.under_way) == 1000
+    assert len(planned) == 2 * CASES + 1  # and the first one for its seed
 
 
 def test_ctrl_c_ends_a_sweep_without_another_look_at_its_cases(planned, tmp_path):
@@ -114,7 +103,7 @@ def test_the_shortest_cases_come_first(tmp_path):
         settings = {} if name == "duration" else {"duration": 100}
         grid = {"seed": [1, 2], name: values}
         run_cases(Sweep(grid, settings=settings), tmp_path, Noting(), progress=False)
-        assert [each.parameters[name] for each in seen] == order
+        assert [each.arguments[name] for each in seen] == order
 
 
 def test_a_wrong_case_at_the_end_of_a_grid_is_found_before_any_work(counting, tmp_path):
@@ -124,14 +113,10 @@ def test_a_wrong_case_at_the_end_of_a_grid_is_found_before_any_work(counting, tm
     assert not (tmp_path / "results").exists()
 
 
-def test_all_seeds_and_all_chains_are_checked_and_their_work_known(tmp_path):
-    """Not every chain with every seed: a million such cases are checked in a moment."""
-    settings = {"duration": 100}
-    sweep = Sweep({"size": [3, 9], "seed": [1, 2, 3], "gap": [0, 1]}, "simulate", {}, settings)
-    assert check_cases(sweep).work.tolist() == [case.work for case in sweep]
-    for wrong in ({"size": [3, 4], "seed": [1, -2]}, {"seed": [1, 2], "gap": [0, -1]}):
-        with pytest.raises(ValueError, match=r"(seed|gap) must be .*, got -"):
-            check_cases(Sweep(wrong, "simulate", {}, settings))
+def test_runs_that_are_too_short_are_counted_once_for_all_seeds(counting, tmp_path):
+    grid = {"size": [10, 20], "seed": [1, 2, 3], "duration": [20, 1000]}
+    with pytest.warns(cb.ShortRunWarning, match=r"^2 of 4 cases; the first: duration=20 is short"):
+        run_cases(Sweep(grid), tmp_path, counting, progress=False)
 
 
 def test_a_sweep_gives_the_cases_of_its_grid():

@@ -117,6 +117,21 @@ def test_folders_that_hold_no_sweep(tmp_path):
         load_sweep(tmp_path)
 
 
+def test_runs_with_other_observers_are_named(tmp_path):
+    """Some can be joined, but not two chains whose rods have other places and one without rods."""
+    cases = [
+        Case("simulate", Chain(size=size), {"duration": 100, "observe": [name]})
+        for size, name in ((3, "widths"), (5, "widths"), (4, "collisions"))
+    ]
+    run_cases(cases, tmp_path, AtOnce(), progress=False)
+    first, *others = sorted(tmp_path.glob("*.nc"))
+    other = cases[2].file(tmp_path)
+    differs = others[0] if first == other else other
+    with pytest.raises(ValueError, match=r"only one has .*collision_rate, .*observe=") as refused:
+        load_sweep(tmp_path)
+    assert str(refused.value).startswith(f"{first} and {differs}: ")
+
+
 def case_result(case):
     return xr.load_dataset(io.BytesIO(compute(case, case.source)))
 

@@ -3,16 +3,14 @@
 import json
 import os
 import shutil
-import subprocess
 import sys
 from concurrent.futures import Executor, ThreadPoolExecutor
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
+from installation import ROOT, run
 from missing_cases import missing_cases
 
-import crazybilliards.model
 from crazybilliards.comparison import load_sweep
 from crazybilliards.comparison.sweeps import Case, run_cases
 from crazybilliards.comparison.sweeps.case import compute
@@ -96,36 +94,32 @@ def test_a_sweep_of_two_source_codes_is_read_with_a_warning(folder, edited, exec
     assert "source_fingerprint" not in grid.attrs
 
 
-ROOMS = ("model", "particles", "kinetic", "comparison")
-COMMAND = [sys.executable, "-c", "from crazybilliards.apps.commands.line import main; main()"]
+EDITED = """
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from crazybilliards.comparison.sweeps import Sweep, run_cases
+with ThreadPoolExecutor(1) as here:
+    run_cases(Sweep({"size": [2]}, "equilibrium", {}, {}), sys.argv[1], here, progress=False)
+"""
 
 
 def test_after_an_edit_of_a_theory_its_sweep_gives_the_new_number(folder, tmp_path_factory):
-    """A copy of the package is edited and its command is run, as a developer would."""
+    """In a copy of the package, as it would be with a developer."""
     place = tmp_path_factory.mktemp("edited")
     package = place / "crazybilliards"
-    root = Path(crazybilliards.model.__file__).parents[1]
-    for room in ROOMS:
-        shutil.copytree(root / room, package / room, ignore=shutil.ignore_patterns("__pycache__"))
+    for room in ("model", "particles", "kinetic", "comparison"):
+        shutil.copytree(ROOT / room, package / room, ignore=shutil.ignore_patterns("__pycache__"))
     (package / "__init__.py").touch()
-    (place / "grid.toml").write_text("[grid]\nsize = [2]\n[equilibrium]\n")
     theory = package / "kinetic" / "exact" / "gibbs_measure.py"
     text = theory.read_text()
     assert text.count("np.full(chain.size, chain.free_velocity_width)") == 1
     theory.write_text(text.replace("np.full(chain.size,", "np.full(chain.size, 2 *"))
     # Coverage is that of the package, and not of its copy.
     unmeasured = {name: value for name, value in os.environ.items() if "COVERAGE" not in name}
-    done = subprocess.run(
-        [*COMMAND, "sweep", "grid.toml", "--output", str(folder), "--processes", "1"],
-        capture_output=True,
-        text=True,
-        timeout=300,
-        check=True,
-        cwd=place,
-        env={**unmeasured, "PYTHONPATH": str(place), "PYTHONDONTWRITEBYTECODE": "1"},
-    )
-    assert done.stderr.count("\n") == 1
-    assert f"computed 1 cases in {folder}; computing them anew" in done.stderr
+    own = {**unmeasured, "PYTHONPATH": str(place), "PYTHONDONTWRITEBYTECODE": "1"}
+    done = run(sys.executable, "-c", EDITED, folder, cwd=place, env=own)
+    [line] = done.stderr.splitlines()
+    assert f"computed 1 cases in {folder}; computing them anew" in line
     with pytest.raises(ValueError, match="computed by other source code"):
         CASES[0].load(folder)
     assert width(CASES[0], folder, keep_old=True) == pytest.approx(2)

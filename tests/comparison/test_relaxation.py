@@ -1,14 +1,20 @@
 """The relaxation of one chain in all descriptions."""
 
+from base64 import b64decode
+
+import imageio_ffmpeg
 import numpy as np
 import pytest
 
-from crazybilliards.comparison import animate, compare_relaxation
+from crazybilliards.comparison import compare_relaxation, film
 from crazybilliards.comparison.side_by_side.relaxation import cloud, condensed, label_distances
 from crazybilliards.comparison.side_by_side.relaxation_figures import (
+    _densities,
+    _stage,
     draw_cloud,
     draw_profiles,
     draw_spacetime,
+    relaxation_pictures,
 )
 from crazybilliards.model import Chain, chain_of, load, save
 
@@ -78,17 +84,33 @@ def test_what_is_stored_is_a_tenth_and_drawn_like_the_whole(tree, tmp_path):
         np.testing.assert_allclose(ours, theirs, rtol=1e-6, atol=1e-9)
 
 
-def test_the_animation_moves_lines_through_every_bin(tree):
-    animation = animate(tree)
-    ax = animation._fig.axes[0]
-    [rods] = [line for line in ax.lines if line.get_label() == "simulation"]
-    x = tree["particles"].x.values
-    shown = rods.get_xdata()
-    np.testing.assert_array_equal(shown, x[(x >= shown[0]) & (x <= shown[-1])])
-    before = [line.get_ydata().copy() for line in ax.lines]
-    animation._func(10)
-    moved = [
-        not np.array_equal(a, line.get_ydata()) for a, line in zip(before, ax.lines, strict=True)
-    ]
-    assert sum(moved) >= 3
-    animation._draw_was_started = True  # it need not be shown
+def test_a_film_has_lines_through_every_bin_which_move(tree):
+    densities = _densities(tree)
+    _, ax = _stage(densities)
+    lines = {line.get_label(): line for line in ax.lines}
+    assert set(lines) == set(densities)
+    np.testing.assert_array_equal(lines["simulation"].get_xdata(), tree["particles"].x)
+    pictures, number = relaxation_pictures(tree, 5)
+    first, *others = pictures
+    assert number == 1 + len(others) == 5
+    for other in others:
+        assert 0.01 < (first != other).any(axis=2).mean() < 0.5
+        np.testing.assert_array_equal(other[-20:], first[-20:])  # the axis stays
+        first = other
+
+
+def test_the_film_of_a_relaxation_is_as_long_as_asked_for(tree, tmp_path):
+    """And a page plays it without a network."""
+    page = film(tree, tmp_path / "relaxation.html", seconds=10, progress=False).read_text()
+    assert "<h1>50 rods, A = 20, g = 0, compressed by 0.3 and released at t = 0</h1>" in page
+    assert "://" not in page
+    path = tmp_path / "inside.mp4"
+    path.write_bytes(b64decode(page.partition("base64,")[2].partition('"')[0]))
+    assert imageio_ffmpeg.count_frames_and_secs(str(path)) == (41, pytest.approx(10, abs=0.1))
+
+
+def test_what_is_no_relaxation_is_not_filmed(tree):
+    with pytest.raises(ValueError, match=r"must be what compare_relaxation returns, got a tree"):
+        film(tree.filter(lambda node: "particles" not in node.path))
+    with pytest.raises(ValueError, match="springs are drawn of rods"):
+        film(tree, springs=True)

@@ -6,10 +6,12 @@ import matplotlib
 import numpy as np
 import pytest
 
-from crazybilliards.comparison import compare_restitutions, width_deviations
+from crazybilliards.comparison import compare
+from crazybilliards.comparison.distances import deviations
 from crazybilliards.comparison.side_by_side.grid import KINETIC, SIMULATION, TITLES
 from crazybilliards.comparison.side_by_side.grid_figures import (
     draw_density,
+    draw_displacement,
     draw_phase_space,
     draw_profile,
     draw_widths,
@@ -27,7 +29,7 @@ pytestmark = pytest.mark.compiled
 
 @pytest.fixture(scope="module")
 def tree():
-    return compare_restitutions(CHAIN, [0.9, 1.0], duration=500, **QUIET)
+    return compare(CHAIN, {"restitution": [0.9, 1.0]}, duration=500, **QUIET)
 
 
 def test_tree_holds_both(tree):
@@ -38,11 +40,12 @@ def test_tree_holds_both(tree):
 
 
 def test_deviations(tree):
-    every = [found for each in width_deviations(tree).values() for found in each.values()]
+    every = [found for group in tree.children.values() for found in deviations(group).values()]
     assert len(every) == 4
-    for found in every:
-        assert abs(found.centre) < 0.02 + 5 * found.error
-        assert abs(found.largest) < 0.02 + 5 * found.error
+    for density, width in every:
+        assert abs(width.centre) < 0.02 + 5 * width.error
+        assert abs(width.largest) < 0.02 + 5 * width.error
+        assert density.rms < 0.02
 
 
 def test_width_deviation_of_a_known_difference():
@@ -56,16 +59,17 @@ def test_width_deviation_of_a_known_difference():
     assert found.largest == pytest.approx(1 - 1 / 1.1, rel=1e-3)
     assert found.error == pytest.approx(0.01)
     assert found.border_error == pytest.approx(0.01 / 2**0.5)
+    assert found.largest_in_errors == pytest.approx(100 * (1 - 1 / 1.1), rel=1e-3)
 
 
 def test_without_a_steady_state_there_is_a_warning_and_no_theory():
     chain = Chain(size=60, damping=1.0)
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        tree = compare_restitutions(chain, [1.1], duration=40, **QUIET)
+        tree = compare(chain, {"restitution": [1.1]}, duration=40, **QUIET)
     assert any("no steady state" in str(each.message) for each in caught)
     assert set(tree["restitution_1.1"].children) == {SIMULATION}
-    assert width_deviations(tree) == {"restitution_1.1": {}}
+    assert deviations(tree["restitution_1.1"]) == {}
 
 
 def opacities(ax, label=None):
@@ -113,11 +117,28 @@ def test_pictures(tree):
     labels = above.get_legend_handles_labels()[1]
     assert sorted(labels) == sorted(TITLES[name] for name in (SIMULATION, *KINETIC))
     assert below.has_data()  # the differences from the simulation
+    labels = draw_displacement(tree).axes[0].get_legend_handles_labels()[1]
+    assert sorted(labels) == sorted(TITLES[name] for name in (SIMULATION, *KINETIC))
     image = draw_phase_space(theory)
     assert "e = 0.9" in image.axes[0].get_title()
     assert len(draw_profile(theory, "kinetic equation").axes) == 2
     with pytest.raises(ValueError, match="phase_space_density"):
         draw_phase_space(tree[f"restitution_0.9/{SIMULATION}"].to_dataset())
+    matplotlib.pyplot.close("all")
+
+
+def test_any_parameter_may_vary():
+    """The theories are those of elastic chains only if all are elastic."""
+    tree = compare(CHAIN.replace(restitution=0.9), {"amplitude": [1, 2]}, duration=200, **QUIET)
+    assert list(tree.children) == ["amplitude_1", "amplitude_2"]
+    assert "kinetic_equation" in tree["amplitude_1"]
+    tree = compare(CHAIN, {"size": [10, 12]}, duration=200, **QUIET)
+    assert "exact" in tree["size_12"]
+    titles = [ax.get_title(loc="left") for ax in draw_displacement(tree).axes]
+    assert [title[:14] for title in titles if title] == ["(a)  $L = 10$,", "(b)  $L = 12$,"]
+    spring = compare(CHAIN, {"spring": ["linear", "quadratic"]}, duration=200, **QUIET)
+    assert list(spring.children) == ["spring_linear", "spring_quadratic"]
+    draw_widths(spring)
     matplotlib.pyplot.close("all")
 
 
@@ -127,4 +148,4 @@ def test_pictures(tree):
 )
 def test_bad_input(restitutions, message):
     with pytest.raises(ValueError, match=message):
-        compare_restitutions(CHAIN, restitutions, **QUIET)
+        compare(CHAIN, {"restitution": restitutions}, **QUIET)

@@ -7,12 +7,11 @@ from base64 import b64decode
 from types import SimpleNamespace
 
 import imageio_ffmpeg
-import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from PIL import Image
 
-from crazybilliards.comparison import encoding, film, rod_film
+from crazybilliards.comparison import encoding, film, moving_pictures, rod_film
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
 
@@ -25,9 +24,8 @@ def run():
 
 
 def test_rods_are_drawn_in_their_places_in_the_colours_of_their_velocities(run):
-    motion = rod_film._motion(run, 5)
-    with plt.rc_context(rod_film._LOOK):
-        pictures = list(rod_film._pictures(motion, False))
+    motion = rod_film.motion_of(run, 5)
+    pictures = list(rod_film.rod_pictures(motion, False))
     for x, v, picture in zip(motion.x, motion.v, pictures, strict=True):
         line = picture[130, :860, :3].astype(int)  # through the rods, left of the key
         inside = np.flatnonzero((line != 255).any(axis=1))
@@ -55,7 +53,7 @@ def test_stars_fade_and_rods_that_are_no_neighbours_have_none():
     run = simulate(
         chain, duration=4, every=0.05, observe="snapshots", particles=[1, 2, 5], progress=False
     )
-    flash = rod_film._motion(run, 80).flash
+    flash = rod_film.motion_of(run, 80).flash
     assert flash.shape == (80, 2)
     assert not flash[:, 1].any()
     just = np.flatnonzero(flash[:-1, 0] == 1)
@@ -79,12 +77,11 @@ def test_a_film_has_all_its_pictures(run, kind, tmp_path):
 
 
 def drawn(motion):
-    with plt.rc_context(rod_film._LOOK):
-        return list(rod_film._pictures(motion, True))
+    return list(rod_film.rod_pictures(motion, True))
 
 
 def test_a_gif_has_the_colours_that_were_drawn(run):
-    pictures = drawn(rod_film._motion(run, 20))
+    pictures = drawn(rod_film.motion_of(run, 20))
     film = Image.open(io.BytesIO(encoding.encoded(iter(pictures), "gif")))
     for number, picture in enumerate(pictures):
         film.seek(number)
@@ -96,7 +93,7 @@ def test_rods_that_are_far_apart_are_seen():
     run = simulate(
         Chain(size=5, gap=5000), duration=1, every=0.1, observe="snapshots", progress=False
     )
-    motion = rod_film._motion(run, 2)
+    motion = rod_film.motion_of(run, 2)
     fast = np.abs(motion.v) > 0.3 * np.abs(motion.v).max()
     for picture, rods in zip(drawn(motion), fast, strict=True):
         line = picture[130, 10:850, :3]
@@ -125,27 +122,26 @@ def test_without_ffmpeg_an_mp4_is_refused_before_any_work_and_a_page_has_a_gif(m
 
 
 def test_the_order_of_dimensions_does_not_matter(run):
-    assert np.array_equal(rod_film._motion(run.transpose(), 5).x, rod_film._motion(run, 5).x)
+    assert np.array_equal(rod_film.motion_of(run.transpose(), 5).x, rod_film.motion_of(run, 5).x)
 
 
 def test_what_cannot_be_filmed_is_refused(run):
-    with pytest.raises(ValueError, match="no snapshots in time"):
-        film(run.isel(particle=0))
-    with pytest.raises(ValueError, match="no snapshot in which all velocities are known"):
-        film(run * np.nan)
-    with pytest.raises(ValueError, match="no snapshots in time"):
-        film(run.drop_vars("velocity"))
-    with pytest.raises(ValueError, match="duration must be positive"):
-        film(CHAIN, duration=-1)
-    with pytest.raises(ValueError, match="duration is that of a chain to simulate"):
-        film(run, duration=5)
-    with pytest.raises(ValueError, match="no steady state to film: its simulation diverged"):
-        film(Chain(size=100, restitution=1.3), progress=False)
+    hot, none = Chain(size=100, restitution=1.3), "no snapshots in time"
+    for what, how, said in (
+        (run.isel(particle=0), {}, none),
+        (run.drop_vars("velocity"), {}, none),
+        (run * np.nan, {}, "no snapshot in which all velocities are known"),
+        (CHAIN, {"duration": -1}, "duration must be positive"),
+        (run, {"duration": 5}, "duration is that of a chain to simulate"),
+        (hot, {"progress": False}, "no steady state to film: its simulation diverged"),
+    ):
+        with pytest.raises(ValueError, match=said):
+            film(what, **how)
 
 
 @pytest.mark.parametrize("place", ["folder.gif", "file/rods.gif", "locked/rods.gif"])
 def test_a_place_that_cannot_be_written_is_refused_before_any_work(place, tmp_path, monkeypatch):
-    monkeypatch.setattr(rod_film, "simulate", lambda *_, **__: pytest.fail("it works"))
+    monkeypatch.setattr(moving_pictures, "simulate", lambda *_, **__: pytest.fail("it works"))
     monkeypatch.setattr(os, "access", lambda folder, _: folder != tmp_path / "locked")
     (tmp_path / "folder.gif").mkdir()
     (tmp_path / "file").touch()

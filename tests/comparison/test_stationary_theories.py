@@ -55,7 +55,7 @@ def test_a_reason_is_the_error_that_the_theory_raises(name):
 
 
 @pytest.mark.parametrize(
-    "chain", [Chain(size=30, restitution=0.9), Chain(size=30), Chain(size=30, gap=0.3)]
+    "chain", [Chain(size=12, restitution=0.9), Chain(size=12), Chain(size=12, gap=0.3)]
 )
 def test_expected_errors_are_those_that_results_state(chain):
     table = theories(chain)
@@ -84,7 +84,7 @@ def test_the_best_theory_depends_on_the_quantity_and_says_why():
     ("chain", "quantity", "theory"),
     [
         (Chain(size=20, gap=0.5), "velocity_width", equilibrium),
-        (Chain(size=20, restitution=0.9), "displacement_width", correlated_phase_space),
+        (Chain(size=12, restitution=0.9), "displacement_width", correlated_phase_space),
     ],
 )
 def test_the_best_theory_is_the_solved_one(chain, quantity, theory):
@@ -118,7 +118,7 @@ def test_a_chain_that_no_theory_takes_has_none():
 def test_the_best_theory_gives_the_quantity_or_there_is_none(gap, e):
     chain = Chain(size=12, restitution=e, gap=gap)
     found = {
-        name: theory.solve(chain, **({"cells": 12} if name.endswith("phase_space") else {}))
+        name: theory.solve(chain, **({"cells": 6} if name.endswith("phase_space") else {}))
         for name, theory in THEORIES.items()
         if not theory.refusal(chain)
     }

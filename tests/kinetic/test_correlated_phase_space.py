@@ -26,7 +26,8 @@ def theory():
 
     def find(restitution):
         if restitution not in known:
-            known[restitution] = correlated_phase_space(CHAIN.replace(restitution=restitution))
+            chain = CHAIN.replace(restitution=restitution)
+            known[restitution] = correlated_phase_space(chain, cells=22)
         return known[restitution]
 
     return find

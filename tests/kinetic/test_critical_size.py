@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from crazybilliards.comparison.fits import fit_growth
 from crazybilliards.kinetic import critical_size
 from crazybilliards.kinetic.kinetic_equation.weak_damping import (
     weak_damping_critical_size,
@@ -11,6 +10,7 @@ from crazybilliards.kinetic.kinetic_equation.weak_damping import (
 )
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
+from crazybilliards.reproduction.fits import fit_growth
 
 # gamma/sqrt(k m) = 0.1: weakly damped, where the answer is known.
 WEAK = Chain(restitution=1.05, damping=0.1 * np.sqrt(4 * np.pi / 3))

@@ -20,7 +20,7 @@ def free_displacement(chain):
 
 @pytest.mark.parametrize("amplitude", [0.1, 100.0])
 @pytest.mark.parametrize("spring", ["linear", "quadratic"])
-@pytest.mark.parametrize("size", [1, 2, 20, 300])
+@pytest.mark.parametrize("size", [1, 2, 20, 100])
 def test_without_gap_displacements_are_order_statistics(size, spring, amplitude):
     chain = Chain(size=size, spring=spring, amplitude=amplitude)
     exact = equilibrium(chain)
@@ -74,7 +74,7 @@ def test_two_rods_are_a_truncated_gaussian(gap):
 
 @pytest.mark.parametrize("amplitude", [0.1, 1.0, 100.0])
 @pytest.mark.parametrize("gap", [1e-6, 0.2, 3.0])
-@pytest.mark.parametrize("size", [2, 50, 300])
+@pytest.mark.parametrize("size", [2, 50, 150])
 def test_it_just_works(size, gap, amplitude):
     chain = Chain(size=size, gap=gap, amplitude=amplitude)
     exact = equilibrium(chain)

@@ -5,6 +5,7 @@ call is refused with a ValueError, or the pair stands in ``MEANINGLESS`` with th
 are read from the class, and another value of each follows from its declaration.
 """
 
+import inspect
 import json
 from dataclasses import dataclass, field, fields
 from functools import cache
@@ -15,13 +16,17 @@ from every_solver import SOLVERS, Given
 from other_values import other_values
 from scipy.interpolate import CubicSpline
 
-import crazybilliards.kinetic
-from crazybilliards.kinetic import displaced
+import crazybilliards as cb
+from crazybilliards.kinetic import displaced, force_balance
 from crazybilliards.kinetic.kinetic_equation import criticality
+from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain
+from crazybilliards.model import chain as model_chain
 from crazybilliards.model.checks import check_real
-from crazybilliards.particles import Widths, dynamics, simulate
+from crazybilliards.particles import dynamics, given_start, scales, simulate, start
 from crazybilliards.particles.laws import law
+from crazybilliards.particles.observers import OBSERVERS, Observer
+from crazybilliards.particles.simulation import make_run
 
 CHAIN = Chain(size=4)
 START = displaced(CHAIN, 0.3)[["density", "label", "flow_velocity", "velocity_variance"]]
@@ -131,7 +136,7 @@ def differ(one, other):
 
 def test_every_public_solver_is_called():
     names = {name.split(",")[0] for name in SOLVERS}
-    public = {*crazybilliards.kinetic.__all__} - {"UnmeasuredWarning"}
+    public = {*cb.kinetic.__all__} - {"UnmeasuredWarning"}
     assert names == public | {"simulate", "simulate_limit"}
 
 
@@ -170,10 +175,16 @@ def test_a_parameter_that_nobody_knows_is_refused(solver):
         SOLVERS[solver].solve(Tilted(**parameters, tilt=1.0), GIVEN)
 
 
-class Slopes(Widths):
-    """An observer that reads it."""
+# All that has a ``knows`` of its own and is asked in every run, with what it says of itself.
+READERS = {dynamics: "springs, damping and noise", scales: "time scales", start: "a start"}
 
-    knows = frozenset({"tilt"})
+
+@pytest.fixture
+def all_know(monkeypatch):
+    """Let everything but observers and theories know the parameter."""
+    monkeypatch.setattr(law, "knows", {each: {"tilt"} for each in OPERATORS})
+    for reader in READERS:
+        monkeypatch.setattr(reader, "knows", {"tilt"})
 
 
 # What chooses each operator of collisions.
@@ -186,33 +197,96 @@ OPERATORS = {
 }
 
 
-def tilted_run(operator, tilt=1.0, **settings):
+def tilted_run(operator=law.EVENTS, tilt=1.0, **settings):
     what = OPERATORS[operator].copy()
     how = {"method": what.pop("method", "event-driven"), "duration": 100, "progress": False}
     return simulate(Tilted(size=3, tilt=tilt, **what), **how | settings)
 
 
 @pytest.mark.parametrize("operator", OPERATORS)
-def test_an_operator_takes_what_it_knows_itself(operator, monkeypatch):
-    others = {each: {"tilt"} for each in OPERATORS if each != operator}
-    monkeypatch.setattr(law, "knows", others)
-    with pytest.raises(ValueError, match=f"{law.NAMES[operator]}. does not know the chain's tilt"):
-        tilted_run(operator)
-    known = tilted_run(operator, tilt=0)
+def test_an_operator_takes_what_it_knows_itself(operator, all_know, monkeypatch):
     monkeypatch.setattr(law, "knows", {operator: {"tilt"}})
-    run = tilted_run(operator)
+    run, known = tilted_run(operator), tilted_run(operator, tilt=0)
+    assert (run.attrs["flight"] == "exact") == (operator == law.EXACT)
     assert json.loads(run.attrs["provenance"])["chain"]["tilt"] == 1
     assert np.isnan(run.attrs["time_step_error"])
     assert np.isnan(known.attrs["time_step_error"]) == (operator == law.CONTACTS)
 
 
-def test_exact_flight_takes_no_steps_that_know_a_parameter(monkeypatch):
-    monkeypatch.setattr(dynamics, "knows", {"tilt"})
-    with pytest.raises(ValueError, match=r"exact flight. does not know the chain's tilt"):
-        tilted_run(law.EXACT)
-    assert np.isnan(tilted_run(law.EVENTS).attrs["time_step_error"])
+@pytest.mark.parametrize("operator", OPERATORS)
+def test_an_operator_that_does_not_know_a_parameter_is_not_taken(operator, all_know):
+    del law.knows[operator]
+    if operator in (law.EVENTS, law.CONTACTS):  # there is no other one
+        said = f"{law.NAMES[operator]}. does not know the chain's tilt"
+        with pytest.raises(ValueError, match=said):
+            tilted_run(operator)
+    else:
+        assert tilted_run(operator).attrs["flight"] == "in steps"
 
 
-def test_a_simulation_takes_what_an_observer_reads():
-    run = tilted_run(law.EVENTS, observe=["density", Slopes()])
-    assert np.isfinite(run.attrs["time_step_error"])
+@pytest.mark.parametrize("reader", READERS)
+def test_a_run_asks_each_that_reads_the_chain(reader, all_know, monkeypatch):
+    monkeypatch.setattr(reader, "knows", set())
+    with pytest.raises(ValueError, match=f"{READERS[reader]}.* does not know the chain's tilt"):
+        tilted_run()
+    if reader is dynamics:  # exact flight takes no steps
+        assert tilted_run(law.EXACT).attrs["flight"] == "exact"
+
+
+@pytest.mark.parametrize("name", OBSERVERS)
+def test_an_observer_refuses_what_it_does_not_know_unless_it_only_averages(
+    name, all_know, monkeypatch
+):
+    chain, how = Tilted(size=3, restitution=0.8, tilt=1.0), {"duration": 100, "seed": 0}
+    how |= dict.fromkeys(("time_step", "merging", "particles"))
+    make_run(chain, observe="widths", **how)
+    if not OBSERVERS[name].reads_chain:
+        make_run(chain, observe=name, **how)
+        return
+    with pytest.raises(ValueError, match=f"observe: '{name}'.* does not know the chain's tilt"):
+        make_run(chain, observe=["widths", name], **how)
+    monkeypatch.setattr(OBSERVERS[name], "knows", {"tilt"})
+    make_run(chain, observe=name, **how)
+
+
+def test_an_observer_of_ones_own_refuses_it_unless_it_says_otherwise():
+    assert Observer.reads_chain
+
+
+SCALES = [
+    name
+    for name, each in vars(scales).items()
+    if inspect.isfunction(each) and each.__module__ == scales.__name__ and name[0] != "_"
+]
+
+
+@pytest.mark.parametrize("name", SCALES)
+def test_every_scale_refuses_it(name):
+    chain = Tilted(size=3, tilt=1.0)
+    arguments = inspect.signature(getattr(scales, name)).parameters.values()
+    needed = [each for each in arguments if each.default is each.empty]
+    with pytest.raises(ValueError, match="does not know the chain's tilt"):
+        getattr(scales, name)(chain, *(np.ones(3) for _ in needed[1:]))
+
+
+def test_every_start_refuses_it():
+    chain = Tilted(size=3, tilt=1.0)
+    with pytest.raises(ValueError, match="a start does not know the chain's tilt"):
+        given_start(chain, chain.anchors)
+
+
+def test_what_reads_the_chain_of_a_result_refuses_a_field_that_not_all_know(monkeypatch):
+    chain = Chain(size=3, gap=0.5)
+    how = {"average": "ensemble", "observe": "snapshots", "progress": False}
+    run, theory = simulate(chain, duration=1, **how), force_balance(chain)
+    monkeypatch.setattr(model_chain, "KNOWN", model_chain.KNOWN - {"gap"})
+    for reader, result in ((cb.film, run), (cb.rod_by_rod, theory)):
+        with pytest.raises(ValueError, match=f"{reader.__name__} does not know the chain's gap"):
+            reader(result)
+
+
+def test_a_theory_says_by_itself_what_it_knows():
+    chain = Tilted(size=3, tilt=1.0)
+    require_chain(chain, "a theory", knows={"tilt"})
+    with pytest.raises(ValueError, match="another theory does not know the chain's tilt"):
+        require_chain(chain, "another theory", knows={"push"})

@@ -49,12 +49,8 @@ def test_it_satisfies_the_papers_equation(gap, spring):
     theory = force_balance(chain)
     x, rho = theory.x.values, theory.density.values
     spline = CubicSpline(x, rho)
-    right = (
-        -chain.force(theory.displacement)
-        / (chain.mass * chain.free_velocity_width**2)
-        * rho
-        * (1 - 2 * chain.radius * rho) ** 2
-    )
+    pull = chain.force(theory.displacement) / (chain.mass * chain.free_velocity_width**2)
+    right = -pull * rho * (1 - 2 * chain.radius * rho) ** 2
     np.testing.assert_allclose(spline(x, 1), right, atol=2e-5 * np.abs(right).max())
     np.testing.assert_allclose(CubicSpline(x, theory.label)(x, 1), rho, atol=1e-6 * rho.max())
     seen = rho > 1e-12

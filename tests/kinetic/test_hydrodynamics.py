@@ -64,9 +64,9 @@ def test_a_shift_swings_as_one_oscillator_if_the_springs_are_linear(frame, sprin
     [
         (10, 30, 0.0, "linear"),
         (100, 1, 0.2, "linear"),
-        (100, 100, 1.0, "linear"),
+        pytest.param(100, 100, 1.0, "linear", marks=pytest.mark.validate),
         pytest.param(1000, 10, 0.0, "linear", marks=pytest.mark.validate),
-        (1000, 10, 0.2, "quadratic"),
+        (100, 10, 0.2, "quadratic"),
         pytest.param(10, 30, 1.0, "quadratic", marks=pytest.mark.validate),
         pytest.param(100, 100, 0.0, "quadratic", marks=pytest.mark.validate),
         pytest.param(100, 1, 1.0, "quadratic", marks=pytest.mark.validate),
@@ -109,11 +109,11 @@ def test_the_eulerian_frame_is_of_second_order(fluid):
     start = compressed(chain, 0.6)
     exact = hydrodynamics(chain, start, **arguments)
     errors = []
-    for cells in (400, 800):
+    for cells in (200, 400):
         flow = hydrodynamics(chain, start, frame="eulerian", cells=cells, **arguments)
         errors.append(l1_distance(flow, exact)[1:].max())
     assert np.log2(errors[0] / errors[1]) > 1.8
-    assert errors[1] < 1e-4
+    assert errors[1] < 4e-4
 
 
 @pytest.mark.compiled
@@ -121,7 +121,7 @@ def test_the_eulerian_frame_is_of_second_order(fluid):
 @pytest.mark.parametrize("gap", [0.2, 1.0])
 def test_the_two_frames_agree_with_a_gap(gap, fluid):
     chain = Chain(size=20, amplitude=5, gap=gap)
-    arguments = {"duration": 12, "every": 1, "velocity_variance": fluid} | QUIET
+    arguments = {"duration": 6, "every": 1, "velocity_variance": fluid} | QUIET
     start = compressed(chain, 0.6)
     label = hydrodynamics(chain, start, **arguments)
     eulerian = hydrodynamics(chain, start, frame="eulerian", **arguments)

@@ -170,12 +170,6 @@ def test_trackers_of_py_pde_see_positions_and_named_fields(fluid, monkeypatch):
 
 
 def test_an_output_that_py_pde_drops_is_an_error():
+    state, times = make_state({"field": np.ones(8)}, (0, 8)), 1e-12 * np.arange(11.0)
     with pytest.raises(RuntimeError, match="outputs of 11"):
-        solve(
-            lambda values, time: -values,
-            make_state({"field": np.ones(8)}, (0, 8)),
-            1e-12 * np.arange(11.0),
-            progress=False,
-            solver="scipy",
-            backend="numpy",
-        )
+        solve(lambda x, _: -x, state, times, solver="scipy", backend="numpy", **QUIET)

@@ -32,13 +32,9 @@ AT_WIDE_GAPS = [
 @pytest.mark.parametrize("solver", AT_WIDE_GAPS)
 def test_all_rods_are_held_at_wide_gaps(solver, size, gap):
     chain = Chain(size=size, gap=gap)
-    given = Given(
-        start=compressed(chain, 1.5),
-        variance=lambda x: 2.0 + 0 * np.asarray(x),
-        number=2.0,
-        stretch=3.0,
-        times={"duration": 0.5, "every": 0.5},
-    )
+    numbers = {"number": 2.0, "stretch": 3.0, "times": {"duration": 0.5, "every": 0.5}}
+    warm = {"variance": lambda x: 2.0 + 0 * np.asarray(x)}
+    given = Given(start=compressed(chain, 1.5), **numbers, **warm)
     require_all_rods(SOLVERS[solver].solve(chain, given), size)
 
 
@@ -61,11 +57,6 @@ def test_a_result_without_all_rods_is_refused():
     chain, x = Chain(size=10), np.array([-1.0, 1.0])
     density = ("x", np.array([0.0, 0.0]))
     for most in (9.9999, 10.0001, np.nan):
+        values = {"density": density, "label": ("x", np.array([0.0, most]))}
         with pytest.raises(ValueError, match="of the chain's 10 rods"):
-            result(
-                chain,
-                {"density": density, "label": ("x", np.array([0.0, most]))},
-                coordinates={"x": x},
-                source="theory",
-                method={},
-            )
+            result(chain, values, coordinates={"x": x}, source="theory", method={})

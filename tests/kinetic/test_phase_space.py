@@ -1,4 +1,4 @@
-"""The stationary kinetic equation: exact at e = 1, its balances, simulations, bad input."""
+"""The stationary kinetic equation: exact at e = 1, its balances, simulations, its linear solver."""
 
 import inspect
 
@@ -6,12 +6,14 @@ import numpy as np
 import pytest
 
 from crazybilliards.kinetic import equilibrium, phase_space
-from crazybilliards.kinetic.kinetic_equation import stationary
+from crazybilliards.kinetic.kinetic_equation import newton, stationary, weak_form
 from crazybilliards.kinetic.kinetic_equation.continuation import (
     continued,
     elastic_state,
     free_units,
+    solved,
 )
+from crazybilliards.kinetic.kinetic_equation.newton import NotSolvedError, stationary_state
 from crazybilliards.kinetic.kinetic_equation.weak_form import Equation, coefficients
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
@@ -103,7 +105,7 @@ def test_widths_are_those_of_simulations(solved, restitution, damping, duration,
 def test_shape_of_the_profile(solved):
     """Dissipative: hot at the border. Driven: hot at the border near the critical size only."""
     for restitution, damping, border_is_hot in ((0.9, 1.0, True), (1.05, 10.0, False)):
-        width = solved(Chain(restitution=restitution, damping=damping)).velocity_width
+        width = solved(Chain(restitution=restitution, damping=damping), cells=16).velocity_width
         assert (float(width[0]) > float(width[49])) == border_is_hot
         np.testing.assert_allclose(width, width[::-1], rtol=1e-10)
 
@@ -152,3 +154,44 @@ def test_a_wide_gap_is_named_where_the_equation_cannot_be_solved():
     message = stationary._out_of_range(Chain(gap=2.0), 2)
     assert "gap * size, as a multiple of s, is 283 (solved for 0 to 80)" in message
     assert "damping" not in message
+
+
+# -- a step that the linear solver did not find is never taken --------------------------------
+
+CHAIN = Chain(size=100, restitution=0.9)
+
+
+@pytest.fixture(scope="module")
+def state():
+    return solved(continued(CHAIN, elastic_state(CHAIN, 2, 12)))
+
+
+@pytest.mark.parametrize(("of", "converges"), [(0.97, True), (1.05, False)])
+def test_the_factors_of_another_matrix_give_the_same_solution_or_none(
+    state, monkeypatch, of, converges
+):
+    """GMRES needs more iterations with the factors of another restitution, or finds no step."""
+    numbers = coefficients(CHAIN.replace(restitution=of), free_units(CHAIN), 2)
+    equation = weak_form.Equation(state.space, numbers)
+    other, fresh = equation.matrix(equation.mean(state.f)), newton.factorised
+
+    def stale(matrix):
+        replaced = matrix.tolil()
+        replaced[: other.shape[0], : other.shape[0]] = other
+        return fresh(replaced.tocsc())
+
+    monkeypatch.setattr(newton, "factorised", stale)
+    if converges:
+        np.testing.assert_allclose(
+            solved(state).f, state.f, atol=1e-9 * float(np.abs(state.f).max())
+        )
+    else:
+        with pytest.raises(NotSolvedError, match="GMRES did not converge in 80 iterations"):
+            solved(state)
+
+
+def test_a_step_that_was_not_found_is_not_taken(state, monkeypatch):
+    monkeypatch.setattr(newton, "_GMRES", 1)
+    numbers = coefficients(CHAIN.replace(restitution=0.89), free_units(CHAIN), 2)
+    with pytest.raises(NotSolvedError, match="GMRES did not converge"):
+        stationary_state(state.space, numbers, state.f)

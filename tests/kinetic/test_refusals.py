@@ -21,8 +21,8 @@ phase_space(Chain(), tolerance=0.0) | tolerance
 phase_space(Chain(), cells=2) | cells
 phase_space(Chain(size=10**6)) | size must be at most
 phase_space(Chain(), order=3) | order
-phase_space(Chain(size=3, restitution=0.95), tolerance=1e-9) | accurate to ... --cells 75 accepts
-phase_space(Chain(restitution=0.95, damping=1e-4)) | multiple of m W/s, is 4.89e-05 ...0.01 to 25
+phase_space(Chain(size=3, restitution=0.95), tolerance=1e-9) | accurate to ... cells=75 accepts
+phase_space(Chain(restitution=0.95, damping=1e-4), cells=6) | of m W/s, is 4.89e-05 ...0.01 to 25
 phase_space(Chain(damping=1000.0)) | multiple of m W/s, is 489 ...0.01 to 25...; simulate takes any
 correlated_phase_space(thirty.replace(restitution=1.05)) | from 0 to 1 only, got 1.05; phase_space
 correlated_phase_space(thirty.replace(size=9)) | size from 10 to 1000 only, got 9

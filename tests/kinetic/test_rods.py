@@ -61,14 +61,8 @@ def test_the_fluid_is_far_from_them():
 def test_rods_of_a_breathing_cloud_are_exact(frame):
     """The points of a released chain stay Gaussian, with the width that is known in closed form."""
     release = {"duration": 6.0, "every": 2.0}
-    flow = hydrodynamics(
-        TWELVE,
-        compressed(TWELVE, 0.5),
-        **release,
-        velocity_variance="evolving",
-        frame=frame,
-        progress=False,
-    )
+    how = {"velocity_variance": "evolving", "frame": frame, "progress": False}
+    flow = hydrodynamics(TWELVE, compressed(TWELVE, 0.5), **release, **how)
     rods, cloud = rod_by_rod(flow), breathing_cloud(TWELVE, **release, stretch=0.5)
     for time in range(flow.sizes["time"]):
         width = float(cloud.cloud_width[time]) / TWELVE.thermal_length
@@ -109,19 +103,10 @@ def test_rods_move_and_stretch_with_the_chain(gap):
 @pytest.mark.compiled
 def test_a_quench_is_that_of_simulated_chains():
     hot = TWELVE.replace(amplitude=2.5)
-    run = simulate(
-        TWELVE,
-        start=equilibrium_states(hot, 4000),
-        replicas=4000,
-        average="ensemble",
-        duration=4,
-        every=2.0,
-        observe="density",
-        progress=False,
-    )
-    flow = hydrodynamics(
-        TWELVE, force_balance(hot), 4, every=2.0, velocity_variance="evolving", progress=False
-    )
+    times = {"duration": 4, "every": 2.0, "progress": False}
+    how = {"start": equilibrium_states(hot, 4000), "replicas": 4000, "average": "ensemble"}
+    run = simulate(TWELVE, observe="density", **how, **times)
+    flow = hydrodynamics(TWELVE, force_balance(hot), velocity_variance="evolving", **times)
     for time in range(3):
         simulated, fluid, rods = (
             smooth(each).isel(time=time) for each in (run, flow, rod_by_rod(flow))

@@ -17,7 +17,7 @@ def close_packing(chain, one, other):
 
 @pytest.mark.parametrize("gap", [0.0, 0.2, 1.0])
 @pytest.mark.parametrize("size", [2, 10, 1000, 100_000])
-@pytest.mark.parametrize("amplitude", [0.1, 1, 100])
+@pytest.mark.parametrize("amplitude", [0.1, 100])
 def test_a_constant_profile_gives_the_label_closure(size, gap, amplitude):
     """Newton's method in x against solve_bvp in y: nothing in common but the equation."""
     chain = Chain(size=size, gap=gap, amplitude=amplitude)

@@ -65,21 +65,11 @@ def test_elastic_rods_have_none():
 @pytest.mark.compiled
 def test_simulation(theory):
     """Every pair, within the errors that the theory states for W_v^2."""
-    run = simulate(
-        CHAIN,
-        duration=6000,
-        every=0.5,
-        seed=3,
-        observe=Covariances(separations=29),
-        threads=1,
-        progress=False,
-    )
+    how = {"duration": 6000, "every": 0.5, "seed": 3, "threads": 1, "progress": False}
+    run = simulate(CHAIN, observe=Covariances(separations=29), **how)
     own = theory.velocity_width**2
-    stated = (
-        2
-        * max(theory.attrs["velocity_width_model_error"], theory.attrs["border_model_error"])
-        * own
-    )
+    errors = (theory.attrs[f"{name}_model_error"] for name in ("velocity_width", "border"))
+    stated = 2 * max(errors) * own
     off = np.abs(theory.velocity_covariance - run.velocity_covariance)
     known = run.velocity_covariance.notnull().values
     assert (off <= 5 * run.velocity_covariance_error + stated).values[known].all()

@@ -1,4 +1,4 @@
-"""The chain: what it accepts, and the scales it derives."""
+"""The chain: what it accepts, the scales it derives, its springs, its grid of positions."""
 
 import ast
 import inspect
@@ -9,9 +9,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from crazybilliards.model import Chain
+from crazybilliards.model import Chain, spring
 from crazybilliards.model import chain as chain_module
 from crazybilliards.model.chain import middle_tenth
+from crazybilliards.model.grid import bins_per_rod, deposit, position_grid, thermal_reach
+from crazybilliards.particles.dynamics import make_step
+from crazybilliards.particles.stepping import FIRST, kick
 
 positive = st.floats(min_value=1e-6, max_value=1e6)
 gaps = st.floats(0, 10).map(lambda gap: round(gap, 6))
@@ -108,3 +111,88 @@ def test_type_checkers_read_the_parameters_that_there_are():
     names = [each.arg for each in start.args.kwonlyargs]
     values = [eval(ast.unparse(each)) for each in start.args.kw_defaults]
     assert dict(zip(names, values, strict=True)) == Chain().parameters()
+
+
+# -- the springs: force and stiffness are derivatives -----------------------------------------
+
+D = np.concatenate([-np.geomspace(10, 0.01, 30), np.geomspace(0.01, 10, 30)])
+
+
+def derivative(function, d):
+    h = 1e-4 * np.abs(d)
+    return (function(d + h) - function(d - h)) / (2 * h)
+
+
+@pytest.mark.parametrize("exponent", [2, 3])
+def test_force_and_stiffness_are_derivatives(exponent):
+    force = derivative(lambda d: spring.potential(d, exponent), D)
+    np.testing.assert_allclose(spring.force(D, exponent), force, rtol=1e-7)
+    stiffness = derivative(lambda d: spring.force(d, exponent), D)
+    np.testing.assert_allclose(spring.stiffness(D, exponent), stiffness, rtol=1e-7)
+    assert spring.potential(0.0, exponent) == spring.force(0.0, exponent) == 0
+
+
+@pytest.mark.parametrize("exponent", [2, 3])
+def test_displacement_is_the_inverse_of_the_force(exponent):
+    np.testing.assert_allclose(spring.displacement(spring.force(D, exponent), exponent), D)
+
+
+@pytest.mark.parametrize("kind", ["linear", "quadratic"])
+def test_chain_and_kernel_follow_the_law(kind):
+    chain = Chain(size=D.size, spring=kind, stiffness=2.5, mass=1.5)
+    n = chain.potential_exponent
+    np.testing.assert_array_equal(chain.force(D), 2.5 * spring.force(D, n))
+    np.testing.assert_array_equal(chain.potential(D), 2.5 * spring.potential(D, n))
+    v = np.zeros(D.size)
+    without = np.zeros(D.size)
+    kick(D.copy(), v, without, without, make_step(chain, 0.1, "euler"), FIRST)
+    np.testing.assert_allclose(v, -0.1 / 1.5 * chain.force(D), rtol=1e-14)
+
+
+# -- the grid of positions and its hat weights ------------------------------------------------
+
+
+@pytest.mark.parametrize("amplitude", [0.1, 1, 100])
+@pytest.mark.parametrize("size", [1, 2, 100, 100_000])
+@pytest.mark.parametrize("gap", [0, 3])
+def test_the_grid_is_symmetric_odd_per_rod_and_wide_enough(amplitude, size, gap):
+    chain = Chain(amplitude=amplitude, size=size, gap=gap)
+    x = position_grid(chain)
+    n = bins_per_rod(chain)
+    assert n % 2 == 1
+    np.testing.assert_allclose(np.diff(x), 2 * chain.radius / n, rtol=1e-6)
+    np.testing.assert_array_equal(x, -x[::-1])
+    assert x[-1] >= chain.anchors[-1] + thermal_reach(chain) + 4 * chain.radius
+    assert x.size <= 2**18 + 4
+
+
+def deposit_slowly(points, nodes):
+    """Twin of the kernel: every node's hat function at every point."""
+    h = nodes[1] - nodes[0]
+    return np.maximum(1 - np.abs(points[:, None] - nodes) / h, 0).sum(axis=0)
+
+
+@given(points=st.lists(st.floats(-4.999, 4.999), max_size=30))
+def test_deposit_equals_its_slow_twin(points):
+    nodes = np.linspace(-5, 5, 41)
+    weights = np.zeros(nodes.size)
+    points = np.array(points, dtype=float)
+    assert deposit(points, nodes[0], nodes[1] - nodes[0], weights) == 0
+    np.testing.assert_allclose(weights, deposit_slowly(points, nodes), atol=1e-12)
+    # Hat weights keep the number of points and their centre of mass.
+    assert weights.sum() == pytest.approx(points.size)
+    assert weights @ nodes == pytest.approx(points.sum(), abs=1e-9)
+
+
+def test_points_outside_and_nan_are_counted_not_lost():
+    weights = np.zeros(11)
+    points = np.array([-0.1, 0.0, 5.5, 10.0, 1e300, np.nan, -np.inf])
+    assert deposit(points, 0.0, 1.0, weights) == 5
+    assert weights.sum() == 2
+
+
+def test_a_grid_that_cannot_be_is_refused():
+    with pytest.raises(ValueError, match="lost in the rounding of positions"):
+        position_grid(Chain(size=10, amplitude=1e-9, gap=1.0))
+    with pytest.raises(ValueError, match=r"would take .* GiB of memory"):
+        position_grid(Chain(amplitude=1e20))

@@ -12,8 +12,6 @@ from crazybilliards.model import kernels
 from crazybilliards.model.grid import deposit
 from crazybilliards.particles import stepping
 from crazybilliards.particles.simulation import compile_kernels
-from crazybilliards.particles.vanishing_step import coupling
-from crazybilliards.particles.vanishing_step.sampler import compile_pair
 
 CALLER = """
 import inner.middle
@@ -176,8 +174,7 @@ def test_kernels_compile_no_texts():
     numba's cache keeps the machine code of a kernel with the names of all functions in it.
     """
     compile_kernels()
-    compile_pair()
-    for each in (deposit, stepping.advance, stepping.record, coupling.record_pair):
+    for each in (deposit, stepping.advance, stepping.record):
         kept = each._cache._cache_file._load_index().values()
         codes = [Path(each.stats.cache_path, name).read_bytes() for name in kept]
         assert codes

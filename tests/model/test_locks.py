@@ -2,6 +2,7 @@
 
 import errno
 import os
+import signal
 import subprocess
 import sys
 import threading
@@ -23,7 +24,7 @@ with locked(Path(sys.argv[1])):
 
 
 @pytest.mark.parametrize("name", ["folder", "state"])
-def test_another_process_holds_it_until_it_dies(name, tmp_path):
+def test_another_process_holds_it_until_it_dies_even_if_it_hangs(name, tmp_path):
     path = tmp_path / name
     if name == "folder":
         path.mkdir()
@@ -31,6 +32,7 @@ def test_another_process_holds_it_until_it_dies(name, tmp_path):
         [sys.executable, "-c", HOLDER, str(path)], stdout=subprocess.PIPE, text=True
     ) as holder:
         assert holder.stdout.readline() == "held\n"
+        holder.send_signal(signal.SIGSTOP)
         reason = rf"in use by process {holder.pid} on .*; wait .*{name}"
         with pytest.raises(BlockingIOError, match=reason), locked(path):
             pass
@@ -92,4 +94,32 @@ def test_no_room_for_it_is_an_error_that_names_it(tmp_path, monkeypatch):
     monkeypatch.setattr(os, "write", write)
     with pytest.raises(OSError, match=r"No space left on device: '.*\.lock'"), locked(tmp_path):
         pass
+    assert list(tmp_path.iterdir()) == []
+
+
+CONTENDER = """
+import os, sys
+from pathlib import Path
+from crazybilliards.model.locks import locked
+folder, entered = Path(sys.argv[1]), 0
+for _ in range(1000):
+    try:
+        with locked(folder):
+            os.close(os.open(folder / "inside", os.O_CREAT | os.O_EXCL))
+            os.unlink(folder / "inside")
+            entered += 1
+    except BlockingIOError:
+        pass
+print(entered)
+"""
+
+
+@pytest.mark.torture
+def test_never_are_two_inside(tmp_path):
+    """The lock file is made and removed all the time, which must let nobody slip in."""
+    command = [sys.executable, "-c", CONTENDER, str(tmp_path)]
+    contenders = [subprocess.Popen(command, stdout=subprocess.PIPE, text=True) for _ in range(4)]
+    entered = [int(each.communicate(timeout=600)[0]) for each in contenders]
+    print(f"{sum(entered)} times inside, {4000 - sum(entered)} times refused")
+    assert all(each.returncode == 0 for each in contenders)
     assert list(tmp_path.iterdir()) == []

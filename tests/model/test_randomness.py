@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from crazybilliards.comparison import compare_elastic, compare_relaxation, compare_restitutions
+from crazybilliards.comparison import compare, compare_relaxation
 from crazybilliards.kinetic import equilibrium_states
 from crazybilliards.model import Chain
 from crazybilliards.model.randomness import seed_of
@@ -19,8 +19,7 @@ FUNCTIONS = {
         CHAIN, accuracy=0.1, threads=1, progress=False, **how
     ),
     "equilibrium_states": lambda **how: equilibrium_states(CHAIN, 2, **how),
-    "compare_elastic": lambda **how: compare_elastic(CHAIN, [2.0], **SHORT, **how),
-    "compare_restitutions": lambda **how: compare_restitutions(CHAIN, [1.0], **SHORT, **how),
+    "compare": lambda **how: compare(CHAIN, {"amplitude": [2.0]}, **SHORT, **how),
     "compare_relaxation": lambda **how: compare_relaxation(
         CHAIN, duration=1.0, replicas=2, progress=False, **how
     ),
@@ -41,12 +40,6 @@ def test_a_sequence_means_its_number(name):
 def test_what_is_no_seed_is_refused(name, seed):
     with pytest.raises(ValueError, match="seed must be an integer >= 0"):
         FUNCTIONS[name](seed=seed)
-
-
-@pytest.mark.parametrize("name", FUNCTIONS)
-def test_the_former_name_says_what_replaces_it(name):
-    with pytest.raises(TypeError, match="no argument 'rng'; seed takes what rng took"):
-        FUNCTIONS[name](rng=5)
 
 
 def test_a_number_that_is_too_long_for_the_provenance_is_mixed_to_a_shorter_one():

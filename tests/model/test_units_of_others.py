@@ -5,6 +5,7 @@ import pytest
 import xarray as xr
 
 import crazybilliards as cb
+from crazybilliards.reproduction.fits import fit_exponential, fit_growth
 
 CHAIN = cb.Chain(size=3, gap=1.0)
 
@@ -41,7 +42,7 @@ def test_numbers_with_a_unit_are_refused(name):
 
     three, x = [-10.0, 0.0, 10.0], np.linspace(-9, 9, 5)
     start = cb.displaced(CHAIN, 1.0)
-    fit = cb.fit_exponential([0.1, 0.5, 0.9], [1.0, 2.0, 4.0], [0.1, 0.1, 0.1])
+    fit = fit_exponential([0.1, 0.5, 0.9], [1.0, 2.0, 4.0], [0.1, 0.1, 0.1])
     calls = {
         "position": lambda: cb.given_start(CHAIN, km(three)),
         "position ": lambda: cb.given_start(CHAIN, [km(each) for each in three]),
@@ -63,7 +64,7 @@ def test_numbers_with_a_unit_are_refused(name):
         "start: density": lambda: cb.hydrodynamics(
             CHAIN, start.assign(density=start.density.assign_attrs(units="1/m")), 1.0
         ),
-        "time": lambda: cb.fit_growth(km(three), three),
+        "time": lambda: fit_growth(km(three), three),
         "x ": lambda: fit(km(three)),
     }
     for argument, call in calls.items():

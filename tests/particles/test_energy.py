@@ -19,7 +19,7 @@ from crazybilliards.particles.laws.impacts import make_impacts
 from crazybilliards.particles.scales import default_time_step
 
 SPRINGS = ["linear", "quadratic"]
-GAPS = [0.0, 0.3, 1.0, 2.0]
+GAPS = [0.0, 0.3, 2.0]
 RESTITUTIONS = [0.0, 0.5, 0.9999, 1.0]
 METHODS = ["event-driven", "contact-dynamics"]
 COPIES = 8

@@ -27,17 +27,9 @@ def compressed():
     start = equilibrium_states(chain, 300, seed=1)
     position = 0.3 * chain.reduced(start.position.values)
     start = start.assign(position=(("replica", "particle"), chain.physical(position)))
-    run = simulate(
-        chain,
-        start=start,
-        replicas=300,
-        average="ensemble",
-        duration=20,
-        every=0.25,
-        observe=("widths", "density", "energy"),
-        progress=False,
-    )
-    return chain, start, run
+    how = {"replicas": 300, "average": "ensemble", "duration": 20, "every": 0.25}
+    observe = ("widths", "density", "energy")
+    return chain, start, simulate(chain, start=start, observe=observe, progress=False, **how)
 
 
 @pytest.mark.compiled

@@ -9,7 +9,6 @@ import pytest
 import xarray as xr
 from killed import begin, end, until
 
-from crazybilliards.kinetic import equilibrium_states
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
 from crazybilliards.particles.observers import OBSERVERS
@@ -124,24 +123,3 @@ def test_an_ensemble_is_not_made_longer(tmp_path):
     simulate(Chain(size=2), duration=10, progress=False, **how)
     with pytest.raises(ValueError, match="duration is 10 there and 20 here"):
         simulate(Chain(size=2), duration=20, progress=False, **how)
-
-
-def test_another_run_is_refused_by_what_was_changed_and_not_by_what_follows_from_it(tmp_path):
-    """The times of a run are planned from the chain, so that most of them change with it."""
-    chain, start = Chain(size=2, restitution=0.7), equilibrium_states(Chain(size=2), 1)
-    how = {
-        "duration": 300,
-        "progress": False,
-        "checkpoint": tmp_path / "state",
-        "observe": "widths",
-    }
-    simulate(chain, **how)
-    for other, change, said in (
-        (chain.replace(damping=2.0), {}, "damping is 1 there and 2 here; "),
-        (chain, {"seed": 3, "duration": 500}, "seed is 0 there and 3 here; "),
-        (chain, {"average": "ensemble"}, "average is time there and ensemble here; "),
-        (chain, {"start": start}, r"start is at rest there and sha256 \w{8}\.\.\. here; "),
-        (chain, {"warmup": 90, "time_step": 0.1}, "time_step is 0.1023326708 there and 0.1 here, "),
-    ):
-        with pytest.raises(ValueError, match=f"another run: {said}.*remove the file"):
-            simulate(other, **how | change)

@@ -52,15 +52,9 @@ def measured_over_expected(chain, replicas, times):
     Of the mean displacement, or, where that swings, of the energy.
     """
     step = relaxation_time(chain) / 8
-    run = simulate(
-        chain,
-        start=equilibrium_states(chain, replicas, seed=1),
-        replicas=replicas,
-        duration=8 * times * step,
-        every=step,
-        observe="snapshots",
-        progress=False,
-    )
+    start = equilibrium_states(chain, replicas, seed=1)
+    how = {"duration": 8 * times * step, "every": step, "observe": "snapshots", "progress": False}
+    run = simulate(chain, start=start, replicas=replicas, **how)
     displacement = run.position.values - chain.anchors
     measured = displacement.mean(axis=2)
     if chain.damping < 1:

@@ -217,14 +217,8 @@ def test_the_grid_of_the_density_can_be_chosen():
 @pytest.mark.parametrize("particles", [[1], [1, 2], [3], None])
 def test_what_is_smoothed_is_what_was_observed(particles):
     chain = Chain(size=6)
-    run = simulate(
-        chain,
-        duration=2000,
-        every=5,
-        particles=particles,
-        observe=("density", "snapshots"),
-        **QUIET,
-    )
+    how = {"particles": particles, "observe": ("density", "snapshots")}
+    run = simulate(chain, duration=2000, every=5, **how, **QUIET)
     smoothed = smooth(run)
     assert "density_error" in smoothed
     assert rods(smoothed.density) == pytest.approx(6)

@@ -23,7 +23,7 @@ QUANTITIES = ("velocity_width", "mean_displacement", "displacement_width")
 def test_elastic_chain_is_in_its_exact_equilibrium(size, gap, spring):
     """Every particle's widths and displacement within 5 standard errors, t-distributed."""
     chain = Chain(size=size, gap=gap, spring=spring)
-    run = simulate(chain, duration=40_000, replicas=2, seed=7, observe="widths", progress=False)
+    run = simulate(chain, duration=20_000, replicas=2, seed=7, observe="widths", progress=False)
     exact = equilibrium(chain)
     for name in QUANTITIES:
         error = run[f"{name}_error"]

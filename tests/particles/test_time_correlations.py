@@ -69,9 +69,11 @@ def exact_spectrum(chain, w):
 def test_a_spectrum_is_right_or_not_given(chain, relaxations):
     memory = cb.relaxation_time(chain)
     longest = None if relaxations is None else relaxations * memory
-    how = {"duration": 1000 * memory, "every": memory / 40, "progress": False}
+    short = relaxations is not None and relaxations < 5
+    duration = (20 if short else 1000) * memory
+    how = {"duration": duration, "every": memory / 40, "progress": False}
     observe = TimeCorrelations(longest=longest)
-    if relaxations is not None and relaxations < 5:
+    if short:
         with pytest.warns(
             UserWarning, match=rf"spectra .* longest lag .* {5 * memory:.4g}; longest="
         ):
@@ -267,5 +269,5 @@ def test_lags_that_a_run_cannot_have_are_refused():
         assert run.lag.values.tolist() == [0.0, 1.0]
     with pytest.raises(ValueError, match="longest must be"):
         TimeCorrelations(longest=0)
-    with pytest.raises(ValueError, match="no limit of a vanishing time step"):
+    with pytest.raises(ValueError, match="not known to have a limit"):
         cb.simulate_limit(Chain(size=2), observe=["widths", "time-correlations"], progress=False)

@@ -76,9 +76,20 @@ def test_the_slow_twin_moves_the_rods_alike(case):
 @given(cases())
 def test_the_mirror_image_moves_as_the_mirror_image(case):
     y, v, masses, anchors, dt, law = case
-    here, there = drifted(*case), drifted(-y[::-1], -v[::-1], masses[::-1], -anchors[::-1], dt,
-        law._replace(pull=law.pull * masses[0] / masses[-1],
-                     merge_speed=law.merge_speed * masses[0] / masses[-1]))
+    here, there = (
+        drifted(*case),
+        drifted(
+            -y[::-1],
+            -v[::-1],
+            masses[::-1],
+            -anchors[::-1],
+            dt,
+            law._replace(
+                pull=law.pull * masses[0] / masses[-1],
+                merge_speed=law.merge_speed * masses[0] / masses[-1],
+            ),
+        ),
+    )
     np.testing.assert_allclose(here[0], -there[0][::-1], atol=1e-9)
     np.testing.assert_allclose(here[1], -there[1][::-1], atol=1e-9 * max(np.abs(v).max(), 1))
 

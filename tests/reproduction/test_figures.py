@@ -12,13 +12,12 @@ import pytest
 
 from crazybilliards.comparison.sweeps import Case
 from crazybilliards.comparison.sweeps.jobs import JOBS
-from crazybilliards.particles.vanishing_step import level_steps
 from crazybilliards.reproduction.claims.verdicts import Verdict
-from crazybilliards.reproduction.reproducible import EVERYTHING
+from crazybilliards.reproduction.figures import FIGURES
 
 QUICK = [
     study
-    for study in EVERYTHING
+    for study in FIGURES
     if not any(
         case.job == "phase_space" and case.chain.size > 100
         for case in study.cases("quick").values()
@@ -50,13 +49,6 @@ def short_run(case):
     if 0 < chain.restitution < 1:
         chain = chain.replace(size=min(chain.size, 150))
     return result(Case(case.job, chain, settings))
-
-
-@pytest.fixture(autouse=True)
-def _short_limits(monkeypatch):
-    """Shorten the groups of limits by ten: that they are drawn does not depend on their errors."""
-    monkeypatch.setattr(level_steps, "_LEAST", 1.0)
-    monkeypatch.setattr(level_steps, "_PILOT", 0.25)
 
 
 @pytest.mark.compiled

@@ -21,7 +21,6 @@ from crazybilliards.reproduction.claims.verdicts import (
 )
 
 DOCS = Path(__file__).parents[2] / "docs"
-CONFIRMED = {True: "confirmed", False: "refuted", None: "undecided"}
 REPRODUCED = {True: "reproduced", False: "not reproduced", None: "undecided"}
 
 
@@ -53,10 +52,9 @@ NU, SMALL, SEEN = around(-0.46, 0.01), around(0.0, 0.1), around(0.0, EYE)
 )
 def test_numbers(within, value, error, holds):
     number = {"found": Estimate(value, error), "within": within, "reason": "why"}
-    claim = Claim("nu", **number)
-    assert claim.verdict == CONFIRMED[holds]
+    claim = Claim("nu", **number, source="fig.2")
+    assert claim.verdict == REPRODUCED[holds]
     assert ("why" in claim.details) is (holds is not True)
-    assert Claim("nu", **number, source="fig.2").verdict == REPRODUCED[holds]
     # A choice of ours that was not varied excuses nothing.
     chosen = Claim("nu", **number, source="fig.2", ours="the size")
     assert chosen.verdict == REPRODUCED[holds]
@@ -67,10 +65,10 @@ def every_kind(value, error):
     measured = Estimate(value, error)
     share = Estimate(value * EYE, error * EYE)
     return [
-        Claim("it", "is", found=measured, within=around(0.0, 1.0)),
-        Claim("it", **worst("is", [measured], 1.0)),
-        Claim("it", **in_plot("is", share, 1.0)),
-        Claim("it", "is", found=measured, within=POSITIVE),
+        Claim("it", "is", source="fig.2", found=measured, within=around(0.0, 1.0)),
+        Claim("it", source="fig.2", **worst("is", [measured], 1.0)),
+        Claim("it", source="fig.2", **in_plot("is", share, 1.0)),
+        Claim("it", "is", source="fig.2", found=measured, within=POSITIVE),
     ]
 
 
@@ -81,7 +79,7 @@ def test_all_kinds_of_limits_have_one_rule_and_large_errors_help_no_claim(value,
         [claim.verdict for claim in every_kind(value, each)] for each in (error, error * more)
     )
     inside, outside = abs(value) + 3 * error < 1, abs(value) - 3 * error > 1
-    assert {*precise[:2]} == {CONFIRMED[True if inside else False if outside else None]}
+    assert {*precise[:2]} == {REPRODUCED[True if inside else False if outside else None]}
     assert all(each in (sure, "undecided") for sure, each in zip(precise, poor, strict=True))
 
 
@@ -95,30 +93,24 @@ def test_a_choice_decides_only_where_it_was_varied_and_changed_the_verdict():
 
     flat, right, steep, poor = (-1.6, 0.01), (-2.2, 0.01), (-3.0, 0.1), (-2.3, 0.2)
     said = {"source": "fig:trigger", "ours": "the time step"}
-    assert verdict(flat, **said) == "not reproduced"
-    assert verdict(flat, steep, **said) == "not reproduced"
-    assert verdict(flat, poor, **said) == "not reproduced"
+    for those in ((flat,), (flat, steep), (flat, poor)):
+        assert verdict(*those, **said) == "not reproduced"
     assert verdict(right, poor, **said) == "reproduced"
     assert verdict(poor, right, **said) == "undecided"
-    for both in ((flat, right), (right, flat), (flat, poor, right), (poor, right, steep)):
-        assert verdict(*both, **said) == "cannot be decided"
-    # A finding of our own is about the choice that it names.
-    assert verdict(flat, right) == "refuted"
+    for those in ((flat, right), (right, flat), (flat, poor, right), (poor, right, steep)):
+        assert verdict(*those, **said) == "cannot be decided"
 
 
-def test_other_choices_are_named_with_their_numbers_and_verdicts():
-    number = {"found": Estimate(-1.6, 0.01), "within": around(-2.2, 0.05)}
+def test_the_number_is_told_with_its_limits_and_with_that_at_other_choices():
+    number = {"found": Estimate(-1.6, 0.01), "within": around(-2.2, 0.05), "source": "fig:trigger"}
     elsewhere = {"dt = 0.02": Estimate(-2.21, 0.01)}
-    claim = Claim("exponent", **number, source="fig:trigger", elsewhere=elsewhere)
+    claim = Claim("exponent", **number, elsewhere=elsewhere)
     assert claim.details["at other choices"] == "dt = 0.02: -2.210 ± 0.010, reproduced"
     assert "at other choices" not in Claim("it", **number).details
-
-
-def test_the_number_is_told_with_its_limits():
     measured = Estimate(0.1, 0.02)
 
-    def told(within, **more):
-        details = Claim("it", "change", found=measured, within=within, **more).details
+    def told(within):
+        details = Claim("it", "change", source="fig.2", found=measured, within=within).details
         return details["found here"], details.get("its number")
 
     assert told(around(0.3, 0.01)) == ("change 0.100 ± 0.020", "0.3")
@@ -143,46 +135,36 @@ def test_the_deviation_that_decides_need_not_be_the_largest(deviations, errors, 
     assert Claim("it fits", **in_plot("rods", found, 5.0), source="fig.2").verdict == verdict
 
 
-def test_what_is_said_of_a_plot_is_what_was_measured():
+def test_what_is_said_of_a_plot_and_on_the_page_of_claims_is_what_was_measured():
     """A steep line an eye does not tell from the symbols, though it is far off beside them."""
     share = Estimate(0.00874, 0.00014)
-    words = in_plot("rho(x)", share, 1372.8)["words"]
-    assert words == (
+    assert in_plot("rho(x)", share, 1372.8)["words"] == (
         "rho(x): the symbol that decides is 0.874 ± 0.014 % of the plotted range away from the "
         "nearest point of the line (visible: 2 %); the largest vertical distance is 1372.8 "
         "standard errors"
     )
     assert "standard errors" not in in_plot("p(v)", share)["words"]
-
-
-def test_the_page_of_claims_says_it_in_these_words():
     told = (DOCS / "paper/claims.md").read_text(encoding="utf-8")
-    share = r"\S+: the symbol that decides is .*? away from the nearest point of the line \(vis"
-    assert len(re.findall(share, told)) == 9
-    for old in ("off by", "largest deviation", " 0.0 standard errors"):
-        assert old not in told
+    words = r"\S+: the symbol that decides is .*? away from the nearest point of the line \(vis"
+    assert len(re.findall(words, told)) == 9
 
 
-@pytest.mark.parametrize("number", [1, 4, 1000])
-def test_the_worst_of_many_is_as_rare_as_one(number):
+def test_sameness_is_confirmed_only_if_a_difference_would_have_been_seen():
     """Chance takes the largest of many beyond three enlarged errors as often as one beyond 3."""
-    _, error = worst("both", [Estimate(0.0, 1.0)] * number, 1.0)["found"]
-    each = norm.cdf(3 * error) - norm.cdf(-3 * error)
-    assert 1 - each**number == pytest.approx(2 * norm.sf(3), rel=2e-3)
-
-
-def test_sameness():
-    """Confirmed only if a difference beyond the limit would have been seen."""
+    for number in (1, 4, 1000):
+        _, error = worst("both", [Estimate(0.0, 1.0)] * number, 1.0)["found"]
+        each = norm.cdf(3 * error) - norm.cdf(-3 * error)
+        assert 1 - each**number == pytest.approx(2 * norm.sf(3), rel=2e-3)
     near, poor, off = Estimate(0.01, 0.002), Estimate(0.01, 0.05), Estimate(-0.3, 0.01)
 
     def verdict(*differences):
-        return Claim("equal", **worst("both", differences, 0.1)).verdict
+        return Claim("equal", source="fig.2", **worst("both", differences, 0.1)).verdict
 
-    assert verdict(near, near) == "confirmed"
-    assert verdict(near, poor) == "undecided"  # once confirmed: its difference is no standard error
-    assert verdict(near, poor, off) == "refuted"
+    assert verdict(near, near) == "reproduced"
+    assert verdict(near, poor) == "undecided"  # once it held: its difference is no standard error
+    assert verdict(near, poor, off) == "not reproduced"
     assert verdict(near, Estimate(np.nan, 0.1)) == "undecided"
-    assert verdict(off, Estimate(np.nan, 0.1)) == "refuted"
+    assert verdict(off, Estimate(np.nan, 0.1)) == "not reproduced"
     words = "both: -0.300 ± 0.010, the worst of 3 (limit 0.1); largest difference 30.0 standard"
     assert worst("both", [near, off, poor], 0.1)["words"] == f"{words} errors"
 

@@ -18,7 +18,7 @@ NASTY = [
     *("9" * 30, "9" * 5000),
 ]
 SMALL = {
-    "compare": ["--size", "4", "--duration", "300", "--amplitudes", "1", "--threads", "1"],
+    "compare": ["--size", "4", "--duration", "300", "--amplitude", "1", "--threads", "1"],
     "simulate": ["--size", "4", "--duration", "50", "--threads", "1"],
     "relax": ["--size", "4", "--duration", "1", "--replicas", "2", "--threads", "1"],
     "theory": ["--size", "4", "--restitution", "1", "--tolerance", "0.1"],

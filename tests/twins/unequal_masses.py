@@ -34,7 +34,9 @@ class Drifted(NamedTuple):
 def drift(y, v, masses, anchors, dt, law):
     """Move the rods of a chain; the first rod's mass is the unit of ``law.pull``."""
     size = len(y)
-    bodies = [Body(float(y[i]), float(v[i]), float(masses[0] / masses[i]), (i,)) for i in range(size)]
+    bodies = [
+        Body(float(y[i]), float(v[i]), float(masses[0] / masses[i]), (i,)) for i in range(size)
+    ]
     if law.high < math.inf:
         ends = Body(law.low, 0.0, 0.0, (-1,)), Body(law.high, 0.0, 0.0, (size,))
         bodies = [ends[0], *bodies, ends[1]]

@@ -13,24 +13,13 @@ def test_simulate_writes_what_the_function_returns(run, tmp_path):
     file = tmp_path / "new" / "run.nc"
     options = ["--size", 6, "--restitution", 0.9, "--duration", 30, "--warmup", 3, "--seed", 7]
     options += ["--time-step", 0.01, "--every", 0.5, "--replicas", 2, "--particles", "1,6"]
-    options += ["--observe", "widths, energy", "--stepper", "euler", "--threads", 1]
+    options += ["--observe", "widths, energy", "--threads", 1]
     options += ["--method", "contact-dynamics", "--checkpoint", tmp_path / "state"]
     done = run("simulate", *options, "--output", file)
     assert done.returncode == 0, done.stderr
-    expected = simulate(
-        Chain(size=6, restitution=0.9),
-        duration=30.0,
-        warmup=3.0,
-        time_step=0.01,
-        every=0.5,
-        replicas=2,
-        particles=[1, 6],
-        observe=["widths", "energy"],
-        method="contact-dynamics",
-        stepper="euler",
-        seed=7,
-        progress=False,
-    )
+    how = {"duration": 30.0, "warmup": 3.0, "time_step": 0.01, "every": 0.5, "replicas": 2}
+    how |= {"particles": [1, 6], "observe": ["widths", "energy"], "seed": 7, "progress": False}
+    expected = simulate(Chain(size=6, restitution=0.9), method="contact-dynamics", **how)
     xr.testing.assert_identical(load(file), expected)
     assert f"completed at t = {expected.attrs['end_time']:g} T, time step 0.01 T" in done.stdout
     assert "error of the smallest W_v due to the time step" in done.stdout

@@ -2,55 +2,53 @@
 
 import json
 import os
-import shlex
-import subprocess
-import sys
 import warnings
+from contextlib import nullcontext
 from dataclasses import asdict
 from itertools import product
 
 import pytest
 from forked import command, forked
 from rich.table import Table
+from small_sweeps import AtOnce
 
+from crazybilliards.apps.commands import sweep
 from crazybilliards.apps.commands.answers import print_table
-from crazybilliards.comparison.side_by_side.grid_deviations import deviations
+from crazybilliards.comparison.distances import deviations
 from crazybilliards.comparison.side_by_side.relaxation import label_distances
 from crazybilliards.model import load
 from crazybilliards.model.locks import locked
 
 SMALL = {
-    "compare": ["--size", "4", "--duration", "300", "--amplitudes", "10"],
-    "relax": ["--size", "4", "--duration", "1", "--replicas", "2", "--every", "0.5"],
+    "compare": ["--size", "4", "--duration", "300", "--amplitude", "10"],
+    "relax": ["--size", "4", "--duration", "1", "--replicas", "2", "--every", "1"],
     "reproduce": ["1"],
     "simulate": ["--size", "4", "--duration", "100"],
     "theory": ["equilibrium", "--size", "4"],
 }
 FOLDERS = ["compare", "relax", "reproduce", "theory"]
-THEORY = ["theory", *SMALL["theory"]]
+ALONE = ["reproduce", "simulate", "sweep", "theory"]  # quick enough to be done apart
 
 
 @pytest.fixture
 def arguments(tmp_path):
-    """Give a small job of a command."""
+    """Give a small job of a command; the sweep is that of one case in one process."""
     grid = tmp_path / "grid.toml"
     grid.write_text("[grid]\nsize = [3]\n[simulate]\nduration = 100\n")
-    return lambda name: [name, *(SMALL | {"sweep": [grid]})[name]]
-
-
-@pytest.mark.parametrize("name", [*SMALL, "sweep"])
-def test_an_empty_name_is_no_folder(name, arguments, refused, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    refused("an empty name", *arguments(name), "--output", "")
+    return lambda name: [name, *(SMALL | {"sweep": [grid, "--processes", "1"]})[name]]
 
 
 @pytest.mark.posix
-@pytest.mark.parametrize("name", [*FOLDERS, "sweep"])
-def test_a_link_that_leads_nowhere_is_no_folder(name, arguments, refused, tmp_path):
-    link = tmp_path / "link"
+@pytest.mark.parametrize("name", [*SMALL, "sweep"])
+def test_an_empty_name_a_dead_link_and_a_file_are_no_folders(name, arguments, refused, tmp_path):
+    refused("an empty name", *arguments(name), "--output", "")
+    link, file = tmp_path / "link", tmp_path / "file"
     link.symlink_to(tmp_path / "nothing")
+    file.write_text("mine")
     for place in (link, link / "below"):
         refused(f"{link} is a link that leads nowhere", *arguments(name), "--output", place)
+    refused(f"{file} is a file", *arguments(name), "--output", file)
+    assert file.read_text() == "mine"
 
 
 @pytest.mark.parametrize("name", [*FOLDERS, "sweep"])
@@ -72,44 +70,28 @@ def test_a_file_belongs_to_one_process_at_a_time(arguments, refused, run, tmp_pa
     assert sorted(path.name for path in tmp_path.iterdir()) == ["grid.toml", "run.nc"]
 
 
-@pytest.mark.posix
-def test_a_reader_that_goes_costs_no_work(tmp_path):
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="needs a device that is full")
+def test_a_reader_that_goes_and_a_full_disk_cost_no_work(arguments, tmp_path):
     reading, writing = os.pipe()
     os.close(reading)
-    with open(writing, "w") as nobody:
-        done = forked(command(*THEORY, "--output", tmp_path), stdout=nobody)
-    assert (done.returncode, done.stderr) == (141, "")
-    assert {path.name for path in tmp_path.iterdir()} == {"theory.nc", "density.png", "profile.png"}
-
-
-@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="needs a device that is full")
-def test_standard_output_to_a_full_disk_is_one_line():
-    with open("/dev/full", "w") as full:
-        done = forked(command(*THEORY), stdout=full)
-    assert done.returncode == 2
-    assert done.stderr == ("crazybilliards: error: standard output: No space left on device\n")
+    full = "crazybilliards: error: standard output: No space left on device\n"
+    for output, ends in ((writing, (141, "")), ("/dev/full", (2, full))):
+        with open(output, "w") as stdout:
+            done = forked(command(*arguments("theory"), "--output", tmp_path), stdout=stdout)
+        assert (done.returncode, done.stderr) == ends
+        for name in ("theory.nc", "density.png", "profile.png"):
+            (tmp_path / name).unlink()
 
 
 @pytest.mark.posix
 @pytest.mark.parametrize(
-    ("name", "closed"),
-    [
-        *product(["reproduce", "simulate", "sweep", "theory"], [(0, 1, 2)]),
-        *product(["theory"], [(1,), (2,)]),
-    ],
+    ("name", "closed"), [*product(ALONE, [(0, 1, 2)]), ("theory", (1,)), ("theory", (2,))]
 )
 def test_a_closed_stream_costs_no_work(name, closed, arguments, tmp_path):
     output = tmp_path / ("run.nc" if name == "simulate" else "results")
     done = forked(command(*arguments(name), "--output", output), closed=closed)
     assert (done.returncode, done.stderr) == (0, "")
     assert output.exists()
-
-
-@pytest.mark.posix
-def test_a_program_that_starts_with_closed_streams_does_its_work(tmp_path):
-    line = shlex.join([sys.executable, "-m", "crazybilliards", *THEORY, "--output", str(tmp_path)])
-    assert subprocess.run(f"{line} >&- 2>&- <&-", shell=True, check=False).returncode == 0
-    assert (tmp_path / "theory.nc").exists()
 
 
 def test_numbers_in_tables_are_never_cut(monkeypatch, capsys):
@@ -138,8 +120,9 @@ def test_a_long_title_and_caption_use_the_width_of_the_terminal(monkeypatch, cap
 
 @pytest.mark.compiled
 @pytest.mark.parametrize("name", [*SMALL, "sweep"])
-def test_json_is_one_object_with_every_file_written(name, arguments, run, tmp_path):
+def test_json_is_one_object_with_every_file_written(name, arguments, run, tmp_path, monkeypatch):
     """Numbers in full, as the functions return them; nothing else on standard output."""
+    monkeypatch.setattr(sweep, "engine", lambda *_: nullcontext(AtOnce()))
     folder = tmp_path / "results"
     output = tmp_path / "run.nc" if name == "simulate" else folder
     done = run(*arguments(name), "--json", "--output", output)
@@ -160,16 +143,22 @@ def test_json_is_one_object_with_every_file_written(name, arguments, run, tmp_pa
         assert facts["velocity_width_model_error"] == facts["density_model_error"] == 0
     if name == "compare":
         tree = load(folder / "comparison.nc")
-        [found] = facts["density_deviations"]
-        assert found["exact"] == asdict(deviations(tree)["amplitude_10"]["exact"])
+        [exact] = [row for row in facts["deviations"] if row["theory"] == "exact"]
+        found = deviations(tree["amplitude_10"])["exact"]
+        assert exact["amplitude"] == 10
+        for name, value in asdict(found.density).items():
+            assert exact[f"density_{name}"] == value
+        for name, value in found.velocity_width._asdict().items():
+            assert exact[f"velocity_width_{name}"] == value
     if name == "relax":
-        assert facts["distances"] == label_distances(load(folder / "relaxation.nc"))
+        found = {row["theory"]: row["distance"] for row in facts["distances"]}
+        assert found == label_distances(load(folder / "relaxation.nc"))
 
 
 def test_a_warning_is_one_plain_line(run):
     with warnings.catch_warnings():
         warnings.simplefilter("default")
-        done = run("compare", "--size", "3", "--amplitudes", "0.1", "--duration", "2000")
+        done = run("compare", "--size", "3", "--amplitude", "0.1", "--duration", "2000")
     assert done.returncode == 0
     lines = [line for line in done.stderr.splitlines() if "compiling" not in line]
     (line,) = lines

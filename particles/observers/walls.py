@@ -1,0 +1,51 @@
+"""What the rods of a gas in a box do to its walls."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from crazybilliards.particles.laws.avalanche import Tally
+from crazybilliards.particles.observers.base import Array, Averaged, Integers, Snapshots, Variables
+from crazybilliards.particles.run import Run
+
+
+class Walls(Averaged):
+    """wall_force and wall_collision_rate: the momentum that each wall receives, and collisions.
+
+    Both are per time. In one dimension the force is the pressure of the gas. Without springs and at
+    e = 1 it is exactly L T/(X - 2RL), for any masses. A collision with rods that rest at a wall
+    pushes the wall, too, but is none with the wall.
+    """
+
+    name = "walls"
+    gives = ("wall_force", "wall_collision_rate")
+    along = ("wall",)
+    meets_walls = True
+    ensemble = False
+    knows = frozenset({"box", "wall_restitution", "mass_ratio"})
+
+    def shape(self, run: Run) -> tuple[int, ...]:
+        return 2, 2
+
+    def prepare(self, run: Run, copies: int) -> None:
+        super().prepare(run, copies)
+        self.mass = run.chain.mass
+        self.current = np.zeros((2, 2))
+
+    def tally(self, tally: Tally) -> Tally:
+        return tally._replace(struck=self.current)
+
+    def observe(self, snapshots: Snapshots) -> None:
+        self.sums[snapshots.block] += self.current
+        self.current[...] = 0  # in place: kernels write into the same array
+
+    def report(self, counts: Integers) -> Variables:
+        interval = self.schedule.stride * self.schedule.time_step
+        quantities = {
+            "wall_force": lambda sums: self.mass / interval * sums[0],
+            "wall_collision_rate": lambda sums: sums[1] / interval,
+        }
+        return self.averages(quantities, counts, "wall")
+
+    def coordinates(self) -> dict[str, Array]:
+        return {"wall": np.array([1.0, 2.0])}

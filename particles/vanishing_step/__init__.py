@@ -1,1 +1,0 @@
-"""The limit of a vanishing time step, from coupled runs at several steps."""
