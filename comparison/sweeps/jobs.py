@@ -31,15 +31,15 @@ _STEPS_A_SECOND = 1e8  # particle steps, to compare the work of theories with th
 class Job:
     """A function of a chain that a sweep can compute."""
 
-    function: Callable[..., xr.Dataset]  # of a chain and settings, each case with its own seed
-    # The computing time in particle steps, of the same arguments. It raises the ValueError that the
-    # function would raise for a wrong argument, without its work.
+    function: Callable[..., xr.Dataset]  #: of a chain and settings, each case with its own seed
+    #: The computing time in particle steps, of the same arguments. It raises the ValueError that the
+    #: function would raise for a wrong argument, without its work.
     work: Callable[..., float]
-    settings: Mapping[str, Any]  # names and defaults
-    # Fingerprint of the source code that the result depends on. It is computed when this module is
-    # imported, together with that code: an edit during an interactive session does not change it.
+    settings: Mapping[str, Any]  #: names and defaults
+    #: Fingerprint of the source code that the result depends on. It is computed when this module is
+    #: imported, together with that code: an edit during an interactive session does not change it.
     source: str
-    # In what averages over time are too short for the memory of the chain, or nothing.
+    #: In what averages over time are too short for the memory of the chain, or nothing.
     too_short: Callable[..., str] = lambda chain, **settings: ""
 
 

@@ -39,13 +39,13 @@ class Runs:
     among them.
     """
 
-    name: str  # their cases go by NAME/0, NAME/1, ...
+    name: str  #: their cases go by NAME/0, NAME/1, ...
     chain: Chain
-    # By quality: the number of runs and their settings, {"quick": (4, {"duration": 500.0}),
-    # "full": (8, {"duration": 2e4})} say.
+    #: By quality: the number of runs and their settings, {"quick": (4, {"duration": 500.0}),
+    #: "full": (8, {"duration": 2e4})} say.
     granted: Granted
-    settings: Mapping[str, Any]  # which are the same at both qualities
-    job: str = "simulate"  # or "simulate_limit" for the limit of a vanishing time step
+    settings: Mapping[str, Any]  #: which are the same at both qualities
+    job: str = "simulate"  #: or "simulate_limit" for the limit of a vanishing time step
 
     def cases(self, quality: Quality) -> Cases:
         """Return the cases ``NAME/0``, ``NAME/1``, ..."""

@@ -33,14 +33,14 @@ def all_of(needed: Iterable[Needed], quality: Quality) -> Cases:
 class Study:
     """A question put to simulations and theories, answered by a picture and by checked claims."""
 
-    number: int  # of the figure in the paper, arXiv:1404.7460, that it computes anew
-    name: str  # short, for the command line and for files
-    title: str  # one line
-    caption: str  # what a reader needs to understand the picture
-    draw: Callable[[Results], Figure]  # of the results of the cases, by the same names
-    # The simulations and theories that it needs, by names of its own.
+    number: int  #: of the figure in the paper, arXiv:1404.7460, that it computes anew
+    name: str  #: short, for the command line and for files
+    title: str  #: one line
+    caption: str  #: what a reader needs to understand the picture
+    draw: Callable[[Results], Figure]  #: of the results of the cases, by the same names
+    #: The simulations and theories that it needs, by names of its own.
     cases: Callable[[Quality], Cases] = lambda quality: {}
-    # What is claimed beside what was found.
+    #: What is claimed beside what was found.
     claims: Callable[[Results], list[Claim]] = lambda results: []
 
     @property

@@ -96,18 +96,18 @@ def around(value: float, limit: float) -> Interval:
 class Claim:
     """One statement of the paper and what became of it."""
 
-    statement: str  # in our own words
-    quantity: str = ""  # what the number is, with further numbers; it is written before it
+    statement: str  #: in our own words
+    quantity: str = ""  #: what the number is, with further numbers; it is written before it
     _: KW_ONLY
-    source: str  # labels of the paper's source, "fig. 3, eq:power_law"
-    # The number that decides, with its standard error. Deviations from a line are shares of the
-    # plotted range. The error of the worst of many differences is the enlarged one.
+    source: str  #: labels of the paper's source, "fig. 3, eq:power_law"
+    #: The number that decides, with its standard error. Deviations from a line are shares of the
+    #: plotted range. The error of the worst of many differences is the enlarged one.
     found: Estimate
-    within: Interval = POSITIVE  # where it has to lie: above zero, or around a number
-    words: str = ""  # written in place of quantity and number
-    elsewhere: Mapping[str, Estimate] = field(default_factory=dict)  # by what was chosen instead
-    ours: str = ""  # parameters that the paper does not give and that we chose; only listed
-    reason: str = ""  # why it does not hold, if it does not
+    within: Interval = POSITIVE  #: where it has to lie: above zero, or around a number
+    words: str = ""  #: written in place of quantity and number
+    elsewhere: Mapping[str, Estimate] = field(default_factory=dict)  #: by what was chosen instead
+    ours: str = ""  #: parameters that the paper does not give and that we chose; only listed
+    reason: str = ""  #: why it does not hold, if it does not
 
     @property
     def verdict(self) -> Verdict:
