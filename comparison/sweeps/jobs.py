@@ -32,8 +32,8 @@ class Job:
     """A function of a chain that a sweep can compute."""
 
     function: Callable[..., xr.Dataset]  #: of a chain and settings, each case with its own seed
-    #: The computing time in particle steps, of the same arguments. It raises the ValueError that the
-    #: function would raise for a wrong argument, without its work.
+    #: The computing time in particle steps, of the same arguments. It raises the ValueError that
+    #: the function would raise for a wrong argument, without its work.
     work: Callable[..., float]
     settings: Mapping[str, Any]  #: names and defaults
     #: Fingerprint of the source code that the result depends on. It is computed when this module is
