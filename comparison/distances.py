@@ -210,25 +210,9 @@ def distances_in_plot(
 ) -> Array:
     """Distances of symbols from a line in the plane of a plot, shape of ``x``.
 
-    Each axis is in units of its range. For logarithmic axes give logarithms.
-
-    Parameters
-    ----------
-    x, y
-        The symbols.
-    line_x, line_y
-        Points of the line, in order, dense enough to be joined by straight pieces.
-    x_range, y_range
-        Range of the plot; None: from the least to the greatest symbol.
-
-    Examples
-    --------
-    >>> x = np.linspace(0, 1, 11)
-    >>> unit = (0.0, 1.0)
-    >>> distances_in_plot([0.5], [0.6], x, 0 * x, x_range=unit, y_range=(0, 2))
-    array([0.3])
-    >>> distances_in_plot([0.5], [0.6], x, x, x_range=unit, y_range=unit).round(4)  # 0.1 sin 45
-    array([0.0707])
+    Each axis is in units of its range, by default from the least to the greatest symbol. The line
+    is given by points in order, dense enough to be joined by straight pieces. For logarithmic axes
+    give logarithms.
     """
     x, y, line_x, line_y = (np.asarray(each, dtype=float) for each in (x, y, line_x, line_y))
     symbols, corners = (

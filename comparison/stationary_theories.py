@@ -137,15 +137,9 @@ def theories(chain: Chain) -> xr.Dataset:
     >>> table.takes.values
     array([False, False,  True,  True])
     """
-    table = _table(chain, {})
-    best = _choose(table, chain, "velocity_width").theory.name if table.takes.any() else ""
-    return table.assign_attrs(best=best)
-
-
-def _table(chain: Chain, settings: Mapping[str, Any]) -> xr.Dataset:
     rows = []
     for theory in THEORIES.values():
-        if reason := theory.refusal(chain, settings):
+        if reason := theory.refusal(chain):
             rows.append((False, reason, *Accuracy(), math.nan))
         else:
             rows.append((True, "", *theory.accuracy(chain), theory.seconds(chain)))
@@ -153,7 +147,9 @@ def _table(chain: Chain, settings: Mapping[str, Any]) -> xr.Dataset:
         name: ("theory", np.array(values), {"long_name": title, "units": unit})
         for (name, title, unit), values in zip(_COLUMNS, zip(*rows, strict=True), strict=True)
     }
-    return xr.Dataset(variables, {"theory": list(THEORIES)})
+    table = xr.Dataset(variables, {"theory": list(THEORIES)})
+    best = choose_theory(chain).theory.name if table.takes.any() else ""
+    return table.assign_attrs(best=best)
 
 
 @public
@@ -222,19 +218,20 @@ def choose_theory(
 ) -> Choice:
     """Choose the theory for :func:`best_theory` without solving it."""
     check_choice("quantity", quantity, Accuracy._fields)
-    return _choose(_table(chain, settings or {}), chain, quantity)
-
-
-def _choose(table: xr.Dataset, chain: Chain, quantity: str) -> Choice:
-    reasons = zip(table.theory.values.tolist(), table.reason.values.tolist(), strict=True)
-    refusals = {name: reason or THEORIES[name].lacks(chain, quantity) for name, reason in reasons}
+    refusals = {
+        name: theory.refusal(chain, settings) or theory.lacks(chain, quantity)
+        for name, theory in THEORIES.items()
+    }
     if all(refusals.values()):
         if len(set(refusals.values())) == 1:  # it has no steady state
             raise ValueError(refusals.popitem()[1])
         listed = "; ".join(f"{name}: {reason}" for name, reason in refusals.items())
         raise ValueError(f"no theory takes this chain for its {quantity}: {listed}")
-    stated = zip(refusals, table[f"{quantity}_model_error"].values.tolist(), strict=True)
-    errors = {name: error for name, error in stated if not refusals[name]}
+    errors: dict[str, float] = {
+        name: getattr(theory.accuracy(chain), quantity)
+        for name, theory in THEORIES.items()
+        if not refusals[name]
+    }
     best = min(errors, key=lambda name: (math.isnan(errors[name]), errors[name]))
     named = quantity.replace("_", " ")
     listed = ", ".join(

@@ -27,7 +27,7 @@ cb.animate | any more: film(tree) films what compare_relaxation returns
 cb.fit_growth | ; from crazybilliards.reproduction.fits import fit_growth
 cb.equilibrium(chain, gap=1) | gap is an argument of Chain
 cb.Chain(e=0.8, L=30, sise=3) | arguments 'e' (restitution is e ..., 'L' (size is ..., 'sise' (did
-cb.Chain(e=0.8, foo=1) | arguments 'e' (restitution is e of the paper), 'foo'; it takes by name size, rest
+cb.Chain(e=0.8, foo=1) | arguments 'e' (restitution is e ..., 'foo'; it takes by name size, rest
 chain.replace(e=0.8, g=1) | got 'e' (restitution is e of the paper), 'g' (gap is g of the paper)
 """
 

@@ -155,22 +155,11 @@ def serve(
     open_to_network: bool = False,
     hosts: Collection[str] = (),
 ) -> None:
-    """Serve the page until Ctrl-C.
+    """Serve the page until Ctrl-C, which raises KeyboardInterrupt; port 0 is any that is free.
 
-    Parameters
-    ----------
-    port
-        0 to 65535; 0: any that is free.
-    address
-        An IPv4 address or a name of this machine.
-    open_browser
-        Whether to open the page.
-    open_to_network
-        Whether the address may be one that other machines reach.
-    hosts
-        More names under which it answers, such as that of a hub that forwards requests to it.
-
-    Raises ValueError if one of them is impossible, and KeyboardInterrupt on Ctrl-C.
+    ``address`` is an IPv4 address or a name of this machine, which other machines may reach only if
+    it is ``open_to_network``. ``hosts`` are more names under which the page answers, such as that
+    of a hub that forwards requests. A ValueError says which of them is impossible.
     """
     number = _look_up(address)
     if not 0 <= port <= 65535:

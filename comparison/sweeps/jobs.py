@@ -29,30 +29,17 @@ _STEPS_A_SECOND = 1e8  # particle steps, to compare the work of theories with th
 
 @dataclass(frozen=True)
 class Job:
-    """A function of a chain that a sweep can compute.
+    """A function of a chain that a sweep can compute."""
 
-    Attributes
-    ----------
-    function
-        ``function(chain, **settings)`` returns a result in the common vocabulary. Each case
-        replaces a setting ``seed`` by its own seed.
-    work
-        ``work(chain, **settings)`` returns the computing time in particle steps. It raises the
-        ValueError that the function would raise for a wrong argument, without its work.
-    settings
-        The names of the settings with their defaults.
-    too_short
-        In what averages over time are too short for the memory of the chain, or nothing.
-    source
-        Fingerprint of the source code that the result depends on. It is computed when this module
-        is imported, together with that code. A later edit during a long interactive session
-        therefore does not change it.
-    """
-
-    function: Callable[..., xr.Dataset]
+    function: Callable[..., xr.Dataset]  #: of a chain and settings, each case with its own seed
+    #: The computing time in particle steps, of the same arguments. It raises the ValueError that
+    #: the function would raise for a wrong argument, without its work.
     work: Callable[..., float]
-    settings: Mapping[str, Any]
+    settings: Mapping[str, Any]  #: names and defaults
+    #: Fingerprint of the source code that the result depends on. It is computed when this module is
+    #: imported, together with that code: an edit during an interactive session does not change it.
     source: str
+    #: In what averages over time are too short for the memory of the chain, or nothing.
     too_short: Callable[..., str] = lambda chain, **settings: ""
 
 

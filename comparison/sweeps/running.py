@@ -114,19 +114,10 @@ def compute_missing(
     The order costs little: with the work of the figures of the paper 2 % of the time in two
     processes and 17 % in eight.
 
-    Parameters
-    ----------
-    workers
-        Gives the executor, and is entered if a case is missing. If it gives None, the cases are
-        computed in this process, in ``threads`` threads.
-    tell
-        Is called before the computation, when it is known how many cases the folder holds.
-
-    Returns
-    -------
-    Outcome
-        Also if Ctrl-C, or workers that died, ended it early. Other errors are those of
-        :func:`run_cases`.
+    ``workers`` is entered if a case is missing. If it gives None and no executor, the cases are
+    computed in this process, in ``threads`` threads. ``tell`` is called before, when it is known
+    how many cases the folder holds. The outcome is also returned if Ctrl-C, or workers that died,
+    ended it early. Other errors are those of :func:`run_cases`.
     """
     given, work = _checked(cases, progress)
     make_folder(folder)

@@ -37,27 +37,15 @@ class Runs:
 
     They differ in their random numbers only. Methods that take ``results`` look for their own runs
     among them.
-
-    Attributes
-    ----------
-    name
-        Their cases go by ``NAME/0``, ``NAME/1``, ...
-    chain
-        The chain.
-    granted
-        By quality: the number of runs and their settings, ``{"quick": (4, {"duration": 500.0}),
-        "full": (8, {"duration": 2e4})}`` say.
-    settings
-        Settings that are the same at both qualities.
-    job
-        ``"simulate"``, or ``"simulate_limit"`` for the limit of a vanishing time step.
     """
 
-    name: str
+    name: str  #: their cases go by NAME/0, NAME/1, ...
     chain: Chain
+    #: By quality: the number of runs and their settings, {"quick": (4, {"duration": 500.0}),
+    #: "full": (8, {"duration": 2e4})} say.
     granted: Granted
-    settings: Mapping[str, Any]
-    job: str = "simulate"
+    settings: Mapping[str, Any]  #: which are the same at both qualities
+    job: str = "simulate"  #: or "simulate_limit" for the limit of a vanishing time step
 
     def cases(self, quality: Quality) -> Cases:
         """Return the cases ``NAME/0``, ``NAME/1``, ..."""

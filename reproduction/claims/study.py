@@ -31,30 +31,16 @@ def all_of(needed: Iterable[Needed], quality: Quality) -> Cases:
 
 @dataclass(frozen=True, kw_only=True)
 class Study:
-    """A question put to simulations and theories, answered by a picture and by checked claims.
+    """A question put to simulations and theories, answered by a picture and by checked claims."""
 
-    Attributes
-    ----------
-    number
-        Of the figure in the paper, arXiv:1404.7460, that it computes anew.
-    name
-        A short name for the command line and for files.
-    title, caption
-        What it shows: one line, and what a reader needs to understand the picture.
-    cases
-        ``cases(quality)`` gives the simulations and theories it needs, by names of its own.
-    draw
-        ``draw(results)`` gives the picture, results being those of the cases by the same names.
-    claims
-        ``claims(results)`` sets what is claimed beside what was found.
-    """
-
-    number: int
-    name: str
-    title: str
-    caption: str
-    draw: Callable[[Results], Figure]
+    number: int  #: of the figure in the paper, arXiv:1404.7460, that it computes anew
+    name: str  #: short, for the command line and for files
+    title: str  #: one line
+    caption: str  #: what a reader needs to understand the picture
+    draw: Callable[[Results], Figure]  #: of the results of the cases, by the same names
+    #: The simulations and theories that it needs, by names of its own.
     cases: Callable[[Quality], Cases] = lambda quality: {}
+    #: What is claimed beside what was found.
     claims: Callable[[Results], list[Claim]] = lambda results: []
 
     @property

@@ -94,41 +94,20 @@ def around(value: float, limit: float) -> Interval:
 
 @dataclass(frozen=True)
 class Claim:
-    """One statement of the paper and what became of it.
+    """One statement of the paper and what became of it."""
 
-    Attributes
-    ----------
-    statement
-        What is claimed, in our own words.
-    quantity
-        What the number is, with further numbers; it is written before it.
-    found
-        The number that decides, with its standard error. Deviations from a line are shares of the
-        plotted range. The error of the worst of many differences is the enlarged one.
-    within
-        Where it has to lie: above zero, or :func:`around` a number.
-    source
-        Where the paper says so: labels of its source, ``fig. 3, eq:power_law``.
-    words
-        What is written in place of quantity and number.
-    elsewhere
-        The same number at other choices, by what was chosen.
-    ours
-        Parameters that the paper does not give and that we chose. They are listed only.
-    reason
-        Why it does not hold, if it does not.
-    """
-
-    statement: str
-    quantity: str = ""
+    statement: str  #: in our own words
+    quantity: str = ""  #: what the number is, with further numbers; it is written before it
     _: KW_ONLY
-    source: str
+    source: str  #: labels of the paper's source, "fig. 3, eq:power_law"
+    #: The number that decides, with its standard error. Deviations from a line are shares of the
+    #: plotted range. The error of the worst of many differences is the enlarged one.
     found: Estimate
-    within: Interval = POSITIVE
-    words: str = ""
-    elsewhere: Mapping[str, Estimate] = field(default_factory=dict)
-    ours: str = ""
-    reason: str = ""
+    within: Interval = POSITIVE  #: where it has to lie: above zero, or around a number
+    words: str = ""  #: written in place of quantity and number
+    elsewhere: Mapping[str, Estimate] = field(default_factory=dict)  #: by what was chosen instead
+    ours: str = ""  #: parameters that the paper does not give and that we chose; only listed
+    reason: str = ""  #: why it does not hold, if it does not
 
     @property
     def verdict(self) -> Verdict:
@@ -206,15 +185,9 @@ def furthest_in_plot(deviations: Array, errors: Array) -> Estimate:
 def in_plot(quantity: str, distance: Estimate, vertical: float | None = None) -> Found:
     """Return what decides whether an eye could see that a curve misses the points.
 
-    Parameters
-    ----------
-    quantity
-        Which points, which curve, and what axes the plot has.
-    distance
-        That of a symbol from the nearest point of the curve, as a share of the plotted range, with
-        its standard error; of several symbols :func:`furthest_in_plot`.
-    vertical
-        The largest vertical distance in standard errors, which may be that of another symbol.
+    ``distance`` is that of a symbol from the nearest point of the curve, as a share of the plotted
+    range; of several symbols :func:`furthest_in_plot`. ``vertical``, the largest vertical distance
+    in standard errors, may be that of another symbol.
     """
     percent = Estimate(100 * distance.value, 100 * distance.error)
     words = (

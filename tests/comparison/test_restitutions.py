@@ -129,9 +129,9 @@ def test_pictures(tree):
 
 def test_any_parameter_may_vary():
     """The theories are those of elastic chains only if all are elastic."""
-    tree = compare(CHAIN.replace(restitution=0.9), {"amplitude": [1, 2]}, duration=200, **QUIET)
-    assert list(tree.children) == ["amplitude_1", "amplitude_2"]
-    assert "kinetic_equation" in tree["amplitude_1"]
+    tree = compare(CHAIN.replace(restitution=0.9), {"amplitude": [2]}, duration=200, **QUIET)
+    assert list(tree.children) == ["amplitude_2"]
+    assert "kinetic_equation" in tree["amplitude_2"]
     tree = compare(CHAIN, {"size": [10, 12]}, duration=200, **QUIET)
     assert "exact" in tree["size_12"]
     titles = [ax.get_title(loc="left") for ax in draw_displacement(tree).axes]

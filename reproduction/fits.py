@@ -1,0 +1,242 @@
+"""Fits that the paper makes to points: growing energies, scaling, exponents, and tails."""
+
+from __future__ import annotations
+
+from functools import partial
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.optimize import minimize_scalar
+
+from crazybilliards.comparison.fits.fit import Fit, check_points, least_squares, root_mean_square
+from crazybilliards.model.arrays import Array
+from crazybilliards.model.checks import check_integer, check_real
+
+_OVERFLOW = 700.0  # of exp
+
+
+def fit_singularity(time: ArrayLike, energy: ArrayLike) -> Fit:
+    """Fit E(t) = C (t_c - t)^-a to an energy that grows towards a divergence after the last time.
+
+    ``scale``, ``time`` and ``exponent`` are C, t_c and a. The errors follow from the scatter about
+    the fit in ln E, whose root mean square is ``misfit``. The energy of one run fluctuates about
+    its mean growth, so the scatter between independent runs is a better measure. A ValueError says
+    that no such law fits: t_c of an exponential growth, say, is at infinity.
+    """
+    t, log_energy = _logarithm(time, energy, least=5)
+    last, span = float(t.max()), float(np.ptp(t))
+
+    # t_c = last + span exp(q) lies behind the data for every q.
+    def model(t: Array, intercept: float, exponent: float, q: float) -> Array:
+        return np.asarray(intercept - exponent * np.log((last - t) / span + np.exp(q)))
+
+    start = (float(log_energy[0]), 3.0, -2.0)
+    values, covariance, quality = least_squares(
+        "finite-time singularity", model, (t, log_energy), start
+    )
+    intercept, exponent, q = map(float, values)
+    log_scale = intercept + exponent * float(np.log(span))
+    if not (-50 < q < 5 and exponent > 0 and abs(log_scale) < _OVERFLOW):
+        raise ValueError("no finite-time singularity fits: its time runs away")
+    errors = np.sqrt(np.diag(covariance))
+    return Fit(
+        {
+            "scale": float(np.exp(log_scale)),
+            "time": last + span * float(np.exp(q)),
+            "exponent": exponent,
+        },
+        {"time": span * float(np.exp(q) * errors[2]), "exponent": float(errors[1])},
+        _singularity,
+        quality,
+    )
+
+
+def _singularity(t: Array, scale: float, time: float, exponent: float) -> Array:
+    return np.asarray(scale * (time - t) ** -exponent)
+
+
+def fit_growth(time: ArrayLike, energy: ArrayLike) -> Fit:
+    """Fit E(t) = C exp(rate t) to an energy: ``scale`` is C, and ``rate`` is in 1/T.
+
+    It is a straight line through ln E, with ``rate_error`` and ``misfit`` as in
+    :func:`fit_singularity`.
+    """
+    t, log_energy = _logarithm(time, energy, least=3)
+    (rate, intercept), covariance = np.polyfit(t, log_energy, 1, cov="unscaled")
+    residuals = log_energy - intercept - rate * t
+    spread = float(np.sqrt(covariance[0, 0] * (residuals @ residuals) / (t.size - 2)))
+    return Fit(
+        {"scale": float(np.exp(intercept)), "rate": float(rate)},
+        {"rate": spread},
+        _growth,
+        {"misfit": root_mean_square(residuals)},
+    )
+
+
+def _growth(t: Array, scale: float, rate: float) -> Array:
+    return np.asarray(scale * np.exp(rate * t))
+
+
+def _logarithm(time: ArrayLike, energy: ArrayLike, least: int) -> tuple[Array, Array]:
+    """Return the times and ln E, if there are enough and all energies are positive."""
+    t, E = check_points(time=time, energy=energy)
+    if t.size < least or E.min() <= 0:
+        raise ValueError(f"the fit needs at least {least} energies, all of them positive")
+    if np.ptp(t) == 0:
+        raise ValueError(f"the fit needs energies at more than one time, got time={t[0]:g} only")
+    return t, np.log(E)
+
+
+def fit_scaling(x: ArrayLike, y: ArrayLike, error: ArrayLike) -> Fit:
+    """Fit y = B x^a to positive points with standard errors: ``scale`` B and ``exponent`` a.
+
+    Their errors follow from those of the points, and are larger by the square root of
+    ``chi_square`` if the points scatter more than their errors. ``chi_square`` is the sum of the
+    squared residuals in standard errors over the degrees of freedom, nan if there are none. Far
+    above 1 it means that the points follow no power law.
+    """
+    x, y, error = check_points(x=x, y=y, error=error)
+    if x.size < 2 or np.min([x, y, error]) <= 0:
+        raise ValueError("a power law needs at least two points, positive, with positive errors")
+    if np.ptp(x) == 0:
+        raise ValueError(f"a power law needs more than one x, got x={x[0]:g} only")
+    relative = error / y
+
+    def line(log_x: Array, intercept: float, slope: float) -> Array:
+        return np.asarray(intercept + slope * log_x)
+
+    # Centred, so that the two parameters are nearly independent.
+    middle = float(np.average(np.log(x), weights=relative**-2))
+    points = np.log(x) - middle, np.log(y)
+    (intercept, slope), covariance, quality = least_squares(
+        "power law", line, points, (0.0, 0.0), relative
+    )
+    scale = float(np.exp(intercept - slope * middle))
+    variance = covariance[0, 0] + middle**2 * covariance[1, 1] - 2 * middle * covariance[0, 1]
+    return Fit(
+        {"scale": scale, "exponent": float(slope)},
+        {"scale": scale * float(np.sqrt(variance)), "exponent": float(np.sqrt(covariance[1, 1]))},
+        _power_law,
+        quality,
+    )
+
+
+def _power_law(x: Array, scale: float, exponent: float) -> Array:
+    return np.asarray(scale * x**exponent)
+
+
+def fit_exponential(restitution: ArrayLike, y: ArrayLike, error: ArrayLike) -> Fit:
+    """Fit y = a exp(-rate (1 - e)) + d, the paper's fit of -nu against the restitution.
+
+    ``amplitude``, ``rate`` and ``offset`` are a, the paper's lambda, and d. Their errors and
+    ``chi_square`` are as in :func:`fit_scaling`.
+    """
+    e, y, error = check_points(restitution=restitution, y=y, error=error)
+    if e.size < 3:
+        raise ValueError("an exponential with offset needs at least three points")
+    if error.min() <= 0:
+        raise ValueError("an exponential with offset needs positive errors")
+    order = np.argsort(e)
+    start = (float(y[order[-1]] - y[order[0]]), 5.0, float(y[order[0]]))
+    values, covariance, quality = least_squares("exponential", _saturating, (e, y), start, error)
+    names = ("amplitude", "rate", "offset")
+    parameters, errors = (
+        dict(zip(names, map(float, each), strict=True))
+        for each in (values, np.sqrt(np.diag(covariance)))
+    )
+    return Fit(parameters, errors, _saturating, quality)
+
+
+def _saturating(e: Array, amplitude: float, rate: float, offset: float) -> Array:
+    return np.asarray(amplitude * np.exp(-rate * (1 - e)) + offset)
+
+
+def fit_avalanches(count: ArrayLike, *, smallest: int = 1, largest: int | None = None) -> Fit:
+    """Fit p(N) ~ N^-exponent to counts of avalanches of size 1, 2, ... by maximum likelihood.
+
+    Sizes are fitted from ``smallest`` to ``largest`` (None: all), and the curve is the probability
+    among these. ``exponent_error`` holds for independent avalanches; the scatter between runs is
+    about three times larger. ``count``: number of avalanches fitted. ``distance``: of Kolmogorov
+    and Smirnov, the largest difference between the measured and the fitted distribution function,
+    to be compared with 1/sqrt(count).
+    """
+    [counts] = check_points(count=count)
+    smallest = check_integer("smallest", smallest, least=1)
+    largest = counts.size if largest is None else check_integer("largest", largest, least=smallest)
+    chosen = slice(smallest - 1, largest)
+    sizes, counts = np.arange(1.0, counts.size + 1)[chosen], counts[chosen]
+    total = float(counts.sum())
+    if sizes.size < 2 or not total > 0:
+        raise ValueError(f"no avalanches of sizes {smallest} to {largest} to fit")
+    if counts.min() < 0 or np.count_nonzero(counts) < 2:
+        raise ValueError(
+            f"count needs avalanches of at least two of the sizes {smallest} to {largest}, and "
+            "none below 0"
+        )
+    logs = np.log(sizes)
+    mean = float(counts @ logs) / total
+
+    def cost(exponent: float) -> float:
+        return exponent * mean + float(np.log(np.sum(sizes**-exponent)))
+
+    exponent = float(minimize_scalar(cost, bracket=(1.0, 3.0)).x)
+    curve = partial(_probability, sizes=sizes)
+    p = curve(sizes, exponent)
+    # Fisher's information of one avalanche is the variance of ln N.
+    information = float(p @ logs**2 - (p @ logs) ** 2)
+    return Fit(
+        {"exponent": exponent},
+        {"exponent": 1 / float(np.sqrt(total * information))},
+        curve,
+        {
+            "smallest": smallest,
+            "largest": int(sizes[-1]),
+            "count": int(total),
+            "distance": float(np.abs(np.cumsum(counts) / total - np.cumsum(p)).max()),
+        },
+    )
+
+
+def _probability(size: Array, exponent: float, *, sizes: Array) -> Array:
+    return np.asarray(size**-exponent / np.sum(sizes**-exponent))
+
+
+def tail_length(velocity: ArrayLike, density: ArrayLike, beyond: float) -> float:
+    """Length w of the tails p(v) ~ exp(-|v|/w) for |v| > ``beyond`` [R/T], of both sides.
+
+    The maximum-likelihood estimate is the mean excess over ``beyond``: the integral of the share of
+    velocities beyond v, over all v > ``beyond``, divided by that share at ``beyond``. The logarithm
+    of the share is taken as linear within a bin, which is right for an exponential tail even in
+    bins as wide as w. ``velocity`` holds the centres of the bins, which may differ in width.
+    """
+    v, p = check_points(velocity=velocity, density=density)
+    beyond = check_real("beyond", beyond, signed=True)
+    if v.size < 2 or not (np.diff(v) > 0).all():
+        raise ValueError("velocity must ascend, over at least two bins")
+    between = (v[1:] + v[:-1]) / 2
+    edges = np.concatenate([[2 * v[0] - between[0]], between, [2 * v[-1] - between[-1]]])
+    right = _beyond(edges, p, beyond)
+    left = _beyond(-edges[::-1], p[::-1], beyond)
+    if not right[0] + left[0] > 0:
+        raise ValueError(f"no velocities beyond {beyond:g}")
+    return (right[1] + left[1]) / (right[0] + left[0])
+
+
+def _beyond(edges: Array, density: Array, start: float) -> tuple[float, float]:
+    """Return the share of velocities above ``start``, and the integral of that share from there."""
+    counts = density * np.diff(edges)
+    shares = np.append(np.cumsum(counts[::-1])[::-1], 0.0)  # above every edge
+    used = (edges[1:] > start) & (shares[:-1] > 0)
+    if not used.any():
+        return 0.0, 0.0
+    low, high = edges[:-1][used], edges[1:][used]
+    at_low, at_high = shares[:-1][used], shares[1:][used]
+    # No logarithm where the share ends at 0: the velocities are then evenly spread over the bin.
+    fall = np.log(at_low / np.where(at_high > 0, at_high, at_low))
+    here = np.maximum(low, start)
+    part = (high - here) / (high - low)
+    at_here = np.where(at_high > 0, at_low * np.exp(-fall * (1 - part)), at_low * part)
+    falling = fall > 1e-9
+    mean = np.where(at_high > 0, at_here, at_here / 2)
+    np.divide(at_here - at_high, fall * part, out=mean, where=falling)
+    return float(at_here[0]), float(np.sum(mean * (high - here)))
