@@ -32,14 +32,11 @@ def bound(gap, closing, restitution, dt, left, right, pull, exponent):  # type: 
 
 
 @kernel
-def drift(  # type: ignore[no-untyped-def]
-    y, v, anchors, dt, restitution, pull, exponent, integers, floats, low, high, wall_restitution
-):
+def drift(y, v, anchors, dt, restitution, pull, exponent, integers, floats):  # type: ignore[no-untyped-def]
     """Advance ``y`` and ``v`` in place by ``dt``; return the contacts that carried an impulse.
 
     ``pull`` is k/m if the springs are kicked in halves, else 0, ``exponent`` that of their
     potential. ``integers`` and ``floats``, at least three and four rows of L, are scratch space.
-    ``low`` and ``high`` are the walls, infinitely far without any.
     """
     violations, firsts, lasts = integers[0], integers[1], integers[2]
     shifted, totals, sums, unused = floats[0], floats[1], floats[2], floats[3]
@@ -55,19 +52,10 @@ def drift(  # type: ignore[no-untyped-def]
         count += INDEX(free < before)
         before = free
     _, merged = pool(shifted, shifted, violations, count, firsts, lasts, sums, unused)
-    if high < np.inf:
-        n = y.size - 1
-        ends = y[0] - anchors[0], y[n] - anchors[n]
-        least = bound(y[0] - low, -v[0], wall_restitution, dt, 0.0, ends[0], pull, exponent)
-        most = -bound(high - y[n], v[n], wall_restitution, dt, ends[1], 0.0, pull, exponent)
-        most = max(most - total, least)
-        # The nearest ordered values between two bounds are the nearest ordered ones, cut.
-        for i in range(y.size):
-            shifted[i] = min(max(shifted[i], least), most)
-    before = low
+    before = -np.inf
     for i in range(y.size):
         v[i] = shifted[i] + totals[i]
         # Bounds of touching rods agree up to rounding errors: keep the order exact.
-        before = min(max(y[i] + dt * v[i], before), high)
+        before = max(y[i] + dt * v[i], before)
         y[i] = before
     return np.int64(merged)

@@ -19,8 +19,15 @@ from numpy.typing import NDArray
 
 from crazybilliards.model import Chain
 from crazybilliards.model.kernels import inlined
-from crazybilliards.particles.laws import contact_dynamics, event_driven, isotonic, sort, walls
-from crazybilliards.particles.laws.closed_contacts import Clusters, find_clusters, make_clusters
+from crazybilliards.particles.laws import (
+    contact_dynamics,
+    event_driven,
+    isotonic,
+    sort,
+    walls,
+    weighted,
+)
+from crazybilliards.particles.laws.closed_contacts import Clusters, make_clusters
 from crazybilliards.particles.laws.exact_flight import independent_rods
 from crazybilliards.particles.laws.impacts import make_impacts
 from crazybilliards.particles.noise import BLOCK
@@ -36,8 +43,8 @@ NAMES = (
 # Parameters beside ``KNOWN`` with which an operator is right, because it reads them or does not
 # depend on them: {EVENTS: {"my_own"}}.
 _WALLS = {"box", "wall_restitution"}
-knows: dict[int, set[str]] = {each: {*_WALLS} for each in (ISOTONIC, CONTACTS, EXACT, TURN)}
-knows[EVENTS] = {*_WALLS, "mass_ratio"}
+knows: dict[int, set[str]] = {each: {*_WALLS} for each in (EXACT, TURN)}
+knows |= {each: {*_WALLS, "mass_ratio"} for each in (ISOTONIC, EVENTS, CONTACTS)}
 
 
 class Law(NamedTuple):
@@ -109,7 +116,7 @@ def make_scratch(rods: int, inverse: NDArray[np.float64] = np.zeros(0)) -> Scrat
         inverse,
         inverse.copy(),
         np.zeros((3, size if size > rods else 0)),
-        np.zeros((2, walls.WALLS)),
+        np.zeros((2, 2)),
     )
 
 
@@ -181,17 +188,15 @@ def drift(y, v, anchors, dt, law, scratch, tally):  # type: ignore[no-untyped-de
     if law.operator == SORT:
         sort.drift(y, v, dt, scratch)
         return 0
+    if law.operator == ISOTONIC and law.unequal:
+        return weighted.stick(y, v, dt, law, scratch)
     if law.operator == ISOTONIC:
-        met = isotonic.drift(y, v, dt, scratch.integers[0], scratch.floats, scratch.clusters)
-        if law.high < np.inf and walls.stop(y, v, law.low, law.high) > 0:
-            find_clusters(y, scratch.clusters, law.low, law.high)
-        return met
+        return isotonic.drift(y, v, dt, scratch.integers[0], scratch.floats, scratch.clusters)
+    if law.operator == CONTACTS and law.unequal:
+        return weighted.solve(y, v, anchors, dt, law, scratch)
     if law.operator == CONTACTS:
         spring_and_scratch = law.pull, law.exponent, scratch.integers, scratch.floats
-        bounds = law.low, law.high, law.wall_restitution
-        return contact_dynamics.drift(
-            y, v, anchors, dt, law.restitution, *spring_and_scratch, *bounds
-        )
+        return contact_dynamics.drift(y, v, anchors, dt, law.restitution, *spring_and_scratch)
     if law.operator == TURN:
         walls.turn(y, v, dt, law.pull, law.low, law.high, tally.struck)
         sort.sort_pairs(y, v, scratch)

@@ -27,8 +27,6 @@ from crazybilliards.particles.laws.tournament import INDEX
 
 _0, _1 = INDEX(0), INDEX(1)
 
-WALLS = 2  # the left one, the right one
-
 
 @kernel
 def collide(contact, a, b, now, y, v, anchors, dt, law, scratch, tally):  # type: ignore[no-untyped-def]

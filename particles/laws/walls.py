@@ -19,9 +19,6 @@ import numpy as np
 
 from crazybilliards.model.kernels import inlined, kernel
 from crazybilliards.particles.laws import event_driven
-from crazybilliards.particles.laws.unequal import WALLS
-
-__all__ = ["WALLS"]
 
 
 @kernel
@@ -105,16 +102,3 @@ def turn(y, v, dt, pull, low, high, struck):  # type: ignore[no-untyped-def]
         y[i] = min(max(radius * np.cos(phase), low), high)
         v[i] = -rate * radius * np.sin(phase)
 
-
-@inlined
-def stop(y, v, low, high):  # type: ignore[no-untyped-def]
-    """Put rods that lie beyond a wall to rest at it (e = 0); return how many.
-
-    The nearest ordered positions between two bounds are the nearest ordered ones, cut at them.
-    """
-    stopped = 0
-    for i in range(y.size):
-        if y[i] < low or y[i] > high:
-            y[i], v[i] = min(max(y[i], low), high), 0.0
-            stopped += 1
-    return stopped
