@@ -41,7 +41,9 @@ def width_deviation(run: xr.Dataset, theory: xr.Dataset) -> WidthDeviation:
     Both ends of a chain have the same averages. Simulated widths are therefore averaged over a rod
     and its mirror image, but not for ``largest_in_errors``.
     """
-    size = chain_of(run).size
+    chain = chain_of(run)
+    chain.require_known("the mean over mirror images", {"box", "wall_restitution"})
+    size = chain.size
     square = run.velocity_width.values**2
     square = (square + square[::-1]) / 2
     expected = theory.velocity_width.values**2

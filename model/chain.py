@@ -51,7 +51,8 @@ class Chain(Parameters):
     damping
         gamma >= 0 [M/T]. With 0 there is no steady state.
     stiffness
-        k >= 0 [M/T^2], for a quadratic spring [M/(R T^2)]. With 0 there is no steady state.
+        k >= 0 [M/T^2], for a quadratic spring [M/(R T^2)]. With 0 there is a steady state in a box
+        only.
     gap
         g >= 0, the free distance between neighbouring rods at their anchors [R].
     radius, mass
@@ -59,10 +60,9 @@ class Chain(Parameters):
     spring
         ``"linear"``: F = k d; ``"quadratic"``: F = k d |d|.
     box
-        X >= 0, the distance between two walls at -X/2 and X/2 [R]; 0: there are no walls. It must
-        be above 2RL. Without springs a gas in a box has a steady state.
+        X, the distance between two hard walls at -X/2 and X/2, above 2RL [R]; 0: no walls.
     wall_restitution
-        Restitution of the walls, >= 0.
+        Restitution of the walls, >= 0; only with a box.
     mass_ratio
         Mass of the rods 2, 4, ... over that of the rods 1, 3, ..., which have ``mass``.
 
@@ -264,7 +264,27 @@ class Chain(Parameters):
                 "damping=0: the chain never forgets its start, because nothing takes out the "
                 "energy that the noise puts in"
             )
+        if self.restitution > (critical := self._critical_restitution):
+            return (
+                f"restitution={self.restitution:g}: above some e_c = {critical:.4g} collisions give a "
+                "gas in this box more energy than the damping takes out"
+            )
         return ""
+
+    @property
+    def _critical_restitution(self) -> float:
+        """The largest restitution with a steady state of a gas in a box; inf where not known.
+
+        Of uncorrelated rods with free room s = l/(L - 1) at a contact, the widths w = W_v/W obey
+        w^2 - 1 = (e^2 - 1) w^3 W m/(sqrt(pi) gamma s). Above e_c this has no root. Of two masses,
+        m is the harmonic mean.
+        """
+        if not self.box or self.stiffness > 0 or self.size == 1:
+            return math.inf
+        mass = 2 / (1 + 1 / self.mass_ratio) * self.mass
+        room = (self.walls[1] - self.walls[0]) / (self.size - 1)
+        drag = self.damping * room / math.sqrt(mass * self.temperature)
+        return math.sqrt(1 + 2 / (3 * math.sqrt(3)) * math.sqrt(math.pi) * drag)
 
     def require_steady_state(self) -> None:
         """Raise a ValueError with the reason if this chain has no steady state."""

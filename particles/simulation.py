@@ -103,7 +103,8 @@ def simulate(
         ``"collisions"`` (collision_rate), ``"impacts"`` (contact_force, contact_loss,
         contact_temperature, rebound_temperature, impact_speed_density),
         ``"avalanches"`` (avalanche_count),
-        ``"triggered-collisions"`` (triggered_count) and ``"snapshots"``
+        ``"triggered-collisions"`` (triggered_count), in a box ``"walls"`` (wall_force, which is the
+        pressure, and wall_collision_rate), and ``"snapshots"``
         (position and velocity as they are). Observers can also be given as objects,
         ``cb.Velocities(bins=801)`` or your own.
     start

@@ -192,9 +192,9 @@ READERS = {dynamics: "springs, damping and noise", scales: "time scales", start:
 @pytest.fixture
 def all_know(monkeypatch):
     """Let everything but observers and theories know the parameter."""
-    monkeypatch.setattr(law, "knows", {each: {"tilt"} for each in OPERATORS})
+    monkeypatch.setattr(law, "knows", {each: {"tilt", "box"} for each in OPERATORS})
     for reader in READERS:
-        monkeypatch.setattr(reader, "knows", {"tilt"})
+        monkeypatch.setattr(reader, "knows", {"tilt", "box"})
 
 
 # What chooses each operator of collisions.
@@ -247,7 +247,8 @@ def test_a_run_asks_each_that_reads_the_chain(reader, all_know, monkeypatch):
 def test_an_observer_refuses_what_it_does_not_know_unless_it_only_averages(
     name, all_know, monkeypatch
 ):
-    chain, how = Tilted(size=3, restitution=0.8, tilt=1.0), {"duration": 100, "seed": 0}
+    box = narrow_box(3, 1.0) if OBSERVERS[name].meets_walls else 0.0
+    chain, how = Tilted(size=3, restitution=0.8, tilt=1.0, box=box), {"duration": 100, "seed": 0}
     how |= dict.fromkeys(("time_step", "merging", "particles"))
     make_run(chain, observe="widths", **how)
     if not OBSERVERS[name].reads_chain:
@@ -255,7 +256,7 @@ def test_an_observer_refuses_what_it_does_not_know_unless_it_only_averages(
         return
     with pytest.raises(ValueError, match=f"observe: '{name}'.* does not know the chain's tilt"):
         make_run(chain, observe=["widths", name], **how)
-    monkeypatch.setattr(OBSERVERS[name], "knows", {"tilt"})
+    monkeypatch.setattr(OBSERVERS[name], "knows", {"tilt", "box"})
     make_run(chain, observe=name, **how)
 
 
