@@ -266,18 +266,17 @@ class Chain(Parameters):
             )
         if self.restitution > (critical := self._critical_restitution):
             return (
-                f"restitution={self.restitution:g}: above some e_c = {critical:.4g} collisions give a "
-                "gas in this box more energy than the damping takes out"
+                f"restitution={self.restitution:g}: above e_c = {critical:.4g} or so, collisions "
+                "give a gas in this box more energy than the damping takes out"
             )
         return ""
 
     @property
     def _critical_restitution(self) -> float:
-        """The largest restitution with a steady state of a gas in a box; inf where not known.
+        """The largest restitution with a steady state of a gas in a box; inf if it is another chain.
 
-        Of uncorrelated rods with free room s = l/(L - 1) at a contact, the widths w = W_v/W obey
-        w^2 - 1 = (e^2 - 1) w^3 W m/(sqrt(pi) gamma s). Above e_c this has no root. Of two masses,
-        m is the harmonic mean.
+        Of uncorrelated rods with free room s = l/(L - 1) at a contact, w = W_v/W solves
+        w^2 - 1 = (e^2 - 1) w^3 W m/(sqrt(pi) gamma s) up to e_c; m is the harmonic mean mass.
         """
         if not self.box or self.stiffness > 0 or self.size == 1:
             return math.inf

@@ -70,7 +70,7 @@ for _line in _WORDS.strip().splitlines():
         WORDS.setdefault(_word, []).append(_name)
 
 # Arguments that are often given to another function than this one.
-_OF_A_CHAIN = "spring box wall_restitution mass_ratio".split()
+_OF_A_CHAIN = ("spring", "box", "wall_restitution", "mass_ratio")
 OWNERS = dict.fromkeys((*SYMBOLS.values(), *_OF_A_CHAIN), "Chain")
 _SIMULATE = """time_step duration warmup method stepper merging observe particles replicas average
 every threads checkpoint"""
