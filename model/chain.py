@@ -51,8 +51,7 @@ class Chain(Parameters):
     damping
         gamma >= 0 [M/T]. With 0 there is no steady state.
     stiffness
-        k >= 0 [M/T^2], for a quadratic spring [M/(R T^2)]. With 0 there is a steady state in a box
-        only.
+        k >= 0 [M/T^2], for a quadratic spring [M/(R T^2)]. With 0 only a box has a steady state.
     gap
         g >= 0, the free distance between neighbouring rods at their anchors [R].
     radius, mass
@@ -273,15 +272,15 @@ class Chain(Parameters):
 
     @property
     def _critical_restitution(self) -> float:
-        """The largest restitution with a steady state of a gas in a box; inf if it is another chain.
+        """Largest e with a steady state of a gas in a box, inf of other chains.
 
-        Of uncorrelated rods with free room s = l/(L - 1) at a contact, w = W_v/W solves
-        w^2 - 1 = (e^2 - 1) w^3 W m/(sqrt(pi) gamma s) up to e_c; m is the harmonic mean mass.
+        The energy balance of uncorrelated rods, w^2 - 1 = (e^2 - 1) w^3 W m/(sqrt(pi) gamma s) with
+        w = W_v/W, s = l/(L - 1) and the harmonic mean m of the masses, has no root above it.
         """
         if not self.box or self.stiffness > 0 or self.size == 1:
             return math.inf
         mass = 2 / (1 + 1 / self.mass_ratio) * self.mass
-        room = (self.walls[1] - self.walls[0]) / (self.size - 1)
+        room = 2 * self.walls[1] / (self.size - 1)
         drag = self.damping * room / math.sqrt(mass * self.temperature)
         return math.sqrt(1 + 2 / (3 * math.sqrt(3)) * math.sqrt(math.pi) * drag)
 
