@@ -50,7 +50,7 @@ def test_runs_are_weighted_by_their_snapshots(runs):
 
 
 def test_the_pressure_of_runs_and_of_a_sweep(tmp_path):
-    box = {"size": 3, "box": 9, "stiffness": 0}
+    box = {"size": 3, "box": 9.0, "stiffness": 0.0}
     how = {"duration": 200, "observe": ["walls"]}
     runs = [simulate(Chain(**box), seed=s, **how, **QUIET) for s in (1, 2)]
     found = combine(runs)

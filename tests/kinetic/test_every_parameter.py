@@ -43,8 +43,8 @@ GIVEN = Given(
 _SAME = 5e-3
 X = np.linspace(-5, 5, 41)
 
-# For every field a value that no chain here has. Driven chains can take the restitution, and as many
-# cells resolve the chain with the other amplitude.
+# For every field a value that no chain here has. Driven chains can take the restitution, and as
+# many cells resolve the chain with the other amplitude.
 OTHER = other_values(size=5, restitution=1.2, amplitude=1.3, wall_restitution=0.5)
 
 _GIVEN = "W^2 is given, and a steady state depends on noise and damping through it alone"
