@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 
-from crazybilliards.model import chain_of
+from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.chain import middle_tenth
 
 _LEAST_INNER = 7  # rods from which on the two at each border are left out of the largest deviation
+
+
+def free_widths(chain: Chain) -> list[float]:
+    """W_v of a rod without collisions, of both masses if there are two [R/T]."""
+    return sorted({math.sqrt(chain.temperature / mass) for mass in chain.rod_masses[:2]})
 
 
 class WidthDeviation(NamedTuple):
