@@ -21,10 +21,11 @@ import numpy as np
 from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array
 from crazybilliards.model.calls import public
+from crazybilliards.model.parameters import WALLS_AND_MASSES
 from crazybilliards.particles.laws.closed_contacts import CRITICAL_RESTITUTION
 
 # Parameters beside ``KNOWN`` with which these scales are right; every scale refuses others.
-knows: frozenset[str] = frozenset({"box", "wall_restitution", "mass_ratio"})
+knows: frozenset[str] = WALLS_AND_MASSES
 
 _RESOLUTION = 0.05
 _KICK = 0.3
@@ -211,7 +212,7 @@ def settling_time(chain: Chain) -> float:
 
 
 def _crossing_time(chain: Chain) -> float:
-    """Time constant of the slowest wave of density in a box: of diffusion, or of free flight [T]."""
+    """Time constant of the slowest wave of density in a box, diffusive or free [T]."""
     wave_number = math.pi / (2 * chain.walls[1])
     slowest = math.sqrt(chain.temperature / chain.rod_masses[:2].max())
     diffusion = chain.damping / (wave_number**2 * chain.temperature)

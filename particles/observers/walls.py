@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from crazybilliards.model.parameters import WALLS_AND_MASSES
 from crazybilliards.particles.laws.avalanche import Tally
 from crazybilliards.particles.observers.base import Array, Averaged, Integers, Snapshots, Variables
 from crazybilliards.particles.run import Run
@@ -22,7 +23,7 @@ class Walls(Averaged):
     along = ("wall",)
     meets_walls = True
     ensemble = False
-    knows = frozenset({"box", "wall_restitution", "mass_ratio"})
+    knows = WALLS_AND_MASSES
 
     def shape(self, run: Run) -> tuple[int, ...]:
         return 2, 2
