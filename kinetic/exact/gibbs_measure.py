@@ -62,8 +62,9 @@ def equilibrium(chain: Chain) -> xr.Dataset:
     -------
     xarray.Dataset
         ``density`` and ``label`` over x; ``mean_displacement``, ``displacement_width`` and
-        ``velocity_width`` over particle; in a box ``wall_force`` over wall. ``attrs["residual"]`` is the spread of log Z over the
-        particles. It is normally 1e-6 or less, and relative errors are of this order.
+        ``velocity_width`` over particle; in a box ``wall_force`` over wall.
+        ``attrs["residual"]`` is the spread of log Z over the particles. It is normally 1e-6 or
+        less, and relative errors are of this order.
 
     Raises
     ------
@@ -86,16 +87,17 @@ def _in_vocabulary(chain: Chain, recursion: Recursion | BoxRecursion) -> xr.Data
     x = position_grid(chain)
     density, label = np.zeros((2, x.size))
     mean, width, log_z = np.zeros((3, chain.size))
-    at_the_walls = []
+    weights, at_the_walls = recursion.weights, []
     for i in range(chain.size):
         d, log_p = recursion.log_density(i)
         top = np.max(log_p)
         p = np.exp(log_p - top)
-        log_z[i] = top + np.log(p.sum())
-        p /= p.sum()
-        at_the_walls += [2 * p[0], 2 * p[-1]]  # half a cell has the probability of an end
-        mean[i] = d @ p
-        width[i] = np.sqrt((d - mean[i]) ** 2 @ p)
+        total = (p * weights).sum()
+        log_z[i] = top + np.log(total)
+        p /= total
+        at_the_walls += [p[0], p[-1]]
+        mean[i] = d @ (p * weights)
+        width[i] = np.sqrt((d - mean[i]) ** 2 @ (p * weights))
         _add_rod(x, chain.anchors[i] + d, p, density, label)
     spacing = recursion.nodes(0)[1] - recursion.nodes(0)[0]
     force = chain.temperature / spacing * np.array([at_the_walls[0], at_the_walls[-1]])
@@ -179,6 +181,8 @@ class Recursion:
         """Return the grid on window i."""
         first = self.centres[i] - self.half
         return self.spacing * np.arange(first, first + 2 * self.half + 1)
+
+    weights = 1.0  # of the nodes in a sum over the grid, where the density ends at 0
 
     def log_z(self, i: int) -> Array:
         """Return log Z of the rods up to number i, counted from 0, on the window of i."""

@@ -1,9 +1,9 @@
 r"""All contacts of a step at once, for rods of unequal masses and between walls.
 
-These are the problems of ``isotonic.py`` (e = 0) and ``contact_dynamics.py``. Rods of unequal masses
-make the regression one with the masses as weights, because blocks conserve the momentum. Two walls
-bound the ordered values. The nearest ordered values between two bounds are the nearest ordered ones,
-cut at the bounds, so the walls need no regression of their own.
+These are the problems of ``isotonic.py`` (e = 0) and ``contact_dynamics.py``. Rods of unequal
+masses make the regression one with the masses as weights, because blocks conserve the momentum. Two
+walls bound the ordered values. The nearest ordered values between two bounds are the nearest
+ordered ones, cut at the bounds, so the walls need no regression of their own.
 """
 
 import numpy as np
@@ -47,7 +47,7 @@ def pool(values, carried, inverse, firsts, totals, carried_totals, weights):  # 
 
 @kernel
 def stick(y, v, dt, law, scratch):  # type: ignore[no-untyped-def]
-    """Advance ``y`` and ``v`` at e = 0, also of the walls; return the contacts that ended closed."""
+    """Advance ``y`` and ``v`` at e = 0, also of the walls; return the contacts that closed."""
     n = y.size
     for i in range(n):
         y[i] += dt * v[i]

@@ -67,7 +67,7 @@ def drift(y, v, masses, anchors, dt, law):
 
 
 def collided(left, right, masses, anchors, now, dt, law):
-    """The one or two bodies after a collision, and the impulse that they exchange."""
+    """Return the one or two bodies after a collision, and the impulse that they exchange."""
     ahead = 0.0
     if len(left.rods) == len(right.rods) == 1 and law.pull > 0:
         a, b = (acceleration(each, anchors, now, law) for each in (left, right))
@@ -94,7 +94,7 @@ def collided(left, right, masses, anchors, now, dt, law):
 
 
 def acceleration(body, anchors, now, law):
-    """The acceleration of a single rod by its spring."""
+    """Return the acceleration of a single rod by its spring."""
     (rod,) = body.rods
     if not 0 <= rod < len(anchors):
         return 0.0
