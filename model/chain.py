@@ -62,7 +62,7 @@ class Chain(Parameters):
         X >= 0, the distance between two walls at -X/2 and X/2 [R]; 0: there are no walls. It must
         be above 2RL. Without springs a gas in a box has a steady state.
     wall_restitution
-        Restitution of the walls, >= 0.
+        Restitution of the walls, >= 0, which are rods of infinite mass; 1 without walls.
     mass_ratio
         Mass of the rods 2, 4, ... over that of the rods 1, 3, ..., which have ``mass``.
 

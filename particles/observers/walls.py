@@ -13,9 +13,9 @@ from crazybilliards.particles.run import Run
 class Walls(Averaged):
     """wall_force and wall_collision_rate: the momentum that each wall receives, and collisions.
 
-    Both are per time. In one dimension the force is the pressure of the gas. Without springs and at
-    e = 1 it is exactly L T/(X - 2RL), for any masses. A collision with rods that rest at a wall
-    pushes the wall, too, but is none with the wall.
+    Both are per time. In one dimension the force is the pressure of the gas. Without springs, and
+    if rods and walls are elastic, it is exactly L T/(X - 2RL), for any masses. A hit on rods that
+    rest at a wall pushes the wall, too, but does not count as a collision with it.
     """
 
     name = "walls"
