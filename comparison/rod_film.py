@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 from crazybilliards.comparison.encoding import Picture
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.arrays import Array
+from crazybilliards.model.parameters import WALLS_AND_MASSES
 
 _FADING = 0.7  # of a flash, from one picture to the next
 _FAINT = 0.1  # a flash that is not shown any more
@@ -55,7 +56,7 @@ def motion_of(run: xr.Dataset, pictures: int) -> Motion:
             f"has {', '.join(map(str, run)) or 'nothing'} and is {run.attrs.get('status')}"
         )
     chain = chain_of(run)
-    chain.require_known("film", {"box", "wall_restitution", "mass_ratio"})
+    chain.require_known("film", WALLS_AND_MASSES)
     run = run.isel(replica=0) if "replica" in run.dims else run
     rods = run.dropna("time", subset=["velocity"]).transpose("time", "particle", ...)
     time, x, v = rods.time.values, rods.position.values, rods.velocity.values

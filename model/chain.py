@@ -61,7 +61,7 @@ class Chain(Parameters):
     box
         X, the distance between two hard walls at -X/2 and X/2, above 2RL [R]; 0: no walls.
     wall_restitution
-        Restitution of the walls, >= 0; only with a box.
+        Restitution of the walls, >= 0, which are rods of infinite mass; 1 without walls.
     mass_ratio
         Mass of the rods 2, 4, ... over that of the rods 1, 3, ..., which have ``mass``.
 

@@ -6,10 +6,8 @@ is at most 0.3 W_v in the centre, as :func:`centre_width` estimates it, and the 
 1 %. docs/particles.md says why.
 
 **Relaxation time.** It is that of a rod on a linear spring, whose stiffness is estimated for
-quadratic springs. docs/particles.md derives it. In a box it is at most that of a gas without
-springs.
-
-**Unequal masses.** The step resolves the lightest rod, and the relaxation waits for the heaviest.
+quadratic springs. In a box it is at most that of a gas without springs. docs/particles.md derives
+both. The step resolves the lightest rod, and the relaxation waits for the heaviest.
 """
 
 from __future__ import annotations
@@ -21,10 +19,11 @@ import numpy as np
 from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array
 from crazybilliards.model.calls import public
+from crazybilliards.model.parameters import WALLS_AND_MASSES
 from crazybilliards.particles.laws.closed_contacts import CRITICAL_RESTITUTION
 
 # Parameters beside ``KNOWN`` with which these scales are right; every scale refuses others.
-knows: frozenset[str] = frozenset({"box", "wall_restitution", "mass_ratio"})
+knows: frozenset[str] = WALLS_AND_MASSES
 
 _RESOLUTION = 0.05
 _KICK = 0.3
@@ -32,7 +31,6 @@ _KICK = 0.3
 _CORRECTED, _UNCORRECTED, _REBOUNDS, _LONG = 0.1, 0.24, 0.1, 0.05
 _HEATING = 1.5e-3  # by collisions with a gap, in units of (m w0/gamma) (w0 dt)^4
 _HEATING_UNEQUAL = 1.5e-2  # the same with walls, or of unequal masses
-_MEASURED = ("event-driven", "contact-dynamics")  # methods
 _SLOWEST_MODE = 1.241  # rate of a strongly damped rod on a quadratic spring, in k s/gamma
 
 
@@ -97,7 +95,8 @@ def default_time_step(chain: Chain) -> float:
             "to choose a step from; give time_step"
         )
     step = _RESOLUTION / fastest
-    if chain.restitution == 1 or chain.amplitude == 0 or chain.damping == 0:
+    elastic = chain.restitution == chain.wall_restitution == 1
+    if elastic or chain.amplitude == 0 or chain.damping == 0:
         return step
     # A sqrt(dt)/m = ratio * W, W = A/sqrt(2 m gamma)
     ratio = _KICK * centre_width(chain)
@@ -123,14 +122,14 @@ def time_step_error(
     radii, which damping limits. Walls and unequal masses (ratios from 0.3 to 30) heat a chain on
     springs up to ten times as fast.
 
-    ``velocity_width`` is the narrowest one of rods with the mass of the lightest. Other rods count
-    with m W_v over that mass, which their kicks are to be compared with.
+    ``velocity_width`` is that of a light rod, or m W_v of a heavier one over the mass of a light
+    one, whichever is smaller.
     """
     chain.require_known("the time-step error", knows)
     gap, unequal = chain.lattice_gap, chain.mass_ratio != 1 or chain.box > 0
-    restitutions = [chain.restitution] * (chain.size > 1) + [chain.wall_restitution] * bool(
-        chain.box
-    )
+    lightest = float(chain.rod_masses[:2].min())
+    restitutions = [chain.restitution] if chain.size > 1 else []
+    restitutions += [chain.wall_restitution] if chain.box else []
     elastic = all(e == 1 for e in restitutions)
     if not 0 < velocity_width < math.inf or (chain.amplitude == 0 and not elastic):
         return math.nan
@@ -148,19 +147,17 @@ def time_step_error(
         springs += 1 / math.sqrt(heat) - 1 if heat > 0 else math.inf
     if differing:
         heating = _HEATING_UNEQUAL if unequal else _HEATING
-        slowest = chain.rod_masses[:2].min() * spring_rate(chain) / chain.damping
-        springs += heating * slowest * swing**2
-    lightest = float(chain.rod_masses[:2].min())
+        springs += heating * lightest * spring_rate(chain) / chain.damping * swing**2
     ratio = chain.amplitude / lightest * math.sqrt(time_step) / velocity_width
     plain = stepper == "splitting" and method == "event-driven"
-    noise = (_noise_error(e, ratio, method, plain) for e in restitutions)
-    return springs + max(noise, default=0.0)
+    noise = [_noise_error(e, ratio, method, plain) for e in restitutions]
+    return springs + float(np.max(noise, initial=0.0))  # NaN if one of them is
 
 
 def _noise_error(e: float, ratio: float, method: str, corrected: bool) -> float:
     """Return the error of W_v by collisions at restitution e, with kicks of ``ratio`` W_v."""
     sticking = e < CRITICAL_RESTITUTION
-    if method not in _MEASURED or (method == "contact-dynamics" and not sticking):
+    if method != "event-driven" and not (method == "contact-dynamics" and sticking):
         return math.nan
     if e == 1:
         return 0.0
@@ -175,14 +172,15 @@ def _noise_error(e: float, ratio: float, method: str, corrected: bool) -> float:
 def relaxation_time(chain: Chain) -> float:
     """Time in which a chain forgets its start [T], but for a factor e.
 
-    It is infinite without damping and without springs.
+    It is infinite without damping, and if neither springs nor walls hold the rods.
 
     It is the time constant of the chain's slowest mode. With linear springs this is the motion of
     the centre of mass, on which collisions do not act: exactly 2m/gamma for weak damping, and about
     gamma/k for strong damping, at every restitution. All other modes are as fast at e = 1, and not
     slower in simulations with e < 1. For quadratic springs the time is an estimate, which is right
-    to a third (docs/particles.md derives it). For e > 1 it is a lower bound: near the critical
-    size, where the noise is amplified without limit, the energy takes longer.
+    to a third (docs/particles.md derives it). A gas without springs forgets its density last, in a
+    box of free length l by diffusion in gamma l^2/(pi^2 T), or in sqrt(2) l/(pi W) if damping is
+    weak. For e > 1 the time is a lower bound: near the critical size the energy takes longer.
 
     Take a warm-up of at least five times it (the default is 12), and durations of hundreds.
 
@@ -211,7 +209,7 @@ def settling_time(chain: Chain) -> float:
 
 
 def _crossing_time(chain: Chain) -> float:
-    """Time constant of the slowest wave of density in a box: of diffusion, or of free flight [T]."""
+    """Time constant of the slowest wave of density in a box, diffusive or free [T]."""
     wave_number = math.pi / (2 * chain.walls[1])
     slowest = math.sqrt(chain.temperature / chain.rod_masses[:2].max())
     diffusion = chain.damping / (wave_number**2 * chain.temperature)

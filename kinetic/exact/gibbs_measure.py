@@ -40,6 +40,7 @@ from crazybilliards.model.calls import public
 from crazybilliards.model.checks import check_integer
 from crazybilliards.model.grid import position_grid, require_resolved, thermal_reach
 from crazybilliards.model.memory import require_memory
+from crazybilliards.model.parameters import WALLS_AND_MASSES
 from crazybilliards.model.progress import waiting_for
 from crazybilliards.model.randomness import Seed, seed_of
 from crazybilliards.model.vocabulary import OF_RODS, result
@@ -47,8 +48,6 @@ from crazybilliards.model.vocabulary import OF_RODS, result
 # Grid nodes in the width of the narrowest rod, which is the middle one without a gap.
 _NODES_PER_WIDTH = 10
 
-# In equilibrium masses change the velocities only.
-_KNOWS = ("box", "wall_restitution", "mass_ratio")
 _MOST_STATES = 10**15  # more than any memory holds, and still exact as a float
 
 
@@ -210,7 +209,9 @@ class Recursion:
 def check_equilibrium(chain: Chain) -> None:
     """Raise the ValueError that :func:`equilibrium` would raise, without the computation."""
     remedy = "; chain.replace(restitution=1) is the elastic chain"
-    require_chain(chain, "the exact equilibrium", elastic=True, remedy=remedy, knows=_KNOWS)
+    require_chain(
+        chain, "the exact equilibrium", elastic=True, remedy=remedy, knows=WALLS_AND_MASSES
+    )
     if chain.wall_restitution != 1:
         raise ValueError(
             "the exact equilibrium holds for elastic walls only: wall_restitution must be 1, got "

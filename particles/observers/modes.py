@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from crazybilliards.model import Chain
+from crazybilliards.model.parameters import WALLS_AND_MASSES
 from crazybilliards.particles.observers.base import Array, Averaged, Integers, Snapshots, Variables
 from crazybilliards.particles.run import Run
 
@@ -33,7 +34,7 @@ class Modes(Averaged):
     name = "modes"
     gives = ("mode_velocity_variance",)
     along = ("mode",)
-    knows = frozenset({"box", "wall_restitution", "mass_ratio"})
+    knows = WALLS_AND_MASSES
 
     def prepare(self, run: Run, copies: int) -> None:
         super().prepare(run, copies)

@@ -9,6 +9,7 @@ import numpy as np
 from crazybilliards.model import Chain
 from crazybilliards.model.calls import public, warn_user
 from crazybilliards.model.checks import check_integer, check_real
+from crazybilliards.model.parameters import WALLS_AND_MASSES
 from crazybilliards.particles.observers.base import Array, Averaged, Integers, Snapshots, Variables
 from crazybilliards.particles.observers.modes import momentum_weights
 from crazybilliards.particles.run import Run
@@ -83,7 +84,7 @@ class TimeCorrelations(Averaged):
     gives = tuple(f"{of}{name}" for of in ("", "wave_", "centre_") for name in _QUANTITIES)
     along = ("lag", "frequency", "wave")
     limit = False
-    knows = frozenset({"box", "wall_restitution", "mass_ratio"})
+    knows = WALLS_AND_MASSES
 
     def __init__(
         self, longest: float | None = None, lags: int | None = None, waves: int = 8

@@ -13,8 +13,8 @@ from numpy.typing import ArrayLike
 from crazybilliards.model.arrays import Array
 from crazybilliards.model.calls import warn_user
 from crazybilliards.model.checks import shown
+from crazybilliards.model.parameters import WALLS_AND_MASSES
 from crazybilliards.model.vocabulary import VOCABULARY, result
-from crazybilliards.particles import scales
 from crazybilliards.particles.laws.law import EXACT, TURN
 from crazybilliards.particles.observers.base import Integers, Observer, Variables
 from crazybilliards.particles.run import Run
@@ -123,7 +123,7 @@ def _undeclared(
 
 def _time_step_error(run: Run, measured: xr.Dataset) -> float:
     """Return the relative error of the smallest velocity width above 0; NaN if it is not known."""
-    if not run.chain.unknown().keys() <= scales.knows:
+    if not run.chain.unknown().keys() <= WALLS_AND_MASSES:
         return float("nan")  # nobody has measured it
     if run.operator in (EXACT, TURN):
         return 0.0

@@ -98,7 +98,7 @@ def test_the_mirror_image_moves_as_the_mirror_image(case):
 @given(cases())
 def test_momentum_and_energy_go_where_the_tally_says(case):
     _, v, masses, _, _, law = case
-    _, w, tally, scratch = drifted(*case)
+    _, w, tally, _ = drifted(*case)
     lost = masses * (v - w)
     scale = 1e-10 * (masses * np.abs(v)).sum() * max(np.abs(w).max() / np.abs(v).max(), 1) + 1e-12
     if law.pull > 0:
