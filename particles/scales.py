@@ -6,8 +6,8 @@ is at most 0.3 W_v in the centre, as :func:`centre_width` estimates it, and the 
 1 %. docs/particles.md says why.
 
 **Relaxation time.** It is that of a rod on a linear spring, whose stiffness is estimated for
-quadratic springs. In a box it is at most that of a gas without springs. docs/particles.md derives
-both. The step resolves the lightest rod, and the relaxation waits for the heaviest.
+quadratic springs, and in a box at most that of a gas without springs. docs/particles.md derives
+both. The step resolves the lightest rod; the relaxation waits for the heaviest.
 """
 
 from __future__ import annotations
@@ -66,17 +66,18 @@ def centre_width(chain: Chain) -> float:
     e = chain.restitution
     if e >= 1 or chain.damping == 0 or chain.stiffness == chain.box == 0:
         return 1.0
-    in_box = _width_in_box(chain) if chain.box else 1.0
+    in_box = _width_in_box(chain)
     if chain.stiffness == 0:
         return in_box
     neighbours = chain.size / (1 + chain.gap * chain.size / max(2.5 * chain.thermal_length, 1e-60))
     rate = spring_rate(chain) * chain.mass / chain.damping
-    alone = 1 / math.sqrt(1 + (0.1 + 0.14 * e**4) * (1 - e**2) * neighbours * rate)
-    return min(alone, in_box)
+    return min(1 / math.sqrt(1 + (0.1 + 0.14 * e**4) * (1 - e**2) * neighbours * rate), in_box)
 
 
 def _width_in_box(chain: Chain) -> float:
     """Return the root w of the energy balance of a gas in a box, at e < 1."""
+    if not chain.box:
+        return 1.0
     mass = float(chain.rod_masses.mean())
     free_path = 2 * chain.walls[1] / chain.size * chain.damping / math.sqrt(mass)
     loss = (1 - chain.restitution**2) * math.sqrt(chain.temperature / math.pi) / free_path
@@ -136,13 +137,13 @@ def time_step_error(
     if not restitutions:  # the only rod never collides
         method = "event-driven"
     differing = chain.stiffness > 0 and (gap > 0 or unequal)
-    if chain.damping == 0 and (differing or (chain.spring == "quadratic" and chain.stiffness > 0)):
+    if chain.damping == 0 and (differing or chain.spring == "quadratic"):
+        return math.nan
+    if stepper == "euler" and (gap > 0 or unequal):
         return math.nan
     swing = (spring_rate(chain) * time_step) ** 2
     springs = swing / 8 if chain.spring == "quadratic" else 0.0
     if stepper == "euler":
-        if gap > 0 or unequal:
-            return math.nan
         heat = 1 - chain.damping * time_step / (2 * chain.mass) - swing / 4
         springs += 1 / math.sqrt(heat) - 1 if heat > 0 else math.inf
     if differing:
