@@ -89,14 +89,13 @@ def _end(chain: Chain) -> float:
 
 def nodes_of(chain: Chain) -> tuple[int, int]:
     """Return the shape of the table of :func:`box_recursion`."""
-    alike = chain.gap * chain.stiffness == 0
     end = _end(chain)
     # Of the outermost rods: the walls push them back, and so do springs whose anchors are outside.
     outside = np.maximum(np.abs(chain.reduced_anchors) - end, 0.0)
     steepest = chain.size / (2 * end) + chain.force(outside).sum() / (2 * chain.temperature)
     if chain.stiffness > 0:
         steepest += 4 / chain.thermal_length
-    return (1 if alike else chain.size), 1 + math.ceil(
+    return (1 if chain.exchangeable else chain.size), 1 + math.ceil(
         max(_NODES, _RESOLUTION * 2 * end * steepest)
     )
 

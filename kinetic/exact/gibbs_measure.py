@@ -99,8 +99,11 @@ def _in_vocabulary(chain: Chain, recursion: Recursion | BoxRecursion) -> xr.Data
         width[i] = np.sqrt((d - mean[i]) ** 2 @ (p * weights))
         _add_rod(x, chain.anchors[i] + d, p, density, label)
     spacing = recursion.nodes(0)[1] - recursion.nodes(0)[0]
-    force = chain.temperature / spacing * np.array([at_the_walls[0], at_the_walls[-1]])
-    walls = {"wall_force": ("wall", force)} if chain.box else {}
+    walls = {}
+    if chain.box:
+        reached = recursion.nodes(0)[-1] == chain.walls[1]  # by any rod
+        ends = np.array([at_the_walls[0], at_the_walls[-1]]) if reached else np.zeros(2)
+        walls["wall_force"] = ("wall", chain.temperature / spacing * ends)
     dataset = result(
         chain,
         {
