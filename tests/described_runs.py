@@ -1,10 +1,11 @@
-"""A described run that observers are prepared for, and snapshots to give them."""
+"""A described run that observers are prepared for, which there are, and snapshots for them."""
 
 import inspect
 
 import numpy as np
 
 from crazybilliards.particles import simulate
+from crazybilliards.particles.observers import OBSERVERS
 from crazybilliards.particles.observers.base import Snapshots
 from crazybilliards.particles.simulation import make_run
 
@@ -17,6 +18,17 @@ def a_run(chain, **changes):
         if name not in ("chain", "threads", "checkpoint", "checkpoint_interval", "progress")
     }
     return make_run(chain, **arguments | changes)
+
+
+def observers_of(chain):
+    """Return the names of all observers that measure the chain."""
+    return [
+        name
+        for name, each in OBSERVERS.items()
+        if each.least_rods <= chain.size
+        and (chain.box or not each.meets_walls)
+        and (not each.reads_chain or chain.unknown().keys() <= each.knows)
+    ]
 
 
 def some_snapshots(run, generator, first):

@@ -7,11 +7,11 @@ import time
 import numpy as np
 import pytest
 import xarray as xr
+from described_runs import observers_of
 from killed import begin, end, until
 
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
-from crazybilliards.particles.observers import OBSERVERS
 from crazybilliards.particles.observers.base import Averaged
 
 
@@ -40,12 +40,12 @@ def test_made_longer_and_killed_and_resumed_it_is_one_long_run(copies, tmp_path)
 
 
 @pytest.mark.parametrize("e", [0.8, 1.0])
-@pytest.mark.parametrize(("size", "replicas"), [(1, 3), (3, 1)])
-def test_all_observers_measure_in_parts_what_they_measure_at_once(size, replicas, e, tmp_path):
+@pytest.mark.parametrize(("size", "replicas", "box"), [(1, 3, 0), (3, 1, 0), (3, 1, 8)])
+def test_all_observers_measure_in_parts_what_they_measure_at_once(size, replicas, box, e, tmp_path):
     """From before the first blocks are full until after they were added up twice."""
     how = {"replicas": replicas, "seed": 2, "progress": False, "every": 1.0, "time_step": 0.25}
-    how["observe"] = [name for name, each in OBSERVERS.items() if each.least_rods <= size]
-    chain = Chain(size=size, restitution=e, damping=10)
+    chain = Chain(size=size, restitution=e, damping=10, box=box)
+    how["observe"] = observers_of(chain)
     whole = simulate(chain, duration=4000 // replicas, **how)
     for duration in (150, 151, 400, 1333, 4000 // replicas):
         run = simulate(chain, duration=duration, checkpoint=tmp_path / "state", **how)

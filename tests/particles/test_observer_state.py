@@ -21,7 +21,8 @@ def test_a_checkpoint_keeps_everything_that_observing_changes(observer, average)
     """Save and restore, then observe the same: every attribute agrees. None can be forgotten."""
     if average == "ensemble" and not observer.ensemble:
         return
-    run = a_run(Chain(size=5), duration=100, observe=observer(), average=average, replicas=2)
+    chain = Chain(size=5, box=12 * observer.meets_walls)
+    run = a_run(chain, duration=100, observe=observer(), average=average, replicas=2)
     generator = np.random.default_rng(1)
     [original] = (each.prepared(run, 2) for each in run.observers)
     untouched = {name: np.array(value) for name, value in original.state().items()}
@@ -32,6 +33,7 @@ def test_a_checkpoint_keeps_everything_that_observing_changes(observer, average)
         *tally.pushes,
         *tally.triggered,
         tally.impacts,
+        tally.struck,
         tally.speeds.counts,
     ):
         array += 1  # as the collision kernels do

@@ -6,7 +6,7 @@ import pydoc
 import numpy as np
 import pytest
 import xarray as xr
-from described_runs import a_run
+from described_runs import a_run, observers_of
 from scipy.integrate import quad
 from scipy.stats import kurtosis, norm, skew
 
@@ -163,7 +163,8 @@ BUILT_IN = [pytest.param(observer, id=name) for name, observer in OBSERVERS.item
 
 @pytest.mark.parametrize("observer", BUILT_IN)
 def test_an_observer_gives_what_it_declares(observer):
-    result = simulate(Chain(size=4), duration=300, observe=observer(), progress=False)
+    chain = Chain(size=4, box=10 * observer.meets_walls)
+    result = simulate(chain, duration=300, observe=observer(), progress=False)
     variables = {str(name).removesuffix("_error") for name in result.data_vars}
     assert variables == set(observer.gives)
     common = {"particle", "normalized_particle", "mean_position", "contact", "normalized_contact"}
@@ -197,10 +198,11 @@ def test_two_observers_that_would_give_one_name_are_refused():
         a_run(Chain(), observe=observe, average="ensemble")
 
 
-def test_snapshots_are_recorded_beside_all_other_observers(tmp_path):
-    names = [name for name in OBSERVERS if name != "snapshots"]
+@pytest.mark.parametrize("changed", [{}, {"box": 10, "mass_ratio": 3}])
+def test_snapshots_are_recorded_beside_all_other_observers(changed, tmp_path):
     how = {"duration": 1300, "every": 1.0, "replicas": 2, "seed": 4, "progress": False}
-    chain = Chain(size=4, restitution=0.9)
+    chain = Chain(size=4, restitution=0.9, **changed)
+    names = [name for name in observers_of(chain) if name != "snapshots"]
     run = simulate(chain, observe=[*names, "snapshots"], **how)
     alone = simulate(chain, observe=names, **how)
     for name, values in alone.data_vars.items():
@@ -209,7 +211,7 @@ def test_snapshots_are_recorded_beside_all_other_observers(tmp_path):
     assert run.sizes["time"] > 1000 >= alone.sizes["time"]
     stretched = chain.potential(run.position - chain.anchors).sum(axis=-1).mean(axis=0)
     np.testing.assert_allclose(run.spring_energy, stretched, rtol=1e-9)
-    energy = chain.mass / 2 * (run.velocity**2).sum("particle").mean("replica")
+    energy = (run.velocity**2 @ xr.DataArray(chain.rod_masses / 2, dims="particle")).mean("replica")
     np.testing.assert_allclose(run.kinetic_energy, energy.transpose("time"), rtol=1e-12)
     save(run, tmp_path / "run.nc")
     xr.testing.assert_identical(load(tmp_path / "run.nc"), run)
@@ -247,7 +249,7 @@ def test_energies_beside_snapshots_that_not_all_replicas_reached_are_unknown():
 def test_observers_of_rods_at_rest_and_of_a_few_rods(size, e):
     """Nothing moves without noise, what has no value is NaN, and sums are those of the rods."""
     still = Chain(size=size, restitution=e, amplitude=0, gap=0.3)
-    some = {name for name, each in OBSERVERS.items() if each.least_rods <= size}
+    some = {*observers_of(still)}
     how = {"duration": 400, "progress": False, "time_step": 0.1}
     with pytest.warns(UserWarning, match="nothing will move"):
         rest = simulate(still, observe=sorted(some - {"velocities"}), **how)
