@@ -89,8 +89,6 @@ cb.given_start(walled, chain.anchors + 2) | between the walls: their centres lie
 cb.simulate(walled, start=cb.given_start(chain, chain.anchors - 2)) | between the walls
 cb.equilibrium(walled.replace(wall_restitution=0.5)) | elastic walls only
 cb.phase_space(walled) | does not know the chain's box: it must be 0...got 12
-cb.force_balance(sorts) | does not know the chain's mass_ratio: it must be 1...got 3
-cb.hydrodynamics(sorts, exact, 1) | does not know the chain's mass_ratio
 cb.critical_size(sorts.replace(restitution=1.1)) | does not know the chain's mass_ratio
 cb.breathing_cloud(walled, 1, stretch=0.5) | does not know the chain's box
 cb.displaced(walled, 1) | does not know the chain's box
@@ -99,7 +97,6 @@ cb.compare(chain, {"mass_ratio": [1, 3]}) | comparison...does not know the chain
 cb.compare_relaxation(walled) | compare_relaxation does not know the chain's box
 cb.fit_arctanh(walls) | fit_arctanh does not know the chain's box
 cb.fit_border_power_law(walls) | fit_border_power_law does not know the chain's box
-cb.rod_by_rod(walls) | rod_by_rod does not know the chain's box
 cb.overlay({"a": walls}, "wall_force") | wall_force is over (wall); overlay draws what is over
 """
 
