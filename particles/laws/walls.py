@@ -1,15 +1,15 @@
 r"""Two walls, between which the rods move.
 
 In the reduced coordinate all rods have the same room, from ``low`` to ``high``, because rod 1 meets
-the left wall at x = -X/2 + R. Collisions one at a time (``event_driven.py``) take a wall as one more
-rod at each end (``unequal.py``). Rods that merge with a wall rest at it until the end of the step.
+the left wall at x = -X/2 + R. Collisions one at a time (``event_driven.py``) take a wall as one
+more rod at each end (``unequal.py``). Rods that merge with a wall rest at it until the step ends.
 
-**Elastic rods of equal mass** pass through each other and swap names (``sort.py``). If their springs
-have one anchor, or if there are none, each is alone with the walls.
+**Elastic rods of equal mass** pass through each other and swap names (``sort.py``). If their
+springs have one anchor, or if there are none, each is alone with the walls.
 
 * Without springs the free motion, with noise and damping, has the same law when it is seen in a
-  mirror. The motion between two mirrors is therefore the free one, folded (``fold``), exactly and at
-  any step.
+  mirror. The motion between two mirrors is therefore the free one, folded (``fold``), exactly and
+  at any step.
 * A flight on linear springs turns (y, v/w0), w0 = sqrt(k/m), on a circle, and a wall reflects the
   circle. ``turn`` is this flight, exactly. It keeps the Gibbs measure, as damping and noise before
   and after it do, so the steady state is right at any step. Without springs the flight is straight.
@@ -101,4 +101,3 @@ def turn(y, v, dt, pull, low, high, struck):  # type: ignore[no-untyped-def]
             phase += angle
         y[i] = min(max(radius * np.cos(phase), low), high)
         v[i] = -rate * radius * np.sin(phase)
-

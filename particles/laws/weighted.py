@@ -1,9 +1,9 @@
 r"""All contacts of a step at once, for rods of unequal masses and between walls.
 
-These are the problems of ``isotonic.py`` (e = 0) and ``contact_dynamics.py``. Rods of unequal masses
-make the regression one with the masses as weights, because blocks conserve the momentum. Two walls
-bound the ordered values. The nearest ordered values between two bounds are the nearest ordered ones,
-cut at the bounds, so the walls need no regression of their own.
+These are the problems of ``isotonic.py`` (e = 0) and ``contact_dynamics.py``. Rods of unequal
+masses make the regression one with the masses as weights, because blocks conserve the momentum. Two
+walls bound the ordered values. The nearest ordered values between two bounds are the nearest
+ordered ones, cut at the bounds, so the walls need no regression of their own.
 """
 
 import numpy as np
@@ -47,7 +47,7 @@ def pool(values, carried, inverse, firsts, totals, carried_totals, weights):  # 
 
 @kernel
 def stick(y, v, dt, law, scratch):  # type: ignore[no-untyped-def]
-    """Advance ``y`` and ``v`` at e = 0, also of the walls; return the contacts that ended closed."""
+    """Advance ``y`` and ``v`` at e = 0, also of the walls; return the contacts that end closed."""
     n = y.size
     for i in range(n):
         y[i] += dt * v[i]
@@ -96,8 +96,10 @@ def solve(y, v, anchors, dt, law, scratch):  # type: ignore[no-untyped-def]
         right = -_ahead(n - 1, y, anchors, inverse, dt, law)
         least = _bound(y[0] - law.low, -v[0], law.wall_restitution, left, dt)
         most = -_bound(law.high - y[n - 1], v[n - 1], law.wall_restitution, right, dt) - total
+        if most < least:  # all rebounds together need more room than there is
+            least = most = (least + most) / 2
         for i in range(n):
-            shifted[i] = min(max(shifted[i], least), max(most, least))
+            shifted[i] = min(max(shifted[i], least), most)
     before = law.low
     for i in range(n):
         v[i] = shifted[i] + totals[i]
