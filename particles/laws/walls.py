@@ -61,7 +61,7 @@ def fold(y, v, low, high):  # type: ignore[no-untyped-def]
 @inlined
 def _strike(flips, momentum, moves_right, struck):  # type: ignore[no-untyped-def]
     """Add the impulses of a point that meets the walls in turn to what the walls have received."""
-    if struck.size > 0 and flips > 0.0:
+    if struck.size > 0 and flips * momentum > 0.0:  # a point at rest at a wall does not meet it
         first = np.ceil(flips / 2.0)
         side = 1 if moves_right else 0
         struck[0, side] += 2.0 * momentum * first
