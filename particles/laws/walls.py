@@ -17,7 +17,7 @@ springs have one anchor, or if there are none, each is alone with the walls.
 
 import numpy as np
 
-from crazybilliards.model.kernels import inlined, kernel
+from crazybilliards.model.kernels import copy, inlined, kernel
 from crazybilliards.particles.laws import event_driven
 
 
@@ -29,11 +29,14 @@ def drift(y, v, anchors, dt, law, scratch, tally):  # type: ignore[no-untyped-de
     places[0] = ties[0] = law.low
     places[n + 1] = ties[n + 1] = law.high
     speeds[0] = speeds[n + 1] = 0.0
-    for i in range(n):
-        places[i + 1], speeds[i + 1], ties[i + 1] = y[i], v[i], anchors[i]
+    rods_y, rods_v = places[1 : n + 1], speeds[1 : n + 1]
+    copy(y, rods_y)
+    copy(v, rods_v)
+    copy(anchors, ties[1 : n + 1])
     collisions = event_driven.drift(places, speeds, ties, dt, law, scratch, tally)
+    copy(rods_v, v)
     for i in range(n):
-        y[i], v[i] = min(max(places[i + 1], law.low), law.high), speeds[i + 1]
+        y[i] = min(max(rods_y[i], law.low), law.high)
     clusters = scratch.clusters
     for k in range(clusters.number[0]):
         first, last = max(clusters.firsts[k] - 1, 0), min(clusters.lasts[k] - 1, n)

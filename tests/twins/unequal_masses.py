@@ -68,8 +68,9 @@ def drift(y, v, masses, anchors, dt, law):
 
 def moved(chain, state, dt, steps):
     """Positions, velocities and the collisions of rods and with walls after steps without noise."""
-    masses, anchors = chain.rod_masses, chain.reduced_anchors
-    springs = chain.stiffness, chain.potential_exponent, *chain.walls, chain.wall_restitution
+    masses = np.resize([chain.mass, chain.mass * chain.mass_ratio], chain.size)
+    anchors, high = chain.reduced_anchors, chain.box / 2 - chain.radius * chain.size
+    springs = chain.stiffness, chain.potential_exponent, -high, high, chain.wall_restitution
     law = Law(EVENTS, chain.restitution, 0.0, 0, *springs)
     decay = np.exp(-chain.damping / masses * dt / 2)
 
