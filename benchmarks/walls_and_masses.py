@@ -1,6 +1,6 @@
 """What walls and a second mass cost: steps of a chain with them and of one without, in turns.
 
-    python benchmarks/walls_and_masses.py [--rounds 40]
+    python benchmarks/walls_and_masses.py [--rounds 300]
 
 Both chains of a row take steps of the same length, from near their steady states. Walls stand
 where they are met but leave the density of rods about as it is. Printed are nanoseconds a rod and
@@ -23,7 +23,7 @@ from crazybilliards.particles.noise import make_noise
 from crazybilliards.particles.scales import centre_width, default_time_step
 
 SIZES = (10, 100, 1000)
-RODS_AND_STEPS = 300_000  # of a round
+RODS_AND_STEPS = 50_000  # of a round
 UNSEEN = make_tally(2, contacts=False)
 
 
@@ -51,7 +51,7 @@ class Steps:
         scratch = make_scratch(chain.size, dynamics.inverse)
         self.state = np.clip(y, *chain.walls), v, noise, dynamics, scratch, UNSEEN
         self.size, self.steps = chain.size, RODS_AND_STEPS // chain.size
-        for _ in range(5):
+        for _ in range(30):
             stepping.advance(*self.state, self.steps)
         self.times, self.collisions = [], 0
 
@@ -63,7 +63,7 @@ class Steps:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--rounds", type=int, default=40)
+    parser.add_argument("--rounds", type=int, default=300)
     rounds = parser.parse_args().rounds
     print("chain,L,plain: ns,collisions,with: ns,collisions,ratio of the minima,median ratio")
     for size in SIZES:

@@ -53,8 +53,10 @@ def collide(contact, a, b, now, y, v, anchors, dt, law, scratch, tally):  # type
     least = law.merge_speed * 0.5 * (single[contact] + single[neighbour]) if e < 1.0 else 0.0
     merges = rebound <= least
     apart = 0.0 if merges else max(rebound - ahead, 0.0)  # no rod passes another
-    true, change = (closing, 0.0 if merges else rebound), v_left - v_right + apart
-    _record(contact, a, b, true, change, v_left, v_right, scratch, tally)
+    change = v_left - v_right + apart
+    if tally.contacts.size + tally.impacts.size + tally.struck.size > 0:
+        true = closing, 0.0 if merges else rebound
+        _record(contact, a, b, true, change, v_left, v_right, scratch, tally)
     share, other_share = w / (w + w_right), w_right / (w + w_right)
     # Each from its own velocity: that of a heavy rod must not get the rounding of a light one's.
     new_left, new_right = v_left - share * change, v_right + other_share * change
