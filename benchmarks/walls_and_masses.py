@@ -31,8 +31,8 @@ def pairs(size):
     """Return chains with walls or masses, each after the plain one, and the step of both."""
     elastic, lossy = Chain(size=size), Chain(size=size, restitution=0.9)
     step = default_time_step(lossy)
-    walls = {"box": 2 * size * elastic.radius + 4 * elastic.thermal_length}
-    near = {"box": walls["box"] - 4 * elastic.thermal_length * (1 - centre_width(lossy))}
+    rods, length = 2 * size * elastic.radius, 6 * elastic.thermal_length
+    walls, near = {"box": rods + length}, {"box": rods + length * centre_width(lossy)}
     yield "fold, e = 1", elastic, elastic.replace(stiffness=0, **walls), default_time_step(elastic)
     yield "walls, e = 0.9", lossy, lossy.replace(wall_restitution=0.9, **near), step
     yield "two masses, e = 0.9", lossy, lossy.replace(mass_ratio=2), step
@@ -56,6 +56,7 @@ class Steps:
         self.times, self.collisions = [], 0
 
     def go(self):
+        """Take the steps of a round."""
         begin = time.perf_counter()
         self.collisions += stepping.advance(*self.state, self.steps)
         self.times.append(1e9 * (time.perf_counter() - begin) / (self.size * self.steps))

@@ -103,13 +103,13 @@ def take_step(y, v, kicks, part, dynamics, scratch, tally):  # type: ignore[no-u
 @inlined
 def _fly(y, v, noise, dynamics, scratch, steps):  # type: ignore[no-untyped-def]
     """Take steps of a chain whose motion is known exactly; collisions are not counted."""
-    width, row, rows = 2 * y.size, 0, 0
+    width, row, rows, walled = 2 * y.size, 0, 0, dynamics.law.unequal
     for taken in range(steps):
         if row == rows:
             row, rows = 0, draw_kicks(noise, scratch.kicks, width, steps - taken)
         kicks = scratch.kicks[row * width : (row + 1) * width]
         propagate(y, v, kicks, dynamics.propagator)
-        if dynamics.law.high < np.inf:
+        if walled:
             fold(y, v, dynamics.law.low, dynamics.law.high)
         sort_pairs(y, v, scratch)
         row += 1

@@ -39,7 +39,8 @@ def collide(contact, a, b, now, y, v, anchors, dt, law, scratch, tally):  # type
     w, w_right = joint[contact], joint[neighbour]
     v_left, v_right = v[contact], v[neighbour]
     ahead = 0.0
-    if law.pull > 0.0 and a == contact and b == neighbour:
+    alike = w == w_right and anchors[contact] == anchors[neighbour]
+    if law.pull > 0.0 and a == contact and b == neighbour and not alike:
         here, since = y[contact] + v_left * now, now - dt / 2
         ahead = springs_ahead(here - anchors[contact], 0.0, law.pull * w, law.exponent, since)
         ahead += springs_ahead(

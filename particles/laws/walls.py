@@ -48,7 +48,7 @@ def drift(y, v, anchors, dt, law, scratch, tally):  # type: ignore[no-untyped-de
     return collisions
 
 
-@inlined
+@kernel
 def fold(y, v, low, high):  # type: ignore[no-untyped-def]
     """Put points that have passed through the walls to where mirrors at the walls show them."""
     room = high - low

@@ -62,20 +62,20 @@ def test_the_slow_twin_moves_the_rods_alike(case):
 @pytest.mark.parametrize("around", [Around(masses=(1, 3)), Around(0.1, 0.5), Around(0, 1, (1, 3))])
 def test_long_rows_of_touching_rods_move_as_with_the_twin(around, e):
     """In a tournament."""
-    y = np.repeat([-1.0, 1.0], LONG + 2)
-    state = y, np.random.default_rng(1).normal(size=y.size)
+    state = np.full(LONG + 2, 0.3), np.random.default_rng(1).normal(size=LONG + 2)
     agree(state, 0.05, e, {"around": around, "merge_speed": 0.1}, most=10**6)
 
 
+@pytest.mark.parametrize("stiffness", [0.0, 0.4])
 @pytest.mark.parametrize("mass_ratio", [1.0, 4.0])
-def test_many_steps_between_walls_are_those_of_the_twin(mass_ratio):
-    """Quadratic springs, a gap, and losses at rods and walls."""
+def test_many_steps_between_walls_are_those_of_the_twin(mass_ratio, stiffness):
+    """Quadratic springs or none, a gap, and losses at rods and walls."""
     lossy = {"restitution": 0.9, "box": 18.0, "wall_restitution": 0.5, "mass_ratio": mass_ratio}
-    springs = {"spring": "quadratic", "gap": 0.2, "stiffness": 0.4}
+    springs = {"spring": "quadratic", "gap": 0.2, "stiffness": stiffness}
     chain = Chain(size=8, amplitude=0, damping=0.05, mass=2, **lossy, **springs)
     state = chain.reduced_anchors, 2 * np.cos(2.0 * np.arange(8))
     y, v, contacts, hits = unequal_masses.moved(chain, state, 0.02, 300)
-    assert contacts > 40
+    assert contacts > 20
     assert hits > 10
     np.testing.assert_allclose(moved(chain, state, 0.02, 300), (y, v), rtol=0, atol=1e-9)
 
