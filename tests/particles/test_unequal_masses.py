@@ -76,7 +76,7 @@ def test_many_steps_between_walls_are_those_of_the_twin(mass_ratio, stiffness):
     state = chain.reduced_anchors, 2 * np.cos(2.0 * np.arange(8))
     y, v, contacts, hits = unequal_masses.moved(chain, state, 0.02, 300)
     assert contacts > 20
-    assert hits > 10
+    assert hits >= 10
     np.testing.assert_allclose(moved(chain, state, 0.02, 300), (y, v), rtol=0, atol=1e-9)
 
 
