@@ -62,7 +62,7 @@ class Chain(Parameters):
         X >= 0, the distance between two walls at -X/2 and X/2 [R]; 0: there are no walls. It must
         be above 2RL. Without springs a gas in a box has a steady state.
     wall_restitution
-        Restitution of the walls, >= 0.
+        Restitution of the walls, >= 0, which are rods of infinite mass; 1 without walls.
     mass_ratio
         Mass of the rods 2, 4, ... over that of the rods 1, 3, ..., which have ``mass``.
 
@@ -170,6 +170,11 @@ class Chain(Parameters):
     def rod_masses(self) -> NDArray[np.float64]:
         """Masses of the rods [M], shape (L,)."""
         return self.mass * np.where(np.arange(self.size) % 2, self.mass_ratio, 1.0)
+
+    @property
+    def exchangeable(self) -> bool:
+        """Whether the springs treat all rods alike, because there is no gap or no spring."""
+        return self.lattice_gap * self.stiffness == 0
 
     @property
     def lattice_gap(self) -> float:

@@ -21,6 +21,8 @@ Spring = Literal["linear", "quadratic"]
 KNOWN = frozenset(
     {"size", "restitution", "amplitude", "damping", "stiffness", "gap", "radius", "mass", "spring"}
 )
+# For the ``knows`` of what has been made sure of with walls and two masses.
+WALLS_AND_MASSES = frozenset({"box", "wall_restitution", "mass_ratio"})
 _MOST_RODS = 10**9  # 8 GB an array
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crazybilliards.model import Chain
+from crazybilliards.model.parameters import WALLS_AND_MASSES
 from crazybilliards.particles.laws.closed_contacts import CLOSED_KICK, CRITICAL_RESTITUTION
 from crazybilliards.particles.laws.exact_flight import Propagator, make_propagator
 from crazybilliards.particles.laws.law import TURN, Law, Method, inverse_masses, make_law
@@ -24,7 +25,7 @@ Stepper = Literal["splitting", "euler"]
 
 # Parameters beside ``KNOWN`` with which the steps of springs, damping and noise are right. Exact
 # flight has its own (``laws/law.py``).
-knows: frozenset[str] = frozenset({"box", "wall_restitution", "mass_ratio"})
+knows: frozenset[str] = WALLS_AND_MASSES
 
 
 class Step(NamedTuple):
@@ -81,12 +82,13 @@ def make_dynamics(
         halves=stepper == "splitting",
     )
     second = chain.replace(mass=chain.mass * chain.mass_ratio, mass_ratio=1.0)
-    steps = [make_step(each, time_step, stepper, method) for each in (chain, second)]
+    one, other = (make_step(each, time_step, stepper, method) for each in (chain, second))
     if law.operator == TURN:  # which has the springs in its flight
-        steps = [each._replace(kick=0.0) for each in steps]
+        one, other = one._replace(kick=0.0), other._replace(kick=0.0)
     return Dynamics(
         chain.reduced_anchors,
-        *steps,
+        one,
+        other,
         law,
         make_propagator(chain, time_step),
         _DIVERGED * speed if speed > 0 else math.inf,

@@ -155,7 +155,7 @@ def too_short(chain: Chain, duration: float, warmup: float, replicas: int, at_re
     ``at_rest``: the start is no state of the steady state, so that the warm-up must forget it.
     A chain that neither gains nor loses energy has averages over time, which its start decides.
     """
-    if chain.amplitude == chain.damping == 0 < chain.stiffness:
+    if chain.amplitude == chain.damping == 0 < max(chain.stiffness, chain.box):
         return ""
     if reason := chain.why_unsteady:
         return (

@@ -73,8 +73,9 @@ def simulate(
     time_step
         None: 0.05 of the shorter of the times of spring and damping (0.1 for the default chain).
         For e != 1 it is also short enough to resolve the noise between collisions; see ``scales``.
-        Elastic rods on linear springs without a gap, and a single rod, are flown exactly, unless
-        single collisions are observed. Any step is right then; None: the time between snapshots.
+        Elastic rods on linear springs without a gap, without springs in a box, and a single rod,
+        are flown exactly, unless single collisions or walls are observed. Any step is right then;
+        None: the time between snapshots.
     method
         ``"event-driven"``: every collision in its order in time. ``"contact-dynamics"``: all
         contacts of a step at once, the paper's method, which is right only if there are few
@@ -101,8 +102,8 @@ def simulate(
         ``"time-correlations"`` (velocity_autocorrelation, displacement_autocorrelation,
         mean_squared_displacement, velocity_spectrum, each also of waves and of the centre),
         ``"collisions"`` (collision_rate), ``"impacts"`` (contact_force, contact_loss,
-        contact_temperature, rebound_temperature, impact_speed_density),
-        ``"avalanches"`` (avalanche_count),
+        contact_temperature, rebound_temperature, impact_speed_density), in a box ``"walls"``
+        (wall_force, wall_collision_rate), ``"avalanches"`` (avalanche_count),
         ``"triggered-collisions"`` (triggered_count) and ``"snapshots"``
         (position and velocity as they are). Observers can also be given as objects,
         ``cb.Velocities(bins=801)`` or your own.

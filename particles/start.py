@@ -11,10 +11,11 @@ from crazybilliards.model.arrays import Array, check_numbers
 from crazybilliards.model.calls import public
 from crazybilliards.model.checks import check_integer, shown
 from crazybilliards.model.memory import require_memory
+from crazybilliards.model.parameters import WALLS_AND_MASSES
 from crazybilliards.model.vocabulary import result
 
 # Parameters beside ``KNOWN`` with which a start is right: at the anchors, or where rods are put.
-knows: frozenset[str] = frozenset({"box", "wall_restitution", "mass_ratio"})
+knows: frozenset[str] = WALLS_AND_MASSES
 
 MOST_REPLICAS = 10**15  # more than any memory holds, and still exact as a float
 

@@ -40,6 +40,7 @@ from crazybilliards.model.calls import public
 from crazybilliards.model.checks import check_integer
 from crazybilliards.model.grid import position_grid, require_resolved, thermal_reach
 from crazybilliards.model.memory import require_memory
+from crazybilliards.model.parameters import WALLS_AND_MASSES
 from crazybilliards.model.progress import waiting_for
 from crazybilliards.model.randomness import Seed, seed_of
 from crazybilliards.model.vocabulary import OF_RODS, result
@@ -47,8 +48,6 @@ from crazybilliards.model.vocabulary import OF_RODS, result
 # Grid nodes in the width of the narrowest rod, which is the middle one without a gap.
 _NODES_PER_WIDTH = 10
 
-# In equilibrium masses change the velocities only.
-_KNOWS = ("box", "wall_restitution", "mass_ratio")
 _MOST_STATES = 10**15  # more than any memory holds, and still exact as a float
 
 
@@ -62,8 +61,9 @@ def equilibrium(chain: Chain) -> xr.Dataset:
     -------
     xarray.Dataset
         ``density`` and ``label`` over x; ``mean_displacement``, ``displacement_width`` and
-        ``velocity_width`` over particle; in a box ``wall_force`` over wall. ``attrs["residual"]`` is the spread of log Z over the
-        particles. It is normally 1e-6 or less, and relative errors are of this order.
+        ``velocity_width`` over particle; in a box ``wall_force`` over wall.
+        ``attrs["residual"]`` is the spread of log Z over the particles. It is normally 1e-6 or
+        less, and relative errors are of this order.
 
     Raises
     ------
@@ -86,20 +86,24 @@ def _in_vocabulary(chain: Chain, recursion: Recursion | BoxRecursion) -> xr.Data
     x = position_grid(chain)
     density, label = np.zeros((2, x.size))
     mean, width, log_z = np.zeros((3, chain.size))
-    at_the_walls = []
+    weights, at_the_walls = recursion.weights, []
     for i in range(chain.size):
         d, log_p = recursion.log_density(i)
         top = np.max(log_p)
         p = np.exp(log_p - top)
-        log_z[i] = top + np.log(p.sum())
-        p /= p.sum()
-        at_the_walls += [2 * p[0], 2 * p[-1]]  # half a cell has the probability of an end
-        mean[i] = d @ p
-        width[i] = np.sqrt((d - mean[i]) ** 2 @ p)
+        total = (p * weights).sum()
+        log_z[i] = top + np.log(total)
+        p /= total
+        at_the_walls += [p[0], p[-1]]
+        mean[i] = d @ (p * weights)
+        width[i] = np.sqrt((d - mean[i]) ** 2 @ (p * weights))
         _add_rod(x, chain.anchors[i] + d, p, density, label)
     spacing = recursion.nodes(0)[1] - recursion.nodes(0)[0]
-    force = chain.temperature / spacing * np.array([at_the_walls[0], at_the_walls[-1]])
-    walls = {"wall_force": ("wall", force)} if chain.box else {}
+    walls = {}
+    if chain.box:
+        reached = recursion.nodes(0)[-1] == chain.walls[1]  # by any rod
+        ends = np.array([at_the_walls[0], at_the_walls[-1]]) if reached else np.zeros(2)
+        walls["wall_force"] = ("wall", chain.temperature / spacing * ends)
     dataset = result(
         chain,
         {
@@ -180,6 +184,8 @@ class Recursion:
         first = self.centres[i] - self.half
         return self.spacing * np.arange(first, first + 2 * self.half + 1)
 
+    weights = 1.0  # of the nodes in a sum over the grid, where the density ends at 0
+
     def log_z(self, i: int) -> Array:
         """Return log Z of the rods up to number i, counted from 0, on the window of i."""
         return np.asarray(self.log_f[i])
@@ -206,7 +212,9 @@ class Recursion:
 def check_equilibrium(chain: Chain) -> None:
     """Raise the ValueError that :func:`equilibrium` would raise, without the computation."""
     remedy = "; chain.replace(restitution=1) is the elastic chain"
-    require_chain(chain, "the exact equilibrium", elastic=True, remedy=remedy, knows=_KNOWS)
+    require_chain(
+        chain, "the exact equilibrium", elastic=True, remedy=remedy, knows=WALLS_AND_MASSES
+    )
     if chain.wall_restitution != 1:
         raise ValueError(
             "the exact equilibrium holds for elastic walls only: wall_restitution must be 1, got "

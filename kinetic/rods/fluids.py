@@ -17,6 +17,7 @@ from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.arrays import Array
 from crazybilliards.model.calls import public
 from crazybilliards.model.grid import require_all_held, require_even
+from crazybilliards.model.parameters import WALLS_AND_MASSES
 from crazybilliards.model.vocabulary import (
     OF_RODS,
     VOCABULARY,
@@ -98,7 +99,7 @@ def _check(theory: xr.Dataset) -> Chain:
     """Return the chain of a theory, or raise for what it is not."""
     require(theory, ("density",))
     chain = chain_of(theory)
-    chain.require_known("rod_by_rod")
+    chain.require_known("rod_by_rod", WALLS_AND_MASSES)
     if theory.attrs.get("source") == "simulation":
         raise ValueError("rod_by_rod takes a theory; a simulation has the density of its rods")
     if "smoothed" in theory.attrs:
@@ -145,7 +146,7 @@ def _temperature(chain: Chain, fluid: xr.Dataset) -> float:
         share = fluid.density.values / fluid.density.values.sum()
         return chain.mass * float(share @ fluid.velocity_variance.values)
     if "velocity_width" in fluid:
-        return chain.mass * float((fluid.velocity_width.values**2).mean())
+        return float((chain.rod_masses * fluid.velocity_width.values**2).mean())
     return chain.temperature
 
 

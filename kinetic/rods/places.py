@@ -98,12 +98,12 @@ class LabelledPoints:
 
 def are_resolved(chain: Chain) -> bool:
     """Return whether the rods of a chain are told apart."""
-    return chain.size <= (MOST_RODS_WITH_GAP if chain.lattice_gap else MOST_RODS)
+    return chain.size <= (MOST_RODS if chain.exchangeable else MOST_RODS_WITH_GAP)
 
 
 def rods_of(chain: Chain, points: LabelledPoints, temperature: float) -> RodPlaces:
     """Return the rods of a theory's points; ``temperature``: the mean of m W^2 over the rods."""
-    if chain.lattice_gap == 0:
+    if chain.exchangeable:
         return _mapped(exchangeable(chain.size), *points.at(exchangeable(chain.size).places))
     cold = at_temperature(chain, temperature)
     rest, score, slope_at_rest = elastic_rods(cold), *_scores_at_rest(cold)
@@ -152,7 +152,7 @@ def beta_scores(first: Array, second: Array) -> RodPlaces:
 @lru_cache(maxsize=4)
 def elastic_rods(chain: Chain) -> RodPlaces:
     """Return the exact rods of the elastic chain at rest."""
-    if chain.lattice_gap == 0:
+    if chain.lattice_gap == 0 and not chain.box:
         return _without_gap(chain)
     recursion, L = recursion_of(chain), chain.size
     rods = RodPlaces(*np.empty((4, L, _NODES)))
@@ -182,7 +182,7 @@ def _without_gap(chain: Chain) -> RodPlaces:
 @lru_cache(maxsize=4)
 def _scores_at_rest(chain: Chain) -> tuple[Array, Array]:
     """Return z of the places of the exact rods in the fluid at rest, and dy/dz there."""
-    s = chain.thermal_length
+    s = stationary(chain).unit
     label, log_density = stationary(chain).profile(elastic_rods(chain).places / s)
     beyond = np.maximum(0.5 - np.abs(label), np.finfo(float).tiny)
     score = -np.sign(label) * ndtri(beyond)
@@ -191,7 +191,7 @@ def _scores_at_rest(chain: Chain) -> tuple[Array, Array]:
 
 def _place_at_rest(chain: Chain, score: float) -> float:
     eta, _ = stationary(chain).at(np.array([ndtr(score) - 0.5]))
-    return chain.thermal_length * float(eta[0])
+    return stationary(chain).unit * float(eta[0])
 
 
 def _normal(score: Array) -> Array:

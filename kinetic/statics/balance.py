@@ -50,6 +50,7 @@ from crazybilliards.kinetic.statics.variable_temperature import solve_variable_t
 from crazybilliards.kinetic.statics.wright_closure import solve_wright_closure
 from crazybilliards.model import Chain
 from crazybilliards.model.calls import public
+from crazybilliards.model.parameters import WALLS_AND_MASSES
 from crazybilliards.model.vocabulary import OF_FLUID
 
 
@@ -133,8 +134,14 @@ def check_force_balance(
         "the force balance",
         elastic=velocity_variance is None,
         linear=variance is not None,
+        knows=WALLS_AND_MASSES,
         remedy="; give velocity_variance for others",
     )
+    if given is not None and chain.box:
+        if chain.stiffness == 0:
+            raise ValueError("displacement: without springs it has no effect; leave it out")
+        end = chain.box / 2
+        given = given._replace(left=max(given.left, -end), right=min(given.right, end))
     if given is not None and not given.left < 0 < given.right:
         raise ValueError(
             "displacement must be given on both sides of x = 0, got the interval "

@@ -1,24 +1,28 @@
 r"""The force balance closed by labels, a boundary-value problem without any input.
 
 With the label N(x) = int rho, the mean displacement at x is <dx> = x - (2R + g)(N - L/2). In the
-reduced coordinate y = x - 2R (N - L/2) the length of the rods drops out. The unit of length is the
-thermal length s = (T/k)^(1/n) (n: exponent of the spring's potential) and
+reduced coordinate y = x - 2R (N - L/2) the length of the rods drops out. The unit of length l is
+the thermal length s = (T/k)^(1/n) (n: exponent of the spring's potential), or half the room between
+the walls, X/2 - RL, where this is shorter, and
 
-    zeta  distance of y from the outer edge of the lattice of anchors, y = s zeta + g L/2,
+    zeta  distance of y from the outer edge of the lattice of anchors, y = l zeta + g L/2,
     t     share of the rods further out, N = L (1 - t),
-    P     log density, rho_y = (L/s) exp(P),
-    u     displacement <dx>/s = zeta + Lam t,   with Lam = g L/s the only parameter left.
+    P     log density, rho_y = (L/l) exp(P),
+    u     displacement <dx>/l = zeta + Lam t,   with Lam = g L/l,
+    K     strength of the springs, (l/s)^n: 1 without walls.
 
 Then, on the right half of the (symmetric) chain,
 
-    P' = -u |u|^(n-2),      t' = -exp(P),      t = 1/2 at the centre,      t = 0 far outside.
+    P' = -K u |u|^(n-2),      t' = -exp(P),      t = 1/2 at the centre,      t = 0 far outside,
 
-Lam exp(P) - P - |u|^n/n is conserved, and its drift is the residual. Without a gap (Lam = 0) the
-solution is rho_y = L times the density of a free rod.
+or at the wall, zeta = (X/2 - RL)/l - Lam/2. No other condition holds at a wall: the pressure there
+follows. Lam exp(P) - P - K |u|^n/n is conserved, and its drift is the residual. Without a gap
+(Lam = 0) the solution is rho_y = L times the density of a rod that is alone. Without springs the
+anchors mean nothing, and rho_y is constant.
 
 Deep inside a chain with a gap there is a plateau with u = 0 and rho_y = 1/g. Perturbations of it
-decay as exp(-distance) for linear and as 6/distance^2 for quadratic springs. The solver starts
-where they have vanished.
+decay as exp(-distance/s) for linear and as 6 (s/distance)^2 for quadratic springs. The solver
+starts where they have vanished.
 """
 
 from __future__ import annotations
@@ -52,15 +56,19 @@ def solve_label_closure(chain: Chain) -> xr.Dataset:
     density, label = state.fields(chain, x)
     lattice = (2 * chain.radius + chain.lattice_gap) * (label - chain.size / 2)
     # The middle of rod i has the label i - 1/2.
-    rods = chain.thermal_length * state.at(chain.rank / chain.size)[0]
+    rods = state.unit * state.at(chain.rank / chain.size)[0]
+    walls = {}
+    if chain.box:
+        walls["wall_force"] = ("wall", np.full(2, chain.temperature * state.at_walls * chain.size))
     dataset = result(
         chain,
         {
+            **walls,
             "density": ("x", density),
             "label": ("x", label),
             "displacement": ("x", x - lattice),
             "mean_displacement": ("particle", rods - chain.reduced_anchors),
-            "velocity_width": ("particle", np.full(chain.size, chain.free_velocity_width)),
+            "velocity_width": ("particle", np.sqrt(chain.temperature / chain.rod_masses)),
         },
         coordinates={"x": x},
         source="theory",
@@ -75,15 +83,24 @@ def solve_label_closure(chain: Chain) -> xr.Dataset:
 class Stationary:
     """The scaled stationary state: a plateau up to zeta = left, computed up to right, then vacuum.
 
-    Labels are nu = N/L - 1/2 in (-1/2, 1/2), eta = y/s, and densities rho_y are in L/s.
+    Labels are nu = N/L - 1/2 in (-1/2, 1/2), eta = y/l, and densities rho_y are in L/l.
     """
 
+    unit: float  # l
+    stiffness: float  # K
     lam: float
     left: float
     right: float
+    wall: float  # the wall's zeta
     scale: float  # the solver's second unknown is scale * t
     curve: Callable[[Array], Array]
     residual: float
+
+    @property
+    def at_walls(self) -> float:
+        """The density rho_y/L at the walls [1/R]; 0 if no rod comes so far."""
+        reached = self.right == self.wall
+        return float(np.exp(self.curve(self.right)[0])) / self.unit if reached else 0.0
 
     def _evaluate(self, zeta: Array) -> tuple[Array, Array]:
         """Return P and t at zeta."""
@@ -123,15 +140,15 @@ class Stationary:
 
     def fields(self, chain: Chain, x: Array, stretch: float = 1.0) -> tuple[Array, Array]:
         """Return density and label at positions x, of the state stretched in y."""
-        s, L, R = stretch * chain.thermal_length, chain.size, chain.radius
+        unit, L, R = stretch * self.unit, chain.size, chain.radius
 
         def position(zeta: Array) -> tuple[Array, Array]:
             log_density, share = self._evaluate(zeta)
-            place = s * (zeta + self.lam / 2) + 2 * R * L * (0.5 - share)
-            return place, s + 2 * R * L * np.exp(log_density)
+            place = unit * (zeta + self.lam / 2) + 2 * R * L * (0.5 - share)
+            return place, unit + 2 * R * L * np.exp(log_density)
 
         log_density, share = self._evaluate(self._invert(position, np.abs(x)))
-        reduced_density = L / s * np.exp(log_density)
+        reduced_density = L / unit * np.exp(log_density)
         density = reduced_density / (1 + 2 * R * reduced_density)
         return density, L / 2 + np.sign(x) * L * (0.5 - share)
 
@@ -139,31 +156,43 @@ class Stationary:
 @lru_cache(maxsize=8)
 def stationary(chain: Chain) -> Stationary:
     """Solve the boundary-value problem of this module for a chain at its temperature."""
-    n, lam = chain.potential_exponent, chain.lattice_gap * chain.size / chain.thermal_length
-    depth = _EDGE_DEPTH[n]
-    left, right = -min(lam / 2, depth), (n * _TAIL) ** (1 / n)
+    n, room = chain.potential_exponent, chain.walls[1]
+    unit = min(chain.thermal_length, room)
+    stiffness = (unit / chain.thermal_length) ** n
+    lam = chain.lattice_gap * chain.size / unit if chain.stiffness > 0 else 0.0
+    wall = room / unit - lam / 2
+    right = min((n * _TAIL) ** (1 / n) * chain.thermal_length / unit, wall)
+    edge = min(wall, 0.0)
+    depth = _EDGE_DEPTH[n] * (chain.thermal_length / unit) - edge if stiffness else 0.0
+    left = -min(lam / 2, depth)
     share_left = 0.5 if lam <= 2 * depth else depth / lam
     scale = max(lam, 1.0)
 
     def equations(zeta: Array, state: Array) -> Array:
         u = zeta + lam / scale * state[1]
-        return np.array([-spring.force(u, n), -scale * np.exp(state[0])])
+        return np.array([-stiffness * spring.force(u, n), -scale * np.exp(state[0])])
 
     def boundary(at_left: Array, at_right: Array) -> Array:
         return np.array([at_left[1] / scale - share_left, at_right[1]])
 
     # The mesh is fine near the edge and geometrically coarser into the plateau, if there is any.
-    fine = -5.0 if left < -6 else left
-    inner = -np.geomspace(-fine, -left, 200)[:0:-1] if left < fine else np.empty(0)
+    fine = edge - 5.0 if left < edge - 6 else left
+    inner = np.empty(0)
+    if left < fine:
+        inner = edge - np.geomspace(edge - fine, edge - left, 200)[:0:-1]
     mesh = np.concatenate([inner, np.linspace(fine, right, 300)])
     guess_density, guess_share = _free_lattice(n, lam, mesh)
+    if right == wall:  # from a constant density on
+        guess_density = np.full(mesh.size, share_left / (right - left))
+        guess_share = guess_density * (right - mesh)
     guess = np.array([np.log(guess_density), scale * guess_share])
     solution = solve_bvp(equations, boundary, mesh, guess, tol=1e-9, max_nodes=100_000)
     if not solution.success:
         raise ValueError(f"the force balance found no solution: {solution.message}")
     P, u = solution.y[0], solution.x + lam / scale * solution.y[1]
-    conserved = (lam * np.exp(P) - P - spring.potential(u, n))[P.max() - 30 < P]
-    return Stationary(lam, left, right, scale, solution.sol, float(np.ptp(conserved)))
+    conserved = (lam * np.exp(P) - P - stiffness * spring.potential(u, n))[P.max() - 30 < P]
+    known = unit, stiffness, lam, left, right, wall, scale
+    return Stationary(*known, solution.sol, float(np.ptp(conserved)))
 
 
 def _free_lattice(n: int, lam: float, zeta: Array) -> tuple[Array, Array]:

@@ -12,6 +12,9 @@ with n = rho s/L. One more derivative removes the label:
     ((w + B exp(P)) P')' = -1 + (B + Lam) n,
     flux (w + B exp(P)) P' = -x +- (B + Lam)/2 at the far ends: all rods lie in between.
 
+At walls the flux has the same value, with x of the wall, because all rods lie in between. Without
+springs the pressure is constant, and the number of rods determines it.
+
 Weak form, for all test functions v: int (w + B e^P) P' v' + int ((B + Lam) n - 1) v = [flux v].
 
 A Newton step may change the pressure by a factor e^2 at most, except in the far tails. The mesh is
@@ -24,8 +27,9 @@ from collections.abc import Callable
 
 import numpy as np
 import xarray as xr
-from scipy.integrate import cumulative_trapezoid
+from scipy.integrate import cumulative_simpson, cumulative_trapezoid
 from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
+from scipy.optimize import brentq
 from scipy.sparse.linalg import splu
 from skfem import Basis, BilinearForm, ElementLineP2, LinearForm, MeshLine
 from skfem.helpers import grad
@@ -47,6 +51,7 @@ _CAP = 2.0
 _DEPTH = 6.0  # from an edge into a plateau where cells begin to grow, in thermal lengths
 _DEAD = 30.0  # a pressure lower than the highest by exp(-30) is none
 _VACUUM = 18.0  # so much must the log pressure have fallen at the ends of the mesh
+_NODES = 40_001  # between walls
 _REACH = 9.0  # of the mesh beyond the lattice of anchors, in the hottest thermal length
 
 
@@ -67,19 +72,23 @@ def _residual(v, w):  # type: ignore[no-untyped-def]
 
 def solve_variable_temperature(chain: Chain, variance: Profile) -> xr.Dataset:
     """Solve for the density at a given W^2(x); see ``force_balance``, which checks both."""
+    if chain.stiffness == 0:
+        return _between_walls(chain, variance)
     s, L, R = chain.thermal_length, chain.size, chain.radius
     crowd, lam = 2 * R * L / s, chain.lattice_gap * L / s
 
     def warmth(x: Array) -> Array:
         return np.asarray(variance.function(s * x)) / chain.free_velocity_width**2
 
-    end = _end(warmth, crowd, lam)
+    end = min(_end(warmth, crowd, lam), chain.walls[1] / s)
     even = np.linspace(0, end, 100_001)
     growth = 1 + np.maximum(lam / 2 - _DEPTH - even, 0) / _DEPTH
     cells_up_to = cumulative_trapezoid(1 / growth, even, initial=0)
     half = np.interp(np.linspace(0, cells_up_to[-1], _CELLS // 2 + 1), cells_up_to, even)
     rough = np.concatenate([-half[:0:-1], half])
-    labels, log_density = stationary(chain).profile(rough)
+    unit = stationary(chain).unit
+    labels, log_density = stationary(chain).profile(rough * (s / unit))
+    log_density += np.log(s / unit)
     nodes = rough + crowd * labels
     guess = PchipInterpolator(nodes, np.maximum(log_density, -60.0) + np.log(warmth(nodes)))
     for _ in range(_MESHES):
@@ -89,7 +98,8 @@ def solve_variable_temperature(chain: Chain, variance: Profile) -> xr.Dataset:
         nodes = _adapted(basis, P, label, crowd, warmth)
         order = np.argsort(basis.doflocs[0])
         guess = PchipInterpolator(basis.doflocs[0][order], P[order])
-    _require_vacuum(basis, P, s)
+    if end < chain.walls[1] / s:
+        _require_vacuum(basis, P, s)
     return _assemble(chain, basis, guess, label, warmth)
 
 
@@ -186,9 +196,11 @@ def _assemble(
     known, first = np.unique(label / label[-1] - 0.5, return_index=True)
     at_vertices = vertices[first] - (crowd + chain.lattice_gap * L / s) * known
     mean = s * PchipInterpolator(known, at_vertices)(chain.rank / L)
+    pressure = chain.temperature * L / s * np.exp(log_pressure(vertices[[0, -1]]))
     return result(
         chain,
         {
+            **({"wall_force": ("wall", pressure)} if chain.box else {}),
             "density": ("x", np.where(here == x / s, share(here), 0.0) * L / s),
             "label": ("x", labels),
             "displacement": ("x", displacement),
@@ -202,4 +214,39 @@ def _assemble(
         source="theory",
         method={"theory": "force balance, by labels, prescribed velocity variance"},
         residual=abs(label[-1] - 1),
+    )
+
+
+def _between_walls(chain: Chain, variance: Profile) -> xr.Dataset:
+    """Solve without springs: rho = p/(W^2 + 2 R p), with the pressure m p that holds L rods."""
+    L, R, end = chain.size, chain.radius, chain.box / 2
+    x = np.linspace(-end, end, _NODES)
+    squares = np.asarray(variance.function(x), dtype=float)
+
+    def labels(log_p: float) -> Array:
+        p = np.exp(log_p)
+        return np.asarray(cumulative_simpson(p / (squares + 2 * R * p), x=x, initial=0))
+
+    free = np.log(L * squares / (2 * chain.walls[1]))  # of a gas with one of these temperatures
+    log_p = brentq(lambda p: labels(p)[-1] - L, free.min() - 1, free.max() + 1, xtol=1e-13)
+    p, label = np.exp(log_p), labels(log_p)
+    grid = position_grid(chain)
+    here = np.clip(grid, -end, end)
+    hot = np.asarray(variance.function(here), dtype=float)
+    counted = L * np.clip(PchipInterpolator(x, label / label[-1])(here), 0.0, 1.0)
+    rods = np.interp(np.arange(L) + 0.5, L * label / label[-1], x)
+    return result(
+        chain,
+        {
+            "wall_force": ("wall", np.full(2, chain.mass * p)),
+            "density": ("x", np.where(here == grid, p / (hot + 2 * R * p), 0.0)),
+            "label": ("x", counted),
+            "displacement": ("x", grid - (2 * R + chain.lattice_gap) * (counted - L / 2)),
+            "mean_displacement": ("particle", rods - chain.anchors),
+            "velocity_width": ("particle", np.sqrt(variance.function(rods))),
+        },
+        coordinates={"x": grid},
+        source="theory",
+        method={"theory": "force balance, by labels, prescribed velocity variance"},
+        residual=abs(label[-1] / L - 1),
     )

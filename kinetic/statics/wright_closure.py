@@ -74,9 +74,15 @@ def solve_wright_closure(chain: Chain, profile: Profile) -> xr.Dataset:
     values = density(constant, PchipInterpolator(edges, at_edges)(here))
     displacement = np.zeros(grid.size)  # beyond the profile
     displacement[inside] = profile.function(grid[inside])
+    walls = {}
+    if chain.box:
+        crowd = 1 - 2 * chain.radius * ends
+        forces = np.where(abs(edges[[0, -1]]) == chain.box / 2, chain.temperature * ends / crowd, 0)
+        walls["wall_force"] = ("wall", forces)
     return result(
         chain,
         {
+            **walls,
             "density": ("x", np.where(inside, values, 0.0)),
             "label": ("x", np.interp(here, edges, np.append(0.0, rods))),
             "displacement": ("x", displacement),

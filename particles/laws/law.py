@@ -12,6 +12,7 @@ step at once. ``EXACT`` is no operator: chains whose motion is known with noise 
 from __future__ import annotations
 
 import math
+from collections.abc import Set
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -19,6 +20,7 @@ from numpy.typing import NDArray
 
 from crazybilliards.model import Chain
 from crazybilliards.model.kernels import inlined, kernel
+from crazybilliards.model.parameters import WALLS_AND_MASSES
 from crazybilliards.particles.laws import (
     contact_dynamics,
     event_driven,
@@ -42,9 +44,10 @@ NAMES = (
 
 # Parameters beside ``KNOWN`` with which an operator is right, because it reads them or does not
 # depend on them: {EVENTS: {"my_own"}}.
-_WALLS = {"box", "wall_restitution"}
-knows: dict[int, set[str]] = {each: {*_WALLS} for each in (EXACT, TURN)}
-knows |= {each: {*_WALLS, "mass_ratio"} for each in (ISOTONIC, EVENTS, CONTACTS)}
+knows: dict[int, Set[str]] = {
+    **dict.fromkeys((ISOTONIC, EVENTS, CONTACTS), WALLS_AND_MASSES),
+    **dict.fromkeys((EXACT, TURN), WALLS_AND_MASSES - {"mass_ratio"}),
+}
 
 
 class Law(NamedTuple):

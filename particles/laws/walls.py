@@ -1,8 +1,9 @@
 r"""Two walls, between which the rods move.
 
-In the reduced coordinate all rods have the same room, from ``low`` to ``high``, because rod 1 meets
-the left wall at x = -X/2 + R. Collisions one at a time (``event_driven.py``) take a wall as one
-more rod at each end (``unequal.py``). Rods that merge with a wall rest at it until the step ends.
+In the reduced coordinate all rods have the same room, from ``low`` to ``high``, because rod 1
+meets the left wall at x = -X/2 + R. Collisions one at a time (``event_driven.py``) take a wall as
+one more rod at each end (``unequal.py``). Rods that merge with a wall rest at it until the end of
+the step.
 
 **Elastic rods of equal mass** pass through each other and swap names (``sort.py``). If their
 springs have one anchor, or if there are none, each is alone with the walls.

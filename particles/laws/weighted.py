@@ -47,7 +47,7 @@ def pool(values, carried, inverse, firsts, totals, carried_totals, weights):  # 
 
 @kernel
 def stick(y, v, dt, law, scratch):  # type: ignore[no-untyped-def]
-    """Advance ``y`` and ``v`` at e = 0, also of the walls; return the contacts that end closed."""
+    """Advance ``y`` and ``v`` at e = 0, also of the walls; return the contacts that closed."""
     n = y.size
     for i in range(n):
         y[i] += dt * v[i]

@@ -8,6 +8,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
+from crazybilliards.model.parameters import WALLS_AND_MASSES
 from crazybilliards.particles.observers.base import (
     Array,
     Integers,
@@ -38,7 +39,7 @@ class Energy(Observer):
     gives = ("kinetic_energy", "spring_energy", "total_energy")
     along = ("time",)
     shares_time = True
-    knows = frozenset({"box", "wall_restitution", "mass_ratio"})
+    knows = WALLS_AND_MASSES
 
     def prepare(self, run: Run, copies: int) -> None:
         self.schedule = run.schedule

@@ -10,6 +10,7 @@ import numpy as np
 
 from crazybilliards.model.calls import public
 from crazybilliards.model.checks import check_integer
+from crazybilliards.model.parameters import WALLS_AND_MASSES
 from crazybilliards.particles.laws.avalanche import Tally
 from crazybilliards.particles.laws.impacts import (
     ENERGY_AFTER,
@@ -77,7 +78,7 @@ class Impacts(Averaged):
     least_rods = 2
     single_collisions = True
     ensemble = False
-    knows = frozenset({"box", "wall_restitution", "mass_ratio"})
+    knows = WALLS_AND_MASSES
 
     def __init__(self, bins: int = 200) -> None:
         self.bins = check_integer("bins", bins, least=1, most=MOST_BINS)

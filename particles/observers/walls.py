@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from crazybilliards.model.parameters import WALLS_AND_MASSES
 from crazybilliards.particles.laws.avalanche import Tally
 from crazybilliards.particles.observers.base import Array, Averaged, Integers, Snapshots, Variables
 from crazybilliards.particles.run import Run
@@ -12,9 +13,9 @@ from crazybilliards.particles.run import Run
 class Walls(Averaged):
     """wall_force and wall_collision_rate: the momentum that each wall receives, and collisions.
 
-    Both are per time. In one dimension the force is the pressure of the gas. Without springs and at
-    e = 1 it is exactly L T/(X - 2RL), for any masses. A collision with rods that rest at a wall
-    pushes the wall, too, but is none with the wall.
+    Both are per time. In one dimension the force is the pressure of the gas. Without springs, and
+    if rods and walls are elastic, it is exactly L T/(X - 2RL), for any masses. A hit on rods that
+    rest at a wall pushes the wall, too, but does not count as a collision with it.
     """
 
     name = "walls"
@@ -22,7 +23,7 @@ class Walls(Averaged):
     along = ("wall",)
     meets_walls = True
     ensemble = False
-    knows = frozenset({"box", "wall_restitution", "mass_ratio"})
+    knows = WALLS_AND_MASSES
 
     def shape(self, run: Run) -> tuple[int, ...]:
         return 2, 2

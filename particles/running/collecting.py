@@ -13,7 +13,9 @@ from numpy.typing import ArrayLike
 from crazybilliards.model.arrays import Array
 from crazybilliards.model.calls import warn_user
 from crazybilliards.model.checks import shown
+from crazybilliards.model.parameters import WALLS_AND_MASSES
 from crazybilliards.model.vocabulary import VOCABULARY, result
+from crazybilliards.particles.laws.law import EXACT, TURN
 from crazybilliards.particles.observers.base import Integers, Observer, Variables
 from crazybilliards.particles.run import Run
 from crazybilliards.particles.running.replica import NEVER, Replica
@@ -121,13 +123,14 @@ def _undeclared(
 
 def _time_step_error(run: Run, measured: xr.Dataset) -> float:
     """Return the relative error of the smallest velocity width above 0; NaN if it is not known."""
-    if run.chain.unknown():
+    if not run.chain.unknown().keys() <= WALLS_AND_MASSES:
         return float("nan")  # nobody has measured it
-    if run.exact:
+    if run.operator in (EXACT, TURN):
         return 0.0
     width = centre_width(run.chain) * run.chain.free_velocity_width
     if "velocity_width" in measured:
-        widths = measured.velocity_width.values
+        masses = run.chain.rod_masses[measured.particle.values.astype(int) - 1]
+        widths = measured.velocity_width.values * masses / run.chain.rod_masses[:2].min()
         width = float(np.min(widths, initial=np.inf, where=widths > 0))
     step = run.schedule.time_step
     return time_step_error(run.chain, step, width, stepper=run.stepper, method=run.method)
