@@ -172,6 +172,11 @@ class Chain(Parameters):
         return self.mass * np.where(np.arange(self.size) % 2, self.mass_ratio, 1.0)
 
     @property
+    def mean_mass(self) -> float:
+        """The mean mass of the rods [M], which a fluid of them has."""
+        return self.mass if self.mass_ratio == 1 else float(self.rod_masses.mean())
+
+    @property
     def exchangeable(self) -> bool:
         """Whether the springs treat all rods alike, because there is no gap or no spring."""
         return self.lattice_gap * self.stiffness == 0

@@ -77,8 +77,7 @@ def _width_in_box(chain: Chain) -> float:
     """Return the root w of the energy balance of a gas in a box, at e < 1."""
     if not chain.box:
         return 1.0
-    mass = float(chain.rod_masses.mean())
-    free_path = 2 * chain.walls[1] / chain.size * chain.damping / math.sqrt(mass)
+    free_path = 2 * chain.walls[1] / chain.size * chain.damping / math.sqrt(chain.mean_mass)
     loss = (1 - chain.restitution**2) * math.sqrt(chain.temperature / math.pi) / free_path
     roots = np.roots([loss, 1.0, 0.0, -1.0])
     return float(roots.real[np.isreal(roots) & (roots.real > 0)][0])

@@ -20,13 +20,17 @@ right in the steady state. It is wrong in a transient at the reference damping, 
 exchanged more slowly than the chain moves. *Evolving*: the velocity variance has an equation of its
 own,
 
-    (W^2)_t + V (W^2)_x = -2 W^2 V_x/(1 - 2 R rho) - (2 gamma/m) (W^2 - A^2/(2 m gamma)),
+    (W^2)_t + V (W^2)_x = -2 W^2 V_x/(1 - 2 R rho) - 2 Gamma_T (W^2 - A^2/(2 m gamma)),
 
-the adiabatic compression of a gas with one degree of freedom plus the exchange with the noise,
-without a heat flux. Without a gap it is exact for Gaussian clouds at restitution 1. *Prescribed*: a
-number, or a profile W^2(x), at all times.
+the adiabatic compression of a gas with one degree of freedom plus the exchange with the noise at
+the rate Gamma_T = gamma/m, without a heat flux. Without a gap it is exact for Gaussian clouds at
+restitution 1. *Prescribed*: a number, or a profile W^2(x), at all times.
 
-**Boundary conditions.** The density falls to zero outside, and no rods enter or leave.
+**Two masses.** The fluid has their mean m, and W^2 = T/m. Flow and heat relax at different rates,
+gamma/m and Gamma_T = gamma <1/m>, because light rods exchange more heat with the noise.
+
+**Boundary conditions.** The density falls to zero outside, and no rods enter or leave. In a box
+V = 0 at x = -X/2 and X/2, and the density there follows.
 
 There are two independent solvers, on labels (:mod:`.label_frame`, the default) and on a grid of
 positions (:mod:`.eulerian_frame`). Both give py-pde their rates of change, and its solvers step
@@ -35,7 +39,7 @@ them in time (:mod:`.pde_solver`).
 
 from __future__ import annotations
 
-from typing import Literal, get_args
+from typing import Any, Literal, get_args
 
 import numpy as np
 import xarray as xr
@@ -58,6 +62,7 @@ from crazybilliards.model.calls import public
 from crazybilliards.model.checks import check_choice, check_integer, shown
 from crazybilliards.model.grid import position_grid
 from crazybilliards.model.memory import require_memory
+from crazybilliards.model.parameters import WALLS_AND_MASSES
 from crazybilliards.model.vocabulary import OF_FLUID, result
 
 Frame = Literal["label", "eulerian"]
@@ -154,11 +159,15 @@ def hydrodynamics(
     known = read_start(chain, start)
     nodes = position_grid(chain, float(np.abs(known.x).max())).size + chain.size
     require_memory(f"every: {times.size} outputs", _BYTES_PER_NODE * float(nodes) * times.size)
-    how = {"thermal": kind == "evolving", "progress": progress}
+    fluid, exchange = chain, 1.0
+    if chain.mass_ratio != 1:
+        fluid = chain.replace(mass=chain.mean_mass, mass_ratio=1.0)
+        exchange = chain.mean_mass * float((1 / chain.rod_masses).mean())
+    how: Any = {"thermal": kind == "evolving", "exchange": exchange, "progress": progress}
     if frame == "label":
-        fields = solve_on_labels(chain, known, times, cells, **how)
+        fields = solve_on_labels(fluid, known, times, cells, **how)
     else:
-        fields = solve_on_positions(chain, known, times, cells, variance, frozen, **how)
+        fields = solve_on_positions(fluid, known, times, cells, variance, frozen, **how)
     method = {
         "frame": frame,
         "displacement": "prescribed" if frozen else "by labels",
@@ -193,6 +202,7 @@ def _read_closure(
         chain,
         "hydrodynamics",
         elastic=kind != "prescribed",
+        knows=WALLS_AND_MASSES,
         remedy="; give a number or a profile as velocity_variance for others",
     )
     return chain, frozen, variance, kind

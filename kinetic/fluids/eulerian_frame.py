@@ -4,17 +4,17 @@ The conserved quantities rho, rho V and, with a temperature, E = rho (V^2 + W^2)
 
     rho_t     + (rho V)_x         = 0,
     (rho V)_t + (rho V^2 + p)_x   = -rho F/m - (gamma/m) rho V,      p = rho W^2/(1 - 2 R rho),
-    E_t       + (V (E + p))_x     = -rho V F/m - (gamma/m) (2 E - rho W_0^2),
+    E_t       + (V (E + p))_x     = -rho V F/m - (gamma/m) rho V^2 - Gamma_T rho (W^2 - W_0^2),
 
-where W_0^2 = A^2/(2 m gamma) and F is the spring's force at the displacement
+where Gamma_T = gamma <1/m>, W_0^2 = A^2/(2 m gamma) and F is the spring's force at the displacement
 <dx> = x - (2 R + g)(N - L/2), N = int rho dx, or at a frozen profile <dx>(x). py-pde gets the grid
 and these fields in the chain's units, R and T, and with these names.
 
 **Discretisation.** The finite volumes (:mod:`.finite_volumes`) are of second order and well
-balanced, and n always stays positive and below close packing. The walls are far out, where the
-density vanishes, and no flux passes them. The time steps are Runge-Kutta steps of four stages and
-of fixed length, which resolve the speed that the springs give the rods. If the flow is faster, the
-solution is computed again with half the step.
+balanced, and n always stays positive and below close packing. The grid ends far out, where the
+density vanishes, or at walls, where V = 0. No rod passes its ends. The time steps are Runge-Kutta
+steps of four stages and of fixed length, which resolve the speed that the springs give the rods. If
+the flow is faster, the solution is computed again with half the step.
 """
 
 from __future__ import annotations
@@ -34,6 +34,7 @@ from crazybilliards.kinetic.fluids.finite_volumes import (
 )
 from crazybilliards.kinetic.fluids.pde_solver import FlowFields, make_state, solve
 from crazybilliards.kinetic.starts import Start
+from crazybilliards.kinetic.statics.label_closure import length_unit
 from crazybilliards.kinetic.statics.profiles import Profile
 from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array
@@ -54,7 +55,7 @@ _POPULATED = 1e-12  # of the largest density; how far thinner places swing does 
 _JUST_INSIDE = 1 - 1e-9  # an arctanh is infinite at its end
 _ROOM = 9.5  # beyond the lattice of anchors, in thermal lengths
 _MARGIN = 3.0  # beyond the farthest swing
-_AT_THE_WALL = 1e-4  # of the density L/s
+_AT_THE_END = 1e-4  # of the density L/s
 _MOST_WORK = 4e10
 _CELL_STEP = 2.6e-7  # seconds that a step of a cell takes
 _MANY_STEPS = 25_000
@@ -69,18 +70,21 @@ def solve_on_positions(
     displacement: Profile | None,
     *,
     thermal: bool,
+    exchange: float,
     progress: bool,
 ) -> FlowFields:
     """Solve from a start with ``number`` cells, by Runge-Kutta steps of py-pde.
 
-    ``variance``: W^2(x) if prescribed; ``displacement``: <dx>(x) if frozen.
+    ``variance``: W^2(x) if prescribed; ``displacement``: <dx>(x) if frozen. ``exchange`` is
+    m Gamma_T/gamma.
     """
     for wider in (1.0, 1.6, 2.5, 4.0):
         faces = make_faces(chain, start, times[-1], number, wider)
         fields = starting_fields(chain, start, faces, thermal=thermal)
-        constants = make_constants(chain, faces, variance, displacement)
+        constants = make_constants(chain, faces, variance, displacement, exchange)
         solution = _integrate(fields, times, faces, constants, progress=progress)
-        away = solution[:, 0][:, [0, -1]].max(axis=1) < _AT_THE_WALL * constants.dilute
+        away = solution[:, 0][:, [0, -1]].max(axis=1) < _AT_THE_END * constants.dilute
+        away |= constants.walled
         if len(solution) < times.size:
             solution = _before_the_first(away, solution)
             break
@@ -93,10 +97,14 @@ def solve_on_positions(
 
 
 def make_constants(
-    chain: Chain, faces: Array, variance: Profile | None, displacement: Profile | None
+    chain: Chain,
+    faces: Array,
+    variance: Profile | None,
+    displacement: Profile | None,
+    exchange: float = 1.0,
 ) -> Constants:
     """Return the quantities that the rates depend on, at the cells between ``faces``."""
-    s, W, L = chain.thermal_length, chain.free_velocity_width, chain.size
+    s, W, L = length_unit(chain), chain.free_velocity_width, chain.size
     x = (faces[1:] + faces[:-1]) / 2
     squares, frozen = np.full(x.size, W**2), np.empty(0)
     if variance is not None:
@@ -113,9 +121,11 @@ def make_constants(
         lattice=2 * chain.radius + chain.lattice_gap,
         stiffness=chain.stiffness / chain.mass,
         damping=chain.damping / chain.mass,
+        heating=exchange * chain.damping / chain.mass,
         exponent=chain.potential_exponent,
         heat=W**2,
         dilute=L / s,
+        walled=chain.box > 0,
     )
 
 
@@ -199,13 +209,14 @@ def make_faces(
     chain: Chain, start: Start, duration: float, number: int | None, wider: float
 ) -> Array:
     """Return the positions [R] of the cells' faces, beyond the farthest swing."""
-    s, W, L = chain.thermal_length, chain.free_velocity_width, chain.size
+    s, W, L = length_unit(chain), chain.free_velocity_width, chain.size
     density = start.label(start.x, 1)
     there = density > _POPULATED * density.max()
     label = start.label(start.x)
     u = (start.x - (2 * chain.radius + chain.lattice_gap) * (label - L / 2))[there] / s
     swing = float(np.hypot(u, start.velocity(start.x)[there] / W).max())
     half = (chain.radius + chain.lattice_gap / 2) * L / s + wider * max(_ROOM, swing + _MARGIN)
+    half = min(half, chain.box / (2 * s) if chain.box else math.inf)
     finest = _finest(chain, start, duration, there) / s
     if number is None:
         number = min(math.ceil(2 * half / (_CELL * finest)), _MOST_BY_DEFAULT)
@@ -229,7 +240,7 @@ def _finest(chain: Chain, start: Start, duration: float, there: NDArray[np.bool_
     density, slope = (np.abs(start.label(start.x[there], order)).max() for order in (1, 2))
     steep = float(density / slope) if slope > 0 else math.inf
     waves = chain.free_velocity_width * duration
-    return min(chain.thermal_length, rods / 20, max(waves, steep, rods / 100))
+    return min(length_unit(chain), rods / 20, max(waves, steep, rods / 100))
 
 
 def starting_fields(chain: Chain, start: Start, faces: Array, *, thermal: bool) -> dict[str, Array]:
@@ -239,6 +250,8 @@ def starting_fields(chain: Chain, start: Start, faces: Array, *, thermal: bool) 
     h = faces[1] - faces[0]
     rho = np.maximum(np.diff(start.label(at)) / h, 0.0)
     rho[0] += start.label(at[0]) / h
+    if chain.box:
+        rho[-1] += (chain.size - start.label(at[-1])) / h
     v = start.velocity(middle)
     fields = {"rho": rho, "rho V": rho * v}
     if thermal:

@@ -6,7 +6,8 @@ minmod limiter. For every value of p = rho W^2/(1 - 2 R rho) the density is betw
 packing. The scheme is well balanced. The limiter acts on the deviation of ln p from the state at
 rest, where (ln p)' = -(F/m)(1 - 2 R rho)/W^2, and the springs' force is the difference of the
 pressures that it balances at rest. Fluxes and forces therefore cancel at rest. No flux passes the
-outermost faces.
+outermost faces, but that at walls rods push: the flux of momentum there is the one between the flow
+and its mirror image.
 """
 
 from __future__ import annotations
@@ -41,9 +42,11 @@ class Constants(NamedTuple):
     lattice: float  # 2 R + g, the distance of the anchors [R]
     stiffness: float  # k/m
     damping: float  # gamma/m [1/T]
+    heating: float  # Gamma_T = gamma <1/m> [1/T]
     exponent: int  # of the springs' potential
     heat: float  # the free W^2 [R^2/T^2]
     dilute: float  # L/s, the density of rods without a length [1/R]
+    walled: bool  # the outermost faces are walls
 
 
 @kernel
@@ -57,7 +60,7 @@ def minmod(a, b):  # type: ignore[no-untyped-def]
 @kernel
 def _hll(left, right, constants, sound):  # type: ignore[no-untyped-def]
     """Flux of rho, rho V and E between two states of ``primitive``."""
-    _, _, _, _, _, rod, _, _, _, _, heat, dilute = constants
+    _, _, _, _, _, rod, _, _, _, _, _, heat, dilute, _ = constants
     p_l, p_r = dilute * heat * np.exp(left[0]), dilute * heat * np.exp(right[0])
     hot_l, hot_r, v_l, v_r = heat * np.exp(left[2]), heat * np.exp(right[2]), left[1], right[1]
     free_l, free_r = p_l / hot_l, p_r / hot_r
@@ -82,7 +85,7 @@ def primitive(fields, constants):  # type: ignore[no-untyped-def]
     the same in all units of length and time. In a vacuum the quotients would be rounding errors.
     There V = 0 and W^2 is the given one.
     """
-    _, _, variance, _, _, rod, _, _, _, _, heat, dilute = constants
+    _, _, variance, _, _, rod, _, _, _, _, _, heat, dilute, _ = constants
     cells = fields.shape[1]
     state = np.empty((cells, 3))
     for i in range(cells):
@@ -103,9 +106,8 @@ def primitive(fields, constants):  # type: ignore[no-untyped-def]
 def eulerian_rate(fields, constants):  # type: ignore[no-untyped-def]
     """Rates of change of (rho, rho V) or (rho, rho V, E), (2 or 3, M); see ``Constants``."""
     number, cells = fields.shape
-    x, spacing, _, frozen, size, rod, lattice, stiffness, damping, exponent, heat, dilute = (
-        constants
-    )
+    x, spacing, _, frozen, size, rod, lattice, stiffness, damping = constants[:9]
+    heating, exponent, heat, dilute, walled = constants[9:]
     state = primitive(fields, constants)
     sound = np.sqrt(3.0) if number == 3 else 1.0
     rates, rest = np.zeros_like(fields), np.zeros((cells, 3))
@@ -122,7 +124,9 @@ def eulerian_rate(fields, constants):  # type: ignore[no-untyped-def]
         push = 2 * dilute * heat * np.exp(state[i, 0]) * np.sinh(rest[i, 0] / 2) / spacing
         rates[1, i] += push - damping * momentum
         if number == 3:
-            rates[2, i] += state[i, 1] * push - damping * (2 * fields[2, i] - n * heat)
+            hotter = 2 * fields[2, i] - n * heat
+            rates[2, i] += state[i, 1] * push - damping * hotter
+            rates[2, i] -= (heating - damping) * (hotter - n * state[i, 1] ** 2)
     left, right, slope, following = np.zeros((4, 3))
     copy(rest[0], following)
     for i in range(cells - 1):
@@ -140,6 +144,12 @@ def eulerian_rate(fields, constants):  # type: ignore[no-untyped-def]
         for j in range(number):
             rates[j, i] -= flux[j] / spacing
             rates[j, i + 1] += flux[j] / spacing
+    for end in range(2 if walled else 0):
+        i, outwards = (0, -1.0) if end == 0 else (cells - 1, 1.0)
+        for j in range(3):
+            left[j] = right[j] = state[i, j] + outwards * rest[i, j] / 2
+        left[1], right[1] = outwards * state[i, 1], -outwards * state[i, 1]
+        rates[1, i] -= outwards * _hll(left, right, constants, sound)[1] / spacing
     return rates
 
 

@@ -5,17 +5,21 @@ A label nu = N/L - 1/2 in (-1/2, 1/2) is carried by the flow, N_t + V N_x = 0, s
 lengths s, velocities in W, times in s/W, and eta(nu, t) = y/s. The continuity equation holds by
 construction, and the velocity equation reads
 
-    eta_t = V,      V_t = -dp/dnu - u |u|^(n-2) - Gamma V,        p = theta / eta_nu,
+    eta_t = V,      V_t = -dp/dnu - K u |u|^(n-2) - Gamma V,        p = theta / eta_nu,
 
-    u = eta - Lam nu,      Lam = g L/s,      Gamma = gamma s/(m W),
+    u = eta - Lam nu,      Lam = g L/s,      Gamma = gamma s/(m W),      K = 1,
 
 with theta = T/T_0, which is 1 in the isothermal case. The temperature equation is that of a gas
 with one degree of freedom and no heat flux, in contact with the noise:
 
-    theta_t + V theta_y = -2 theta V_y - 2 Gamma (theta - 1).
+    theta_t + V theta_y = -2 theta V_y - 2 Gamma_T (theta - 1),      Gamma_T = gamma <1/m> s/W.
 
-The quantity S = theta eta_nu^2 obeys the linear law S_t = 2 Gamma (eta_nu^2 - S), so it stays
+The quantity S = theta eta_nu^2 obeys the linear law S_t = 2 Gamma_T (eta_nu^2 - S), so it stays
 positive.
+
+**Between walls** the unit of length is that of the state at rest, which may be shorter than s, and
+K is the strength of the springs in it (:mod:`crazybilliards.kinetic.statics.label_closure`). V = 0
+at a wall, which is a mirror: two more cells are the images of the outermost ones.
 
 **Discretisation.** M cells of labels, equally wide at the edges, hold eta and V. S and p are
 defined on the faces between them, p = kappa S/d^3 with d the distance of neighbouring cells. kappa
@@ -48,6 +52,8 @@ _pull = inlined(spring.force)
 _EDGE_CELL = 0.045  # width of a cell at the edge, in thermal lengths
 _LAST_SHARE = 1e-5  # of the rods, beyond the outermost face
 _FEWEST_CELLS, _MOST_CELLS = 100, 4000
+_WEAKEST = 1e-8  # springs, K, that hold cells at their places
+_THINNEST = 1e-6  # density of the state at rest at the walls, in L/s
 _CLOSEST = 1e-3  # distance of cells, as a share of that at rest
 _SPACING = 0.05  # of the points that a solution is read out at, in thermal lengths
 
@@ -55,9 +61,9 @@ _SPACING = 0.05  # of the points that a solution is read out at, in thermal leng
 class Cells(NamedTuple):
     """The cells of labels and their calibration by the stationary state."""
 
-    labels: Array  # of the cells' middles, (M,)
+    labels: Array  # of the cells' middles, (M,); between walls the first and the last are images
     shares: Array  # of all rods, (M,)
-    faces: Array  # labels of the inner faces, (M - 1,)
+    faces: Array  # labels of the faces between them, (M - 1,)
     eta: Array  # stationary, (M,)
     kappa: Array  # p d at the inner faces, (M - 1,)
     weights: Array  # where a face lies between its two cells, (M - 1,)
@@ -70,29 +76,61 @@ def make_cells(state: Stationary, exponent: int, number: int | None) -> Cells:
     bounds = np.concatenate([[-0.5], faces, [0.5]])
     shares, labels = np.diff(bounds), (bounds[1:] + bounds[:-1]) / 2
     density = np.exp(log_density)
-    pressure = np.concatenate([[0.0], density, [0.0]])
-    # The mean force on a cell balances the pressures at its faces: u |u|^(n-2) = -dp/dnu.
+    at_walls = state.unit * state.at_walls
+    pressure = np.concatenate([[at_walls], density, [at_walls]])
+    # The mean force on a cell balances the pressures at its faces: K u |u|^(n-2) = -dp/dnu.
     force = -np.diff(pressure) / shares
-    eta = state.lam * labels + spring.displacement(force, exponent)
+    if state.stiffness > _WEAKEST:
+        eta = state.lam * labels + spring.displacement(force / state.stiffness, exponent)
+    else:
+        eta = state.at(labels)[0]
+    if at_walls:
+        end = state.wall + state.lam / 2
+        labels, eta = _mirrored(labels, 0.5), _mirrored(eta, end)
+        shares, density = np.pad(shares, 1, mode="edge"), pressure
+        faces, eta_faces = bounds, np.concatenate([[-end], eta_faces, [end]])
     distance = np.diff(eta)
     return Cells(labels, shares, faces, eta, density * distance, (eta_faces - eta[:-1]) / distance)
 
 
+def _mirrored(values: Array, end: float) -> Array:
+    """Return values with the images of the first and the last one in mirrors at -end and end."""
+    return np.concatenate([[-2 * end - values[0]], values, [2 * end - values[-1]]])
+
+
 def _faces(state: Stationary, number: int | None) -> Array:
     """Return the stationary eta of the inner faces: even at the edges, wider in a plateau."""
-    end = float(state.at(np.array([0.5 - _LAST_SHARE]))[0][0])
+    end = state.wall + state.lam / 2
+    if not state.at_walls:
+        end = float(state.at(np.array([0.5 - _LAST_SHARE]))[0][0])
     fine = np.linspace(0, end, 20_001)
     depth = state.lam / 2 - fine
     cells_up_to = cumulative_trapezoid(1 / np.clip(1 + (depth - 6) / 3, 1, 8), fine, initial=0)
     if number is None:
         number = int(np.clip(2 * cells_up_to[-1] / _EDGE_CELL, _FEWEST_CELLS, _MOST_CELLS))
-    count = cells_up_to[-1] * np.linspace(-1, 1, number - 1)
+    walls = 1 if state.at_walls else 0  # are faces, too
+    count = cells_up_to[-1] * np.linspace(-1, 1, number - 1 + 2 * walls)
+    count = count[walls : count.size - walls]
     return np.asarray(np.sign(count) * np.interp(np.abs(count), cells_up_to, fine))
 
 
 @kernel(allocates=True)
-def label_rate(fields, labels, shares, kappa, stationary_distance, lam, gamma, exponent):  # type: ignore[no-untyped-def]
+def label_rate(  # type: ignore[no-untyped-def]
+    fields,
+    labels,
+    shares,
+    kappa,
+    stationary_distance,
+    lam,
+    stiffness,
+    gamma,
+    heating_rate,
+    walled,
+    exponent,
+):
     """Rates of change of (eta, V) or, with a temperature, of (eta, V, S).
+
+    ``gamma`` is Gamma and ``heating_rate`` Gamma_T.
 
     ``fields`` has the shape (2 or 3, M). S of the face right of a cell is stored at the cell, in
     units in which it is ``stationary_distance`` squared at rest. Its last value is not used.
@@ -122,25 +160,44 @@ def label_rate(fields, labels, shares, kappa, stationary_distance, lam, gamma, e
                 pressure += viscous
             if thermal:
                 heating = -4 * viscous * jump * d**2 / (shares[i] + shares[i + 1])
-                rates[2, i] = 2 * gamma * (d**2 - fields[2, i]) + heating
+                rates[2, i] = 2 * heating_rate * (d**2 - fields[2, i]) + heating
         elif thermal:
             rates[2, i] = 0.0
-        force = _pull(eta[i] - lam * labels[i], exponent)
+        force = stiffness * _pull(eta[i] - lam * labels[i], exponent)
         rates[0, i] = v[i]
         rates[1, i] = (before - pressure) / shares[i] - force - gamma * v[i]
         before = pressure
+    if walled:
+        for j in range(2):
+            rates[j, 0], rates[j, cells - 1] = -rates[j, 1], -rates[j, cells - 2]
     return rates
 
 
 def solve_on_labels(
-    chain: Chain, start: Start, times: Array, number: int | None, *, thermal: bool, progress: bool
+    chain: Chain,
+    start: Start,
+    times: Array,
+    number: int | None,
+    *,
+    thermal: bool,
+    exchange: float,
+    progress: bool,
 ) -> FlowFields:
-    """Solve from a start with ``number`` cells, by DOP853 of scipy through py-pde."""
-    s, W = chain.thermal_length, chain.free_velocity_width
-    state = stationary(chain)
+    """Solve from a start with ``number`` cells, by DOP853 of scipy through py-pde.
+
+    ``exchange`` is Gamma_T/Gamma.
+    """
+    state, W = stationary(chain), chain.free_velocity_width
+    s, walled = state.unit, chain.box > 0
+    if walled and state.at_walls < _THINNEST / s:
+        raise ValueError(
+            "frame='label' needs walls that rods reach at rest, and these are too far out; use "
+            "frame='eulerian'"
+        )
     cells = make_cells(state, chain.potential_exponent, number)
-    lam, gamma = state.lam, chain.damping * s / (chain.mass * W)
-    constants = (cells.labels, cells.shares, cells.kappa, np.diff(cells.eta), lam, gamma)
+    gamma = chain.damping * s / (chain.mass * W)
+    at_rest = cells.labels, cells.shares, cells.kappa, np.diff(cells.eta), state.lam
+    constants = (*at_rest, state.stiffness, gamma, exchange * gamma, walled)
     # In the unit of time of `solve`: py-pde drops outputs that are less than 1e-8 units apart.
     interval = times[1] * W / s
 
@@ -169,7 +226,8 @@ def solve_on_labels(
             f"{_CLOSEST:g} of its width at rest"
         )
     rates = np.array([rate(values)[:2] for values in solution])
-    unsteadiness = np.sqrt(np.sum(rates**2, axis=1) @ cells.shares)
+    own = slice(1, -1) if walled else slice(None)
+    unsteadiness = np.sqrt(np.sum(rates[..., own] ** 2, axis=1) @ cells.shares[own])
     return _on_positions(chain, cells, state, solution, unsteadiness)
 
 
@@ -181,25 +239,30 @@ def _starting_fields(
     A cell is a weighted mean of two points in it, with the weights of the stationary state. A
     shifted or stretched stationary state then starts exactly.
     """
-    s, W, L = chain.thermal_length, chain.free_velocity_width, chain.size
+    s, W, L = state.unit, chain.free_velocity_width, chain.size
+    own = slice(1, -1) if chain.box else slice(None)
 
     def at(labels: Array) -> tuple[Array, Array, Array]:
         x = start.positions(L * (labels + 0.5))
         eta = (x - 2 * chain.radius * L * labels) / s
         return eta, start.velocity(x) / W, start.variance(x) / W**2
 
-    offset = cells.shares / (2 * np.sqrt(3))
-    left, right = cells.labels - offset, cells.labels + offset
+    offset = cells.shares[own] / (2 * np.sqrt(3))
+    left, right = cells.labels[own] - offset, cells.labels[own] + offset
     inner, outer = state.at(left)[0], state.at(right)[0]
-    weight = (cells.eta - inner) / (outer - inner)
+    weight = (cells.eta[own] - inner) / (outer - inner)
     eta_left, v_left, _ = at(left)
     eta_right, v_right, _ = at(right)
     eta = eta_left + weight * (eta_right - eta_left)
     if not (np.diff(eta) > 0).all():
         raise ValueError("start: it is too steep for its grid of positions")
-    fields = {"eta": eta, "V": (v_left + v_right) / 2}
+    v = (v_left + v_right) / 2
+    if chain.box:
+        eta, v = _mirrored(eta, state.wall + state.lam / 2), _mirrored(v, 0.0)
+    fields = {"eta": eta, "V": v}
     if thermal:
-        fields["S"] = np.append(at(cells.faces)[2] * np.diff(eta) ** 2, 0.0)
+        faces = np.clip(cells.faces, left[0], right[-1])
+        fields["S"] = np.append(at(faces)[2] * np.diff(eta) ** 2, 0.0)
     return fields
 
 
@@ -212,7 +275,7 @@ def _on_positions(
     for shifts and stretches, linear; beyond the outermost faces it is continued linearly.
     Densities are those of the stationary state over the slope of that function.
     """
-    s, W, L, R = chain.thermal_length, chain.free_velocity_width, chain.size, chain.radius
+    s, W, L, R = state.unit, chain.free_velocity_width, chain.size, chain.radius
     weights = cells.weights
     rest = cells.eta[:-1] + weights * np.diff(cells.eta)
     distance = np.diff(solution[:, 0], axis=1)
@@ -220,7 +283,8 @@ def _on_positions(
     flow = solution[:, 1, :-1] + weights * np.diff(solution[:, 1], axis=1)
     theta = solution[:, 2, :-1] / distance**2 if solution.shape[1] == 3 else np.ones_like(distance)
     # Stay just inside: at the end itself rounding may put a node into the vacuum.
-    nodes = _refined(rest, (state.right + state.lam / 2) * (1 - 1e-12))
+    inner_faces = rest[1:-1] if chain.box else rest
+    nodes = _refined(inner_faces, (state.right + state.lam / 2) * (1 - 1e-12))
     labels, log_density = state.profile(nodes)
     rod_nodes = state.at(chain.rank / L)[0]
 

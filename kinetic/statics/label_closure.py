@@ -153,11 +153,16 @@ class Stationary:
         return density, L / 2 + np.sign(x) * L * (0.5 - share)
 
 
+def length_unit(chain: Chain) -> float:
+    """Return the thermal length or, if it is shorter, half the room between the walls [R]."""
+    return min(chain.thermal_length, chain.walls[1])
+
+
 @lru_cache(maxsize=8)
 def stationary(chain: Chain) -> Stationary:
     """Solve the boundary-value problem of this module for a chain at its temperature."""
     n, room = chain.potential_exponent, chain.walls[1]
-    unit = min(chain.thermal_length, room)
+    unit = length_unit(chain)
     stiffness = (unit / chain.thermal_length) ** n
     lam = chain.lattice_gap * chain.size / unit if chain.stiffness > 0 else 0.0
     wall = room / unit - lam / 2

@@ -64,7 +64,7 @@ def read_velocity_variance(
         return chain, None
     if isinstance(variance, Real) or getattr(variance, "shape", None) == ():
         number = check_real("velocity_variance", variance, positive=True)
-        amplitude = math.sqrt(2 * chain.damping * chain.mass * number)
+        amplitude = math.sqrt(2 * chain.damping * chain.mean_mass * number)
         # Without damping no amplitude gives this temperature; such a chain has no steady state.
         return chain.replace(amplitude=amplitude, restitution=1) if amplitude else chain, None
     if callable(variance):
