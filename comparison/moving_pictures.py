@@ -38,7 +38,8 @@ def film(
     velocity. A star flashes where two rods met since the last picture: where they approached in one
     snapshot and separate in the next, and a straight flight would have led them through one
     another. The time between snapshots should therefore be shorter than that between two collisions
-    of a rod; of several meetings between two snapshots one star is seen.
+    of a rod; of several meetings between two snapshots one star is seen. The walls of a box are
+    drawn, and of two masses the heavier rods are taller.
 
     A relaxation is shown by its smoothed densities, of the simulation and of all theories.
 

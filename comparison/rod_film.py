@@ -23,11 +23,13 @@ from numpy.typing import NDArray
 from crazybilliards.comparison.encoding import Picture
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.arrays import Array
+from crazybilliards.model.parameters import WALLS_AND_MASSES
 
 _FADING = 0.7  # of a flash, from one picture to the next
 _FAINT = 0.1  # a flash that is not shown any more
 _BEYOND = 0.01  # share of the velocities beyond the ends of the colours
-_GROUND = -0.95  # where the anchors are; a rod reaches from -0.5 to 0.5
+_GROUND = -0.95  # where the anchors are
+_TALL, _LOW = 0.5, 0.25  # how far a rod reaches up and down, and one of the smaller mass
 _STAR, _SMALLEST_STAR = 120.0, 4.0  # square points
 _SIZE = 9.6, 2.4  # inches of 100 dots; the encoder needs even numbers of dots
 _LOOK: Any = {"font.size": 12} | {f"axes.spines.{side}": False for side in ("left", "top", "right")}
@@ -43,6 +45,7 @@ class Motion(NamedTuple):
     v: Array
     flash: Array  # 1 where two rods have just met, then fading
     anchors: Array  # over rod
+    height: Array  # over rod
 
 
 def motion_of(run: xr.Dataset, pictures: int) -> Motion:
@@ -53,7 +56,7 @@ def motion_of(run: xr.Dataset, pictures: int) -> Motion:
             f"has {', '.join(map(str, run)) or 'nothing'} and is {run.attrs.get('status')}"
         )
     chain = chain_of(run)
-    chain.require_known("film")
+    chain.require_known("film", WALLS_AND_MASSES)
     run = run.isel(replica=0) if "replica" in run.dims else run
     rods = run.dropna("time", subset=["velocity"]).transpose("time", "particle", ...)
     time, x, v = rods.time.values, rods.position.values, rods.velocity.values
@@ -68,7 +71,9 @@ def motion_of(run: xr.Dataset, pictures: int) -> Motion:
         just = _met(chain, time[since], x[since], v[since]).any(axis=0) & neighbours
         flash[now] = np.where(just, 1.0, _FADING * flash[now - 1])
     flash[flash < _FAINT] = 0.0
-    return Motion(chain, time[chosen], x[chosen], v[chosen], flash, chain.anchors[number - 1])
+    height = np.where(chain.rod_masses < chain.rod_masses.max(), _LOW, _TALL)
+    of_rods = chain.anchors[number - 1], height[number - 1]
+    return Motion(chain, time[chosen], x[chosen], v[chosen], flash, *of_rods)
 
 
 def _met(chain: Chain, time: Array, x: Array, v: Array) -> NDArray[np.bool_]:
@@ -104,7 +109,7 @@ def _pictures(motion: Motion, springs: bool) -> Iterator[Picture]:
     for each in moving:
         each.set_animated(True)
     canvas.draw()
-    R, low, high = motion.chain.radius, -0.5, 0.5
+    R = motion.chain.radius
     dots = float(np.ptp(ax.transData.transform([(0, 0), (2 * R, 0)])[:, 0]))
     broad = 0.72 * dots  # of a rod, in points
     half = R * max(1.0, 1 / dots)  # a thinner rod would not be seen
@@ -114,12 +119,12 @@ def _pictures(motion: Motion, springs: bool) -> Iterator[Picture]:
     digits = _digits(motion.time)
     for time, x, v, flash in zip(motion.time, motion.x, motion.v, motion.flash, strict=True):
         sides = x[:, np.newaxis] + half * np.array([-1, 1, 1, -1])
-        heights = np.broadcast_to([low, low, high, high], sides.shape)
+        heights = np.multiply.outer(motion.height, [-1, -1, 1, 1])
         rods.set_verts(list(np.stack([sides, heights], axis=-1)))
         rods.set_array(v)
         if springs:
             ends = np.stack([motion.anchors, x], axis=-1)
-            levels = np.broadcast_to([_GROUND, low], ends.shape)
+            levels = np.stack([np.full(x.size, _GROUND), -motion.height], axis=-1)
             lines.set_segments(list(np.stack([ends, levels], axis=-1)))
         stars.set_offsets(np.column_stack([x[:-1] + R, np.full(x.size - 1, 0.75)]))
         stars.set_sizes(star * flash)
@@ -137,11 +142,17 @@ def _digits(time: Array) -> int:
 
 
 def _furnish(ax: Axes, motion: Motion, springs: bool) -> None:
-    """Set what does not move: the axes, the anchors, the meaning of a star."""
-    R = motion.chain.radius
-    seen = np.concatenate([motion.x.ravel(), motion.anchors if springs else []])
+    """Set what does not move: the axes, the walls, the anchors, what stars and heights mean."""
+    R, ratio = motion.chain.radius, motion.chain.mass_ratio
+    walls = np.array([-0.5, 0.5] if motion.chain.box else []) * motion.chain.box
+    seen = np.concatenate([motion.x.ravel(), motion.anchors if springs else [], walls])
     ax.set(xlim=(seen.min() - 2 * R, seen.max() + 2 * R), ylim=(-1.1, 1.0), yticks=[])
     ax.set_xlabel("position $x$ [R]")
     ax.text(1.0, 1.04, "\N{BLACK STAR}: two rods have met", ha="right", transform=ax.transAxes)
+    if ratio != 1:
+        text = f"tall rods: {max(ratio, 1 / ratio):.3g} times the mass of low ones"
+        ax.text(0.5, 1.04, text, ha="center", transform=ax.transAxes)
+    for wall, beyond in zip(walls, (-1, 1), strict=False):
+        ax.axvspan(wall, wall + beyond * R, color=_SPRING)
     if springs:
         ax.plot(motion.anchors, np.full(motion.anchors.size, _GROUND), "^", color=_SPRING, ms=5)

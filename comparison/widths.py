@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 
-from crazybilliards.model import chain_of
+from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.chain import middle_tenth
 
 _LEAST_INNER = 7  # rods from which on the two at each border are left out of the largest deviation
+
+
+def free_widths(chain: Chain) -> list[float]:
+    """W_v of a rod without collisions, of both masses if there are two [R/T]."""
+    return sorted({math.sqrt(chain.temperature / mass) for mass in chain.rod_masses[:2]})
 
 
 class WidthDeviation(NamedTuple):
@@ -41,7 +47,9 @@ def width_deviation(run: xr.Dataset, theory: xr.Dataset) -> WidthDeviation:
     Both ends of a chain have the same averages. Simulated widths are therefore averaged over a rod
     and its mirror image, but not for ``largest_in_errors``.
     """
-    size = chain_of(run).size
+    chain = chain_of(run)
+    chain.require_known("the mean over mirror images", {"box", "wall_restitution"})
+    size = chain.size
     square = run.velocity_width.values**2
     square = (square + square[::-1]) / 2
     expected = theory.velocity_width.values**2

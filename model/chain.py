@@ -51,7 +51,7 @@ class Chain(Parameters):
     damping
         gamma >= 0 [M/T]. With 0 there is no steady state.
     stiffness
-        k >= 0 [M/T^2], for a quadratic spring [M/(R T^2)]. With 0 there is no steady state.
+        k >= 0 [M/T^2], for a quadratic spring [M/(R T^2)]. With 0 only a box has a steady state.
     gap
         g >= 0, the free distance between neighbouring rods at their anchors [R].
     radius, mass
@@ -59,8 +59,7 @@ class Chain(Parameters):
     spring
         ``"linear"``: F = k d; ``"quadratic"``: F = k d |d|.
     box
-        X >= 0, the distance between two walls at -X/2 and X/2 [R]; 0: there are no walls. It must
-        be above 2RL. Without springs a gas in a box has a steady state.
+        X, the distance between two hard walls at -X/2 and X/2, above 2RL [R]; 0: no walls.
     wall_restitution
         Restitution of the walls, >= 0, which are rods of infinite mass; 1 without walls.
     mass_ratio
@@ -274,7 +273,26 @@ class Chain(Parameters):
                 "damping=0: the chain never forgets its start, because nothing takes out the "
                 "energy that the noise puts in"
             )
+        if self.restitution > (critical := self._critical_restitution):
+            return (
+                f"restitution={self.restitution:g}: above e_c = {critical:.4g} or so, collisions "
+                "give a gas in this box more energy than the damping takes out"
+            )
         return ""
+
+    @property
+    def _critical_restitution(self) -> float:
+        """Largest e with a steady state of a gas in a box, inf of other chains.
+
+        The energy balance of uncorrelated rods, w^2 - 1 = (e^2 - 1) w^3 W m/(sqrt(pi) gamma s) with
+        w = W_v/W, s = l/(L - 1) and the harmonic mean m of the masses, has no root above it.
+        """
+        if not self.box or self.stiffness > 0 or self.size == 1:
+            return math.inf
+        mass = 2 / (1 + 1 / self.mass_ratio) * self.mass
+        room = 2 * self.walls[1] / (self.size - 1)
+        drag = self.damping * room / math.sqrt(mass * self.temperature)
+        return math.sqrt(1 + 2 / (3 * math.sqrt(3)) * math.sqrt(math.pi) * drag)
 
     def require_steady_state(self) -> None:
         """Raise a ValueError with the reason if this chain has no steady state."""

@@ -25,6 +25,9 @@ restitution: coefficient_of_restitution restitution_coefficient cor
 amplitude: noise noise_amplitude noise_strength
 damping: friction
 stiffness: spring_constant spring_stiffness
+box: box_length box_size
+wall_restitution: e_w restitution_wall
+mass_ratio: mass_ratios
 duration: time T t t_max tmax t_end tend t_final total_time runtime steps n_steps num_steps nsteps
 accuracy: duration tolerance
 warmup: burn_in burnin equilibration equilibration_time thermalization transient
@@ -67,16 +70,20 @@ for _line in _WORDS.strip().splitlines():
         WORDS.setdefault(_word, []).append(_name)
 
 # Arguments that are often given to another function than this one.
-OWNERS = dict.fromkeys((*SYMBOLS.values(), "spring"), "Chain")
+_OF_A_CHAIN = ("spring", "box", "wall_restitution", "mass_ratio")
+OWNERS = dict.fromkeys((*SYMBOLS.values(), *_OF_A_CHAIN), "Chain")
 _SIMULATE = """time_step duration warmup method stepper merging observe particles replicas average
 every threads checkpoint"""
 OWNERS |= dict.fromkeys(_SIMULATE.split(), "simulate") | {"accuracy": "simulate_limit"}
 
 # Arguments that there are not, with the reason or with what replaces them.
-_ENDS = "both ends of a chain are free: it has no walls, and it is no ring"
-NOTES = dict.fromkeys(("walls", "wall", "box", "periodic", "pbc", "ring", "boundary"), _ENDS) | {
+_ENDS = "a chain is no ring: its ends are free, or in a box, the distance between two walls"
+_HEAT = "walls have no temperature: they take the share 1 - wall_restitution^2 of the energy"
+NOTES = dict.fromkeys(("periodic", "pbc", "ring", "boundary"), _ENDS) | {
+    **dict.fromkeys(("walls", "wall"), "box is the distance between two walls"),
+    **dict.fromkeys(("wall_temperature", "heat", "thermal_walls"), _HEAT),
     "temperature": "amplitude^2/(2 damping) is the temperature",
-    "masses": "all rods have one mass",
+    "masses": "mass_ratio is the mass of every second rod over that of the others, mass",
     "radii": "all rods have one radius",
     "diameter": "a rod is two radius long",
     "fps": "a film has 25 pictures a second, and seconds is its length",

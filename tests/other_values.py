@@ -7,7 +7,13 @@ from crazybilliards.model import Chain
 
 def other_values(**chosen):
     """Return a value for each parameter; ``chosen`` ones replace those worked out."""
-    return {each.name: _other(each) for each in fields(Chain)} | chosen
+    values = {each.name: _other(each) for each in fields(Chain)} | chosen
+    return values | {"box": narrow_box(values["size"], values["radius"])}
+
+
+def narrow_box(size, radius):
+    """Return a distance between walls that leaves an eighth of a rod's length to each rod."""
+    return 2.25 * radius * size
 
 
 def _other(parameter: Field):

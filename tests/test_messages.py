@@ -34,6 +34,9 @@ def names():
         "np": np,
         "GAMMA": GAMMA,
         "chain": chain,
+        "walled": chain.replace(box=12),
+        "sorts": chain.replace(mass_ratio=3),
+        "walls": cb.equilibrium(chain.replace(box=12)),
         "six": six,
         "exact": exact,
         "crystal": cb.equilibrium(cb.Chain(size=20)),
@@ -219,6 +222,8 @@ def test_every_symbol_of_the_paper_says_which_parameter_it_is():
         ("-e", "--restitution is e of the paper"),
         ("--gamma=2", "--damping is gamma of the paper"),
         ("--dt=0.1", "--time-step is dt of the paper"),
+        ("--walls=12", "box is the distance between two walls"),
+        ("--wall-temperature=2", "walls have no temperature"),
         ("--restituton=1", "Possible options: --duration, --restitution"),
     ],
 )

@@ -40,15 +40,18 @@ class Units:
             mass=self.mass * chain.mass,
             damping=self.of("M/T") * chain.damping,
             stiffness=self.of("M/T^2" if chain.spring == "linear" else "M/R T^2") * chain.stiffness,
+            box=self.length * chain.box,
             amplitude=self.of("M R/T") / np.sqrt(self.time) * chain.amplitude,
         )
 
     def given(self, chain):
         """Return what the solvers are given, in these units; ``chain`` is written in them."""
-        elastic = chain.replace(restitution=1.0)
-        moved = chain.spring == "linear"
+        start = None  # of a box nobody makes one
+        if not chain.box:
+            elastic, moved = chain.replace(restitution=1.0), chain.spring == "linear"
+            start = displaced(elastic, self.length) if moved else compressed(elastic, 1.5)
         return Given(
-            start=displaced(elastic, self.length) if moved else compressed(elastic, 1.5),
+            start=start,
             variance=self.variance,
             number=0.1 * self.of("R^2/T^2"),
             length=self.length,
@@ -63,11 +66,18 @@ class Units:
 
 LINEAR = Chain(size=5, gap=0.25, amplitude=1.3, radius=0.8)
 CHAINS = (LINEAR, LINEAR.replace(spring="quadratic"), LINEAR.replace(restitution=0.9))
+WALLED = LINEAR.replace(box=9.5, mass_ratio=3.0)
 # Each solver with each kind of chain that it takes.
 CASES = {
     f"{name}, {chain.spring}, e = {chain.restitution:g}": (name, chain)
     for name, solver in SOLVERS.items()
     for chain in (each.replace(**solver.needs) for each in CHAINS)
+}
+CASES |= {
+    f"{name}, in a box, k = {k}": (name, WALLED.replace(stiffness=k, wall_restitution=0.8))
+    for name in SOLVERS
+    for k in (0, 1)
+    if name.startswith("simulate") and name != "simulate_limit"
 }
 OTHER = {"long": Units(2.0**40, 2.0**-20, 4.0**15), "short": Units(2.0**-30, 2.0**10, 4.0**-20)}
 

@@ -5,6 +5,12 @@ cb.simulate(chain, duration=5, every=1.0) | duration must be at least...average=
 cb.Chain(size=2.5) | size must be an integer
 cb.Chain(amplitude=1e-80) | amplitude must be between 1e-60 and 1e60 in magnitude, or 0, got 1e-80
 cb.Chain(mass=0) | mass must be positive, got 0
+cb.Chain(size=6, box=12) | box must be above 12, the length of all rods, or 0...got 12
+cb.Chain(size=6, box=20, radius=2) | box must be above 24
+chain.replace(box=-1) | box must be 0 or more, got -1
+cb.Chain(wall_restitution=0.5) | without walls it must be 1; box=... gives a chain two walls
+cb.Chain(box=300, wall_restitution=-1) | wall_restitution must be 0 or more, got -1
+cb.Chain(mass_ratio=0) | mass_ratio must be positive, got 0
 cb.Chain(spring="lineer") | spring must be one of...got 'lineer'; did you mean 'linear'?
 checks.check_choice("name", "bleu", ("blue", "red")) | one of ('blue', 'red'), got 'bleu'...'blue'?
 cb.simulate(chain, seed=[1, 2]) | a Generator of numpy...got [1, 2]
@@ -46,6 +52,13 @@ cb.simulate(cb.Chain(damping=0), observe="velocities") | 'velocities' needs
 cb.Covariances(separations=0) | separations must be
 cb.Velocities(bins=0) | bins must be an integer
 cb.Impacts(bins=0) | bins must be an integer
+cb.simulate(chain, observe="walls") | 'walls' needs a chain between walls, Chain(box=...)
+cb.simulate(walled, observe="walls", method="contact-dynamics") | 'walls' needs single collisions
+cb.simulate(walled, observe="walls", average="ensemble") | 'walls' is averaged over time only
+cb.simulate(walled, observe="avalanches") | 'avalanches'...does not know the chain's box
+cb.simulate(sorts, observe="triggered-collisions") | does not know the chain's mass_ratio
+cb.simulate_limit(walled) | simulate_limit does not know the chain's box: it must be 0...got 12
+cb.simulate_limit(sorts) | simulate_limit does not know the chain's mass_ratio
 cb.simulate(chain, particles="12") | particles must be a list
 cb.simulate(chain, particles=(6,)) | particles must ascend
 cb.simulate(chain, particles=(3, 2)) | particles must ascend
@@ -68,6 +81,26 @@ cb.simulate(chain, replicas=10**12) | would take...GiB of memory
 cb.simulate(cb.Chain(size=10**7), observe="velocities") | would take...GiB of memory
 cb.given_start(chain, 0.0, replicas=10**12) | would take...GiB of memory
 cb.equilibrium_states(chain, 10**12) | would take...GiB of memory
+"""
+
+# The walls of ``walled`` are 12 apart, and every second of the 5 rods of ``sorts`` is heavier.
+WALLS = """
+cb.given_start(walled, chain.anchors + 2) | between the walls: their centres lie within 5 of
+cb.simulate(walled, start=cb.given_start(chain, chain.anchors - 2)) | between the walls
+cb.equilibrium(walled.replace(wall_restitution=0.5)) | elastic walls only
+cb.phase_space(walled) | does not know the chain's box: it must be 0...got 12
+cb.force_balance(sorts) | does not know the chain's mass_ratio: it must be 1...got 3
+cb.hydrodynamics(sorts, exact, 1) | does not know the chain's mass_ratio
+cb.critical_size(sorts.replace(restitution=1.1)) | does not know the chain's mass_ratio
+cb.breathing_cloud(walled, 1, stretch=0.5) | does not know the chain's box
+cb.displaced(walled, 1) | does not know the chain's box
+cb.compare(walled, {"restitution": [0.9]}) | comparison...does not know the chain's box
+cb.compare(chain, {"mass_ratio": [1, 3]}) | comparison...does not know the chain's mass_ratio
+cb.compare_relaxation(walled) | compare_relaxation does not know the chain's box
+cb.fit_arctanh(walls) | fit_arctanh does not know the chain's box
+cb.fit_border_power_law(walls) | fit_border_power_law does not know the chain's box
+cb.rod_by_rod(walls) | rod_by_rod does not know the chain's box
+cb.overlay({"a": walls}, "wall_force") | wall_force is over (wall); overlay draws what is over
 """
 
 CASES = """
@@ -101,6 +134,8 @@ b"\x00" |
 "[simulate]\n[phase_space]" | one job a sweep
 "[grid]\nsize = 3" | size must be a list
 "[grid]\ngap = [3, 3.0]" | twice
+"[grid]\nbox = [0, 20]" | box must be above 200, the length of all rods
+"[grid]\nmass_ratio = [1, 3]\n[phase_space]" | does not know the chain's mass_ratio
 "[grid]\nsize = [3, -1]" | size must be an integer
 "[grid]\ndamping = [1.0, 2.0]\n[chain]\ndamping = 2.0" | given twice
 "[grid]\namplitude = [nan]" | amplitude must be
@@ -119,4 +154,4 @@ f"[grid]\n'{GAMMA}' = [0.5]" | damping is ... of the paper
 "[simulate]\ndt = 1" | [simulate] takes any of ... time_step is dt of the paper
 """
 
-VALUE_TABLES = (VALUES, SIMULATIONS, CASES)
+VALUE_TABLES = (VALUES, SIMULATIONS, WALLS, CASES)

@@ -9,7 +9,7 @@ from typing import Any
 import typer
 
 from crazybilliards.model.checks import shown
-from crazybilliards.model.words import SYMBOLS
+from crazybilliards.model.words import NOTES, SYMBOLS
 
 _WANTED = {"int_parsing": "an integer", "float_parsing": "a number"}
 _LISTS = "separated by commas"  # stands in the help of every list
@@ -53,8 +53,10 @@ def _extra(word: str, error: Any) -> str:
 
 
 def _with_symbol(error: typer.TyperException) -> str:
-    """Return the message of an error; of an unknown option, which one a symbol stands for."""
+    """Return the message of an error; of an unknown option, what is meant or replaces it."""
     symbol = getattr(error, "option_name", "").lstrip("-")
+    if note := NOTES.get(symbol.replace("-", "_")):
+        return f"{error}; {note}"
     context = getattr(error, "ctx", None)
     known = [each.name for each in context.command.params] if context else []
     if (name := SYMBOLS.get(symbol, "")) not in known:

@@ -40,7 +40,7 @@ def command(
         typer.Option(
             help="What to measure, separated by commas: widths, density, velocities, energy, "
             "covariances, modes, time-correlations, collisions, impacts, avalanches, "
-            "triggered-collisions, snapshots."
+            "triggered-collisions, walls (in a box), snapshots."
         ),
     ] = "widths,density",
     duration: Annotated[

@@ -118,12 +118,14 @@ def _percent(error: float) -> str:
 
 
 def _print(theory: Theory, result: xr.Dataset) -> None:
+    from crazybilliards.comparison.widths import free_widths
     from crazybilliards.model.vocabulary import chain_of
 
     chain = chain_of(result)
     accuracy = {"residual": "Residual", "mesh_error": "Error due to the mesh"}
     numbers = {name: result.attrs[name] for name in accuracy if name in result.attrs}
-    caption = f"A free rod has W_v = {chain.free_velocity_width:.4g} R/T."
+    free = " or ".join(f"{width:.4g}" for width in free_widths(chain))
+    caption = f"A free rod has W_v = {free} R/T."
     caption += "".join(f" {accuracy[name]}: {value:.1e}." for name, value in numbers.items())
     stated = theory.accuracy(chain)._asdict()
     known = {name: error for name, error in stated.items() if not math.isnan(error)}

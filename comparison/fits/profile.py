@@ -48,6 +48,7 @@ def fit_arctanh(source: xr.Dataset) -> Fit:
     """
     require(source, ("mean_displacement",))
     chain = chain_of(source)
+    chain.require_known("fit_arctanh")
     require_all_particles(source, chain.size, "fit_arctanh")
     displacement = source.mean_displacement.values
     x = chain.anchors + displacement
@@ -127,7 +128,9 @@ def fit_border_power_law(
     True
     """
     require(source, ("velocity_width",))
-    size = chain_of(source).size
+    chain = chain_of(source)
+    size = chain.size
+    chain.require_known("fit_border_power_law")
     require_all_particles(source, size, "fit_border_power_law")
     if size < _LEAST_RODS:
         raise ValueError(f"the fit needs the widths of at least {_LEAST_RODS} particles")

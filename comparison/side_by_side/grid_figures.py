@@ -22,6 +22,7 @@ from crazybilliards.comparison.coverage import smooth
 from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_rods, overlay
 from crazybilliards.comparison.layout import entitle, legend_above, letter, panels, picture_width
 from crazybilliards.comparison.side_by_side.grid import ELASTIC, KINETIC, SIMULATION, TITLES
+from crazybilliards.comparison.widths import free_widths
 from crazybilliards.model import chain_of
 from crazybilliards.model.arrays import Array
 from crazybilliards.model.vocabulary import require
@@ -259,9 +260,9 @@ def draw_profile(theory: xr.Dataset, name: str) -> Figure:
         drawn.append((ax, line, stated_error(theory, quantity)))
         along_the_chain(ax)
         ax.set(ylabel=label)
-    axes[0].axhline(
-        chain.free_velocity_width, color="0.4", linestyle=":", label="free rod (and e = 1)"
-    )
+    for number, width in enumerate(free_widths(chain)):
+        of_both = None if number else "free rod (and e = 1)"
+        axes[0].axhline(width, color="0.4", linestyle=":", label=of_both)
     axes[0].legend()
     axes[0].set_ylim(bottom=0)
     fade(drawn)

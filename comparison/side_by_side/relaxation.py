@@ -23,6 +23,7 @@ from crazybilliards.kinetic import (
     rod_by_rod,
 )
 from crazybilliards.kinetic.exact.breathing import breathing_cloud
+from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.calls import public
 from crazybilliards.model.checks import check_choice, check_integer, check_real
@@ -89,7 +90,7 @@ def compare_relaxation(
         raise ValueError(
             f"the comparison is of elastic chains, restitution=1, got {chain.restitution:g}"
         )
-    chain.require_steady_state()
+    require_chain(chain, "compare_relaxation")
     by = check_real("by", by, positive=release != "displaced", signed=release == "displaced")
     replicas = check_integer("replicas", replicas, least=2)
     seed = seed_of(seed)

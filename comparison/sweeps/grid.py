@@ -75,7 +75,7 @@ class Sweep:
     job: str = "simulate"
     chain: Mapping[str, Any] = field(default_factory=dict)
     settings: Mapping[str, Any] = field(default_factory=dict)
-    # The common parameters of the cases.
+    # That of the first case: the common parameters alone may be no chain, as a box for few rods.
     _chain: Chain = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
@@ -92,7 +92,8 @@ class Sweep:
                 raise ValueError(f"{name} is given twice: in the grid, and the same for all")
         if len(self) > _MOST_CASES:
             raise ValueError(f"the grid has {len(self)} cases, more than {_MOST_CASES}")
-        object.__setattr__(self, "_chain", Chain().replace(**self.chain))
+        first = {name: values[0] for name, values in grid.items() if name in CHAIN}
+        object.__setattr__(self, "_chain", Chain().replace(**{**self.chain, **first}))
 
     def __len__(self) -> int:
         return math.prod(map(len, self.grid.values()))

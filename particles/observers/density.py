@@ -43,7 +43,8 @@ class Density(Averaged):
     ----------
     reach
         Distance from the outer anchors that rods may reach [R]; the grid goes 4R further, which
-        smoothing needs. None: as far as noise and the start can move rods.
+        smoothing needs, and never more than that beyond a wall. None: as far as noise and the
+        start can move rods.
     """
 
     name = "density"

@@ -4,7 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 
+from crazybilliards.model import Chain
+from crazybilliards.model.parameters import WALLS_AND_MASSES
 from crazybilliards.particles.observers.base import Array, Averaged, Integers, Snapshots, Variables
+from crazybilliards.particles.run import Run
+
+
+def momentum_weights(chain: Chain) -> Array:
+    """Return the mass of every rod over the mean mass; exactly 1 if all are equal."""
+    masses = chain.rod_masses / chain.mass
+    return np.asarray(masses / masses.mean())
 
 
 class Modes(Averaged):
@@ -16,18 +25,25 @@ class Modes(Averaged):
     have more in the long waves. On linear springs v_0, that of the centre of mass, has the variance
     W^2 of a free rod at any restitution.
 
+    Of two masses the modes are those of the momentum: v_i is multiplied by m_i over the mean mass
+    <m>. At e = 1 all have T/<m>.
+
     The sums take 8 L bytes per block, where the covariances of all pairs would take L times that.
     """
 
     name = "modes"
     gives = ("mode_velocity_variance",)
     along = ("mode",)
-    reads_chain = False
+    knows = WALLS_AND_MASSES
+
+    def prepare(self, run: Run, copies: int) -> None:
+        super().prepare(run, copies)
+        self.weights = momentum_weights(run.chain)
 
     def observe(self, snapshots: Snapshots) -> None:
         from scipy.fft import dct  # takes half a second, and few runs observe modes
 
-        waves = dct(snapshots.v, axis=1, norm="ortho")
+        waves = dct(self.weights * snapshots.v, axis=1, norm="ortho")
         self.sums[snapshots.block] += np.einsum("sq,sq->q", waves, waves)
 
     def report(self, counts: Integers) -> Variables:

@@ -9,7 +9,9 @@ import numpy as np
 from crazybilliards.model import Chain
 from crazybilliards.model.calls import public, warn_user
 from crazybilliards.model.checks import check_integer, check_real
+from crazybilliards.model.parameters import WALLS_AND_MASSES
 from crazybilliards.particles.observers.base import Array, Averaged, Integers, Snapshots, Variables
+from crazybilliards.particles.observers.modes import momentum_weights
 from crazybilliards.particles.run import Run
 from crazybilliards.particles.scales import first_decay, settling_time
 
@@ -44,7 +46,8 @@ class TimeCorrelations(Averaged):
 
     ``wave_velocity_autocorrelation`` and so on, over ``wave`` q, are those of the waves that
     :class:`Modes` defines, and ``centre_velocity_autocorrelation`` and so on those of the centre of
-    mass. On linear springs the latter are those of a damped oscillator, at any restitution.
+    mass. On linear springs the latter are those of a damped oscillator, at any restitution. Of two
+    masses, waves are those of m_i v_i and m_i d_i over the mean mass.
 
     Without a spring, and without damping, the noise drives the rods ever farther. The average of
     displacements over time then does not exist, and ``displacement_autocorrelation`` is NaN.
@@ -81,6 +84,7 @@ class TimeCorrelations(Averaged):
     gives = tuple(f"{of}{name}" for of in ("", "wave_", "centre_") for name in _QUANTITIES)
     along = ("lag", "frequency", "wave")
     limit = False
+    knows = WALLS_AND_MASSES
 
     def __init__(
         self, longest: float | None = None, lags: int | None = None, waves: int = 8
@@ -131,6 +135,7 @@ class TimeCorrelations(Averaged):
         super().prepare(run, copies)
         self.spacing, self.last = self._plan(run)
         self.size, self.anchors, self.chosen = run.chain.size, run.chain.reduced_anchors, run.chosen
+        self.weights = momentum_weights(run.chain)
         self.spreads = run.chain.spreads and not run.schedule.ensemble
         self.needed = _memory(run.chain)  # of a spectrum
         self.before = np.zeros((2, max(self.last, 1), self.sums.shape[-1] - 1))
@@ -167,7 +172,7 @@ class TimeCorrelations(Averaged):
         """Return the chosen rods and the waves of snapshots, (snapshots, rods and waves)."""
         from scipy.fft import dct  # takes half a second, and few runs observe waves
 
-        waves = dct(values, axis=1, norm="ortho")[:, : self.waves]
+        waves = dct(self.weights * values, axis=1, norm="ortho")[:, : self.waves]
         return np.concatenate([values[:, self.chosen], waves], axis=1)
 
     def _means(self, average: Array, rows: slice) -> Array:

@@ -112,8 +112,8 @@ def test_after_an_edit_of_a_theory_its_sweep_gives_the_new_number(folder, tmp_pa
     (package / "__init__.py").touch()
     theory = package / "kinetic" / "exact" / "gibbs_measure.py"
     text = theory.read_text()
-    assert text.count("np.full(chain.size, chain.free_velocity_width)") == 1
-    theory.write_text(text.replace("np.full(chain.size,", "np.full(chain.size, 2 *"))
+    assert text.count('("particle", np.sqrt(') == 1
+    theory.write_text(text.replace('("particle", np.sqrt(', '("particle", 2 * np.sqrt('))
     # Coverage is that of the package, and not of its copy.
     unmeasured = {name: value for name, value in os.environ.items() if "COVERAGE" not in name}
     own = {**unmeasured, "PYTHONPATH": str(place), "PYTHONDONTWRITEBYTECODE": "1"}
@@ -136,7 +136,7 @@ def without(name, path):
     save(result.assign_attrs(case=json.dumps(stored)), path)
 
 
-@pytest.mark.parametrize("name", ["spring", "merging"])
+@pytest.mark.parametrize("name", ["spring", "merging", "mass_ratio"])
 def test_parameters_that_a_file_lacks_are_at_their_defaults(name, executor, tmp_path):
     """A parameter of the chain, and a setting of the job."""
     cases = [

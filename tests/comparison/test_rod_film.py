@@ -37,6 +37,21 @@ def test_rods_are_drawn_in_their_places_in_the_colours_of_their_velocities(run):
     assert motion.time[[0, -1]].tolist() == run.time.values[[0, -1]].tolist()
 
 
+@pytest.mark.parametrize(("ratio", "tall"), [(3.0, 1), (0.2, 0)])
+def test_walls_are_where_they_are_and_the_heavier_rods_are_the_taller_ones(ratio, tall):
+    chain = Chain(size=4, box=20, stiffness=0, mass_ratio=ratio)
+    run = simulate(chain, duration=1, every=0.1, observe="snapshots", progress=False)
+    motion = rod_film.motion_of(run.isel(particle=[1, 2, 3]), 2)
+    picture = next(rod_film.rod_pictures(motion, False))[..., :3].astype(int)
+    grey = np.flatnonzero((picture[50, :860] == picture[50, 10:60].min(axis=0)).all(axis=1))
+    inner = grey[np.diff(grey, append=0) > 1][0], grey[np.diff(grey, prepend=0) > 1][-1]
+    a_pixel = chain.box / (inner[1] - inner[0])
+    for place, number in zip(motion.x[0], (1, 2, 3), strict=True):
+        column = picture[:, round(inner[0] + (place + chain.box / 2) / a_pixel)]
+        outlines = np.flatnonzero((column[40:180] < 80).all(axis=1))
+        assert (np.ptp(outlines) > 60) == (number % 2 == tall)
+
+
 def test_stars_are_the_collisions():
     observe = ["snapshots", "collisions"]
     chain = Chain(size=10, restitution=0.8, gap=0.2)

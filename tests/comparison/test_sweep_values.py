@@ -36,6 +36,15 @@ def test_values_are_those_that_a_person_writes(values):
             cb.compare(cb.Chain(size=3), {name: [*values, 0.3]})
 
 
+def test_common_parameters_need_not_be_a_chain_alone():
+    """A box for few rods would hold no chain of the default size, and walls need a box."""
+    few = cb.Sweep({"size": [2, 3]}, chain={"box": 7})
+    walls = cb.Sweep({"box": [7, 9], "size": [2]}, chain={"wall_restitution": 0.5})
+    assert [case.chain.box for case in [*few, *walls]] == [7, 7, 7, 9]
+    with pytest.raises(ValueError, match="box must be above 8"):
+        cb.Sweep({"size": [2, 4]}, chain={"box": 7}).cases()
+
+
 def test_only_errors_of_rounding_are_taken_away():
     for value in (1 / 3, np.pi * 1e-30, 0.123456789012, 0.3 + 1e-9, 7, "text", None, True):
         assert repr(as_written(value)) == repr(value)

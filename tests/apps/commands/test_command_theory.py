@@ -43,6 +43,18 @@ def test_every_theory_by_its_name(name, run, solved, tmp_path):
     assert name in run("theory", "--help").stdout
 
 
+def test_walls_and_two_masses_have_one_theory(run, tmp_path):
+    two = ("--size", 4, "--box", 10, "--mass-ratio", 4)
+    done = run("theory", *two, "--output", tmp_path)
+    assert "A free rod has W_v = 0.1727 or 0.3455 R/T" in done.stdout
+    assert load(tmp_path / "theory.nc").wall_force.sizes == {"wall": 2}
+    for name in ("compare", "relax"):
+        refused = run(name, *two)
+        [line] = refused.stderr.splitlines()
+        assert refused.returncode == 2
+        assert "does not know the chain's box" in line
+
+
 def test_without_a_name_it_is_the_best_theory_and_says_so(run, solved):
     done = run("theory", "--size", 12, "--restitution", 0.5)
     assert done.returncode == 0
