@@ -11,9 +11,10 @@ import numpy as np
 from numba import njit
 
 from crazybilliards.kinetic import compressed
-from crazybilliards.kinetic.fluids.eulerian_frame import make_constants, make_faces, starting_fields
+from crazybilliards.kinetic.fluids.eulerian_frame import make_constants
 from crazybilliards.kinetic.fluids.finite_volumes import eulerian_rate, make_rate
 from crazybilliards.kinetic.fluids.pde_solver import Flow, make_state
+from crazybilliards.kinetic.fluids.position_cells import make_faces, starting_fields
 from crazybilliards.kinetic.starts import read_start
 from crazybilliards.model import Chain
 

@@ -124,6 +124,9 @@ def read_start(chain: Chain, start: xr.Dataset) -> Start:
         )
     require_rods(chain, "density", label[-1])
     scale = chain.size / label[-1]
+    if chain.box:
+        inside = np.diff(np.interp([-chain.box / 2, chain.box / 2], x, label))[0]
+        require_rods(chain, "density between the walls", inside)
     profiles = {}
     # In a quench it is another chain.
     own = chain_of(start) if "provenance" in start.attrs else chain

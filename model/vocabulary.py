@@ -116,6 +116,7 @@ ATTRIBUTES = {
     "displacement_width_model_error": ("relative error of W_x of the theory itself", "1"),
     "kinetic_energy_model_error": ("relative error of the energy of the theory itself", "1"),
     "mean_displacement_model_error": ("error of <dx> of the theory itself, over s", "1"),
+    "wave_model_error": ("error of the slowest wave of density of the theory, of its height", "1"),
     "density_model_error": ("error of the density of the theory itself, of close packing", "1"),
     "cells": ("cells of the mesh along y", "1"),
     "iterations": ("iterations until the equations were satisfied", "1"),

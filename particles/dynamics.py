@@ -82,12 +82,13 @@ def make_dynamics(
         halves=stepper == "splitting",
     )
     second = chain.replace(mass=chain.mass * chain.mass_ratio, mass_ratio=1.0)
-    steps = [make_step(each, time_step, stepper, method) for each in (chain, second)]
+    one, other = (make_step(each, time_step, stepper, method) for each in (chain, second))
     if law.operator == TURN:  # which has the springs in its flight
-        steps = [each._replace(kick=0.0) for each in steps]
+        one, other = one._replace(kick=0.0), other._replace(kick=0.0)
     return Dynamics(
         chain.reduced_anchors,
-        *steps,
+        one,
+        other,
         law,
         make_propagator(chain, time_step),
         _DIVERGED * speed if speed > 0 else math.inf,

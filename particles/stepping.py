@@ -53,17 +53,6 @@ def kick(y, v, anchors, kicks, step, part):  # type: ignore[no-untyped-def]
         v[i] = decay * (v[i] - before * pull) - after * pull + noise * kicks[i]
 
 
-@inlined
-def _kick_all(y, v, kicks, part, dynamics):  # type: ignore[no-untyped-def]
-    """Kick the rods; those of unequal masses one sort after the other."""
-    anchors, step, second = dynamics.anchors, dynamics.step, dynamics.second
-    if dynamics.law.unequal:
-        kick(y[::2], v[::2], anchors[::2], kicks[::2], step, part)
-        kick(y[1::2], v[1::2], anchors[1::2], kicks[1::2], second, part)
-    else:
-        kick(y, v, anchors, kicks, step, part)
-
-
 @kernel
 def draw_kicks(noise, kicks, width, due):  # type: ignore[no-untyped-def]
     """Fill ``kicks`` for as many of the ``due`` steps of ``width`` numbers as have room.
@@ -75,35 +64,52 @@ def draw_kicks(noise, kicks, width, due):  # type: ignore[no-untyped-def]
     return rows
 
 
+@kernel
+def _take_unequal_step(y, v, kicks, part, dynamics, scratch, tally):  # type: ignore[no-untyped-def]
+    """Do as ``take_step``, with rods of unequal masses or between walls."""
+    anchors, step, second = dynamics.anchors, dynamics.step, dynamics.second
+    strength = step.closed_outer if part == FIRST else step.closed
+    if strength != 1.0 and part != LAST:
+        unequal.strengthen(kicks, y, strength, dynamics.law, scratch)
+    if step.decay == second.decay and step.noise == second.noise and step.kick == second.kick:
+        kick(y, v, anchors, kicks, step, part)
+    else:  # one sort after the other, which takes longer
+        kick(y[::2], v[::2], anchors[::2], kicks[::2], step, part)
+        kick(y[1::2], v[1::2], anchors[1::2], kicks[1::2], second, part)
+    if part == LAST:
+        return 0
+    return drift(y, v, anchors, step.time_step, dynamics.law, scratch, tally)
+
+
 @inlined
 def take_step(y, v, kicks, part, dynamics, scratch, tally):  # type: ignore[no-untyped-def]
     """Kick the rods and, unless it was the LAST half, let them drift; changes ``kicks``, (L,).
 
     Return the collisions, or -1 if the chain diverged.
     """
+    if dynamics.law.unequal:
+        return _take_unequal_step(y, v, kicks, part, dynamics, scratch, tally)
     step = dynamics.step
     if part == LAST:
-        _kick_all(y, v, kicks, LAST, dynamics)
+        kick(y, v, dynamics.anchors, kicks, step, LAST)
         return 0
     strength = step.closed_outer if part == FIRST else step.closed
-    if strength != 1.0 and dynamics.law.unequal:
-        unequal.strengthen(kicks, y, strength, dynamics.law, scratch)
-    elif strength != 1.0:
+    if strength != 1.0:
         strengthen(kicks, scratch.clusters, strength)
-    _kick_all(y, v, kicks, part, dynamics)
+    kick(y, v, dynamics.anchors, kicks, step, part)
     return drift(y, v, dynamics.anchors, step.time_step, dynamics.law, scratch, tally)
 
 
 @inlined
 def _fly(y, v, noise, dynamics, scratch, steps):  # type: ignore[no-untyped-def]
     """Take steps of a chain whose motion is known exactly; collisions are not counted."""
-    width, row, rows = 2 * y.size, 0, 0
+    width, row, rows, walled = 2 * y.size, 0, 0, dynamics.law.unequal
     for taken in range(steps):
         if row == rows:
             row, rows = 0, draw_kicks(noise, scratch.kicks, width, steps - taken)
         kicks = scratch.kicks[row * width : (row + 1) * width]
         propagate(y, v, kicks, dynamics.propagator)
-        if dynamics.law.high < np.inf:
+        if walled:
             fold(y, v, dynamics.law.low, dynamics.law.high)
         sort_pairs(y, v, scratch)
         row += 1

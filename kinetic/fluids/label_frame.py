@@ -32,13 +32,11 @@ its work becomes heat.
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
-from scipy.integrate import cumulative_trapezoid
 from scipy.interpolate import PchipInterpolator
 
 from crazybilliards.kinetic.fluids.finite_volumes import minmod
+from crazybilliards.kinetic.fluids.label_cells import Cells, make_cells, mirrored
 from crazybilliards.kinetic.fluids.pde_solver import FlowFields, make_state, solve
 from crazybilliards.kinetic.starts import Start
 from crazybilliards.kinetic.statics.label_closure import Stationary, stationary
@@ -49,69 +47,9 @@ from crazybilliards.model.kernels import inlined, kernel
 
 _pull = inlined(spring.force)
 
-_EDGE_CELL = 0.045  # width of a cell at the edge, in thermal lengths
-_LAST_SHARE = 1e-5  # of the rods, beyond the outermost face
-_FEWEST_CELLS, _MOST_CELLS = 100, 4000
-_WEAKEST = 1e-8  # springs, K, that hold cells at their places
 _THINNEST = 1e-6  # density of the state at rest at the walls, in L/s
 _CLOSEST = 1e-3  # distance of cells, as a share of that at rest
 _SPACING = 0.05  # of the points that a solution is read out at, in thermal lengths
-
-
-class Cells(NamedTuple):
-    """The cells of labels and their calibration by the stationary state."""
-
-    labels: Array  # of the cells' middles, (M,); between walls the first and the last are images
-    shares: Array  # of all rods, (M,)
-    faces: Array  # labels of the faces between them, (M - 1,)
-    eta: Array  # stationary, (M,)
-    kappa: Array  # p d at the inner faces, (M - 1,)
-    weights: Array  # where a face lies between its two cells, (M - 1,)
-
-
-def make_cells(state: Stationary, exponent: int, number: int | None) -> Cells:
-    """Calibrate cells on the stationary state; ``number`` None: 0.045 s wide at the edges."""
-    eta_faces = _faces(state, number)
-    faces, log_density = state.profile(eta_faces)
-    bounds = np.concatenate([[-0.5], faces, [0.5]])
-    shares, labels = np.diff(bounds), (bounds[1:] + bounds[:-1]) / 2
-    density = np.exp(log_density)
-    at_walls = state.unit * state.at_walls
-    pressure = np.concatenate([[at_walls], density, [at_walls]])
-    # The mean force on a cell balances the pressures at its faces: K u |u|^(n-2) = -dp/dnu.
-    force = -np.diff(pressure) / shares
-    if state.stiffness > _WEAKEST:
-        eta = state.lam * labels + spring.displacement(force / state.stiffness, exponent)
-    else:
-        eta = state.at(labels)[0]
-    if at_walls:
-        end = state.wall + state.lam / 2
-        labels, eta = _mirrored(labels, 0.5), _mirrored(eta, end)
-        shares, density = np.pad(shares, 1, mode="edge"), pressure
-        faces, eta_faces = bounds, np.concatenate([[-end], eta_faces, [end]])
-    distance = np.diff(eta)
-    return Cells(labels, shares, faces, eta, density * distance, (eta_faces - eta[:-1]) / distance)
-
-
-def _mirrored(values: Array, end: float) -> Array:
-    """Return values with the images of the first and the last one in mirrors at -end and end."""
-    return np.concatenate([[-2 * end - values[0]], values, [2 * end - values[-1]]])
-
-
-def _faces(state: Stationary, number: int | None) -> Array:
-    """Return the stationary eta of the inner faces: even at the edges, wider in a plateau."""
-    end = state.wall + state.lam / 2
-    if not state.at_walls:
-        end = float(state.at(np.array([0.5 - _LAST_SHARE]))[0][0])
-    fine = np.linspace(0, end, 20_001)
-    depth = state.lam / 2 - fine
-    cells_up_to = cumulative_trapezoid(1 / np.clip(1 + (depth - 6) / 3, 1, 8), fine, initial=0)
-    if number is None:
-        number = int(np.clip(2 * cells_up_to[-1] / _EDGE_CELL, _FEWEST_CELLS, _MOST_CELLS))
-    walls = 1 if state.at_walls else 0  # are faces, too
-    count = cells_up_to[-1] * np.linspace(-1, 1, number - 1 + 2 * walls)
-    count = count[walls : count.size - walls]
-    return np.asarray(np.sign(count) * np.interp(np.abs(count), cells_up_to, fine))
 
 
 @kernel(allocates=True)
@@ -258,7 +196,7 @@ def _starting_fields(
         raise ValueError("start: it is too steep for its grid of positions")
     v = (v_left + v_right) / 2
     if chain.box:
-        eta, v = _mirrored(eta, state.wall + state.lam / 2), _mirrored(v, 0.0)
+        eta, v = mirrored(eta, state.wall + state.lam / 2), mirrored(v, 0.0)
     fields = {"eta": eta, "V": v}
     if thermal:
         faces = np.clip(cells.faces, left[0], right[-1])

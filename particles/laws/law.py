@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crazybilliards.model import Chain
-from crazybilliards.model.kernels import inlined
+from crazybilliards.model.kernels import inlined, kernel
 from crazybilliards.model.parameters import WALLS_AND_MASSES
 from crazybilliards.particles.laws import (
     contact_dynamics,
@@ -185,25 +185,33 @@ def make_law(
     return Law(operator, chain.restitution, merge_speed, most, pull, exponent, *around)
 
 
-@inlined
-def drift(y, v, anchors, dt, law, scratch, tally):  # type: ignore[no-untyped-def]
-    """Advance ``y`` and ``v`` in place by ``dt`` with the operator that ``law`` names."""
-    if law.operator == SORT:
-        sort.drift(y, v, dt, scratch)
-        return 0
-    if law.operator == ISOTONIC and law.unequal:
-        return weighted.stick(y, v, dt, law, scratch)
+@kernel
+def _drift_unequal(y, v, anchors, dt, law, scratch, tally):  # type: ignore[no-untyped-def]
+    """Drift as ``drift`` does with rods of unequal masses, or between walls."""
     if law.operator == ISOTONIC:
-        return isotonic.drift(y, v, dt, scratch.integers[0], scratch.floats, scratch.clusters)
-    if law.operator == CONTACTS and law.unequal:
-        return weighted.solve(y, v, anchors, dt, law, scratch)
+        return weighted.stick(y, v, dt, law, scratch)
     if law.operator == CONTACTS:
-        spring_and_scratch = law.pull, law.exponent, scratch.integers, scratch.floats
-        return contact_dynamics.drift(y, v, anchors, dt, law.restitution, *spring_and_scratch)
+        return weighted.solve(y, v, anchors, dt, law, scratch)
     if law.operator == TURN:
         walls.turn(y, v, dt, law.pull, law.low, law.high, tally.struck)
         sort.sort_pairs(y, v, scratch)
         return 0
     if law.high < np.inf:
         return walls.drift(y, v, anchors, dt, law, scratch, tally)
+    return event_driven.drift(y, v, anchors, dt, law, scratch, tally)
+
+
+@inlined
+def drift(y, v, anchors, dt, law, scratch, tally):  # type: ignore[no-untyped-def]
+    """Advance ``y`` and ``v`` in place by ``dt`` with the operator that ``law`` names."""
+    if law.unequal:
+        return _drift_unequal(y, v, anchors, dt, law, scratch, tally)
+    if law.operator == SORT:
+        sort.drift(y, v, dt, scratch)
+        return 0
+    if law.operator == ISOTONIC:
+        return isotonic.drift(y, v, dt, scratch.integers[0], scratch.floats, scratch.clusters)
+    if law.operator == CONTACTS:
+        spring_and_scratch = law.pull, law.exponent, scratch.integers, scratch.floats
+        return contact_dynamics.drift(y, v, anchors, dt, law.restitution, *spring_and_scratch)
     return event_driven.drift(y, v, anchors, dt, law, scratch, tally)

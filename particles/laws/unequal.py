@@ -39,7 +39,8 @@ def collide(contact, a, b, now, y, v, anchors, dt, law, scratch, tally):  # type
     w, w_right = joint[contact], joint[neighbour]
     v_left, v_right = v[contact], v[neighbour]
     ahead = 0.0
-    if law.pull > 0.0 and a == contact and b == neighbour:
+    alike = w == w_right and anchors[contact] == anchors[neighbour]
+    if law.pull > 0.0 and a == contact and b == neighbour and not alike:
         here, since = y[contact] + v_left * now, now - dt / 2
         ahead = springs_ahead(here - anchors[contact], 0.0, law.pull * w, law.exponent, since)
         ahead += springs_ahead(
@@ -52,11 +53,16 @@ def collide(contact, a, b, now, y, v, anchors, dt, law, scratch, tally):  # type
     rebound = e * closing
     least = law.merge_speed * 0.5 * (single[contact] + single[neighbour]) if e < 1.0 else 0.0
     merges = rebound <= least
-    _record(contact, a, b, closing, 0.0 if merges else rebound, v_left, v_right, scratch, tally)
-    share, other_share = w / (w + w_right), w_right / (w + w_right)
-    common = v_left + share * (v_right - v_left)
     apart = 0.0 if merges else max(rebound - ahead, 0.0)  # no rod passes another
-    new_left, new_right = common - share * apart, common + other_share * apart
+    change = v_left - v_right + apart
+    if tally.contacts.size + tally.impacts.size + tally.struck.size > 0:
+        true = closing, 0.0 if merges else rebound
+        _record(contact, a, b, true, change, v_left, v_right, scratch, tally)
+    share, other_share = w / (w + w_right), w_right / (w + w_right)
+    # Each from its own velocity: that of a heavy rod must not get the rounding of a light one's.
+    new_left, new_right = v_left - share * change, v_right + other_share * change
+    if apart == 0.0:
+        new_left = new_right = new_left if share < other_share else new_right
     y_left = y_right = y[contact] + (v_left - new_left) * now
     if not merges:
         y_right = y[neighbour] + (v_right - new_right) * now
@@ -70,15 +76,20 @@ def collide(contact, a, b, now, y, v, anchors, dt, law, scratch, tally):  # type
 
 
 @kernel
-def _record(contact, a, b, closing, separating, v_left, v_right, scratch, tally):  # type: ignore[no-untyped-def]
-    """Count a collision at its contact or wall, and add up what it exchanges and takes."""
+def _record(contact, a, b, true, change, v_left, v_right, scratch, tally):  # type: ignore[no-untyped-def]
+    """Count a collision at its contact or wall, and add up what it exchanges and takes.
+
+    A wall receives all that the ``change`` of the relative velocity takes from the rods. It is not
+    that of the ``true`` one where springs press a rod that stays there.
+    """
+    closing, separating = true
     single, joint, neighbour = scratch.inverse, scratch.joint, contact + _1
     w, w_right = joint[contact], joint[neighbour]
     at_wall = single[contact] == 0.0 or single[neighbour] == 0.0
     mass = 1.0 / (w + w_right)
     if tally.struck.size > 0 and w * w_right == 0.0:
         side = 0 if w == 0.0 else 1
-        tally.struck[0, side] += mass * (closing + separating)
+        tally.struck[0, side] += mass * change
         tally.struck[1, side] += 1.0 if at_wall else 0.0
     before = INDEX(1) if single[_0] == 0.0 else _0  # contacts with the left wall
     if tally.contacts.size > 0 and not at_wall:

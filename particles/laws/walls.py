@@ -18,7 +18,7 @@ springs have one anchor, or if there are none, each is alone with the walls.
 
 import numpy as np
 
-from crazybilliards.model.kernels import inlined, kernel
+from crazybilliards.model.kernels import copy, inlined, kernel
 from crazybilliards.particles.laws import event_driven
 
 
@@ -30,11 +30,14 @@ def drift(y, v, anchors, dt, law, scratch, tally):  # type: ignore[no-untyped-de
     places[0] = ties[0] = law.low
     places[n + 1] = ties[n + 1] = law.high
     speeds[0] = speeds[n + 1] = 0.0
-    for i in range(n):
-        places[i + 1], speeds[i + 1], ties[i + 1] = y[i], v[i], anchors[i]
+    rods_y, rods_v = places[1 : n + 1], speeds[1 : n + 1]
+    copy(y, rods_y)
+    copy(v, rods_v)
+    copy(anchors, ties[1 : n + 1])
     collisions = event_driven.drift(places, speeds, ties, dt, law, scratch, tally)
+    copy(rods_v, v)
     for i in range(n):
-        y[i], v[i] = min(max(places[i + 1], law.low), law.high), speeds[i + 1]
+        y[i] = min(max(rods_y[i], law.low), law.high)
     clusters = scratch.clusters
     for k in range(clusters.number[0]):
         first, last = max(clusters.firsts[k] - 1, 0), min(clusters.lasts[k] - 1, n)
@@ -46,7 +49,7 @@ def drift(y, v, anchors, dt, law, scratch, tally):  # type: ignore[no-untyped-de
     return collisions
 
 
-@inlined
+@kernel
 def fold(y, v, low, high):  # type: ignore[no-untyped-def]
     """Put points that have passed through the walls to where mirrors at the walls show them."""
     room = high - low
@@ -62,7 +65,7 @@ def fold(y, v, low, high):  # type: ignore[no-untyped-def]
 @inlined
 def _strike(flips, momentum, moves_right, struck):  # type: ignore[no-untyped-def]
     """Add the impulses of a point that meets the walls in turn to what the walls have received."""
-    if struck.size > 0 and flips > 0.0:
+    if struck.size > 0 and flips * momentum > 0.0:  # a point at rest at a wall does not meet it
         first = np.ceil(flips / 2.0)
         side = 1 if moves_right else 0
         struck[0, side] += 2.0 * momentum * first

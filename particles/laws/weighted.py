@@ -96,8 +96,10 @@ def solve(y, v, anchors, dt, law, scratch):  # type: ignore[no-untyped-def]
         right = -_ahead(n - 1, y, anchors, inverse, dt, law)
         least = _bound(y[0] - law.low, -v[0], law.wall_restitution, left, dt)
         most = -_bound(law.high - y[n - 1], v[n - 1], law.wall_restitution, right, dt) - total
+        if most < least:  # all rebounds together need more room than there is
+            least = most = (least + most) / 2
         for i in range(n):
-            shifted[i] = min(max(shifted[i], least), max(most, least))
+            shifted[i] = min(max(shifted[i], least), most)
     before = law.low
     for i in range(n):
         v[i] = shifted[i] + totals[i]

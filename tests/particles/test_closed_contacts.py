@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from crazybilliards.model import Chain
 from crazybilliards.particles import dynamics as dynamics_module
-from crazybilliards.particles.dynamics import make_dynamics, make_step
+from crazybilliards.particles.dynamics import Step, make_dynamics, make_step
 from crazybilliards.particles.laws.avalanche import make_tally
 from crazybilliards.particles.laws.closed_contacts import (
     CLOSED_KICK,
@@ -50,12 +50,16 @@ def runs(y):
     return pairs
 
 
-def strengthened(kicks, y, strength):
-    """Return kicks whose deviations from their cluster's mean are multiplied by the strength."""
-    kicks = kicks.copy()
-    for begin, end in runs(y):
-        mean = kicks[begin:end].mean()
-        kicks[begin:end] = mean + strength * (kicks[begin:end] - mean)
+def strengthened(kicks, y, clusters, strength, masses=1.0, high=np.inf):
+    """Return kicks whose deviations from those that move their cluster as one get the strength.
+
+    Clusters at the walls, at -+ ``high``, rest.
+    """
+    kicks, masses = kicks.copy(), masses * np.ones(y.size)
+    for begin, end in clusters:
+        own, share = kicks[begin:end], masses[begin:end] / masses[begin:end].sum()
+        together = 0 if abs(y[begin]) == high else own.sum() * share
+        kicks[begin:end] = together + strength * (own - together)
     return kicks
 
 
@@ -78,7 +82,7 @@ def test_deviations_are_made_stronger_and_momentum_is_kept(y, seed, strength):
     clusters, after = make_clusters(y.size), kicks.copy()
     find_clusters(y, clusters)
     strengthen(after, clusters, strength)
-    np.testing.assert_allclose(after, strengthened(kicks, y, strength), rtol=0, atol=4e-15)
+    np.testing.assert_allclose(after, strengthened(kicks, y, runs(y), strength), rtol=0, atol=4e-15)
     for begin, end in runs(y):
         momentum, rounding = kicks[begin:end].sum(), 1e-15 * (end - begin)
         assert after[begin:end].sum() == pytest.approx(momentum, rel=0, abs=4 * rounding)
@@ -112,7 +116,7 @@ def test_two_half_kicks_have_the_variance_of_a_whole_one(time_step, damping):
     def after(*kicks):
         v = np.zeros(2)
         for kicked, strength, part in kicks:
-            kick(y, v, y, strengthened(kicked, y, strength), step, part)
+            kick(y, v, y, strengthened(kicked, y, runs(y), strength), step, part)
         return v[1] - v[0]
 
     whole = after((apart, step.closed, WHOLE))
@@ -124,13 +128,19 @@ def test_two_half_kicks_have_the_variance_of_a_whole_one(time_step, damping):
 
 @pytest.mark.parametrize("e", [0.0, 0.1, 0.2])
 @pytest.mark.parametrize("counted", [False, True])
-def test_steps_are_those_that_the_page_describes(e, counted):
+@pytest.mark.parametrize("box", [0.0, 26.0])
+@pytest.mark.parametrize("mass_ratio", [1.0, 3.0])
+def test_steps_are_those_that_the_page_describes(mass_ratio, box, counted, e):
     """Kicks by spring, damping and strengthened noise, written out; the drift is the operator's."""
-    chain = Chain(size=12, restitution=e, amplitude=3)
+    walls = {"box": box, "wall_restitution": e} if box else {}
+    chain = Chain(size=12, restitution=e, amplitude=3, mass_ratio=mass_ratio, **walls)
     dynamics = make_dynamics(chain, 0.2, speed=1.0, counted=counted)
-    step, law, scratch = dynamics.step, dynamics.law, make_scratch(chain.size)
+    law, own = dynamics.law, (chain.rod_masses, chain.walls[1])
+    scratch, other = (make_scratch(chain.size, dynamics.inverse) for _ in range(2))
+    # The numbers of the two sorts of rods, for each rod.
+    step = Step(*(np.resize(each, 12) for each in zip(dynamics.step, dynamics.second, strict=True)))
     strength = CLOSED_KICK if e < CRITICAL_RESTITUTION else 1.0
-    assert step.closed == strength
+    assert (step.closed == strength).all()
     y, v = np.zeros((2, chain.size))
     other_y, other_v = y.copy(), v.copy()
     kicks, in_contact = np.empty(chain.size), 0
@@ -138,11 +148,14 @@ def test_steps_are_those_that_the_page_describes(e, counted):
     for steps in (1, 1, 3, 40):
         advance(other_y, other_v, same, dynamics, scratch, UNSEEN, steps)
         decay, size, strength = step.outer_decay, step.outer_noise, step.closed_outer
+        find_clusters(y, other.clusters, *chain.walls)
         for _ in range(steps):
             fill(noise, kicks)
-            in_contact += len(runs(y))
-            v = decay * v - step.kick * y + size * strengthened(kicks, y, strength)
-            drift(y, v, dynamics.anchors, 0.2, law, make_scratch(chain.size), UNSEEN)
+            clusters = listed(other.clusters)
+            in_contact += len(clusters)
+            kicks = strengthened(kicks, y, clusters, strength[0], *own)
+            v = decay * v - step.kick * y + size * kicks
+            drift(y, v, dynamics.anchors, 0.2, law, other, UNSEEN)
             v -= step.kick * y
             decay, size, strength = step.decay, step.noise, step.closed
         fill(noise, kicks)

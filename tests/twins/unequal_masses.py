@@ -13,12 +13,13 @@ import numpy as np
 from next_collision import meeting
 
 from crazybilliards.model import spring
+from crazybilliards.particles.laws.law import EVENTS, Law
 
 
 class Body(NamedTuple):
     y: float  # where it would have been at the beginning of the step, with its velocity
     v: float
-    inverse: float  # mass, in units of the first rod's
+    inverse: float  # mass
     rods: tuple[int, ...]  # counted from 0; -1 is the left wall, L the right one
 
 
@@ -28,15 +29,13 @@ class Drifted(NamedTuple):
     contacts: list[int]  # collisions
     impulses: list[float]  # on the walls
     hits: list[int]
-    clusters: list[tuple[int, ...]]
+    clusters: list[tuple[int, int]]  # of rods: the first one and the one after the last
 
 
 def drift(y, v, masses, anchors, dt, law):
-    """Move the rods of a chain; the first rod's mass is the unit of ``law.pull``."""
+    """Move the rods of a chain; ``law.pull`` is that of a mass of 1."""
     size = len(y)
-    bodies = [
-        Body(float(y[i]), float(v[i]), float(masses[0] / masses[i]), (i,)) for i in range(size)
-    ]
+    bodies = [Body(float(y[i]), float(v[i]), float(1 / masses[i]), (i,)) for i in range(size)]
     if law.high < math.inf:
         ends = Body(law.low, 0.0, 0.0, (-1,)), Body(law.high, 0.0, 0.0, (size,))
         bodies = [ends[0], *bodies, ends[1]]
@@ -62,41 +61,64 @@ def drift(y, v, masses, anchors, dt, law):
     for body in bodies:
         own = [rod for rod in body.rods if 0 <= rod < size]
         ends[0, own], ends[1, own] = body.y + dt * body.v, body.v
-    clusters = [body.rods for body in bodies if len(body.rods) > 1]
+    merged = [body.rods for body in bodies if len(body.rods) > 1]
+    clusters = [(max(rods[0], 0), min(rods[-1] + 1, size)) for rods in merged]
     return Drifted(*ends, contacts, impulses, hits, clusters)
+
+
+def moved(chain, state, dt, steps):
+    """Positions, velocities and the collisions of rods and with walls after steps without noise."""
+    masses = np.resize([chain.mass, chain.mass * chain.mass_ratio], chain.size)
+    anchors, high = chain.reduced_anchors, chain.box / 2 - chain.radius * chain.size
+    springs = chain.stiffness, chain.potential_exponent, -high, high, chain.wall_restitution
+    law = Law(EVENTS, chain.restitution, 0.0, 0, *springs)
+    decay = np.exp(-chain.damping / masses * dt / 2)
+
+    def pull(y):
+        forces = [spring.force(each, law.exponent) for each in y - anchors]
+        return chain.stiffness / masses * forces * dt / 2
+
+    (y, v), contacts, hits = state, 0, 0
+    for _ in range(steps):
+        step = drift(y, decay * v - pull(y), masses, anchors, dt, law)
+        contacts, hits = contacts + sum(step.contacts), hits + sum(step.hits)
+        y, v = step.y, decay * (step.v - pull(step.y))
+    return y, v, contacts, hits
 
 
 def collided(left, right, masses, anchors, now, dt, law):
     """Return the one or two bodies after a collision, and the impulse that they exchange."""
     ahead = 0.0
     if len(left.rods) == len(right.rods) == 1 and law.pull > 0:
-        a, b = (acceleration(each, anchors, now, law) for each in (left, right))
-        ahead = (b - a) * (now - dt / 2)
+        here, since = left.y + left.v * now, now - dt / 2
+        a, b = (acceleration(each, here, anchors, law) for each in (left, right))
+        ahead = -a * since + b * since
     meet = left.rods[-1], right.rods[0]
     at_wall = meet[0] == -1 or meet[1] == len(masses)
     e = law.wall_restitution if at_wall else law.restitution
     e = min(e, 1.0) if now == 0 else e
     closing = left.v - right.v - ahead
     rebound = e * closing
-    kicks = sum(masses[0] / masses[rod] for rod in meet if 0 <= rod < len(masses))
+    kicks = sum(1 / masses[rod] for rod in meet if 0 <= rod < len(masses))
     both = left.inverse + right.inverse
     shares = left.inverse / both, right.inverse / both
-    common = left.v + shares[0] * (right.v - left.v)
     merges = rebound <= (law.merge_speed * kicks / 2 if e < 1 else 0.0)
+    apart = 0.0 if merges else max(rebound - ahead, 0.0)
+    change = left.v - right.v + apart
+    after = [left.v - shares[0] * change, right.v + shares[1] * change]
+    if apart == 0:
+        after = [after[0] if shares[0] < shares[1] else after[1]] * 2
+    places = [body.y + (body.v - v) * now for body, v in zip((left, right), after, strict=True)]
     if merges:
-        y, rods = left.y + (left.v - common) * now, left.rods + right.rods
-        return [Body(y, common, shares[0] * right.inverse, rods)], closing / both
-    apart = max(rebound - ahead, 0.0)
-    after = []
-    for body, v in ((left, common - shares[0] * apart), (right, common + shares[1] * apart)):
-        after.append(body._replace(v=v, y=body.y + (body.v - v) * now))
-    return after, (closing + rebound) / both
+        merged = left.rods + right.rods
+        return [Body(places[0], after[0], shares[0] * right.inverse, merged)], change / both
+    new = zip((left, right), places, after, strict=True)
+    return [body._replace(y=y, v=v) for body, y, v in new], change / both
 
 
-def acceleration(body, anchors, now, law):
+def acceleration(body, here, anchors, law):
     """Return the acceleration of a single rod by its spring."""
     (rod,) = body.rods
     if not 0 <= rod < len(anchors):
         return 0.0
-    displacement = body.y + body.v * now - anchors[rod]
-    return -law.pull * body.inverse * spring.force(displacement, law.exponent)
+    return -law.pull * body.inverse * spring.force(here - anchors[rod], law.exponent)

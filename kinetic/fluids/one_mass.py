@@ -1,0 +1,44 @@
+r"""How far a fluid is from a gas of equal elastic rods in a box, which only exchange velocities.
+
+Without springs, and in the reduced coordinate, each point of such a gas moves as if it were alone.
+The slowest wave of density, k = pi/(X - 2RL), then decays exactly as
+
+    exp(-k^2 M(t)/2),      M(t) = 2 (W/G)^2 (G t - 1 + exp(-G t)),      G = gamma/m,
+
+while the relative density r, velocity w and temperature h of the fluid obey, for small amplitudes,
+
+    r' = -k w,      w' = k W^2 (r + h) - G w,      h' = -2 k w - 2 G h   (isothermal: h = 0).
+
+The two agree if damping is strong, G > 4 k W, where both diffuse. With weak damping the fluid has
+sound, and such a gas has none: the damping that would keep its temperature takes the wave away.
+"""
+
+import math
+
+import numpy as np
+from scipy.linalg import expm
+
+from crazybilliards.model import Chain
+
+_TIMES = 400
+
+
+def has_one_mass(chain: Chain) -> bool:
+    """Return whether the rods are such a gas."""
+    alone = chain.box > 0 == chain.stiffness
+    return alone and chain.restitution == chain.wall_restitution == chain.mass_ratio == 1
+
+
+def wave_model_error(chain: Chain, duration: float, *, thermal: bool) -> float:
+    """Return the largest error of the fluid's slowest wave, in units of its first height."""
+    W, G = chain.free_velocity_width, chain.damping / chain.mass
+    k = math.pi / (2 * chain.walls[1])
+    rates = np.array([[0, -k, 0], [k * W**2, -G, k * W**2], [0, -2 * k, -2 * G]])
+    rates = rates if thermal else rates[:2, :2]
+    t = np.linspace(0, duration, _TIMES)
+    step, state, wave = expm(rates * t[1]), np.eye(len(rates))[0], []
+    for _ in t:
+        wave.append(state[0])
+        state = step @ state
+    spread = 2 * (W / G) ** 2 * (G * t + np.expm1(-G * t))
+    return float(np.abs(wave - np.exp(-(k**2) * spread / 2)).max())
