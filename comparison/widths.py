@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from crazybilliards.model import Chain, chain_of
-from crazybilliards.model.chain import middle_tenth
+from crazybilliards.model.arrays import middle_tenth
 
 _LEAST_INNER = 7  # rods from which on the two at each border are left out of the largest deviation
 

@@ -40,6 +40,11 @@ def require_chain(
             f"{theory} holds for elastic collisions only: restitution must be 1, got "
             f"{chain.restitution:g}{remedy}"
         )
+    if elastic and chain.wall_restitution != 1:
+        raise ValueError(
+            f"{theory} holds for elastic walls only: wall_restitution must be 1, got "
+            f"{chain.wall_restitution:g}"
+        )
     if linear and chain.spring != "linear":
         raise ValueError(
             f"{theory} holds for linear springs only: spring must be 'linear', got {chain.spring!r}"

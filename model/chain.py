@@ -258,8 +258,7 @@ class Chain(Parameters):
     @property
     def spreads(self) -> bool:
         """Whether noise drives the rods ever farther, without a spring or without damping."""
-        tied = self.stiffness if not self.box else 1.0
-        return self.amplitude > 0 == self.damping * tied
+        return self.amplitude > 0 == self.damping * (self.stiffness + self.box)
 
     @property
     def why_unsteady(self) -> str:
@@ -298,12 +297,3 @@ class Chain(Parameters):
         """Raise a ValueError with the reason if this chain has no steady state."""
         if reason := self.why_unsteady:
             raise ValueError(f"this chain has no steady state: {reason}")
-
-
-def middle_tenth(places: int) -> slice:
-    """Return the middle tenth of so many rods or contacts: ``abs(i - (L+1)/2) <= L/20``.
-
-    It is 10 of 100, 9 of 99 and 4 of 30. There are always the one or two in the middle.
-    """
-    first = min((9 * places + 9) // 20, (places - 1) // 2)
-    return slice(first, places - first)

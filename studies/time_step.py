@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from crazybilliards.model import Chain
-from crazybilliards.model.chain import middle_tenth
+from crazybilliards.model.arrays import middle_tenth
 from crazybilliards.model.kernels import kernel
 from crazybilliards.particles.dynamics import Dynamics, make_dynamics
 from crazybilliards.particles.laws.avalanche import make_tally

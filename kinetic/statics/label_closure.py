@@ -100,7 +100,7 @@ class Stationary:
     def at_walls(self) -> float:
         """The density rho_y/L at the walls [1/R]; 0 if no rod comes so far."""
         reached = self.right == self.wall
-        return float(np.exp(self.curve(self.right)[0])) / self.unit if reached else 0.0
+        return float(np.exp(self.curve(np.array(self.right))[0])) / self.unit if reached else 0.0
 
     def _evaluate(self, zeta: Array) -> tuple[Array, Array]:
         """Return P and t at zeta."""

@@ -76,9 +76,10 @@ def solve_variable_temperature(chain: Chain, variance: Profile) -> xr.Dataset:
         return _between_walls(chain, variance)
     s, L, R = chain.thermal_length, chain.size, chain.radius
     crowd, lam = 2 * R * L / s, chain.lattice_gap * L / s
+    free = chain.free_velocity_width**2 * (chain.mass / chain.mean_mass)
 
     def warmth(x: Array) -> Array:
-        return np.asarray(variance.function(s * x)) / chain.free_velocity_width**2
+        return np.asarray(variance.function(s * x)) / free
 
     end = min(_end(warmth, crowd, lam), chain.walls[1] / s)
     even = np.linspace(0, end, 100_001)
@@ -207,7 +208,9 @@ def _assemble(
             "mean_displacement": ("particle", mean),
             "velocity_width": (
                 "particle",
-                chain.free_velocity_width * np.sqrt(warmth((chain.anchors + mean) / s)),
+                chain.free_velocity_width
+                * np.sqrt(chain.mass / chain.rod_masses)
+                * np.sqrt(warmth((chain.anchors + mean) / s)),
             ),
         },
         coordinates={"x": x},
@@ -238,12 +241,15 @@ def _between_walls(chain: Chain, variance: Profile) -> xr.Dataset:
     return result(
         chain,
         {
-            "wall_force": ("wall", np.full(2, chain.mass * p)),
+            "wall_force": ("wall", np.full(2, chain.mean_mass * p)),
             "density": ("x", np.where(here == grid, p / (hot + 2 * R * p), 0.0)),
             "label": ("x", counted),
             "displacement": ("x", grid - (2 * R + chain.lattice_gap) * (counted - L / 2)),
             "mean_displacement": ("particle", rods - chain.anchors),
-            "velocity_width": ("particle", np.sqrt(variance.function(rods))),
+            "velocity_width": (
+                "particle",
+                np.sqrt(chain.mean_mass / chain.rod_masses * np.asarray(variance.function(rods))),
+            ),
         },
         coordinates={"x": grid},
         source="theory",

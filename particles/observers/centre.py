@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from crazybilliards.model.chain import middle_tenth
+from crazybilliards.model.arrays import middle_tenth
 from crazybilliards.particles.observers.base import Averaged, Integers, Snapshots, Variables
 from crazybilliards.particles.run import Run
 

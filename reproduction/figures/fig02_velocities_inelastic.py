@@ -6,7 +6,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from crazybilliards.comparison.widths import border_width, central_width
-from crazybilliards.model.chain import middle_tenth
+from crazybilliards.model.arrays import middle_tenth
 from crazybilliards.reproduction.chains import LARGE, dissipative
 from crazybilliards.reproduction.claims.study import Results
 from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, in_plot

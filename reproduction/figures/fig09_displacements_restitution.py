@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_rods, mark_clipped
 from crazybilliards.comparison.layout import legend_above, panels
 from crazybilliards.model import chain_of
-from crazybilliards.model.chain import middle_tenth
+from crazybilliards.model.arrays import middle_tenth
 from crazybilliards.reproduction.chains import LARGE, dissipative
 from crazybilliards.reproduction.claims.study import Cases, Quality, Results, all_of
 from crazybilliards.reproduction.claims.verdicts import Claim, Estimate

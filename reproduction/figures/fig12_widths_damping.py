@@ -12,8 +12,7 @@ from matplotlib.figure import Figure
 from crazybilliards.comparison.distances import distances_in_plot
 from crazybilliards.comparison.fits import Fit, fit_border_power_law
 from crazybilliards.comparison.widths import border_width, central_width
-from crazybilliards.model.arrays import Array
-from crazybilliards.model.chain import middle_tenth
+from crazybilliards.model.arrays import Array, middle_tenth
 from crazybilliards.reproduction.chains import flippers, kinetic_equation
 from crazybilliards.reproduction.claims.study import Results, all_of
 from crazybilliards.reproduction.claims.verdicts import EYE, Claim, Estimate, furthest_in_plot

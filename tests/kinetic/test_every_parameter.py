@@ -64,8 +64,10 @@ MEANINGLESS = {
             "restitution": _GIVEN_LOSS,
             "amplitude": _GIVEN,
             "damping": _GIVEN,
+            "wall_restitution": _GIVEN_LOSS,
         }.items()
     },
+    ("force_balance, displacement", "mass_ratio"): "the density depends on T = A^2/(2 gamma) alone",
     ("force_balance, displacement", "gap"): _GIVEN_ANCHORS,
     ("force_balance, displacement", "mass"): "the density depends on m W^2 = A^2/(2 gamma) alone",
     ("force_balance, both", "gap"): _GIVEN_ANCHORS,

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from crazybilliards.model import Chain, spring
 from crazybilliards.model import chain as chain_module
-from crazybilliards.model.chain import middle_tenth
+from crazybilliards.model.arrays import middle_tenth
 from crazybilliards.model.grid import bins_per_rod, deposit, position_grid, thermal_reach
 from crazybilliards.particles.dynamics import make_step
 from crazybilliards.particles.stepping import FIRST, kick
