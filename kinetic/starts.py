@@ -2,11 +2,13 @@ r"""Starts of the hydrodynamics: checks given profiles, and makes common ones.
 
 A start is a result with ``density`` over x (one time), and optionally ``label``, ``flow_velocity``
 and ``velocity_variance``. ``force_balance`` of another chain gives a quench. The functions here
-make other common starts from the stationary state that the chain has at restitution 1.
+make other common starts: from the stationary state that the chain has at restitution 1, and of gases
+of points in a box.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -21,9 +23,11 @@ from crazybilliards.model.arrays import Array
 from crazybilliards.model.calls import public
 from crazybilliards.model.checks import check_real, refuse_units, shown
 from crazybilliards.model.grid import position_grid, thermal_reach
+from crazybilliards.model.parameters import WALLS_AND_MASSES
 from crazybilliards.model.vocabulary import OF_FLUID, OF_RODS, require, result
 
 _RODS_TOLERANCE = 1e-3
+_POINTS = 10_001  # from wall to wall
 _CROWDED = 1.01  # so many rods in the length of one overlap, but for errors of the grid
 _CRYSTAL = (
     "these are the spikes of a crystal, which no fluid has; take the smooth density of "
@@ -53,18 +57,73 @@ def _stationary_image(chain: Chain, stretch: float = 1.0, shift: float = 0.0) ->
     # Stretching widens the lattice of anchors as well as the tails beyond it.
     wider = max(stretch - 1, 0.0) * (chain.lattice_gap * chain.size / 2 + thermal_reach(chain))
     grid = position_grid(chain, fluid_reach(chain) + abs(shift) + wider)
-    density, label = stationary(chain).fields(chain, grid - shift, stretch)
+    return _at_rest(chain, grid, *stationary(chain).fields(chain, grid - shift, stretch))
+
+
+def gathered(chain: Chain, share: float) -> xr.Dataset:
+    """Return a gas in a box whose points are evenly spread over the left ``share`` of their room.
+
+    The room is l = X - 2RL: the density of points is L/(share l) there, and 0 beyond.
+    """
+    share = check_real("share", share, positive=True)
+    if share > 1:
+        raise ValueError(f"share must be at most 1, got {share:g}")
+    return _gas_of_points(chain, lambda place: np.minimum(place / share, 1.0))
+
+
+def wave(chain: Chain, height: float) -> xr.Dataset:
+    """Return a gas in a box with the points' density L/l (1 + height cos(pi (y + l/2)/l)).
+
+    l = X - 2RL is the room of the points, and ``height`` lies between -1 and 1.
+    """
+    height = check_real("height", height, signed=True)
+    if abs(height) > 1:
+        raise ValueError(f"height must be from -1 to 1, got {height:g}")
+    return _gas_of_points(chain, lambda place: place + height * np.sin(np.pi * place) / np.pi)
+
+
+def _gas_of_points(chain: Chain, below: Callable[[Array], Array]) -> xr.Dataset:
+    """Return a start with the share ``below`` of the points left of each place, from 0 to 1."""
+    require_chain(chain, "a gas of points", knows=WALLS_AND_MASSES)
+    if not (chain.box and chain.exchangeable):
+        raise ValueError("a gas of points needs a box=..., and gap=0 or stiffness=0")
+    grid, place = position_grid(chain), np.linspace(0.0, 1.0, _POINTS)
+    y = chain.walls[1] * (2 * place - 1)
+    return _at_rest(chain, grid, *fields_of_points(chain, grid, y, chain.size * below(place)))
+
+
+def fields_of_points(chain: Chain, x: Array, y: Array, label: Array) -> tuple[Array, Array]:
+    """Return density and label over x of points, whose labels are known at y from wall to wall."""
+    R, n = chain.radius, np.diff(label) / np.diff(y)
+    at = y + 2 * R * (label - chain.size / 2)
+    density = np.interp(x, (at[1:] + at[:-1]) / 2, n / (1 + 2 * R * n))
+    return np.where(np.abs(x) <= chain.box / 2, density, 0.0), np.interp(x, at, label)
+
+
+def points_of(chain: Chain, start: xr.Dataset) -> tuple[Array, Array]:
+    """Return where the points of a start in a box are, and the labels there: the inverse."""
+    label = start.label.values
+    y = start.x.values - 2 * chain.radius * (label - chain.size / 2)
+    return np.clip(y, *chain.walls), label
+
+
+def _fluid_variance(chain: Chain) -> float:
+    """Return the free W^2 of the fluid, whose mass is the mean of the rods'."""
+    return chain.free_velocity_width**2 * (chain.mass / chain.mean_mass)
+
+
+def _at_rest(chain: Chain, x: Array, density: Array, label: Array) -> xr.Dataset:
     return result(
         chain,
         {
             "density": ("x", density),
             "label": ("x", label),
-            "flow_velocity": ("x", np.zeros(grid.size)),
-            "velocity_variance": ("x", np.full(grid.size, chain.free_velocity_width**2)),
+            "flow_velocity": ("x", np.zeros(x.size)),
+            "velocity_variance": ("x", np.full(x.size, _fluid_variance(chain))),
         },
         source="start",
         method={"start": "hydrodynamics"},
-        coordinates={"x": grid},
+        coordinates={"x": x},
     ).assign_attrs(density_of=OF_FLUID)
 
 
@@ -130,7 +189,7 @@ def read_start(chain: Chain, start: xr.Dataset) -> Start:
     profiles = {}
     # In a quench it is another chain.
     own = chain_of(start) if "provenance" in start.attrs else chain
-    free = own.free_velocity_width**2
+    free = _fluid_variance(own)
     for name, default in (("flow_velocity", 0.0), ("velocity_variance", free)):
         values = _numbers(start, name) if name in start else np.full(x.size, default)
         if values.shape != x.shape or not np.isfinite(values).all():

@@ -30,13 +30,18 @@ def command(
         ),
     ] = None,
     release: Annotated[
-        str, typer.Option(help="compressed (or stretched), displaced or quenched.")
+        str,
+        typer.Option(
+            help="compressed (or stretched), displaced or quenched; in a box also gathered, wave "
+            "or confined."
+        ),
     ] = "compressed",
     by: Annotated[
         float | None,
         typer.Option(
             help="Factor of y (compressed), thermal lengths (displaced) or factor of the amplitude "
-            "before (quenched); default: 0.3, 2 or 3."
+            "before (quenched); default: 0.3, 2 or 3. Share of the free room, from the left wall "
+            "(gathered) or in the middle (confined), or height of a wave; default: 0.5."
         ),
     ] = None,
     duration: Annotated[float, typer.Option(help="Time to follow.")] = 40.0,
@@ -52,23 +57,26 @@ def command(
 
     An ensemble of simulated chains, hydrodynamics with a constant temperature,
     hydrodynamics with a temperature equation, and without gap the exact motion start from the same
-    state. Prints how far the rods are from where each theory has them, in thermal lengths.
+    state. So do equal rods in a box without springs, whose motion is known, too. Prints how far the
+    rods are from where each theory has them, in thermal lengths.
 
     Ctrl-C or SIGTERM stops early: what has been computed is written under names with
     "-interrupted".
 
     Example: crazybilliards relax --output results --release displaced --by 2 --gap 0.2
+
+    Example: crazybilliards relax --output results --release gathered --box 400 --stiffness 0
     """
     from crazybilliards.comparison.side_by_side.relaxation import compare_relaxation
 
     if film and output is None:
         raise ValueError("film needs --output FOLDER, into which it is written")
-    defaults = {"compressed": 0.3, "displaced": 2.0, "quenched": 3.0}
+    defaults = {"compressed": 0.3, "displaced": 2.0, "quenched": 3.0}  # others 0.5
     with writing_to(output):
         tree = compare_relaxation(
             chain,
             release,  # type: ignore[arg-type]
-            defaults.get(release, 1.0) if by is None else by,
+            defaults.get(release, 0.5) if by is None else by,
             duration=duration,
             every=every,
             replicas=replicas,
@@ -99,15 +107,23 @@ def _write(film: bool, tree: xr.DataTree, folder: Path, suffix: str) -> None:
 
 
 def _print(tree: xr.DataTree) -> None:
-    from crazybilliards.comparison.side_by_side.relaxation import LEGEND, label_distances
+    from crazybilliards.comparison.side_by_side.relaxation import (
+        LEGEND,
+        PARTICLES,
+        label_distances,
+    )
+    from crazybilliards.comparison.widths import displacement_unit
+    from crazybilliards.model import chain_of
 
+    symbol, _ = displacement_unit(chain_of(tree[PARTICLES].to_dataset()))
+    unit = {"s": "thermal lengths", "h": "halves h of the room that the rods leave free"}[symbol]
     table_of(
-        {"title": ("theory", str), "distance": ("rms distance / s", "{:.3f}".format)},
+        {"title": ("theory", str), "distance": (f"rms distance / {symbol}", "{:.3f}".format)},
         [
             {"theory": key, "title": LEGEND[key], "distance": distance}
             for key, distance in label_distances(tree).items()
         ],
         fact="distances",
-        caption="Rms over the rods of their mean position in theory minus simulation, in thermal "
-        "lengths, at the time when it is largest.",
+        caption="Rms over the rods of their mean position in theory minus simulation, in "
+        f"{unit}, at the time when it is largest.",
     )

@@ -2,8 +2,8 @@
 
 If all chains have e = 1, the theories are the exact equilibrium; the force balance closed by
 labels, without an input; the density of its rods; and the force balance with an arctanh fitted to
-the simulated displacements, as in the paper. Otherwise they are the kinetic equations, without a
-fit.
+the simulated displacements, as in the paper, if there are springs. Otherwise they are the kinetic
+equations, without a fit.
 
 The simulations and the kinetic equations are cases of a sweep: each is written to a folder as soon
 as it is computed, and the same call takes it from there.
@@ -30,6 +30,7 @@ from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.calls import public, warn_user
 from crazybilliards.model.checks import as_written, check_integer, check_path, is_list, shown
+from crazybilliards.model.parameters import WALLS_AND_MASSES
 from crazybilliards.model.process import announced, cores
 from crazybilliards.model.progress import waiting_for
 from crazybilliards.model.randomness import Seed, seed_of
@@ -98,7 +99,7 @@ def compare(
     xarray.DataTree
         ``tree["amplitude_3/simulation"]`` and its theories beside it, results in the common
         vocabulary, not smoothed. If all chains have e = 1: ``.../exact``, ``.../labels``,
-        ``.../rods``, ``.../arctanh``. Otherwise ``.../kinetic_equation``, and
+        ``.../rods`` and, with springs, ``.../arctanh``. Otherwise ``.../kinetic_equation``, and
         ``.../pair_correlations`` where ``correlated_phase_space`` takes the chain; ``theories``
         tells how good they are. A theory that has no steady state is left out, with a warning that
         gives the reason. ``attrs["status"]`` is ``interrupted`` if Ctrl-C ended it early, and
@@ -113,7 +114,10 @@ def compare(
     """
     chains = _chains(chain, over)
     settings = {"duration": duration, "replicas": _REPLICAS, "seed": seed_of(seed)}
-    cases = {name: {SIMULATION: Case("simulate", each, settings)} for name, each in chains.items()}
+    cases = {
+        name: {SIMULATION: Case("simulate", each, settings | _observed(each))}
+        for name, each in chains.items()
+    }
     if all(each.restitution == 1 for each in chains.values()):
         results, status = _computed(cases, folder, processes, threads, progress)
         with waiting_for("theories", progress):
@@ -152,7 +156,7 @@ def _chains(chain: Chain, over: Mapping[str, ArrayLike]) -> dict[str, Chain]:
     chains = {}
     for value in values:
         each = chain.replace(**{name: as_written(value)})
-        require_chain(each, "the comparison with theories")
+        require_chain(each, "the comparison with theories", knows=WALLS_AND_MASSES)
         number = each.parameters()[name]
         chains[f"{name}_{number if isinstance(number, str) else f'{number:g}'}"] = each
     if len(chains) != len(values):
@@ -160,6 +164,11 @@ def _chains(chain: Chain, over: Mapping[str, ArrayLike]) -> dict[str, Chain]:
             f"over: the values of {name} must differ in their first six digits, got {list(values)}"
         )
     return chains
+
+
+def _observed(chain: Chain) -> dict[str, tuple[str, ...]]:
+    """Return what else than by default is observed."""
+    return {"observe": ("widths", "density", "walls")} if chain.box else {}
 
 
 def _computed(
@@ -230,6 +239,8 @@ def _elastic_theories(run: xr.Dataset) -> dict[str, xr.Dataset]:
     chain = chain_of(run)
     balance = force_balance(chain)
     theories = {"exact": equilibrium(chain), "labels": balance, "rods": rod_by_rod(balance)}
+    if chain.stiffness == 0:  # displacements then have no effect
+        return theories
     try:
         fit = fit_arctanh(run)
         arctanh = force_balance(chain, displacement=fit)

@@ -1,19 +1,21 @@
-"""Relaxation from one start: simulated rods, two fluids and, without a gap, the exact solution.
+"""Relaxation from one start: simulated rods, two fluids and, where it is known, the exact solution.
 
 An elastic chain is released from a displaced or compressed state, or quenched from another driving
-amplitude. The results are an ensemble of simulated chains, the isothermal fluid (the paper's two
-equations with a constant W^2), the fluid with a temperature equation, as it is and rod by rod, and
-without a gap the exact motion.
+amplitude; in a box it is released from one side, a wave or a smaller box. The results are an
+ensemble of simulated chains, the isothermal fluid (the paper's two equations with a constant W^2),
+the fluid with a temperature equation, as it is and rod by rod, and the exact motion without a gap,
+or of equal rods in a box without springs.
 """
 
 from __future__ import annotations
 
-from typing import Literal, get_args
+from typing import Any, Literal, get_args
 
 import numpy as np
 import xarray as xr
 
 from crazybilliards.comparison.coverage import smooth
+from crazybilliards.comparison.widths import displacement_unit
 from crazybilliards.kinetic import (
     compressed,
     displaced,
@@ -23,17 +25,23 @@ from crazybilliards.kinetic import (
     rod_by_rod,
 )
 from crazybilliards.kinetic.exact.breathing import breathing_cloud
+from crazybilliards.kinetic.exact.gas_of_points import gas_of_points
+from crazybilliards.kinetic.fluids.one_mass import has_one_mass
 from crazybilliards.kinetic.requirements import require_chain
+from crazybilliards.kinetic.starts import gathered, points_of, wave
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.calls import public
 from crazybilliards.model.checks import check_choice, check_integer, check_real
+from crazybilliards.model.parameters import WALLS_AND_MASSES
 from crazybilliards.model.progress import waiting_for
 from crazybilliards.model.randomness import Seed, seed_of
 from crazybilliards.particles import simulate
 
-Release = Literal["compressed", "displaced", "quenched"]
+Release = Literal["compressed", "displaced", "quenched", "gathered", "wave", "confined"]
 
 PARTICLES = "particles"
+# The starts of a gas in a box whose rods are drawn independently of one another.
+_OF_POINTS = {"gathered": gathered, "wave": wave}
 # The argument velocity_variance of hydrodynamics.
 FLUIDS: dict[str, Literal["evolving"] | None] = {"isothermal": None, "evolving": "evolving"}
 LEGEND = {
@@ -62,11 +70,14 @@ def compare_relaxation(
     Parameters
     ----------
     chain
-        The chain, with restitution 1.
+        The chain, with restitution 1, also in a box and of two masses.
     release
         ``"compressed"``: the equilibrium state with y multiplied by ``by`` (above 1: stretched);
         ``"displaced"``: moved by ``by`` thermal lengths; ``"quenched"``: the equilibrium state of
-        the chain driven with ``by`` times its amplitude.
+        the chain driven with ``by`` times its amplitude. In a box also, with l = X - 2RL the room
+        that the rods leave free: ``"gathered"``: rods spread evenly over the left share ``by`` of
+        l; ``"wave"``: with a density of their places y of 1 + ``by`` cos(pi (y + l/2)/l);
+        ``"confined"``: the equilibrium state of the chain in the middle share ``by`` of l.
     duration, every
         Time, and time between outputs [T].
     replicas, seed, threads
@@ -76,7 +87,9 @@ def compare_relaxation(
     -------
     xarray.DataTree
         ``tree["particles"]``, ``["isothermal"]``, ``["evolving"]``, its ``["rods"]`` and, for
-        linear springs without gap, ``["exact"]``: results over time in the common vocabulary. The
+        linear springs without gap, or equal rods in a box without springs, ``["exact"]``: results
+        over time in the common vocabulary. ``["isothermal"].attrs["wave_model_error"]`` says how
+        wrong the fluid of such rods is, which only exchange their velocities. The
         densities are as they are, not smoothed, those of the simulation in groups of replicas as
         well.
 
@@ -86,28 +99,28 @@ def compare_relaxation(
         For a wrong argument, before any work.
     """
     check_choice("release", release, get_args(Release))
-    if chain.restitution != 1:
-        raise ValueError(
-            f"the comparison is of elastic chains, restitution=1, got {chain.restitution:g}"
-        )
-    require_chain(chain, "compare_relaxation")
-    by = check_real("by", by, positive=release != "displaced", signed=release == "displaced")
+    require_chain(chain, "compare_relaxation", elastic=True, knows=WALLS_AND_MASSES)
+    signed = release in ("displaced", "wave")
+    by = check_real("by", by, positive=not signed, signed=signed)
     replicas = check_integer("replicas", replicas, least=2)
     seed = seed_of(seed)
-    start = _states(chain, release, by, replicas, seed)
     fluid = _fluid(chain, release, by)
+    start = _states(chain, release, by, fluid, replicas, seed)
     # The fluids take a second and are computed first, to find a wrong duration before the long run.
     results = {}
+    # On labels the outermost cell would fill an empty room before a wall, and become its cushion.
+    how: Any = {"frame": "eulerian" if release in ("gathered", "confined") else "label"}
     for name, variance in FLUIDS.items():
         with waiting_for(f"solving: {LEGEND[name]}", progress):
-            results[name] = hydrodynamics(
-                chain, fluid, duration, every=every, velocity_variance=variance, progress=False
-            )
+            how |= {"velocity_variance": variance, "every": every, "progress": False}
+            results[name] = hydrodynamics(chain, fluid, duration, **how)
         if results[name].attrs["status"] == "interrupted":
             raise KeyboardInterrupt("interrupted before the simulation")
     with waiting_for("summing rod by rod", progress):
         results["rods"] = rod_by_rod(results["evolving"])
-    if chain.gap == 0 and chain.spring == "linear":
+    if has_one_mass(chain):
+        results["exact"] = rod_by_rod(gas_of_points(chain, fluid, duration, every=every))
+    elif chain.gap == 0 and chain.spring == "linear" and not chain.unknown():
         results["exact"] = _exact(chain, release, by, duration, every)
     results[PARTICLES] = simulate(
         chain,
@@ -154,9 +167,9 @@ def condensed(tree: xr.DataTree) -> xr.DataTree:
 
 
 def label_distances(tree: xr.DataTree) -> dict[str, float]:
-    """Largest rms distance in time of mean positions from those of the ensemble, in s."""
+    """Largest rms distance in time of mean positions from those of the ensemble, in s or h."""
     rods = tree[PARTICLES].mean_displacement
-    s = chain_of(tree[PARTICLES].to_dataset()).thermal_length
+    s = displacement_unit(chain_of(tree[PARTICLES].to_dataset()))[1]
     return {
         key: float(np.sqrt(((tree[key].mean_displacement - rods) ** 2).mean("particle")).max() / s)
         for key in LEGEND
@@ -186,11 +199,26 @@ def cloud(result: xr.Dataset) -> xr.Dataset:
     return found
 
 
-def _states(chain: Chain, release: Release, by: float, replicas: int, seed: int) -> xr.Dataset:
-    """Return exact equilibrium states with the change of the release, one for each replica."""
-    before = chain.replace(amplitude=by * chain.amplitude) if release == "quenched" else chain
+def _states(
+    chain: Chain, release: Release, by: float, fluid: xr.Dataset, replicas: int, seed: int
+) -> xr.Dataset:
+    """Return states with the change of the release, one for each replica: those of the fluid."""
     # The random numbers differ from those of the noise.
-    states = equilibrium_states(before, replicas, seed=seed + 1)
+    seed += 1
+    if release in _OF_POINTS:
+        generator, shape = np.random.default_rng(seed), (replicas, chain.size)
+        y, label = points_of(chain, fluid)
+        drawn = np.sort(np.interp(chain.size * generator.random(shape), label, y), axis=1)
+        widths = np.sqrt(chain.temperature / chain.rod_masses)
+        along = ("replica", "particle")
+        return xr.Dataset(
+            {
+                "position": (along, chain.physical(drawn)),
+                "velocity": (along, widths * generator.standard_normal(shape)),
+            }
+        )
+    before = _before(chain, release, by)
+    states = equilibrium_states(before, replicas, seed=seed)
     y = before.reduced(states.position.values)
     if release == "compressed":
         y = by * y
@@ -199,12 +227,26 @@ def _states(chain: Chain, release: Release, by: float, replicas: int, seed: int)
     return states.assign(position=(("replica", "particle"), chain.physical(y)))
 
 
+def _before(chain: Chain, release: Release, by: float) -> Chain:
+    """Return the chain whose equilibrium state is released."""
+    if release == "quenched":
+        return chain.replace(amplitude=by * chain.amplitude)
+    if release == "confined":
+        rods = 2 * chain.radius * chain.size
+        return chain.replace(box=rods + by * (chain.box - rods))
+    return chain
+
+
 def _fluid(chain: Chain, release: Release, by: float) -> xr.Dataset:
     if release == "compressed":
         return compressed(chain, by)
     if release == "displaced":
         return displaced(chain, by * chain.thermal_length)
-    return force_balance(chain.replace(amplitude=by * chain.amplitude))
+    if release in _OF_POINTS:
+        return _OF_POINTS[release](chain, by)
+    if release == "confined" and not (chain.box and by <= 1):
+        raise ValueError(f"release: confined needs a box, and by <= 1, got by={by:g}")
+    return force_balance(_before(chain, release, by))
 
 
 def _exact(chain: Chain, release: Release, by: float, duration: float, every: float) -> xr.Dataset:

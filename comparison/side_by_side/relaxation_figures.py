@@ -19,6 +19,7 @@ from crazybilliards.comparison.encoding import Picture
 from crazybilliards.comparison.layout import entitle, legend_above, panels
 from crazybilliards.comparison.side_by_side.grid import SIMULATION
 from crazybilliards.comparison.side_by_side.relaxation import LEGEND, PARTICLES, cloud
+from crazybilliards.comparison.widths import displacement_unit
 from crazybilliards.model import Chain, chain_of
 
 _NAMES = {PARTICLES: SIMULATION} | LEGEND
@@ -37,9 +38,10 @@ _LEAST_DRAWN = 2e-3  # of close packing: pictures end where every density is low
 def draw_spacetime(tree: xr.DataTree) -> Figure:
     """rho(x, t) of the simulation, both fluids and the rods, on one colour scale."""
     densities = _densities(tree)
-    figure, axes = panels(2, math.ceil(len(densities) / 2), height=2.3, sharex=True, sharey=True)
+    columns = math.ceil(len(densities) / 2)
+    figure, axes = panels(2, columns, height=2.3, sharex=True, sharey=True)
     chain = _chain(tree)
-    for ax, (name, result) in zip(axes, densities.items(), strict=True):
+    for ax, (name, result) in zip(axes, densities.items(), strict=False):
         image = ax.pcolormesh(
             result.x,
             result.time,
@@ -51,6 +53,11 @@ def draw_spacetime(tree: xr.DataTree) -> Figure:
         entitle(ax, name)
         ax.set(xlabel="position $x$ [R]", ylabel="time $t$ [T]", xlim=_extent(densities))
         ax.label_outer()
+    if len(axes) > len(densities):
+        axes.pop().remove()
+        for ax in axes[-columns:]:
+            ax.tick_params(labelbottom=True)
+            ax.set_xlabel("position $x$ [R]")
     figure.colorbar(image, ax=axes, label=_DENSITY)
     return figure
 
@@ -71,16 +78,17 @@ def draw_profiles(tree: xr.DataTree) -> Figure:
         entitle(ax, f"$t = {times[moment]:.3g}$ T")
         ax.set(xlim=extent, xlabel="position $x$ [R]", ylabel=_DENSITY)
         ax.label_outer()
+        _draw_walls(ax, _chain(tree))
     legend_above(figure, axes[0])
     return figure
 
 
 def draw_cloud(tree: xr.DataTree) -> Figure:
-    """Width and centre of the cloud in the reduced coordinate against time, in units of s."""
+    """Width and centre of the cloud in the reduced coordinate against time, in units of s or h."""
     figure, axes = panels(1, 2, height=2.4)
-    s = _chain(tree).thermal_length
+    symbol, s = displacement_unit(_chain(tree))
     for ax, which, label in zip(
-        axes, ("cloud_width", "centre"), ("width of the cloud / $s$", "centre / $s$"), strict=True
+        axes, ("cloud_width", "centre"), ("width of the cloud", "centre"), strict=True
     ):
         curves = {}
         for key, name in _NAMES.items():
@@ -89,7 +97,7 @@ def draw_cloud(tree: xr.DataTree) -> Figure:
                 curves[name] = (found / s).assign_attrs(tree[key].attrs)
                 curves[name][which].attrs = {"long_name": "", "units": "1"}
         overlay(curves, which, ax=ax)
-        ax.set_ylabel(label)
+        ax.set_ylabel(f"{label} / ${symbol}$")
         low, high = ax.get_ylim()
         if high - low < 0.1:  # do not magnify the noise of a centre at rest
             ax.set_ylim(low - 0.05, high + 0.05)
@@ -138,8 +146,14 @@ def _stage(densities: dict[str, xr.Dataset]) -> tuple[FigureCanvasAgg, Axes]:
         xlabel="position $x$ [R]",
         ylabel=_DENSITY,
     )
+    _draw_walls(ax, chain_of(rods))
     legend_above(figure, ax)
     return canvas, ax
+
+
+def _draw_walls(ax: Axes, chain: Chain) -> None:
+    for wall in [-chain.box / 2, chain.box / 2] if chain.box else []:
+        ax.axvline(wall, color="0.6", linewidth=2, zorder=1)
 
 
 def title(tree: xr.DataTree) -> str:
