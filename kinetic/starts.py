@@ -2,7 +2,7 @@ r"""Starts of the hydrodynamics: checks given profiles, and makes common ones.
 
 A start is a result with ``density`` over x (one time), and optionally ``label``, ``flow_velocity``
 and ``velocity_variance``. ``force_balance`` of another chain gives a quench. The functions here
-make other common starts: from the stationary state that the chain has at restitution 1, and of gases
+make other common starts: from the stationary state that the chain has at restitution 1, and gases
 of points in a box.
 """
 

@@ -22,7 +22,9 @@ cb.compare_relaxation(chain, by=-1) | by must be
 cb.compare_relaxation(chain, duration=-1) | duration must be
 cb.compare_relaxation(chain, every=1e3) | every must be at most
 cb.compare_relaxation(chain, replicas=1) | replicas must be
-cb.compare_relaxation(chain.replace(restitution=0.5)) | elastic chains
+cb.compare_relaxation(chain.replace(restitution=0.5)) | elastic collisions only
+cb.compare_relaxation(chain, "wave") | a gas of points needs a box=..., and gap=0 or stiffness=0
+cb.compare_relaxation(chain, "confined") | confined needs a box, and by <= 1
 cb.hydrodynamics(chain, exact, 1, frame="labels") | did you mean 'label'?
 """
 
@@ -92,9 +94,12 @@ cb.phase_space(walled) | does not know the chain's box: it must be 0...got 12
 cb.critical_size(sorts.replace(restitution=1.1)) | does not know the chain's mass_ratio
 cb.breathing_cloud(walled, 1, stretch=0.5) | does not know the chain's box
 cb.displaced(walled, 1) | does not know the chain's box
-cb.compare(walled, {"restitution": [0.9]}) | comparison...does not know the chain's box
-cb.compare(chain, {"mass_ratio": [1, 3]}) | comparison...does not know the chain's mass_ratio
-cb.compare_relaxation(walled) | compare_relaxation does not know the chain's box
+cb.compare_relaxation(walled) | release='compressed' does not know the chain's box
+cb.compare_relaxation(sorts, "displaced") | does not know the chain's mass_ratio
+cb.compare_relaxation(walled.replace(wall_restitution=0.5), "wave") | elastic walls only
+cb.compare_relaxation(walled, "wave", 2) | height must be from -1 to 1, got 2
+cb.compare_relaxation(walled, "gathered", 2) | share must be at most 1, got 2
+cb.compare_relaxation(walled, "confined", 2) | confined needs a box, and by <= 1, got by=2
 cb.fit_arctanh(walls) | fit_arctanh does not know the chain's box
 cb.fit_border_power_law(walls) | fit_border_power_law does not know the chain's box
 cb.overlay({"a": walls}, "wall_force") | wall_force is over (wall); overlay draws what is over

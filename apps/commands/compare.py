@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import asdict
 from functools import partial
@@ -10,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from crazybilliards.apps.commands.answers import percent, table_of, wrote
+from crazybilliards.apps.commands.answers import number, percent, table_of, wrote
 from crazybilliards.apps.commands.options import Threads, path_option, with_chain_options
 from crazybilliards.apps.commands.output import (
     complain_of_divergence,
@@ -125,6 +126,16 @@ def _write(tree: xr.DataTree, folder: Path, suffix: str) -> None:
     write_figures(folder, suffix, drawings)
 
 
+def _wall_force(result: xr.Dataset, name: str) -> dict[str, float]:
+    """Return the mean force on both walls, with its standard error if it has one."""
+    found = {}
+    if "wall_force" in result:
+        found[name] = float(result.wall_force.mean())
+    if "wall_force_error" in result:
+        found[f"{name}_error"] = math.hypot(*result.wall_force_error.values) / 2
+    return found
+
+
 def _print(over: str, tree: xr.DataTree) -> None:
     from crazybilliards.comparison.distances import deviations
     from crazybilliards.comparison.side_by_side.grid import TITLES
@@ -134,8 +145,9 @@ def _print(over: str, tree: xr.DataTree) -> None:
         run = group["simulation"].to_dataset()
         status = run.attrs["status"]
         here = {over: float(name.removeprefix(f"{over}_")), "status": status}
+        here |= _wall_force(run, "measured_wall_force")
         for key, found in deviations(group).items():
-            row = here | {"theory": key}
+            row = here | {"theory": key} | _wall_force(group[key].to_dataset(), "wall_force")
             row |= {f"density_{name}": value for name, value in asdict(found.density).items()}
             if (width := found.velocity_width) is not None:
                 row |= {f"velocity_width_{name}": value for name, value in width._asdict().items()}
@@ -158,6 +170,11 @@ def _print(over: str, tree: xr.DataTree) -> None:
         "velocity_width_border": ("W_v\nborder", percent),
         "velocity_width_largest_in_errors": ("W_v\nsigma", _IN_ERRORS),
     }
+    walls = ""
+    if any("measured_wall_force" in row for row in rows):
+        columns["wall_force"] = ("P", number)
+        columns["measured_wall_force"] = ("P\nmeasured", number)
+        walls = "P: mean force on a wall [M R/T^2]. "
     table_of(
         columns,
         rows,
@@ -168,6 +185,6 @@ def _print(over: str, tree: xr.DataTree) -> None:
         "largest in standard errors (sigma) of the simulation; 3 to 4 is normal for the largest "
         "of many. W_v, theory minus simulation: the largest of the particles 3 to L-2; the largest "
         "that the theory states (-: not measured for chains like this one); of the middle tenth; "
-        "of the first and the last; the largest of all in sigma. "
+        f"of the first and the last; the largest of all in sigma. {walls}"
         + "; ".join(f"{key}: {title}" for key, title in TITLES.items() if key in named),
     )

@@ -107,11 +107,7 @@ def _write(film: bool, tree: xr.DataTree, folder: Path, suffix: str) -> None:
 
 
 def _print(tree: xr.DataTree) -> None:
-    from crazybilliards.comparison.side_by_side.relaxation import (
-        LEGEND,
-        PARTICLES,
-        label_distances,
-    )
+    from crazybilliards.comparison.side_by_side.relaxation import LEGEND, PARTICLES, label_distances
     from crazybilliards.comparison.widths import displacement_unit
     from crazybilliards.model import chain_of
 

@@ -130,6 +130,9 @@ def _print(theory: Theory, result: xr.Dataset) -> None:
     stated = theory.accuracy(chain)._asdict()
     known = {name: error for name, error in stated.items() if not math.isnan(error)}
     numbers |= {f"{name}_model_error": error for name, error in known.items()}
+    if "wall_force" in result:
+        numbers["wall_force"] = float(result.wall_force.mean())
+        caption += f" Mean force on a wall: {numbers['wall_force']:.4g} M R/T^2."
     caption += "\n" + _caveat(known)
     note(theory=theory.name, free_velocity_width=chain.free_velocity_width, **numbers)
     title = f"{theory.title.capitalize()}, L = {chain.size}, e = {chain.restitution:g}"

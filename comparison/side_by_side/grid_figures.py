@@ -22,7 +22,7 @@ from crazybilliards.comparison.coverage import smooth
 from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_rods, overlay
 from crazybilliards.comparison.layout import entitle, legend_above, letter, panels, picture_width
 from crazybilliards.comparison.side_by_side.grid import ELASTIC, KINETIC, SIMULATION, TITLES
-from crazybilliards.comparison.widths import free_widths
+from crazybilliards.comparison.widths import displacement_unit, free_widths
 from crazybilliards.model import chain_of
 from crazybilliards.model.arrays import Array
 from crazybilliards.model.vocabulary import require
@@ -57,7 +57,8 @@ def draw_density(tree: xr.DataTree) -> Figure:
 def _draw_edge(ax: Axes, results: dict[str, xr.Dataset], end: float) -> Axes:
     """Draw the outermost three thermal lengths, at least ten radii, into an inset; return it."""
     chain = chain_of(results[SIMULATION])
-    begin = end - max(3 * chain.thermal_length, 10 * chain.radius)
+    tail = 3 * chain.thermal_length if chain.stiffness else 0.0
+    begin = end - max(tail, 10 * chain.radius)
     inset = ax.inset_axes((0.29, 0.13, 0.42, 0.56))
     shown = {name: result.sel(x=slice(begin, end)) for name, result in results.items()}
     run = shown.pop(SIMULATION)
@@ -76,10 +77,10 @@ def draw_displacement(tree: xr.DataTree) -> Figure:
     figure, axes_of_all = _panels(tree)
     for axes, group in zip(axes_of_all, tree.children.values(), strict=True):
         results = _results(group)
-        s = chain_of(results[SIMULATION]).thermal_length
-        _draw(axes, results, "mean_displacement", unit=s)
+        symbol, unit = displacement_unit(chain_of(results[SIMULATION]))
+        _draw(axes, results, "mean_displacement", unit=unit)
         axes[0].set(ylabel=r"displacement $\langle\Delta x\rangle$ [R]")
-        axes[1].set(xlabel=r"mean position $\langle x_i\rangle$ [R]", ylabel="diff. / $s$")
+        axes[1].set(xlabel=r"mean position $\langle x_i\rangle$ [R]", ylabel=f"diff. / ${symbol}$")
     legend_above(figure, axes_of_all[0][0])
     return figure
 
@@ -122,7 +123,7 @@ def stated_error(theory: xr.Dataset, quantity: str) -> Array:
     chain = chain_of(theory)
     name, whole = {
         "velocity_width": ("velocity_width_model_error", np.abs(theory[quantity].values)),
-        "mean_displacement": ("mean_displacement_model_error", chain.thermal_length),
+        "mean_displacement": ("mean_displacement_model_error", displacement_unit(chain)[1]),
         "density": ("density_model_error", chain.close_packed_density),
     }[quantity]
     return theory.attrs.get(name, 0.0) * whole * np.ones(theory[quantity].shape)
@@ -159,8 +160,8 @@ def _panels(tree: xr.DataTree) -> tuple[Figure, list[list[Axes]]]:
     if number > 1:
         letter([above for above, _ in made])
     for (above, _), group in zip(made, tree.children.values(), strict=True):
-        s = chain_of(group[SIMULATION].to_dataset()).thermal_length
-        entitle(above, rf"{_varied(group)},  $s = {s:.3g}\,R$")
+        symbol, unit = displacement_unit(chain_of(group[SIMULATION].to_dataset()))
+        entitle(above, rf"{_varied(group)},  ${symbol} = {unit:.3g}\,R$")
     return figure, made
 
 
@@ -181,7 +182,8 @@ def draw_widths(tree: xr.DataTree) -> Figure:
         run = group[SIMULATION].to_dataset()
         chain = chain_of(run)
         look: Any = {"number": number % len(COLOURS), "color": colour}
-        units = (chain.free_velocity_width, chain.thermal_length)
+        symbol, length = displacement_unit(chain)
+        units = (chain.free_velocity_width, length)
         for ax, name, unit in zip(
             axes, ("velocity_width", "mean_displacement"), units, strict=True
         ):
@@ -196,7 +198,7 @@ def draw_widths(tree: xr.DataTree) -> Figure:
     along_the_chain(axes[0])
     axes[0].set(ylabel="velocity width $W_v/W$", ylim=(0, None))
     along_the_chain(axes[1])
-    axes[1].set(ylabel=r"displacement $\langle\Delta x\rangle/s$")
+    axes[1].set(ylabel=rf"displacement $\langle\Delta x\rangle/{symbol}$")
     fade(drawn)
     for key, style in _STYLES.items():
         if any(key in group for group in tree.children.values()):

@@ -100,6 +100,8 @@ def compare_relaxation(
     """
     check_choice("release", release, get_args(Release))
     require_chain(chain, "compare_relaxation", elastic=True, knows=WALLS_AND_MASSES)
+    if release in ("compressed", "displaced"):
+        chain.require_known(f"release={release!r}")
     signed = release in ("displaced", "wave")
     by = check_real("by", by, positive=not signed, signed=signed)
     replicas = check_integer("replicas", replicas, least=2)

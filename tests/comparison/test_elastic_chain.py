@@ -118,6 +118,25 @@ def test_rods_that_hardly_touch_go_without_the_arctanh_but_lose_nothing():
     assert set(deviations(tree["amplitude_1"])) == {"exact", "labels", "rods"}
 
 
+@pytest.mark.parametrize("mass_ratio", [1, 3])
+def test_a_gas_in_a_box_goes_without_the_fit_and_has_its_pressure(mass_ratio):
+    chain = Chain(size=10, box=30, stiffness=0, mass_ratio=mass_ratio)
+    tree = compare(chain, {"amplitude": [1]}, duration=5000, seed=1, progress=False)
+    [group] = tree.children.values()
+    assert list(group.children) == ["simulation", "exact", "labels", "rods"]
+    run, law = group["simulation"], 10 * chain.temperature / 10
+    assert (np.abs(run.wall_force - law) < 5 * run.wall_force_error).all()
+    for key, found in deviations(group).items():
+        np.testing.assert_allclose(group[key].wall_force, law, rtol=1e-9)
+        assert found.velocity_width.largest_in_errors < 5
+    assert deviations(group)["rods"].density.maximum_in_errors < 5
+    for draw in (draw_density, draw_displacement):
+        figure = draw(tree)
+        figure.canvas.draw()
+        assert "$h = 5" in figure.get_axes()[0].get_title(loc="left")
+        plt.close(figure)
+
+
 @pytest.mark.parametrize(
     ("chain", "amplitudes", "message"),
     [

@@ -6,7 +6,7 @@ import imageio_ffmpeg
 import numpy as np
 import pytest
 
-from crazybilliards.comparison import compare_relaxation, film
+from crazybilliards.comparison import compare_relaxation, deviation, film, smooth
 from crazybilliards.comparison.side_by_side.relaxation import cloud, condensed, label_distances
 from crazybilliards.comparison.side_by_side.relaxation_figures import (
     _densities,
@@ -50,6 +50,51 @@ def test_with_a_gap_the_fluid_with_temperature_stays_close(release, by):
     assert distances["evolving"] < 0.1
     if release == "quenched":
         assert distances["isothermal"] > 4 * distances["evolving"]
+
+
+GAS = Chain(size=20, box=80, stiffness=0, mass=1, damping=0.01, amplitude=0.02**0.5)
+
+
+def released(chain, release, by):
+    """Follow a gas in a box until its points have crossed it."""
+    how = {"duration": 40, "every": 8, "replicas": 400, "progress": False}
+    return compare_relaxation(chain, release, by, **how)
+
+
+@pytest.mark.parametrize(
+    ("release", "by"), [("gathered", 0.5), ("wave", -0.4), ("confined", 0.5), ("quenched", 2.0)]
+)
+@pytest.mark.filterwarnings("ignore:equal elastic rods", "ignore:the error of the force balance")
+def test_a_gas_in_a_box_moves_as_its_points_do_and_not_as_a_fluid(release, by):
+    tree = released(GAS, release, by)
+    run, exact = tree["particles"].to_dataset(), tree["exact"].to_dataset()
+    off = (run.mean_displacement - exact.mean_displacement) / run.mean_displacement_error
+    assert float(np.abs(off).max()) < 5
+    for time in range(run.sizes["time"]):
+        found = deviation(*(smooth(each).isel(time=time) for each in (run, exact)))
+        assert found.maximum_in_errors < 5
+    h, start = GAS.walls[1], exact.mean_displacement[0]
+    assert float(np.abs(tree["rods"].mean_displacement[0] - start).max()) < 0.02 * h
+    if release != "quenched":  # which leaves the density even
+        assert tree["isothermal"].attrs["wave_model_error"] > 0.4
+        assert label_distances(tree)["isothermal"] > 5 * label_distances(tree)["exact"]
+
+
+@pytest.mark.filterwarnings("ignore:equal elastic rods")
+def test_pictures_of_a_gas_in_a_box_have_walls_and_five_descriptions():
+    tree = released(GAS, "gathered", 0.5)
+    titles = [ax.get_title(loc="left") for ax in draw_spacetime(tree).axes]
+    assert titles[3:] == ["(d)  rods of this fluid", "(e)  exact", ""]
+    walls = {line.get_xdata()[0] for line in draw_profiles(tree).axes[0].lines} & {-40, 40}
+    assert walls == {-40, 40}
+    assert draw_cloud(tree).axes[1].get_ylabel() == "centre / $h$"
+
+
+def test_two_masses_make_a_fluid_of_the_gas():
+    tree = released(GAS.replace(mass_ratio=3), "wave", 0.5)
+    assert "exact" not in tree
+    distances = label_distances(tree)
+    assert distances["evolving"] < 0.5 * distances["isothermal"]
 
 
 def test_the_pictures_show_every_description(tree):

@@ -1,5 +1,6 @@
 """The command ``compare``: writes all or nothing, refuses in one line, keeps on Ctrl-C."""
 
+import json
 import warnings
 from contextlib import nullcontext
 
@@ -42,6 +43,17 @@ def test_compare_writes_figures_and_the_data(run, tmp_path, monkeypatch):
     other = ["--output", str(tmp_path / "other"), "--processes", "2"]
     assert run(*QUICK, *other).returncode == 0
     assert load(tmp_path / "other" / "comparison.nc").identical(tree)
+
+
+@pytest.mark.compiled
+def test_compare_knows_a_box(run, tmp_path):
+    done = run(*QUICK, "--box", "30", "--stiffness", "0", "--output", str(tmp_path), "--json")
+    rows = json.loads(done.stdout)["deviations"]
+    assert [row["theory"] for row in rows[:3]] == ["exact", "labels", "rods"]
+    for row in rows:
+        off = row["measured_wall_force"] - row["wall_force"]
+        assert abs(off) < 5 * row["measured_wall_force_error"]
+    assert (tmp_path / "widths.png").exists()
 
 
 def test_what_cannot_be_written_is_shown_at_least(run, tmp_path):

@@ -24,6 +24,16 @@ def test_relax_writes_pictures_the_data_and_a_film(run, tmp_path):
     assert "rms distance" in done.stdout
 
 
+@pytest.mark.compiled
+@pytest.mark.filterwarnings("ignore:equal elastic rods")
+def test_relax_knows_a_box(run, tmp_path):
+    gas = ["--box", "40", "--stiffness", "0", "--output", str(tmp_path)]
+    done = run(*RELAX, "--release", "gathered", *gas)
+    assert done.returncode == 0, done.stderr
+    assert "halves h of the room" in done.stdout
+    assert load(tmp_path / "relaxation.nc").attrs["by"] == 0.5
+
+
 def test_a_film_needs_a_folder(refused):
     refused("film needs --output FOLDER", *RELAX, "--film")
 
