@@ -16,6 +16,7 @@ import xarray as xr
 from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
 from scipy.optimize import elementwise
 
+from crazybilliards.kinetic.exact.points import fields_of_points
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.kinetic.statics.label_closure import fluid_reach, stationary
 from crazybilliards.model import Chain, chain_of
@@ -90,21 +91,6 @@ def _gas_of_points(chain: Chain, below: Callable[[Array], Array]) -> xr.Dataset:
     grid, place = position_grid(chain), np.linspace(0.0, 1.0, _POINTS)
     y = chain.walls[1] * (2 * place - 1)
     return _at_rest(chain, grid, *fields_of_points(chain, grid, y, chain.size * below(place)))
-
-
-def fields_of_points(chain: Chain, x: Array, y: Array, label: Array) -> tuple[Array, Array]:
-    """Return density and label over x of points, whose labels are known at y from wall to wall."""
-    R, n = chain.radius, np.diff(label) / np.diff(y)
-    at = y + 2 * R * (label - chain.size / 2)
-    density = np.interp(x, (at[1:] + at[:-1]) / 2, n / (1 + 2 * R * n))
-    return np.where(np.abs(x) <= chain.box / 2, density, 0.0), np.interp(x, at, label)
-
-
-def points_of(chain: Chain, start: xr.Dataset) -> tuple[Array, Array]:
-    """Return where the points of a start in a box are, and the labels there: the inverse."""
-    label = start.label.values
-    y = start.x.values - 2 * chain.radius * (label - chain.size / 2)
-    return np.clip(y, *chain.walls), label
 
 
 def _fluid_variance(chain: Chain) -> float:

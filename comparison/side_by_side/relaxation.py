@@ -25,10 +25,10 @@ from crazybilliards.kinetic import (
     rod_by_rod,
 )
 from crazybilliards.kinetic.exact.breathing import breathing_cloud
-from crazybilliards.kinetic.exact.gas_of_points import gas_of_points
+from crazybilliards.kinetic.exact.points import gas_of_points, points_of
 from crazybilliards.kinetic.fluids.one_mass import has_one_mass
 from crazybilliards.kinetic.requirements import require_chain
-from crazybilliards.kinetic.starts import gathered, points_of, wave
+from crazybilliards.kinetic.starts import gathered, wave
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.calls import public
 from crazybilliards.model.checks import check_choice, check_integer, check_real

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from crazybilliards.kinetic import force_balance, hydrodynamics
-from crazybilliards.kinetic.exact.gas_of_points import gas_of_points
-from crazybilliards.kinetic.starts import gathered, points_of, wave
+from crazybilliards.kinetic.exact.points import gas_of_points, points_of
+from crazybilliards.kinetic.starts import gathered, wave
 from crazybilliards.model import Chain
 
 ROOM = 40.0

@@ -20,8 +20,8 @@ import xarray as xr
 from scipy.fft import dct, idct
 
 from crazybilliards.kinetic.requirements import output_times
-from crazybilliards.kinetic.starts import fields_of_points, points_of
 from crazybilliards.model import Chain
+from crazybilliards.model.arrays import Array
 from crazybilliards.model.grid import position_grid
 from crazybilliards.model.vocabulary import OF_FLUID, result
 
@@ -69,3 +69,18 @@ def gas_of_points(
         method={"theory": "gas of points"},
         end_time=times[-1],
     ).assign_attrs(density_of=OF_FLUID)
+
+
+def fields_of_points(chain: Chain, x: Array, y: Array, label: Array) -> tuple[Array, Array]:
+    """Return density and label over x of points, whose labels are known at y from wall to wall."""
+    R, n = chain.radius, np.diff(label) / np.diff(y)
+    at = y + 2 * R * (label - chain.size / 2)
+    density = np.interp(x, (at[1:] + at[:-1]) / 2, n / (1 + 2 * R * n))
+    return np.where(np.abs(x) <= chain.box / 2, density, 0.0), np.interp(x, at, label)
+
+
+def points_of(chain: Chain, start: xr.Dataset) -> tuple[Array, Array]:
+    """Return where the points of a start in a box are, and the labels there: the inverse."""
+    label = start.label.values
+    y = start.x.values - 2 * chain.radius * (label - chain.size / 2)
+    return np.clip(y, *chain.walls), label
