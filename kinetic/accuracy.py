@@ -33,6 +33,7 @@ _AXES = {
     "relax_phase_space": ("L", "e", "Gamma", "y times"),
 }
 _LENGTH = "s/R"
+_IN_A_BOX = 0.17  # of the density of the force balance: the largest of 720 boxes at e = 1
 _CONTINUOUS, _SAME = ("Gamma", "g L/s", "g/s", _LENGTH), 5e-3  # relative
 _ANY = 0.49  # Gamma of a measured chain
 
@@ -75,6 +76,8 @@ def expected(theory: str, chain: Chain) -> Accuracy:
         return Accuracy(0.0, 0.0, 0.0, 0.0, 0.0)
     if theory not in _AXES or (theory == "force_balance" and chain.restitution != 1):
         return Accuracy()
+    if chain.box:
+        return Accuracy(velocity_width=0.0, border=0.0, density=_IN_A_BOX)
     axes, place = _AXES[theory], _place(chain)
     errors = {
         quantity: _around(theory, quantity, axes + (_LENGTH,) * (quantity == "density"), place)

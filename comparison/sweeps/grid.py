@@ -57,9 +57,8 @@ class Sweep:
     Parameters
     ----------
     grid
-        ``{parameter: values}`` for parameters of the chain and settings of the job. The values are
-        a list, an array of numpy or a column of pandas. Errors of rounding are taken away:
-        ``numpy.arange(0.1, 0.35, 0.1)`` gives 0.1, 0.2 and 0.3.
+        ``{parameter: values}`` for parameters of the chain and settings of the job: a list, an
+        array or a column of pandas. ``numpy.arange(0.1, 0.35, 0.1)`` gives 0.1, 0.2 and 0.3.
     job
         As in :class:`Case`.
     chain, settings
@@ -75,7 +74,7 @@ class Sweep:
     job: str = "simulate"
     chain: Mapping[str, Any] = field(default_factory=dict)
     settings: Mapping[str, Any] = field(default_factory=dict)
-    # That of the first case: the common parameters alone may be no chain, as a box for few rods.
+    # Of the first case: the common parameters alone may be no chain.
     _chain: Chain = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
@@ -92,8 +91,8 @@ class Sweep:
                 raise ValueError(f"{name} is given twice: in the grid, and the same for all")
         if len(self) > _MOST_CASES:
             raise ValueError(f"the grid has {len(self)} cases, more than {_MOST_CASES}")
-        first = {name: values[0] for name, values in grid.items() if name in CHAIN}
-        object.__setattr__(self, "_chain", Chain().replace(**{**self.chain, **first}))
+        first = dict(self.chain) | {name: grid[name][0] for name in grid if name in CHAIN}
+        object.__setattr__(self, "_chain", Chain().replace(**first))
 
     def __len__(self) -> int:
         return math.prod(map(len, self.grid.values()))
@@ -102,9 +101,9 @@ class Sweep:
         return map(self.case, range(len(self)))
 
     def case(self, number: int) -> Case:
-        """Return one case, counted from 0; the last parameter of the grid varies fastest.
+        """Return one case, counted from 0, or raise a ValueError if it is wrong.
 
-        Raise a ValueError if the case is wrong.
+        The last parameter of the grid varies fastest.
         """
         here: dict[str, Any] = {}
         settings = dict(self.settings)

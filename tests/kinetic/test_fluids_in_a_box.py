@@ -1,0 +1,237 @@
+"""The force balance and the hydrodynamics between walls, against exact laws and each other."""
+
+import math
+import warnings
+
+import numpy as np
+import pytest
+import xarray as xr
+from scipy.optimize import curve_fit
+from scipy.stats import truncnorm
+
+from crazybilliards import smooth
+from crazybilliards.kinetic import equilibrium, force_balance, hydrodynamics, rod_by_rod
+from crazybilliards.kinetic.fluids.one_mass import wave_model_error
+from crazybilliards.model import Chain
+
+
+def in_a_box(room, **parameters):
+    """Return a chain whose reduced coordinates have this room."""
+    chain = Chain(**{"size": 20, "amplitude": 5} | parameters)
+    return chain.replace(box=room + 2 * chain.radius * chain.size)
+
+
+def gas(damping, room=20.0, **parameters):
+    """Return a gas without springs, with T = 1 and the mean mass 1."""
+    ratio = parameters.get("mass_ratio", 1.0)
+    parameters |= {"stiffness": 0, "mass": 2 / (1 + ratio), "damping": damping}
+    return in_a_box(room, amplitude=math.sqrt(2 * damping), **parameters)
+
+
+@pytest.mark.parametrize("gap", [0.0, 0.4])
+def test_without_springs_density_and_pressure_are_constant(gap):
+    chain = in_a_box(20.0, stiffness=0, gap=gap)
+    found = force_balance(chain)
+    inside = np.abs(found.x) < chain.box / 2
+    np.testing.assert_allclose(found.density[inside], 20 / chain.box, rtol=1e-9)
+    np.testing.assert_allclose(found.wall_force, chain.temperature, rtol=1e-9)
+    np.testing.assert_array_equal(found.label[[0, -1]], [0, 20])
+
+
+@pytest.mark.parametrize("spring", ["linear", "quadratic"])
+def test_without_gap_the_points_and_their_pressure_are_exact(spring):
+    chain = in_a_box(5.0, spring=spring)
+    found, exact = force_balance(chain), equilibrium(chain)
+    np.testing.assert_allclose(found.wall_force, exact.wall_force, rtol=1e-8)
+    if spring == "linear":
+        s = chain.thermal_length
+        places = truncnorm(-2.5 / s, 2.5 / s, scale=s).ppf((np.arange(20) + 0.5) / 20)
+        np.testing.assert_allclose(found.mean_displacement, places, atol=1e-9)
+
+
+@pytest.mark.parametrize(("size", "gap", "room"), [(20, 0.3, 10.0), (1000, 2.0, 1990.0)])
+@pytest.mark.parametrize("spring", ["linear", "quadratic"])
+def test_the_walls_carry_what_the_springs_push(size, gap, room, spring):
+    """The forces of the springs on half the fluid are the change of its pressure."""
+    chain = in_a_box(room, size=size, gap=gap, spring=spring)
+    found = force_balance(chain)
+    half = (found.x >= 0) & (found.x <= chain.box / 2)
+    rho = found.density[half]
+    force = np.trapezoid(rho * chain.force(found.displacement[half]), found.x[half])
+    middle = chain.temperature * float(rho[0] / (1 - 2 * rho[0]))
+    at_wall = chain.temperature * float(rho[-1] / (1 - 2 * rho[-1]))
+    assert middle - at_wall == pytest.approx(force, rel=5e-3, abs=1e-3 * middle)
+    assert found.wall_force[1] == pytest.approx(at_wall, rel=0.05)
+    assert found.residual < 1e-6
+
+
+@pytest.mark.parametrize(("stiffness", "gap"), [(0, 0), (0, 0.4), (1, 0)])
+@pytest.mark.parametrize(("size", "filling"), [(7, 0.3), (20, 0.6), (100, 0.9)])
+def test_rod_by_rod_has_the_layers_at_the_walls(size, filling, stiffness, gap):
+    room = 2 * size * (1 / filling - 1)
+    chain = in_a_box(room, size=size, stiffness=stiffness, gap=gap)
+    fluid = force_balance(chain)
+    rods, exact = smooth(rod_by_rod(fluid)), smooth(equilibrium(chain))
+    off = np.abs(rods.density - exact.density.interp(x=rods.x).fillna(0)).max().item()
+    assert 2 * off < 1e-3
+    assert 2 * np.abs(smooth(fluid).density - exact.density.interp(x=rods.x).fillna(0)).max() > 0.02
+
+
+def test_a_constant_given_temperature_and_a_given_displacement_change_nothing():
+    for chain in (in_a_box(5.0), in_a_box(10.0, gap=0.3), in_a_box(20.0, stiffness=0)):
+        plain, variance = force_balance(chain), chain.free_velocity_width**2
+        warm = force_balance(chain, velocity_variance=lambda x, w=variance: w + 0 * np.asarray(x))
+        np.testing.assert_allclose(warm.density, plain.density, atol=1e-8)
+        np.testing.assert_allclose(warm.wall_force, plain.wall_force, rtol=1e-8)
+        given = plain.x.values, plain.displacement.values
+        if chain.stiffness == 0:
+            with pytest.raises(ValueError, match="without springs it has no effect"):
+                force_balance(chain, displacement=given)
+            continue
+        pushed = force_balance(chain, displacement=given)
+        np.testing.assert_allclose(pushed.density, plain.density, atol=1e-6)
+        np.testing.assert_allclose(pushed.wall_force, plain.wall_force, rtol=1e-4)
+
+
+def test_without_springs_the_pressure_is_the_same_everywhere_at_any_temperature():
+    chain = in_a_box(20.0, stiffness=0, restitution=0.9, mass_ratio=3)
+
+    def variance(x):
+        return 0.5 + 0.3 * np.tanh(np.asarray(x) / 10)
+
+    found = force_balance(chain, velocity_variance=variance)
+    inside = found.sel(x=slice(-29.9, 29.9))
+    pressure = inside.density * variance(inside.x) / (1 - 2 * inside.density) * chain.mean_mass
+    np.testing.assert_allclose(pressure, found.wall_force[0], rtol=1e-9)
+    assert found.label[-1] == pytest.approx(20, rel=1e-9)
+
+
+def waved(chain, height, mode=1, *, adiabatic=False):
+    """Return a standing wave of the points, y = l (nu + 1/2) + height sin(pi q (nu + 1/2))."""
+    nu, room = np.linspace(-0.5, 0.5, 8001), 2 * chain.walls[1]
+    y = room * nu + height * np.sin(np.pi * mode * (nu + 0.5))
+    x, N = y + 2 * chain.radius * chain.size * nu, chain.size * (nu + 0.5)
+    denser = room / np.gradient(y, nu, edge_order=2)
+    variance = chain.temperature / chain.mean_mass * denser ** (2.0 if adiabatic else 0.0)
+    density = chain.size / np.gradient(x, nu, edge_order=2)
+    fields = {"density": density, "label": N, "velocity_variance": variance}
+    return xr.Dataset({name: ("x", values) for name, values in fields.items()}, {"x": x})
+
+
+@pytest.mark.filterwarnings("ignore:equal elastic rods")
+@pytest.mark.parametrize(("frame", "accuracy"), [("label", 0.002), ("eulerian", 0.01)])
+@pytest.mark.parametrize(
+    ("kind", "ratio", "damping"), [(None, 1, 0.3), ("evolving", 1, 1e-6), ("evolving", 3, 1e-6)]
+)
+def test_standing_waves_have_the_frequency_of_sound(frame, accuracy, kind, ratio, damping):
+    """omega^2 = (k W)^2 - Gamma^2/4 and decay Gamma/2 if isothermal, omega = sqrt(3) k W if not."""
+    k = math.pi / 20
+    chain = gas(damping * k, mass_ratio=float(ratio))
+    omega = math.sqrt(3) * k if kind else k * math.sqrt(1 - damping**2 / 4)
+    period = 2 * math.pi / omega
+    how = {"velocity_variance": kind, "frame": frame, "progress": False}
+    start = waved(chain, 0.02, adiabatic=kind is not None)
+    flow = hydrodynamics(chain, start, 2 * period, every=period / 40, **how)
+    rods = flow.mean_displacement.values + chain.reduced_anchors - chain.rank
+    wave = rods @ np.sin(np.pi * (np.arange(20) + 0.5) / 20)
+
+    def damped(t, w, d, phase):
+        return np.exp(-d * t) * np.cos(w * t + phase) / np.cos(phase)
+
+    found = curve_fit(damped, flow.time, wave / wave[0], p0=(omega, damping * k / 2, 0.0))[0]
+    assert found[0] == pytest.approx(omega, rel=accuracy)
+    assert found[1] == pytest.approx(damping * k / 2, abs=accuracy * k)
+    np.testing.assert_allclose(flow.rods, 20, rtol=1e-12)
+
+
+@pytest.mark.parametrize(("ratio", "slow"), [(30.0, 0.2)])
+def test_heat_relaxes_with_the_mean_of_the_inverse_masses(ratio, slow):
+    """A gas that is too hot everywhere cools as exp(-2 gamma <1/m> t)."""
+    chain = gas(slow, mass_ratio=ratio)
+    hot = waved(chain, 0.0)
+    hot["velocity_variance"] *= 2
+    for frame in ("label", "eulerian"):
+        flow = hydrodynamics(
+            chain, hot, 2.0, velocity_variance="evolving", frame=frame, progress=False
+        )
+        inside = flow.velocity_variance.sel(x=slice(-20, 20)).mean("x")
+        rate = 2 * slow * (1 / chain.rod_masses).mean()
+        np.testing.assert_allclose(inside - 1, np.exp(-rate * flow.time), atol=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("frame", "kind", "scaled", "tolerance"),
+    [
+        ("label", "evolving", 5.0, 0.01),
+        ("eulerian", "evolving", 5.0, 0.01),
+        ("label", None, 50.0, 0.002),
+        ("eulerian", "evolving", 50.0, 0.002),
+    ],
+)
+@pytest.mark.filterwarnings("ignore:equal elastic rods")
+def test_a_gas_released_from_one_half_diffuses_as_its_points(frame, kind, scaled, tolerance):
+    """Shares beyond the middle at t W/l = .25, .5, .75, 1 (exact for equal rods)."""
+    exact = {5.0: [0.1653, 0.2828, 0.3644, 0.4167], 50.0: [0.0765, 0.1106, 0.1363, 0.1580]}
+    room, size = 100.0, 50
+    chain = gas(scaled / room, room, size=size)
+    N = size * np.linspace(0, 1, 2001)
+    x = -room / 2 + room / 2 * N / size + 2 * (N - size / 2)
+    x, N = np.append(x, [x[-1] + 1e-6, chain.box / 2]), np.append(N, [size, size])
+    density = np.where(np.arange(x.size) < 2001, size / (x[2000] - x[0]), 0.0)
+    start = xr.Dataset({"density": ("x", density), "label": ("x", N)}, {"x": x})
+    flow = hydrodynamics(
+        chain, start, room, every=room / 4, velocity_variance=kind, frame=frame, progress=False
+    )
+    y = np.maximum.accumulate(flow.x.values - 2 * (flow.label.values - size / 2), axis=1)
+    left = [np.interp(0, here, there) for here, there in zip(y, flow.label.values, strict=True)]
+    np.testing.assert_allclose(1 - np.array(left)[1:] / size, exact[scaled], atol=tolerance)
+
+
+def test_a_gas_at_rest_stays_and_comes_back_to_rest_on_springs():
+    chain = in_a_box(10.0, gap=0.3)
+    hot = force_balance(chain.replace(amplitude=8))
+    for frame in ("label", "eulerian"):
+        rest = hydrodynamics(chain, force_balance(chain), 20.0, frame=frame, progress=False)
+        assert rest.residual < 0.02
+        quench = hydrodynamics(chain, hot, 150.0, frame=frame, progress=False)
+        np.testing.assert_allclose(quench.rods, 20, rtol=1e-12)
+        off = quench.mean_displacement[-1] - force_balance(chain).mean_displacement
+        assert np.abs(off).max() < 0.02
+
+
+def test_a_fluid_of_equal_rods_says_how_wrong_it_is():
+    """Of the slowest wave: at weak damping half its height or more, at strong damping nothing."""
+    k = math.pi / 20
+    for thermal, damping, least, most in (
+        (False, 0.2, 0.6, 1.0),
+        (True, 0.2, 0.4, 0.8),
+        (False, 10.0, 0.0, 0.02),
+    ):
+        chain = gas(damping * k)
+        error = wave_model_error(chain, 7 / k, thermal=thermal)
+        assert least <= error <= most
+        start, kind = waved(chain, 0.02), "evolving" if thermal else None
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            flow = hydrodynamics(chain, start, 7 / k, velocity_variance=kind, progress=False)
+        assert flow.attrs["wave_model_error"] == pytest.approx(error)
+        assert ["are no fluid" in str(each.message) for each in caught] == [True] * (error > 0.1)
+    two = gas(0.2 * k, mass_ratio=3.0)
+    assert "wave_model_error" not in hydrodynamics(two, waved(two, 0.02), 1.0, progress=False).attrs
+
+
+def test_what_does_not_fit_into_the_box_is_refused():
+    chain = in_a_box(20.0)
+    wide = force_balance(chain.replace(box=0, amplitude=50))
+    with pytest.raises(ValueError, match="density between the walls must add up to"):
+        hydrodynamics(chain, wide, 1.0)
+    with pytest.raises(ValueError, match="too far out; use frame='eulerian'"):
+        hydrodynamics(in_a_box(1000.0), force_balance(in_a_box(1000.0)), 1.0)
+    with pytest.raises(ValueError, match="elastic walls only"):
+        force_balance(chain.replace(wall_restitution=0.5))
+
+
+def test_the_error_of_a_fluid_in_a_box_is_stated():
+    fluid = force_balance(in_a_box(20.0))
+    assert fluid.attrs["density_model_error"] == 0.17
+    assert rod_by_rod(fluid).attrs["density_model_error"] == 0
