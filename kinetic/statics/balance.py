@@ -83,8 +83,8 @@ def force_balance(
     xarray.Dataset
         ``density``, ``label`` and ``displacement`` over x, by labels also ``mean_displacement``
         and ``velocity_width`` over particle, and in a box ``wall_force`` over wall, which is exact
-        without a gap or without springs at restitution 1.
-        ``attrs["residual"]`` is, by labels, the drift of the conserved quantity of the equations (an error of ln rho), and with a prescribed
+        at restitution 1 without a gap or without springs. ``attrs["residual"]`` is, by labels, the
+        drift of the conserved quantity of the equations (an error of ln rho), and with a prescribed
         displacement the relative error of the number of rods. By labels there are also the errors
         of the theory itself, its distance from the exact equilibrium for chains like this one: 2
         to 1000 rods, linear springs, gaps up to 10 s, e = 1. ``attrs["density_model_error"]``

@@ -66,17 +66,26 @@ def test_three_rods_with_a_gap_against_a_sum_over_a_mesh(amplitude, spring):
 
 
 @pytest.mark.parametrize("spring", ["linear", "quadratic"])
-@pytest.mark.parametrize(("room", "amplitude"), [(15.0, 3.0), (4.0, 1.0), (20.0, 10.0)])
-def test_the_pressure_is_the_work_of_a_wall(room, amplitude, spring):
+@pytest.mark.parametrize(
+    ("size", "room", "amplitude"),
+    [(30, 15.0, 3.0), (30, 4.0, 1.0), (30, 20.0, 10.0), (300, 30.0, 30.0)],
+)
+def test_the_pressure_is_the_work_of_a_wall(size, room, amplitude, spring):
     """P = T d(log Z)/dX, of all rods on springs with gaps."""
-    chain = in_a_box(room, size=30, gap=0.3, amplitude=amplitude, spring=spring)
+    chain = in_a_box(room, size=size, gap=0.3, amplitude=amplitude, spring=spring)
     step = 1e-4 * room
     log_z = [
-        recursion_of(chain.replace(box=chain.box + change)).log_z(29)[-1]
+        recursion_of(chain.replace(box=chain.box + change)).log_z(size - 1)[-1]
         for change in (-step, step)
     ]
     pressure = chain.temperature * (log_z[1] - log_z[0]) / (2 * step)
     np.testing.assert_allclose(equilibrium(chain).wall_force, pressure, rtol=1e-6)
+
+
+def test_rods_that_walls_press_together_are_resolved():
+    exact = equilibrium(in_a_box(5.0, size=50, gap=1, amplitude=3))
+    assert exact.residual < 1e-5
+    assert exact.wall_force[0] > 200
 
 
 def test_far_walls_change_nothing():
