@@ -52,6 +52,7 @@ _GIVEN_NOISE = "W^2 is given, and it is all that the noise does"
 _GIVEN_LOSS = "W^2 is given, and it is all that the restitution does"
 _GIVEN_ANCHORS = "the displacement is given, and with it where the anchors are"
 _SCALE_FREE = "without noise the equation has no scale of its own, see critical_size"
+_HEAT = "the density depends on T = m W^2 = A^2/(2 gamma) alone"
 _STARTS = "it is the state at restitution 1 that is moved"
 _POINTS = "rods are points in the reduced coordinate, and only the displacements are given out"
 
@@ -67,9 +68,8 @@ MEANINGLESS = {
             "wall_restitution": _GIVEN_LOSS,
         }.items()
     },
-    ("force_balance, displacement", "mass_ratio"): "the density depends on T = A^2/(2 gamma) alone",
     ("force_balance, displacement", "gap"): _GIVEN_ANCHORS,
-    ("force_balance, displacement", "mass"): "the density depends on m W^2 = A^2/(2 gamma) alone",
+    **{("force_balance, displacement", name): _HEAT for name in ("mass", "mass_ratio")},
     ("force_balance, both", "gap"): _GIVEN_ANCHORS,
     **{
         (solver, name): reason
