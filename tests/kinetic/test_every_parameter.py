@@ -39,12 +39,10 @@ GIVEN = Given(
     fluid={"cells": 160},
     run={"duration": 70.0, "time_step": 0.1, "every": 1.0},
 )
-# Of the largest value: what meshes that depend on the chain may change.
-_SAME = 5e-3
+_SAME = 5e-3  # of the largest value: what meshes that depend on the chain may change
 X = np.linspace(-5, 5, 41)
 
-# For every field a value that no chain here has. Driven chains can take the restitution, and as
-# many cells resolve the chain with the other amplitude.
+# A value that no chain here has. Driven chains can take the restitution, cells the amplitude.
 OTHER = other_values(size=5, restitution=1.2, amplitude=1.3, wall_restitution=0.5)
 
 _GIVEN = "W^2 is given, and a steady state depends on noise and damping through it alone"
