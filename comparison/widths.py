@@ -50,9 +50,8 @@ def border_width(run: xr.Dataset) -> float:
 def width_deviation(run: xr.Dataset, theory: xr.Dataset) -> WidthDeviation:
     """Compare the velocity widths of a simulation and a theory of the same chain.
 
-    Both ends of a chain have the same averages, unless its outer rods have other masses. Simulated
-    widths are therefore averaged over a rod and its mirror image, but not for
-    ``largest_in_errors``.
+    Both ends of a chain have the same averages, if their rods have the same mass. Simulated widths
+    are then averaged over a rod and its mirror image, but not for ``largest_in_errors``.
     """
     chain = chain_of(run)
     chain.require_known("the mean over mirror images", WALLS_AND_MASSES)

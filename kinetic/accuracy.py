@@ -33,7 +33,7 @@ _AXES = {
     "relax_phase_space": ("L", "e", "Gamma", "y times"),
 }
 _LENGTH = "s/R"
-_IN_A_BOX = 0.17  # of the density of the force balance: the largest of 720 boxes at e = 1
+_IN_A_BOX = 0.18  # of the density of the force balance: the largest of 800 boxes at e = 1
 _CONTINUOUS, _SAME = ("Gamma", "g L/s", "g/s", _LENGTH), 5e-3  # relative
 _ANY = 0.49  # Gamma of a measured chain
 

@@ -114,8 +114,9 @@ def compare(
     """
     chains = _chains(chain, over)
     settings = {"duration": duration, "replicas": _REPLICAS, "seed": seed_of(seed)}
+    walls = {"observe": ("widths", "density", "walls")}
     cases = {
-        name: {SIMULATION: Case("simulate", each, settings | _observed(each))}
+        name: {SIMULATION: Case("simulate", each, settings | (walls if each.box else {}))}
         for name, each in chains.items()
     }
     if all(each.restitution == 1 for each in chains.values()):
@@ -164,11 +165,6 @@ def _chains(chain: Chain, over: Mapping[str, ArrayLike]) -> dict[str, Chain]:
             f"over: the values of {name} must differ in their first six digits, got {list(values)}"
         )
     return chains
-
-
-def _observed(chain: Chain) -> dict[str, tuple[str, ...]]:
-    """Return what else than by default is observed."""
-    return {"observe": ("widths", "density", "walls")} if chain.box else {}
 
 
 def _computed(

@@ -57,8 +57,7 @@ def draw_density(tree: xr.DataTree) -> Figure:
 def _draw_edge(ax: Axes, results: dict[str, xr.Dataset], end: float) -> Axes:
     """Draw the outermost three thermal lengths, at least ten radii, into an inset; return it."""
     chain = chain_of(results[SIMULATION])
-    tail = 3 * chain.thermal_length if chain.stiffness else 0.0
-    begin = end - max(tail, 10 * chain.radius)
+    begin = end - max(3 * chain.thermal_length if chain.stiffness else 0, 10 * chain.radius)
     inset = ax.inset_axes((0.29, 0.13, 0.42, 0.56))
     shown = {name: result.sel(x=slice(begin, end)) for name, result in results.items()}
     run = shown.pop(SIMULATION)

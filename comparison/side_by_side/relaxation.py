@@ -1,10 +1,9 @@
 """Relaxation from one start: simulated rods, two fluids and, where it is known, the exact solution.
 
 An elastic chain is released from a displaced or compressed state, or quenched from another driving
-amplitude; in a box it is released from one side, a wave or a smaller box. The results are an
-ensemble of simulated chains, the isothermal fluid (the paper's two equations with a constant W^2),
-the fluid with a temperature equation, as it is and rod by rod, and the exact motion without a gap,
-or of equal rods in a box without springs.
+amplitude; in a box from one side, a wave or a smaller box. The results are an ensemble of simulated
+chains, the isothermal fluid (the paper's two equations with a constant W^2), the fluid with a
+temperature equation, as it is and rod by rod, and the exact motion without a gap.
 """
 
 from __future__ import annotations
@@ -74,10 +73,10 @@ def compare_relaxation(
     release
         ``"compressed"``: the equilibrium state with y multiplied by ``by`` (above 1: stretched);
         ``"displaced"``: moved by ``by`` thermal lengths; ``"quenched"``: the equilibrium state of
-        the chain driven with ``by`` times its amplitude. In a box also, with l = X - 2RL the room
-        that the rods leave free: ``"gathered"``: rods spread evenly over the left share ``by`` of
-        l; ``"wave"``: with a density of their places y of 1 + ``by`` cos(pi (y + l/2)/l);
-        ``"confined"``: the equilibrium state of the chain in the middle share ``by`` of l.
+        the chain driven with ``by`` times its amplitude. In a box, whose rods leave the room
+        l = X - 2RL free, also ``"gathered"``: rods spread evenly over the left share ``by`` of l;
+        ``"wave"``: with a density over y like 1 + ``by`` cos(pi (y + l/2)/l); ``"confined"``: the
+        equilibrium state of the chain in the middle share ``by`` of l.
     duration, every
         Time, and time between outputs [T].
     replicas, seed, threads
@@ -88,10 +87,8 @@ def compare_relaxation(
     xarray.DataTree
         ``tree["particles"]``, ``["isothermal"]``, ``["evolving"]``, its ``["rods"]`` and, for
         linear springs without gap, or equal rods in a box without springs, ``["exact"]``: results
-        over time in the common vocabulary. ``["isothermal"].attrs["wave_model_error"]`` says how
-        wrong the fluid of such rods is, which only exchange their velocities. The
-        densities are as they are, not smoothed, those of the simulation in groups of replicas as
-        well.
+        over time in the common vocabulary. The densities are as they are, not smoothed, those of
+        the simulation in groups of replicas as well.
 
     Raises
     ------
@@ -110,7 +107,7 @@ def compare_relaxation(
     start = _states(chain, release, by, fluid, replicas, seed)
     # The fluids take a second and are computed first, to find a wrong duration before the long run.
     results = {}
-    # On labels the outermost cell would fill an empty room before a wall, and become its cushion.
+    # On labels the outermost cell would fill an empty room at a wall, and hold the others off.
     how: Any = {"frame": "eulerian" if release in ("gathered", "confined") else "label"}
     for name, variance in FLUIDS.items():
         with waiting_for(f"solving: {LEGEND[name]}", progress):
@@ -121,7 +118,7 @@ def compare_relaxation(
     with waiting_for("summing rod by rod", progress):
         results["rods"] = rod_by_rod(results["evolving"])
     if has_one_mass(chain):
-        results["exact"] = rod_by_rod(gas_of_points(chain, fluid, duration, every=every))
+        results["exact"] = rod_by_rod(gas_of_points(chain, fluid, duration, every))
     elif chain.gap == 0 and chain.spring == "linear" and not chain.unknown():
         results["exact"] = _exact(chain, release, by, duration, every)
     results[PARTICLES] = simulate(
@@ -205,23 +202,14 @@ def _states(
     chain: Chain, release: Release, by: float, fluid: xr.Dataset, replicas: int, seed: int
 ) -> xr.Dataset:
     """Return states with the change of the release, one for each replica: those of the fluid."""
-    # The random numbers differ from those of the noise.
-    seed += 1
-    if release in _OF_POINTS:
-        generator, shape = np.random.default_rng(seed), (replicas, chain.size)
-        y, label = points_of(chain, fluid)
-        drawn = np.sort(np.interp(chain.size * generator.random(shape), label, y), axis=1)
-        widths = np.sqrt(chain.temperature / chain.rod_masses)
-        along = ("replica", "particle")
-        return xr.Dataset(
-            {
-                "position": (along, chain.physical(drawn)),
-                "velocity": (along, widths * generator.standard_normal(shape)),
-            }
-        )
     before = _before(chain, release, by)
-    states = equilibrium_states(before, replicas, seed=seed)
+    # The random numbers differ from those of the noise.
+    states = equilibrium_states(before, replicas, seed=seed + 1)
     y = before.reduced(states.position.values)
+    if release in _OF_POINTS:
+        places, labels = points_of(chain, fluid)
+        drawn = chain.size * np.random.default_rng(seed + 2).random(y.shape)
+        y = np.sort(np.interp(drawn, labels, places), axis=1)
     if release == "compressed":
         y = by * y
     if release == "displaced":
@@ -234,8 +222,7 @@ def _before(chain: Chain, release: Release, by: float) -> Chain:
     if release == "quenched":
         return chain.replace(amplitude=by * chain.amplitude)
     if release == "confined":
-        rods = 2 * chain.radius * chain.size
-        return chain.replace(box=rods + by * (chain.box - rods))
+        return chain.replace(box=chain.box - 2 * (1 - by) * chain.walls[1])
     return chain
 
 

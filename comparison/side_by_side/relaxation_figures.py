@@ -38,8 +38,7 @@ _LEAST_DRAWN = 2e-3  # of close packing: pictures end where every density is low
 def draw_spacetime(tree: xr.DataTree) -> Figure:
     """rho(x, t) of the simulation, both fluids and the rods, on one colour scale."""
     densities = _densities(tree)
-    columns = math.ceil(len(densities) / 2)
-    figure, axes = panels(2, columns, height=2.3, sharex=True, sharey=True)
+    figure, axes = panels(2, math.ceil(len(densities) / 2), height=2.3, sharex=True, sharey=True)
     chain = _chain(tree)
     for ax, (name, result) in zip(axes, densities.items(), strict=False):
         image = ax.pcolormesh(
@@ -55,9 +54,6 @@ def draw_spacetime(tree: xr.DataTree) -> Figure:
         ax.label_outer()
     if len(axes) > len(densities):
         axes.pop().remove()
-        for ax in axes[-columns:]:
-            ax.tick_params(labelbottom=True)
-            ax.set_xlabel("position $x$ [R]")
     figure.colorbar(image, ax=axes, label=_DENSITY)
     return figure
 

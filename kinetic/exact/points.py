@@ -26,24 +26,14 @@ from crazybilliards.model.grid import position_grid
 from crazybilliards.model.vocabulary import OF_FLUID, result
 
 _CELLS = 4096  # between the walls, and cosines
-_OUTPUTS = 100
 
 
-def gas_of_points(
-    chain: Chain, start: xr.Dataset, duration: float, *, every: float | None = None
-) -> xr.Dataset:
-    """Return ``density``, ``label`` and ``displacement`` over (time, x) by the law of this module.
+def gas_of_points(chain: Chain, start: xr.Dataset, duration: float, every: float) -> xr.Dataset:
+    """Return ``density`` [1/R] and ``label`` over (time, x) by the law of this module.
 
-    Parameters
-    ----------
-    chain
-        Equal rods in a box, without springs, with elastic collisions and walls.
-    start
-        A result with ``label`` over x and the chain's temperature.
-    duration, every
-        As in ``hydrodynamics`` [T].
+    ``start`` has a ``label`` over x, and the chain's temperature. Times are in T.
     """
-    times = output_times(duration, every, _OUTPUTS)
+    times = output_times(duration, every, number=1)
     W, G = chain.free_velocity_width, chain.damping / chain.mass
     spread = 2 * (W / G) ** 2 * (G * times + np.expm1(-G * times))
     y = np.linspace(*chain.walls, _CELLS + 1)
@@ -59,11 +49,7 @@ def gas_of_points(
     along = ("time", "x")
     return result(
         chain,
-        {
-            "density": (along, density),
-            "label": (along, labels),
-            "displacement": (along, x - 2 * chain.radius * (labels - chain.size / 2)),
-        },
+        {"density": (along, density), "label": (along, labels)},
         coordinates={"x": x, "time": times},
         source="theory",
         method={"theory": "gas of points"},

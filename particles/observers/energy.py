@@ -53,7 +53,8 @@ class Energy(Observer):
         return 24.0 * (run.schedule.snapshots if self._keeps_every(run) else _MOST_TIMES)
 
     def observe(self, snapshots: Snapshots) -> None:
-        kinetic = np.einsum("sp,sp,p->s", snapshots.v, snapshots.v, self.chain.rod_masses / 2)
+        relative = self.chain.rod_masses / self.chain.mass
+        kinetic = self.chain.mass / 2 * np.einsum("sp,sp->s", relative * snapshots.v, snapshots.v)
         springs = self.chain.potential(snapshots.y - self.chain.reduced_anchors).sum(axis=1)
         while snapshots.first + kinetic.size > self.sums.shape[1] * self.together:
             merge_pairs(self.sums[0])

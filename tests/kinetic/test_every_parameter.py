@@ -39,12 +39,10 @@ GIVEN = Given(
     fluid={"cells": 160},
     run={"duration": 70.0, "time_step": 0.1, "every": 1.0},
 )
-# Of the largest value: what meshes that depend on the chain may change.
-_SAME = 5e-3
+_SAME = 5e-3  # of the largest value: what meshes that depend on the chain may change
 X = np.linspace(-5, 5, 41)
 
-# For every field a value that no chain here has. Driven chains can take the restitution, and as
-# many cells resolve the chain with the other amplitude.
+# A value that no chain here has. Driven chains can take the restitution, cells the amplitude.
 OTHER = other_values(size=5, restitution=1.2, amplitude=1.3, wall_restitution=0.5)
 
 _GIVEN = "W^2 is given, and a steady state depends on noise and damping through it alone"
@@ -52,6 +50,7 @@ _GIVEN_NOISE = "W^2 is given, and it is all that the noise does"
 _GIVEN_LOSS = "W^2 is given, and it is all that the restitution does"
 _GIVEN_ANCHORS = "the displacement is given, and with it where the anchors are"
 _SCALE_FREE = "without noise the equation has no scale of its own, see critical_size"
+_HEAT = "the density depends on T = m W^2 = A^2/(2 gamma) alone"
 _STARTS = "it is the state at restitution 1 that is moved"
 _POINTS = "rods are points in the reduced coordinate, and only the displacements are given out"
 
@@ -67,9 +66,8 @@ MEANINGLESS = {
             "wall_restitution": _GIVEN_LOSS,
         }.items()
     },
-    ("force_balance, displacement", "mass_ratio"): "the density depends on T = A^2/(2 gamma) alone",
     ("force_balance, displacement", "gap"): _GIVEN_ANCHORS,
-    ("force_balance, displacement", "mass"): "the density depends on m W^2 = A^2/(2 gamma) alone",
+    **{("force_balance, displacement", name): _HEAT for name in ("mass", "mass_ratio")},
     ("force_balance, both", "gap"): _GIVEN_ANCHORS,
     **{
         (solver, name): reason

@@ -233,5 +233,5 @@ def test_what_does_not_fit_into_the_box_is_refused():
 
 def test_the_error_of_a_fluid_in_a_box_is_stated():
     fluid = force_balance(in_a_box(20.0))
-    assert fluid.attrs["density_model_error"] == 0.17
+    assert fluid.attrs["density_model_error"] == 0.18
     assert rod_by_rod(fluid).attrs["density_model_error"] == 0

@@ -20,7 +20,7 @@ def decays(times, k):
 
 
 def test_a_wave_decays_as_one_cosine():
-    found = gas_of_points(GAS, wave(GAS, 0.3), 60, every=10)
+    found = gas_of_points(GAS, wave(GAS, 0.3), 60, 10)
     heights = 0.3 * decays(found.time.values, np.pi / ROOM)
     for label, height in zip(found.label, heights, strict=True):
         y, below = points_of(GAS, found.assign(label=label))
@@ -32,7 +32,7 @@ def test_a_wave_decays_as_one_cosine():
 @pytest.mark.parametrize("share", [0.5, 0.3])
 def test_a_gas_released_from_one_side_fills_the_box(share):
     """The part beyond the middle is a sum of cosines of the box."""
-    found = gas_of_points(GAS, gathered(GAS, share), 60, every=5)
+    found = gas_of_points(GAS, gathered(GAS, share), 60, 5)
     k = np.pi * np.arange(1, 4001) / ROOM
     start = np.sin(k * share * ROOM) / (k * share * ROOM)
     law = 0.5 - 2 / ROOM * (start * np.sin(k * ROOM / 2) / k * decays(found.time.values, k)).sum(1)
