@@ -128,9 +128,7 @@ def _write(tree: xr.DataTree, folder: Path, suffix: str) -> None:
 
 def _wall_force(result: xr.Dataset, name: str) -> dict[str, float]:
     """Return the mean force on both walls, with its standard error if it has one."""
-    found = {}
-    if "wall_force" in result:
-        found[name] = float(result.wall_force.mean())
+    found = {name: float(result.wall_force.mean())} if "wall_force" in result else {}
     if "wall_force_error" in result:
         found[f"{name}_error"] = math.hypot(*result.wall_force_error.values) / 2
     return found

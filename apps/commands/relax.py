@@ -31,17 +31,15 @@ def command(
     ] = None,
     release: Annotated[
         str,
-        typer.Option(
-            help="compressed (or stretched), displaced or quenched; in a box also gathered, wave "
-            "or confined."
-        ),
+        typer.Option(help="compressed, displaced, quenched; in a box gathered, wave, confined."),
     ] = "compressed",
     by: Annotated[
         float | None,
         typer.Option(
-            help="Factor of y (compressed), thermal lengths (displaced) or factor of the amplitude "
-            "before (quenched); default: 0.3, 2 or 3. Share of the free room, from the left wall "
-            "(gathered) or in the middle (confined), or height of a wave; default: 0.5."
+            help="Factor of y (compressed; above 1: stretched), thermal lengths (displaced) or "
+            "factor of the amplitude before (quenched); default: 0.3, 2 or 3. Share of the free "
+            "room, at the left (gathered) or in the middle (confined), or height of a wave; "
+            "default: 0.5."
         ),
     ] = None,
     duration: Annotated[float, typer.Option(help="Time to follow.")] = 40.0,

@@ -46,10 +46,9 @@ def gas_of_points(chain: Chain, start: xr.Dataset, duration: float, every: float
         label = np.append(0.0, points.cumsum()) * (chain.size / points.sum())
         fields.append(fields_of_points(chain, x, y, label))
     density, labels = np.swapaxes(fields, 0, 1)
-    along = ("time", "x")
     return result(
         chain,
-        {"density": (along, density), "label": (along, labels)},
+        {"density": (("time", "x"), density), "label": (("time", "x"), labels)},
         coordinates={"x": x, "time": times},
         source="theory",
         method={"theory": "gas of points"},
