@@ -274,7 +274,8 @@ def _add_rod(x: Array, centres: Array, p: Array, density: Array, label: Array) -
     positions = centres[kept]
     curve = CubicSpline(positions, p[kept] / (positions[1] - positions[0]))
     cumulative = curve.antiderivative()
-    first, last = np.searchsorted(x, positions[[0, -1]])
+    # Both ends belong to the rod: at a wall, where it may be on a node, its density is not 0.
+    first, last = np.searchsorted(x, positions[0]), np.searchsorted(x, positions[-1], "right")
     density[first:last] += curve(x[first:last])
     label[first:last] += cumulative(x[first:last]) / cumulative(positions[-1])
     label[last:] += 1

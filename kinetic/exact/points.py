@@ -34,14 +34,12 @@ def gas_of_points(chain: Chain, start: xr.Dataset, duration: float, every: float
     ``start`` has a ``label`` over x, and the chain's temperature. Times are in T.
     """
     times = output_times(duration, every, number=1)
-    W, G = chain.free_velocity_width, chain.damping / chain.mass
-    spread = 2 * (W / G) ** 2 * (G * times + np.expm1(-G * times))
     y = np.linspace(*chain.walls, _CELLS + 1)
     k = np.pi * np.arange(_CELLS) / (y[-1] - y[0])
     # How many points are in each cell: of these numbers, too, every cosine decays by itself.
     held = np.diff(np.interp(y, *points_of(chain, start)))
     x, fields = position_grid(chain), []
-    for variance in spread:
+    for variance in free_spread(chain, times):
         points = np.maximum(idct(dct(held) * np.exp(-(k**2) * variance / 2)), 0.0)
         label = np.append(0.0, points.cumsum()) * (chain.size / points.sum())
         fields.append(fields_of_points(chain, x, y, label))
@@ -54,6 +52,12 @@ def gas_of_points(chain: Chain, start: xr.Dataset, duration: float, every: float
         method={"theory": "gas of points"},
         end_time=times[-1],
     ).assign_attrs(density_of=OF_FLUID)
+
+
+def free_spread(chain: Chain, times: Array) -> Array:
+    """Return M(t), the variance of the way of a point with a Maxwellian velocity [R^2]."""
+    W, G = chain.free_velocity_width, chain.damping / chain.mass
+    return np.asarray(2 * (W / G) ** 2 * (G * times + np.expm1(-G * times)))
 
 
 def fields_of_points(chain: Chain, x: Array, y: Array, label: Array) -> tuple[Array, Array]:

@@ -111,8 +111,9 @@ def hydrodynamics(
     frame
         ``"label"``: conserves the number of rods exactly, has no grid of positions, and takes
         milliseconds to a second. ``"eulerian"``: the paper's equations on a grid of positions,
-        as an independent check. It refuses rods that the springs make too fast for its cells, and
-        resolves shocks that meet a wall better.
+        as an independent check. It refuses rods that the springs make too fast for its cells.
+        Between walls it takes starts with a vacuum at a wall, which the other frame refuses if the
+        temperature evolves.
     every
         Time between outputs [T]; None: a hundredth of the duration. Each output takes 100 bytes
         for each node of its grid x (21 or more in a rod length) and for each rod.

@@ -48,6 +48,7 @@ from crazybilliards.model.kernels import inlined, kernel
 _pull = inlined(spring.force)
 
 _THINNEST = 1e-6  # density of the state at rest at the walls, in L/s
+_EMPTIEST = 5.0  # room of a cell at a wall at the start, in units of that at rest
 _CLOSEST = 1e-3  # distance of cells, as a share of that at rest
 _SPACING = 0.05  # of the points that a solution is read out at, in thermal lengths
 
@@ -198,6 +199,12 @@ def _starting_fields(
     if chain.box:
         eta, v = mirrored(eta, state.wall + state.lam / 2), mirrored(v, 0.0)
     fields = {"eta": eta, "V": v}
+    empty = np.diff(eta)[[0, -1]] > _EMPTIEST * np.diff(cells.eta)[[0, -1]]
+    if thermal and chain.box and empty.any():
+        raise ValueError(
+            "frame='label' does not resolve the temperature where there is hardly a rod at a wall "
+            "at the start; use frame='eulerian'"
+        )
     if thermal:
         faces = np.clip(cells.faces, left[0], right[-1])
         fields["S"] = np.append(at(faces)[2] * np.diff(eta) ** 2, 0.0)

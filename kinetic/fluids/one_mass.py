@@ -3,7 +3,7 @@ r"""How far a fluid is from a gas of equal elastic rods in a box, which only exc
 Without springs, and in the reduced coordinate, each point of such a gas moves as if it were alone.
 The slowest wave of density, k = pi/(X - 2RL), then decays exactly as
 
-    exp(-k^2 M(t)/2),      M(t) = 2 (W/G)^2 (G t - 1 + exp(-G t)),      G = gamma/m,
+    exp(-k^2 M(t)/2),      G = gamma/m,      M(t) as in :mod:`crazybilliards.kinetic.exact.points`,
 
 while the relative density r, velocity w and temperature h of the fluid obey, for small amplitudes,
 
@@ -18,6 +18,7 @@ import math
 import numpy as np
 from scipy.linalg import expm
 
+from crazybilliards.kinetic.exact.points import free_spread
 from crazybilliards.model import Chain
 
 _TIMES = 400
@@ -40,5 +41,5 @@ def wave_model_error(chain: Chain, duration: float, *, thermal: bool) -> float:
     for _ in t:
         wave.append(state[0])
         state = step @ state
-    spread = 2 * (W / G) ** 2 * (G * t + np.expm1(-G * t))
-    return float(np.abs(wave - np.exp(-(k**2) * spread / 2)).max())
+    exact = np.exp(-(k**2) * free_spread(chain, t) / 2)
+    return float(np.abs(wave - exact).max())

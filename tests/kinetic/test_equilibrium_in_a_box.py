@@ -88,6 +88,11 @@ def test_rods_that_walls_press_together_are_resolved():
     assert exact.wall_force[0] > 200
 
 
+def test_both_walls_are_alike_where_a_node_is_on_the_place_of_a_rod():
+    density = equilibrium(Chain(size=10, box=30)).density.values
+    np.testing.assert_allclose(density, density[::-1], atol=1e-9)
+
+
 def test_far_walls_change_nothing():
     chain = Chain(size=20, gap=0.5, amplitude=3)
     near, far = equilibrium(chain), equilibrium(chain.replace(box=1e7))
