@@ -144,7 +144,7 @@ def _temperature(chain: Chain, fluid: xr.Dataset) -> float:
     """Return the mean of m W^2 over the rods."""
     if "velocity_variance" in fluid:
         share = fluid.density.values / fluid.density.values.sum()
-        return chain.mass * float(share @ fluid.velocity_variance.values)
+        return chain.mean_mass * float(share @ fluid.velocity_variance.values)
     if "velocity_width" in fluid:
         return float((chain.rod_masses * fluid.velocity_width.values**2).mean())
     return chain.temperature

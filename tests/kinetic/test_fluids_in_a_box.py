@@ -77,6 +77,15 @@ def test_rod_by_rod_has_the_layers_at_the_walls(size, filling, stiffness, gap):
     assert 2 * np.abs(smooth(fluid).density - exact.density.interp(x=rods.x).fillna(0)).max() > 0.02
 
 
+def test_the_rods_of_a_fluid_at_rest_do_not_depend_on_the_masses():
+    """The fluid has T = m W^2 with the mean mass, and with a gap its rods depend on T."""
+    chain = in_a_box(10.0, gap=0.3, mass_ratio=5.0)
+    rest = force_balance(chain)
+    flow = rod_by_rod(hydrodynamics(chain, rest, 1.0, every=1.0, progress=False))
+    off = flow.displacement_width[0] / rod_by_rod(rest).displacement_width - 1
+    assert np.abs(off).max() < 0.01
+
+
 def test_a_constant_given_temperature_and_a_given_displacement_change_nothing():
     for chain in (in_a_box(5.0), in_a_box(10.0, gap=0.3), in_a_box(20.0, stiffness=0)):
         plain, variance = force_balance(chain), chain.free_velocity_width**2
