@@ -8,7 +8,9 @@ OLDEST := .venv-lowest
 OUTPUT ?= results
 QUALITY ?= quick
 WHICH ?= all
-LESSON ?= [0-9]
+# Lessons have a number; notebooks for readers begin with paper_ or seminar_.
+ALL_LESSONS := [0-9ps]
+LESSON ?= $(ALL_LESSONS)
 LESSONS := build/lessons
 CHECK_PYTHON := $(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
   { echo "Python 3.11 or later is needed; name one with: make PYTHON=python3.12 ..."; exit 1; }
@@ -103,7 +105,7 @@ notebooks: $(VENV)/installed-notebooks
 	cp notebooks/$(LESSON)*.ipynb notebooks/teaching.py build/notebooks
 	TQDM_DISABLE=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --nbmake --nbmake-timeout=300 --timeout=1800 --overwrite \
 	  build/notebooks/$(LESSON)*.ipynb
-	test "$(LESSON)" != "[0-9]" || touch build/notebooks/executed
+	test "$(LESSON)" != "$(ALL_LESSONS)" || touch build/notebooks/executed
 
 build/notebooks/executed: $(wildcard notebooks/*.ipynb) notebooks/teaching.py
 	$(MAKE) notebooks
@@ -113,7 +115,7 @@ render: $(VENV)/installed-notebooks
 	$(BIN)/jupytext --quiet --update --to ipynb notebooks/$(LESSON)*.py
 	$(MAKE) notebooks
 	$(BIN)/python notebooks/outputs.py notebooks/$(LESSON)*.py
-	test "$(LESSON)" != "[0-9]" || touch build/notebooks/executed
+	test "$(LESSON)" != "$(ALL_LESSONS)" || touch build/notebooks/executed
 
 # The test of the page needs a browser and is skipped without one. Root on Debian can install it.
 browser:

@@ -29,7 +29,7 @@
 # Lengths are in rod radii $R$, masses in $M$ (a rod has $m = 4\pi/3\,M$), and times in
 # $T = \sqrt{M/k}$, where $k$ is the stiffness of the springs.
 #
-# *Level: third year. You need: lesson 1 (sections 1 to 3), lesson 2 (sections 1 and 2), the Gibbs
+# *Level: third year. You need: lesson 1 (sections 1 to 3), lesson 3 (sections 1 and 2), the Gibbs
 # distribution. Time: 120 minutes (sections 1 to 4: 60 minutes). To predict before you see the
 # results, type `make lessons` in the folder of the project, and open the copy of this lesson
 # without outputs in `build/lessons/`.*
@@ -108,7 +108,7 @@ plt.show()
 #
 # ## 1. Rods become points
 #
-# Rods have the length $2R$. [Lesson 2](02_collisions_and_restitution.ipynb), section 2, takes it out:
+# Rods have the length $2R$. [Lesson 3](03_collisions_and_restitution.ipynb), section 2, takes it out:
 #
 # $$y_i = x_i - 2R\Big(i - \frac{L+1}{2}\Big) .$$
 #

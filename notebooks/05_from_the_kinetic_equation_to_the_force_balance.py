@@ -27,7 +27,7 @@
 #
 # This lesson takes the shortest way to the answer and tests each step against the exact solution.
 # The paper derives the same result in its appendix.
-# [Lesson 11](11_the_appendix_equation_by_equation.ipynb) follows that appendix from its first to its
+# [*The appendix, equation by equation*](paper_the_appendix_equation_by_equation.ipynb) follows that appendix from its first to its
 # last equation.
 #
 # Lengths are in rod radii $R$, masses in $M$ (a rod has $m = \frac{4\pi}{3}M$), times in
@@ -148,7 +148,7 @@ assert points[0] - centre > 0.05
 #
 # **Your turn.** The left rod has the velocity $v$, the right rod $w<v$. How much momentum, divided by
 # $m$, does the left rod hand over at the restitution $e$? ([Lesson
-# 2](02_collisions_and_restitution.ipynb), section 1, has the velocities after the collision.)
+# 3](03_collisions_and_restitution.ipynb), section 1, has the velocities after the collision.)
 
 
 # %% tags=["remove-cell"]
@@ -188,7 +188,7 @@ check(
 #
 # $$(\rho W^2)' = \Pi(r-2R) - \Pi(r) - \frac km\,\rho\,\langle\Delta x\rangle .$$
 #
-# This balance is the first moment of the kinetic equation, which lesson 11, section 1, writes down.
+# This balance is the first moment of the kinetic equation, which *The appendix, equation by equation*, section 1, writes down.
 # Up to here nothing is approximated. Now let the velocities of a pair be independent and Gaussian.
 # Then $v-w$ has the variance $2W^2$, and half of all pairs approach, so the integral is $W^2$ times
 # the contact density $\rho_2(r, r+2R)$. At $e=1$, $\Pi = W^2\rho_2$. In equilibrium this is exact,
@@ -351,7 +351,7 @@ assert np.allclose(spread, [2.65, 9.11], atol=0.01)
 # $$\rho W^2 + W^2\,\frac{2R\rho^2}{1-2R\rho} = \frac{\rho W^2}{1-2R\rho}.$$
 #
 # Two things have been neglected: the second derivative of $\Pi$, and the derivatives in $\Pi$ itself,
-# where $\rho(r)\,\rho(r+2R)$ was replaced by $\rho^2$. Lesson 11, section 6, expands both. They
+# where $\rho(r)\,\rho(r+2R)$ was replaced by $\rho^2$. *The appendix, equation by equation*, section 6, expands both. They
 # cancel at second order, because each pair is symmetric about its contact, and the two contacts of a
 # rod are symmetric about the rod. The force is therefore right up to terms of third order in the
 # gradient.
@@ -457,7 +457,7 @@ assert wrong < 0.006
 # alone make an error of 0.5 % of the largest force. At $A = 1$ the fluid is wrong by 14 %. But for
 # the points the force balance is exact: $\rho_y$ is the Gaussian of lesson 4. The three
 # approximations together are therefore one step, from points to rods by $\rho = \rho_y/(1+2R\rho_y)$.
-# [Lesson 6](06_theory_meets_particles.ipynb), section 5, does this step rod by rod instead, and then
+# [Lesson 5](05_from_the_kinetic_equation_to_the_force_balance.ipynb), section 5, does this step rod by rod instead, and then
 # nothing is left of the error.
 #
 # </details>
@@ -567,7 +567,7 @@ assert ratio - np.mean(with_factor) > 0.1
 # The ratio is 1. The factor is right in (1), so Tonks' $\chi$, or the independence of the two
 # velocities, must be wrong. Both are. For $e < 1$ rods that have met separate slowly, stay near each
 # other, and meet again. Pairs that are *about to* collide therefore have smaller relative velocities
-# than independent ones (lesson 10, section 3). There are also more contacts, which compensate both
+# than independent ones (*Neighbours remember*, section 3). There are also more contacts, which compensate both
 # the smaller velocities and the factor. Without the factor the pressure $\rho W^2/(1-2R\rho)$ is
 # $\rho_y W^2$ in $y$. This agrees with the exact balance at any $e$, if $W^2$ is the variance that
 # the rods really have.

@@ -30,7 +30,7 @@
 # \frac{4\pi}{3}M$). The unit of time is $\sqrt{M/k}$, written $T$ on the axes. The restitution is
 # 1, and there is no gap between the anchors.
 #
-# *Level: fourth year. You need: lesson 4, section 7, and lesson 6; partial differential equations.
+# *Level: fourth year. You need: lesson 4, section 7, and lesson 5; partial differential equations.
 # Time: 100 minutes. To predict before you see the results, type `make lessons` in the folder of the
 # project, and open the copy of this lesson without outputs in `build/lessons/`.*
 
@@ -56,11 +56,11 @@ print(f"one free rod: frequency {omega:.3f} /T, friction gamma/m = {friction:.3f
 # %% [markdown]
 # ## The equations in three strings
 #
-# [Lesson 0](00_the_analytics_section_in_sixty_lines.ipynb), section 6, gives the equations of the
+# [*The analytics section in sixty lines*](paper_the_analytics_section_in_sixty_lines.ipynb), section 6, gives the equations of the
 # paper to py-pde as text. These are its cells. Section 1 explains the equations. The function
 # `hydrodynamics` of the package solves the same equations without the small viscosity, which is the
 # last term of the second string. It also chooses its time steps, and it solves stronger compressions
-# (lesson 0, section 7).
+# (*The analytics section in sixty lines*, section 7).
 
 # %%
 R, L = chain.radius, chain.size
@@ -273,7 +273,7 @@ assert max(off) < 1e-3  # hydrodynamics, and the exact solution of the package
 # </details>
 #
 # The cloud tells where the *points* are. A fluid has rod $i$ at the place where $N = i-\frac12$.
-# `rod_by_rod` reads the rods off the points ([lesson 6](06_theory_meets_particles.ipynb), section 5).
+# `rod_by_rod` reads the rods off the points ([lesson 5](05_from_the_kinetic_equation_to_the_force_balance.ipynb), section 5).
 #
 # **Predict.** The fluid with a temperature has the exact cloud. Does it have the exact mean
 # displacements of the rods, too? Does `rod_by_rod` hold while the chain moves?

@@ -26,7 +26,7 @@ def write_copies(folder):
     """Write all lessons and the module that they share; keep every lesson that is there."""
     folder.mkdir(parents=True, exist_ok=True)
     shutil.copy(HERE / "teaching.py", folder)
-    paths = sorted(HERE.glob("[0-9]*.ipynb"))
+    paths = sorted(HERE.glob("*.ipynb"))
     new = [path for path in paths if not (folder / path.name).exists()]
     for path in new:
         nbformat.write(without_outputs(path), folder / path.name)

@@ -24,7 +24,7 @@ FRONT = sorted([*ROOT.glob("*.md"), *ROOT.glob(".github/*.md")])
 PAGES = [*FRONT, *sorted((ROOT / "docs").rglob("*.md"))]
 ROOMS = ("api", "model", "particles", "kinetic", "comparison", "reproduction", "apps")
 CODE = (*ROOMS, "benchmarks", "docs", "notebooks", "studies")
-LESSONS = sorted((ROOT / "notebooks").glob("[0-9]*.py"))
+LESSONS = [path.with_suffix(".py") for path in sorted((ROOT / "notebooks").glob("*.ipynb"))]
 
 
 def table(name):
@@ -201,9 +201,9 @@ def test_the_concordance_names_what_exists():
     for name in set(re.findall(rf"`((?:{'|'.join(ROOMS[1:])})(?:\.\w+)+)`", CONCORDANCE)):
         resolve_name(f"crazybilliards.{name}")
     assert VOCABULARY.keys() >= {*re.findall(r"(?:variable|coordinate)s? `(\w+)`", CONCORDANCE)}
-    [lesson] = (ROOT / "notebooks").glob("11_*.py")
+    [lesson] = (ROOT / "notebooks").glob("paper_the_appendix*.py")
     headings = re.findall(r"(?m)^# ## (\d+)\. ", lesson.read_text(encoding="utf-8"))
-    pairs = r"notebook 11[^|.;\n]*?sections? (\d+)(?: (?:and|to) (\d+))?"
+    pairs = r"notebook on the appendix[^|.;\n]*?sections? (\d+)(?: (?:and|to) (\d+))?"
     named = [number for pair in re.findall(pairs, CONCORDANCE) for number in pair if number]
     assert len(named) > 10
     assert set(named) <= set(headings)

@@ -309,7 +309,7 @@ assert shared > 1.5 * relative
 # $v_i - v_{i+1}$. At $e = 0$ and 0.5 this fraction is 1 and 0.75, so $\Theta$ differs by a quarter only.
 # And $\Theta$ is the smaller part, about a third of $\langle v_i^2\rangle$. The larger part $h$ is nearly
 # the same in both chains. Because collisions conserve momentum, what they take from the squares of
-# two rods becomes covariance of the two ([lesson 10](10_neighbours_remember.ipynb) shows this), and
+# two rods becomes covariance of the two ([*Neighbours remember*](seminar_neighbours_remember.ipynb) shows this), and
 # in both chains they take 95 % of the noise's power. Together $W_v$ differs by 2 %. At $e = 0.95$ a
 # collision takes a tenth of the relative energy, and $\Theta$ is eleven times as large as at $e = 0$.
 #
@@ -552,7 +552,7 @@ plt.show()
 #   it took them.)
 # * **Half kicks**: half a kick, then flight and collisions, then the other half. The velocities are
 #   taken between two half kicks. `method="contact-dynamics"` does this, and at $e = 0$ its
-#   collisions are the exact ones ([lesson 2](02_collisions_and_restitution.ipynb)).
+#   collisions are the exact ones ([lesson 3](03_collisions_and_restitution.ipynb)).
 # * **The default** does the same with one correction. The noise that separates rods in contact is
 #   made 1.224 times as strong. For this, each kick is compared with the mean kick of the rods that
 #   are in contact, and its difference from this mean is multiplied. The momentum does not change.

@@ -21,7 +21,7 @@
 # relative velocity of the two rods. Two neighbours in a cold chain are about to collide. Are their
 # velocities independent of each other, or are they correlated?
 #
-# In this lesson two rods are called *strangers* if their velocities are independent. Lesson 8 solved
+# In this lesson two rods are called *strangers* if their velocities are independent. Lesson 9 solved
 # a kinetic equation which assumes that rods that meet are strangers. For $e = 0.75$ and 100 rods its
 # velocity width in the centre is wrong by 8 %. Here you measure the reason, and see a theory that
 # corrects it.
@@ -29,7 +29,7 @@
 # Units as in all lessons: the rod radius $R$, $T = \sqrt{M/k}$ for times. $W$ is the velocity width
 # of a rod without collisions.
 #
-# *Level: fourth year. You need: lesson 8, sections 1 and 2. Time: 45 minutes. To predict before you
+# *Level: fourth year. You need: lesson 9, sections 1 and 2. Time: 45 minutes. To predict before you
 # see the results, type `make lessons` in the folder of the project, and open the copy of this
 # lesson without outputs in `build/lessons/`.*
 
@@ -247,7 +247,7 @@ for e in runs:
 #
 # ## 5. Two theories
 #
-# `phase_space` is the kinetic equation of lesson 8, which assumes that rods that meet are strangers.
+# `phase_space` is the kinetic equation of lesson 9, which assumes that rods that meet are strangers.
 # `correlated_phase_space` computes the covariances as well, from what one collision does (section
 # 2) and from how sound carries covariances along the chain. No number is fitted in either theory.
 #

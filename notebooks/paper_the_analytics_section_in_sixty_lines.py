@@ -210,7 +210,7 @@ assert apart[inside].max() < 0.01
 # The densities agree to better than 1 % of close packing where $|x|<100$ R. The largest difference,
 # 4 %, is at the two ends, where the density falls to zero over a few rods. The statistical error
 # is smaller than 1 %. Section 7 gives the main reason, and
-# [lesson 6](06_theory_meets_particles.ipynb), section 6, tells what the fit adds.
+# [lesson 5](05_from_the_kinetic_equation_to_the_force_balance.ipynb), section 6, tells what the fit adds.
 # </details>
 #
 # ## 6. The fluid in time: three strings
@@ -384,7 +384,7 @@ assert abs(theirs - L) < 1e-3
 # **Rods in place of a fluid.** At $e = 1$ without a gap the force balance is exact for the *points*,
 # whose density is $\rho_y$. What is approximate is to read rods off a fluid, by
 # $\rho = \rho_y/(1+2R\rho_y)$. `rod_by_rod` reads them off the points
-# ([lesson 6](06_theory_meets_particles.ipynb), section 5):
+# ([lesson 5](05_from_the_kinetic_equation_to_the_force_balance.ipynb), section 5):
 
 # %%
 labels = cb.force_balance(chain)

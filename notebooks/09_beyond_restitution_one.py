@@ -312,7 +312,7 @@ print(f"theory over simulation - 1: {100 * (in_theory / middle - 1):.0f} %")
 assert in_theory < middle - 5 * middle_error
 
 # %% [markdown]
-# The kinetic equation is too cold in the centre. Lesson 10, *Neighbours remember*, adds what it
+# The kinetic equation is too cold in the centre. *Neighbours remember* adds what it
 # neglects, the correlations of neighbours (`correlated_phase_space`).
 #
 # The assumption of molecular chaos can be tested. If the points are independent, the velocities of

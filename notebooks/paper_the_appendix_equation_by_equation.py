@@ -691,7 +691,7 @@ assert 0.01 < error < 0.02
 # They differ at the outermost rods, by one or two per cent of the displacement there, and agree in
 # the interior. In the density at $A = 30$ this makes 0.001 of close packing. The arctanh, which is
 # not the law of the displacement, costs more. The 0.007 that the exact means leave come from
-# reading rods off a fluid ([lesson 6](06_theory_meets_particles.ipynb), sections 5 and 6).
+# reading rods off a fluid ([lesson 5](05_from_the_kinetic_equation_to_the_force_balance.ipynb), sections 5 and 6).
 #
 # </details>
 #
