@@ -35,7 +35,7 @@ help:
 	@echo "make reproduce  draw every figure and check every claim of the paper (2 min; QUALITY=full 17 min;"
 	@echo "                WHICH=analytics: only the paper's analytics section, 1 min)"
 	@echo "make kernels    compile the kernels, which the first simulation does otherwise (30 s)"
-	@echo "make lessons    write the lessons without outputs, for learners, into $(LESSONS)/"
+	@echo "make lessons    write the lessons without outputs and solutions, for learners, into $(LESSONS)/"
 	@echo "make notebooks  execute the notebooks, into build/notebooks/"
 	@echo "make render     write the notebooks from their scripts, with outputs (LESSON=03: only that one)"
 	@echo "make docs       build the documentation into build/docs/ and execute its examples"
@@ -98,16 +98,17 @@ lessons: $(VENV)/installed-notebooks
 	@$(BIN)/python notebooks/without_outputs.py $(LESSONS)
 	@echo "open the lessons with: $(BIN)/jupyter lab $(LESSONS)"
 
-# No bars (TQDM_DISABLE) in what is kept. Copies of the notebooks are executed, and the documentation shows their outputs.
+# No bars (TQDM_DISABLE) in what is kept. A number that disagrees stops a strict lesson. Copies of the
+# notebooks are executed, and the documentation shows their outputs.
 notebooks: $(VENV)/installed-notebooks
 	mkdir -p build/notebooks
 	rm -f build/notebooks/$(LESSON)*.ipynb
-	cp notebooks/$(LESSON)*.ipynb notebooks/teaching.py build/notebooks
-	TQDM_DISABLE=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --nbmake --nbmake-timeout=300 --timeout=1800 --overwrite \
-	  build/notebooks/$(LESSON)*.ipynb
+	cp -R notebooks/$(LESSON)*.ipynb notebooks/teaching.py notebooks/solutions build/notebooks
+	CRAZYBILLIARDS_LESSONS=strict TQDM_DISABLE=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --nbmake \
+	  --nbmake-timeout=300 --timeout=1800 --overwrite build/notebooks/$(LESSON)*.ipynb
 	test "$(LESSON)" != "$(ALL_LESSONS)" || touch build/notebooks/executed
 
-build/notebooks/executed: $(wildcard notebooks/*.ipynb) notebooks/teaching.py
+build/notebooks/executed: $(wildcard notebooks/*.ipynb notebooks/solutions/*.py) notebooks/teaching.py
 	$(MAKE) notebooks
 
 # The committed notebooks show their outputs on the web. A test compares code and outputs.

@@ -100,7 +100,7 @@ def copy_notebooks() -> None:
 
 
 def pack_lessons() -> None:
-    """Offer the lessons without outputs as one archive, with the module that they share."""
+    """Offer the lessons without outputs and solutions as one archive, with what they import."""
     there = HERE / "notebooks" / "lessons"
     run_path(str(ROOT / "notebooks" / "without_outputs.py"))["write_copies"](there)
     shutil.make_archive(str(there), "zip", there)

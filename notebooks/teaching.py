@@ -1,7 +1,9 @@
-"""What the lessons share: colours, panels, films, a comparison in standard errors, checked answers.
+"""What the lessons share: colours, panels, films, comparisons in words, checked answers.
 
 The lessons import this file from their own folder.
 """
+
+import os
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -51,11 +53,45 @@ def mean_and_error(values):
     return values.mean(axis=0), error_of_mean(values)
 
 
-def agree(what, measured, expected, error):
-    """Print the largest difference in standard errors, and insist that it is below five."""
-    pulls = abs(np.asarray(measured) - np.asarray(expected)) / np.asarray(error)
-    print(f"{what}: at most {pulls.max():.1f} standard errors apart")
-    assert pulls.max() < 5
+def safe(condition, sentence):
+    """Return whether a changed parameter suits the lesson; if it does not, print the sentence.
+
+    The sentence says which values suit the lesson, why, and how it goes on.
+    """
+    if not condition:
+        print(sentence)
+        _insist(False, sentence)
+    return bool(condition)
+
+
+def agree(what, measured, expected, error, unit=""):
+    """Say in words whether measured values agree with expected ones within five standard errors.
+
+    Of arrays the two values that are the farthest apart are told. A disagreement does not stop a
+    lesson, unless the environment variable CRAZYBILLIARDS_LESSONS is "strict".
+    """
+    all_three = (np.asarray(each, dtype=float) for each in (measured, expected, error))
+    measured, expected, error = np.broadcast_arrays(*all_three)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        apart = np.where(measured == expected, 0.0, abs(measured - expected) / error)
+    worst = np.argmax(np.where(np.isnan(apart), np.inf, apart))
+    pull = apart.flat[worst]
+    of_all = f"of {apart.size} values the farthest is " if apart.size > 1 else ""
+    far = "more than 1000" if pull > 1000 else f"{pull:.1f}"
+    verdict = "they agree" if pull < 5 else "they do not agree"
+    told = (
+        f"{what}: {of_all}{measured.flat[worst]:.4g}{unit and ' ' + unit} measured, "
+        f"{expected.flat[worst]:.4g}{unit and ' ' + unit} expected, "
+        f"{far} standard errors apart: {verdict}."
+    )
+    print(told)
+    _insist(pull < 5, told)
+
+
+def _insist(condition, sentence):
+    """Stop a lesson that its authors execute, and never a student's."""
+    if os.environ.get("CRAZYBILLIARDS_LESSONS") == "strict":
+        assert condition, sentence
 
 
 def right(answer, expected, *, at=(), tolerance=1e-6):
@@ -69,11 +105,13 @@ def right(answer, expected, *, at=(), tolerance=1e-6):
 def check(answer, expected, *, at=(), hint, tolerance=1e-6, also=()):
     """Say whether an answer is missing, right, or wrong; a wrong one is given a hint.
 
-    A missing answer is ``...``, or a function that returns this. ``also`` are other right answers.
+    A missing answer is ``...``, or a function that returns this. An answer is a number, numbers, a
+    word, or a function of the arguments in ``at``. ``also`` are other right answers. What is said
+    of a wrong answer contains the answer and its direction, and never the expected value.
     """
     try:
         given = answer(*at[0]) if at else answer
-        if given is ...:
+        if _is_missing(given):
             print("Your turn: replace the dots, and run the cell again.")
         elif given is None and at:
             print("Your function returns nothing: write return in front of the answer.")
@@ -85,22 +123,38 @@ def check(answer, expected, *, at=(), hint, tolerance=1e-6, also=()):
         print(f"Your code stops with {type(error).__name__}: {error}. Hint: {hint}")
 
 
+def _is_missing(given):
+    return given is ... or (isinstance(given, tuple | list) and any(each is ... for each in given))
+
+
 def _first_wrong(answer, expected, at, tolerance):
-    """Return the first numbers that are wrong in words, or None if all are right."""
+    """Return in words the first answer that is wrong, or None if all are right."""
     for arguments in at or [None]:
         given, wanted = (
-            np.asarray(each if arguments is None else each(*arguments), dtype=float)
-            for each in (answer, expected)
+            each if arguments is None else each(*arguments) for each in (answer, expected)
         )
+        if isinstance(wanted, str):
+            if str(given).strip().casefold() != wanted.casefold():
+                return f": you have {given!r}"
+            continue
+        given, wanted = (np.asarray(each, dtype=float) for each in (given, wanted))
         if given.shape != wanted.shape:
             return f": an answer of the shape {given.shape} must have the shape {wanted.shape}"
         scale = abs(wanted).max() if wanted.size else 1.0
-        if not (abs(given - wanted) <= tolerance * scale).all():
-            if arguments is None:  # the wanted number would be the solution
-                return f": you have {_shown(given)}"
-            where = ", ".join(_shown(each) for each in arguments)
-            return f": for ({where}) you have {_shown(given)}, and right is {_shown(wanted)}"
+        wrong = ~(abs(given - wanted) <= tolerance * scale)
+        if wrong.any():
+            where = "" if arguments is None else f"for ({', '.join(map(_shown, arguments))}) "
+            return f": {where}you have {_shown(given)}, {_direction(given, wanted, wrong)}"
     return None
+
+
+def _direction(given, wanted, wrong):
+    """Return what is wrong with the first wrong number, without the right one."""
+    first = np.flatnonzero(wrong)[0]
+    which = f"number {first + 1} of these" if given.size > 1 else "which"
+    if np.isnan(given.flat[first]):
+        return f"{which} is undefined"
+    return f"{which} is too {'large' if given.flat[first] > wanted.flat[first] else 'small'}"
 
 
 def _shown(value):
