@@ -22,7 +22,7 @@
 # each of its equations right as printed? And which of its steps are approximations?
 #
 # [Lesson 5](05_from_the_kinetic_equation_to_the_force_balance.ipynb) explains the physics of the
-# derivation and tests it against the exact solution. This lesson checks the text. It follows the
+# derivation and compares its result with a simulation. This lesson checks the text. It follows the
 # appendix from its first to its last equation and does every integral with SymPy. Where a formula
 # of the paper is not what its result needs, we compute what it gives as printed, and what was
 # meant. Section 8 lists these places. None of them changes the final equation: it is right.
@@ -288,7 +288,7 @@ assert sp.simplify(after[w_after].subs(e, 1) - v) == 0
 #
 # From here on "$|v-w|$" is the speed of approach, which is zero for rods that move apart. The
 # momentum handed over, $\Pi$, and $\mathcal I(v) = \Pi(r-2R) - \Pi(r)$ are derived in lesson 5,
-# section 2.
+# section 7.
 #
 # ## 4. From `eq4` to $\mathcal I(\psi)$: `eq8`, `eq9`, `eq11`, `eq14`
 #
@@ -359,9 +359,8 @@ assert sp.expand(interaction(speeds)[0] - handed[0] + handed[1]) == 0
 # $$\tilde\rho_2(r, v;\,r\pm2R, w) = \chi(r\pm R)\,\tilde\rho(r, v)\,\tilde\rho(r\pm2R, w),\qquad
 # \chi(r\pm R) = \frac{1}{1-2R\,\rho(r\pm R)}.$$
 #
-# Lesson 5, section 3, explains $\chi$ and compares it with exact contacts. In a uniform gas it is
-# exact: the pressure of the partition function must equal the pressure carried by the rods plus
-# that handed over by collisions.
+# Lesson 5, section 8, derives $\chi$. In a uniform gas it is exact: the pressure of the partition
+# function must equal the pressure carried by the rods plus that handed over by collisions.
 
 # %%
 length, rods_in_box, a, chi_ = sp.symbols("l N a chi", positive=True)  # a = 2R
@@ -468,7 +467,7 @@ assert share["V_r, with v"] == -share["V_r, with w"]
 assert share["W2_r"] == sp.Rational(1, 2)
 
 # %% [markdown]
-# The neglected term with $\partial_r V$ is a viscosity (lesson 5, exercise 1). With the $v$ of the
+# The neglected term with $\partial_r V$ is a viscosity. With the $v$ of the
 # printed `eq16` it would be a negative one. At rest it is zero in both cases.
 #
 # The other neglected terms are first derivatives in the flux, and therefore second derivatives in the
@@ -476,8 +475,9 @@ assert share["W2_r"] == sp.Rational(1, 2)
 #
 # **Predict.** Is the force of the paper wrong at second order? Let the density vary slowly, $\rho =
 # \rho(\varepsilon r)$ at constant $W^2$, and expand the force $\Pi(r-2R)-\Pi(r)$ in powers of
-# $\varepsilon$. We compare several choices of $\chi$ with the paper's two approximations. "eq. (2)"
-# is $\chi$ with the integral of the density (lesson 5, equation 2).
+# $\varepsilon$. We compare several choices of $\chi$ with the paper's two approximations.
+# "integral" is $\chi=1/(1-\int_x^{x+2R}\rho\,dx')$. It is exact if all rods feel the same potential
+# and exchange with a reservoir (Percus, 1976).
 #
 # **Run.**
 
@@ -497,7 +497,7 @@ def tonks(value):
 
 # %%
 choices = {
-    "eq. (2)": lambda x: 1 / (1 - sp.integrate(slow(place_1), (place_1, x, x + a))),
+    "integral": lambda x: 1 / (1 - sp.integrate(slow(place_1), (place_1, x, x + a))),
     "midpoint (paper)": lambda x: tonks(slow(x + a / 2)),
     "mean of both": lambda x: tonks((slow(x) + slow(x + a)) / 2),
     "left rod": lambda x: tonks(slow(x)),
@@ -530,8 +530,8 @@ for name, (first, second, _) in expansion.items():
 # %% tags=["remove-cell"]
 assert all(sp.simplify(each[0] - wanted) == 0 for each in expansion.values())
 exact_to_second = [name for name, each in expansion.items() if each[1] == 0]
-assert exact_to_second == ["eq. (2)", "midpoint (paper)", "mean of both", "eq12 and eq17"]
-# chi at the rod's own place (lesson 5, section 6) is wrong at first order
+assert exact_to_second == ["integral", "midpoint (paper)", "mean of both", "eq12 and eq17"]
+# chi at the rod's own place is wrong at first order
 own_place = tonks(slow(0)) * slow(0) * (slow(-a) - slow(a))
 effective_slope = sp.factor(1 - orders(own_place)[0] / slopes_of_rho[1])
 assert sp.simplify(effective_slope - (1 + a * rho) / (1 - a * rho)) == 0
@@ -691,7 +691,7 @@ assert 0.01 < error < 0.02
 # They differ at the outermost rods, by one or two per cent of the displacement there, and agree in
 # the interior. In the density at $A = 30$ this makes 0.001 of close packing. The arctanh, which is
 # not the law of the displacement, costs more. The 0.007 that the exact means leave come from
-# reading rods off a fluid ([lesson 5](05_from_the_kinetic_equation_to_the_force_balance.ipynb), sections 5 and 6).
+# reading rods off a fluid ([lesson 5](05_from_the_kinetic_equation_to_the_force_balance.ipynb), section 5).
 #
 # </details>
 #
@@ -726,13 +726,13 @@ assert (area, centre_of_box) == (-2, 1)
 # %% [markdown]
 # ## Exercises
 #
-# **1.** By how much do "midpoint (paper)" and "eq. (2)" differ at third order, for the term with
+# **1.** By how much do "midpoint (paper)" and "integral" differ at third order, for the term with
 # $\rho'''$?
 #
 # <details><summary>Solution</summary>
 #
 # ```python
-# difference = expansion["midpoint (paper)"][2] - expansion["eq. (2)"][2]
+# difference = expansion["midpoint (paper)"][2] - expansion["integral"][2]
 # sp.factor(sp.diff(difference, slopes_of_rho[3]))
 # ```
 #
