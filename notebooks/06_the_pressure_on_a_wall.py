@@ -282,7 +282,7 @@ plt.show()
 # $\rho_1 f(v)\,v\,dv$ times, and each hit gives $2mv$. The sum over $v>0$ is the *contact theorem*,
 # $P = \rho_1m\langle v^2\rangle = \rho_1T$.
 #
-# **Predict.** The force balance of the fluid (lesson 5) says that the density is $L/X$ everywhere,
+# **Your turn.** The force balance of the fluid (lesson 5) says that the density is $L/X$ everywhere,
 # because no spring pulls. How many times larger is $\rho_1$? Enter it with `L`, `R` and `X`.
 
 # %%
@@ -358,7 +358,8 @@ left, at_wall = panels(2, height=4)
 left.semilogy(filling, filling / (1 - filling), color=RED, label=r"exact, $LT/(X-2RL)$")
 left.semilogy(filling, filling, "--", color="0.5", label="points, $LT/X$")
 of_fluid = [cb.force_balance(gas.replace(box=box)).wall_force.values.mean() for box in boxes]
-left.plot(share, 2 * R * np.array(of_fluid) / T, "s", color=PINK, markersize=10, fillstyle="none", label="fluid")
+square = {"marker": "s", "linestyle": "none", "fillstyle": "none", "markersize": 10}
+left.plot(share, 2 * R * np.array(of_fluid) / T, color=PINK, label="fluid", **square)
 left.errorbar(share, 2 * R * P / T, 2 * R * P_error / T, label="rods", **look)
 left.set(xlabel=r"filling $2RL/X$", ylabel="pressure $P$ [$T/2R$]")
 distance, step = 18 * R, R / 4

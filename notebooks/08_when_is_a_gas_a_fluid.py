@@ -40,11 +40,11 @@ import numpy as np
 import pde
 from scipy.linalg import expm
 from solutions import lesson_08 as solutions
-from teaching import BLUE, GREEN, ORANGE, PINK, RED, agree, check, panels, safe
+from teaching import BLUE, GREEN, PINK, RED, agree, check, panels, safe
 
 # %% [markdown]
 # **What you may change.** The number of rods `size` from 32 to 256, the ratio of the two masses from
-# 1.5 to 5, and seeds. Then run all cells below again.
+# 1.5 to 5, and seeds. Then run all cells again.
 
 # %%
 size, ratio = 128, 3
@@ -61,14 +61,14 @@ if not safe(
 # %%
 import crazybilliards as cb
 
-L, l = size, size  # rods, and the free length [R]
-kappa = np.pi / l  # of the longest wave
+L, room = size, size  # rods, and the free length l [R]
+kappa = np.pi / room  # of the longest wave
 
 
 def gas(ratio, friction=0.001):
     """Return rods between walls: T = 1, mean mass 1, friction Gamma/(kappa W)."""
     damping = friction * kappa
-    kinds = {"mass": 2 / (1 + ratio), "mass_ratio": ratio, "stiffness": 0, "box": l + 2 * L}
+    kinds = {"mass": 2 / (1 + ratio), "mass_ratio": ratio, "stiffness": 0, "box": room + 2 * L}
     return cb.Chain(size=L, damping=damping, amplitude=np.sqrt(2 * damping), **kinds)
 
 
@@ -134,14 +134,14 @@ check(my_mirrored, solutions.mirrored, at=flights, hint=hint)
 # %%
 # A ratio that is not quite 1 makes the package compute every collision.
 rng, equal, runs = np.random.default_rng(1), gas(1 + 1e-9), 500
-y0 = np.sort(rng.uniform(-l / 2, 0, (runs, L)), axis=1)
+y0 = np.sort(rng.uniform(-room / 2, 0, (runs, L)), axis=1)
 v0 = rng.normal(size=y0.shape)
 start = cb.given_start(equal, equal.physical(y0), v0, replicas=runs)
-y, v = follow(equal, start, 2 * l)
+y, v = follow(equal, start, 2 * room)
 
 # %%
-t = np.linspace(0, 2 * l, 25)
-flown = solutions.mirrored(y0 + t[:, None, None] * v0, -l / 2, l / 2)
+t = np.linspace(0, 2 * room, 25)
+flown = solutions.mirrored(y0 + t[:, None, None] * v0, -room / 2, room / 2)
 rods_beyond, points_beyond = (np.mean(each > 0, axis=(1, 2)) for each in (y, flown))
 apart = abs(y - np.sort(flown, axis=2)).max()
 print(f"rods and sorted points are at most {apart:.0e} R apart")
@@ -163,9 +163,9 @@ agree("share beyond the middle", rods_beyond[1:], law[1:], scatter)
 # %% tags=["hide-input"]
 look = {"color": "k", "fillstyle": "none"}
 ax = panels(width=6, height=3)
-ax.plot(t / l, law, color=RED, label="exact")
-ax.plot(t / l, points_beyond, "x", color=BLUE, label="points between mirrors")
-ax.plot(t / l, rods_beyond, "o", label="rods of one mass", **look)
+ax.plot(t / room, law, color=RED, label="exact")
+ax.plot(t / room, points_beyond, "x", color=BLUE, label="points between mirrors")
+ax.plot(t / room, rods_beyond, "o", label="rods of one mass", **look)
 ax.axhline(0.5, color="0.6", linewidth=0.8)
 ax.set(xlabel="time t [l/W]", ylabel="share beyond the middle", ylim=(0, 0.7))
 ax.legend(loc="lower right")
@@ -220,7 +220,7 @@ for name, part in {"isothermal fluid": M[:2, :2], "fluid with a temperature": M}
     print(f"{name}: speed of sound {np.linalg.eigvals(part).imag.max():.4f} W")
 
 # %% [markdown]
-# **Predict.** A temperature that stays constant needs an exchange of heat that is faster than the
+# **Your turn.** A temperature that stays constant needs an exchange of heat that is faster than the
 # wave, $2\Gamma_T\gg1$. Rods of one mass have $\Gamma_T=\Gamma$. Up to which $\Gamma$, in units of
 # $\kappa W$, does the isothermal wave swing at all? Is there a $\Gamma$ that suits both?
 
@@ -250,8 +250,8 @@ def momentum(ratio, friction=0.0, runs=1500):
     """Return p of the longest wave, over time and replica, for one period of sound at sqrt(3) W."""
     chain = gas(ratio, friction or 0.001)
     start = cb.equilibrium_states(chain, runs, seed=1)
-    y, v = follow(chain, start, 2 * l / np.sqrt(3), noise=friction > 0)
-    return (chain.rod_masses * v * np.sin(kappa * (y + l / 2))).sum(axis=2)
+    y, v = follow(chain, start, 2 * room / np.sqrt(3), noise=friction > 0)
+    return (chain.rod_masses * v * np.sin(kappa * (y + room / 2))).sum(axis=2)
 
 
 def correlation(p):
@@ -406,7 +406,7 @@ def found_speed(p):
     curve = np.polyfit(tau[near], correlation(p)[0][near], 3)
     turning = np.roots(np.polyder(curve))
     lowest = turning[np.argmin(abs(turning - np.pi / np.sqrt(3)))].real
-    return solutions.speed(lowest / kappa, l)
+    return solutions.speed(lowest / kappa, room)
 
 
 rng = np.random.default_rng(5)
@@ -433,7 +433,7 @@ agree("speed of sound and that of the fluid with a temperature", speed, np.sqrt(
 # of a ring of the length $2X$, and the other half is its mirror image.
 
 # %%
-friction, X = 0.2, l + 2 * L
+friction, X = 0.2, room + 2 * L
 heat = friction * (1 + ratio) ** 2 / (4 * ratio)  # <m> <1/m> is the last factor
 ring = pde.CartesianGrid([[0, 2 * X]], 64, periodic=True)
 x = ring.axes_coords[0]
@@ -451,7 +451,8 @@ def solved(equations, **constants):
     values = {"rho": L / X + 0 * x, "V": 0.01 * shape, "W2": 1 + 0 * x}
     start = pde.FieldCollection([pde.ScalarField(ring, values[f], label=f) for f in equations])
     constants |= {"friction": friction * kappa, "heat": heat * kappa}
-    fluid, storage, every = pde.PDE(equations, consts=constants), pde.MemoryStorage(), tau[1] / kappa
+    fluid, storage = pde.PDE(equations, consts=constants), pde.MemoryStorage()
+    every = tau[1] / kappa
     settings = {"dt": every / 6, "solver": "runge-kutta", "backend": "numpy"}
     fluid.solve(start, t_range=24 * every, tracker=[storage.tracker(every)], **settings)
     u = np.array([fields[1].data @ shape for fields in storage])
@@ -484,12 +485,13 @@ shown = {
     rf"masses 1 : {ratio}, $\Gamma = {friction}\,\kappa W$": (C_noisy, error_noisy, friction, heat),
 }
 for ax, (title, (C, error, *rates)) in zip(axes, shown.items(), strict=True):
-    names = ("isothermal fluid", "fluid with a temperature")
-    for name, u, style, colour in zip(names, fluids(*rates, fine), ("--", "-"), (PINK, GREEN), strict=True):
-        ax.plot(fine, u, style, color=colour, label=name)
+    cold, warm = fluids(*rates, fine)
+    ax.plot(fine, cold, "--", color=PINK, label="isothermal fluid")
+    ax.plot(fine, warm, color=GREEN, label="fluid with a temperature")
     ax.errorbar(tau, C, error, fmt="o", markersize=4, label="rods", **look)
     ax.set(title=title, xlabel=r"time t [$1/\kappa W$]")
-axes[0].plot(fine, (1 - fine**2) * np.exp(-(fine**2) / 2), ":", color=RED, linewidth=2.5, label="exact")
+law = (1 - fine**2) * np.exp(-(fine**2) / 2)
+axes[0].plot(fine, law, ":", color=RED, linewidth=2.5, label="exact")
 for u, colour in zip(by_pde, (PINK, GREEN), strict=True):
     axes[2].plot(tau[::2], u[::2], "x", color=colour, label="py-pde" if colour == GREEN else None)
 axes[0].set_ylabel(r"$\langle p(t)\,p(0)\rangle/\langle p(0)^2\rangle$")
@@ -524,19 +526,19 @@ assert apart < 1e-4
 #
 # ## Exercises
 #
-# **1. Does it slosh?** Repeat section 1 with two masses. `cb.compare_relaxation(gas(ratio),
-# "gathered", 0.5, duration=2 * l, every=l / 16, replicas=200)` lets the rods and both fluids out of
-# the left half. Draw the centre of the gas over time for each of them.
+# **1. Does it slosh?** Repeat section 1 with two masses: `cb.compare_relaxation(gas(ratio),
+# "gathered", 0.5, ...)` lets the rods and both fluids out of the left half. Draw the centre of the
+# gas over time for each.
 #
 # <details><summary>Solution</summary>
 #
 # ```python
-# tree = cb.compare_relaxation(gas(ratio), "gathered", 0.5, duration=2 * l, every=l / 16,
-#                              replicas=200, progress=False)
+# times = {"duration": 2 * room, "every": room / 16, "progress": False}
+# tree = cb.compare_relaxation(gas(ratio), "gathered", 0.5, replicas=200, **times)
 # for name in ("isothermal", "evolving"):
-#     plt.plot(tree[name].time / l, tree[name].centre / l, label=name)
+#     plt.plot(tree[name].time / room, tree[name].centre / room, label=name)
 # rods = tree["particles"]
-# plt.plot(rods.time / l, rods.mean_displacement.mean("particle") / l, "o", label="rods")
+# plt.plot(rods.time / room, rods.mean_displacement.mean("particle") / room, "o", label="rods")
 # plt.legend()
 # ```
 #
@@ -561,6 +563,6 @@ assert apart < 1e-4
 # ```
 #
 # The isothermal fluid is wrong by 0.75, 0.25 and 0.02, that with a temperature by 0.55, 0.07 and
-# 0.001. With much friction the density only diffuses.
+# 0.001. Much friction leaves diffusion only.
 #
 # </details>
