@@ -138,7 +138,11 @@ check(my_word, solutions.OVERSHOOTS, hint=hint)
 
 # %% tags=["hide-input"]
 fig, axes = plt.subplots(1, 3, figsize=(10, 3.6), sharey=True)
-shown = {f"rods ({CHAINS} chains)": rods, "isothermal fluid": isothermal, "fluid with temperature": warm}
+shown = {
+    f"rods ({CHAINS} chains)": rods,
+    "isothermal fluid": isothermal,
+    "fluid with temperature": warm,
+}
 for ax, (name, result) in zip(axes, shown.items(), strict=True):
     picture = cb.smooth(result)
     image = ax.pcolormesh(
@@ -326,7 +330,9 @@ agree("mean displacements of the rods and rod by rod", rods.mean_displacement, t
 ax = panels(width=8, height=3.4)
 reach, edges = 9, np.linspace(-9, 9, 73)
 counts = np.histogram(chain.physical(np.sort(SQUEEZE * s * cloud, axis=1)), edges)[0]
-ax.stairs(counts / len(cloud) / np.diff(edges), edges, color="0.75", fill=True, label="sorted points")
+ax.stairs(
+    counts / len(cloud) / np.diff(edges), edges, color="0.75", fill=True, label="sorted points"
+)
 for each, colour, style, name in (
     (warm, GREEN, "--", "fluid with temperature"),
     (by_rod, RED, "-", "the same, rod by rod"),
@@ -552,7 +558,9 @@ strong = rest.assign(
     flow_velocity=("x", push * np.where(near, np.exp(-((rest_y / spread) ** 2) / 2), 0.0))
 )
 settings = {"every": moment, "cells": 1000, "progress": False}
-for (name, variance), style, colour in zip(fluids.items(), ("--", "-."), (PINK, GREEN), strict=True):
+for (name, variance), style, colour in zip(
+    fluids.items(), ("--", "-."), (PINK, GREEN), strict=True
+):
     flow = cb.hydrodynamics(chain, strong, moment, velocity_variance=variance, **settings)
     flow = flow.isel(time=-1)
     flow_y = flow.x - 2 * chain.radius * (flow.label - chain.size / 2)
