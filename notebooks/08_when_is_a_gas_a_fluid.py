@@ -346,14 +346,14 @@ for each in (1, ratio):
     print(f"mass ratio {each}: <v^4>/<v^2>^2 = {kurtosis:.2f}")
 
 # %% tags=["hide-input"]
-ax = panels(width=6, height=2.8)
-edges, middle = np.linspace(-4, 4, 41), np.linspace(-4, 4, 401)
+ax = panels(width=8, height=2.8)
+edges, middle = np.linspace(-4.1, 4.1, 42), np.linspace(-4, 4, 401)
 for (each, values), colour in zip(late.items(), (RED, GREEN), strict=True):
     name = "one mass" if each == 1 else f"light rods, masses 1 : {each}"
     ax.hist(values, edges, density=True, histtype="step", color=colour, label=name, linewidth=1.5)
 ax.plot(middle, np.exp(-(middle**2) / 2) / np.sqrt(2 * np.pi), "k--", label="Maxwell")
 ax.set(xlabel=r"velocity $v/\sqrt{T/m}$", ylabel="probability density", ylim=(0, 2.7))
-ax.legend()
+ax.legend(loc="upper left")
 plt.show()
 
 # %% [markdown]
