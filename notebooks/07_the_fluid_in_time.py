@@ -23,87 +23,61 @@
 #
 # We follow one release four times: as rods, as an isothermal fluid with the equations of
 # [Mani, Böttcher, Herrmann and Helbing](https://arxiv.org/abs/1404.7460), as a fluid that has a
-# temperature, and exactly. Then we push the rods in the middle: how fast does sound travel along
-# the chain, and do rods carry it?
+# temperature, and exactly. Then we push the rods in the middle: do rods carry sound?
 #
 # The unit of length is the rod radius $R$, and that of mass is $M$ (a rod has $m =
-# \frac{4\pi}{3}M$). The unit of time is $\sqrt{M/k}$, written $T$ on the axes. The restitution is
-# 1, and there is no gap between the anchors.
+# \frac{4\pi}{3}M$). The unit of time is $\sqrt{M/k}$, written T on the axes. The restitution is 1,
+# and there is no gap between the anchors.
 #
-# *Level: fourth year. You need: lesson 4, section 7, and lesson 5; partial differential equations.
-# Time: 100 minutes. To predict before you see the results, type `make lessons` in the folder of the
-# project, and open the copy of this lesson without outputs in `build/lessons/`.*
+# *Level: fourth year. You need: lessons 4 and 5; partial differential equations. Time: 90 minutes.
+# To predict before you see the results, type `make lessons` in the folder of the project, and open
+# the copy of this lesson in `build/lessons/`, which has neither outputs nor solutions.*
 
 # %% tags=["hide-input"]
 import matplotlib.pyplot as plt
 import numpy as np
-import pde
 import sympy as sp
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 from scipy.stats import norm
-from teaching import BLUE, GREEN, ORANGE, PINK, agree, check, panels, right
+from solutions import lesson_07 as solutions
+from teaching import GREEN, PINK, RED, SKY, agree, check, panels, safe
+
+# %% [markdown]
+# **What you may change.** The friction `damping`, from 0.5 to 2 (with more of it nothing swings), and
+# seeds. Then run all cells again. The numbers in the text are for `damping = 1`.
+
+# %%
+damping = 1
+
+# %% tags=["hide-input"]
+if not safe(
+    0.5 <= damping <= 2,
+    f"This lesson is for damping from 0.5 to 2, not {damping}: with less the fluids ring on after "
+    "the end of the runs, and with more nothing swings. The lesson goes on with damping = 1.",
+):
+    damping = 1
 
 # %%
 import crazybilliards as cb
 
-chain = cb.Chain(size=100, amplitude=30)
-s, W = chain.thermal_length, chain.free_velocity_width
+chain = cb.Chain(size=100, amplitude=30, damping=damping)
+s, W, R = chain.thermal_length, chain.free_velocity_width, chain.radius
 omega, friction = np.sqrt(chain.stiffness / chain.mass), chain.damping / chain.mass
 print(f"thermal length s = {s:.1f} R, velocity width W = {W:.2f} R/T, s/W = {s / W:.2f} T")
 print(f"one free rod: frequency {omega:.3f} /T, friction gamma/m = {friction:.3f} /T")
 
 # %% [markdown]
-# ## The equations in three strings
-#
-# [*The analytics section in sixty lines*](paper_the_analytics_section_in_sixty_lines.ipynb), section 6, gives the equations of the
-# paper to py-pde as text. These are its cells. Section 1 explains the equations. The function
-# `hydrodynamics` of the package solves the same equations without the small viscosity, which is the
-# last term of the second string. It also chooses its time steps, and it solves stronger compressions
-# (*The analytics section in sixty lines*, section 7).
-
-# %%
-R, L = chain.radius, chain.size
-k, m, gamma = chain.stiffness, chain.mass, chain.damping
-equations = {
-    "rho": "-d_dx(rho * V)",
-    "V": "-V * d_dx(V) - W2 / rho * d_dx(rho / (1 - 2 * R * rho))"
-    "- k / m * (x - 2 * R * (N - L / 2)) - gamma / m * V + 4 * d2_dx2(V)",
-    "N": "-V * d_dx(N)",
-}
-constants = {"W2": W**2, "R": R, "L": L, "k": k, "m": m, "gamma": gamma}
-fluid = pde.PDE(equations, consts=constants, bc={"curvature": 0})
-
-# %%
-grid = pde.CartesianGrid([[-L * R - 5 * s, L * R + 5 * s]], 400)
-X, width = grid.axes_coords[0], 0.6 * s  # the chain is squeezed to 0.6 of its width at rest
-y = np.linspace(-30 * s, 30 * s, 100_001)
-y = np.interp(X, y + 2 * R * L * (norm.cdf(y, scale=width) - 0.5), y)
-free = L * norm.pdf(y, scale=width)
-fields = {"rho": free / (1 + 2 * R * free), "V": 0 * X, "N": L * norm.cdf(y, scale=width)}
-start = pde.FieldCollection([pde.ScalarField(grid, fields[f], label=f) for f in fields])
-solver = {"dt": 0.02, "solver": "runge-kutta", "backend": "numpy", "tracker": None}
-end = fluid.solve(start, t_range=8.0, **solver)
-flow = cb.hydrodynamics(chain, cb.compressed(chain, 0.6), 8.0, every=8.0, progress=False)
-apart = np.abs(np.interp(X, flow.x, flow.density[-1]) - end["rho"].data).max()
-print(f"hydrodynamics and three strings: {2 * R * apart:.1e} of close packing apart")
-
-# %% tags=["remove-cell"]
-assert 2 * R * apart < 1e-2
-
-# %% [markdown]
-# ## The release
-#
 # The squeeze acts on the reduced coordinate $y = x - 2R\,(i-\frac{L+1}{2})$. In $y$ the rods are
 # points, and all anchors lie at $y = 0$. The squeeze multiplies every $y$ by 0.3 and leaves the
-# velocities as they are in the steady state. `compare_relaxation` squeezes 200 chains and follows
-# them, and it solves the theories.
+# velocities as they are in the steady state. `compare_relaxation` squeezes 1000 chains, follows
+# them, and solves the theories.
 
 # %%
 SQUEEZE = 0.3
-tree = cb.compare_relaxation(
-    chain, "compressed", SQUEEZE, duration=16, every=0.4, replicas=200, seed=1, progress=False
-)
+CHAINS = 1000
+settings = {"duration": 16, "every": 0.4, "replicas": CHAINS, "seed": 2, "progress": False}
+tree = cb.compare_relaxation(chain, "compressed", SQUEEZE, **settings)
 rods, isothermal, warm, exact = (
     tree[name].to_dataset() for name in ("particles", "isothermal", "evolving", "exact")
 )
@@ -113,7 +87,7 @@ time = rods.time.values
 ax = panels(width=7, height=3)
 for moment, name in ((0, "squeezed, t = 0"), (-1, f"t = {time[-1]:.0f} T")):
     seen = cb.smooth(rods.isel(time=moment))
-    style = {"color": (BLUE, ORANGE)[moment], "linestyle": ("-", "--")[moment]}
+    style = {"color": ("0.55", "k")[moment], "linestyle": ("-", "--")[moment]}
     ax.plot(seen.x, seen.density, label=name, **style)
 ax.axhline(chain.close_packed_density, color="0.6", linewidth=1)
 ax.text(-195, chain.close_packed_density + 0.005, "close packing", color="0.4")
@@ -124,20 +98,19 @@ plt.show()
 # %% [markdown]
 # ## 1. The equations
 #
-# The paper gives a continuity equation and a velocity equation. They contain the pressure of hard
-# rods (per mass) and the springs at the mean displacement $\langle\Delta x\rangle$:
+# The paper gives a continuity equation and a velocity equation, with the pressure of hard rods per
+# mass and the springs at the mean displacement $\langle\Delta x\rangle$:
 #
 # $$\rho_t + (\rho V)_x = 0,\qquad
 # V_t + VV_x = -\frac1\rho\left(\frac{\rho W^2}{1-2R\rho}\right)_{\!x}
 # - \frac km\langle\Delta x\rangle - \frac\gamma m V .$$
 #
-# **The springs.** The springs that pull at $x$ are those of the rods that are there. Let
-# $N(x,t) = \int_{-\infty}^x\rho$ be the number of rods to the left of $x$. Then
-# $\langle\Delta x\rangle = x - 2R\,(N - L/2)$. The flow carries these labels with it,
-# $N_t + V N_x = 0$. Nothing is taken from a simulation.
+# **The springs.** Let $N(x,t)$ be the number of rods to the left of $x$. The rods there have the mean
+# displacement $\langle\Delta x\rangle = x - 2R\,(N - L/2)$. The flow carries these labels with it,
+# $N_t + V N_x = 0$.
 #
-# **The isothermal fluid** has a constant $W^2$. The paper writes $W_v(r,t)$ without an equation for
-# it, uses a constant in the steady state, and solves nothing in time.
+# **The isothermal fluid** has a constant $W^2$. The paper uses this constant in the steady state, and
+# solves nothing in time.
 #
 # **The fluid with a temperature** has an equation for $W^2$ as well. It is derived here, and it is
 # not in the paper:
@@ -145,21 +118,31 @@ plt.show()
 # $$(W^2)_t + V(W^2)_x = -\frac{2W^2\,V_x}{1-2R\rho}
 # - \frac{2\gamma}{m}\left(W^2 - \frac{A^2}{2m\gamma}\right).$$
 #
-# The first term is the adiabatic law of a gas with one degree of freedom: if the gas is compressed
-# to half its free length, its temperature rises to four times the value. The second term is the
-# exchange of heat with friction and noise. `hydrodynamics` solves both fluids with the library
-# py-pde.
+# The first term is the adiabatic law of a gas with one degree of freedom. The second term is the
+# exchange of heat with friction and noise. `hydrodynamics` solves both fluids.
 #
 # ## 2. Space and time
 #
 # **Predict.** The friction is less than critical ($\gamma < 2\sqrt{km}$), so one free rod swings.
-# Will the squeezed chain swing too? Will the two fluids?
-#
+# Which of the three overshoot and become longer than at rest: the `"rods"`, the `"isothermal"` fluid,
+# the fluid with a `"temperature"`, or `"all"`?
+
+# %%
+my_word = ...  # your code here: one of the four words
+
+hint = "Which of them becomes colder while it expands, and is then pushed less?"
+check(my_word, solutions.OVERSHOOTS, hint=hint)
+
+# %% [markdown]
 # **Run.**
 
 # %% tags=["hide-input"]
 fig, axes = plt.subplots(1, 3, figsize=(10, 3.6), sharey=True)
-shown = {"rods (200 chains)": rods, "isothermal fluid": isothermal, "fluid with temperature": warm}
+shown = {
+    f"rods ({CHAINS} chains)": rods,
+    "isothermal fluid": isothermal,
+    "fluid with temperature": warm,
+}
 for ax, (name, result) in zip(axes, shown.items(), strict=True):
     picture = cb.smooth(result)
     image = ax.pcolormesh(
@@ -173,25 +156,46 @@ plt.show()
 # %% [markdown]
 # <details><summary>Explain</summary>
 #
-# The isothermal fluid overshoots: near $t = 4\,T$ its chain is longer, and less dense in the middle,
-# than it is at the end. The rods do not overshoot. The fluid with a temperature does not overshoot
-# either. Section 3 gives the reason.
+# The isothermal fluid overshoots: near $t = 4\,$T its chain is longer, and less dense in the middle,
+# than at the end. Neither the rods nor the fluid with a temperature overshoot.
+#
 # </details>
 #
 # ## 3. The width of the cloud, and its heat
 #
 # In $y$ the stationary chain is a Gaussian cloud of width $s$. Such a cloud *breathes*: its width
-# $\sigma(t)$ changes, and its form does not. [Lesson
-# 4](04_the_elastic_chain_is_exactly_solvable.ipynb), section 7, shows this for elastic rods and
-# solves it exactly. Here we describe the same motion by the equations of the fluid. The flow is
-# $V = (\sigma'/\sigma)\,y$, and the equations of section 1 reduce to two ordinary differential
-# equations:
+# $\sigma(t)$ changes, and its form does not (lesson 4). The flow is $V = (\sigma'/\sigma)\,y$. The
+# velocity equation of section 1 then becomes
 #
-# $$\sigma'' = \frac{W^2}{\sigma} - \frac km\sigma - \frac\gamma m\sigma',\qquad
-# (W^2)' = -2W^2\,\frac{\sigma'}{\sigma} - \frac{2\gamma}{m}\left(W^2-W_0^2\right),$$
+# $$\sigma'' = \frac{W^2}{\sigma} - \frac km\sigma - \frac\gamma m\sigma'.$$
 #
-# where $W_0$ is the velocity width at rest. In the isothermal fluid $W^2 = W_0^2$ replaces the
-# second equation.
+# **Your turn.** Insert the flow into the equation for $W^2$. A length $dx$ is $dy=(1-2R\rho)\,dx$ in
+# $y$, and $W^2$ is the same everywhere. Write $(W^2)'$; `heat` is $W^2$, `W` is the width at rest
+# $W_0$, and `friction` is $\gamma/m$.
+
+
+# %%
+def my_heat_rate(sigma, sigma_rate, heat):
+    return ...  # your code here
+
+
+def expected_heat_rate(sigma, sigma_rate, heat):
+    return solutions.heat_rate(sigma, sigma_rate, heat, W**2, friction)
+
+
+clouds = [(s, 0.0, 2 * W**2), (s, W, W**2), (0.5 * s, -W, 0.3 * W**2)]
+hint = "V_x / (1 - 2 R rho) is V_y, which is sigma_rate / sigma."
+check(my_heat_rate, expected_heat_rate, at=clouds, hint=hint)
+
+# %% [markdown]
+# <details><summary>Solution</summary>
+#
+# ```python
+# def my_heat_rate(sigma, sigma_rate, heat):
+#     return -2 * heat * sigma_rate / sigma - 2 * friction * (heat - W**2)
+# ```
+#
+# </details>
 
 
 # %%
@@ -201,7 +205,7 @@ def breathe(chain, times, squeeze, heated=True):
 
     def rates(t, state):
         sigma, rate, heat = state
-        warming = -2 * heat * rate / sigma - 2 * loss * (heat - W**2) if heated else 0.0
+        warming = solutions.heat_rate(sigma, rate, heat, W**2, loss) if heated else 0.0
         return rate, heat / sigma - (W / s) ** 2 * sigma - loss * rate, warming
 
     start, accuracy = (squeeze * s, 0.0, W**2), {"rtol": 1e-9, "atol": 1e-9}
@@ -210,8 +214,8 @@ def breathe(chain, times, squeeze, heated=True):
 
 
 # %% [markdown]
-# **Predict.** The cloud expands at first. Which sign has each of the two terms of the heat equation?
-# Is the push $W^2/\sigma$ then stronger or weaker than in the isothermal fluid?
+# **Predict.** The cloud expands at first. Is the push $W^2/\sigma$ then stronger or weaker than in the
+# isothermal fluid?
 #
 # **Run.**
 
@@ -223,22 +227,22 @@ print(f"with temperature: widest {width.max():.4f} s, lowest heat {heat.min():.3
 
 # %% tags=["hide-input"]
 # The rods: y is the displacement, because all anchors coincide in y.
-points = 200 * chain.size  # independent, so errors of variances are simple
+points = CHAINS * chain.size  # independent, so errors of variances are simple
 rods_y2 = (rods.displacement_width**2 + rods.mean_displacement**2).mean("particle").values
 rods_v2 = (rods.velocity_width**2).mean("particle").values  # the width is sqrt(<v^2>)
 rods_width = np.sqrt(rods_y2) / s
 kinetic = rods_v2 / W**2
 
 left, other = panels(2)
-left.plot(time, cold_width, "--", color=BLUE, label="isothermal fluid")
-left.plot(time, width, color=ORANGE, linewidth=2.5, label="fluid with temperature")
+left.plot(time, cold_width, "--", color=PINK, label="isothermal fluid")
+left.plot(time, width, color=GREEN, linewidth=2.5, label="fluid with temperature")
 left.plot(time, rods_width, "o", color="k", markersize=4, fillstyle="none", label="rods")
 left.set(xlabel="time t [T]", ylabel=r"width of the cloud $\sigma/s$", ylim=(0, 1.7))
-other.plot(time, 1 + cold_rate**2, "--", color=BLUE, label="isothermal fluid: motion + heat")
+other.plot(time, 1 + cold_rate**2, "--", color=PINK, label="isothermal fluid: motion + heat")
 other.plot(
-    time, heat + rate**2, color=ORANGE, linewidth=2.5, label="with temperature: motion + heat"
+    time, heat + rate**2, color=GREEN, linewidth=2.5, label="with temperature: motion + heat"
 )
-other.plot(time, heat, ":", color=GREEN, label="with temperature: heat $W^2$ alone")
+other.plot(time, heat, ":", color=SKY, linewidth=2, label="with temperature: heat $W^2$ alone")
 other.plot(time, kinetic, "o", color="k", markersize=4, fillstyle="none", label="rods")
 other.set(xlabel="time t [T]", ylabel=r"$\langle v^2\rangle / W_0^2$", ylim=(0, 2.9))
 for ax in (left, other):
@@ -262,45 +266,101 @@ assert max(off) < 1e-3  # hydrodynamics, and the exact solution of the package
 # %% [markdown]
 # <details><summary>Explain</summary>
 #
-# An expanding gas does work on the springs and on its own motion. It takes this energy from its
-# heat. So the first term is negative: the rods *cool*, to less than half of $W_0^2$, and the push
-# becomes weaker. The second term is then positive: the noise returns heat, but only at the rate
-# $2\gamma/m$, which is no faster than the chain moves. The isothermal fluid is kept at $W_0^2$ by
-# assumption. The model adds heat while it expands, and the push carries it to 1.56 $s$.
+# An expanding gas does work on the springs and on its own motion, and takes the energy from its heat.
+# The first term is negative: the rods *cool*, to less than half of $W_0^2$, and the push becomes
+# weaker. The noise returns heat, but only at the rate $2\gamma/m$. The isothermal fluid is kept at
+# $W_0^2$ by assumption, and the push carries it to 1.56 $s$.
 #
-# At rest the assumption is right, because $W^2 = W_0^2$ holds in the steady state for $e = 1$. **A
-# closure that is right in the steady state can be wrong on the way to it.**
+# At rest $W^2 = W_0^2$ is right. **A closure that is right in the steady state can be wrong on the way
+# to it.**
+#
 # </details>
 #
-# The cloud tells where the *points* are. A fluid has rod $i$ at the place where $N = i-\frac12$.
-# `rod_by_rod` reads the rods off the points ([lesson 5](05_from_the_kinetic_equation_to_the_force_balance.ipynb), section 5).
+# **You can stop here.** You have reduced a partial differential equation to two ordinary ones, and
+# found why a fluid needs a temperature to come to rest as the rods do.
 #
-# **Predict.** The fluid with a temperature has the exact cloud. Does it have the exact mean
-# displacements of the rods, too? Does `rod_by_rod` hold while the chain moves?
+# ## 4. Where are the rods?
 #
-# **Run.**
+# The fluid with a temperature has the exact cloud of points. It has a density, and no rods. The usual
+# reading is that rod $i$ is where $N = i-\frac12$ rods lie to its left.
+#
+# **Predict.** Sketch the density of the rods in the middle of the squeezed chain. Is it as smooth as
+# that of the fluid? Is the outermost rod where the fluid has it?
+#
+# The points are independent draws from the Gaussian cloud. Which of $L$ draws is rod 1?
+#
+# **Your turn.** `points` has one chain in each row: $L$ independent points, in no order. Return the
+# mean places of rods 1 to $L$ in $y$, averaged over the rows.
+
+
+# %%
+def my_mean_places(points):
+    return ...  # your code here
+
+
+trials = [(np.random.default_rng(seed).normal(size=(50, 7)),) for seed in (1, 2)]
+hint = "np.sort(..., axis=1) puts the points of each chain in order. Then average over axis 0."
+check(my_mean_places, solutions.mean_places, at=trials, hint=hint)
+
+# %% [markdown]
+# <details><summary>Solution</summary>
+#
+# ```python
+# def my_mean_places(points):
+#     return np.sort(points, axis=1).mean(axis=0)
+# ```
+#
+# </details>
+#
+# **Run.** We draw points from the cloud at the start and at the end. `rod_by_rod` computes the same
+# without random numbers, for a theory at all times.
 
 # %%
 by_rod = cb.rod_by_rod(warm)
-for name, theory in {"fluid": warm, "rod by rod": by_rod}.items():
-    off = abs(theory.mean_displacement - exact.mean_displacement).max().item()
-    print(f"mean displacements, {name}: at most {off / s:.4f} s from the exact ones")
-for name in ("mean_displacement", "displacement_width"):
-    agree(f"{name} of the rods and rod by rod", rods[name], by_rod[name], rods[f"{name}_error"])
+cloud = np.random.default_rng(3).normal(size=(20_000, chain.size))
+first_of_all = solutions.mean_places(cloud)[0]
+print("mean displacement of rod 1 at the end:")
+for name, each in {"fluid": warm, "rod by rod": by_rod}.items():
+    print(f"{name}: {each.mean_displacement.values[-1, 0] / s:.3f} s")
+print(f"sorted points: {first_of_all * width[-1]:.3f} s")
+theory, error = by_rod.mean_displacement, rods.mean_displacement_error
+agree("mean displacements of the rods and rod by rod", rods.mean_displacement, theory, error)
+
+# %% tags=["hide-input"]
+ax = panels(width=8, height=3.4)
+reach, edges = 9, np.linspace(-9, 9, 73)
+counts = np.histogram(chain.physical(np.sort(SQUEEZE * s * cloud, axis=1)), edges)[0]
+ax.stairs(
+    counts / len(cloud) / np.diff(edges), edges, color="0.75", fill=True, label="sorted points"
+)
+for each, colour, style, name in (
+    (warm, GREEN, "--", "fluid with temperature"),
+    (by_rod, RED, "-", "the same, rod by rod"),
+):
+    middle = each.isel(time=0).sel(x=slice(-reach, reach))
+    ax.plot(middle.x, middle.density, style, color=colour, linewidth=2, label=name)
+seen = rods.isel(time=0).sel(x=slice(-reach, reach)).coarsen(x=4, boundary="trim").mean()
+ax.plot(seen.x, seen.density, "ko", fillstyle="none", markersize=4, label="rods")
+ax.set(xlabel="position x [R]", ylabel=r"density $\rho$ [1/R]", ylim=(0.3, 0.65))
+ax.set_title("the middle of the squeezed chain, t = 0")
+ax.legend(ncols=2, loc="upper center")
+plt.show()
 
 # %% tags=["remove-cell"]
-assert off < 1e-4 * s
+assert abs(by_rod.mean_displacement - exact.mean_displacement).max() < 1e-4 * s
 assert abs(warm.mean_displacement - exact.mean_displacement).max() > 0.05 * s
 
 # %% [markdown]
 # <details><summary>Explain</summary>
 #
-# The fluid's mean displacements are wrong by up to 0.07 $s$. Rod by rod they are right at all times,
-# and so are the widths, which a fluid does not have. Points that exchange their names in elastic
-# collisions remain independent while they move. This is all that `rod_by_rod` assumes.
+# Rods are the points *in order*, and their density has a peak for each rod. The mean of the first of a
+# hundred draws is not the place where half a point lies to its left: the fluid is wrong by 0.07 $s$
+# there. Elastic rods only exchange their names, so their points remain independent while they move, and
+# the order statistics of lessons 4 and 5 hold at all times.
+#
 # </details>
 #
-# ## 4. The animation
+# The film shows all descriptions:
 
 # %% tags=["hide-input"]
 film = cb.film(tree, seconds=6, progress=False)
@@ -310,82 +370,39 @@ film
 assert len(film.html) < 1e6
 
 # %% [markdown]
-# ## 5. A motion without compression
+# ## 5. Sound
 #
-# **Predict.** Push the whole chain aside by 2 $s$ instead of squeezing it, and release it. Will the
-# two fluids differ now?
-#
-# **Run.**
-
-# %%
-fluids = {"isothermal fluid": None, "fluid with temperature": "evolving"}
-pushed = cb.displaced(chain, 2 * s)
-swings = {
-    name: cb.hydrodynamics(chain, pushed, 16, every=0.4, velocity_variance=variance, progress=False)
-    for name, variance in fluids.items()
-}
-
-# %% tags=["hide-input"]
-ringing = np.sqrt(omega**2 - friction**2 / 4)
-oscillator = np.exp(-friction * time / 2) * (
-    np.cos(ringing * time) + friction / (2 * ringing) * np.sin(ringing * time)
-)
-ax = cb.overlay(swings, "centre", ax=panels(width=6, height=2.8))
-ax.plot(time[::2], 2 * s * oscillator[::2], "o", color="k", fillstyle="none", label="one free rod")
-ax.set_ylabel("centre of the chain [R]")
-ax.legend()
-plt.show()
-largest = max(np.abs(flow.centre - 2 * s * oscillator).max().item() / s for flow in swings.values())
-print(f"largest difference from one free rod: {largest:.1e} s")
-
-# %% tags=["remove-cell"]
-assert largest < 1e-3
-
-# %% [markdown]
-# <details><summary>Explain</summary>
-#
-# The two fluids agree. The chain swings as a whole, like one free rod. Nothing is compressed, so
-# nothing is heated, and collisions do not change the total momentum.
-# </details>
-#
-# ## 6. Sound
-#
-# Take a small disturbance of a fluid at rest with the density $\rho_0$, so that
-# $\rho = \rho_0+\rho_1$, and $\rho_1$ and $V$ are small. Keep the terms of first order. Over short
-# distances springs and friction can be neglected. With the pressure per mass $p$,
+# Take a small disturbance of a fluid at rest, $\rho = \rho_0+\rho_1$, and keep the terms of first order.
+# Over short distances springs and friction can be neglected. With the pressure per mass $p$,
 #
 # $$\rho_{1,t} = -\rho_0 V_x,\qquad V_t = -\frac{1}{\rho_0}\,\frac{dp}{d\rho}\,\rho_{1,x}
 # \quad\Rightarrow\quad V_{tt} = \frac{dp}{d\rho}\,V_{xx},\qquad c^2 = \frac{dp}{d\rho}.$$
 #
-# **Task.** In the isothermal fluid $p = \rho W^2/(1-2R\rho)$ with a constant $W^2$. Write its speed
-# of sound $c$ as a function of the density.
-
-
-# %% tags=["remove-cell"]
-def sound_speed_solution(density):
-    return W / (1 - 2 * chain.radius * density)
-
-
-densities = [(0.0,), (0.1,), (0.4,)]
-assert right(sound_speed_solution, sound_speed_solution, at=densities)
-assert not right(lambda density: W, sound_speed_solution, at=densities)
+# **Your turn.** In the isothermal fluid $p = \rho W^2/(1-2R\rho)$ with a constant $W^2$. Write its
+# speed of sound $c$ as a function of the density. `W` and `R` are known.
 
 
 # %%
-def sound_speed(density):
+def my_sound_speed(density):
     return ...  # your code here
 
 
-hint = "differentiate p with the quotient rule, and take the square root"
-check(sound_speed, sound_speed_solution, at=densities, hint=hint)
+def expected_speed(density):
+    return solutions.sound_speed(density, W, R)
+
+
+densities = [(0.0,), (0.1,), (0.4,)]
+hint = "Differentiate p with the quotient rule, and take the square root."
+check(my_sound_speed, expected_speed, at=densities, hint=hint)
 
 # %% [markdown]
 # <details><summary>Solution</summary>
 #
 # ```python
-# def sound_speed(density):
-#     return W / (1 - 2 * chain.radius * density)
+# def my_sound_speed(density):
+#     return W / (1 - 2 * R * density)
 # ```
+#
 # </details>
 #
 # The fluid with a temperature has no time to exchange heat while a short pulse passes. Its $W^2$
@@ -405,14 +422,12 @@ for name, variance in (("isothermal", W2), ("adiabatic", heated)):
 assert sp.simplify(squares["isothermal"] - W2 / (1 - a * rho0) ** 2) == 0
 assert sp.simplify(squares["adiabatic"] - 3 * W2 / (1 - a * rho0) ** 2) == 0
 numbers = {W2: W**2, a: 2 * chain.radius, rho0: 0.4}
-assert np.isclose(float(squares["isothermal"].subs(numbers)), sound_speed_solution(0.4) ** 2)
+assert np.isclose(float(squares["isothermal"].subs(numbers)), expected_speed(0.4) ** 2)
 
 # %% [markdown]
-# Without exchange of heat sound is $\sqrt3$ times as fast as at a constant temperature. (Newton took
-# air to be isothermal and found too low a speed of sound. Laplace added the heat.) In the reduced
-# coordinate a length $dx$ is $dy = (1-2R\rho)\,dx$, so in $y$ the isothermal sound has the speed $W$
-# *everywhere*. In $x$ sound is faster because a collision carries it over the length of a rod at
-# once.
+# Without exchange of heat sound is $\sqrt3$ times as fast as at a constant temperature. In $y$ the
+# isothermal sound has the speed $W$ *everywhere*. In $x$ it is faster, because a collision carries it
+# over the length of a rod at once.
 #
 # Start from the steady state and give the rods in the middle a push that is narrow against $s$.
 #
@@ -422,6 +437,7 @@ assert np.isclose(float(squares["isothermal"].subs(numbers)), sound_speed_soluti
 # **Run.** The broken lines solve $dx/dt = \pm c(x)$ with the density at rest.
 
 # %%
+fluids = {"isothermal fluid": None, "fluid with temperature": "evolving"}
 WIDTH, PUSH, END = 0.08 * s, 0.02 * W, 0.8 * s / W
 rest = cb.displaced(chain, 0.0)
 rest_y = rest.x - 2 * chain.radius * (rest.label - chain.size / 2)
@@ -441,7 +457,7 @@ def sound_path(times, factor):
     x, density = rest.x.values, rest.density.values
 
     def speed(t, place):
-        return factor * sound_speed_solution(np.interp(place, x, density))
+        return factor * expected_speed(np.interp(place, x, density))
 
     return solve_ivp(speed, (0, times[-1]), [0.0], t_eval=times, rtol=1e-8).y[0]
 
@@ -472,7 +488,7 @@ for ax, (name, flow), factor in zip(axes, pulses.items(), (1, np.sqrt(3)), stric
 axes[0].set_ylabel("time t [T]")
 fig.colorbar(image, ax=axes, label="flow velocity V / push")
 plt.show()
-middle = sound_speed_solution(rest.density.sel(x=0, method="nearest").item())
+middle = expected_speed(rest.density.sel(x=0, method="nearest").item())
 print(f"in the middle: W = {W:.1f} R/T, c = {middle:.1f} R/T")
 
 # %% tags=["remove-cell"]
@@ -482,26 +498,20 @@ assert all(abs(ratio - 1) < 0.03 for ratio in measured.values())
 # <details><summary>Explain</summary>
 #
 # Both fluids carry sound with their own $c(x)$. The pulse becomes slower as it moves outwards,
-# because the density falls. In the dense middle the isothermal sound is nearly five times as fast
-# as the rods themselves.
+# because the density falls.
+#
 # </details>
 #
-# ## 7. Do rods carry sound?
+# ## 6. Do rods carry sound?
 #
 # The fluid with a temperature was *exact* for the breathing cloud.
 #
 # **Predict.** Is it right for sound too?
 #
 # The rods can be solved exactly. In $y$ elastic rods that exchange their names pass through one
-# another. So a pushed rod carries its push at its own velocity: fast rods carry it far, and slow
-# rods carry it a short way. Each point is a damped oscillator with noise. A point that starts at
-# $y_0$ with the mean push $u(y_0)$ is Gaussian at time $t$,
-#
-# $$(y, v)\sim\mathcal N\!\big(M\,(y_0, u(y_0)),\; \Sigma - M\,\mathrm{diag}(s^2,\,0)\,M^\top\big),
-# \qquad M = e^{Bt},\quad B = \begin{pmatrix}0&1\\-k/m&-\gamma/m\end{pmatrix},$$
-#
-# with $\Sigma = \mathrm{diag}(s^2, W^2)$ at rest. The integral over the Gaussian of $y_0$ gives the
-# mean velocity at $y$.
+# another, so a pushed rod carries its push at its own velocity. Each point is a damped oscillator with
+# noise (lesson 1, section 4). It is Gaussian at time $t$, and an integral over all starts gives the
+# mean velocity at $y$ (the folded cell).
 
 
 # %% tags=["hide-input"]
@@ -548,12 +558,14 @@ strong = rest.assign(
     flow_velocity=("x", push * np.where(near, np.exp(-((rest_y / spread) ** 2) / 2), 0.0))
 )
 settings = {"every": moment, "cells": 1000, "progress": False}
-for (name, variance), style, colour in zip(fluids.items(), ("--", "-."), (BLUE, PINK), strict=True):
+for (name, variance), style, colour in zip(
+    fluids.items(), ("--", "-."), (PINK, GREEN), strict=True
+):
     flow = cb.hydrodynamics(chain, strong, moment, velocity_variance=variance, **settings)
     flow = flow.isel(time=-1)
     flow_y = flow.x - 2 * chain.radius * (flow.label - chain.size / 2)
     ax.plot(flow_y / s, flow.flow_velocity / W, style, color=colour, label=name)
-ax.plot(fine / s, truth / W, color=ORANGE, linewidth=2.5, label="exact")
+ax.plot(fine / s, truth / W, color=RED, linewidth=2.5, label="exact")
 look = {"fmt": "o", "color": "k", "fillstyle": "none", "markersize": 4}
 ax.errorbar(centres / s, binned / W, errors / W, label="rods, 10 000 chains", **look)
 ax.set(xlim=(-2, 2), xlabel="reduced position y / s", ylabel="mean velocity / W")
@@ -562,33 +574,19 @@ ax.legend(ncols=2, loc="upper center")
 plt.show()
 
 hump = crest(fine, truth, 0, 1.5 * s)
-early = 0.1 * moment
-soon = mean_velocity(0.1 * fine, early, 0.03 * push, 0.1 * spread)
-hump_soon = crest(0.1 * fine, soon, 0, 0.15 * s)
 agree("rods and the exact curve", binned, mean_velocity(centres, moment, push, spread), errors)
 print(f"the exact curve is highest at {hump / (W * moment):.2f} W t; sound: 1 or {np.sqrt(3):.2f}")
-print(f"ten times earlier, push narrower and weaker: at {hump_soon / (W * early):.2f} W t")
-
-# %% tags=["remove-cell"]
-assert abs(hump_soon / (W * early) - np.sqrt(2)) < 0.05
-
 # %% [markdown]
 # <details><summary>Explain</summary>
 #
-# No. Both fluids are wrong here, because the rods carry no sound. The push spreads
-# into two low humps that become broader and broader, because rods of all velocities carry it. (The
-# push is a strong one, so that one can see it above the noise. The fluids' pulses therefore
-# steepen, and drift to the right while they separate.)
+# No. Both fluids are wrong here. The push spreads into two low humps that become broader and broader,
+# because rods of all velocities carry it.
 #
-# Shortly after a narrow and weak push the mean velocity is proportional to $w^2 e^{-w^2/2W^2}$ with
-# $w = y/t$. Its maximum is at $w = \sqrt2\,W$, between the two speeds of sound. At the time of the
-# picture the maxima are further out, because fewer other rods share the push there.
+# A fluid assumes that collisions make the velocities forget where they came from. Elastic collisions
+# of equal rods only exchange names, so they forget nothing. The fluid with a temperature was exact for
+# the breathing cloud for another reason: a Gaussian remains a Gaussian. Lesson 8 looks for a gas that
+# is a fluid.
 #
-# A fluid assumes that collisions make the velocities forget where they came from. This is called
-# *local equilibrium*. Elastic collisions of equal rods in one dimension only exchange names, so
-# they forget nothing. The fluid with a temperature was exact for the breathing cloud for another
-# reason: a Gaussian remains a Gaussian. Noise and friction make rods forget within $m/\gamma =
-# 4.2\,T$, but by then the springs have destroyed the push.
 # </details>
 #
 # ## Exercises
@@ -608,47 +606,5 @@ assert abs(hump_soon / (W * early) - np.sqrt(2)) < 0.05
 #
 # The differences are 0.56, 0.33, 0.11 and 0.04 $s$. Friction exchanges heat at the rate $2\gamma/m$
 # *and* slows the motion down. At $\gamma = 10$ the noise keeps the temperature nearly constant.
-# </details>
 #
-# **2.** `hydrodynamics` computes with labels instead of positions. Check it with its other,
-# independent solver, `frame="eulerian"`, which solves the two equations of section 1 on a grid of
-# positions.
-#
-# <details><summary>Solution</summary>
-#
-# ```python
-# other = cb.hydrodynamics(chain, cb.compressed(chain, SQUEEZE), 16, every=0.4, frame="eulerian",
-#                       velocity_variance="evolving", progress=False)
-# np.abs(other.cloud_width / s - width).max().item()
-# ```
-#
-# The result is 0.002: the two agree to 0.2 % of $s$ with the default 285 cells.
-# </details>
-#
-# **3.** A wave of frequency $\omega$ exchanges heat at the rate $2\gamma/m$ while it passes. Derive
-# $c^2(\omega)$ between Newton's and Laplace's limits, without springs. Which limit applies in
-# section 6?
-#
-# <details><summary>Solution</summary>
-#
-# Let $\theta = \delta W^2/W^2$. In $y$, $\theta_t = -2V_y - \frac{2\gamma}{m}\theta$, and the
-# continuity equation says $-V_y = \partial_t\,\delta\rho_y/\rho_y$. For a time dependence
-# $e^{-i\omega t}$ this gives
-# $\theta = \frac{-2i\omega}{-i\omega+2\gamma/m}\,\frac{\delta\rho_y}{\rho_y}$. With
-# $p = \rho_y W^2$,
-#
-# $$c^2(\omega) = W^2\left(1 + \frac{2}{1 + 2i\gamma/(m\omega)}\right).$$
-#
-# Slow waves have $c = W$, fast ones $\sqrt3\,W$. Our pulse has $\omega\approx W/(0.08\,s) = 6.1/T$
-# against $2\gamma/m = 0.48/T$, so it is nearly adiabatic.
-# </details>
-#
-# **4.** In section 3 the squeezed rods had the velocities of the steady state. Squeeze a chain
-# without exchange of heat instead: which $W^2$ does it have, and what happens at the release?
-#
-# <details><summary>Solution</summary>
-#
-# The adiabatic law gives $W^2\propto 1/\sigma^2$, which is $1/0.3^2 = 11$ times $W_0^2$. Change the
-# start in `breathe` to `(squeeze * s, 0.0, (W / squeeze) ** 2)`. The cloud then expands to 2.47 $s$
-# at $t = 2.9\,T$, and cools to 0.37 $W_0^2$ on the way.
 # </details>
