@@ -26,6 +26,7 @@ _UNGUARDED = (
     "them under if __name__ == '__main__': only"
 )
 _PATIENCE = "20s"  # to wait for the answer of a scheduler
+_BETWEEN_LOOKS = 1.0  # at the workers [s]
 # Cases that are submitted and have not returned: enough for a cluster, few in memory.
 _MOST_UNDER_WAY = 1000
 
@@ -48,20 +49,47 @@ def process_pool(processes: int | None = None) -> AbstractContextManager[Executo
 
 @contextmanager
 def _pool(processes: int) -> Iterator[Executor]:
-    before = set(multiprocessing.active_children())
     context = multiprocessing.get_context("spawn")
     started = context.Event()  # whether a worker did
     pool = ProcessPoolExecutor(processes, context, initializer=_prepare_worker, initargs=(started,))
+    over = threading.Event()
+    threading.Thread(target=_watch, args=(pool, over), daemon=True).start()
     try:
         yield pool
     except BaseException as error:
-        for process in set(multiprocessing.active_children()) - before:
-            process.kill()
+        _kill_workers(pool)
         pool.shutdown(wait=False, cancel_futures=True)
         if isinstance(error.__cause__, BrokenProcessPool) and not started.is_set():
             raise RuntimeError(_UNGUARDED) from error.__cause__
         raise
+    finally:
+        over.set()
     pool.shutdown()
+
+
+def _watch(pool: ProcessPoolExecutor, over: threading.Event) -> None:
+    """Kill the workers when one of them has died, until ``over`` is set.
+
+    The pool does that, too, unless it waits for a result that the dead one has half sent.
+    """
+    while not over.wait(_BETWEEN_LOOKS):
+        if any(process.exitcode for process in [*(pool._processes or {}).values()]):
+            _kill_workers(pool)
+            return
+
+
+def _kill_workers(pool: ProcessPoolExecutor) -> None:
+    """Kill all workers, such that the pool takes notice whatever they were doing.
+
+    A worker may die while it sends a result. A thread of the pool then waits for the rest, and
+    Python waits for that thread when it ends. The thread meets the end of the pipe only when
+    nobody can write any more, neither a worker nor this process, which never does. The standard
+    library has no public way to say so.
+    """
+    for process in [*(pool._processes or {}).values()]:
+        process.kill()
+    if pool._result_queue is not None:
+        pool._result_queue._writer.close()  # type: ignore[attr-defined]
 
 
 def _prepare_worker(started: Event) -> None:

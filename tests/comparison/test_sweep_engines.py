@@ -70,6 +70,57 @@ def test_processes_and_dask_give_the_same_results(grid, cluster, tmp_path):
             assert here.identical(other)
 
 
+# A worker sends the first half of its result. Then it dies, or the caller gives up.
+HALF_SENT = """
+import os, signal, sys, time
+from concurrent.futures.process import BrokenProcessPool
+from multiprocessing.connection import Connection
+from pathlib import Path
+
+from crazybilliards.comparison.sweeps import process_pool
+
+
+def send_half(place, dies):
+    send = Connection._send
+
+    def half(self, content, *rest):
+        send(self, content[: len(content) // 2])
+        Path(place).touch()
+        if dies:
+            os.kill(os.getpid(), signal.SIGKILL)
+        time.sleep(600)
+
+    Connection._send = half
+    return b"result" * 100
+
+
+if __name__ == "__main__":
+    place, dies = sys.argv[1], sys.argv[2] == "dies"
+    try:
+        with process_pool(2) as pool:
+            result = pool.submit(send_half, place, dies)
+            while not Path(place).exists():
+                time.sleep(0.01)
+            if not dies:
+                raise KeyboardInterrupt
+            result.result()
+    except (KeyboardInterrupt, BrokenProcessPool) as error:
+        print(type(error).__name__)
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="sends by another function there")
+@pytest.mark.parametrize(
+    ("what", "said"), [("dies", "BrokenProcessPool"), ("is given up", "KeyboardInterrupt")]
+)
+def test_a_worker_that_has_half_sent_its_result_holds_up_nothing(what, said, tmp_path):
+    script = tmp_path / "half_sent.py"
+    script.write_text(HALF_SENT)
+    run = [sys.executable, str(script), str(tmp_path / "half"), what]
+    done = subprocess.run(run, capture_output=True, text=True, timeout=120)
+    assert (done.returncode, done.stdout.strip()) == (0, said), done.stderr
+
+
 @pytest.mark.compiled
 def test_a_dask_worker_killed_in_the_middle_costs_nothing(cluster, tmp_path):
     from distributed import Client
