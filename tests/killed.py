@@ -4,6 +4,7 @@ Importing and compiling would take most of the time. So this process has done bo
 is a fork of it; workers are forked, too. A job may become another program by ``os.execv``.
 """
 
+import faulthandler
 import multiprocessing
 import os
 import re
@@ -12,13 +13,15 @@ import sys
 import time
 import traceback
 import warnings
+from contextlib import suppress
 from functools import partial
 from pathlib import Path
 
 from crazybilliards.model import load
 from crazybilliards.model.storage import read_sealed
 
-PATIENCE = 600.0  # for what must come to an end
+PATIENCE = 300.0  # for what must come to an end; less than a test may take [s]
+STATE = ("wchan", "cmdline")
 
 
 def begin(job, folder):
@@ -55,6 +58,7 @@ def _attempt(job, folder, begun):
     for stream in (1, 2):
         os.dup2(log, stream)
     sys.stdout = sys.stderr = os.fdopen(log, "w", buffering=1)
+    faulthandler.register(signal.SIGUSR1, file=log)
     fork = multiprocessing.get_context("fork")
     multiprocessing.get_context = lambda name: fork
     # A worker that is started anew has none of the handlers of its parent; a forked one would.
@@ -79,9 +83,30 @@ def end(child, how=None, group=False):
     """Send it a signal; wait until it and all its workers are gone; return its exit status."""
     if how is not None:
         (os.killpg if group else os.kill)(child, how)
-    status = until(lambda: (ended := os.waitpid(child, os.WNOHANG))[0] and ended)[1]
-    until(lambda: not members(child))
+    try:
+        status = until(lambda: (ended := os.waitpid(child, os.WNOHANG))[0] and ended)[1]
+        until(lambda: not members(child))
+    except AssertionError as error:
+        error.add_note(_stop(child))
+        raise
     return os.waitstatus_to_exitcode(status)
+
+
+def _stop(session):
+    """Kill what is left of a session; return what it waits for, and the stacks of its leader."""
+    lines, left = [f"what is left of session {session}:"], members(session)
+    for number in left:
+        with suppress(OSError):  # it has just ended
+            waits, words = ((Path(f"/proc/{number}") / each).read_text() for each in STATE)
+            lines.append(f"{number} in {waits}: {' '.join(words.split(chr(0)))}")
+    if session in left:
+        os.kill(session, signal.SIGUSR1)
+        time.sleep(1)
+        lines.append(Path(f"/proc/{session}/fd/2").read_text())
+    for number in left:
+        with suppress(OSError):
+            os.kill(number, signal.SIGKILL)
+    return "\n".join(lines)
 
 
 def members(session):

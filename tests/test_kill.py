@@ -36,7 +36,12 @@ pytestmark = [
 ]
 torture = pytest.mark.torture
 
-MAIN = "from crazybilliards.apps.commands.line import main; main()"
+MAIN = """
+import faulthandler, signal
+faulthandler.register(signal.SIGUSR1)
+from crazybilliards.apps.commands.line import main
+main()
+"""
 SIGNALS = (signal.SIGKILL, signal.SIGTERM, signal.SIGINT)
 GRID = """
 [grid]

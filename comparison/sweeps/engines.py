@@ -53,10 +53,13 @@ def _pool(processes: int) -> Iterator[Executor]:
     started = context.Event()  # whether a worker did
     pool = ProcessPoolExecutor(processes, context, initializer=_prepare_worker, initargs=(started,))
     over = threading.Event()
-    threading.Thread(target=_watch, args=(pool, over), daemon=True).start()
+    watch = threading.Thread(target=_watch, args=(pool, over), daemon=True)
+    watch.start()
     try:
         yield pool
     except BaseException as error:
+        over.set()
+        watch.join()  # two threads must not close the same pipe
         _kill_workers(pool)
         pool.shutdown(wait=False, cancel_futures=True)
         if isinstance(error.__cause__, BrokenProcessPool) and not started.is_set():
