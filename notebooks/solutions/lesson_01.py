@@ -1,6 +1,10 @@
 """Answers to the tasks of lesson 1, One noisy oscillator."""
 
 import numpy as np
+from scipy.special import erfc
+
+FACTORS_OF_TWICE_THE_MASS = (1 / np.sqrt(2), 1.0)  # of W and of s = A / sqrt(2 gamma k)
+SHARE_BEYOND_TWO_WIDTHS = erfc(np.sqrt(2))  # of a Gaussian variable, on both sides
 
 
 def euler_step(x, v, dt, zeta, chain):
