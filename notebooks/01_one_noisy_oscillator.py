@@ -200,8 +200,8 @@ right_panel.legend()
 plt.show()
 
 # %% [markdown]
-# Numbers say it more clearly. The history is cut into 50 blocks, each much longer than the memory of
-# the rod. The scatter of the block means gives the error.
+# Cut the history into 50 blocks, each much longer than the memory of the rod. The scatter of the
+# block means gives the error.
 
 # %%
 shares = {
@@ -217,9 +217,9 @@ for name, (values, theory) in shares.items():
 # <details><summary>Explain</summary>
 #
 # Yes, it does. After a few swings the rod has forgotten where it was. Different stretches of one
-# long history are therefore as good as different rods. This is what "ergodic" means, and it is the
-# reason why `simulate` averages over time by default. Position and velocity at the same instant are
-# *independent*, although the velocity is the derivative of the position.
+# long history are therefore as good as different rods. This is what "ergodic" means. Position and
+# velocity at the same instant are *independent*, although the velocity is the derivative of the
+# position.
 #
 # </details>
 #
@@ -419,7 +419,7 @@ assert np.isclose(friction_and_noise(0, 0.6, 1), kick * np.sqrt(1 + c**2))
 #
 # The **splitting scheme** of `simulate` is symmetric in time: friction and noise over $\Delta t/2$,
 # half a spring kick, flight (in a chain: with all collisions), half a spring kick, friction and
-# noise over $\Delta t/2$. The spring and the flight alone are Verlet's scheme.
+# noise over $\Delta t/2$.
 #
 # One step of either scheme is a linear map, $z' = \mathsf B z + \text{noise}$. The covariance matrix
 # that it leaves unchanged solves a *discrete Lyapunov equation*,
@@ -512,9 +512,9 @@ assert np.allclose(errors(euler_map, 0.01) / errors(euler_map, 0.005), [4, 2], r
 #
 # </details>
 #
-# ## Exercises
+# ## Exercise
 #
-# **1. A spring that is not linear.** With `cb.Chain(size=1, spring="quadratic")` the force is
+# **A spring that is not linear.** With `cb.Chain(size=1, spring="quadratic")` the force is
 # $F=kx|x|$. What are the stationary distributions of $x$ and $v$? Compute
 # $\langle x^4\rangle/\langle x^2\rangle^2$ and $\langle v^4\rangle/\langle v^2\rangle^2$, which are
 # both 3 for a Gaussian, and compare with a simulation.
@@ -525,16 +525,5 @@ assert np.allclose(errors(euler_map, 0.01) / errors(euler_map, 0.005), [4, 2], r
 # place of $\frac k2x^2$, $f\sim e^{-v^2/2W^2}\,e^{-U(x)/mW^2}$ is stationary. With
 # $\langle|x|^n\rangle = (3mW^2/k)^{n/3}\,\Gamma(\frac{n+1}3)/\Gamma(\frac13)$ the ratio for $x$
 # is $\Gamma(\frac53)\,\Gamma(\frac13)=2.418$. For $v$ it stays 3.
-#
-# </details>
-#
-# **2. Two lines swapped.** Copy your `my_step`, move $x$ with the *old* $v$, and let `euler` call it
-# with a twelfth of a swing. Is the swap harmless?
-#
-# <details><summary>Solution</summary>
-#
-# No. Without friction every step now multiplies the area in phase space by
-# $\det\mathsf B=1+k\Delta t^2/m$, so the swing grows. The friction has to outweigh this growth. At
-# $\Delta t=\gamma/k=1$ it no longer does, because there $\det\mathsf B=1$.
 #
 # </details>
