@@ -54,8 +54,8 @@ damping = 1
 # %% tags=["hide-input"]
 if not safe(
     0.5 <= damping <= 2,
-    f"This lesson is for damping from 0.5 to 2, not {damping}: its runs are too short for less, and "
-    "with more the chain hardly cools. The lesson goes on with damping = 1.",
+    f"This lesson is for damping from 0.5 to 2, not {damping}: its runs are too short for less, "
+    "and with more the chain hardly cools. The lesson goes on with damping = 1.",
 ):
     damping = 1
 

@@ -30,7 +30,7 @@
 # \sqrt{M/k}$ for times. Between collisions rod $i$ obeys $m\ddot x = -\gamma\dot x - F(x - x_i^0) +
 # A\,\xi(t)$ with white noise $\xi$. Linear springs have $F(d) = k d$, quadratic ones $F(d) = k d|d|$.
 #
-# *Level: fourth year. You need: lesson 9, sections 1 and 5; a separable differential equation.
+# *Level: fourth year. You need: lesson 9, sections 1 and 4; a separable differential equation.
 # Time: 100 minutes. To predict before you see the results, type `make lessons` in the folder of the
 # project, and open the copy of this lesson without outputs in `build/lessons/`.*
 
@@ -104,7 +104,7 @@ assert 35 < end.mean() < 45
 #
 # ## 2. Linear springs: one balance of energy
 #
-# [Lesson 9](09_beyond_restitution_one.ipynb), section 5, derives the balance of energy for linear
+# [Lesson 9](09_beyond_restitution_one.ipynb), section 4, derives the balance of energy for linear
 # springs. In half a period $\pi\sqrt{m/k}$ each pair of rods meets once, and the encounters add
 # $(e^2-1)\frac L2E \approx (e-1)LE$ to the energy $E$. Damping takes $\frac\gamma mE$ per time. So
 #
