@@ -30,9 +30,9 @@ def tags(cell):
     return cell.metadata.get("tags", [])
 
 
-def is_for_a_class(name, script):
-    # Those that import no solutions are not rewritten yet.
-    return name[0].isdigit() and "from solutions import" in str(script.cells)
+def is_for_a_class(name):
+    """The notebooks for readers of the paper and for a seminar have no number."""
+    return name[0].isdigit()
 
 
 def test_they_are_numbered_paired_and_small():
@@ -97,7 +97,7 @@ def test_what_a_student_sees(lesson):
 def test_a_lesson_fits_ninety_minutes(lesson):
     """A minute for a hundred words of comments and four for each answer; one place to stop."""
     name, _, script = lesson
-    if not is_for_a_class(name, script):
+    if not is_for_a_class(name):
         pytest.skip("not a lesson of ninety minutes")
     lines = (FOLDER / name).with_suffix(".py").read_text(encoding="utf-8").splitlines()
     lines = lines[lines.index("# ---", 1) + 1 :]  # behind the header of jupytext
@@ -118,7 +118,7 @@ def test_a_lesson_fits_ninety_minutes(lesson):
 def test_a_changed_number_stops_no_cell(lesson):
     """Assertions stand only in cells that the copies for learners lack."""
     name, _, script = lesson
-    if not is_for_a_class(name, script):
+    if not is_for_a_class(name):
         pytest.skip("not a lesson of ninety minutes")
     for cell in script.cells:
         if cell.cell_type == "code" and "remove-cell" not in tags(cell):
@@ -161,8 +161,8 @@ def used_from_removed_cells(notebook):
 
 def test_no_cell_needs_one_that_the_copies_lack(lesson):
     name, _, script = lesson
-    if not is_for_a_class(name, script):
-        pytest.skip("not rewritten yet")
+    if not is_for_a_class(name):
+        pytest.skip("not a lesson of ninety minutes")
     assert not used_from_removed_cells(script)
 
 
