@@ -31,7 +31,7 @@ def tags(cell):
 
 
 def is_for_a_class(name):
-    """The notebooks for readers of the paper and for a seminar have no number."""
+    """Tell lessons from notebooks for readers of the paper and for a seminar: by their number."""
     return name[0].isdigit()
 
 
