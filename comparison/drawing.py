@@ -12,6 +12,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.backend_bases import FigureCanvasBase
+from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.container import ErrorbarContainer
 from numpy.typing import ArrayLike
 
@@ -27,6 +28,8 @@ Along = Literal["normalized_particle", "mean_position"]
 
 # Okabe and Ito's colours, distinct for any colour vision; symbols and line styles differ too.
 COLOURS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#D55E00", "#56B4E9", "#000000")
+# The colours of velocities: what moves to the left is blue, what moves to the right orange.
+DIRECTIONS = LinearSegmentedColormap.from_list("directions", (COLOURS[0], "#F0F0F0", COLOURS[1]))
 SYMBOLS = "osD^v<>"
 _ON_PAPER = 200  # symbols of a curve at most
 

@@ -35,11 +35,11 @@ def film(
     """Film the rods of a run, or of a chain that is simulated for it, or a relaxation.
 
     Every rod is drawn in its place, 2R long (a pixel if that is more), in the colour of its
-    velocity. A star flashes where two rods met since the last picture: where they approached in one
-    snapshot and separate in the next, and a straight flight would have led them through one
-    another. The time between snapshots should therefore be shorter than that between two collisions
-    of a rod; of several meetings between two snapshots one star is seen. The walls of a box are
-    drawn, and of two masses the heavier rods are taller.
+    velocity: orange moves to the right, blue to the left. A bar flashes where two rods met since
+    the last picture: where they approached in one snapshot and separate in the next, and a straight
+    flight would have led them through one another. The time between snapshots should therefore be
+    shorter than that between two collisions of a rod; of several meetings between two snapshots one
+    bar is seen. The walls of a box are drawn, and of two masses the heavier rods are taller.
 
     A relaxation is shown by its smoothed densities, of the simulation and of all theories.
 

@@ -20,6 +20,7 @@ from matplotlib.colors import CenteredNorm
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from crazybilliards.comparison.drawing import DIRECTIONS
 from crazybilliards.comparison.encoding import Picture
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.arrays import Array
@@ -30,10 +31,10 @@ _FAINT = 0.1  # a flash that is not shown any more
 _BEYOND = 0.01  # share of the velocities beyond the ends of the colours
 _GROUND = -0.95  # where the anchors are
 _TALL, _LOW = 0.5, 0.25  # how far a rod reaches up and down, and one of the smaller mass
-_STAR, _SMALLEST_STAR = 120.0, 4.0  # square points
+_BAR, _SMALLEST_BAR = 120.0, 4.0  # square points of the square that a bar crosses
 _SIZE = 9.6, 2.4  # inches of 100 dots; the encoder needs even numbers of dots
 _LOOK: Any = {"font.size": 12} | {f"axes.spines.{side}": False for side in ("left", "top", "right")}
-_COLOURS, _SPRING = "PuOr", "#777777"  # told apart with any colour vision
+_SPRING = "#777777"
 
 
 class Motion(NamedTuple):
@@ -97,15 +98,15 @@ def _pictures(motion: Motion, springs: bool) -> Iterator[Picture]:
     """Draw what moves, in one picture after the other, on the same background."""
     figure = Figure(figsize=_SIZE, dpi=100, layout="constrained")
     canvas, ax = FigureCanvasAgg(figure), figure.subplots()
-    rods = PolyCollection([], cmap=_COLOURS, edgecolor="black")
+    rods = PolyCollection([], cmap=DIRECTIONS, edgecolor="black")
     fastest = float(np.quantile(np.abs(motion.v), 1 - _BEYOND)) or 1.0
     rods.set_norm(CenteredNorm(halfrange=fastest))
     lines = LineCollection([], color=_SPRING, linewidth=1)
-    stars = ax.scatter([], [], marker="*", color=plt.rcParams["text.color"])
+    bars = ax.scatter([], [], marker="_", linewidths=3, color=plt.rcParams["text.color"])
     clock = ax.text(0.0, 1.04, "", transform=ax.transAxes)
     _furnish(ax, motion, springs)
     figure.colorbar(rods, ax=ax, label="velocity $v$ [R/T]", pad=0.01, extend="both")
-    moving = [ax.add_collection(lines), ax.add_collection(rods), stars, clock]
+    moving = [ax.add_collection(lines), ax.add_collection(rods), bars, clock]
     for each in moving:
         each.set_animated(True)
     canvas.draw()
@@ -114,7 +115,7 @@ def _pictures(motion: Motion, springs: bool) -> Iterator[Picture]:
     broad = 0.72 * dots  # of a rod, in points
     half = R * max(1.0, 1 / dots)  # a thinner rod would not be seen
     rods.set_linewidth(min(0.5, broad / 20))
-    star = min(_STAR, max(broad**2, _SMALLEST_STAR))
+    bar = min(_BAR, max(broad**2, _SMALLEST_BAR))
     background = canvas.copy_from_bbox(figure.bbox)
     digits = _digits(motion.time)
     for time, x, v, flash in zip(motion.time, motion.x, motion.v, motion.flash, strict=True):
@@ -126,8 +127,8 @@ def _pictures(motion: Motion, springs: bool) -> Iterator[Picture]:
             ends = np.stack([motion.anchors, x], axis=-1)
             levels = np.stack([np.full(x.size, _GROUND), -motion.height], axis=-1)
             lines.set_segments(list(np.stack([ends, levels], axis=-1)))
-        stars.set_offsets(np.column_stack([x[:-1] + R, np.full(x.size - 1, 0.75)]))
-        stars.set_sizes(star * flash)
+        bars.set_offsets(np.column_stack([x[:-1] + R, np.full(x.size - 1, 0.75)]))
+        bars.set_sizes(bar * flash)
         clock.set_text(f"t = {time:.{digits}f} T")
         canvas.restore_region(background)
         for each in moving:
@@ -142,13 +143,13 @@ def _digits(time: Array) -> int:
 
 
 def _furnish(ax: Axes, motion: Motion, springs: bool) -> None:
-    """Set what does not move: the axes, the walls, the anchors, what stars and heights mean."""
+    """Set what does not move: the axes, the walls, the anchors, what bars and heights mean."""
     R, ratio = motion.chain.radius, motion.chain.mass_ratio
     walls = np.array([-0.5, 0.5] if motion.chain.box else []) * motion.chain.box
     seen = np.concatenate([motion.x.ravel(), motion.anchors if springs else [], walls])
     ax.set(xlim=(seen.min() - 2 * R, seen.max() + 2 * R), ylim=(-1.1, 1.0), yticks=[])
     ax.set_xlabel("position $x$ [R]")
-    ax.text(1.0, 1.04, "\N{BLACK STAR}: two rods have met", ha="right", transform=ax.transAxes)
+    ax.text(1.0, 1.04, "\N{BLACK RECTANGLE}: two rods have met", ha="right", transform=ax.transAxes)
     if ratio != 1:
         text = f"tall rods: {max(ratio, 1 / ratio):.3g} times the mass of low ones"
         ax.text(0.5, 1.04, text, ha="center", transform=ax.transAxes)

@@ -41,6 +41,7 @@ import numpy as np
 from solutions import lesson_02 as solutions
 from teaching import BLUE, GREEN, ORANGE, agree, check, mean_and_error, panels, safe
 
+from crazybilliards.comparison.drawing import DIRECTIONS
 from crazybilliards.reproduction.fits import fit_avalanches, fit_scaling
 
 # %% [markdown]
@@ -202,7 +203,7 @@ axes = panels(2, height=4, sharey=True)
 for ax, (e, film) in zip(axes, films.items(), strict=True):
     time = film.time - film.time[0]
     v = film.velocity.isel(replica=0).transpose("particle", "time") / W
-    colours = ax.pcolormesh(time, film.particle, v, cmap="PuOr_r", vmin=-2, vmax=2, rasterized=True)
+    colours = ax.pcolormesh(time, film.particle, v, cmap=DIRECTIONS, vmin=-2, vmax=2, rasterized=True)
     ax.set(xlabel="time t [T]", title=f"restitution e = {e}")
 axes[0].set_ylabel("particle i")
 axes[0].figure.colorbar(colours, ax=axes, label="velocity $v/W$")

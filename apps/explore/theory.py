@@ -23,6 +23,7 @@ _LOOK = 0.2  # s between two looks whether somebody still waits
 _PATIENCE = 120  # s
 _MOST_RODS = 200  # of the page
 _MOST_POINTS = 500  # of a curve
+_TOLERANCE = {"tolerance": 0.01}  # of a velocity width, less than a line is thick
 _NUMBERS = {"size": int, "restitution": float, "amplitude": float, "damping": float, "gap": float}
 
 Answer = dict[str, Any]
@@ -101,20 +102,31 @@ def _compute(parameters: Parameters, there: Connection) -> None:
     end_with_parent()
     from dataclasses import asdict
 
-    from crazybilliards.comparison.stationary_theories import THEORIES, best_theory
+    from crazybilliards.comparison.stationary_theories import THEORIES, choose_theory
     from crazybilliards.kinetic.accuracy import UnmeasuredWarning
     from crazybilliards.model import Chain
 
     warnings.simplefilter("ignore", UnmeasuredWarning)  # the page shows what is not known
     chain = Chain(**asdict(parameters))
+    other = THEORIES["force_balance"]
     try:
-        best, other = best_theory(chain, progress=False), THEORIES["force_balance"]
-        answer = {"best": _result(THEORIES[best.attrs["best_theory"]], best)}
+        best = choose_theory(chain).theory
+        coarse = {} if best.refusal(chain, _TOLERANCE) else _TOLERANCE
+        answer = {"best": _result(best, best.solve(chain, **coarse))}
         if not other.refusal(chain):
             answer["other"] = _result(other, other.solve(chain))
         there.send(answer)
-    except ValueError as error:
-        there.send({"refused": str(error)})
+    except ValueError:
+        there.send({"refused": _why_none(parameters)})
+
+
+def _why_none(chain: Parameters) -> str:
+    """Return why there is no theory of a chain, in words for a class."""
+    if chain.amplitude == 0:
+        return "without noise the rods come to rest"
+    if chain.restitution > 1:
+        return "the energy of this chain grows without bound; fewer rods or more damping bound it"
+    return "none of the theories holds for such a chain"
 
 
 def _result(theory: Any, solved: Any) -> Answer:

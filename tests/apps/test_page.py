@@ -8,87 +8,41 @@ import chain_curves
 import numpy as np
 import pytest
 from accessibility import audit, tabbed
-from browser import errors, show_as, until
+from browser import errors, until
+from driven_page import (
+    CHAIN,
+    SCREENS,
+    SEEN,
+    TIME,
+    challenges,
+    control,
+    press,
+    rows,
+    slide,
+    text,
+    visit,
+)
 from matplotlib.image import imread
+from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.actions.action_builder import ActionBuilder
-from selenium.webdriver.common.actions.pointer_input import PointerInput
 
 from crazybilliards.model import Chain
 
 ROOT = Path(__file__).parents[2]
-SCREENS = {"wide": (1280, 900), "narrow": (390, 700)}
-CHAIN = "return ChainRunning.world.state.chain"
-TIME = "return ChainRunning.world.state.time"
 LISTS = "return [ChainChallenges.list, ChainPresets.list].map((l) => l.map((each) => each.chain))"
 pytestmark = pytest.mark.validate
 
-# What is seen of an element when it is scrolled to, and what of the rods and pictures then.
-SEEN = """
-const element = arguments[0];
-element.scrollIntoView({block: arguments[1]});
-const box = element.getBoundingClientRect(), x = box.x + box.width / 2, y = box.y + box.height / 2;
-const shown = (each) => { const b = each.getBoundingClientRect(), x0 = b.x + b.width / 2;
-  return b.bottom <= innerHeight + 1 && document.elementFromPoint(x0, b.top + 3) === each; };
-return [element.contains(document.elementFromPoint(x, y)),
-  ['stage', 'second'].every((name) => shown(document.querySelector(`[data-chain=${name}]`)))];
-"""
 DRAWN = """return ['stage', 'second'].map((name) =>
   document.querySelector(`[data-chain=${name}]`).toDataURL().length)"""
 ELSEWHERE = """return performance.getEntriesByType('resource').map((each) => each.name)
   .filter((name) => !name.startsWith(location.origin) && !name.startsWith('data:'))"""
 
 
-def visit(browser, address, screen="wide", *, dark=False, quiet=False):
-    """Open the page; ``quiet``: for a reader who wants nothing to move."""
-    show_as(browser, *SCREENS[screen], dark=dark)
-    if quiet:
-        still = {"name": "prefers-reduced-motion", "value": "reduce"}
-        browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [still]})
-    browser.get("about:blank")
-    browser.get(address)
-
-
-def control(browser, name):
-    return browser.find_element("css selector", f"[data-chain='{name}']")
-
-
-def text(browser, name):
-    return browser.execute_script("return arguments[0].textContent", control(browser, name))
-
-
-def press(browser, element, way="mouse"):
-    if way == "keys":
-        element.send_keys("\ue007")
-        return
-    browser.execute_script(SEEN, element, "center")
-    actions = ActionBuilder(browser, mouse=PointerInput(way, way))
-    actions.pointer_action.move_to(element).pointer_down().pointer_up()
-    actions.perform()
-
-
-def slide(browser, **values):
-    setting = "arguments[0].value = arguments[1]; arguments[0].dispatchEvent(new Event('input'))"
-    for name, value in values.items():
-        browser.execute_script(setting, control(browser, name), value)
-
-
-def rows(browser, number):
-    """Let the chain go on by so many rows of its strip, and the challenge look at it."""
-    going = "for (let k = 0; k < arguments[0] && !ChainRunning.world.ranAway; k++)"
-    going += "ChainRunning.goOn(); arguments[1].dispatchEvent(new Event('change'));"
-    browser.execute_script(going, number, control(browser, "first-picture"))
-    return text(browser, "said")
-
-
-def challenges(browser):
-    return browser.find_elements("css selector", "[aria-pressed]")
-
-
 def test_the_files_are_small_plain_and_ask_nobody_else():
     files = (ROOT / "apps/explore/page").iterdir()
     texts = {file.name: file.read_text(encoding="utf-8") for file in files}
     scripts = {name: text for name, text in texts.items() if name.endswith(".js")}
-    assert sum(len(text.encode()) for text in scripts.values()) <= 80_000
+    assert sum(len(text.encode()) for text in scripts.values()) <= 88_000
     assert all(text.count("\n") < 300 for text in texts.values())
     assert not re.search(r"http|import |export |innerHTML|eval\(", "".join(texts.values()))
     for name, script in scripts.items():  # of one page: each adds one name
@@ -148,16 +102,19 @@ def test_nothing_covers_a_control_and_the_picture_is_seen_with_it(browser, addre
 
 def test_keys_alone_reach_push_pause_and_change(browser, address):
     visit(browser, address, quiet=True)
-    reached = tabbed(browser)
-    named = {each.accessible_name: outline for each, outline, *_ in reached}
-    assert len(named) == len(reached) == 31
-    assert min(named.values()) >= 3
     fast = "return ChainRunning.world.state.v[arguments[0]]"
     free = Chain(damping=0.3).free_velocity_width
-    for keys, before in ((" ", "push"), ("p", "play")):
-        speed = browser.execute_script(fast, 0)
-        control(browser, before).send_keys(keys)
-        assert browser.execute_script(fast, 0) == pytest.approx(speed + 8 * free)
+    speed = browser.execute_script(fast, 0)
+    ActionChains(browser).send_keys("p").perform()  # on a fresh page, before anything has the focus
+    assert browser.execute_script(fast, 0) == pytest.approx(speed + 8 * free)
+    visit(browser, address, quiet=True)
+    reached = tabbed(browser)
+    named = {each.accessible_name: outline for each, outline, *_ in reached}
+    assert len(named) == len(reached) == 30
+    assert min(named.values()) >= 3
+    speed = browser.execute_script(fast, 0)
+    control(browser, "push").send_keys(" ")
+    assert browser.execute_script(fast, 0) == pytest.approx(speed + 8 * free)
     control(browser, "restitution").send_keys("\ue012")
     assert browser.execute_script(CHAIN)["restitution"] == 0.99
     time = browser.execute_script(TIME)
@@ -187,33 +144,13 @@ def test_a_rod_follows_the_pointer_and_pushes_the_others(browser, address, e):
     assert browser.execute_script("return ChainRunning.world.state.held") == -1
 
 
-@pytest.mark.parametrize(
-    ("setting", "expected"),
-    [
-        ("?size=2&gap=5", {"size": 2, "gap": 5}),
-        ("#size=30&restitution=0.5&spring=quadratic", {"size": 30, "spring": "quadratic"}),
-        ("?siz=20", "siz is none of size, restitution"),
-        ("#size=201", "size must be a number from 2 to 200, got 201"),
-        ("#size=20&gap=<b>", "gap must be a number from 0 to 5, got <b>"),
-    ],
-)
-def test_an_address_restores_a_setting_or_says_why_not(browser, address, setting, expected):
-    visit(browser, address + setting, quiet=True)
-    if isinstance(expected, str):
-        assert expected in text(browser, "ask")
-    else:
-        slide(browser, damping=2)
-        browser.refresh()
-        assert (expected | {"damping": 2}).items() <= browser.execute_script(CHAIN).items()
-
-
 @pytest.mark.compiled
 @pytest.mark.parametrize(
     ("chain", "said"),
     [
         ({"restitution": 0.95}, r"kinetic .*: velocity widths within [\d.]+ %, .*density within"),
         ({"gap": 0.5}, r"exact equilibrium: exact\. force balance: .*density within"),
-        ({"amplitude": 0}, "No theory: this chain has no steady state"),
+        ({"amplitude": 0}, "No theory: without noise the rods come to rest"),
     ],
 )
 def test_a_theory_is_solved_on_request_and_says_its_error(browser, address, chain, said):
@@ -256,10 +193,9 @@ def test_the_rods_are_saved_as_a_picture(browser, address, dark, tmp_path):
 @pytest.mark.parametrize(
     ("number", "moves"),
     [
-        (1, [({"restitution": 1}, r"= 1: [1-9]\S* of"), ({"restitution": 0.9}, "= 0.9: 0 of")]),
+        (1, [({"restitution": 1}, "= 1: it arr"), ({"restitution": 0.9}, "= 0.9: it does not")]),
         (2, [({"size": 15, "restitution": 1.05}, "times"), ({"damping": 0.2}, "than .* 6.1 rods")]),
-        (3, [({}, "for [0-9]{4} T"), ({"size": 60, "restitution": 0.5}, "Done: [0-9]")]),
-        (4, [({"damping": 3.5}, "concave at .* 3.5"), ({"damping": 2.5}, "convex at .* 2.5,")]),
+        (3, [({}, "clearly below 3"), ({"size": 60, "restitution": 0.5}, "clearly above 3")]),
     ],
 )
 def test_a_challenge_is_solved_by_its_sliders_and_then_answered(browser, address, number, moves):
@@ -280,6 +216,6 @@ def test_a_challenge_is_solved_by_its_sliders_and_then_answered(browser, address
         place = control(browser, seen).rect
         assert place["height"] > 15
         assert place["y"] + place["height"] <= SCREENS["wide"][1]
-    if number < 4:
+    if number < 3:
         press(browser, control(browser, "next"))
         assert challenges(browser)[number].get_attribute("aria-pressed") == "true"

@@ -33,7 +33,7 @@ def test_rods_are_drawn_in_their_places_in_the_colours_of_their_velocities(run):
         a_pixel = (x[-1] - x[0] + 2 * CHAIN.radius) / (right - left)
         for place, velocity in zip(x, v, strict=True):
             red, _, blue = line[round(left + (place - x[0] + CHAIN.radius) / a_pixel)]
-            assert (blue > red) == (velocity > 0) or abs(velocity) < 0.05
+            assert (red > blue) == (velocity > 0) or abs(velocity) < 0.05
     assert motion.time[[0, -1]].tolist() == run.time.values[[0, -1]].tolist()
 
 
@@ -52,7 +52,7 @@ def test_walls_are_where_they_are_and_the_heavier_rods_are_the_taller_ones(ratio
         assert (np.ptp(outlines) > 60) == (number % 2 == tall)
 
 
-def test_stars_are_the_collisions():
+def test_bars_are_the_collisions():
     observe = ["snapshots", "collisions"]
     chain = Chain(size=10, restitution=0.8, gap=0.2)
     run = simulate(chain, duration=500, every=0.01, observe=observe, seed=3, progress=False)
@@ -63,7 +63,7 @@ def test_stars_are_the_collisions():
     assert met == pytest.approx(counted, rel=0.02)
 
 
-def test_stars_fade_and_rods_that_are_no_neighbours_have_none():
+def test_bars_fade_and_rods_that_are_no_neighbours_have_none():
     chain = CHAIN.replace(gap=0.0)
     run = simulate(
         chain, duration=4, every=0.05, observe="snapshots", particles=[1, 2, 5], progress=False

@@ -1,33 +1,56 @@
-/* The address of the page holds a setting: #size=20&gap=0.5. So does a query: ?size=20&gap=0.5. */
+/* The address of the page holds all that is chosen: #size=20&gap=0.5, or #challenge=ends&size=60. So
+   does a query: ?size=20&gap=0.5. What it leaves out is as at the beginning of the challenge or preset,
+   and has the usual value for a chain of one's own. */
 "use strict";
 
 const ChainAddress = (() => {
   const USUAL = { size: 100, restitution: 1, amplitude: 1, damping: 1, gap: 0, spring: "linear" };
   const NAMES = Object.keys(USUAL);
+  const SHOWN = { rod: 1, first: "density", second: "widths", speed: 3 };
 
-  /* Return the chain that the address asks for, with the usual values for what it leaves out, or why
-     it is refused, or null if it asks for none. `controls` has the slider or list of each name. */
-  function read(controls, { search, hash } = location) {
-    const text = hash.includes("=") ? hash : search, given = [...new URLSearchParams(text.slice(1))];
-    if (!given.length) return null;
-    const chain = { ...USUAL };
-    for (const [name, value] of given) {
-      if (!NAMES.includes(name)) return { refused: `${name} is none of ${NAMES.join(", ")}` };
-      const control = controls[name], list = control.options && [...control.options].map((option) => option.value);
-      const wanted = list ? list.join(" or ") : `a number from ${control.min} to ${control.max}`;
-      const number = value.trim() === "" ? NaN : Number(value);
-      const right = list ? list.includes(value)
-        : number >= control.min && number <= control.max && (name !== "size" || Number.isInteger(number));
-      if (!right) return { refused: `${name} must be ${wanted}, got ${value}` };
-      chain[name] = list ? value : number;
-    }
-    return { chain };
+  /* Whatever was chosen, as it begins: the chain and what is shown of it, by name. */
+  function beginning({ chain, pictures = [SHOWN.first, SHOWN.second], speed = SHOWN.speed }) {
+    return { ...USUAL, ...chain, ...SHOWN, first: pictures[0], second: pictures[1], speed };
   }
 
-  function write(chain) {
-    const setting = `#${new URLSearchParams(NAMES.map((name) => [name, chain[name]]))}`;
+  /* Return what the address asks for by name, or why it is refused, or null if it asks for nothing.
+     `controls` has a slider or list for each name. */
+  function read(controls, { search, hash } = location) {
+    if (hash && !hash.includes("="))
+      return document.getElementById(hash.slice(1)) ? null // a heading of the page around
+        : { refused: `${hash.slice(1)} is not of the form name=value` };
+    const given = [...new URLSearchParams((hash || search).slice(1))], values = {};
+    if (!given.length) return null;
+    for (const [name, text] of given) {
+      if (!Object.hasOwn(controls, name)) return { refused: `${name} is none of ${Object.keys(controls).join(", ")}` };
+      if (Object.hasOwn(values, name)) return { refused: `${name} is given twice` };
+      const { value, wanted } = understood(controls[name], text);
+      if (value === undefined) return { refused: `${name} must be ${wanted}, got ${text || "nothing"}` };
+      values[name] = value;
+    }
+    if (values.challenge && values.preset) return { refused: "it names a challenge and a preset, and only one can be" };
+    return { values };
+  }
+
+  /* The value of a text for a control, or what is wanted instead. */
+  function understood({ options, min, max, step }, text) {
+    if (options) {
+      const list = Array.from(options, (option) => option.value).filter(Boolean);
+      return list.includes(text) ? { value: text } : { wanted: list.join(" or ") };
+    }
+    const value = text.trim() === "" ? NaN : Number(text), steps = (value - min) / step;
+    const wanted = `a ${step === "1" ? "whole number" : "number"} from ${min} to ${max}` +
+      (step === "1" ? "" : ` in steps of ${step}`);
+    return value >= min && value <= max && Math.abs(steps - Math.round(steps)) < 1e-6 ? { value } : { wanted };
+  }
+
+  /* Write what was chosen and what of it is changed `now`, and keep for a reload what is `solved`. */
+  function write({ kind, id, ...chosen }, now, solved) {
+    const begun = beginning(kind ? chosen : {}), given = kind ? [[kind, id]] : [];
+    for (const name of Object.keys(begun)) if (now[name] !== begun[name]) given.push([name, now[name]]);
+    const setting = `#${new URLSearchParams(given.length ? given : [["size", now.size]])}`;
     // A page that was opened as a file may change only what follows the #.
-    history.replaceState(null, "", location.protocol === "file:" ? setting : location.pathname + setting);
+    history.replaceState({ solved }, "", location.protocol === "file:" ? setting : location.pathname + setting);
   }
 
   const same = (one, other) => NAMES.every((name) => one[name] === other[name]);
@@ -36,5 +59,5 @@ const ChainAddress = (() => {
   const told = (chain) => `L = ${chain.size}, e = ${chain.restitution}, A = ${chain.amplitude}, ` +
     `γ = ${chain.damping}, g = ${chain.gap}, ${chain.spring} springs`;
 
-  return { USUAL, NAMES, read, write, same, told };
+  return { USUAL, NAMES, beginning, read, write, same, told };
 })();

@@ -1,58 +1,49 @@
-/* The controls: buttons, sliders, lists, mouse, finger and keys; what the page says; and the frames. */
+/* The controls: buttons, sliders, lists and keys; what the page says; and the address, which holds
+   what is chosen. */
 "use strict";
 
 (() => {
-  const { NAMES, told } = ChainAddress, R = ChainRunning, { world } = R;
-  const BUDGET = 12; // milliseconds a frame that may be computed; slow machines show a slower chain
-  const TAP = 300; // milliseconds: a shorter touch of a rod is a push
-  const PLOTTED = 250; // milliseconds between two drawings of the pictures
-  const NARROW = matchMedia("(max-width: 46em)");
+  const { NAMES } = ChainAddress, R = ChainRunning, { world } = R, { draw, play, pause } = ChainFrames;
+  const CHALLENGES = ChainChallenges.list, PRESETS = ChainPresets.list;
+  const CALM = 5000; // milliseconds between two sentences about a moving picture
   const OWN = { ask: "A chain of your own. Push it, change it, or choose a challenge." };
 
   const root = document.getElementById("chain");
   const find = (name) => root.querySelector(`[data-chain="${name}"]`);
   const sliders = Object.fromEntries(NAMES.map((name) => [name, find(name)]));
+  const pictures = { first: find("first-picture"), second: find("second-picture") };
   const stage = new ChainDrawing.Stage(find("stage"));
-  let running = false, chosen = OWN, last = 0, plotted = 0, owed = 0, refusal = "";
-  R.showOn(stage);
+  const solved = new Set(history.state?.solved); // challenges that are done, presets whose answer was seen
+  let chosen = OWN, told = {}, described = 0; // `told`: of the theory of a chain
 
-  // -- time -----------------------------
+  // -- what is seen and said --------------
 
-  function frame(now) {
-    if (!running || document.hidden) return;
-    requestAnimationFrame(frame);
-    owed = Math.min(owed + ((now - last) * R.ROWS_A_SECOND) / 1000, 8);
-    last = now;
-    const begun = performance.now();
-    while (owed >= 1 && !world.ranAway && performance.now() - begun < BUDGET) {
-      owed--;
-      R.goOn();
-    }
-    if (owed >= 1) owed = 0; // what a slow machine cannot compute is left out
-    if (world.ranAway) pause();
-    drawStage();
-    if (!running || now - plotted > PLOTTED) drawPlots(now);
-  }
-
-  const drawStage = () => stage.draw(world.state, R.unit(), (ChainDrawing.ROWS * world.speed) / R.ROWS_A_SECOND);
-
-  function draw() {
-    if (world.ranAway) pause();
-    drawStage();
-    drawPlots(performance.now());
-  }
-
-  function drawPlots(now) {
-    plotted = now;
-    const { state, measurement, history } = world, theory = ChainTheory.of(state.chain);
+  function drawPlots() {
+    const { state, measurement, history: energies } = world, theory = ChainTheory.of(state.chain);
     const exact = ChainTheory.exactDensity(state.chain, measurement.coverage().map(([x]) => x));
-    if (!exact && state.chain.restitution === 1 && state.chain.amplitude > 0 && !running) setTimeout(draw, 450);
-    const seen = { half: stage.half, measurement, history, unit: R.unit(), exact, theory };
-    for (const name of ["first", "second"])
-      ChainPlots.pictures[find(`${name}-picture`).value](find(name), stage.colour, seen);
-    find("status").textContent = `W = ${R.unit().toPrecision(2)} R/T. ${happening()}`;
-    if (!ChainTheory.asked()) find("theory").textContent = theory ? theory.said : refusal;
+    if (!exact && state.chain.restitution === 1 && state.chain.amplitude > 0 && !ChainFrames.running())
+      setTimeout(draw, 450);
+    const kicked = state.chain.amplitude > 0, unit = R.unit(), calm = !ChainFrames.running() || isDue();
+    const units = kicked ? { unit, counted: 1, inUnits: "W" } : { unit: 1, counted: unit, inUnits: "R/T" };
+    const { restitution } = state.chain;
+    const seen = { half: stage.half, measurement, history: energies, restitution, ...units, exact, theory };
+    for (const [name, list] of Object.entries(pictures)) {
+      const sentence = ChainPlots.pictures[list.value](find(name), stage.colour, seen);
+      if (calm || !find(name).ariaLabel) find(name).ariaLabel = sentence;
+    }
+    const scale = kicked ? `W = ${unit.toPrecision(2)} R/T.` : "Without noise there is no W.";
+    find("status").textContent = `${scale} ${happening()}`;
+    if (ChainTheory.asked() !== state.chain) ChainTheory.abort(); // it is solved for the chain before
+    find("solve").textContent = ChainTheory.asked() ? "Stop" : "Solve the theory";
+    find("theory").textContent = (told.chain === state.chain && told.said) || theory?.said || "";
     judge();
+  }
+
+  /* Whether it is time to say anew what the pictures show: a screen reader should not be hurried. */
+  function isDue() {
+    const due = performance.now() - described > CALM;
+    if (due) described = performance.now();
+    return due;
   }
 
   function happening() {
@@ -71,23 +62,111 @@
       (rates.theory ? `; theory for weak damping: ${exponential(rates.theory)}` : "");
   }
 
-  function play() {
-    if (world.ranAway) R.begin(world.state.chain);
-    running = true;
-    last = performance.now();
-    find("play").textContent = "Pause";
-    requestAnimationFrame(frame);
+  /* One sentence about what was just done, until something else is done. */
+  const note = (text) => {
+    find("note").textContent = text;
+  };
+
+  /* Let the challenge look, and say what it found; what is new is read aloud only when it is done. */
+  function judge() {
+    if (!chosen.watch) return;
+    const { done, said } = chosen.watch(world), mark = find(`challenge-${chosen.title}`);
+    find("said").textContent = said;
+    if (!done || solved.has(chosen.id)) return;
+    solved.add(chosen.id);
+    tick(mark);
+    answer();
+    write();
+    find("announced").textContent = `Challenge done: ${chosen.title}. ${said} ${chosen.answer}`;
   }
 
-  function pause() {
-    running = false;
-    find("play").textContent = world.ranAway ? "Start again" : "Play";
+  const tick = (mark) => {
+    mark.classList.add("done");
+    mark.textContent += " ✓";
+  };
+
+  /* Show the answer once the challenge is done, or the preset's was asked for, and what comes next. */
+  function answer() {
+    const known = solved.has(chosen.id), next = CHALLENGES[CHALLENGES.indexOf(chosen) + 1];
+    find("answer").textContent = known ? chosen.answer : "";
+    find("reveal").hidden = known || chosen.kind !== "preset";
+    find("next").hidden = !known || !chosen.watch || !next;
+    if (next) find("next").textContent = `Next: ${next.title}`;
+  }
+
+  // -- what is chosen ---------------------
+
+  /* Begin what was chosen, a challenge, a preset or a chain of one's own, with some values changed. */
+  function choose(what, values = {}) {
+    const begun = { ...ChainAddress.beginning(what), ...values }, stopped = world.ranAway;
+    chosen = what;
+    for (const each of CHALLENGES) find(`challenge-${each.title}`).setAttribute("aria-pressed", String(each === what));
+    find("preset").value = what.kind === "preset" ? what.id : "";
+    find("ask").textContent = what.ask;
+    find("said").textContent = find("announced").textContent = "";
+    note("");
+    answer();
+    for (const [name, list] of Object.entries(pictures)) list.value = begun[name];
+    find("rod").value = begun.rod;
+    world.pushes = [];
+    what.begin?.();
+    setSpeed(Number(begun.speed));
+    R.begin(Object.fromEntries(NAMES.map((name) => [name, begun[name]])));
+    showValues();
+    if (stopped) play();
+    draw();
+  }
+
+  function showValues() {
+    const { chain } = world.state;
+    for (const name of NAMES) sliders[name].value = chain[name];
+    for (const value of root.querySelectorAll("[data-value]")) value.textContent = chain[value.dataset.value];
+    find("rod").max = chain.size;
+  }
+
+  function slide(name) {
+    const control = sliders[name], chain = { ...world.state.chain }, stopped = world.ranAway;
+    chain[name] = control.options ? control.value : Number(control.value);
+    if (world.pushed)
+      note(`The push was broken off.${chosen.calm ? " The next one waits until the chain has settled." : ""}`);
+    if (name === "size" || name === "spring" || stopped) R.begin(chain);
+    else R.change(chain);
+    showValues();
+    if (stopped) play();
+    draw();
   }
 
   function setSpeed(value) {
     R.setSpeed(value);
     find("speed").value = String(world.speed);
   }
+
+  /* Write into the address all that is chosen: after whatever was done, and nowhere else. */
+  function write() {
+    const now = { ...world.state.chain, rod: Number(find("rod").value), speed: world.speed };
+    for (const [name, list] of Object.entries(pictures)) now[name] = list.value;
+    ChainAddress.write(chosen, now, [...solved]);
+  }
+
+  /* Begin what the address asks for; say why it is refused. */
+  function obeyAddress(otherwise = () => {}) {
+    const options = (list) => ({ options: list.map(({ id }) => ({ value: id })) });
+    const asked = ChainAddress.read({
+      challenge: options(CHALLENGES), preset: options(PRESETS), ...sliders,
+      rod: { ...limits(sliders.size), min: 1 }, ...pictures, speed: find("speed"),
+    });
+    if (asked?.values) {
+      const { challenge, preset, ...values } = asked.values;
+      choose([...CHALLENGES, ...PRESETS].find(({ id }) => id === (challenge || preset)) || OWN, values);
+      return;
+    }
+    otherwise();
+    if (asked) note(`The address is not understood: ${asked.refused}.`);
+  }
+
+  const limits = ({ min, max, step }) => ({ min, max, step });
+
+  // -- what is done -----------------------
 
   function step() {
     pause();
@@ -99,104 +178,25 @@
       : "No rods have met.";
   }
 
-  // -- challenges, presets, sliders -------
-
-  /* Let the challenge look, and say what it found; what is new is read aloud only when it is done. */
-  function judge() {
-    if (!chosen.watch) return;
-    const { done, said } = chosen.watch(world), mark = find(`challenge-${chosen.title}`);
-    const next = ChainChallenges.list[ChainChallenges.list.indexOf(chosen) + 1];
-    find("said").textContent = said;
-    find("answer").textContent = done ? chosen.answer : "";
-    find("next").hidden = !done || !next;
-    if (next) find("next").textContent = `Next: ${next.title}`;
-    if (!done || mark.classList.contains("done")) return;
-    mark.classList.add("done");
-    mark.textContent += " ✓";
-    find("announced").textContent = `Challenge done: ${chosen.title}. ${said} ${chosen.answer}`;
-  }
-
-  /* Begin what was chosen: a challenge, a preset or a chain of one's own. */
-  function choose(what) {
-    chosen = what;
-    for (const each of ChainChallenges.list)
-      find(`challenge-${each.title}`).setAttribute("aria-pressed", String(each === what));
-    find("preset").value = ChainPresets.list.indexOf(what);
-    find("ask").textContent = what.ask;
-    for (const name of ["said", "answer"]) find(name).textContent = "";
-    find("next").hidden = true;
-    const picture = what.picture || "widths"; // a narrow page shows the second one only
-    find("second-picture").value = picture === "density" && !NARROW.matches ? "widths" : picture;
-    world.pushes = [];
-    setSpeed(what.speed || 3);
-    const stopped = world.ranAway;
-    R.begin(what.chain);
-    showValues();
-    if (stopped) play();
-    draw();
-  }
-
-  function showValues() {
-    const { chain } = world.state;
-    for (const name of NAMES) sliders[name].value = chain[name];
-    for (const value of root.querySelectorAll("[data-value]")) value.textContent = chain[value.dataset.value];
-    find("rod").max = chain.size;
-    refusal = "";
-  }
-
-  function slide(name) {
-    const control = sliders[name], chain = { ...world.state.chain };
-    chain[name] = control.options ? control.value : Number(control.value);
-    const stopped = world.ranAway;
-    if (name === "size" || name === "spring" || stopped) R.begin(chain);
-    else R.change(chain);
-    showValues();
-    ChainAddress.write(chain);
-    if (stopped) play();
-    draw();
-  }
-
-  /* Take the setting of the address, if there is one; say why it is refused. */
-  function obeyAddress() {
-    const asked = ChainAddress.read(sliders);
-    if (!asked || (asked.chain && world.state && ChainAddress.same(asked.chain, world.state.chain))) return;
-    if (asked.chain) choose({ ...OWN, chain: asked.chain });
-    else find("ask").textContent = `The address is not a setting: ${asked.refused}.`;
-  }
-
-  // -- the hand -------------------------
-
-  /* The place on the line below a pointer [R]. */
-  function placeOf(event) {
-    const box = stage.canvas.getBoundingClientRect();
-    return (((event.clientX - box.left) / box.width) * 2 - 1) * stage.half;
-  }
-
-  function take(event) {
-    const box = stage.canvas.getBoundingClientRect(), finger = (24 / box.width) * 2 * stage.half;
-    if (event.clientY - box.top > ChainDrawing.BAND + 12) return;
-    if (R.take(placeOf(event), Math.max(1.2 * ChainPhysics.RADIUS, finger), event.timeStamp))
-      stage.canvas.setPointerCapture(event.pointerId);
-  }
-
-  function letGo(event) {
-    if (!world.hand) return;
-    R.letGo(event.type === "pointerup" && event.timeStamp - world.hand.since < TAP);
-    setSpeed(world.speed);
-    if (!running) draw();
-  }
-
-  // -- what listens ---------------------
-
   function push() {
-    const rod = Math.round(Number(find("rod").value)) || 1;
-    R.push(Math.min(Math.max(rod, 1), world.state.y.length) - 1);
+    const { value } = find("rod"), rod = Number(value), { size } = world.state.chain;
+    if (!Number.isInteger(rod) || rod < 1 || rod > size) {
+      note(`There is no rod ${value || "without a number"}: the rods have the numbers 1 to ${size}.`);
+      return;
+    }
+    note("");
+    R.push(rod - 1, chosen.calm);
+    touched();
+  }
+
+  /* A rod was pushed or let go, which may have changed the speed. */
+  function touched() {
     setSpeed(world.speed);
-    if (!running) draw();
+    if (!ChainFrames.running()) draw();
   }
 
   function save() {
-    stage.save(told(world.state.chain), (picture) => {
+    stage.save(ChainAddress.told(world.state.chain), (picture) => {
       const link = document.createElement("a");
       link.href = URL.createObjectURL(picture);
       link.download = "chain.png";
@@ -205,43 +205,40 @@
     });
   }
 
+  /* Solve the theory of the chain, or stop solving it. What is said of one chain is not seen with another. */
   function solve() {
     const { chain } = world.state;
-    ChainTheory.ask(chain, root.dataset.theory, (said) => {
-      find("theory").textContent = said;
-      refusal = said;
-      find("solve").textContent = ChainTheory.asked() ? "Stop" : "Solve the theory";
-      if (!ChainTheory.asked()) draw();
-    });
+    const said = (text) => {
+      told = { chain, said: text };
+      if (chain === world.state.chain) draw();
+    };
+    if (ChainTheory.asked()) ChainTheory.abort();
+    else ChainTheory.ask(chain, root.dataset.theory, said);
   }
 
   function listen() {
-    const { canvas } = stage;
-    canvas.addEventListener("pointerdown", take);
-    canvas.addEventListener("pointermove", (event) => {
-      if (world.hand) world.hand.x = placeOf(event) + world.hand.offset;
-    });
-    for (const type of ["pointerup", "pointercancel"]) canvas.addEventListener(type, letGo);
     const clicks = {
-      play: () => (running ? pause() : play()), step, push, save, solve,
+      step, push, save, solve,
       restart: () => choose(chosen),
-      next: () => choose(ChainChallenges.list[ChainChallenges.list.indexOf(chosen) + 1]),
+      next: () => choose(CHALLENGES[CHALLENGES.indexOf(chosen) + 1]),
+      reveal: () => (solved.add(chosen.id), answer()),
     };
     for (const [name, act] of Object.entries(clicks)) find(name).addEventListener("click", act);
-    find("speed").addEventListener("change", (event) => setSpeed(Number(event.target.value)));
-    find("preset").addEventListener("change", ({ target }) => {
-      choose(ChainPresets.list[target.value]);
-      ChainAddress.write(world.state.chain);
-    });
+    find("speed").addEventListener("change", ({ target }) => setSpeed(Number(target.value)));
+    find("preset").addEventListener("change", ({ target }) => choose(PRESETS.find(({ id }) => id === target.value)));
     for (const name of NAMES) sliders[name].addEventListener("input", () => slide(name));
-    for (const name of ["first", "second"]) find(`${name}-picture`).addEventListener("change", draw);
-    root.addEventListener("keydown", (event) => {
-      if (event.key === "p" && !event.ctrlKey && !event.metaKey && !event.altKey) push();
+    for (const list of Object.values(pictures)) list.addEventListener("change", draw);
+    document.addEventListener("keydown", (event) => {
+      const typing = !root.contains(event.target) && event.target.closest("input, select, textarea, [contenteditable]");
+      if (event.key !== "p" || event.ctrlKey || event.metaKey || event.altKey || typing) return;
+      push();
+      write();
     });
-    document.addEventListener("visibilitychange", () => !document.hidden && running && play());
-    window.addEventListener("hashchange", obeyAddress);
+    ChainHand.listen(stage, touched);
+    for (const type of ["click", "input", "change"]) root.addEventListener(type, write); // after all others
+    window.addEventListener("hashchange", () => obeyAddress());
     const again = () => (stage.refresh(), draw());
-    new ResizeObserver(again).observe(canvas);
+    new ResizeObserver(again).observe(stage.canvas);
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", again);
     new MutationObserver(again).observe(document.body, { attributeFilter: ["data-theme"] });
   }
@@ -271,22 +268,23 @@
   }
 
   function fill() {
-    ChainChallenges.list.forEach((each, k) => {
+    CHALLENGES.forEach((each, k) => {
       const made = button(`${k + 1} ${each.title}`, () => choose(each));
       made.dataset.chain = `challenge-${each.title}`;
+      if (solved.has(each.id)) tick(made);
       find("challenges").append(made);
     });
     NAMES.filter((name) => name !== "spring").forEach(surround);
-    find("preset").append(new Option("The paper's figures", -1));
-    ChainPresets.list.forEach(({ title }, k) => find("preset").append(new Option(title, k)));
-    find("second-picture").append(...find("first-picture").cloneNode(true).children);
+    const questions = PRESETS.map(({ id, title }) => new Option(title, id));
+    find("preset").append(new Option("Questions to predict", ""), ...questions);
+    pictures.second.append(...pictures.first.cloneNode(true).children);
     find("solve").hidden = !root.dataset.theory; // only a server can
   }
 
+  ChainFrames.show({ stage, plots: drawPlots, button: find("play") });
   fill();
-  choose(ChainChallenges.list[0]);
   listen();
-  obeyAddress();
+  obeyAddress(() => choose(CHALLENGES[0]));
   if (!matchMedia("(prefers-reduced-motion: reduce)").matches) play();
 
 })();

@@ -15,9 +15,9 @@ const ChainDrawing = (() => {
       place.style.color = `var(--${name})`;
       return style.color;
     };
-    const [ink, faint, grey, exact, dots] = ["ink", "faint", "grey", "exact", "left"].map(read);
+    const [ink, faint, grey, exact] = ["ink", "faint", "grey", "exact"].map(read);
     const [left, rest, right] = ["left", "rest", "right"].map((name) => read(name).match(/\d+/g).map(Number));
-    return { ink, faint, grey, exact, dots, left, rest, right, sans: style.fontFamily };
+    return { ink, faint, grey, exact, left, rest, right, sans: style.fontFamily };
   }
 
   /* Blue for a rod that moves left, orange to the right, pale at rest; v in free widths. */

@@ -86,14 +86,14 @@ const ChainMeasuring = (() => {
       return found;
     }
 
-    /* Kinetic energy at the border over that in the centre, with its standard error. */
-    ratio() {
-      const n = this.blocks.length;
+    /* Kinetic energy at the border over that in the centre in some blocks, with its standard error. */
+    ratio(blocks = this.blocks) {
+      const n = blocks.length;
       if (n < 2) return null;
-      const mean = (k) => this.blocks.reduce((sum, block) => sum + block[k], 0) / n;
+      const mean = (k) => blocks.reduce((sum, block) => sum + block[k], 0) / n;
       const border = mean(0), centre = mean(1);
       let scatter = 0;
-      for (const block of this.blocks) scatter += (block[0] / border - block[1] / centre) ** 2;
+      for (const block of blocks) scatter += (block[0] / border - block[1] / centre) ** 2;
       const value = border / centre;
       return { value, error: value * Math.sqrt(scatter / (n * (n - 1))), blocks: n };
     }

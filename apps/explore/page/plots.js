@@ -27,6 +27,13 @@ const ChainPlots = (() => {
     return Array.from({ length: last - first + 1 }, (_, k) => Number(((first + k) * step).toPrecision(12)));
   }
 
+  /* Round limits around values that are seen, at least so far apart. */
+  function around(values, apart) {
+    const low = Math.min(...values), high = Math.max(...values), room = Math.max(apart - (high - low), 0) / 2;
+    const from = Math.max(low - room, 0), [one, two] = ticks(from, high + room, 5), step = two - one;
+    return [Math.floor(from / step) * step, Math.ceil((high + room) / step) * step];
+  }
+
   const number = (value) => String(value).replace("-", "−");
   const powerOfTen = (k) => (k >= -2 && k <= 3 ? number(Number((10 ** k).toFixed(2)))
     : `10${String(k).replace(/./g, (digit) => "⁰¹²³⁴⁵⁶⁷⁸⁹⁻"["0123456789-".indexOf(digit)])}`);
@@ -128,12 +135,12 @@ const ChainPlots = (() => {
       if (text) this.name(text, (x, y) => (pen.beginPath(), pen.moveTo(x - 4, y), pen.lineTo(x + 12, y), stroke()));
     }
 
-    /* Squares, or rings in the colour of theory. */
+    /* Squares or rings. */
     dots(points, strength, text, rings = false) {
       const { pen, colour } = this, dot = (x, y) => {
         pen.globalAlpha = strength;
         pen.fillStyle = colour.grey;
-        pen.strokeStyle = colour.dots;
+        pen.strokeStyle = colour.ink;
         pen.lineWidth = 1.5;
         pen.beginPath();
         pen.arc(x, y, 3, 0, 7);
@@ -148,55 +155,74 @@ const ChainPlots = (() => {
 
   const strength = (measurement) => (measurement.settled ? 1 : 0.45);
 
-  /* Pictures by name; `seen` has {half, measurement, unit, history, exact, theory}, where `theory` is
-     what is known of the chain: {short, widths, density, other: {short, density}}. */
+  const measuredIn = ({ settled }) => (settled ? "measured" : "not settled yet");
+
+  /* Pictures by name. `seen` has {half, measurement, history, restitution, unit, counted, inUnits, exact,
+     theory}: velocities are divided by the `unit`, those of the distributions are counted in `counted`
+     units, and `theory` is what is known of the chain: {short, widths, density, other: {short, density}}.
+     Each picture returns what is seen on it as a sentence. */
   const pictures = {
     density(canvas, colour, { half, measurement, exact, theory }) {
       // Stated errors are those of densities averaged as in the paper.
       const averaged = theory && theory.density, alike = averaged ? ChainMeasuring.averaged : (points) => points;
+      const measured = alike(measurement.coverage()), most = Math.max(0.1, ...measured.map(([, share]) => share));
       const plot = new Plot(canvas, colour, {
-        x: [-half, half], y: [0, 1.05], xTitle: "position x [R]",
+        x: [-half, half], y: [0, Math.min(1.05, 1.15 * most)], xTitle: "position x [R]",
         yTitle: averaged ? "share covered, averaged over 2R" : "share of time covered",
       });
-      plot.area(alike(measurement.coverage()), strength(measurement), "measured");
+      plot.area(measured, strength(measurement), "measured");
       if (exact) plot.line(alike(exact), "exact");
       if (averaged && !exact) plot.line(theory.density, "theory");
       if (averaged && theory.other) plot.line(theory.other.density, theory.other.short, [6, 3]);
+      const covered = measured.filter(([, share]) => share > 0.01).map(([x]) => x), percent = Math.round(100 * most);
+      return `Density, ${measuredIn(measurement)}: rods cover a place for up to ${percent} % of the time, from x = ` +
+        `${Math.round(covered[0])} to ${Math.round(covered[covered.length - 1])} R.`;
     },
 
-    widths(canvas, colour, { measurement, unit, theory }) {
+    widths(canvas, colour, { measurement, unit, inUnits, theory }) {
       const widths = measurement.widths().map((each) => each / unit), known = theory && theory.widths;
-      const most = 1.12 * Math.max(1, ...widths, ...(known || []));
       const plot = new Plot(canvas, colour, {
-        x: [0, widths.length + 1], y: [0, most], xTitle: "rod i", apart: 1, yTitle: "velocity width [W]",
+        x: [0, widths.length + 1], y: around([...widths, ...(known || [])], 0.2), xTitle: "rod i", apart: 1,
+        yTitle: `velocity width [${inUnits}]`,
       });
       plot.dots(widths.map((width, i) => [i + 1, width]), strength(measurement), "measured");
       if (known) plot.line(known.map((width, i) => [i + 1, width]), theory.short);
+      const last = widths.length - 1, said = (all) => [0, last >> 1, last].map((i) => all[i].toFixed(2)).join(", ");
+      return `Velocity widths of the first, the middle and the last rod, ${measuredIn(measurement)}: ${said(widths)} ` +
+        `${inUnits}${known ? `; ${theory.short}: ${said(known)} ${inUnits}` : ""}.`;
     },
 
-    velocities(canvas, colour, { measurement }) {
+    velocities(canvas, colour, { measurement, restitution, counted, inUnits }) {
       const log = ([v, p]) => [v, Math.log10(p)], [middle, ends] = ["middle", "ends"].map((where) =>
-        measurement.velocities(where).map(log));
-      const fastest = Math.max(4, ...[...middle, ...ends].map(([v]) => Math.abs(v)));
+        measurement.velocities(where).map(([v, p]) => log([v * counted, p / counted])));
+      const [slow, fast] = [middle, ends].map((points) => Math.max(0, ...points.map(([v]) => Math.abs(v))));
+      const fastest = Math.max(inUnits === "W" ? 4 : 0.1, slow, fast);
       const plot = new Plot(canvas, colour, {
-        x: [-fastest, fastest], y: [-4.2, 0.4], xTitle: "velocity v [W], at the ends outward", yTitle: "p(v) [1/W]",
-        powers: true,
+        x: [-fastest, fastest], y: [-4.2, 0.4], xTitle: `velocity v [${inUnits}], at the ends outward`,
+        yTitle: `p(v) [${inUnits === "W" ? "1/W" : "T/R"}]`, powers: true,
       });
-      plot.line(GAUSS.map((v) => log([v, Math.exp((-v * v) / 2) / Math.sqrt(2 * Math.PI)])), "free rod");
+      const gauss = GAUSS.map((v) => log([v, Math.exp((-v * v) / 2) / Math.sqrt(2 * Math.PI)]));
+      if (inUnits === "W") plot.line(gauss, restitution === 1 ? "exact" : "free rod");
       plot.dots(ends, strength(measurement), "ends", true);
       plot.dots(middle, strength(measurement), "middle");
+      return `Velocities, ${measuredIn(measurement)}: seen up to ${slow.toFixed(1)} ${inUnits} in the middle and ` +
+        `${fast.toFixed(1)} ${inUnits} at the ends.`;
     },
 
-    energy(canvas, colour, { history }) {
+    energy(canvas, colour, { history, inUnits }) {
       const points = history.filter(([, energy]) => energy > 0).map(([t, energy]) => [t, Math.log10(energy)]);
       const ys = points.map(([, y]) => y), last = points.length - 1;
+      const of = inUnits === "W" ? "that of free rods" : "that of free rods at A = 1";
       const plot = new Plot(canvas, colour, {
-        x: last > 0 ? [points[0][0], points[last][0]] : [0, 1], y: [Math.min(-1, ...ys), Math.max(1, ...ys) + 0.2], xTitle: "time t [T]",
-        yTitle: "energy / that of free rods", powers: true,
+        x: last > 0 ? [points[0][0], points[last][0]] : [0, 1], y: [Math.min(-1, ...ys), Math.max(1, ...ys) + 0.2],
+        xTitle: "time t [T]", yTitle: `energy / ${of}`, powers: true,
       });
       plot.line(points, "measured", [1, 0]);
+      if (last < 1) return "Energy: not measured yet.";
+      const [from, to] = [ys[0], ys[last]].map((y) => Number((10 ** y).toPrecision(2)));
+      return `Energy: from ${from} to ${to} times ${of} within ${Math.round(points[last][0] - points[0][0])} T.`;
     },
   };
 
-  return { fit, number, ticks, pictures };
+  return { fit, number, ticks, around, pictures };
 })();

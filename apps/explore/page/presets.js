@@ -1,40 +1,66 @@
-/* What figures of arXiv:1404.7460 show: a chain, and what to look for. Chains of 300 and 1000 rods
-   have 100 or 200 here, which settle sooner. */
+/* Questions that figures of arXiv:1404.7460 answer: a chain, what to predict and to do, and the answer.
+   Chains of 300 and 1000 rods have 100 or 200 here, which settle sooner. */
 "use strict";
 
 const ChainPresets = (() => {
-  const preset = (figure, title, ask, picture, chain, speed = 30) => ({
-    title: `${title} (figure ${figure})`, ask, picture, speed, chain: { ...ChainAddress.USUAL, ...chain },
+  const question = (id, title, ask, answer, second, chain, { first = "density", speed = 100 } = {}) => ({
+    kind: "preset", id, title, ask, answer, pictures: [first, second], speed,
+    chain: { ...ChainAddress.USUAL, ...chain },
   });
   const list = [
-    preset(2, "The middle rods are slower", "The middle rods have a narrower distribution than the outermost " +
-      "ones, and both are narrower than a free rod's.", "velocities", { restitution: 0 }),
-    preset(3, "Collisions cool the middle", "The velocity width is largest at the ends and falls off towards " +
-      "the middle.", "widths", { size: 200, restitution: 0 }),
-    preset(4, "Longer chains are colder", "Note the velocity width in the middle, then change L: the longer the " +
-      "chain, the colder its middle. The paper sees a power law, L to the power −0.38.", "widths",
-      { size: 30, restitution: 0 }),
-    preset(7, "A small loss cools a lot", "Lower e from 0.95 and the velocity widths in the middle fall: each " +
-      "collision then takes more energy.", "widths", { restitution: 0.95 }),
-    preset(8, "A Gaussian at e = 1", "Elastic collisions leave no trace in the velocities: all symbols lie on " +
-      "the Gaussian of a free rod.", "velocities", {}),
-    preset(10, "The ends have heavy tails", "Every collision adds energy: all rods are faster than a free rod, " +
-      "and the tail of the outermost ones is a straight line, an exponential.", "velocities",
-      { restitution: 1.05, damping: 4 }),
-    preset(11, "The middle is faster", "With strong damping the large velocities are likelier in the middle, " +
-      "where more collisions feed the rods.", "velocities", { restitution: 1.05, damping: 10 }),
-    preset(14, "A short chain: hot middle", "In this short chain the middle is fastest; raise L to 100 and the " +
-      "ends are.", "widths", { size: 25, restitution: 1.05, damping: 4 }),
-    preset(15, "Energy grows exponentially", "The energy is a straight line on its logarithmic axis until the " +
-      "chain has run away.", "energy", { restitution: 1.01, damping: 0.4 }, 3),
-    preset(15, "Energy becomes infinite", "The energy curves upwards on its logarithmic axis: it becomes " +
-      "infinite after a finite time.", "energy", { restitution: 1.01, damping: 0.4, spring: "quadratic" }, 3),
-    preset(17, "Theory meets simulation", "The simulation lies on the exact density. Solve the theory to see that " +
-      "the force balance misses it at the edges only.", "density", { amplitude: 10 }),
-    preset(18, "Noise only sets the scale", "Change A: velocities and displacements grow like A, and the " +
-      "velocity widths keep their shape.", "widths", { restitution: 0.95, amplitude: 3 }),
-    preset(19, "A gap makes a plateau", "With a gap the velocity widths have a plateau in the middle; the wider " +
-      "the gap, the wider the plateau.", "widths", { size: 200, restitution: 0.95, gap: 0.2 }),
+    question("middle", "Which rods move least?",
+      "At e = 1 all rods move alike. At e = 0 each collision takes energy. Which rods move least then, those at " +
+      "the ends or those in the middle? Predict, then set e = 0.",
+      "Those in the middle, which meet more often: W_v falls from 0.64 W at the ends to 0.22 W. All move less " +
+      "than a free rod.",
+      "widths", {}, { first: "velocities" }),
+    question("length", "Is a longer chain colder?",
+      "Note the velocity width in the middle of 30 rods. What is that of 120? Predict, then change L.",
+      "It is: about 0.34 W in the middle of 30 rods and 0.2 W of 120. The paper finds a power law, L to the " +
+      "power −0.38.",
+      "widths", { size: 30, restitution: 0 }),
+    question("loss", "How much does a small loss cool?",
+      "At e = 0.95 a collision takes a tenth of the energy of approach. How slow are the rods in the middle, " +
+      "and at e = 0.8? Predict, then set e.",
+      "A small loss cools a lot, because rods meet often: in the middle W_v is 0.43 W at e = 0.95 and 0.26 W at" +
+      " e = 0.8.",
+      "widths", {}),
+    question("elastic", "Do elastic collisions leave a trace?",
+      "At e = 1 collisions keep the energy. Will the density show them, and will the velocities? Predict both, " +
+      "then set e = 1.",
+      "The velocities do not: they keep the Gaussian of a free rod. The density does, because rods cannot " +
+      "overlap: it is flat, with edges. Theory is exact for both.",
+      "velocities", { restitution: 0.9, amplitude: 10 }),
+    question("tails", "Who is fast above e = 1?",
+      "Collisions add energy at e = 1.05. Where will large velocities be likelier, at the ends or " +
+      "in the middle? Predict for γ = 4 and for γ = 10, then set e = 1.05.",
+      "At γ = 4 at the ends, with a heavy tail: a straight line here, an exponential. At γ = 10 in the middle, " +
+      "whose rods are fed by more collisions.",
+      "velocities", { damping: 4 }, { first: "widths" }),
+    question("hottest", "Where is it hottest above e = 1?",
+      "At e = 1.05 each collision adds energy. Are the ends or the middle hottest? Predict for γ = 5 and for " +
+      "γ = 2.5, then set e = 1.05.",
+      "At γ = 5 the middle, 1.36 W against 1.15 W, because its rods have more neighbours. At γ = 2.5, closer to" +
+      " where the chain runs away, the ends, 2.3 W against 2.1 W. By theory it turns at γ = " +
+      `${ChainCurves.turning.damping}.`,
+      "widths", { size: 60, damping: 5 }),
+    question("growth", "How fast does the energy grow?",
+      "At e = 1.01 this chain runs away. Is its energy then a straight line on a logarithmic axis, with linear " +
+      "and with quadratic springs? Predict, then set e = 1.01, and change the springs.",
+      "With linear springs it is: the energy grows exponentially. With quadratic ones fast rods meet more " +
+      "often: the line curves upwards, and the energy becomes infinite after a finite time.",
+      "energy", { damping: 0.4 }, { speed: 30 }),
+    question("noise", "What does stronger noise change?",
+      "What happens to the velocity widths in units of W, and to the density, at A = 6? Predict, then change A.",
+      "Velocities and displacements grow like A, and so does W. In units of W the widths stay. The density " +
+      "spreads, because the rods do not grow.",
+      "widths", { restitution: 0.95, amplitude: 3 }),
+    question("gap", "What does a gap change?",
+      "Without a gap the middle is coldest. How will the velocity widths look with anchors 0.2 R further apart?" +
+      " Predict, then set g = 0.2.",
+      "The gap leaves each rod few neighbours within reach. The widths have a plateau, at 0.65 W, and rise at " +
+      "the ends only. The wider the gap, the higher the plateau.",
+      "widths", { restitution: 0.5 }),
   ];
   return { list };
 })();

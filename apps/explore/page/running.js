@@ -31,14 +31,19 @@ const ChainRunning = (() => {
   function begin(chain) {
     world.state = P.makeState(chain, ++seed);
     world.hand = null; // it held a rod of the chain before
-    const settles = chain.restitution <= 1, time = P.relaxationTime(chain), begun = performance.now();
-    let due = settles ? 4 * time : 0;
-    for (; due > 0 && performance.now() - begun < PATIENCE; due -= time / 4) P.go(world.state, time / 4);
     world.measurement = new ChainMeasuring.Measurement(world.state, 1.5 * ChainDrawing.reach(chain));
+    if (chain.restitution <= 1) settle(4 * P.relaxationTime(chain));
+    else changed();
+  }
+
+  /* Let the chain settle for so long before it is shown; what takes too long to compute is left over. */
+  function settle(due) {
+    const quarter = P.relaxationTime(world.state.chain) / 4, begun = performance.now();
+    for (; due > 0 && performance.now() - begun < PATIENCE; due -= quarter) P.go(world.state, quarter);
     changed();
-    if (settles) world.measurement.settling = due;
-    // The strip is full from the beginning, unless this would take long or show nothing.
-    if (settles && world.speed <= SEEN) for (let row = 0; row < ChainDrawing.ROWS; row++) goOn();
+    world.measurement.settling = due;
+    // The strip is full from the beginning, unless this would show nothing.
+    if (world.speed <= SEEN) for (let row = 0; row < ChainDrawing.ROWS; row++) goOn();
   }
 
   /* Go on with other parameters, but as many rods. */
@@ -102,16 +107,18 @@ const ChainRunning = (() => {
     return [];
   }
 
-  /* Add a velocity to a rod, to the right. */
-  function push(rod) {
+  /* Add a velocity to a rod, to the right. Calmly: the chain settles before, if it has a steady state. */
+  function push(rod, calmly = false) {
     if (world.ranAway) return;
-    const { state } = world, { chain } = state, speedUp = KICK * unit();
+    const { state, measurement } = world, { chain } = state, speedUp = KICK * unit();
+    if (calmly && !measurement.settled && chain.restitution <= 1) settle(measurement.settling);
+    const { settled } = measurement;
     state.v[rod] += speedUp;
     changed(true);
     // Twice the time in which a rod of this speed would cross the free space.
     const space = chain.gap * (chain.size - 1) + 4 * P.thermalLength(chain);
     const until = state.time + (2 * space) / speedUp;
-    world.pushed = { rod, size: chain.size, restitution: chain.restitution, fastest: 0, until };
+    world.pushed = { rod, chain: { ...chain }, settled, fastest: 0, until };
     if (world.speed > SEEN) setSpeed(SEEN);
   }
 

@@ -13,6 +13,7 @@ const ChainTheory = (() => {
     if (error > 0 && border > 0) known.push(`at the ends ${within(border)}`);
     if (ofDensity === 0) known.push("density exact");
     if (ofDensity > 0) known.push(`density ${within(ofDensity)} of close packing`);
+    if (known.length && ofDensity === null) known.push("error of the density not measured");
     const exactly = error === 0 && ofDensity === 0;
     return `${title}: ${exactly ? "exact" : known.join(", ") || "its errors were not measured for such chains"}.`;
   }
@@ -44,29 +45,31 @@ const ChainTheory = (() => {
   }
 
   /* Ask the server for the best theory of a chain, and call `show(text)` while it is solved and with
-     what came of it. Ask again to cancel. */
+     what came of it. */
   async function ask(chain, address, show) {
-    if (asking) {
-      asking.abort();
-      return;
-    }
-    asking = new AbortController();
-    const begun = performance.now();
+    const stop = new AbortController(), begun = performance.now();
+    asking = { chain, stop };
     const clock = () => show(`Being solved, ${Math.round((performance.now() - begun) / 1000)} s.`);
     const ticking = setInterval(clock, 1000);
     clock();
     let said = "";
     try {
       const query = new URLSearchParams(ChainAddress.NAMES.map((name) => [name, chain[name]]));
-      const wanted = { signal: asking.signal, headers: { "X-Requested-With": "chain" } };
+      const wanted = { signal: stop.signal, headers: { "X-Requested-With": "chain" } };
       const answer = await (await fetch(`${address}?${query}`, wanted)).json();
       said = answer.refused ? `No theory: ${answer.refused}` : take(chain, answer);
     } catch (error) {
       said = error.name === "AbortError" ? "" : "The server does not answer.";
     }
     clearInterval(ticking);
-    asking = null;
+    if (asking?.stop === stop) asking = null;
     show(said);
+  }
+
+  /* Stop asking; the server notices and stops too. */
+  function abort() {
+    asking?.stop.abort();
+    asking = null;
   }
 
   /* Keep an answer of the server: the best theory and, at e = 1, the force balance beside it. */
@@ -80,5 +83,5 @@ const ChainTheory = (() => {
     return said;
   }
 
-  return { of, exactDensity, ask, asked: () => asking !== null };
+  return { of, exactDensity, ask, abort, asked: () => asking?.chain };
 })();

@@ -1,0 +1,78 @@
+"""A verdict of the page's challenges is wrong in fewer than one of a hundred simulated classes."""
+
+import json
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+PAGE = Path(__file__).parents[2] / "apps" / "explore" / "page"
+pytestmark = [
+    pytest.mark.validate,
+    pytest.mark.skipif(not shutil.which("node"), reason="needs node"),
+]
+
+# At e = 1 all rods are as hot as each other, so that every clear verdict on the limit 1 is wrong.
+EQUAL = """
+const chain = {size: 10, restitution: 1, amplitude: 1, damping: 1, gap: 0, spring: "linear"};
+let wrong = 0;
+for (let run = 0; run < RUNS; run++) {
+  const state = ChainPhysics.makeState(chain, run + 1);
+  ChainPhysics.go(state, 5 * ChainPhysics.relaxationTime(chain));
+  const measured = new ChainMeasuring.Measurement(state, 20);
+  measured.settling = 0;
+  while (measured.blocks.length < 640) { ChainPhysics.go(state, 4); measured.add(state, 4, 1); }
+  const ratio = (n) => measured.ratio(measured.blocks.slice(0, n));
+  wrong += ChainJudging.verdict(640, ratio, 1).above !== undefined;
+}
+found = wrong;
+"""
+PUSHES = """
+ChainRunning.showOn({restart() {}, add() {}});
+const { world } = ChainRunning, [push] = ChainChallenges.list;
+let wrong = 0;
+for (let run = 0; run < RUNS; run++) {
+  push.begin();
+  world.pushes = [];
+  ChainRunning.begin(push.chain);
+  for (const restitution of [1, 0.9]) {
+    ChainRunning.change({ ...push.chain, restitution });
+    for (let k = 0; k < 3; k++) {
+      ChainRunning.push(0, true);
+      while (world.pushed) ChainRunning.goOn();
+    }
+  }
+  wrong += !push.watch(world).done;
+}
+found = wrong;
+"""
+LOOKS = """
+const times = [];
+ChainJudging.verdict(1e6, (n) => (times.push(n), {value: 1, error: 1}), 1);
+const early = ChainJudging.verdict(39, () => ({value: 9, error: 1}), 1);
+found = [times, early.next, early.above === undefined];
+"""
+
+
+def run(script, runs=0):
+    """Return what a script finds with the page's own files, without a browser."""
+    order = ["scales", "physics", "measuring", "drawing", "running", "judging", "address"]
+    texts = [(PAGE / f"{name}.js").read_text(encoding="utf-8") for name in (*order, "challenges")]
+    scripts = "".join(text.replace('"use strict";', "") for text in texts)
+    whole = f"{scripts}\nlet found; const RUNS = {runs};{script}\n"
+    whole += "console.log(JSON.stringify(found))"
+    done = subprocess.run(
+        ["node"], input=whole, capture_output=True, text=True, check=True, timeout=500
+    )
+    return json.loads(done.stdout)
+
+
+def test_verdicts_fall_at_fixed_times():
+    assert run(LOOKS) == [[40, 80, 160, 320, 640], 40, True]
+
+
+@pytest.mark.parametrize(("script", "runs"), [(EQUAL, 1500), (PUSHES, 500)])
+def test_fewer_than_one_verdict_in_a_hundred_is_wrong(script, runs):
+    """Were one in a hundred wrong, half of the runs' expected number would be rare."""
+    assert run(script, runs) <= 0.01 * runs
