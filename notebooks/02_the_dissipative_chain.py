@@ -203,7 +203,8 @@ axes = panels(2, height=4, sharey=True)
 for ax, (e, film) in zip(axes, films.items(), strict=True):
     time = film.time - film.time[0]
     v = film.velocity.isel(replica=0).transpose("particle", "time") / W
-    colours = ax.pcolormesh(time, film.particle, v, cmap=DIRECTIONS, vmin=-2, vmax=2, rasterized=True)
+    shown = {"cmap": DIRECTIONS, "vmin": -2, "vmax": 2, "rasterized": True}
+    colours = ax.pcolormesh(time, film.particle, v, **shown)
     ax.set(xlabel="time t [T]", title=f"restitution e = {e}")
 axes[0].set_ylabel("particle i")
 axes[0].figure.colorbar(colours, ax=axes, label="velocity $v/W$")
