@@ -20,19 +20,22 @@
 # **Question.** How much code does it take to repeat the section *Comparison to analytical
 # calculations* of [Mani, Böttcher, Herrmann and Helbing](https://arxiv.org/abs/1404.7460)?
 #
-# Sixty lines: those that you see in sections 1 to 6, without the task and without the folded cells
-# that draw. They use numpy, scipy and py-pde, and the drawing uses matplotlib. Only the simulation
-# comes from this package. Section 7 then repeats each result with the functions of the package, and
-# shows with numbers why they are written differently.
+# Sixty lines: those that you see in sections 1 to 6, without the folded cells that draw. They use
+# numpy, scipy and py-pde, and the drawing uses matplotlib. Only the simulation comes from this
+# package. Section 7 then repeats each result with the functions of the package, and shows with
+# numbers why they are written differently.
 #
 # The labels such as `diff_gl` are those of the LaTeX source of the paper. The unit of length is the
 # rod radius $R$. The unit of time is $T = \sqrt{M/k}$, where a rod has the mass
 # $m = \frac{4\pi}{3}M$.
 #
-# *Level: for readers of the paper. You need: numpy and scipy. Time: 30 minutes. The lessons 1 to 11
+# *Level: for readers of the paper. You need: numpy and scipy. Time: 30 minutes. The lessons 1 to 10
 # explain everything that is only used here. To predict before you see the results, type
-# `make lessons` in the folder of the project, and open the copy of this lesson without outputs in
-# `build/lessons/`.*
+# `make lessons` in the folder of the project, and open the copy of this notebook in
+# `build/lessons/`, which has neither outputs nor solutions.*
+#
+# **What you may change.** The amplitude of section 1, from 1 to 10. Section 6 sets its own.
+# After a change run all cells below it again.
 
 # %%
 import matplotlib.pyplot as plt
@@ -44,8 +47,9 @@ from scipy.stats import norm
 
 import crazybilliards as cb
 
-# %% tags=["remove-cell"]
-from teaching import check, right
+# %% tags=["hide-input"]
+from solutions import analytics as solutions
+from teaching import check, safe
 
 # %% [markdown]
 # ## 1. The simulation
@@ -61,6 +65,13 @@ W2 = chain.free_velocity_width**2  # W_v^2 = A^2/(2 m gamma), the free value, ex
 kept = ("snapshots", "widths", "density")
 run = cb.simulate(chain, duration=5e4, every=10, replicas=2, observe=kept, progress=False)
 positions = run.position.values.reshape(-1, L)
+
+# %% tags=["hide-input"]
+_ = safe(
+    1 <= chain.amplitude <= 10,
+    f"This notebook is for an amplitude from 1 to 10, not {chain.amplitude}: the bins of section 2 "
+    "end where the rods of a warmer chain go on. Set it back before you go on.",
+)
 
 # %% [markdown]
 # ## 2. The density
@@ -126,36 +137,6 @@ plt.show()
 #
 # so that neither $\rho<0$ nor $\rho$ above close packing can occur.
 #
-# **Task.** Write $\rho$ as a function of $\rho_y$.
-
-
-# %% tags=["remove-cell"]
-def density_solution(free):
-    return free / (1 + 2 * R * free)
-
-
-places = [(0.1,), (1.0,), (50.0,)]
-assert right(density_solution, density_solution, at=places)
-assert not right(lambda free: free / (1 - 2 * R * free), density_solution, at=places)
-
-
-# %%
-def density(free):
-    return ...  # your code here
-
-
-hint = "multiply the definition of the density per free length by its denominator"
-check(density, density_solution, at=places, hint=hint)
-
-# %% [markdown]
-# <details><summary>Solution</summary>
-#
-# ```python
-# def density(free):
-#     return free / (1 + 2 * R * free)
-# ```
-# </details>
-#
 # We start in the middle of the chain and integrate $\ln\rho_y$ to the right. The density in the
 # middle is not known, but the number of rods is: a root finder chooses $\rho(0)$ such that there
 # are $L$ rods. The fit ends at $x=1/C$. The density there is small but not zero, and no rods are
@@ -181,8 +162,8 @@ balance = np.interp(abs(x), half, integrate(start), right=0)
 # ## 5. Theory and simulation
 #
 # **Predict.** The paper says that the results of the force balance match the simulated densities
-# perfectly. Where do you expect the largest difference? (The theory is smoothed like the simulation,
-# which the paper leaves open.)
+# perfectly. Where do you expect the largest difference? (The theory is smoothed like the
+# simulation, which the paper leaves open.)
 #
 # **Run.**
 
@@ -208,9 +189,9 @@ assert apart[inside].max() < 0.01
 # <details><summary>Explain</summary>
 #
 # The densities agree to better than 1 % of close packing where $|x|<100$ R. The largest difference,
-# 4 %, is at the two ends, where the density falls to zero over a few rods. The statistical error
-# is smaller than 1 %. Section 7 gives the main reason, and
-# [lesson 5](05_from_the_kinetic_equation_to_the_force_balance.ipynb), section 6, tells what the fit adds.
+# 4 %, is at the two ends, where the density falls to zero over a few rods. The statistical error is
+# smaller than 1 %. Section 7 gives the main reason, and [lesson
+# 5](05_from_the_kinetic_equation_to_the_force_balance.ipynb), section 6, tells what the fit adds.
 # </details>
 #
 # ## 6. The fluid in time: three strings
@@ -223,13 +204,13 @@ assert apart[inside].max() < 0.01
 # - k\langle\Delta x\rangle - \gamma V .$$
 #
 # For a rod of the mass $m$, divide $k$ and $\gamma$ by $m$. The paper uses these equations at rest
-# only. py-pde solves equations that are given as text, so we can write down what
-# the paper has. One equation must be added, because a moving fluid has no fitted
-# $\langle\Delta x\rangle(x)$. Let $N(x,t)$ be the number of rods to the left of $x$. The rods take it
-# along, $N_t + VN_x=0$, and $\langle\Delta x\rangle = x - 2R\,(N - L/2)$.
+# only. py-pde solves equations that are given as text, so we can write down what the paper has. One
+# equation must be added, because a moving fluid has no fitted $\langle\Delta x\rangle(x)$. Let
+# $N(x,t)$ be the number of rods to the left of $x$. The rods take it along, $N_t + VN_x=0$, and
+# $\langle\Delta x\rangle = x - 2R\,(N - L/2)$.
 #
-# The last term of the velocity equation is not in the paper. It is a small viscosity, which py-pde's
-# central differences need. Its value 4 $R^2/T$ is small against $sW_v = 220\,R^2/T$.
+# The last term of the velocity equation is not in the paper. It is a small viscosity, which
+# py-pde's central differences need. Its value 4 $R^2/T$ is small against $sW_v = 220\,R^2/T$.
 
 # %%
 warm = chain.replace(amplitude=30)
@@ -244,8 +225,8 @@ constants = {"W2": warm.free_velocity_width**2, "R": R, "L": L, "k": k, "m": m, 
 fluid = pde.PDE(equations, consts=constants, bc={"curvature": 0})
 
 # %% [markdown]
-# We release a chain that is squeezed to 0.6 of its width at rest. At rest the $\rho_y$ of an elastic
-# chain is $L$ times a Gaussian of width $s=W_v\sqrt{m/k}$, in the coordinate
+# We release a chain that is squeezed to 0.6 of its width at rest. At rest the $\rho_y$ of an
+# elastic chain is $L$ times a Gaussian of width $s=W_v\sqrt{m/k}$, in the coordinate
 # $y = x - 2R\,(N - L/2)$ ([lesson 4](04_the_elastic_chain_is_exactly_solvable.ipynb)). The squeezed
 # chain has the width $0.6\,s$ instead.
 
@@ -282,9 +263,9 @@ plt.show()
 # %% [markdown]
 # ## 7. Why the package does it otherwise
 #
-# First we check that it does the *same*. `smooth`, `fit_arctanh` and `force_balance` repeat sections
-# 2 to 4. `hydrodynamics` repeats section 6, by an independent method: its unknown is the position of
-# the rods of each label $N$.
+# First we check that it does the *same*. `smooth`, `fit_arctanh` and `force_balance` repeat
+# sections 2 to 4. `hydrodynamics` repeats section 6, by an independent method: its unknown is the
+# position of the rods of each label $N$.
 
 # %%
 binned = cb.smooth(run)
@@ -319,10 +300,37 @@ plt.show()
 # %% [markdown]
 # Where the sixty lines work, they are right. The package's functions also work elsewhere.
 #
-# **A strong compression.** Sound has the speed $W_v/(1-2R\rho) = W_v\,(1+2R\rho_y)$, which grows
-# without bound near close packing. A time step of fixed length must be shorter than about three
-# times the time that sound takes through a cell. The denser the chain, or the weaker the noise, the
-# shorter is this time. Squeeze the chain of section 6 to 0.2 instead of 0.6:
+# **A strong compression.** A time step of fixed length must be shorter than about three times the
+# time that sound takes through a cell. The speed of sound $c$ is given by
+# $c^2 = \frac{d}{d\rho}\frac{\rho W_v^2}{1-2R\rho}$.
+#
+# **Your turn.** Write $c/W_v$ as a function of $\rho_y$. The number `R` is known.
+
+
+# %%
+def my_speed_of_sound(free):
+    return ...  # your code here
+
+
+places = [(0.1,), (1.0,), (50.0,)]
+hint = "The derivative is W_v^2/(1 - 2 R rho)^2. Then write 1 - 2 R rho with the density rho_y."
+check(my_speed_of_sound, lambda free: solutions.speed_of_sound(free, R), at=places, hint=hint)
+
+# %% [markdown]
+# <details><summary>Solution</summary>
+#
+# $1-2R\rho = 1/(1+2R\rho_y)$, so $c = W_v/(1-2R\rho) = W_v\,(1+2R\rho_y)$.
+#
+# ```python
+# def my_speed_of_sound(free):
+#     return 1 + 2 * R * free
+# ```
+# </details>
+#
+# **Predict.** We squeeze the chain of section 6 to 0.2 instead of 0.6. Does the time step of 0.02 T
+# still do?
+#
+# **Run.**
 
 # %%
 tight = pde.MemoryStorage()
@@ -339,15 +347,21 @@ assert any(broken)
 assert abs(flow.rods - L).max() < 1e-3
 
 # %% [markdown]
-# `hydrodynamics` chooses its steps, and has neither a vacuum nor a viscosity in a smooth flow. It also
-# solves a temperature equation, which the paper does not have and a moving chain needs
+# <details><summary>Explain</summary>
+#
+# It does not. The speed of sound grows without bound near close packing, and the solution breaks
+# down.
+# </details>
+#
+# `hydrodynamics` chooses its steps, and has neither a vacuum nor a viscosity in a smooth flow. It
+# also solves a temperature equation, which the paper does not have and a moving chain needs
 # ([lesson 7](07_the_fluid_in_time.ipynb)).
 #
-# **A force balance without a simulation.** The labels $N$ of section 6 close the force balance, too.
-# Then it needs no fit. But the root finder of section 4 does not always find its solution. With gaps
-# between the anchors, a small error of $\rho(0)$ grows along the chain like $\exp(y/s)$, where $y$
-# is the free length from the middle. With the gap $g=1$ R the free length is $gL/2 = 50$ R, so the
-# error grows by a factor $e^7$ at $A=10$, where $s=7.1$ R, and by $e^{71}$ at $A=1$:
+# **A force balance without a simulation.** The labels $N$ of section 6 close the force balance,
+# too. Then it needs no fit. But the root finder of section 4 does not always find its solution.
+# With gaps between the anchors, a small error of $\rho(0)$ grows along the chain like $\exp(y/s)$,
+# where $y$ is the free length from the middle. With the gap $g=1$ R the free length is $gL/2 = 50$
+# R, so the error grows by a factor $e^7$ at $A=10$, where $s=7.1$ R, and by $e^{71}$ at $A=1$:
 
 
 # %%
@@ -365,12 +379,12 @@ def number_of_rods(start, chain):
 
 
 # %%
-for amplitude in (10, 1):
-    gapped = cb.Chain(size=L, amplitude=amplitude, gap=1.0)
+for A in (10, 1):
+    gapped = cb.Chain(size=L, amplitude=A, gap=1.0)
     start = brentq(lambda start, chain=gapped: number_of_rods(start, chain) - L, -1, 1)
     labels = cb.force_balance(gapped)
     theirs = np.trapezoid(labels.density, labels.x)
-    print(f"A = {amplitude}: {number_of_rods(start, gapped):.3f} rods, force_balance {theirs:.3f}")
+    print(f"A = {A}: {number_of_rods(start, gapped):.3f} rods, force_balance {theirs:.3f}")
 
 # %% tags=["remove-cell"]
 assert abs(number_of_rods(start, gapped) - L) > 1
@@ -381,10 +395,10 @@ assert abs(theirs - L) < 1e-3
 # solves a boundary-value problem. With a fit it needs no differential equation at all, because the
 # force balance then has a solution in closed form.
 #
-# **Rods in place of a fluid.** At $e = 1$ without a gap the force balance is exact for the *points*,
-# whose density is $\rho_y$. What is approximate is to read rods off a fluid, by
-# $\rho = \rho_y/(1+2R\rho_y)$. `rod_by_rod` reads them off the points
-# ([lesson 5](05_from_the_kinetic_equation_to_the_force_balance.ipynb), section 5):
+# **Rods in place of a fluid.** At $e = 1$ without a gap the force balance is exact for the
+# *points*, whose density is $\rho_y$. What is approximate is to read rods off a fluid, by
+# $\rho = \rho_y/(1+2R\rho_y)$. `rod_by_rod` reads them off the points ([lesson
+# 5](05_from_the_kinetic_equation_to_the_force_balance.ipynb), section 5):
 
 # %%
 labels = cb.force_balance(chain)
@@ -411,6 +425,7 @@ assert largest < 0.01
 #
 # <details><summary>Solution</summary>
 #
-# Remove `+ 4 * d2_dx2(V)`. At $t=4.8\,T$ the densities are not numbers any more. Central differences
-# do not damp waves that are two cells long, and the equations are not linear, so these waves grow.
+# Remove `+ 4 * d2_dx2(V)`. At $t=4.8\,T$ the densities are not numbers any more. Central
+# differences do not damp waves that are two cells long, and the equations are not linear, so these
+# waves grow.
 # </details>

@@ -22,17 +22,20 @@
 # each of its equations right as printed? And which of its steps are approximations?
 #
 # [Lesson 5](05_from_the_kinetic_equation_to_the_force_balance.ipynb) explains the physics of the
-# derivation and compares its result with a simulation. This lesson checks the text. It follows the
-# appendix from its first to its last equation and does every integral with SymPy. Where a formula
-# of the paper is not what its result needs, we compute what it gives as printed, and what was
-# meant. Section 8 lists these places. None of them changes the final equation: it is right.
+# derivation and compares its result with a simulation. This notebook checks the text. It follows
+# the appendix from its first to its last equation and does every integral with SymPy. Where a
+# formula of the paper is not what its result needs, we compute what it gives as printed, and what
+# was meant. Section 8 lists these places. None of them changes the final equation: it is right.
 #
 # `eq4` is the name of an equation in the LaTeX source of the paper, and (24) its number, counted
 # from the beginning of the paper. The restitution is 1, except in section 3.
 #
 # *Level: fourth year, for readers of the paper. You need: lesson 5, SymPy. Time: 120 minutes. No
 # other lesson needs this one. To predict before you see the results, type `make lessons` in the
-# folder of the project, and open the copy of this lesson without outputs in `build/lessons/`.*
+# folder of the project, and open the copy of this notebook in `build/lessons/`, which has neither
+# outputs nor solutions.*
+#
+# **What you may change.** The function `tonks` of section 6. The other numbers belong to the text.
 
 # %% tags=["hide-input"]
 import matplotlib.pyplot as plt
@@ -40,7 +43,8 @@ import numpy as np
 import sympy as sp
 from scipy.special import ndtr
 from scipy.stats import beta, norm
-from teaching import BLUE, GREEN, ORANGE, check, panels, right
+from solutions import appendix as solutions
+from teaching import BLUE, ORANGE, check, panels
 
 # %%
 import crazybilliards as cb
@@ -64,8 +68,8 @@ chain = cb.Chain(size=100, amplitude=30)
 # from their anchors of the rods *found at* $r$. The force is linear in the displacement, so only
 # this mean enters. Up to here nothing is approximated.
 #
-# The section "Definitions and Identities" (41 to 52) lists derivatives of the Gaussian and integrals
-# over it. With $P = \tilde\rho/\rho$, SymPy can confirm each of them.
+# The section "Definitions and Identities" (41 to 52) lists derivatives of the Gaussian and
+# integrals over it. With $P = \tilde\rho/\rho$, SymPy can confirm each of them.
 
 # %%
 v, w, V, dx = sp.symbols("v w V dx", real=True)  # dx stands for <Delta x>
@@ -94,41 +98,35 @@ integrals = {
 }
 for integrand, value in integrals.items():
     assert sp.expand(mean(integrand) - value) == 0
-acceleration = -gamma * v - k * dx
-driven = sp.diff(phase * acceleration, v)
+driven = sp.diff(phase * (-gamma * v - k * dx), v)
 assert sp.simplify(driven - phase * ((v - V) / W**2 * (gamma * v + k * dx) - gamma)) == 0
-noise = A**2 / (2 * m**2) * sp.diff(phase, v, 2)
-assert sp.simplify(noise - A**2 / (2 * m**2) * phase * (((v - V) / W**2) ** 2 - 1 / W**2)) == 0
+spread = sp.diff(phase, v, 2)
+assert sp.simplify(spread - phase * (((v - V) / W**2) ** 2 - 1 / W**2)) == 0
 
 # %% [markdown]
-# All twelve identities are right. The derivatives (44) and (45) are tested in a hidden cell.
+# All twelve identities (41 to 52) are right.
 #
 # **Your turn.** The Gaussian of the main text (15, below `eq:helbing`) has the prefactor
 # $\rho/\sqrt{2\pi}$, without the $1/W_v$ of `eq2`. Which value has its integral over $v$? Write it
 # with the symbols `rho` and `W`.
 
-# %% tags=["remove-cell"]
-printed_15 = rho / sp.sqrt(2 * sp.pi) * sp.exp(-((v - V) ** 2) / (2 * W**2))
-printed_15 = sp.simplify(sp.integrate(printed_15, (v, -sp.oo, sp.oo)))
-assert printed_15 == rho * W
 
-
+# %% tags=["hide-input"]
 def at_a_point(expression):
     """A number for an expression, to compare expressions of different form; dots stay dots."""
     return expression if expression is ... else sp.sympify(expression).subs({rho: 0.3, W: 0.5})
 
 
-assert right(at_a_point(W * rho), at_a_point(printed_15))
-assert not right(at_a_point(rho), at_a_point(printed_15))
-
 # %%
 integral_of_15 = ...  # your code here
 
-check(
-    at_a_point(integral_of_15),
-    at_a_point(printed_15),
-    hint="The integral of a Gaussian of width W is 1 with the prefactor 1 / (sqrt(2 pi) W).",
-)
+hint = "The integral of a Gaussian of width W is 1 with the prefactor 1 / (sqrt(2 pi) W)."
+check(at_a_point(integral_of_15), at_a_point(solutions.integral_of_15(rho, W)), hint=hint)
+
+# %% tags=["remove-cell"]
+printed_15 = rho / sp.sqrt(2 * sp.pi) * sp.exp(-((v - V) ** 2) / (2 * W**2))
+printed_15 = sp.simplify(sp.integrate(printed_15, (v, -sp.oo, sp.oo)))
+assert printed_15 == solutions.integral_of_15(rho, W)
 
 # %% [markdown]
 # <details><summary>Solution</summary>
@@ -138,8 +136,8 @@ check(
 # </details>
 #
 # **Predict.** The diffusion term of `eq1` contains $m$, and the acceleration `eq3` does not. Which
-# velocity width would a rod without neighbours have? Compare with $W_v = A/\sqrt{2m\gamma}$ (`free`,
-# 9).
+# velocity width would a rod without neighbours have? Compare with $W_v = A/\sqrt{2m\gamma}$
+# (`free`, 9).
 #
 # **Run.** In the steady state of `eq1` without collisions the mean of $v^2$ does not change.
 
@@ -159,17 +157,17 @@ print("eq3 divided by m:  W =", free_width(with_mass), " (this is eq. free)")
 
 # %% tags=["remove-cell"]
 assert sp.simplify(free_width(with_mass) - A / sp.sqrt(2 * m * gamma)) == 0
-ratio = sp.simplify(free_width(acceleration) / free_width(with_mass))
+ratio = sp.simplify(free_width(-gamma * v - k * dx) / free_width(with_mass))
 assert sp.simplify(ratio - 1 / sp.sqrt(m)) == 0
 
 # %% [markdown]
 # <details><summary>Explain</summary>
 #
 # `eq1` with `eq3` is consistent for $m = 1$ only. As printed, the width is too small by the factor
-# $1/\sqrt m$, which is 0.489 for a rod of this model. With $dv/dt = -(\gamma v + k\langle\Delta
-# x\rangle)/m$ it is consistent for any mass, and we use this from here on. The diffusion constant of
-# the main text is $D = A^2/m^2$: (14) has $\frac12\partial_v^2(D\tilde\rho)$ where `eq1` has
-# $\frac{A^2}{2m^2}\partial_v^2\tilde\rho$.
+# $1/\sqrt m$, which is 0.489 for a rod of this model. With
+# $dv/dt = -(\gamma v + k\langle\Delta x\rangle)/m$ it is consistent for any mass, and we use this
+# from here on. The diffusion constant of the main text is $D = A^2/m^2$: (14) has
+# $\frac12\partial_v^2(D\tilde\rho)$ where `eq1` has $\frac{A^2}{2m^2}\partial_v^2\tilde\rho$.
 #
 # </details>
 #
@@ -228,20 +226,28 @@ assert sp.simplify(((eq7 - collisions_of_v - Vel * eq6) / Rho - eq10).doit()) ==
 #
 # ## 3. The collisions: `eq4` and the cross section
 #
-# At $e = 1$ two rods swap their velocities. With the velocities $(v', w')$ of the left and the right
-# rod before and $(v, w)$ after, this is the cross section (25)
+# At $e = 1$ two rods swap their velocities. With the velocities $(v', w')$ of the left and the
+# right rod before and $(v, w)$ after, this is the cross section (25)
 #
 # $$\sigma(v', w'\,|\,v, w) = \delta(v' - w)\,\delta(w' - v).$$
 #
-# `eq4` (24) has four terms. Rods at $r$ gain the velocity $v$ in a collision with the right neighbour
-# at $r+2R$, or lose it there, and the same with the left neighbour at $r-2R$. Pairs with the
-# velocities $v$ and $w$ meet at the rate $|v-w|\,\tilde\rho_2$, where $\tilde\rho_2(r, v;\,r+2R,
-# w;\,t)$ is the density of pairs in contact. The integrals run over *all* velocities.
+# `eq4` (24) has four terms. Rods at $r$ gain the velocity $v$ in a collision with the right
+# neighbour at $r+2R$, or lose it there, and the same with the left neighbour at $r-2R$. Pairs with
+# the velocities $v$ and $w$ meet at the rate $|v-w|\,\tilde\rho_2$, where
+# $\tilde\rho_2(r, v;\,r+2R, w;\,t)$ is the density of pairs in contact. The integrals run over
+# *all* velocities.
 #
 # **Predict.** The left rod changes its velocity from $v$ to $w$, so the flux of momentum will need
-# $\iint |v-w|\,(w-v)\,P(v)\,P(w)\,dv\,dw$. What is this integral over all velocities, and what is it
-# over $v > w$ only?
-#
+# $\iint |v-w|\,(w-v)\,P(v)\,P(w)\,dv\,dw$. What is this integral over all velocities, and what is
+# it over $v > w$ only?
+
+# %%
+my_integral_over_all = ...  # your code here: a number, over all velocities
+
+hint = "Exchange the names v and w. What becomes of the integrand?"
+check(my_integral_over_all, solutions.INTEGRAL_OVER_ALL_PAIRS, hint=hint)
+
+# %% [markdown]
 # **Run.**
 
 # %%
@@ -275,10 +281,10 @@ assert sp.simplify(after[w_after].subs(e, 1) - v) == 0
 # %% [markdown]
 # <details><summary>Explain</summary>
 #
-# Over all velocities the integral vanishes. Half of all pairs of neighbours move *apart*. They do not
-# collide, but `eq4` as printed lets them swap their velocities too, and they hand over exactly the
-# opposite. In a gas at rest collisions would transport no momentum, and the pressure would be $\rho
-# W^2$.
+# Over all velocities the integral vanishes. Half of all pairs of neighbours move *apart*. They do
+# not collide, but `eq4` as printed lets them swap their velocities too, and they hand over exactly
+# the opposite. In a gas at rest collisions would transport no momentum, and the pressure would be
+# $\rho W^2$.
 #
 # A step function is missing in each term: $\Theta(v-w)$ for the neighbour on the right, and
 # $\Theta(w-v)$ for the one on the left, where $v$ belongs to the rod at $r$. The authors mean it,
@@ -347,9 +353,9 @@ assert sp.expand(interaction(speeds)[0] - handed[0] + handed[1]) == 0
 
 # %% [markdown]
 # The renamings are exact. $\mathcal I(1) = 0$, so `eq6` is the continuity equation `eq9`, and
-# $\mathcal I(v) = \Pi(r-2R)-\Pi(r)$. The source term $\mathcal I_s$ (`eq14`, 36) vanishes for $\psi =
-# v$ because a collision conserves momentum. At $e = 1$ it vanishes for $\psi = v^2$ as well. The
-# paper does not use this; exercise 2 does.
+# $\mathcal I(v) = \Pi(r-2R)-\Pi(r)$. The source term $\mathcal I_s$ (`eq14`, 36) vanishes for
+# $\psi = v$ because a collision conserves momentum. At $e = 1$ it vanishes for $\psi = v^2$ as
+# well. The paper does not use this; exercise 2 does.
 #
 # ## 5. The pair density: `eq5` and `chi`
 #
@@ -376,14 +382,14 @@ assert sp.simplify(chi_exact - 1 / (1 - a * rho)) == 0
 # %% [markdown]
 # ## 6. The Taylor expansion: `eq12` to `eq17`
 #
-# **`eq12` to `eq15` (34 to 37).** With $h(r) = \tilde\rho_2(r, v;\,r+2R, w)$ the pair to the left has
-# $h(r-2R)$. To first order $h(r) = h(r-2R) + 2R\,h'(r)$. Inserted into `eq11` this gives $\mathcal I
-# = \mathcal I_s - \partial_r\mathcal I_f$ with the flux
+# **`eq12` to `eq15` (34 to 37).** With $h(r) = \tilde\rho_2(r, v;\,r+2R, w)$ the pair to the left
+# has $h(r-2R)$. To first order $h(r) = h(r-2R) + 2R\,h'(r)$. Inserted into `eq11` this gives
+# $\mathcal I = \mathcal I_s - \partial_r\mathcal I_f$ with the flux
 #
 # $$\mathcal I_f(\psi) = -2R\int\!\cdots\,|v-w|\,[\psi(v')-\psi(v)]\;h(r).$$
 #
-# Section 4 found $\mathcal I_s(v) = 0$. For $\psi = v$ and $v' = w$ the flux is $2R\,\Pi(r)$. A
-# hidden cell confirms these four equations with their signs.
+# Section 4 found $\mathcal I_s(v) = 0$. For $\psi = v$ and $v' = w$ the flux is $2R\,\Pi(r)$.
+# These four equations are right, with their signs.
 
 # %% tags=["remove-cell"]
 h = sp.Function("h")
@@ -403,7 +409,14 @@ assert sp.expand(in_eq11 - minus_flux_slope) == 0
 #
 # **Predict.** The rod with the velocity $w$ sits at $r+2R$. Which velocity stands in the terms with
 # $\partial V$ and $\partial W^2$: $v$, as in the paper, or $w$?
-#
+
+# %%
+my_velocity = ...  # your code here: "v" or "w"
+
+hint = "Which of the two rods does the expansion move from r + 2R to r?"
+check(my_velocity, solutions.ROD_OF_THE_DERIVATIVES, hint=hint)
+
+# %% [markdown]
 # **Run.**
 
 # %%
@@ -445,10 +458,11 @@ assert sp.simplify(relative - bracket(v)) != 0
 #
 # </details>
 #
-# **`eq17` (39)** keeps only the 1 of `eq16`. With the step function of section 3 it is right, as a
-# hidden cell shows. What would the four other terms have given?
+# **`eq17` (39)** keeps only the 1 of `eq16`. With the step function of section 3 it is right.
+# What would the four other terms have given?
 
 # %%
+flux = sp.simplify(-a * chi_ * rho**2 * approaching)  # eq17
 weights = {
     "chi_r and rho_r": sp.Integer(1),
     "V_r, with w": (w - V) / W**2,
@@ -460,7 +474,6 @@ for name, value in share.items():
     print(f"    {name:15} is multiplied by {value}")
 
 # %% tags=["remove-cell"]
-flux = sp.simplify(-a * chi_ * rho**2 * approaching)
 assert sp.simplify(flux - a * chi_ * rho**2 * W**2) == 0  # eq17
 assert share["V_r, with w"] == -2 * W / sp.sqrt(sp.pi)
 assert share["V_r, with v"] == -share["V_r, with w"]
@@ -470,8 +483,8 @@ assert share["W2_r"] == sp.Rational(1, 2)
 # The neglected term with $\partial_r V$ is a viscosity. With the $v$ of the
 # printed `eq16` it would be a negative one. At rest it is zero in both cases.
 #
-# The other neglected terms are first derivatives in the flux, and therefore second derivatives in the
-# force. `eq12` has left out a second derivative as well.
+# The other neglected terms are first derivatives in the flux, and therefore second derivatives in
+# the force. `eq12` has left out a second derivative as well.
 #
 # **Predict.** Is the force of the paper wrong at second order? Let the density vary slowly, $\rho =
 # \rho(\varepsilon r)$ at constant $W^2$, and expand the force $\Pi(r-2R)-\Pi(r)$ in powers of
@@ -492,7 +505,7 @@ def slow(x):
 
 
 def tonks(value):
-    return 1 / (1 - a * value)  # change this line and see which assertions fail
+    return 1 / (1 - a * value)  # change this line and see which rows are still right
 
 
 # %%
@@ -529,7 +542,7 @@ for name, (first, second, _) in expansion.items():
 
 # %% tags=["remove-cell"]
 assert all(sp.simplify(each[0] - wanted) == 0 for each in expansion.values())
-exact_to_second = [name for name, each in expansion.items() if each[1] == 0]
+exact_to_second = [key for key, each in expansion.items() if each[1] == 0]
 assert exact_to_second == ["integral", "midpoint (paper)", "mean of both", "eq12 and eq17"]
 # chi at the rod's own place is wrong at first order
 own_place = tonks(slow(0)) * slow(0) * (slow(-a) - slow(a))
@@ -545,14 +558,14 @@ assert sp.simplify(sp.diff(own_pressure, rho) - effective_slope) == 0
 # $-W^2\,\frac{d}{dx}\,\frac{2R\rho^2}{1-2R\rho}$ for *every* row. If $\chi$ treats both rods alike,
 # the next correction is of third order, because the force must change sign under a reflection.
 #
-# `eq12` alone is wrong at second order. `eq17` then leaves out first derivatives of $\rho$ and $\chi$
-# in the flux, and this removes just that error. The two approximations *together* are better than
-# either of them: the paper's force is right up to terms of third order.
+# `eq12` alone is wrong at second order. `eq17` then leaves out first derivatives of $\rho$ and
+# $\chi$ in the flux, and this removes just that error. The two approximations *together* are better
+# than either of them: the paper's force is right up to terms of third order.
 #
 # </details>
 #
-# Replace the contact factor in `tonks` by another one, for example `1 + a * value`. A hidden
-# assertion then stops the notebook.
+# Replace the contact factor in `tonks` by another one, for example `1 + a * value`. Only the row
+# "integral", which does not use it, is then still right at first order.
 #
 # ## 7. The force balance: `continuity_helbing`, `modeleq`, `diff_gl`, and the position
 #
@@ -608,21 +621,21 @@ assert sp.simplify(sp.diff(sp.log(cloud), y, 2) - right_side) == 0
 #
 # $$\rho' = -\frac{k}{mW^2}\,\langle\Delta x\rangle\,\rho\,(1-2R\rho)^2 .$$
 #
-# The paper mentions the factor $1/m$ in words below it. The factor is right and needed. (23) and the
-# friction of `modeleq` need it as well. With $W^2 = A^2/2m\gamma$ the mass then drops out, and the
-# density depends on $A^2/2\gamma k$ only. Without the factor but with this $W^2$ the springs would be
-# four times too hard, as $m = 4\pi/3$ here. If the temperature varies, rods are also driven away from
-# where it is hot.
+# The paper mentions the factor $1/m$ in words below it. The factor is right and needed. (23) and
+# the friction of `modeleq` need it as well. With $W^2 = A^2/2m\gamma$ the mass then drops out, and
+# the density depends on $A^2/2\gamma k$ only. Without the factor but with this $W^2$ the springs
+# would be four times too hard, as $m = 4\pi/3$ here. If the temperature varies, rods are also
+# driven away from where it is hot.
 #
 # **The position** (20) closes the section: $x_i = \{2i-(L+1)\}R + \langle\Delta x_i\rangle$. It is
-# the average position of rod $i$. In this form it holds for $g = 0$; in general $2R$ becomes $2R+g$.
-# The paper plots the mean displacement of rod $i$ against it (its figure with the arctanh) and puts
-# the fitted curve into `diff_gl`. But in `diff_gl` $\langle\Delta x\rangle$ is the mean over the rods
-# *found at* $x$.
+# the average position of rod $i$. In this form it holds for $g = 0$; in general $2R$ becomes
+# $2R+g$. The paper plots the mean displacement of rod $i$ against it (its figure with the arctanh)
+# and puts the fitted curve into `diff_gl`. But in `diff_gl` $\langle\Delta x\rangle$ is the mean
+# over the rods *found at* $x$.
 #
 # **Predict.** Are the two means equal?
 #
-# **Run.** Both are known exactly. The hidden cell computes the mean over the rods found at $x$ from
+# **Run.** Both are known exactly. The folded cell computes the mean over the rods found at $x$ from
 # the exact distributions of all rods (lesson 4, section 4).
 
 
@@ -637,24 +650,22 @@ def found_at(chain, x):
 
 
 # %%
+differ = {}
 for amplitude in (10, 30):
     case = chain.replace(amplitude=amplitude)
     rods_of = cb.equilibrium(case)
     i = np.arange(1, case.size + 1)
     by_rod = (2 * i - (case.size + 1)) * case.radius + rods_of.mean_displacement.values  # (20)
     apart = abs(found_at(case, by_rod)[1] - rods_of.mean_displacement.values)
+    differ[amplitude] = apart.max(), apart[5:-5].max()
     print(f"A = {amplitude}: the two means differ by at most {apart.max():.3f} R;", end=" ")
     print(f"inside the fifth rods from each end by at most {apart[5:-5].max():.3f} R")
 
 # %% tags=["remove-cell"]
-for amplitude in (10, 30):
-    case = chain.replace(amplitude=amplitude)
-    rods_of = cb.equilibrium(case)
-    by_rod = (2 * i - (case.size + 1)) * case.radius + rods_of.mean_displacement.values
-    assert np.abs(by_rod - rods_of.mean_position.values).max() < 1e-9
-    apart = abs(found_at(case, by_rod)[1] - rods_of.mean_displacement.values)
-    assert 0.2 < apart.max() < 0.8
-    assert apart[5:-5].max() < 0.05
+for largest, inside in differ.values():
+    assert 0.2 < largest < 0.8
+    assert inside < 0.05
+assert np.abs(by_rod - rods_of.mean_position.values).max() < 1e-9  # (20)
 
 # %%
 x = np.arange(-310, 310, 0.05)
@@ -677,7 +688,7 @@ ax.plot(x[shown], displacement[shown], color=ORANGE, linewidth=3, label="rods fo
 outer = rods_of.particle.values > case.size / 2
 ax.plot(by_rod[outer], rods_of.mean_displacement[outer], "o", color=BLUE, ms=3, label="rod i")
 fitted = cb.fit_arctanh(rods_of)(by_rod[outer])
-ax.plot(by_rod[outer], fitted, ":", color=GREEN, label="arctanh fit")
+ax.plot(by_rod[outer], fitted, "k-", linewidth=1, label="arctanh fit")
 ax.set(xlabel="position x [R]", ylabel=r"$\langle\Delta x\rangle$ [R]")
 ax.legend()
 plt.show()
@@ -691,7 +702,8 @@ assert 0.01 < error < 0.02
 # They differ at the outermost rods, by one or two per cent of the displacement there, and agree in
 # the interior. In the density at $A = 30$ this makes 0.001 of close packing. The arctanh, which is
 # not the law of the displacement, costs more. The 0.007 that the exact means leave come from
-# reading rods off a fluid ([lesson 5](05_from_the_kinetic_equation_to_the_force_balance.ipynb), section 5).
+# reading rods off a fluid ([lesson 5](05_from_the_kinetic_equation_to_the_force_balance.ipynb),
+# section 5).
 #
 # </details>
 #
@@ -714,8 +726,8 @@ assert 0.01 < error < 0.02
 # integral $-2R$, and it moves a profile by $R$. It is also used twice: once by counting the covered
 # fraction of a bin, once by the running average.
 #
-# The rest of the appendix is right: all integrals, the renamings, all signs, the factor $\chi$ with a
-# density that both rods share, and the pressure.
+# The rest of the appendix is right: all integrals, the renamings, all signs, the factor $\chi$ with
+# a density that both rods share, and the pressure.
 
 # %% tags=["remove-cell"]
 box = (sp.Heaviside(place - 2) - sp.Heaviside(place)).rewrite(sp.Piecewise)  # R = 1

@@ -21,29 +21,43 @@
 # relative velocity of the two rods. Two neighbours in a cold chain are about to collide. Are their
 # velocities independent of each other, or are they correlated?
 #
-# In this lesson two rods are called *strangers* if their velocities are independent. Lesson 9 solved
-# a kinetic equation which assumes that rods that meet are strangers. For $e = 0.75$ and 100 rods its
+# Here two rods are called *strangers* if their velocities are independent. Lesson 9 solved a
+# kinetic equation which assumes that rods that meet are strangers. For $e = 0.75$ and 100 rods its
 # velocity width in the centre is wrong by 8 %. Here you measure the reason, and see a theory that
 # corrects it.
 #
 # Units as in all lessons: the rod radius $R$, $T = \sqrt{M/k}$ for times. $W$ is the velocity width
-# of a rod without collisions.
+# of a rod without collisions, $W_v$ that of a rod in the chain.
 #
 # *Level: fourth year. You need: lesson 9, sections 1 and 2. Time: 45 minutes. To predict before you
 # see the results, type `make lessons` in the folder of the project, and open the copy of this
-# lesson without outputs in `build/lessons/`.*
+# notebook in `build/lessons/`, which has neither outputs nor solutions.*
+#
+# **What you may change.** The seed and the `duration` of section 1, from 1000 upwards. After a
+# change run all cells below it again.
 
 # %% tags=["hide-input"]
 import numpy as np
-from teaching import BLUE, ORANGE, PINK, check, panels
+from solutions import neighbours as solutions
+from teaching import BLUE, ORANGE, PINK, check, panels, safe
 
+# %%
+duration = 2000
+
+# %% tags=["hide-input"]
+if not safe(
+    duration >= 1000,
+    f"A duration of {duration} T leaves errors that hide what is to be seen. "
+    "The notebook goes on with 2000 T.",
+):
+    duration = 2000
 
 # %% [markdown]
 # ## 1. Do neighbours move together?
 #
-# The observer `cb.Covariances` measures $\langle v_iv_{i+r}\rangle$ for all rods $i$ and separations
-# $r$. We need all separations later, so we ask for 99 of them. The observer `impacts` watches every
-# single collision.
+# The observer `cb.Covariances` measures $\langle v_iv_{i+r}\rangle$ for all rods $i$ and
+# separations $r$. We need all separations later, so we ask for 99 of them. The observer `impacts`
+# watches every single collision.
 #
 # **Predict.** Take two neighbours in the centre, and divide $\langle v_iv_{i+1}\rangle$ by
 # $\langle v_i^2\rangle$. Is the result negative, zero or positive at $e = 1$? And at $e = 0.75$?
@@ -56,7 +70,7 @@ import crazybilliards as cb
 chains = {e: cb.Chain(size=100, restitution=e) for e in (1, 0.75)}
 observe = ["widths", cb.Covariances(separations=99), "impacts"]
 runs = {
-    e: cb.simulate(chain, duration=2000, every=0.5, observe=observe, seed=1, progress=False)
+    e: cb.simulate(chain, duration=duration, every=0.5, observe=observe, seed=1, progress=False)
     for e, chain in chains.items()
 }
 middle = {"particle": slice(45, 55), "contact": slice(45, 54)}
@@ -76,9 +90,9 @@ assert 0.38 < correlation[0.75] < 0.50
 # %% [markdown]
 # <details><summary>Explain</summary>
 #
-# At $e = 1$ the correlation is zero within the error: in equilibrium all velocities are independent,
-# although neighbours hit one another all the time. At $e = 0.75$ the correlation is large: the
-# covariance of neighbours is more than a third of their mean square velocity.
+# At $e = 1$ the correlation is zero within the error: in equilibrium all velocities are
+# independent, although neighbours hit one another all the time. At $e = 0.75$ the correlation is
+# large: the covariance of neighbours is more than a third of their mean square velocity.
 #
 # </details>
 #
@@ -91,22 +105,20 @@ assert 0.38 < correlation[0.75] < 0.50
 # **Your turn.** By how much does the product $vu$ change in a collision?
 
 
-# %% tags=["remove-cell"]
-def change_of_product(v, u, e):
-    mean, half = (v + u) / 2, e * (v - u) / 2
-    return (mean - half) * (mean + half) - v * u
-
-
-pairs = [(1.0, 0.0, 0.5), (2.0, -1.0, 0.0), (0.3, 0.2, 1.0), (-0.5, -2.0, 0.75)]
-
-
 # %%
 def my_change_of_product(v, u, e):
     return ...  # your code here: v' u' - v u
 
 
+pairs = [(1.0, 0.0, 0.5), (2.0, -1.0, 0.0), (0.3, 0.2, 1.0), (-0.5, -2.0, 0.75)]
 hint = "Write v u = (v+u)^2/4 - (v-u)^2/4."
-check(my_change_of_product, change_of_product, at=pairs, hint=hint)
+check(my_change_of_product, solutions.change_of_product, at=pairs, hint=hint)
+
+# %% tags=["remove-cell"]
+for v, u, e in pairs:
+    mean, half = (v + u) / 2, e * (v - u) / 2
+    product = (mean - half) * (mean + half)
+    assert np.isclose(product - v * u, solutions.change_of_product(v, u, e))
 
 # %% [markdown]
 # <details><summary>Solution</summary>
@@ -120,37 +132,64 @@ check(my_change_of_product, change_of_product, at=pairs, hint=hint)
 # def my_change_of_product(v, u, e):
 #     return (1 - e**2) / 4 * (v - u) ** 2
 # ```
-# </details>
 #
 # The change is never negative: every collision below $e = 1$ makes the two rods a little more
 # alike. The squares change by $v'^2+u'^2-v^2-u^2 = -\frac{1-e^2}2(v-u)^2$. **The covariance that a
-# collision makes is half of what it takes from the squares.** The reason is that the momentum $v + u$
-# of the two is conserved. In $(v+u)^2 = v^2+u^2+2vu$ the product term $2vu$ therefore grows by as much
-# as the squares lose.
+# collision makes is half of what it takes from the squares.** The reason is that $v + u$ is
+# conserved: in $(v+u)^2 = v^2+u^2+2vu$ the term $2vu$ grows by as much as the squares lose.
+# </details>
 #
 # ## 3. The next collision
 #
 # A collision takes the energy $\frac{1-e^2}4m(v-u)^2$. For strangers of the temperature
-# $W_v^2 = \langle v^2\rangle$ the mean of $\frac12(v-u)^2$ is $W_v^2$. For neighbours this mean is the *relative
-# temperature* $\Theta = W_v^2 - \langle v_iv_{i+1}\rangle$.
+# $W_v^2 = \langle v^2\rangle$ the mean of $\frac12(v-u)^2$ is $W_v^2$. For neighbours this mean is
+# the *relative temperature* $\Theta = W_v^2 - \langle v_iv_{i+1}\rangle$.
 #
 # The observer `impacts` looks only at rods that collide. A pair that approaches with the speed
-# $w = \lvert v-u\rvert$ meets at a rate proportional to $w$, so a mean over collisions weights every pair
-# with its speed. Let $v - u$ be Gaussian, with the variance $2\Theta$. The speeds at which rods meet
-# then have the density $w\,e^{-w^2/4\Theta}/2\Theta$, and their means are
+# $w = \lvert v-u\rvert$ meets at a rate proportional to $w$, so a mean over collisions weights
+# every pair with its speed. Let $v - u$ be Gaussian, with the variance $2\Theta$. The speeds at
+# which rods meet then have the density $w\,e^{-w^2/4\Theta}/2\Theta$, and their mean is
+# $\langle w\rangle = \sqrt{\pi\Theta}$.
 #
-# $$\langle w\rangle = \sqrt{\pi\Theta},\qquad \langle w^2\rangle = 4\Theta .$$
+# **Your turn.** Compute $\langle w^2\rangle$, the mean over collisions.
+
+
+# %%
+def my_mean_square(theta):
+    return ...  # your code here
+
+
+hint = "Substitute z = w^2/(4 theta); then all that is left is the integral of z exp(-z)."
+check(my_mean_square, solutions.speed_squared, at=[(1.0,), (0.3,)], hint=hint)
+
+# %% tags=["remove-cell"]
+speeds = np.linspace(0, 20, 20_001)
+met = speeds / 2 * np.exp(-(speeds**2) / 4)
+assert np.isclose(np.trapezoid(speeds**2 * met, speeds), solutions.speed_squared(1))
+assert np.isclose(np.trapezoid(speeds * met, speeds), np.sqrt(np.pi))
+
+# %% [markdown]
+# <details><summary>Solution</summary>
 #
-# For strangers $\Theta$ is $W_v^2$. The mean of $\frac12w^2$ over the collisions of strangers is therefore
-# $2W_v^2$, twice that of all pairs. To be compared with $W_v^2$, the observer gives the *contact temperature*
+# With $z = w^2/4\Theta$ the mean is $4\Theta\int_0^\infty z\,e^{-z}\,dz = 4\Theta$.
+#
+# ```python
+# def my_mean_square(theta):
+#     return 4 * theta
+# ```
+# </details>
+#
+# For strangers $\Theta$ is $W_v^2$. The mean of $\frac12w^2$ over
+# their collisions is twice that over all pairs, which is $W_v^2$. To be compared with $W_v^2$, the
+# observer gives the *contact temperature*
 #
 # $$\Theta_c = \frac{\pi}{16}\left(\frac{\langle w^2\rangle}{\langle w\rangle}\right)^2 ,$$
 #
-# which is $W_v^2$ for strangers. Its name is `contact_temperature`. `rebound_temperature` is the same of
-# the speeds just after the collisions.
+# which is $W_v^2$ for strangers. Its name is `contact_temperature`. `rebound_temperature` is the
+# same of the speeds just after the collisions.
 #
-# **Predict.** Order the four at $e = 0.75$: $W_v^2$, $\Theta$ of all neighbours, $\Theta_c$ before a
-# collision, the same after it. Does a collision take more or less than one of strangers?
+# **Predict.** Order the four at $e = 0.75$: $W_v^2$, $\Theta$ of all neighbours, $\Theta_c$ before
+# a collision, the same after it. Does a collision take more or less than one of strangers?
 #
 # **Run.**
 
@@ -171,22 +210,21 @@ for name in names:
 assert 0.4 < share[0.75, "contact_temperature"] < share[0.75, "relative_temperature"] < 0.65
 ratio = share[0.75, "rebound_temperature"] / share[0.75, "contact_temperature"]
 assert abs(ratio - 0.75**2) < 0.01
-run = runs[0.75]
-by_force = 2 / np.sqrt(np.pi) * (1 - 0.75) * np.sqrt(run.contact_temperature)
-assert np.allclose(run.contact_loss / run.contact_force, by_force, rtol=0.01)
+by_force = 2 / np.sqrt(np.pi) * (1 - 0.75) * np.sqrt(runs[0.75].contact_temperature)
+assert np.allclose(runs[0.75].contact_loss / runs[0.75].contact_force, by_force, rtol=0.01)
 
 # %% [markdown]
 # <details><summary>Explain</summary>
 #
-# At $e = 1$ all four are $W_v^2$. At $e = 0.75$ neighbours have a relative temperature of 0.59 $W_v^2$,
-# because their covariance is the rest of $W_v^2$. Rods that are about to collide have a lower one, 0.44 $W_v^2$.
-# The reason is that rods which happen to be close collide often, and are cold. After the collision
-# $e^2 = 0.56$ of the 0.44 $W_v^2$ remains. Then noise and other neighbours make the two velocities
-# different again.
+# At $e = 1$ all four are $W_v^2$. At $e = 0.75$ neighbours have a relative temperature of 0.59
+# $W_v^2$, because their covariance is the rest of $W_v^2$. Rods that are about to collide have a
+# lower one, 0.44 $W_v^2$. The reason is that rods which happen to be close collide often, and are
+# cold. After the collision $e^2 = 0.56$ of the 0.44 $W_v^2$ remains. Then noise and other
+# neighbours make the two velocities different again.
 #
 # How much less is lost than among strangers? Collisions with the speed $w$ exchange the momentum
-# $\frac{1+e}2mw$ and take the energy $\frac{1-e^2}4mw^2$. Divide the energy that a contact loses in a
-# time by the momentum that crosses it in this time, which is the force between the two rods. The
+# $\frac{1+e}2mw$ and take the energy $\frac{1-e^2}4mw^2$. Divide the energy that a contact loses in
+# a time by the momentum that crosses it in this time, which is the force between the two rods. The
 # number of collisions cancels:
 #
 # $$\frac{\text{loss}}{\text{force}} = \frac{1-e}2\,\frac{\langle w^2\rangle}{\langle w\rangle}
@@ -201,12 +239,20 @@ assert np.allclose(run.contact_loss / run.contact_force, by_force, rtol=0.01)
 # ## 4. How far do they remember?
 #
 # A rod is hit by both neighbours, and these are hit by theirs. So correlations spread along the
-# chain. But all collisions together cannot change the total momentum. On linear springs the centre of mass is an
-# oscillator on which collisions do not act. Its velocity has the mean square $W^2/L$ at any $e$.
+# chain. But all collisions together cannot change the total momentum. On linear springs the centre
+# of mass is an oscillator on which collisions do not act. Its velocity has the mean square $W^2/L$
+# at any $e$.
 #
 # **Predict.** Add up $\langle v_iv_j\rangle$ over all rods $j$, and average over $i$. What is the
 # sum at $e = 1$? And at $e = 0.75$, where $\langle v_i^2\rangle$ is much smaller?
-#
+
+# %%
+my_sum = ...  # your code here: at e = 0.75, in units of W^2
+
+hint = "The sum is L times the mean square velocity of the centre of mass."
+check(my_sum, solutions.SUM_OVER_ALL_RODS, hint=hint)
+
+# %% [markdown]
 # **Run.**
 
 # %%
@@ -238,21 +284,23 @@ for e in runs:
 # %% [markdown]
 # <details><summary>Explain</summary>
 #
-# The sum is $W^2$ at both restitutions, within its error of 10 to 20 %. Collisions do not change it.
-# They only turn squares of one rod into products with other rods. (The symbols at $r = 0$ lie
-# outside of the picture, that of $e = 1$ at $W^2 = 0.12$.) So the ratio $W^2/\langle v^2\rangle$ says how many rods move
-# together, in the mean over the chain. The colder the chain is, the more of its rods move together.
+# The sum is $W^2$ at both restitutions, within its error of 10 to 20 %. Collisions do not change
+# it. They only turn squares of one rod into products with other rods. (The symbols at $r = 0$ lie
+# outside of the picture, that of $e = 1$ at $W^2 = 0.12$.) So the ratio $W^2/\langle v^2\rangle$
+# says how many rods move together, in the mean over the chain. The colder the chain is, the more of
+# its rods move together.
 #
 # </details>
 #
 # ## 5. Two theories
 #
-# `phase_space` is the kinetic equation of lesson 9, which assumes that rods that meet are strangers.
-# `correlated_phase_space` computes the covariances as well, from what one collision does (section
-# 2) and from how sound carries covariances along the chain. No number is fitted in either theory.
+# `phase_space` is the kinetic equation of lesson 9, which assumes that rods that meet are
+# strangers. `correlated_phase_space` computes the covariances as well, from what one collision does
+# (section 2) and from how sound carries covariances along the chain. No number is fitted in either
+# theory.
 #
-# **Predict.** In a theory of strangers every collision takes the energy that belongs to $W_v^2$ and not to
-# $\Theta$. Will its velocity width in the centre be too large or too small?
+# **Predict.** In a theory of strangers every collision takes the energy that belongs to $W_v^2$ and
+# not to $\Theta$. Will its velocity width in the centre be too large or too small?
 #
 # **Run.**
 
@@ -290,19 +338,13 @@ assert abs(of_neighbours) < 0.04
 #
 # The width is too small, because strangers lose more energy. The left picture shows the widths, the
 # middle one the covariance of neighbours. In the first theory this covariance is only that of the
-# centre of mass, $W^2/L$. The right picture shows how one rod moves together with those beyond. The second theory was derived while simulations of this chain were looked
-# at, so the agreement alone proves little. The page on pair correlations in the documentation
-# compares it with other chains, and says where it fails.
+# centre of mass, $W^2/L$. The right picture shows how one rod moves together with those beyond. The
+# second theory was derived while simulations of this chain were looked at, so the agreement alone
+# proves little. The page on pair correlations in the documentation compares it with other chains,
+# and says where it fails.
 #
-# **Displacements of neighbours are correlated, too.** If neighbours move together, they are also displaced together, so
-# the displacement width $W_x$ of a rod is larger than that of strangers. The long waves that
-# displace rods are hardly damped by collisions themselves. They are damped because the distances
-# of neighbours fluctuate by as much as their mean: a chain that is strained suddenly pushes back
-# harder than one that has had time to rearrange, and this delay costs energy, as in a viscous
-# fluid. The first theory corrects the widths of strangers by the temperatures of these waves. The
-# second has an equation for displacements, with this damping as one of three changes, and its $W_x$
-# is right within a few per cent. Without these changes it would be up to 21 % too large. The same
-# page derives it.
+# Neighbours that move together are also displaced together. The same page derives how wide the
+# displacements of a rod are.
 #
 # </details>
 #
@@ -323,7 +365,7 @@ assert abs(of_neighbours) < 0.04
 #
 # <details><summary>Solution</summary>
 #
-# Only change the list of restitutions. The documentation's table has $1 - \Theta/W_v^2$ for 100 rods in
-# the centre: 0.07 at $e = 0.95$, 0.18 at 0.9, 0.44 at 0.75 and 0.62 at 0.5. At first it grows in
-# proportion to $1 - e^2$, then more slowly: it cannot exceed 1.
+# Only change the list of restitutions. The documentation's table has $1 - \Theta/W_v^2$ for 100
+# rods in the centre: 0.07 at $e = 0.95$, 0.18 at 0.9, 0.44 at 0.75 and 0.62 at 0.5. At first it
+# grows in proportion to $1 - e^2$, then more slowly: it cannot exceed 1.
 # </details>

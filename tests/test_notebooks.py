@@ -117,9 +117,7 @@ def test_a_lesson_fits_ninety_minutes(lesson):
 
 def test_a_changed_number_stops_no_cell(lesson):
     """Assertions stand only in cells that the copies for learners lack."""
-    name, _, script = lesson
-    if not is_for_a_class(name):
-        pytest.skip("not a lesson of ninety minutes")
+    _, _, script = lesson
     for cell in script.cells:
         if cell.cell_type == "code" and "remove-cell" not in tags(cell):
             nodes = ast.walk(ast.parse(cell.source))
@@ -160,9 +158,7 @@ def used_from_removed_cells(notebook):
 
 
 def test_no_cell_needs_one_that_the_copies_lack(lesson):
-    name, _, script = lesson
-    if not is_for_a_class(name):
-        pytest.skip("not a lesson of ninety minutes")
+    _, _, script = lesson
     assert not used_from_removed_cells(script)
 
 
