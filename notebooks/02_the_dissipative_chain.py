@@ -39,15 +39,14 @@
 import matplotlib.pyplot as plt
 import numpy as np
 from solutions import lesson_02 as solutions
-from teaching import BLUE, GREEN, ORANGE, agree, check, mean_and_error, panels, safe
+from teaching import GREEN, PINK, SKY, agree, check, mean_and_error, panels, safe
 
 from crazybilliards.comparison.drawing import DIRECTIONS
 from crazybilliards.reproduction.fits import fit_avalanches, fit_scaling
 
 # %% [markdown]
-# **What you may change.** The `damping`, from 0.5 to 2, and all seeds. With less damping the chain
-# needs longer runs, and with more the rods hardly collide in a damping time. After a change run all
-# cells below it again.
+# **What you may change.** The `damping`, from 0.5 to 2, and all seeds. The explanations quote the
+# numbers of damping 1. After a change run all cells below it again.
 
 # %%
 damping = 1
@@ -55,8 +54,8 @@ damping = 1
 # %% tags=["hide-input"]
 if not safe(
     0.5 <= damping <= 2,
-    f"This lesson is for damping from 0.5 to 2, not {damping}: its runs are too short for less, "
-    "and with more the chain hardly cools. The lesson goes on with damping = 1.",
+    f"This lesson is for damping from 0.5 to 2, not {damping}: with less its runs "
+    "take long, and with more the chain cools less. The lesson goes on with damping = 1.",
 ):
     damping = 1
 
@@ -218,8 +217,8 @@ plt.show()
 
 # %%
 def independent_runs(chain, number, duration, **settings):
-    """Return runs that differ in their random numbers only; 60 T are 7 relaxation times."""
-    settings = {"duration": duration, "warmup": 60, "observe": "widths", **settings}
+    """Return runs that differ in their random numbers only."""
+    settings = {"duration": duration / damping, "observe": "widths", **settings}
     return [cb.simulate(chain, seed=seed, progress=False, **settings) for seed in range(number)]
 
 
@@ -240,7 +239,7 @@ def centre_width(run, share=0.1):
 
 
 left, right_panel = panels(2, height=3.8)
-for (e, runs), colour, symbol in zip(profiles.items(), (BLUE, ORANGE, GREEN), "osD", strict=True):
+for (e, runs), colour, symbol in zip(profiles.items(), (GREEN, PINK, SKY), "osD", strict=True):
     width, error = mean_and_error([run.velocity_width / W for run in runs])
     i = runs[0].particle
     left.errorbar(i, width, error, fmt=symbol, color=colour, mfc="none", ms=4, label=f"e = {e}")
@@ -300,7 +299,7 @@ for size, each in fits.items():
 
 # %% tags=["hide-input"]
 ax = panels(width=7, height=4)
-for (size, each), colour, symbol in zip(fits.items(), (BLUE, ORANGE, GREEN), "osD", strict=True):
+for (size, each), colour, symbol in zip(fits.items(), (GREEN, PINK, SKY), "osD", strict=True):
     width, error = mean_and_error([run.velocity_width / W for run in runs_of[size]])
     shown = np.unique(np.geomspace(1, size, 40).round().astype(int))
     style = {"fmt": symbol, "color": colour, "mfc": "none", "ms": 5, "label": f"L = {size}"}
@@ -351,8 +350,8 @@ for size, value in zip(sizes, centre, strict=True):
 # %% tags=["hide-input"]
 ax = panels(width=6)
 ends = np.array([8, 400])
-ax.errorbar(sizes, centre / W, centre_error / W, fmt="o", color=BLUE, mfc="none", label="centre")
-ax.plot(ends, scaling(ends) / W, color=BLUE, label=f"$L^{{{scaling.exponent:.3f}}}$")
+ax.errorbar(sizes, centre / W, centre_error / W, fmt="o", color=GREEN, mfc="none", label="centre")
+ax.plot(ends, scaling(ends) / W, color=GREEN, label=f"$L^{{{scaling.exponent:.3f}}}$")
 ax.plot(ends, 1 / np.sqrt(ends), ":", color="0.4", label="floor $L^{-1/2}$")
 ax.set(xscale="log", yscale="log", xlabel="number of rods L", ylabel="central width $W_v/W$")
 ax.minorticks_off()
@@ -395,8 +394,9 @@ for runs in profiles.values():
 
 # %%
 two_hundred = sticky.replace(size=200)
-settings = {"duration": 200, "time_step": 0.01, "observe": "avalanches", "progress": False}
-waves = [cb.simulate(two_hundred, seed=seed, **settings).avalanche_count for seed in range(4)]
+settings = {"duration": 200 / damping, "time_step": 0.01, "progress": False}
+runs = [cb.simulate(two_hundred, observe="avalanches", seed=seed, **settings) for seed in range(4)]
+waves = [run.avalanche_count for run in runs]
 print(waves[0].dims, f"{sum(int(each.sum()) for each in waves):,} avalanches")
 
 # %%
@@ -415,7 +415,7 @@ edges = np.unique(np.geomspace(1, 200, 22).round().astype(int))
 middle = np.sqrt(edges[:-1] * (edges[1:] - 1))
 ax = panels(width=7, height=4)
 for (name, (counts, fits)), colour, symbol in zip(
-    counts_of.items(), (BLUE, ORANGE), "os", strict=True
+    counts_of.items(), (GREEN, PINK), "os", strict=True
 ):
     binned = np.add.reduceat(counts, edges[:-1] - 1, axis=1) / np.diff(edges)
     p, error = mean_and_error(binned / counts.sum(axis=1, keepdims=True))

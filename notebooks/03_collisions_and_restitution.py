@@ -32,11 +32,12 @@
 # %% tags=["hide-input"]
 import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.patches import Rectangle
 from scipy.optimize import isotonic_regression
 from solutions import lesson_03 as solutions
-from teaching import BLUE, GREEN, ORANGE, PINK, RED, check, panels, played, safe
+from teaching import GREEN, PINK, RED, check, panels, played, safe
+
+from crazybilliards.comparison.drawing import DIRECTIONS
 
 OF_RODS = (GREEN, "0.25", PINK, "0.65")  # orange and blue are for velocities, to right and left
 
@@ -344,7 +345,6 @@ assert spans == sorted(spans)
 
 # %% tags=["hide-input"]
 fig, axes = plt.subplots(3, 1, figsize=(7, 2.6), sharex=True, dpi=100)
-velocity_colours = LinearSegmentedColormap.from_list("velocities", [BLUE, "white", ORANGE])
 fastest, half = abs(v).max(), max(abs(films[e][1]).max() for e in restitutions) + 2
 patches = {}
 for ax, e in zip(axes, restitutions, strict=True):
@@ -358,7 +358,7 @@ def show(frame):
         _, x, v = films[e]
         for patch, centre, velocity in zip(patches[e], x[frame], v[frame], strict=True):
             patch.set_x(centre - 1)
-            patch.set_facecolor(velocity_colours(0.5 + 0.5 * velocity / fastest))
+            patch.set_facecolor(DIRECTIONS(0.5 + 0.5 * velocity / fastest))
 
 
 played(fig, show, range(len(films[0][0])), a_second=10)

@@ -29,7 +29,7 @@
 # force: the mean force on a wall.
 #
 # *Level: fourth year; sections 1 to 3 also suit a second year. You need: lesson 1 (section 1), and
-# lesson 5 (sections 4 and 5). Time: 90 minutes. To predict before you see the results, type
+# lesson 5 (sections 1 to 5). Time: 90 minutes. To predict before you see the results, type
 # `make lessons` in the folder of the project, and open the copy of this lesson in
 # `build/lessons/`, which has neither outputs nor solutions.*
 

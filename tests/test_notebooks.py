@@ -26,6 +26,19 @@ def lesson(request):
     return path.name, *(jupytext.read(path.with_suffix(end)) for end in (".ipynb", ".py"))
 
 
+def sections():
+    """Return the numbers of the sections of each lesson, and the one that ends at its stop."""
+    found = {}
+    for path in NOTEBOOKS:
+        if is_for_a_class(path.stem):
+            before, after = (
+                [int(number) for number in re.findall(r"^# ## (\d+)\. ", part, re.MULTILINE)]
+                for part in path.with_suffix(".py").read_text(encoding="utf-8").split(STOP)
+            )
+            found[int(path.stem[:2])] = before + after, before[-1]
+    return found
+
+
 def tags(cell):
     return cell.metadata.get("tags", [])
 
@@ -72,6 +85,34 @@ def test_outputs_belong_to_the_code(lesson):
         data = output.get("data", {}).items()
         texts = [str(each) for kind, each in data if kind != "image/png"]
         assert not OF_A_MACHINE.search("\n".join([output.get("text", ""), *texts]))
+
+
+REFERENCE = re.compile(
+    r"lesson (\d+)(?:\]\([^)]*\))?,? \(?sections? (\d+)(?: (?:to|and) (\d+))?"  # in a sentence
+    r"|[|,] (\d+) \(sections? (\d+)(?: (?:to|and) (\d+))?",  # in a table
+    re.IGNORECASE,
+)
+
+
+def test_sections_that_texts_refer_to_exist():
+    root, known = FOLDER.parent, sections()
+    pages = [root / "README.md", *root.glob("docs/**/*.md"), *FOLDER.glob("*.py")]
+    found = [
+        (path.name, *(int(each) for each in match if each))
+        for path in pages
+        for match in REFERENCE.findall(" ".join(path.read_text(encoding="utf-8").split()))
+    ]
+    assert {"notebooks.md", "teach_a_week.md", "force_balance.md"} <= {name for name, *_ in found}
+    wrong = [each for each in found if not set(each[2:]) <= set(known[each[1]][0])]
+    assert not wrong
+
+
+def test_the_plan_of_a_course_has_all_lessons_in_order_and_their_stops():
+    plan = (FOLDER.parent / "docs" / "teach_a_week.md").read_text(encoding="utf-8")
+    row = r"^\| \[(\d+)\. .*\]\(\.\./notebooks/(\d+)_.*\) \|.*\| (\d+) \| (\d+) \|"
+    rows = [tuple(map(int, each)) for each in re.findall(row, plan, re.MULTILINE)]
+    stops = {number: stop for number, (_, stop) in sections().items()}
+    assert rows == [(number, number, 90, stop) for number, stop in stops.items()]
 
 
 def test_what_a_student_sees(lesson):

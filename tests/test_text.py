@@ -240,6 +240,33 @@ def test_formulas_are_set_as_they_are_meant():
         assert re.search(r"<msup>\s*<mrow>.*\|.*\|.*</mrow>", written, re.DOTALL)
 
 
+def test_links_of_pages_that_sphinx_does_not_check_lead_to_the_page():
+    """An address with a setting, chain.html#size=2, can only be written as HTML."""
+    links = [
+        (path.parent / f"{page}.md", address)
+        for path in PAGES
+        for page, address in re.findall(
+            r'href="(\w+)\.html(?:#([^"]*))?"', path.read_text(encoding="utf-8")
+        )
+    ]
+    assert ROOT / "docs/chain.md" in [page for page, _ in links]
+    settings = {*vars(cb.Chain(size=2))}
+    for page, address in links:
+        assert page.exists()
+        assert {each.split("=")[0] for each in re.split("&amp;|&", address)} <= settings
+
+
+def test_texts_count_the_notebooks():
+    numbers = ["seven", "eight", "nine", "ten", "eleven", "twelve", "thirteen", "fourteen"]
+    lessons = sum(path.name[0].isdigit() for path in LESSONS)
+    right = {"lessons": {lessons}, "notebooks": {lessons, len(LESSONS)}}
+    for path in PAGES:
+        if path.name != "CHANGELOG.md":  # which tells how many there were
+            text = path.read_text(encoding="utf-8").lower()
+            for number, what in re.findall(rf"({'|'.join(numbers)})\s(lessons|notebooks)\b", text):
+                assert numbers.index(number) + 7 in right[what], (path.name, number, what)
+
+
 def test_the_qr_code_leads_to_the_documentation_that_the_project_names():
     """If it does not, draw it again: python docs/figures/qr_code.py."""
     picture = (ROOT / "docs/figures/qr_code.svg").read_text(encoding="utf-8")
