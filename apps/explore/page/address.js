@@ -4,8 +4,9 @@
 "use strict";
 
 const ChainAddress = (() => {
-  const USUAL = { size: 100, restitution: 1, amplitude: 1, damping: 1, gap: 0, spring: "linear" };
-  const NAMES = Object.keys(USUAL);
+  const SPRINGS = { size: 100, restitution: 1, amplitude: 1, damping: 1, gap: 0, spring: "linear" };
+  const USUAL = { ...SPRINGS, box: 80, mass_ratio: 1 };
+  const NAMES = Object.keys(USUAL), SPRUNG = Object.keys(SPRINGS); // of all chains, of those on springs
   const SHOWN = { rod: 1, first: "density", second: "widths", speed: 3 };
 
   /* Whatever was chosen, as it begins: the chain and what is shown of it, by name. */
@@ -55,9 +56,5 @@ const ChainAddress = (() => {
 
   const same = (one, other) => NAMES.every((name) => one[name] === other[name]);
 
-  /* The setting in the symbols of the paper. */
-  const told = (chain) => `L = ${chain.size}, e = ${chain.restitution}, A = ${chain.amplitude}, ` +
-    `γ = ${chain.damping}, g = ${chain.gap}, ${chain.spring} springs`;
-
-  return { USUAL, NAMES, beginning, read, write, same, told };
+  return { USUAL, NAMES, SPRUNG, beginning, read, write, same };
 })();

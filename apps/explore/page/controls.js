@@ -3,7 +3,7 @@
 "use strict";
 
 (() => {
-  const { NAMES } = ChainAddress, R = ChainRunning, { world } = R, { draw, play, pause } = ChainFrames;
+  const { NAMES } = ChainAddress, P = ChainScales, R = ChainRunning, { world } = R, { draw, play, pause } = ChainFrames;
   const CHALLENGES = ChainChallenges.list, PRESETS = ChainPresets.list;
   const CALM = 5000; // milliseconds between two sentences about a moving picture
   const OWN = { ask: "A chain of your own. Push it, change it, or choose a challenge." };
@@ -21,12 +21,12 @@
   function drawPlots() {
     const { state, measurement, history: energies } = world, theory = ChainTheory.of(state.chain);
     const exact = ChainTheory.exactDensity(state.chain, measurement.coverage().map(([x]) => x));
-    if (!exact && state.chain.restitution === 1 && state.chain.amplitude > 0 && !ChainFrames.running())
+    if (!exact && state.chain.restitution === 1 && state.chain.amplitude > 0 && !state.masses && !ChainFrames.running())
       setTimeout(draw, 450);
     const kicked = state.chain.amplitude > 0, unit = R.unit(), calm = !ChainFrames.running() || isDue();
     const units = kicked ? { unit, counted: 1, inUnits: "W" } : { unit: 1, counted: unit, inUnits: "R/T" };
-    const { restitution } = state.chain;
-    const seen = { half: stage.half, measurement, history: energies, restitution, ...units, exact, theory };
+    const { restitution } = state.chain, gas = state.masses ? gauged() : null;
+    const seen = { half: stage.half, measurement, history: energies, restitution, ...units, exact, theory, gas };
     for (const [name, list] of Object.entries(pictures)) {
       const sentence = ChainPlots.pictures[list.value](find(name), stage.colour, seen);
       if (calm || !find(name).ariaLabel) find(name).ariaLabel = sentence;
@@ -37,6 +37,18 @@
     find("solve").textContent = ChainTheory.asked() ? "Stop" : "Solve the theory";
     find("theory").textContent = (told.chain === state.chain && told.said) || theory?.said || "";
     judge();
+  }
+
+  /* Show the gauge, the force on the walls; return what the picture of the pressure needs. The law is
+     not told before it is found. */
+  function gauged() {
+    const { state, measurement, forces } = world, { size, box } = state.chain, law = ChainGas.law(state);
+    const known = !chosen.secret || solved.has(chosen.id), { value, error } = measurement.force();
+    const shown = (force) => Number(force.toPrecision(4));
+    const now = measurement.blocks.length > 1 ? `${shown(value)} ± ${Number(error.toPrecision(1))} M R/T²` : "being measured";
+    find("gauge").textContent = `Force on a wall: ${now}${known ? `; exact, L T/(X − 2RL): ${shown(law)} M R/T²` : ""}.`;
+    const exact = Object.assign([[2 * size, 0], [box, 1 / law]], { known });
+    return { forces, found: ChainGas.rodLength(forces), exact };
   }
 
   /* Whether it is time to say anew what the pictures show: a screen reader should not be hurried. */
@@ -109,6 +121,7 @@
     for (const [name, list] of Object.entries(pictures)) list.value = begun[name];
     find("rod").value = begun.rod;
     world.pushes = [];
+    world.forces = [];
     what.begin?.();
     setSpeed(Number(begun.speed));
     R.begin(Object.fromEntries(NAMES.map((name) => [name, begun[name]])));
@@ -118,18 +131,28 @@
   }
 
   function showValues() {
-    const { chain } = world.state;
+    const { chain } = world.state, gas = P.isGas(chain);
+    root.classList.toggle("gas", gas);
+    sliders.box.min = narrowest(chain.size);
     for (const name of NAMES) sliders[name].value = chain[name];
     for (const value of root.querySelectorAll("[data-value]")) value.textContent = chain[value.dataset.value];
     find("rod").max = chain.size;
+    for (const list of Object.values(pictures)) {
+      for (const option of list.options)
+        if (option.dataset.of) option.disabled = option.hidden = gas !== (option.dataset.of === "gas");
+      if (list.selectedOptions[0].disabled) list.value = gas ? "pressure" : "energy";
+    }
   }
+
+  const narrowest = (size) => 2 * P.RADIUS * size + 2; // box of so many rods
 
   function slide(name) {
     const control = sliders[name], chain = { ...world.state.chain }, stopped = world.ranAway;
-    chain[name] = control.options ? control.value : Number(control.value);
+    chain[name] = name === "spring" ? control.value : Number(control.value);
+    chain.box = Math.max(chain.box, narrowest(chain.size));
     if (world.pushed)
       note(`The push was broken off.${chosen.calm ? " The next one waits until the chain has settled." : ""}`);
-    if (name === "size" || name === "spring" || stopped) R.begin(chain);
+    if (name === "size" || name === "spring" || stopped || P.isGas(chain)) R.begin(chain);
     else R.change(chain);
     showValues();
     if (stopped) play();
@@ -157,8 +180,11 @@
     });
     if (asked?.values) {
       const { challenge, preset, ...values } = asked.values;
-      choose([...CHALLENGES, ...PRESETS].find(({ id }) => id === (challenge || preset)) || OWN, values);
-      return;
+      const what = [...CHALLENGES, ...PRESETS].find(({ id }) => id === (challenge || preset)) || OWN;
+      const { size, box, spring } = { ...ChainAddress.beginning(what), ...values };
+      asked.refused = P.isGas({ spring }) && box < narrowest(size) &&
+        `${size} rods need a box of at least ${narrowest(size)} R, got ${box}`;
+      if (!asked.refused) return choose(what, values);
     }
     otherwise();
     if (asked) note(`The address is not understood: ${asked.refused}.`);
@@ -195,16 +221,6 @@
     if (!ChainFrames.running()) draw();
   }
 
-  function save() {
-    stage.save(ChainAddress.told(world.state.chain), (picture) => {
-      const link = document.createElement("a");
-      link.href = URL.createObjectURL(picture);
-      link.download = "chain.png";
-      link.click();
-      URL.revokeObjectURL(link.href);
-    });
-  }
-
   /* Solve the theory of the chain, or stop solving it. What is said of one chain is not seen with another. */
   function solve() {
     const { chain } = world.state;
@@ -218,7 +234,7 @@
 
   function listen() {
     const clicks = {
-      step, push, save, solve,
+      step, push, solve,
       restart: () => choose(chosen),
       next: () => choose(CHALLENGES[CHALLENGES.indexOf(chosen) + 1]),
       reveal: () => (solved.add(chosen.id), answer()),
@@ -245,36 +261,14 @@
 
   // -- what is built --------------------
 
-  function button(text, act) {
-    const made = document.createElement("button");
-    made.type = "button";
-    made.textContent = text;
-    made.addEventListener("click", act);
-    return made;
-  }
-
-  /* Show the value of a slider above it, and buttons for less and more beside it. */
-  function surround(name) {
-    const control = sliders[name], output = document.createElement("output");
-    output.dataset.value = name;
-    output.ariaHidden = "true"; // the slider itself says it
-    const stepping = (sign, steps, word) => {
-      const made = button(sign, () => (control.stepUp(steps), slide(name)));
-      made.ariaLabel = `${control.labels[0].textContent}, ${word}`;
-      return made;
-    };
-    control.before(output, stepping("−", -1, "less"));
-    control.after(stepping("+", 1, "more"));
-  }
-
   function fill() {
     CHALLENGES.forEach((each, k) => {
-      const made = button(`${k + 1} ${each.title}`, () => choose(each));
+      const made = ChainSliders.button(`${k + 1} ${each.title}`, () => choose(each));
       made.dataset.chain = `challenge-${each.title}`;
       if (solved.has(each.id)) tick(made);
       find("challenges").append(made);
     });
-    NAMES.filter((name) => name !== "spring").forEach(surround);
+    for (const name of NAMES) if (!sliders[name].options) ChainSliders.surround(sliders[name], name, slide);
     const questions = PRESETS.map(({ id, title }) => new Option(title, id));
     find("preset").append(new Option("Questions to predict", ""), ...questions);
     pictures.second.append(...pictures.first.cloneNode(true).children);

@@ -26,8 +26,13 @@ const ChainDrawing = (() => {
     return `rgb(${colour.rest.map((rest, k) => Math.round(rest + share * (full[k] - rest)))})`;
   }
 
-  /* Half of the line that is shown [R]: the anchors and room for some thermal lengths. */
+  /* The velocity of a rod; that of a heavier one as of a light one of the same energy. */
+  const pace = ({ v, masses }, i) => (masses ? v[i] * Math.sqrt(masses[i] / P.MASS) : v[i]);
+
+  /* Half of the line that is shown [R]: the anchors and room for some thermal lengths, or the box, of
+     which smaller ones look smaller. */
   function reach(chain) {
+    if (P.isGas(chain)) return Math.max(chain.box / 2, 2.5 * P.RADIUS * chain.size) + 1;
     const anchors = ((2 * P.RADIUS + chain.gap) * (chain.size - 1)) / 2;
     return anchors + 3 * P.RADIUS + 3.5 * P.thermalLength(chain);
   }
@@ -60,7 +65,7 @@ const ChainDrawing = (() => {
     /* Add the present state to the strip, and the contacts where rods have met. */
     add(state, unit, met) {
       const x = Float32Array.from(state.y, (_, i) => P.position(state, i));
-      const row = [x, Float32Array.from(state.v, (v) => v / unit), met];
+      const row = [x, Float32Array.from(state.v, (_, i) => pace(state, i) / unit), met];
       this.rows.unshift(row);
       this.rows.length = Math.min(this.rows.length, ROWS);
       const outermost = Math.max(-x[0], x[x.length - 1]) + P.RADIUS;
@@ -99,13 +104,19 @@ const ChainDrawing = (() => {
       const length = Math.max(2 * P.RADIUS * scale - 1, 1), rank = (state.y.length - 1) / 2;
       for (let i = 0; i < state.y.length; i++) {
         const x = place(P.position(state, i));
-        drawSpring(pen, place((2 * P.RADIUS + state.chain.gap) * (i - rank)), x, length, colour);
-        pen.fillStyle = shade(state.v[i] / unit, colour);
-        pen.fillRect(x - length / 2, 28, length, 24);
+        if (!state.masses) drawSpring(pen, place((2 * P.RADIUS + state.chain.gap) * (i - rank)), x, length, colour);
+        const high = state.masses?.[i] > P.MASS ? 32 : 24;
+        pen.fillStyle = shade(pace(state, i) / unit, colour);
+        pen.fillRect(x - length / 2, 52 - high, length, high);
         if (length < 3) continue;
         pen.strokeStyle = i === state.held ? colour.exact : colour.ink;
         pen.lineWidth = i === state.held ? 3 : 1;
-        pen.strokeRect(x - length / 2, 28, length, 24);
+        pen.strokeRect(x - length / 2, 52 - high, length, high);
+      }
+      if (state.masses) {
+        const wall = place(-state.chain.box / 2);
+        pen.fillStyle = colour.grey;
+        for (const left of [0, width - wall]) pen.fillRect(left, 0, wall, height - AXIS);
       }
       pen.font = `12px ${colour.sans}`;
       this.drawAxis(pen, place, width, height);
@@ -127,31 +138,6 @@ const ChainDrawing = (() => {
         pen.fillText(ChainPlots.number(x), at, height - AXIS + 15);
       }
       pen.fillText("position x [R]", width / 2, height - 3);
-    }
-
-    /* The rods and the strip as a picture, with the words and a key below them. */
-    save(words, done) {
-      const { canvas, colour, ratio } = this, copy = document.createElement("canvas"), pen = copy.getContext("2d");
-      copy.width = canvas.width;
-      copy.height = canvas.height + 42 * ratio;
-      pen.fillStyle = colour.faint;
-      pen.fillRect(0, 0, copy.width, copy.height);
-      pen.drawImage(canvas, 0, 0);
-      pen.translate(4 * ratio, canvas.height);
-      pen.scale(ratio, ratio);
-      pen.font = `12px ${colour.sans}`;
-      const key = [
-        [shade(-FAST, colour), 10, "moves left"], [shade(FAST, colour), 10, "moves right"],
-        [colour.ink, 2, "two rods meet"],
-      ];
-      key.forEach(([fill, high, text], k) => {
-        pen.fillStyle = fill;
-        pen.fillRect(110 * k, 12 - high / 2, 10, high);
-        pen.fillStyle = colour.ink;
-        pen.fillText(text, 110 * k + 15, 16);
-      });
-      pen.fillText(words, 0, 34);
-      copy.toBlob(done);
     }
   }
 
@@ -180,5 +166,5 @@ const ChainDrawing = (() => {
     pen.fillText(text, x, y);
   }
 
-  return { Stage, reach, BAND, ROWS };
+  return { Stage, reach, pace, BAND, ROWS };
 })();

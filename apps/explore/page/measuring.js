@@ -24,15 +24,16 @@ const ChainMeasuring = (() => {
     restart(state) {
       this.settling = SETTLING * P.relaxationTime(state.chain);
       // Energies are forgotten in m/(2 gamma), so that the averages of such blocks are independent.
-      this.blockTime = Math.max((4 * P.MASS) / state.chain.damping, P.relaxationTime(state.chain));
+      const relaxation = P.relaxationTime(state.chain);
+      this.blockTime = state.masses ? relaxation : Math.max((4 * P.MASS) / state.chain.damping, relaxation);
       this.clear();
     }
 
     clear() {
       for (const each of [this.counts, this.squares, this.middle, this.ends]) each.fill(0);
       this.samples = this.time = 0;
-      this.blocks = []; // of [mean v^2 at the border, mean v^2 in the centre]
-      this.block = [0, 0, 0, 0]; // sums of both, samples and time of the present block
+      this.blocks = []; // of mean [v^2 at the border, v^2 in the centre], of a gas [force, kurtosis]
+      this.block = [0, 0, 0]; // sums of both, and the time of the present block
     }
 
     /* Take the present state into the averages; it was `elapsed` ago that one was taken. Velocities
@@ -45,19 +46,20 @@ const ChainMeasuring = (() => {
         if (bin >= 0 && bin < this.counts.length) this.counts[bin]++;
       }
       const size = state.v.length, count = (cells, v) => cells[Math.round((v / unit + FASTEST) / CELL)]++;
-      for (const i of centreOf(size)) count(this.middle, state.v[i]);
-      count(this.ends, -state.v[0]);
-      count(this.ends, state.v[size - 1]);
+      if (state.masses) state.v.forEach((_, i) => count(this.middle, ChainDrawing.pace(state, i)));
+      else {
+        for (const i of centreOf(size)) count(this.middle, state.v[i]);
+        count(this.ends, -state.v[0]);
+        count(this.ends, state.v[size - 1]);
+      }
       this.samples++;
       this.time += elapsed;
-      const block = this.block;
-      block[0] += meanSquare(state.v, borderOf(size));
-      block[1] += meanSquare(state.v, centreOf(size));
-      block[2]++;
-      block[3] += elapsed;
-      if (block[3] < this.blockTime) return;
+      const block = this.block, means = [borderOf(size), centreOf(size)].map((rods) => meanSquare(state.v, rods));
+      (state.masses ? ChainGas.seen(state, elapsed) : means).forEach((mean, k) => { block[k] += elapsed * mean; });
+      block[2] += elapsed;
+      if (block[2] < this.blockTime) return;
       this.blocks.push([block[0] / block[2], block[1] / block[2]]);
-      this.block = [0, 0, 0, 0];
+      this.block = [0, 0, 0];
     }
 
     get settled() {
@@ -97,6 +99,20 @@ const ChainMeasuring = (() => {
       const value = border / centre;
       return { value, error: value * Math.sqrt(scatter / (n * (n - 1))), blocks: n };
     }
+
+    /* The mean force on the two walls in the first blocks, with its standard error. With the virial
+       G = sum of m y v this is P l = L T - dG/dt. The deviations of two blocks in turn cancel, but for
+       G at the first and at the last moment, and the error falls like 1/n. */
+    force(n = this.blocks.length) {
+      const { value, scatter } = mean(this.blocks.slice(0, n).map(([force]) => force));
+      return { value, error: scatter / n };
+    }
+
+    /* The kurtosis of the velocities of a gas in the first blocks, with its standard error. */
+    kurtosis(n = this.blocks.length) {
+      const { value, scatter } = mean(this.blocks.slice(0, n).map(([, kurtosis]) => kurtosis));
+      return { value, error: scatter / Math.sqrt(n) };
+    }
   }
 
   /* The running average over a rod's length of points that are a bin apart, as the paper draws it. */
@@ -114,6 +130,12 @@ const ChainMeasuring = (() => {
   function centreOf(size) {
     const from = Math.min(Math.floor((9 * size + 9) / 20), Math.floor((size - 1) / 2));
     return Array.from({ length: size - 2 * from }, (_, k) => from + k);
+  }
+
+  /* The mean of numbers and their standard deviation. */
+  function mean(numbers) {
+    const n = numbers.length, value = numbers.reduce((sum, each) => sum + each, 0) / n;
+    return { value, scatter: Math.sqrt(numbers.reduce((sum, each) => sum + (each - value) ** 2, 0) / (n - 1)) };
   }
 
   const meanSquare = (v, rods) => rods.reduce((sum, i) => sum + v[i] ** 2, 0) / rods.length;

@@ -160,7 +160,7 @@ const ChainPlots = (() => {
   /* Pictures by name. `seen` has {half, measurement, history, restitution, unit, counted, inUnits, exact,
      theory}: velocities are divided by the `unit`, those of the distributions are counted in `counted`
      units, and `theory` is what is known of the chain: {short, widths, density, other: {short, density}}.
-     Each picture returns what is seen on it as a sentence. */
+     `gas`: {forces, found, exact} for its picture of the pressure, and null for a chain on springs. Each picture returns what is seen on it as a sentence. */
   const pictures = {
     density(canvas, colour, { half, measurement, exact, theory }) {
       // Stated errors are those of densities averaged as in the paper.
@@ -192,21 +192,39 @@ const ChainPlots = (() => {
         `${inUnits}${known ? `; ${theory.short}: ${said(known)} ${inUnits}` : ""}.`;
     },
 
-    velocities(canvas, colour, { measurement, restitution, counted, inUnits }) {
+    velocities(canvas, colour, { measurement, restitution, counted, inUnits, gas }) {
       const log = ([v, p]) => [v, Math.log10(p)], [middle, ends] = ["middle", "ends"].map((where) =>
         measurement.velocities(where).map(([v, p]) => log([v * counted, p / counted])));
       const [slow, fast] = [middle, ends].map((points) => Math.max(0, ...points.map(([v]) => Math.abs(v))));
       const fastest = Math.max(inUnits === "W" ? 4 : 0.1, slow, fast);
       const plot = new Plot(canvas, colour, {
-        x: [-fastest, fastest], y: [-4.2, 0.4], xTitle: `velocity v [${inUnits}], at the ends outward`,
+        x: [-fastest, fastest], y: [-4.2, 0.4],
+        xTitle: gas ? "velocity of a rod of mass mᵢ, v √(mᵢ/m) [W]" : `velocity v [${inUnits}], at the ends outward`,
         yTitle: `p(v) [${inUnits === "W" ? "1/W" : "T/R"}]`, powers: true,
       });
       const gauss = GAUSS.map((v) => log([v, Math.exp((-v * v) / 2) / Math.sqrt(2 * Math.PI)]));
-      if (inUnits === "W") plot.line(gauss, restitution === 1 ? "exact" : "free rod");
-      plot.dots(ends, strength(measurement), "ends", true);
-      plot.dots(middle, strength(measurement), "middle");
+      if (inUnits === "W") plot.line(gauss, gas ? "Maxwell" : restitution === 1 ? "exact" : "free rod");
+      if (!gas) plot.dots(ends, strength(measurement), "ends", true);
+      plot.dots(middle, strength(measurement), gas ? "all rods" : "middle");
+      if (gas) return `Velocities, ${measuredIn(measurement)}: seen up to ${slow.toFixed(1)} W.`;
       return `Velocities, ${measuredIn(measurement)}: seen up to ${slow.toFixed(1)} ${inUnits} in the middle and ` +
         `${fast.toFixed(1)} ${inUnits} at the ends.`;
+    },
+
+    /* Of a gas in several boxes, with the line through them and the exact one. */
+    pressure(canvas, colour, { gas: { forces, found, exact } }) {
+      const points = forces.map(({ chain, value, error }) => [chain.box, 1 / value, error / value ** 2]);
+      const last = Math.max(...points.map(([x]) => x), exact[1][0]);
+      const plot = new Plot(canvas, colour, {
+        x: [0, 1.1 * last], y: [0, 1.2 * Math.max(exact[1][1], ...points.map(([, y]) => y))],
+        xTitle: "length of the box X [R]", yTitle: "1/force on a wall [T²/(M R)]",
+      });
+      if (exact.known) plot.line(exact, "exact");
+      if (found) plot.line([found.start, 1.1 * last].map((x) => [x, found.line(x)]), "straight line", [6, 3]);
+      for (const [x, y, error] of points) plot.line([[x, y - error], [x, y + error]], "", [1, 0]);
+      plot.dots(points, 1, "measured");
+      return `1/force on a wall: measured in ${forces.length} boxes` +
+        `${found ? `; the line through them begins at ${found.start.toFixed(1)} R` : ""}.`;
     },
 
     energy(canvas, colour, { history, inUnits }) {

@@ -19,12 +19,6 @@ const ChainPresets = (() => {
       "It is: about 0.34 W in the middle of 30 rods and 0.2 W of 120. The paper finds a power law, L to the " +
       "power −0.38.",
       "widths", { size: 30, restitution: 0 }),
-    question("loss", "How much does a small loss cool?",
-      "At e = 0.95 a collision takes a tenth of the energy of approach. How slow are the rods in the middle, " +
-      "and at e = 0.8? Predict, then set e.",
-      "A small loss cools a lot, because rods meet often: in the middle W_v is 0.43 W at e = 0.95 and 0.26 W at" +
-      " e = 0.8.",
-      "widths", {}),
     question("elastic", "Do elastic collisions leave a trace?",
       "At e = 1 collisions keep the energy. Will the density show them, and will the velocities? Predict both, " +
       "then set e = 1.",
@@ -50,11 +44,6 @@ const ChainPresets = (() => {
       "With linear springs it is: the energy grows exponentially. With quadratic ones fast rods meet more " +
       "often: the line curves upwards, and the energy becomes infinite after a finite time.",
       "energy", { damping: 0.4 }, { speed: 30 }),
-    question("noise", "What does stronger noise change?",
-      "What happens to the velocity widths in units of W, and to the density, at A = 6? Predict, then change A.",
-      "Velocities and displacements grow like A, and so does W. In units of W the widths stay. The density " +
-      "spreads, because the rods do not grow.",
-      "widths", { restitution: 0.95, amplitude: 3 }),
     question("gap", "What does a gap change?",
       "Without a gap the middle is coldest. How will the velocity widths look with anchors 0.2 R further apart?" +
       " Predict, then set g = 0.2.",

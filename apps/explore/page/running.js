@@ -11,12 +11,14 @@ const ChainRunning = (() => {
   const SEEN = 3; // the largest speed [T/s] at which a push and single collisions can be followed
   const SLOW = 0.3; // T/s
   const KEPT = 800; // energies of the history
+  const GAUGED = 10; // blocks after which the force on the walls is kept
   const GROWN = 10; // times the energy of free rods: beyond, noise hardly counts
 
   // `touched`: the energy after the last touch. `met`: the contacts that have closed in the last row.
+  // `forces`: {chain, value, error} of the force on the walls of the gas in several boxes.
   const world = {
     state: null, measurement: null, speed: SEEN, pushes: [], pushed: null, ranAway: false, growth: 1, touched: 0,
-    history: [], met: [],
+    history: [], met: [], forces: [],
   };
   let stage = null, seed = 0, stride = 1, skipped = 0, before = new Set();
 
@@ -27,19 +29,25 @@ const ChainRunning = (() => {
     return chain.size * P.MASS * unit() ** 2 * (1 / 2 + 1 / P.exponent(chain));
   };
 
-  /* A new chain. Up to e = 1 it has settled before it is shown; above it might run away. */
+  const laws = () => (world.state.masses ? ChainGas : P);
+
+  /* A new chain. Up to e = 1 it has settled before it is shown; above it might run away. A gas shows
+     how it begins. */
   function begin(chain) {
-    world.state = P.makeState(chain, ++seed);
+    const gas = P.isGas(chain), reach = ChainDrawing.reach(chain);
+    world.state = (gas ? ChainGas : P).makeState(chain, ++seed);
     world.hand = null; // it held a rod of the chain before
-    world.measurement = new ChainMeasuring.Measurement(world.state, 1.5 * ChainDrawing.reach(chain));
-    if (chain.restitution <= 1) settle(4 * P.relaxationTime(chain));
+    world.measurement = new ChainMeasuring.Measurement(world.state, gas ? reach : 1.5 * reach);
+    const [same] = world.forces, alike = ["size", "spring", "mass_ratio"];
+    if (same && alike.some((name) => same.chain[name] !== chain[name])) world.forces = [];
+    if (chain.restitution <= 1 && !gas) settle(4 * P.relaxationTime(chain));
     else changed();
   }
 
   /* Let the chain settle for so long before it is shown; what takes too long to compute is left over. */
   function settle(due) {
     const quarter = P.relaxationTime(world.state.chain) / 4, begun = performance.now();
-    for (; due > 0 && performance.now() - begun < PATIENCE; due -= quarter) P.go(world.state, quarter);
+    for (; due > 0 && performance.now() - begun < PATIENCE; due -= quarter) laws().go(world.state, quarter);
     changed();
     world.measurement.settling = due;
     // The strip is full from the beginning, unless this would show nothing.
@@ -57,8 +65,9 @@ const ChainRunning = (() => {
     world.pushed = null;
     world.ranAway = false;
     world.measurement.restart(world.state);
-    world.touched = Math.max(P.energy(world.state), freeEnergy());
-    world.growth = P.energy(world.state) / freeEnergy();
+    const energy = laws().energy(world.state);
+    world.touched = Math.max(energy, freeEnergy());
+    world.growth = energy / freeEnergy();
     world.history = [[world.state.time, world.growth]];
     stride = 1;
     if (!sameChain) stage.restart(world.state.chain);
@@ -69,14 +78,15 @@ const ChainRunning = (() => {
     const { state, measurement, pushed } = world, duration = world.speed / ROWS_A_SECOND;
     if (world.hand) follow(duration);
     state.met.fill(0);
-    P.go(state, duration);
+    laws().go(state, duration);
     measurement.add(state, duration, unit());
+    if (state.masses && measurement.blocks.length === GAUGED) gauge();
     const met = new Set();
     state.met.forEach((closed, contact) => closed && met.add(contact));
     world.met = [...met].filter((contact) => !before.has(contact)); // others are still in contact
     before = met;
     stage.add(state, unit(), world.speed <= SEEN ? world.met : []);
-    const energy = P.energy(state);
+    const energy = laws().energy(state);
     world.growth = energy / freeEnergy();
     remember();
     if (state.diverged || (state.chain.restitution > 1 && energy > RUN_AWAY * world.touched)) world.ranAway = true;
@@ -85,6 +95,12 @@ const ChainRunning = (() => {
     if (state.time < pushed.until) return;
     world.pushes.push(pushed);
     world.pushed = null;
+  }
+
+  /* Keep the force on the walls of this box, once for each box of a gas. */
+  function gauge() {
+    const { chain } = world.state, others = world.forces.filter((each) => each.chain.box !== chain.box);
+    world.forces = [...others, { chain, ...world.measurement.force() }].sort((a, b) => a.chain.box - b.chain.box);
   }
 
   /* Keep the energy; of a long time every second, fourth, ... one. */
@@ -109,7 +125,7 @@ const ChainRunning = (() => {
 
   /* Add a velocity to a rod, to the right. Calmly: the chain settles before, if it has a steady state. */
   function push(rod, calmly = false) {
-    if (world.ranAway) return;
+    if (world.ranAway || world.state.masses) return;
     const { state, measurement } = world, { chain } = state, speedUp = KICK * unit();
     if (calmly && !measurement.settled && chain.restitution <= 1) settle(measurement.settling);
     const { settled } = measurement;
@@ -133,7 +149,7 @@ const ChainRunning = (() => {
     const { state } = world, distance = (i) => Math.abs(P.position(state, i) - x);
     let rod = 0;
     for (let i = 1; i < state.y.length; i++) if (distance(i) < distance(rod)) rod = i;
-    if (world.ranAway || distance(rod) > away) return false;
+    if (world.ranAway || state.masses || distance(rod) > away) return false;
     world.hand = { rod, offset: P.position(state, rod) - x, x: P.position(state, rod), since: time };
     state.held = rod;
     return true;
@@ -174,6 +190,6 @@ const ChainRunning = (() => {
 
   return {
     world, unit, begin, change, goOn, step, push, setSpeed, take, letGo, growthRates, criticalSize,
-    ROWS_A_SECOND, RUN_AWAY, showOn: (shown) => { stage = shown; },
+    ROWS_A_SECOND, RUN_AWAY, GAUGED, showOn: (shown) => { stage = shown; },
   };
 })();

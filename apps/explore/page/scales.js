@@ -1,17 +1,28 @@
 /* The scales of a chain {size, restitution, amplitude, damping, gap, spring}: those of the package
-   (particles/scales.py), in units of R half a rod's length, M mass, T time. */
+   (particles/scales.py), in units of R half a rod's length, M mass, T time. Without springs it is a
+   gas {size, box, mass_ratio} between two walls: every second rod is so many times as heavy. */
 "use strict";
 
 const ChainScales = (() => {
   const RADIUS = 1, MASS = (4 * Math.PI) / 3, STIFFNESS = 1;
   const SLOWEST_MODE = 1.241; // rate of a strongly damped rod on a quadratic spring, in k s/gamma
 
+  const isGas = (chain) => chain.spring === "none";
+
+  /* What the rods of a gas leave free of their box, and the masses of the rods. */
+  const freeLength = ({ box, size }) => box - 2 * RADIUS * size;
+  const masses = ({ size, mass_ratio: ratio }) => Array.from({ length: size }, (_, i) => MASS * (i % 2 ? ratio : 1));
+
   /* The exponent n of the springs' potential k |d|^n/n, and their force over k. */
   const exponent = (chain) => (chain.spring === "quadratic" ? 3 : 2);
   const pull = (d, n) => (n === 2 ? d : d * Math.abs(d));
 
-  /* W = A/sqrt(2 m gamma), the velocity width of a rod that meets no other. */
-  const freeWidth = (chain) => chain.amplitude / Math.sqrt(2 * MASS * chain.damping);
+  /* W = A/sqrt(2 m gamma), the velocity width of a rod that meets no other. In a gas, where all rods
+     begin with the speed 1 R/T, sqrt(T/m) of the light rods once all have the mean energy T/2. */
+  function freeWidth(chain) {
+    if (isGas(chain)) return Math.sqrt(masses(chain).reduce((sum, m) => sum + m / MASS, 0) / chain.size);
+    return chain.amplitude / Math.sqrt(2 * MASS * chain.damping);
+  }
 
   /* s = (T/k)^(1/n); of linear springs the standard deviation of a free rod's displacement. */
   const thermalLength = (chain) => ((MASS * freeWidth(chain) ** 2) / STIFFNESS) ** (1 / exponent(chain));
@@ -31,8 +42,10 @@ const ChainScales = (() => {
     return SLOWEST_MODE * STIFFNESS * s * Math.min(1, Math.hypot(fluctuation, pushed));
   }
 
-  /* The time in which a rod that meets no other forgets where it was and how fast. */
+  /* The time in which a rod that meets no other forgets where it was and how fast; in a gas that in
+     which a rod of the speed 1 R/T meets 22 others, and no multiple of the period of equal rods. */
   function relaxationTime(chain) {
+    if (isGas(chain)) return (7 * Math.PI * freeLength(chain)) / chain.size;
     const half = chain.damping / (2 * MASS), stiff = relaxingStiffness(chain) / MASS;
     if (stiff === 0 || half * half <= stiff) return 1 / (stiff === 0 ? 2 * half : half);
     return (half + Math.sqrt(half * half - stiff)) / stiff;
@@ -74,6 +87,6 @@ const ChainScales = (() => {
   }
 
   return {
-    RADIUS, MASS, STIFFNESS, exponent, pull, freeWidth, thermalLength, relaxationTime, timeStep, propagator,
+    RADIUS, MASS, STIFFNESS, isGas, freeLength, masses, exponent, pull, freeWidth, thermalLength, relaxationTime, timeStep, propagator,
   };
 })();

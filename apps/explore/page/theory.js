@@ -21,6 +21,8 @@ const ChainTheory = (() => {
   /* {short, said, widths, density, other} of the chain, or null; widths in free widths. */
   function of(chain) {
     if (solved && ChainAddress.same(solved.chain, chain)) return solved;
+    if (ChainScales.isGas(chain)) // of two rods the energies depend on how they begin
+      return chain.size < 3 ? null : { short: "equal energies", said: "", widths: lightest(chain) };
     if (chain.restitution === 1 && chain.amplitude > 0)
       return { short: "exact", widths: Array(chain.size).fill(1), said: "" };
     // The curves are those of A = 1; without a gap A only sets the scale.
@@ -32,9 +34,12 @@ const ChainTheory = (() => {
     return { short: "theory", said: stated(found), widths: [...found.half, ...other] };
   }
 
+  /* The velocity widths of the rods of a gas, in those of the light ones, if all have the same energy. */
+  const lightest = (chain) => ChainScales.masses(chain).map((m) => Math.sqrt(ChainScales.MASS / m));
+
   /* The exact density of a chain at e = 1 as points, once it has not changed for a moment. */
   function exactDensity(chain, places) {
-    if (chain.restitution !== 1 || chain.amplitude === 0) return null;
+    if (chain.restitution !== 1 || chain.amplitude === 0 || ChainScales.isGas(chain)) return null;
     const now = performance.now();
     if (exact.chain !== chain) Object.assign(exact, { chain, due: now + (chain.size > 60 ? 400 : 0), density: null });
     if (!exact.density && now >= exact.due) {
@@ -54,7 +59,7 @@ const ChainTheory = (() => {
     clock();
     let said = "";
     try {
-      const query = new URLSearchParams(ChainAddress.NAMES.map((name) => [name, chain[name]]));
+      const query = new URLSearchParams(ChainAddress.SPRUNG.map((name) => [name, chain[name]]));
       const wanted = { signal: stop.signal, headers: { "X-Requested-With": "chain" } };
       const answer = await (await fetch(`${address}?${query}`, wanted)).json();
       said = answer.refused ? `No theory: ${answer.refused}` : take(chain, answer);
