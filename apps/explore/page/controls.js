@@ -44,9 +44,9 @@
   function gauged() {
     const { state, measurement, forces } = world, { size, box } = state.chain, law = ChainGas.law(state);
     const known = !chosen.secret || solved.has(chosen.id), { value, error } = measurement.force();
-    const shown = (force) => Number(force.toPrecision(4));
-    const now = measurement.blocks.length > 1 ? `${shown(value)} ± ${Number(error.toPrecision(1))} M R/T²` : "being measured";
-    find("gauge").textContent = `Force on a wall: ${now}${known ? `; exact, L T/(X − 2RL): ${shown(law)} M R/T²` : ""}.`;
+    const now = measurement.blocks.length > 1 ? `${value.toPrecision(4)} ± ${error.toPrecision(1)}` : "not measured yet";
+    const told = known ? `, exact: L T/(X − 2RL) = ${law.toPrecision(4)}` : "";
+    find("gauge").textContent = `Force on a wall [M R/T²]: ${now}${told}.`;
     const exact = Object.assign([[2 * size, 0], [box, 1 / law]], { known });
     return { forces, found: ChainGas.rodLength(forces), exact };
   }

@@ -104,7 +104,8 @@ const ChainDrawing = (() => {
       const length = Math.max(2 * P.RADIUS * scale - 1, 1), rank = (state.y.length - 1) / 2;
       for (let i = 0; i < state.y.length; i++) {
         const x = place(P.position(state, i));
-        if (!state.masses) drawSpring(pen, place((2 * P.RADIUS + state.chain.gap) * (i - rank)), x, length, colour);
+        const anchor = place((2 * P.RADIUS + state.chain.gap) * (i - rank));
+        if (!state.masses) drawSpring(pen, anchor, x, length, colour);
         const high = state.masses?.[i] > P.MASS ? 32 : 24;
         pen.fillStyle = shade(pace(state, i) / unit, colour);
         pen.fillRect(x - length / 2, 52 - high, length, high);

@@ -19,7 +19,7 @@ const ChainGas = (() => {
       impulse: 0, hits: [0, 0], series: null, diverged: false,
     };
     if (size === 2) {
-      state.y.set([-free / 4, 0]);
+      state.y.set([free / 28 - free / 2, free / 18 - free / 2]);
       state.v[0] = 0;
       return state;
     }

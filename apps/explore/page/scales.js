@@ -87,6 +87,7 @@ const ChainScales = (() => {
   }
 
   return {
-    RADIUS, MASS, STIFFNESS, isGas, freeLength, masses, exponent, pull, freeWidth, thermalLength, relaxationTime, timeStep, propagator,
+    RADIUS, MASS, STIFFNESS, isGas, freeLength, masses, exponent, pull, freeWidth, thermalLength, relaxationTime,
+    timeStep, propagator,
   };
 })();
