@@ -28,6 +28,20 @@ for (let run = 0; run < RUNS; run++) {
 }
 found = wrong;
 """
+# Two masses come to Maxwell's distribution, one mass never does. A gauge is wrong if it is more than
+# 3.5 of its errors away from the law.
+GASES = """
+let wrong = 0;
+for (let run = 0; run < RUNS; run++) {
+  const mass_ratio = [1, 2, 3, 10][run % 4], chain = {size: 20, box: 80, mass_ratio, spring: "none"};
+  const state = ChainGas.makeState(chain, run + 1), measured = new ChainMeasuring.Measurement(state, 60);
+  while (measured.settling > 0 || measured.blocks.length < 40) ChainGas.go(state, 5), measured.add(state, 5, 1);
+  const kurtosis = (n) => measured.kurtosis(n), { value, error } = measured.force(10);
+  wrong += ChainJudging.verdict(40, kurtosis, 2).above !== mass_ratio > 1;
+  wrong += Math.abs(value - ChainGas.law(state)) > 3.5 * error;
+}
+found = wrong;
+"""
 PUSHES = """
 ChainRunning.showOn({restart() {}, add() {}});
 const { world } = ChainRunning, [push] = ChainChallenges.list;
@@ -57,7 +71,7 @@ found = [times, early.next, early.above === undefined];
 
 def run(script, runs=0):
     """Return what a script finds with the page's own files, without a browser."""
-    order = ["scales", "physics", "measuring", "drawing", "running", "judging", "address"]
+    order = ["scales", "physics", "gas", "measuring", "drawing", "running", "judging", "address"]
     texts = [(PAGE / f"{name}.js").read_text(encoding="utf-8") for name in (*order, "challenges")]
     scripts = "".join(text.replace('"use strict";', "") for text in texts)
     whole = f"{scripts}\nlet found; const RUNS = {runs};{script}\n"
@@ -72,7 +86,7 @@ def test_verdicts_fall_at_fixed_times():
     assert run(LOOKS) == [[40, 80, 160, 320, 640], 40, True]
 
 
-@pytest.mark.parametrize(("script", "runs"), [(EQUAL, 1500), (PUSHES, 500)])
+@pytest.mark.parametrize(("script", "runs"), [(EQUAL, 1500), (PUSHES, 500), (GASES, 400)])
 def test_fewer_than_one_verdict_in_a_hundred_is_wrong(script, runs):
     """Were one in a hundred wrong, half of the runs' expected number would be rare."""
     assert run(script, runs) <= 0.01 * runs

@@ -19,6 +19,7 @@
   // -- what is seen and said --------------
 
   function drawPlots() {
+    judge();
     const { state, measurement, history: energies } = world, theory = ChainTheory.of(state.chain);
     const exact = ChainTheory.exactDensity(state.chain, measurement.coverage().map(([x]) => x));
     if (!exact && state.chain.restitution === 1 && state.chain.amplitude > 0 && !state.masses && !ChainFrames.running())
@@ -36,19 +37,18 @@
     if (ChainTheory.asked() !== state.chain) ChainTheory.abort(); // it is solved for the chain before
     find("solve").textContent = ChainTheory.asked() ? "Stop" : "Solve the theory";
     find("theory").textContent = (told.chain === state.chain && told.said) || theory?.said || "";
-    judge();
   }
 
-  /* Show the gauge, the force on the walls; return what the picture of the pressure needs. The law is
-     not told before it is found. */
+  /* Show the gauge, the force on the walls, and return what the picture of the pressure needs. The law
+     is not told before it is found. */
   function gauged() {
-    const { state, measurement, forces } = world, { size, box } = state.chain, law = ChainGas.law(state);
+    const { state, measurement, forces } = world, { box } = state.chain, law = ChainGas.law(state);
     const known = !chosen.secret || solved.has(chosen.id), { value, error } = measurement.force();
     const now = measurement.blocks.length > 1 ? `${value.toPrecision(4)} ± ${error.toPrecision(1)}` : "not measured yet";
     const told = known ? `, exact: L T/(X − 2RL) = ${law.toPrecision(4)}` : "";
     find("gauge").textContent = `Force on a wall [M R/T²]: ${now}${told}.`;
-    const exact = Object.assign([[2 * size, 0], [box, 1 / law]], { known });
-    return { forces, found: ChainGas.rodLength(forces), exact };
+    const free = P.freeLength(state.chain), exact = { start: box - free, slope: 1 / law / free, known };
+    return { box, forces, found: ChainGas.line(forces), exact };
   }
 
   /* Whether it is time to say anew what the pictures show: a screen reader should not be hurried. */

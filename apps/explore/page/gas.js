@@ -98,9 +98,9 @@ const ChainGas = (() => {
   /* The force on a wall by the exact law, L T/(X - 2RL), with the mean energy T/2 of a rod. */
   const law = (state) => (2 * energy(state)) / freeLength(state.chain);
 
-  /* The length of a rod: 1/force grows with the box along a line, by weighted least squares, that begins
-     at the length of all rods. With its standard error; null for fewer than two boxes. */
-  function rodLength(forces) {
+  /* The line of 1/force against the box, by weighted least squares: where it begins, its slope, and
+     of the length of a rod, which is that place over L, the value and error. Null if there is none. */
+  function line(forces) {
     if (forces.length < 2) return null;
     const points = forces.map(({ chain, value, error }) =>
       ({ x: chain.box, y: 1 / value, weight: (value ** 2 / Math.max(error, 1e-9 * value)) ** 2 }));
@@ -108,9 +108,8 @@ const ChainGas = (() => {
     const all = sum(() => 1), x = sum((each) => each.x) / all, y = sum((each) => each.y) / all;
     const spread = sum((each) => (each.x - x) ** 2), slope = sum((each) => (each.x - x) * each.y) / spread;
     const start = x - y / slope, { size } = forces[0].chain;
-    const error = Math.sqrt(1 / all + (start - x) ** 2 / spread) / Math.abs(slope);
-    return { value: start / size, error: error / size, line: (box) => slope * (box - start), start };
+    return { start, slope, value: start / size, error: Math.hypot(all ** -0.5, (start - x) / spread ** 0.5) / slope / size };
   }
 
-  return { makeState, go, seen, energy, law, rodLength };
+  return { makeState, go, seen, energy, law, line };
 })();

@@ -160,7 +160,7 @@ const ChainPlots = (() => {
   /* Pictures by name. `seen` has {half, measurement, history, restitution, unit, counted, inUnits, exact,
      theory}: velocities are divided by the `unit`, those of the distributions are counted in `counted`
      units, and `theory` is what is known of the chain: {short, widths, density, other: {short, density}}.
-     `gas`: {forces, found, exact} for its picture of the pressure, and null for a chain on springs. Each picture returns what is seen on it as a sentence. */
+     `gas`: {box, forces, found, exact} for its picture of the pressure, and null for a chain on springs. Each picture returns what is seen on it as a sentence. */
   const pictures = {
     density(canvas, colour, { half, measurement, exact, theory }) {
       // Stated errors are those of densities averaged as in the paper.
@@ -212,15 +212,16 @@ const ChainPlots = (() => {
     },
 
     /* Of a gas in several boxes, with the line through them and the exact one. */
-    pressure(canvas, colour, { gas: { forces, found, exact } }) {
+    pressure(canvas, colour, { gas: { box, forces, found, exact } }) {
       const points = forces.map(({ chain, value, error }) => [chain.box, 1 / value, error / value ** 2]);
-      const last = Math.max(...points.map(([x]) => x), exact[1][0]);
+      const last = 1.1 * Math.max(box, ...points.map(([x]) => x)), at = ({ start, slope }, x) => [x, slope * (x - start)];
       const plot = new Plot(canvas, colour, {
-        x: [0, 1.1 * last], y: [0, 1.2 * Math.max(exact[1][1], ...points.map(([, y]) => y))],
+        x: [0, last], y: [0, 1.1 * Math.max(at(exact, last)[1], ...points.map(([, y]) => y))],
         xTitle: "length of the box X [R]", yTitle: "1/force on a wall [T²/(M R)]",
       });
-      if (exact.known) plot.line(exact, "exact");
-      if (found) plot.line([found.start, 1.1 * last].map((x) => [x, found.line(x)]), "straight line", [6, 3]);
+      const draw = (line, ...how) => plot.line([at(line, line.start), at(line, last)], ...how);
+      if (exact.known) draw(exact, "exact");
+      if (found) draw(found, "straight line", [6, 3]);
       for (const [x, y, error] of points) plot.line([[x, y - error], [x, y + error]], "", [1, 0]);
       plot.dots(points, 1, "measured");
       return `1/force on a wall: measured in ${forces.length} boxes` +

@@ -1,0 +1,103 @@
+"""The page's gas in a box: it flies like the package's, and its challenges can be solved."""
+
+import re
+from dataclasses import asdict
+
+import numpy as np
+import pytest
+from browser import errors
+from driven_page import SCREENS, challenges, control, press, rows, slide, text, visit
+
+import crazybilliards as cb
+from crazybilliards.particles.dynamics import make_dynamics
+from crazybilliards.particles.laws.avalanche import make_tally
+from crazybilliards.particles.laws.law import make_scratch
+from crazybilliards.particles.noise import make_noise
+from crazybilliards.particles.stepping import advance
+
+pytestmark = pytest.mark.validate
+
+FLIGHT = """
+const [chain, y, v, duration, steps] = arguments, state = ChainGas.makeState(chain, 1);
+state.y.set(y), state.v.set(v);
+for (let k = 0; k < steps; k++) ChainGas.go(state, duration);
+return [Array.from(state.y), Array.from(state.v), state.collisions, ...state.hits, state.impulse];
+"""
+COUNTED = """
+return [1, 100, 1e4, 1e6].map((mass_ratio) => [8, 30, 600].map((box) => {
+  const state = ChainGas.makeState({spring: "none", size: 2, box, mass_ratio}, 1);
+  while (state.series === null) ChainGas.go(state, 0.1);
+  return state.series;
+}));
+"""
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("mass_ratio", [1, 3, 100])
+@pytest.mark.parametrize("box", [41, 60])
+def test_a_gas_flies_like_that_of_the_package(browser, address, box, mass_ratio):
+    """Until the rods have met a hundred times or more; later two masses forget how they began."""
+    visit(browser, address, quiet=True)
+    gas = cb.Chain(size=20, amplitude=0, damping=0, stiffness=0, box=box, mass_ratio=mass_ratio)
+    rng = np.random.default_rng(8)
+    free, duration, steps = box - 40, (box - 40) / 40, 20
+    y, v = np.sort(rng.uniform(-free / 2, free / 2, 20)), rng.normal(size=20)
+    chain = asdict(gas) | {"spring": "none"}
+    given = chain, y.tolist(), v.tolist(), duration, steps
+    found_y, found_v, met, *hits, impulse = browser.execute_script(FLIGHT, *given)
+    assert met > 100
+    assert sum(hits) > 5
+    momentum = gas.rod_masses * v
+    dynamics = make_dynamics(gas, duration, speed=1.0)
+    scratch, tally = make_scratch(20, dynamics.inverse), make_tally(20, contacts=False)
+    advance(y, v, make_noise(np.random.SeedSequence(1)), dynamics, scratch, tally, steps)
+    np.testing.assert_allclose([found_y, found_v], [y, v], atol=1e-9)
+    assert impulse >= abs((gas.rod_masses * v - momentum).sum())
+
+
+def test_two_rods_count_the_digits_of_pi_in_every_box(browser, address):
+    visit(browser, address, quiet=True)
+    assert browser.execute_script(COUNTED) == [[n] * 3 for n in (3, 31, 314, 3141)]
+
+
+@pytest.mark.parametrize("screen", SCREENS)
+@pytest.mark.parametrize(
+    ("name", "values", "said"),
+    [
+        ("length", [{"box": box} for box in (80, 50, 160)], r"begins at (2\.0\d\d|1\.9\d\d) ± 0\.0"),
+        ("maxwell", [{"mass_ratio": m} for m in (1, 2)], r"one mass: 1\.00 ± 0\.00, of two: 2\.[678]"),
+        ("count", [{"mass_ratio": m} for m in (100, 10000, 1)], "3 with 1, 31 with 100, 314 with 10000"),
+    ],
+)
+def test_a_challenge_of_the_gas_is_solved_and_then_answered(
+    browser, address, screen, name, values, said
+):
+    visit(browser, f"{address}#challenge={name}", screen, quiet=True)
+    assert not control(browser, "damping").is_displayed()
+    assert not control(browser, "push").is_displayed()
+    for value in values:
+        assert text(browser, "answer") == ""
+        assert ("exact" in text(browser, "gauge")) == (name != "length")
+        slide(browser, **value)
+        last = rows(browser, 1500)
+    assert re.search(said, last)
+    assert "exact: L T/(X − 2RL)" in text(browser, "gauge")
+    assert len(text(browser, "answer")) > 50
+    assert errors(browser) == []
+
+
+def test_the_gauge_is_beside_the_exact_force_and_the_box_holds_its_rods(browser, address):
+    visit(browser, address + "#spring=none&size=20&box=60&mass_ratio=3&speed=100", quiet=True)
+    rows(browser, 3000)
+    gauge = text(browser, "gauge")
+    found = re.search(r": ([\d.]+) ± ([\d.]+), exact: L T/\(X − 2RL\) = ([\d.]+)\.", gauge)
+    force, error, law = (float(each) for each in found.groups())
+    assert abs(force - law) < 5 * error < 0.1 * law
+    slide(browser, size=200)
+    assert browser.execute_script("return ChainRunning.world.state.chain.box") == 402
+    visit(browser, address + "#spring=none&size=20&box=41", quiet=True)
+    assert "20 rods need a box of at least 42 R, got 41" in text(browser, "note")
+    press(browser, challenges(browser)[0])
+    assert control(browser, "push").is_displayed()
+    assert not control(browser, "box").is_displayed()
+    assert errors(browser) == []
