@@ -37,12 +37,11 @@ const ChainAddress = (() => {
   function understood({ options, min, max, step }, text) {
     if (options) {
       const list = Array.from(options, (option) => option.value).filter(Boolean);
-      return list.includes(text) ? { value: text } : { wanted: list.join(" or ") };
+      return list.includes(text) ? { value: isNaN(text) ? text : Number(text) } : { wanted: list.join(" or ") };
     }
-    const value = text.trim() === "" ? NaN : Number(text), steps = (value - min) / step;
-    const wanted = `a ${step === "1" ? "whole number" : "number"} from ${min} to ${max}` +
-      (step === "1" ? "" : ` in steps of ${step}`);
-    return value >= min && value <= max && Math.abs(steps - Math.round(steps)) < 1e-6 ? { value } : { wanted };
+    const value = text.trim() === "" ? NaN : Number(text), [kind, decimals] = step === "1" ? ["whole ", 0] : ["", 3];
+    const wanted = `a ${kind}number from ${min} to ${max}${decimals ? ` with at most ${decimals} decimals` : ""}`;
+    return value >= min && value <= max && value === Number(value.toFixed(decimals)) ? { value } : { wanted };
   }
 
   /* Write what was chosen and what of it is changed `now`, and keep for a reload what is `solved`. */

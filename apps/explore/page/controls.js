@@ -14,7 +14,7 @@
   const pictures = { first: find("first-picture"), second: find("second-picture") };
   const stage = new ChainDrawing.Stage(find("stage"));
   const solved = new Set(history.state?.solved); // challenges that are done, presets whose answer was seen
-  let chosen = OWN, told = {}, described = 0; // `told`: of the theory of a chain
+  let chosen = OWN, rod = 1, judging = false, told = {}, described = 0; // `told`: of the theory of a chain
 
   // -- what is seen and said --------------
 
@@ -34,7 +34,7 @@
     }
     const scale = kicked ? `W = ${unit.toPrecision(2)} R/T.` : "Without noise there is no W.";
     find("status").textContent = `${scale} ${happening()}`;
-    if (ChainTheory.asked() !== state.chain) ChainTheory.abort(); // it is solved for the chain before
+    if (world.ranAway && world.pushed) breakOff("The chain ran away");
     find("solve").textContent = ChainTheory.asked() ? "Stop" : "Solve the theory";
     find("theory").textContent = (told.chain === state.chain && told.said) || theory?.said || "";
   }
@@ -79,11 +79,25 @@
     find("note").textContent = text;
   };
 
+  /* Break off what the rods do and what is judged of it, and say why. Another chain, or another setting of
+     it, also breaks off its theory. What a challenge counts stays until it is left. */
+  function breakOff(why, changes = false, leaves = false) {
+    const theory = changes && ChainTheory.asked(), broken = [
+      world.pushed && "the push under way", judging && (leaves || !chosen.counts) && "the judging",
+      theory && "the computation of the theory",
+    ].filter(Boolean);
+    if (broken.length) note(`${why}, which broke off ${broken.join(" and ")}.`);
+    if (theory) ChainTheory.abort();
+    world.pushed = null;
+    judging = false;
+  }
+
   /* Let the challenge look, and say what it found; what is new is read aloud only when it is done. */
   function judge() {
-    if (!chosen.watch) return;
-    const { done, said } = chosen.watch(world), mark = find(`challenge-${chosen.title}`);
+    if (!chosen.watch || world.hand) return; // a rod in the hand does not move by itself
+    const { done, said, pending } = chosen.watch(world), mark = find(`challenge-${chosen.title}`);
     find("said").textContent = said;
+    judging = pending && !solved.has(chosen.id);
     if (!done || solved.has(chosen.id)) return;
     solved.add(chosen.id);
     tick(mark);
@@ -97,13 +111,11 @@
     mark.textContent += " ✓";
   };
 
-  /* Show the answer once the challenge is done, or the preset's was asked for, and what comes next. */
+  /* Show the answer once the challenge is done, or the preset's was asked for. */
   function answer() {
-    const known = solved.has(chosen.id), next = CHALLENGES[CHALLENGES.indexOf(chosen) + 1];
+    const known = solved.has(chosen.id);
     find("answer").textContent = known ? chosen.answer : "";
     find("reveal").hidden = known || chosen.kind !== "preset";
-    find("next").hidden = !known || !chosen.watch || !next;
-    if (next) find("next").textContent = `Next: ${next.title}`;
   }
 
   // -- what is chosen ---------------------
@@ -111,15 +123,16 @@
   /* Begin what was chosen, a challenge, a preset or a chain of one's own, with some values changed. */
   function choose(what, values = {}) {
     const begun = { ...ChainAddress.beginning(what), ...values }, stopped = world.ranAway;
+    note("");
+    breakOff("A chain was begun anew", true, true);
     chosen = what;
     for (const each of CHALLENGES) find(`challenge-${each.title}`).setAttribute("aria-pressed", String(each === what));
     find("preset").value = what.kind === "preset" ? what.id : "";
     find("ask").textContent = what.ask;
     find("said").textContent = find("announced").textContent = "";
-    note("");
     answer();
     for (const [name, list] of Object.entries(pictures)) list.value = begun[name];
-    find("rod").value = begun.rod;
+    rod = begun.rod;
     world.pushes = [];
     world.forces = [];
     what.begin?.();
@@ -133,10 +146,11 @@
   function showValues() {
     const { chain } = world.state, gas = P.isGas(chain);
     root.classList.toggle("gas", gas);
-    sliders.box.min = narrowest(chain.size);
-    for (const name of NAMES) sliders[name].value = chain[name];
+    sliders.box.min = narrowest(chain);
+    for (const name of NAMES) sliders[name].ariaValueText = sliders[name].value = chain[name];
     for (const value of root.querySelectorAll("[data-value]")) value.textContent = chain[value.dataset.value];
     find("rod").max = chain.size;
+    find("rod").value = rod = Math.min(rod, chain.size);
     for (const list of Object.values(pictures)) {
       for (const option of list.options)
         if (option.dataset.of) option.disabled = option.hidden = gas !== (option.dataset.of === "gas");
@@ -144,14 +158,14 @@
     }
   }
 
-  const narrowest = (size) => 2 * P.RADIUS * size + 2; // box of so many rods
+  /* The smallest box of a gas. */
+  const narrowest = (chain) => (P.isGas(chain) ? 2 * P.RADIUS * chain.size + 2 : 0);
 
   function slide(name) {
     const control = sliders[name], chain = { ...world.state.chain }, stopped = world.ranAway;
     chain[name] = name === "spring" ? control.value : Number(control.value);
-    chain.box = Math.max(chain.box, narrowest(chain.size));
-    if (world.pushed)
-      note(`The push was broken off.${chosen.calm ? " The next one waits until the chain has settled." : ""}`);
+    chain.box = Math.max(chain.box, narrowest(chain));
+    breakOff(`The ${control.labels[0].textContent.split(" [")[0]} changed`, true);
     if (name === "size" || name === "spring" || stopped || P.isGas(chain)) R.begin(chain);
     else R.change(chain);
     showValues();
@@ -166,7 +180,7 @@
 
   /* Write into the address all that is chosen: after whatever was done, and nowhere else. */
   function write() {
-    const now = { ...world.state.chain, rod: Number(find("rod").value), speed: world.speed };
+    const now = { ...world.state.chain, rod, speed: world.speed };
     for (const [name, list] of Object.entries(pictures)) now[name] = list.value;
     ChainAddress.write(chosen, now, [...solved]);
   }
@@ -176,21 +190,20 @@
     const options = (list) => ({ options: list.map(({ id }) => ({ value: id })) });
     const asked = ChainAddress.read({
       challenge: options(CHALLENGES), preset: options(PRESETS), ...sliders,
-      rod: { ...limits(sliders.size), min: 1 }, ...pictures, speed: find("speed"),
+      rod: { min: 1, max: sliders.size.max, step: "1" }, ...pictures, speed: find("speed"),
     });
     if (asked?.values) {
       const { challenge, preset, ...values } = asked.values;
       const what = [...CHALLENGES, ...PRESETS].find(({ id }) => id === (challenge || preset)) || OWN;
-      const { size, box, spring } = { ...ChainAddress.beginning(what), ...values };
-      asked.refused = P.isGas({ spring }) && box < narrowest(size) &&
-        `${size} rods need a box of at least ${narrowest(size)} R, got ${box}`;
-      if (!asked.refused) return choose(what, values);
+      const { rod: named, ...chain } = { ...ChainAddress.beginning(what), ...values }, { size, box } = chain;
+      if (named > size) asked.refused = `rod must be a whole number from 1 to ${size}, got ${named}`;
+      else if (box < narrowest(chain))
+        asked.refused = `${size} rods need a box of at least ${narrowest(chain)} R, got ${box}`;
+      else return choose(what, values);
     }
     otherwise();
     if (asked) note(`The address is not understood: ${asked.refused}.`);
   }
-
-  const limits = ({ min, max, step }) => ({ min, max, step });
 
   // -- what is done -----------------------
 
@@ -204,13 +217,19 @@
       : "No rods have met.";
   }
 
+  /* Take the rod of the box, and return whether there is one; otherwise say which there are. */
+  function takeRod() {
+    const box = find("rod"), valid = box.checkValidity();
+    if (valid) rod = box.valueAsNumber;
+    else note(`There is no rod ${box.value || "without a number"}: the rods have the numbers 1 to ${box.max}.`);
+    box.value = rod;
+    return valid;
+  }
+
   function push() {
-    const { value } = find("rod"), rod = Number(value), { size } = world.state.chain;
-    if (!Number.isInteger(rod) || rod < 1 || rod > size) {
-      note(`There is no rod ${value || "without a number"}: the rods have the numbers 1 to ${size}.`);
-      return;
-    }
     note("");
+    if (!takeRod()) return;
+    breakOff(`Rod ${rod} was pushed`);
     R.push(rod - 1, chosen.calm);
     touched();
   }
@@ -236,10 +255,11 @@
     const clicks = {
       step, push, solve,
       restart: () => choose(chosen),
-      next: () => choose(CHALLENGES[CHALLENGES.indexOf(chosen) + 1]),
       reveal: () => (solved.add(chosen.id), answer()),
     };
     for (const [name, act] of Object.entries(clicks)) find(name).addEventListener("click", act);
+    // Whoever presses the button is told by it, and pushes no other rod.
+    find("rod").addEventListener("change", () => find("push").matches(":active") || takeRod());
     find("speed").addEventListener("change", ({ target }) => setSpeed(Number(target.value)));
     find("preset").addEventListener("change", ({ target }) => choose(PRESETS.find(({ id }) => id === target.value)));
     for (const name of NAMES) sliders[name].addEventListener("input", () => slide(name));
@@ -250,7 +270,7 @@
       push();
       write();
     });
-    ChainHand.listen(stage, touched);
+    ChainHand.listen(stage, () => breakOff("A rod was held"), touched);
     for (const type of ["click", "input", "change"]) root.addEventListener(type, write); // after all others
     window.addEventListener("hashchange", () => obeyAddress());
     const again = () => (stage.refresh(), draw());

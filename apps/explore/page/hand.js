@@ -5,8 +5,8 @@ const ChainHand = (() => {
   const R = ChainRunning, { world } = R;
   const TAP = 300; // milliseconds: a shorter touch of a rod is a push
 
-  /* Let the hand hold the rods of a stage; `released` is called when it has let one go. */
-  function listen(stage, released) {
+  /* Let the hand hold the rods of a stage; `taken` and `released` are called when it does so. */
+  function listen(stage, taken, released) {
     const { canvas } = stage;
 
     /* The place on the line below a pointer [R]. */
@@ -18,8 +18,9 @@ const ChainHand = (() => {
     canvas.addEventListener("pointerdown", (event) => {
       const box = canvas.getBoundingClientRect(), finger = (24 / box.width) * 2 * stage.half;
       if (event.clientY - box.top > ChainDrawing.BAND + 12) return;
-      if (R.take(placeOf(event), Math.max(1.2 * ChainPhysics.RADIUS, finger), event.timeStamp))
-        canvas.setPointerCapture(event.pointerId);
+      if (!R.take(placeOf(event), Math.max(1.2 * ChainPhysics.RADIUS, finger), event.timeStamp)) return;
+      canvas.setPointerCapture(event.pointerId);
+      taken();
     });
     canvas.addEventListener("pointermove", (event) => {
       if (world.hand) world.hand.x = placeOf(event) + world.hand.offset;

@@ -97,7 +97,7 @@ const ChainMeasuring = (() => {
       let scatter = 0;
       for (const block of blocks) scatter += (block[0] / border - block[1] / centre) ** 2;
       const value = border / centre;
-      return { value, error: value * Math.sqrt(scatter / (n * (n - 1))), blocks: n };
+      return { value, error: value * Math.sqrt(scatter / (n * (n - 1))) };
     }
 
     /* The mean force on the two walls in the first blocks, with its standard error. With the virial
