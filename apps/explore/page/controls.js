@@ -16,8 +16,6 @@
   const solved = new Set(history.state?.solved); // challenges that are done, presets whose answer was seen
   let chosen = OWN, rod = 1, judging = false, told = {}, described = 0; // `told`: of the theory of a chain
 
-  // -- what is seen and said --------------
-
   function drawPlots() {
     const { state, measurement, history: energies } = world, theory = ChainTheory.of(state.chain);
     const exact = ChainTheory.exactDensity(state.chain, measurement.coverage().map(([x]) => x));
@@ -63,30 +61,29 @@
   }
 
   /* One sentence about what was just done, until something else is done. */
-  const note = (text) => {
-    find("note").textContent = text;
-  };
+  const note = (text) => { find("note").textContent = text; };
 
-  /* Break off what the rods do and what is judged of it, and say why. Another chain, or another setting of
-     it, also breaks off its theory. What a challenge counts stays until it is left. */
-  function breakOff(why, changes = false, leaves = false) {
-    const theory = changes && ChainTheory.asked(), broken = [
-      world.pushed && "the push under way", judging && (leaves || !chosen.counts) && "the judging",
-      theory && "the computation of the theory",
+  /* Break off the push under way, what is judged and, where the chain `changes`, its theory, and say why.
+     Pushes that a challenge counts stay until it `leaves` off. */
+  function breakOff(why, { changes, leaves } = {}) {
+    const broken = [
+      world.pushed && "the push under way", judging && (leaves || !chosen.calm) && "the judging",
+      changes && ChainTheory.asked() && "the computation of the theory",
     ].filter(Boolean);
     if (broken.length) note(`${why}, which broke off ${broken.join(" and ")}.`);
-    if (theory) ChainTheory.abort();
+    if (changes) ChainTheory.abort();
     world.pushed = null;
-    judging = false;
   }
 
   /* Let the challenge look, and say what it found; what is new is read aloud only when it is done. */
   function judge() {
+    judging = false;
     if (!chosen.watch || world.hand) return; // a rod in the hand does not move by itself
     const { done, said, pending } = chosen.watch(world), mark = find(`challenge-${chosen.title}`);
     find("said").textContent = said;
-    judging = pending && !solved.has(chosen.id);
-    if (!done || solved.has(chosen.id)) return;
+    const known = solved.has(chosen.id);
+    judging = pending && !known;
+    if (!done || known) return;
     solved.add(chosen.id);
     tick(mark);
     answer();
@@ -94,10 +91,7 @@
     find("announced").textContent = `Challenge done: ${chosen.title}. ${said} ${chosen.answer}`;
   }
 
-  const tick = (mark) => {
-    mark.classList.add("done");
-    mark.textContent += " ✓";
-  };
+  const tick = (mark) => { mark.textContent += " ✓"; };
 
   /* Show the answer once the challenge is done, or the preset's was asked for. */
   function answer() {
@@ -106,13 +100,11 @@
     find("reveal").hidden = known || chosen.kind !== "preset";
   }
 
-  // -- what is chosen ---------------------
-
   /* Begin what was chosen, a challenge, a preset or a chain of one's own, with some values changed. */
   function choose(what, values = {}) {
     const begun = { ...ChainAddress.beginning(what), ...values }, stopped = world.ranAway;
     note("");
-    breakOff("A chain was begun anew", true, true);
+    breakOff("A chain was begun anew", { changes: true, leaves: true });
     chosen = what;
     for (const each of CHALLENGES) find(`challenge-${each.title}`).setAttribute("aria-pressed", String(each === what));
     find("preset").value = what.kind === "preset" ? what.id : "";
@@ -141,7 +133,7 @@
   function slide(name) {
     const control = sliders[name], chain = { ...world.state.chain }, stopped = world.ranAway;
     chain[name] = control.options ? control.value : Number(control.value);
-    breakOff(`The ${control.labels[0].textContent.split(" [")[0]} changed`, true);
+    breakOff(`The ${control.labels[0].textContent.split(" [")[0]} changed`, { changes: true });
     if (name === "size" || name === "spring" || stopped) R.begin(chain);
     else R.change(chain);
     showValues();
@@ -154,11 +146,10 @@
     find("speed").value = String(world.speed);
   }
 
-  /* Write into the address all that is chosen: after whatever was done, and nowhere else. */
+  /* Write all that is chosen into the address: after whatever was done, and nowhere else. */
   function write() {
-    const now = { ...world.state.chain, rod, speed: world.speed };
-    for (const [name, list] of Object.entries(pictures)) now[name] = list.value;
-    ChainAddress.write(chosen, now, [...solved]);
+    const { first, second } = pictures, shown = { first: first.value, second: second.value, speed: world.speed };
+    ChainAddress.write(chosen, { ...world.state.chain, rod, ...shown }, [...solved]);
   }
 
   /* Begin what the address asks for; say why it is refused. */
@@ -179,13 +170,11 @@
     if (asked) note(`The address is not understood: ${asked.refused}.`);
   }
 
-  // -- what is done -----------------------
-
   function step() {
     pause();
     const met = R.step();
     draw();
-    find("speed").value = String(world.speed);
+    setSpeed(world.speed);
     find("status").textContent = met.length
       ? `Met at t = ${world.state.time.toFixed(2)} T: ${met.map((c) => `rods ${c + 1} and ${c + 2}`).join(", ")}.`
       : "No rods have met.";
@@ -215,16 +204,13 @@
   }
 
   function save() {
-    stage.save(ChainAddress.told(world.state.chain), (picture) => {
-      const link = document.createElement("a");
-      link.href = URL.createObjectURL(picture);
-      link.download = "chain.png";
-      link.click();
-      URL.revokeObjectURL(link.href);
-    });
+    const link = document.createElement("a");
+    link.href = stage.save(ChainAddress.told(world.state.chain));
+    link.download = "chain.png";
+    link.click();
   }
 
-  /* Solve the theory of the chain, or stop solving it. What is said of one chain is not seen with another. */
+  /* Solve the theory of the chain, or stop. What is said of one chain is not seen with another. */
   function solve() {
     const { chain } = world.state;
     const said = (text) => {
@@ -238,7 +224,7 @@
   function listen() {
     const clicks = {
       step, push, save, solve,
-      restart: () => choose(chosen),
+      restart: () => choose(chosen, chosen === OWN ? world.state.chain : {}),
       reveal: () => (solved.add(chosen.id), answer()),
     };
     for (const [name, act] of Object.entries(clicks)) find(name).addEventListener("click", act);
@@ -262,8 +248,6 @@
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", again);
     new MutationObserver(again).observe(document.body, { attributeFilter: ["data-theme"] });
   }
-
-  // -- what is built --------------------
 
   function button(text, act) {
     const made = document.createElement("button");

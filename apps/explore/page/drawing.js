@@ -63,7 +63,7 @@ const ChainDrawing = (() => {
       const row = [x, Float32Array.from(state.v, (v) => v / unit), met];
       this.rows.unshift(row);
       this.rows.length = Math.min(this.rows.length, ROWS);
-      const outermost = Math.max(-x[0], x[x.length - 1]) + P.RADIUS;
+      const outermost = Math.max(-x[0], x.at(-1)) + P.RADIUS;
       if (outermost > this.half && Number.isFinite(outermost)) {
         this.half = 1.3 * outermost;
         this.refresh();
@@ -129,8 +129,8 @@ const ChainDrawing = (() => {
       pen.fillText("position x [R]", width / 2, height - 3);
     }
 
-    /* The rods and the strip as a picture, with the words and a key below them. */
-    save(words, done) {
+    /* The rods and the strip as a picture, with a key and the words below. */
+    save(words) {
       const { canvas, colour, ratio } = this, copy = document.createElement("canvas"), pen = copy.getContext("2d");
       copy.width = canvas.width;
       copy.height = canvas.height + 42 * ratio;
@@ -151,7 +151,7 @@ const ChainDrawing = (() => {
         pen.fillText(text, 110 * k + 15, 16);
       });
       pen.fillText(words, 0, 34);
-      copy.toBlob(done);
+      return copy.toDataURL();
     }
   }
 

@@ -117,7 +117,7 @@ const ChainPlots = (() => {
         pen.globalAlpha = 1;
       };
       this.within(() => {
-        this.path([[points[0][0], 0], ...points, [points[points.length - 1][0], 0]]);
+        this.path([[points[0][0], 0], ...points, [points.at(-1)[0], 0]]);
         fill(() => pen.fill());
       });
       this.name(text, (x, y) => fill(() => pen.fillRect(x, y - 5, 12, 10)));
@@ -157,14 +157,13 @@ const ChainPlots = (() => {
 
   const measuredIn = ({ settled }) => (settled ? "measured" : "not settled yet");
 
-  /* Pictures by name. `seen` has {half, measurement, history, restitution, unit, counted, inUnits, exact,
-     theory}: velocities are divided by the `unit`, those of the distributions are counted in `counted`
-     units, and `theory` is what is known of the chain: {short, widths, density, other: {short, density}}.
-     Each picture returns what is seen on it as a sentence. */
+  /* Pictures by name, of {half, measurement, history, restitution, unit, counted, inUnits, exact, theory}:
+     velocities are divided by the `unit`, those of the distributions counted in `counted` units, and the
+     `theory` is {short, widths, density, other}. Each returns what is seen on it as a sentence. */
   const pictures = {
     density(canvas, colour, { half, measurement, exact, theory }) {
       // Stated errors are those of densities averaged as in the paper.
-      const averaged = theory && theory.density, alike = averaged ? ChainMeasuring.averaged : (points) => points;
+      const averaged = theory?.density, alike = averaged ? ChainMeasuring.averaged : (points) => points;
       const measured = alike(measurement.coverage()), most = Math.max(0.1, ...measured.map(([, share]) => share));
       const plot = new Plot(canvas, colour, {
         x: [-half, half], y: [0, Math.min(1.05, 1.15 * most)], xTitle: "position x [R]",
@@ -176,11 +175,11 @@ const ChainPlots = (() => {
       if (averaged && theory.other) plot.line(theory.other.density, theory.other.short, [6, 3]);
       const covered = measured.filter(([, share]) => share > 0.01).map(([x]) => x), percent = Math.round(100 * most);
       return `Density, ${measuredIn(measurement)}: rods cover a place for up to ${percent} % of the time, from x = ` +
-        `${Math.round(covered[0])} to ${Math.round(covered[covered.length - 1])} R.`;
+        `${Math.round(covered[0])} to ${Math.round(covered.at(-1))} R.`;
     },
 
     widths(canvas, colour, { measurement, unit, inUnits, theory }) {
-      const widths = measurement.widths().map((each) => each / unit), known = theory && theory.widths;
+      const widths = measurement.widths().map((each) => each / unit), known = theory?.widths;
       const plot = new Plot(canvas, colour, {
         x: [0, widths.length + 1], y: around([...widths, ...(known || [])], 0.2), xTitle: "rod i", apart: 1,
         yTitle: `velocity width [${inUnits}]`,

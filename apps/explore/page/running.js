@@ -36,7 +36,7 @@ const ChainRunning = (() => {
     else changed();
   }
 
-  /* Let the chain settle for so long before it is shown; what takes too long to compute is left over. */
+  /* Let the chain settle before it is shown; what takes too long to compute is left over. */
   function settle(due) {
     const quarter = P.relaxationTime(world.state.chain) / 4, begun = performance.now();
     for (; due > 0 && performance.now() - begun < PATIENCE; due -= quarter) P.go(world.state, quarter);
@@ -81,7 +81,7 @@ const ChainRunning = (() => {
     remember();
     if (state.diverged || (state.chain.restitution > 1 && energy > RUN_AWAY * world.touched)) world.ranAway = true;
     if (!pushed) return;
-    pushed.fastest = Math.max(pushed.fastest, state.v[state.v.length - 1] / unit());
+    pushed.fastest = Math.max(pushed.fastest, state.v.at(-1) / unit());
     if (state.time < pushed.until) return;
     world.pushes.push(pushed);
     world.pushed = null;
@@ -155,8 +155,8 @@ const ChainRunning = (() => {
     else changed(true);
   }
 
-  /* Above e = 1: the rate at which the energy has grown, by least squares, and that of the theory for
-     weak damping where simulations confirm it to 5 % (kinetic_equation/weak_damping.py). */
+  /* Above e = 1: the rate at which the energy has grown, by least squares, and where simulations confirm
+     it to 5 % that of kinetic_equation/weak_damping.py. */
   function growthRates() {
     const points = world.history.filter(([, growth]) => growth > GROWN), n = points.length, { chain } = world.state;
     if (n < 5 || chain.spring !== "linear") return null;

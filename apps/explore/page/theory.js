@@ -44,8 +44,7 @@ const ChainTheory = (() => {
     return exact.density;
   }
 
-  /* Ask the server for the best theory of a chain, and call `show(text)` while it is solved and with
-     what came of it. */
+  /* Ask the server for the best theory of a chain, and `show(text)` of it meanwhile and in the end. */
   async function ask(chain, address, show) {
     const stop = new AbortController(), begun = performance.now();
     asking = { chain, stop };
