@@ -123,11 +123,12 @@ def _compute(parameters: Parameters, there: Connection) -> None:
 def _why_none(chain: Parameters, error: str) -> str:
     """Return why there is no theory of a chain, in words for a class."""
     if chain.amplitude == 0:
-        return "the theories are those of a steady state, which noise keeps up"
+        return "without noise there is no steady motion"
     if error.startswith("no steady state"):  # the solver has found out
-        return "its energy grows without bound; fewer rods, a smaller e or more damping bound it"
-    help_ = ": fewer rods, a smaller gap or more noise may help" if chain.gap > 0 else ""
-    return f"its equations could not be solved for this chain{help_}"
+        bounds = "fewer rods, a smaller e or more damping bound it"
+        return f"by the kinetic equation its energy grows without bound; {bounds}"
+    way = "; fewer rods, a smaller gap or more noise may help" if chain.gap > 0 else ""
+    return f"its equations could not be solved for this chain{way}"
 
 
 def _result(theory: Any, solved: Any) -> Answer:

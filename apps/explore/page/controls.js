@@ -12,7 +12,7 @@
   const find = (name) => root.querySelector(`[data-chain="${name}"]`);
   const sliders = Object.fromEntries(NAMES.map((name) => [name, find(name)]));
   const pictures = { first: find("first-picture"), second: find("second-picture") };
-  const stage = new ChainDrawing.Stage(find("stage"));
+  const stage = new ChainDrawing.Stage(find("stage")), shown = find("stage").ariaLabel;
   const solved = new Set(history.state?.solved); // challenges that are done, presets whose answer was seen
   let chosen = OWN, rod = 1, judging = false, told = {}, described = 0; // `told`: of the theory of a chain
 
@@ -21,7 +21,9 @@
     const exact = ChainTheory.exactDensity(state.chain, measurement.coverage().map(([x]) => x));
     if (!exact && state.chain.restitution === 1 && state.chain.amplitude > 0 && !ChainFrames.running())
       setTimeout(draw, 450);
-    const kicked = state.chain.amplitude > 0, unit = R.unit(), calm = !ChainFrames.running() || isDue();
+    const right = state.v.filter((v) => v > 0).length, kicked = state.chain.amplitude > 0, unit = R.unit();
+    const calm = !ChainFrames.running() || isDue();
+    if (calm) stage.canvas.ariaLabel = `${shown} Now ${right} of ${state.v.length} rods move to the right.`;
     const units = kicked ? { unit, counted: 1, inUnits: "W" } : { unit: 1, counted: unit, inUnits: "R/T" };
     const { restitution } = state.chain;
     const seen = { half: stage.half, measurement, history: energies, restitution, ...units, exact, theory };

@@ -6,8 +6,8 @@
 
 const ChainPhysics = (() => {
   const { RADIUS, MASS, STIFFNESS, exponent, pull, freeWidth, timeStep, propagator } = ChainScales;
-  // At e = 0 one kick a step leaves rods in contact too long. Stronger kicks of rods in contact make
-  // up for it, up to the restitution at which contacts still collapse (docs/particles.md).
+  // Stronger kicks of rods in contact make up for having one kick a step only, up to the restitution
+  // at which contacts still collapse (docs/particles.md).
   const CLOSED_KICK = 1.224, CRITICAL_RESTITUTION = Math.exp(-Math.PI / Math.sqrt(3));
   const FIRST = 0, WHOLE = 1, LAST = 2; // parts of a kick
 
@@ -112,8 +112,7 @@ const ChainPhysics = (() => {
     }
   }
 
-  /* e = 1: equal masses exchange their velocities, as if points passed through each other and
-     exchanged their names. */
+  /* e = 1: points exchange their velocities, as if they passed each other and exchanged names. */
   function sort(state) {
     const { y, v, met } = state;
     for (let i = 1; i < y.length; i++) {
@@ -185,8 +184,8 @@ const ChainPhysics = (() => {
     return found;
   }
 
-  /* Let the rods left and right of a contact collide, with all that stick to them: momentum stays,
-     and the relative velocity changes by -e. Return the outermost rods of the two clusters. */
+  /* Let the rods left and right of a contact collide, with all that stick to them. Return the
+     outermost rods of the two clusters. */
   function collide(state, contact, now, step) {
     const { y, v, joined, met, held, chain } = state;
     met[contact] = 1;

@@ -1,5 +1,4 @@
-/* The pictures of what is measured: density, velocity widths, velocities and energy, each on axes
-   with numbers, beside theory. */
+/* The pictures of what is measured, each on axes with numbers, beside theory. */
 "use strict";
 
 const ChainPlots = (() => {

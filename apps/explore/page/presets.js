@@ -1,5 +1,5 @@
 /* Questions that figures of arXiv:1404.7460 answer: a chain, what to predict and to do, and the answer.
-   Chains of 300 and 1000 rods have 100 or 200 here, which settle sooner. */
+   Chains of 300 and 1000 rods have 100 here, which settle sooner. */
 "use strict";
 
 const ChainPresets = (() => {

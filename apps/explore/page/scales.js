@@ -54,8 +54,8 @@ const ChainScales = (() => {
     return Math.min(step, (0.09 * MASS) / (2 * chain.damping * (1 + cooling)));
   }
 
-  /* The exact motion of one rod on a linear spring over a time, as in laws/exact_flight.py: how y
-     and v follow from those before, and the triangular root of the covariance of the noise. */
+  /* The exact motion of a rod on a linear spring, as in laws/exact_flight.py, and the triangular root of
+     the covariance of its noise. */
   function propagator(chain, duration) {
     const b = chain.damping / (2 * MASS), square = STIFFNESS / MASS, excess = (square - b * b) * duration ** 2;
     const fade = Math.exp(-b * duration), turn = Math.sqrt(Math.abs(excess));
