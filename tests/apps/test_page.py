@@ -150,7 +150,7 @@ def test_a_rod_follows_the_pointer_and_pushes_the_others(browser, address, e):
     [
         ({"restitution": 0.95}, r"kinetic .*: velocity widths within [\d.]+ %, .*density within"),
         ({"gap": 0.5}, r"exact equilibrium: exact\. force balance: .*density within"),
-        ({"amplitude": 0}, "No theory: without noise the rods come to rest"),
+        ({"amplitude": 0}, "No theory: without noise there is no steady motion"),
     ],
 )
 def test_a_theory_is_solved_on_request_and_says_its_error(browser, address, chain, said):
@@ -216,6 +216,3 @@ def test_a_challenge_is_solved_by_its_sliders_and_then_answered(browser, address
         place = control(browser, seen).rect
         assert place["height"] > 15
         assert place["y"] + place["height"] <= SCREENS["wide"][1]
-    if number < 3:
-        press(browser, control(browser, "next"))
-        assert challenges(browser)[number].get_attribute("aria-pressed") == "true"

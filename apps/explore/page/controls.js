@@ -1,5 +1,4 @@
-/* The controls: buttons, sliders, lists and keys; what the page says; and the address, which holds
-   what is chosen. */
+/* The controls, what the page says, and the address, which holds what is chosen. */
 "use strict";
 
 (() => {
@@ -39,7 +38,7 @@
     judge();
   }
 
-  /* Whether it is time to say anew what the pictures show: a screen reader should not be hurried. */
+  /* Whether to say anew what the pictures show: a screen reader should not be hurried. */
   function isDue() {
     const due = performance.now() - described > CALM;
     if (due) described = performance.now();
@@ -77,7 +76,7 @@
     world.pushed = null;
   }
 
-  /* Let the challenge look, and say what it found; what is new is read aloud only when it is done. */
+  /* Let the challenge look, and say what it found; only that it is done is read aloud. */
   function judge() {
     judging = false;
     if (!chosen.watch || world.hand) return; // a rod in the hand does not move by itself
@@ -102,7 +101,7 @@
     find("reveal").hidden = known || chosen.kind !== "preset";
   }
 
-  /* Begin what was chosen, a challenge, a preset or a chain of one's own, with some values changed. */
+  /* Begin what was chosen, with some values changed. */
   function choose(what, values = {}) {
     const begun = { ...ChainAddress.beginning(what), ...values }, stopped = world.ranAway;
     note("");
@@ -283,6 +282,7 @@
     NAMES.filter((name) => name !== "spring").forEach(surround);
     const questions = PRESETS.map(({ id, title }) => new Option(title, id));
     find("preset").append(new Option("Questions to predict", ""), ...questions);
+    find("preset")[0].disabled = true;
     pictures.second.append(...pictures.first.cloneNode(true).children);
     find("solve").hidden = !root.dataset.theory; // only a server can
   }

@@ -26,7 +26,7 @@ const ChainDrawing = (() => {
     return `rgb(${colour.rest.map((rest, k) => Math.round(rest + share * (full[k] - rest)))})`;
   }
 
-  /* Half of the line that is shown [R]: the anchors and room for some thermal lengths. */
+  /* Half of the line that is shown [R]. */
   function reach(chain) {
     const anchors = ((2 * P.RADIUS + chain.gap) * (chain.size - 1)) / 2;
     return anchors + 3 * P.RADIUS + 3.5 * P.thermalLength(chain);
@@ -170,7 +170,7 @@ const ChainDrawing = (() => {
     pen.stroke();
   }
 
-  /* Text with the page's colour behind, to be read on top of the strip. */
+  /* Text to be read on top of the strip. */
   function label(pen, text, x, y, colour) {
     pen.lineWidth = 4;
     pen.lineJoin = "round";

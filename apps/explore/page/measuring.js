@@ -99,7 +99,7 @@ const ChainMeasuring = (() => {
     }
   }
 
-  /* The running average over a rod's length of points that are a bin apart, as the paper draws it. */
+  /* The running average of points over a rod's length, as the paper draws it. */
   function averaged(points) {
     const half = P.RADIUS * BINS, share = (k) => (points[k] ? points[k][1] : 0);
     return points.map(([x], k) => {
@@ -158,7 +158,7 @@ const ChainMeasuring = (() => {
     return sums.map((sum) => sum / sums.at(-1));
   }
 
-  /* The share of time that a rod covers each of the places, exactly, at e = 1. */
+  /* The exact share of time that a rod covers each of the places, at e = 1. */
   function exactCoverage(chain, places) {
     const { h, starts, distributions } = exactDistributions(chain), covered = places.map(() => 0);
     distributions.forEach((distribution, i) => {

@@ -1,4 +1,4 @@
-/* Questions that figures of arXiv:1404.7460 answer: a chain, what to predict and to do, and the answer.
+/* Questions that figures of arXiv:1404.7460 answer: a chain, what to predict, and the answer.
    Chains of 300 and 1000 rods have 100 here, which settle sooner. */
 "use strict";
 

@@ -97,7 +97,7 @@ const ChainRunning = (() => {
     stride *= 2;
   }
 
-  /* Go on in slow motion until rods meet, and return the contacts where they do. */
+  /* Go on in slow motion until rods meet, and return where. */
   function step() {
     setSpeed(SLOW);
     for (let row = 0; row < 4000 && !world.ranAway; row++) {
@@ -168,7 +168,7 @@ const ChainRunning = (() => {
     return { found, theory: holds ? (gain / Math.PI) * Math.sqrt(P.STIFFNESS / P.MASS) - damping / P.MASS : null };
   }
 
-  /* The number of rods above which a weakly damped chain runs away, to first order in e - 1. */
+  /* The longest weakly damped chain that does not run away, to first order in e - 1. */
   const criticalSize = ({ restitution, damping }) =>
     (Math.PI * damping) / (Math.sqrt(P.STIFFNESS * P.MASS) * (restitution - 1));
 
