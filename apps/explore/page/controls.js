@@ -1,4 +1,4 @@
-/* The controls, what the page says, and the address, which holds what is chosen. */
+/* The controls, what the page says, and the address. */
 "use strict";
 
 (() => {
@@ -125,8 +125,11 @@
 
   function showValues() {
     const { chain } = world.state;
-    for (const name of NAMES) sliders[name].ariaValueText = sliders[name].value = chain[name];
-    for (const value of root.querySelectorAll("[data-value]")) value.textContent = chain[value.dataset.value];
+    for (const name of NAMES) sliders[name].value = chain[name];
+    for (const value of root.querySelectorAll("[data-value]")) {
+      const name = value.dataset.value;
+      sliders[name].ariaValueText = value.textContent = chain[name];
+    }
     find("rod").max = chain.size;
     find("rod").value = rod = Math.min(rod, chain.size);
   }
@@ -147,7 +150,7 @@
     find("speed").value = String(world.speed);
   }
 
-  /* Write all that is chosen into the address: after whatever was done, and nowhere else. */
+  /* Write all that is chosen into the address, after whatever was done. */
   function write() {
     const { first, second } = pictures, shown = { first: first.value, second: second.value, speed: world.speed };
     ChainAddress.write(chosen, { ...world.state.chain, rod, ...shown }, [...solved]);

@@ -9,7 +9,7 @@ const ChainDrawing = (() => {
   const LEAST = 12; // length of a rod in pixels at which bars mark collisions
   const FAST = 3; // free velocity widths at which a colour is full
 
-  /* The colours of the page as it is now, light or dark. */
+  /* The colours of the page, light or dark. */
   function colours(place) {
     const style = getComputedStyle(place), read = (name) => {
       place.style.color = `var(--${name})`;
@@ -40,7 +40,7 @@ const ChainDrawing = (() => {
       this.half = 1;
     }
 
-    /* Colours or sizes have changed: everything is drawn again. */
+    /* Draw all anew. */
     refresh() {
       this.colour = colours(this.canvas);
       const { width } = ChainPlots.fit(this.canvas);
@@ -57,7 +57,7 @@ const ChainDrawing = (() => {
       this.refresh();
     }
 
-    /* Add the present state to the strip, and the contacts where rods have met. */
+    /* Add the state to the strip, and where rods have met. */
     add(state, unit, met) {
       const x = Float32Array.from(state.y, (_, i) => P.position(state, i));
       const row = [x, Float32Array.from(state.v, (v) => v / unit), met];

@@ -50,7 +50,7 @@ const ChainPhysics = (() => {
     return state;
   }
 
-  /* Go on with other parameters, but as many rods: they keep their places and velocities. */
+  /* Go on with other parameters: rods keep their places and velocities. */
   function setChain(state, chain) {
     state.chain = { ...chain };
     const middle = (chain.size - 1) / 2;
@@ -178,8 +178,8 @@ const ChainPhysics = (() => {
   function first(due, v, contacts) {
     let found = 0;
     for (let c = 1; c < contacts; c++) {
-      if (due[c] < due[found]) found = c;
-      else if (due[c] === due[found] && v[c] - v[c + 1] > v[found] - v[found + 1]) found = c;
+      const faster = due[c] === due[found] && v[c] - v[c + 1] > v[found] - v[found + 1];
+      if (due[c] < due[found] || faster) found = c;
     }
     return found;
   }

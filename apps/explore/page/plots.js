@@ -5,7 +5,7 @@ const ChainPlots = (() => {
   const LEFT = 44, BELOW = 34, ABOVE = 20, RIGHT = 12; // pixels around a plot for its numbers and words
   const GAUSS = Array.from({ length: 121 }, (_, k) => (k - 60) / 10); // where a free rod's p(v) is drawn
 
-  /* A canvas as wide as its place, drawn at the screen's own resolution. */
+  /* A canvas at the screen's own resolution. */
   function fit(canvas) {
     const ratio = devicePixelRatio, box = canvas.getBoundingClientRect();
     const width = Math.round(box.width * ratio), height = Math.round(box.height * ratio);

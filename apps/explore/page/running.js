@@ -139,7 +139,7 @@ const ChainRunning = (() => {
     return true;
   }
 
-  /* Let the held rod move towards the hand, no faster than a hand may. */
+  /* Let the held rod move towards the hand. */
   function follow(duration) {
     const { state, hand } = world, most = FASTEST_HAND * unit();
     const speedUp = (hand.x - P.position(state, hand.rod)) / duration;
