@@ -20,16 +20,14 @@ const said = (name) => document.querySelector(`[data-chain="${name}"]`).textCont
 return [...names.map(value), ...pressed, said('ask'), said('answer'),
   JSON.stringify(ChainRunning.world.state.chain)];
 """
-
-
 # What the page shows by the names of the address, and what these are where it leaves them out.
 NAMED = """
 const value = (name) => document.querySelector(`[data-chain="${name}"]`).value;
 const shown = {...ChainRunning.world.state.chain, rod: value('rod'), speed: value('speed'),
   first: value('first-picture'), second: value('second-picture')};
-const chosen = [...ChainChallenges.list, ...ChainPresets.list].find(({id}) => arguments[0].includes(id));
-const begun = chosen ? ChainAddress.beginning(chosen) : {size: 100, restitution: 1, amplitude: 1, damping: 1,
-  gap: 0, spring: 'linear', rod: 1, first: 'density', second: 'widths', speed: 3};
+const all = [...ChainChallenges.list, ...ChainPresets.list];
+const chosen = all.find(({id}) => arguments[0].includes(id));
+const begun = ChainAddress.beginning(chosen ?? {});
 const texts = (each) => Object.fromEntries(Object.entries(each).map(([k, v]) => [k, String(v)]));
 return [texts(shown), texts(begun)];
 """
