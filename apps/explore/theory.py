@@ -89,7 +89,7 @@ def _solve_in_process(parameters: Parameters, is_gone: Callable[[], bool]) -> An
                     return {"refused": f"it takes longer than {_PATIENCE} s"}
             found: Answer = answer.recv()
         except (EOFError, OSError):
-            found = {"refused": "the computation was ended from outside"}
+            found = {"refused": "the computation ended without an answer"}
         finally:
             process.kill()
             process.join()
@@ -116,17 +116,19 @@ def _compute(parameters: Parameters, there: Connection) -> None:
         if not other.refusal(chain):
             answer["other"] = _result(other, other.solve(chain))
         there.send(answer)
-    except ValueError:
-        there.send({"refused": _why_none(parameters)})
+    except ValueError as error:
+        there.send({"refused": _why_none(parameters, str(error))})
 
 
-def _why_none(chain: Parameters) -> str:
+def _why_none(chain: Parameters, error: str) -> str:
     """Return why there is no theory of a chain, in words for a class."""
     if chain.amplitude == 0:
-        return "without noise the rods come to rest"
-    if chain.restitution > 1:
-        return "the energy of this chain grows without bound; fewer rods or more damping bound it"
-    return "none of the theories holds for such a chain"
+        return "without noise there is no steady motion"
+    if error.startswith("no steady state"):  # the solver has found out
+        bounds = "fewer rods, a smaller e or more damping bound it"
+        return f"by the kinetic equation its energy grows without bound; {bounds}"
+    way = "; fewer rods, a smaller gap or more noise may help" if chain.gap > 0 else ""
+    return f"its equations could not be solved for this chain{way}"
 
 
 def _result(theory: Any, solved: Any) -> Answer:

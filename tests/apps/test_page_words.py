@@ -63,6 +63,8 @@ def test_each_picture_is_said_in_numbers(browser, address):
         browser.execute_script(script, control(browser, "second-picture"), option)
         rows(browser, 1)
         assert re.fullmatch(said, browser.execute_script(LABEL))
+    stage = control(browser, "stage").get_attribute("aria-label")
+    assert re.search(r"The rods .* Now \d+ of 20 rods move to the right\.$", stage, re.DOTALL)
     visit(browser, address + "#size=20&speed=100")  # it moves
     assert len({browser.execute_async_script(FRAME) for _ in range(30)}) <= 2
 
@@ -92,7 +94,7 @@ def test_a_push_that_is_broken_off_says_so_and_the_next_one_meets_a_calm_chain(b
     press(browser, challenges(browser)[0])
     press(browser, control(browser, "push"))
     slide(browser, restitution=0.9)
-    said = "The push was broken off. The next one waits until the chain has settled."
+    said = "The restitution e changed, which broke off the push under way."
     assert text(browser, "note") == said
     press(browser, control(browser, "push"))
     assert text(browser, "note") == ""

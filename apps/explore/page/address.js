@@ -1,6 +1,5 @@
-/* The address of the page holds all that is chosen: #size=20&gap=0.5, or #challenge=ends&size=60. So
-   does a query: ?size=20&gap=0.5. What it leaves out is as at the beginning of the challenge or preset,
-   and has the usual value for a chain of one's own. */
+/* The address holds all that is chosen: #size=20&gap=0.5, ?size=20 or #challenge=ends&size=60. What it
+   leaves out is as at the beginning of the challenge or preset, or usual. */
 "use strict";
 
 const ChainAddress = (() => {
@@ -14,8 +13,8 @@ const ChainAddress = (() => {
     return { ...USUAL, ...chain, ...SHOWN, first: pictures[0], second: pictures[1], speed };
   }
 
-  /* Return what the address asks for by name, or why it is refused, or null if it asks for nothing.
-     `controls` has a slider or list for each name. */
+  /* What the address asks for by name, or why it is refused, or null if it asks for nothing; `controls`
+     has a slider or list for each name. */
   function read(controls, { search, hash } = location) {
     if (hash && !hash.includes("="))
       return document.getElementById(hash.slice(1)) ? null // a heading of the page around
@@ -49,11 +48,15 @@ const ChainAddress = (() => {
     const begun = beginning(kind ? chosen : {}), given = kind ? [[kind, id]] : [];
     for (const name of Object.keys(begun)) if (now[name] !== begun[name]) given.push([name, now[name]]);
     const setting = `#${new URLSearchParams(given.length ? given : [["size", now.size]])}`;
-    // A page that was opened as a file may change only what follows the #.
-    history.replaceState({ solved }, "", location.protocol === "file:" ? setting : location.pathname + setting);
+    history.replaceState({ solved }, "", location.pathname + setting);
   }
 
   const same = (one, other) => NAMES.every((name) => one[name] === other[name]);
 
-  return { USUAL, NAMES, SPRUNG, beginning, read, write, same };
+  /* The setting in the symbols of the paper. */
+  const told = (chain) => (ChainScales.isGas(chain) ? `L = ${chain.size}, X = ${chain.box} R, mass ratio ` +
+    chain.mass_ratio : `L = ${chain.size}, e = ${chain.restitution}, A = ${chain.amplitude}, ` +
+    `γ = ${chain.damping}, g = ${chain.gap}, ${chain.spring} springs`);
+
+  return { USUAL, NAMES, SPRUNG, beginning, read, write, same, told };
 })();

@@ -1,5 +1,4 @@
-/* The controls: buttons, sliders, lists and keys; what the page says; and the address, which holds
-   what is chosen. */
+/* The controls, what the page says, and the address. */
 "use strict";
 
 (() => {
@@ -12,11 +11,9 @@
   const find = (name) => root.querySelector(`[data-chain="${name}"]`);
   const sliders = Object.fromEntries(NAMES.map((name) => [name, find(name)]));
   const pictures = { first: find("first-picture"), second: find("second-picture") };
-  const stage = new ChainDrawing.Stage(find("stage"));
+  const stage = new ChainDrawing.Stage(find("stage")), shown = find("stage").ariaLabel;
   const solved = new Set(history.state?.solved); // challenges that are done, presets whose answer was seen
   let chosen = OWN, rod = 1, judging = false, told = {}, described = 0; // `told`: of the theory of a chain
-
-  // -- what is seen and said --------------
 
   function drawPlots() {
     judge();
@@ -24,7 +21,9 @@
     const exact = ChainTheory.exactDensity(state.chain, measurement.coverage().map(([x]) => x));
     if (!exact && state.chain.restitution === 1 && state.chain.amplitude > 0 && !state.masses && !ChainFrames.running())
       setTimeout(draw, 450);
-    const kicked = state.chain.amplitude > 0, unit = R.unit(), calm = !ChainFrames.running() || isDue();
+    const right = state.v.filter((v) => v > 0).length, kicked = state.chain.amplitude > 0, unit = R.unit();
+    const calm = !ChainFrames.running() || isDue();
+    if (calm) stage.canvas.ariaLabel = `${shown} Now ${right} of ${state.v.length} rods move to the right.`;
     const units = kicked ? { unit, counted: 1, inUnits: "W" } : { unit: 1, counted: unit, inUnits: "R/T" };
     const { restitution } = state.chain, gas = state.masses ? gauged() : null;
     const seen = { half: stage.half, measurement, history: energies, restitution, ...units, exact, theory, gas };
@@ -33,7 +32,7 @@
       if (calm || !find(name).ariaLabel) find(name).ariaLabel = sentence;
     }
     const scale = kicked ? `W = ${unit.toPrecision(2)} R/T.` : "Without noise there is no W.";
-    find("status").textContent = `${scale} ${happening()}`;
+    find("status").textContent = `${scale} ${R.happening()}`;
     if (world.ranAway && world.pushed) breakOff("The chain ran away");
     find("solve").textContent = ChainTheory.asked() ? "Stop" : "Solve the theory";
     find("theory").textContent = (told.chain === state.chain && told.said) || theory?.said || "";
@@ -44,61 +43,44 @@
   function gauged() {
     const { state, measurement, forces } = world, { box } = state.chain, law = ChainGas.law(state);
     const known = !chosen.secret || solved.has(chosen.id), { value, error } = measurement.force();
-    const now = measurement.blocks.length > 1 ? `${value.toPrecision(4)} ± ${error.toPrecision(1)}` : "not measured yet";
+    const few = measurement.blocks.length < 2, now = `${value.toPrecision(4)} ± ${error.toPrecision(1)}`;
     const told = known ? `, exact: L T/(X − 2RL) = ${law.toPrecision(4)}` : "";
-    find("gauge").textContent = `Force on a wall [M R/T²]: ${now}${told}.`;
+    find("gauge").textContent = `Force on a wall [M R/T²]: ${few ? "not measured yet" : now}${told}.`;
     const free = P.freeLength(state.chain), exact = { start: box - free, slope: 1 / law / free, known };
     return { box, forces, found: ChainGas.line(forces), exact };
   }
 
-  /* Whether it is time to say anew what the pictures show: a screen reader should not be hurried. */
+  /* Whether to say anew what the pictures show: a screen reader should not be hurried. */
   function isDue() {
     const due = performance.now() - described > CALM;
     if (due) described = performance.now();
     return due;
   }
 
-  function happening() {
-    const { measurement } = world;
-    if (world.ranAway) return `The chain has run away: its energy has grown ${R.RUN_AWAY} times${growth()}.`;
-    if (world.pushed) return "A push is under way.";
-    if (!measurement.settled) return `Settling for another ${Math.ceil(measurement.settling)} T, drawn pale.`;
-    return `Measured for ${Math.round(measurement.time)} T.`;
-  }
-
-  function growth() {
-    const rates = R.growthRates();
-    if (!rates) return "";
-    const exponential = (rate) => `exp(${rate.toPrecision(2)} t/T)`;
-    return `, like ${exponential(rates.found)}` +
-      (rates.theory ? `; theory for weak damping: ${exponential(rates.theory)}` : "");
-  }
-
   /* One sentence about what was just done, until something else is done. */
-  const note = (text) => {
-    find("note").textContent = text;
-  };
+  const note = (text) => { find("note").textContent = text; };
 
-  /* Break off what the rods do and what is judged of it, and say why. Another chain, or another setting of
-     it, also breaks off its theory. What a challenge counts stays until it is left. */
-  function breakOff(why, changes = false, leaves = false) {
-    const theory = changes && ChainTheory.asked(), broken = [
-      world.pushed && "the push under way", judging && (leaves || !chosen.counts) && "the judging",
-      theory && "the computation of the theory",
+  /* Break off the push under way, what is judged and, where the chain `changes`, its theory, and say why.
+     Pushes that a challenge counts stay until it `leaves` off. */
+  function breakOff(why, { changes, leaves } = {}) {
+    const broken = [
+      world.pushed && "the push under way", judging && (leaves || !chosen.calm) && "the judging",
+      changes && ChainTheory.asked() && "the computation of the theory",
     ].filter(Boolean);
     if (broken.length) note(`${why}, which broke off ${broken.join(" and ")}.`);
-    if (theory) ChainTheory.abort();
+    if (changes) ChainTheory.abort();
     world.pushed = null;
-    judging = false;
   }
 
-  /* Let the challenge look, and say what it found; what is new is read aloud only when it is done. */
+  /* Let the challenge look, and say what it found; only that it is done is read aloud. */
   function judge() {
+    judging = false;
     if (!chosen.watch || world.hand) return; // a rod in the hand does not move by itself
-    const { done, said, pending } = chosen.watch(world), mark = find(`challenge-${chosen.title}`);
+    const { done, said, pending } = chosen.watch(world), mark = find(`challenge-${chosen.id}`);
     find("said").textContent = said;
-    judging = pending && !solved.has(chosen.id);
-    if (!done || solved.has(chosen.id)) return;
+    const known = solved.has(chosen.id);
+    judging = pending && !known;
+    if (!done || known) return;
     solved.add(chosen.id);
     tick(mark);
     answer();
@@ -106,10 +88,7 @@
     find("announced").textContent = `Challenge done: ${chosen.title}. ${said} ${chosen.answer}`;
   }
 
-  const tick = (mark) => {
-    mark.classList.add("done");
-    mark.textContent += " ✓";
-  };
+  const tick = (mark) => { mark.textContent += " ✓"; };
 
   /* Show the answer once the challenge is done, or the preset's was asked for. */
   function answer() {
@@ -118,15 +97,13 @@
     find("reveal").hidden = known || chosen.kind !== "preset";
   }
 
-  // -- what is chosen ---------------------
-
-  /* Begin what was chosen, a challenge, a preset or a chain of one's own, with some values changed. */
+  /* Begin what was chosen, with some values changed. */
   function choose(what, values = {}) {
     const begun = { ...ChainAddress.beginning(what), ...values }, stopped = world.ranAway;
     note("");
-    breakOff("A chain was begun anew", true, true);
+    breakOff("A chain was begun anew", { changes: true, leaves: true });
     chosen = what;
-    for (const each of CHALLENGES) find(`challenge-${each.title}`).setAttribute("aria-pressed", String(each === what));
+    for (const each of CHALLENGES) find(`challenge-${each.id}`).setAttribute("aria-pressed", String(each === what));
     find("preset").value = what.kind === "preset" ? what.id : "";
     find("ask").textContent = what.ask;
     find("said").textContent = find("announced").textContent = "";
@@ -146,9 +123,12 @@
   function showValues() {
     const { chain } = world.state, gas = P.isGas(chain);
     root.classList.toggle("gas", gas);
-    sliders.box.min = narrowest(chain);
-    for (const name of NAMES) sliders[name].ariaValueText = sliders[name].value = chain[name];
-    for (const value of root.querySelectorAll("[data-value]")) value.textContent = chain[value.dataset.value];
+    sliders.box.min = P.narrowest(chain);
+    for (const name of NAMES) sliders[name].value = chain[name];
+    for (const value of root.querySelectorAll("[data-value]")) {
+      const name = value.dataset.value;
+      sliders[name].ariaValueText = value.textContent = chain[name];
+    }
     find("rod").max = chain.size;
     find("rod").value = rod = Math.min(rod, chain.size);
     for (const list of Object.values(pictures)) {
@@ -158,14 +138,11 @@
     }
   }
 
-  /* The smallest box of a gas. */
-  const narrowest = (chain) => (P.isGas(chain) ? 2 * P.RADIUS * chain.size + 2 : 0);
-
   function slide(name) {
     const control = sliders[name], chain = { ...world.state.chain }, stopped = world.ranAway;
     chain[name] = name === "spring" ? control.value : Number(control.value);
-    chain.box = Math.max(chain.box, narrowest(chain));
-    breakOff(`The ${control.labels[0].textContent.split(" [")[0]} changed`, true);
+    chain.box = Math.max(chain.box, P.narrowest(chain));
+    breakOff(`The ${control.labels[0].textContent.split(" [")[0]} changed`, { changes: true });
     if (name === "size" || name === "spring" || stopped || P.isGas(chain)) R.begin(chain);
     else R.change(chain);
     showValues();
@@ -178,11 +155,10 @@
     find("speed").value = String(world.speed);
   }
 
-  /* Write into the address all that is chosen: after whatever was done, and nowhere else. */
+  /* Write all that is chosen into the address, after whatever was done. */
   function write() {
-    const now = { ...world.state.chain, rod, speed: world.speed };
-    for (const [name, list] of Object.entries(pictures)) now[name] = list.value;
-    ChainAddress.write(chosen, now, [...solved]);
+    const { first, second } = pictures, shown = { first: first.value, second: second.value, speed: world.speed };
+    ChainAddress.write(chosen, { ...world.state.chain, rod, ...shown }, [...solved]);
   }
 
   /* Begin what the address asks for; say why it is refused. */
@@ -197,21 +173,19 @@
       const what = [...CHALLENGES, ...PRESETS].find(({ id }) => id === (challenge || preset)) || OWN;
       const { rod: named, ...chain } = { ...ChainAddress.beginning(what), ...values }, { size, box } = chain;
       if (named > size) asked.refused = `rod must be a whole number from 1 to ${size}, got ${named}`;
-      else if (box < narrowest(chain))
-        asked.refused = `${size} rods need a box of at least ${narrowest(chain)} R, got ${box}`;
+      else if (box < P.narrowest(chain))
+        asked.refused = `${size} rods need a box of at least ${P.narrowest(chain)} R, got ${box}`;
       else return choose(what, values);
     }
     otherwise();
     if (asked) note(`The address is not understood: ${asked.refused}.`);
   }
 
-  // -- what is done -----------------------
-
   function step() {
     pause();
     const met = R.step();
     draw();
-    find("speed").value = String(world.speed);
+    setSpeed(world.speed);
     find("status").textContent = met.length
       ? `Met at t = ${world.state.time.toFixed(2)} T: ${met.map((c) => `rods ${c + 1} and ${c + 2}`).join(", ")}.`
       : "No rods have met.";
@@ -240,7 +214,14 @@
     if (!ChainFrames.running()) draw();
   }
 
-  /* Solve the theory of the chain, or stop solving it. What is said of one chain is not seen with another. */
+  function save() {
+    const link = document.createElement("a");
+    link.href = stage.save(ChainAddress.told(world.state.chain));
+    link.download = "chain.png";
+    link.click();
+  }
+
+  /* Solve the theory of the chain, or stop. What is said of one chain is not seen with another. */
   function solve() {
     const { chain } = world.state;
     const said = (text) => {
@@ -253,8 +234,8 @@
 
   function listen() {
     const clicks = {
-      step, push, solve,
-      restart: () => choose(chosen),
+      step, push, save, solve,
+      restart: () => choose(chosen, chosen === OWN ? world.state.chain : {}),
       reveal: () => (solved.add(chosen.id), answer()),
     };
     for (const [name, act] of Object.entries(clicks)) find(name).addEventListener("click", act);
@@ -279,18 +260,24 @@
     new MutationObserver(again).observe(document.body, { attributeFilter: ["data-theme"] });
   }
 
-  // -- what is built --------------------
+
+  /* Give a challenge or preset the words of its element. */
+  function word(each, element) {
+    const { dataset: { ask, answer }, textContent } = element;
+    const [title, ...words] = [textContent, ask, answer].map((text) => text.replace(/\s+/g, " ").trim());
+    Object.assign(each, { title: title.replace(/^\d /, ""), ask: words[0], answer: words[1] });
+    element.textContent = title;
+    return element;
+  }
 
   function fill() {
-    CHALLENGES.forEach((each, k) => {
-      const made = ChainSliders.button(`${k + 1} ${each.title}`, () => choose(each));
-      made.dataset.chain = `challenge-${each.title}`;
-      if (solved.has(each.id)) tick(made);
-      find("challenges").append(made);
-    });
+    for (const each of CHALLENGES) {
+      const button = word(each, find(`challenge-${each.id}`));
+      button.addEventListener("click", () => choose(each));
+      if (solved.has(each.id)) tick(button);
+    }
+    for (const each of PRESETS) word(each, find("preset").querySelector(`[value="${each.id}"]`));
     for (const name of NAMES) if (!sliders[name].options) ChainSliders.surround(sliders[name], name, slide);
-    const questions = PRESETS.map(({ id, title }) => new Option(title, id));
-    find("preset").append(new Option("Questions to predict", ""), ...questions);
     pictures.second.append(...pictures.first.cloneNode(true).children);
     find("solve").hidden = !root.dataset.theory; // only a server can
   }

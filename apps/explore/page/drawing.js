@@ -9,7 +9,7 @@ const ChainDrawing = (() => {
   const LEAST = 12; // length of a rod in pixels at which bars mark collisions
   const FAST = 3; // free velocity widths at which a colour is full
 
-  /* The colours of the page as it is now, light or dark. */
+  /* The colours of the page, light or dark. */
   function colours(place) {
     const style = getComputedStyle(place), read = (name) => {
       place.style.color = `var(--${name})`;
@@ -29,8 +29,7 @@ const ChainDrawing = (() => {
   /* The velocity of a rod; that of a heavier one as of a light one of the same energy. */
   const pace = ({ v, masses }, i) => (masses ? v[i] * Math.sqrt(masses[i] / P.MASS) : v[i]);
 
-  /* Half of the line that is shown [R]: the anchors and room for some thermal lengths, or the box, of
-     which smaller ones look smaller. */
+  /* Half of the line that is shown [R]; of smaller boxes it is that of a larger one. */
   function reach(chain) {
     if (P.isGas(chain)) return Math.max(chain.box / 2, 2.5 * P.RADIUS * chain.size) + 1;
     const anchors = ((2 * P.RADIUS + chain.gap) * (chain.size - 1)) / 2;
@@ -45,7 +44,7 @@ const ChainDrawing = (() => {
       this.half = 1;
     }
 
-    /* Colours or sizes have changed: everything is drawn again. */
+    /* Draw all anew. */
     refresh() {
       this.colour = colours(this.canvas);
       const { width } = ChainPlots.fit(this.canvas);
@@ -62,13 +61,13 @@ const ChainDrawing = (() => {
       this.refresh();
     }
 
-    /* Add the present state to the strip, and the contacts where rods have met. */
+    /* Add the state to the strip, and where rods have met. */
     add(state, unit, met) {
       const x = Float32Array.from(state.y, (_, i) => P.position(state, i));
       const row = [x, Float32Array.from(state.v, (_, i) => pace(state, i) / unit), met];
       this.rows.unshift(row);
       this.rows.length = Math.min(this.rows.length, ROWS);
-      const outermost = Math.max(-x[0], x[x.length - 1]) + P.RADIUS;
+      const outermost = Math.max(-x[0], x.at(-1)) + P.RADIUS;
       if (outermost > this.half && Number.isFinite(outermost)) {
         this.half = 1.3 * outermost;
         this.refresh();
@@ -140,6 +139,31 @@ const ChainDrawing = (() => {
       }
       pen.fillText("position x [R]", width / 2, height - 3);
     }
+
+    /* The rods and the strip as a picture, with a key and the words below. */
+    save(words) {
+      const { canvas, colour, ratio } = this, copy = document.createElement("canvas"), pen = copy.getContext("2d");
+      copy.width = canvas.width;
+      copy.height = canvas.height + 42 * ratio;
+      pen.fillStyle = colour.faint;
+      pen.fillRect(0, 0, copy.width, copy.height);
+      pen.drawImage(canvas, 0, 0);
+      pen.translate(4 * ratio, canvas.height);
+      pen.scale(ratio, ratio);
+      pen.font = `12px ${colour.sans}`;
+      const key = [
+        [shade(-FAST, colour), 10, "moves left"], [shade(FAST, colour), 10, "moves right"],
+        [colour.ink, 2, "two rods meet"],
+      ];
+      key.forEach(([fill, high, text], k) => {
+        pen.fillStyle = fill;
+        pen.fillRect(110 * k, 12 - high / 2, 10, high);
+        pen.fillStyle = colour.ink;
+        pen.fillText(text, 110 * k + 15, 16);
+      });
+      pen.fillText(words, 0, 34);
+      return copy.toDataURL();
+    }
   }
 
   /* A spring from its anchor, a tick at the top, to the middle of its rod. */
@@ -157,7 +181,7 @@ const ChainDrawing = (() => {
     pen.stroke();
   }
 
-  /* Text with the page's colour behind, to be read on top of the strip. */
+  /* Text to be read on top of the strip. */
   function label(pen, text, x, y, colour) {
     pen.lineWidth = 4;
     pen.lineJoin = "round";

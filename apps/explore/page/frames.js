@@ -1,4 +1,4 @@
-/* The frames of the moving chain: it goes on while it is played, and is drawn. */
+/* The chain goes on while it is played, and is drawn. */
 "use strict";
 
 const ChainFrames = (() => {

@@ -108,7 +108,8 @@ const ChainGas = (() => {
     const all = sum(() => 1), x = sum((each) => each.x) / all, y = sum((each) => each.y) / all;
     const spread = sum((each) => (each.x - x) ** 2), slope = sum((each) => (each.x - x) * each.y) / spread;
     const start = x - y / slope, { size } = forces[0].chain;
-    return { start, slope, value: start / size, error: Math.hypot(all ** -0.5, (start - x) / spread ** 0.5) / slope / size };
+    const error = Math.sqrt(1 / all + (start - x) ** 2 / spread) / slope;
+    return { start, slope, value: start / size, error: error / size };
   }
 
   return { makeState, go, seen, energy, law, line };

@@ -1,14 +1,13 @@
-/* Verdicts on averages. Whoever looks all the time is misled in the end. So a verdict falls at a few
-   fixed times only, and by so many errors that fewer than one in a hundred is wrong. */
+/* Verdicts on averages. Whoever looks all the time is misled in the end. So they fall at few fixed times,
+   and by so many errors that fewer than one in a hundred is wrong. */
 "use strict";
 
 const ChainJudging = (() => {
   const LOOKS = [40, 80, 160, 320, 640]; // blocks of time, nearly independent, after which is decided
   const SURE = 3.5; // standard errors
 
-  /* Is a mean above `limit`? `estimate(n)` is {value, error} of the first n of so many blocks. Return
-     {above, value, error} of the first look that was clear, or {next} of the look that is waited for,
-     in blocks: infinity if the last one was not clear either. */
+  /* Is a mean above `limit`? `estimate(n)` is {value, error} of the first n blocks. Return {above, value,
+     error} of the first clear look, or {next}, the blocks of the next look: infinity after the last. */
   function verdict(blocks, estimate, limit) {
     for (const look of LOOKS) {
       if (look > blocks) return { next: look };

@@ -115,7 +115,7 @@ const ChainMeasuring = (() => {
     }
   }
 
-  /* The running average over a rod's length of points that are a bin apart, as the paper draws it. */
+  /* The running average of points over a rod's length, as the paper draws it. */
   function averaged(points) {
     const half = P.RADIUS * BINS, share = (k) => (points[k] ? points[k][1] : 0);
     return points.map(([x], k) => {
@@ -140,14 +140,8 @@ const ChainMeasuring = (() => {
 
   const meanSquare = (v, rods) => rods.reduce((sum, i) => sum + v[i] ** 2, 0) / rods.length;
 
-  /* The exact equilibrium at e = 1. Each point has the weight exp(-k |d|^n/nT), and points stay
-     in their order. With F_i(y), the weight of all arrangements of the points 1..i left of y,
-
-         F_i(y) = int_-inf^y F_(i-1)(y') exp(-k |d_i(y')|^n/nT) dy'.
-
-     The points right of i are the mirror image of those left of L + 1 - i. Point i has therefore
-     the density F_(i-1)(y) exp(-k |d_i|^n/nT) F_(L-i)(-y). Return the density's integrals, one array
-     for each rod, on grids of spacing `h` that begin at `starts` times h. */
+  /* The exact equilibrium at e = 1, by the recursion F_i of kinetic/exact/gibbs_measure.py, there Z_i. Return
+     the integrals of each rod's density on grids of spacing `h` that begin at `starts` times h. */
   function exactDistributions(chain) {
     const s = P.thermalLength(chain), size = chain.size, n = P.exponent(chain);
     // Points per thermal length: without a gap F_i grows by its own size within s/i.
@@ -177,16 +171,16 @@ const ChainMeasuring = (() => {
     return { h, starts, distributions };
   }
 
-  /* The integral from the first point on, in each cell of the cubic through four points, with the
-     last value 1. Trapezoids would give densities that are wrong by 1e-3. */
+  /* The integral from the first point on, by cubics through four points, over the last value.
+     Trapezoids would be wrong by 1e-3. */
   function integral(values) {
     const sums = new Float64Array(values.length), at = (k) => values[k] || 0;
     for (let k = 1; k < values.length; k++)
       sums[k] = sums[k - 1] + 13 * (values[k] + values[k - 1]) - at(k - 2) - at(k + 1);
-    return sums.map((sum) => sum / sums[sums.length - 1]);
+    return sums.map((sum) => sum / sums.at(-1));
   }
 
-  /* The share of time that a rod covers each of the places, exactly, at e = 1. */
+  /* The exact share of time that a rod covers each of the places, at e = 1. */
   function exactCoverage(chain, places) {
     const { h, starts, distributions } = exactDistributions(chain), covered = places.map(() => 0);
     distributions.forEach((distribution, i) => {

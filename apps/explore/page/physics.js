@@ -1,20 +1,17 @@
 /* The chain: hard rods on springs, kicked by noise, that collide. One step is that of the package
    (particles/stepping.py): half a kick, free flight with collisions, half a kick. Elastic rods on
-   linear springs with one common anchor are flown exactly (particles/laws/exact_flight.py).
-
-   Everything is computed in the reduced coordinate y_i = x_i - 2R (i - (L+1)/2), in which rods are
-   points that may touch but not pass. */
+   linear springs with one anchor are flown exactly (particles/laws/exact_flight.py). In the reduced
+   coordinate y_i = x_i - 2R (i - (L+1)/2) rods are points that may touch but not pass. */
 "use strict";
 
 const ChainPhysics = (() => {
   const { RADIUS, MASS, STIFFNESS, exponent, pull, freeWidth, timeStep, propagator } = ChainScales;
-  // At e = 0 one kick a step leaves rods in contact too long. Stronger kicks of rods in contact make
-  // up for it, up to the restitution at which contacts still collapse (docs/particles.md).
+  // Stronger kicks of rods in contact make up for having one kick a step only, up to the restitution
+  // at which contacts still collapse (docs/particles.md).
   const CLOSED_KICK = 1.224, CRITICAL_RESTITUTION = Math.exp(-Math.PI / Math.sqrt(3));
   const FIRST = 0, WHOLE = 1, LAST = 2; // parts of a kick
 
-  /* Uniform random numbers in (0, 1) from Chris Doty-Humphrey's sfc32, by the Box-Muller transform
-     made normal with mean 0 and variance 1. */
+  /* Normal random numbers by Box and Muller, from the uniform ones of Chris Doty-Humphrey's sfc32. */
   function makeNoise(seed) {
     let a = 0x9e3779b9, b = 0x243f6a88, c = seed | 0, counter = 1, spare = null;
     function uniform() {
@@ -38,8 +35,8 @@ const ChainPhysics = (() => {
     };
   }
 
-  /* Rods at rest at their anchors. `held`: the rod that a hand holds, -1 if none. `met`: where rods
-     have met; whoever reads it clears it. */
+  /* Rods at rest at their anchors. `held`: the rod in a hand, or -1. `met`: where rods have met,
+     until the reader clears it. */
   function makeState(chain, seed) {
     const size = chain.size;
     const state = {
@@ -53,7 +50,7 @@ const ChainPhysics = (() => {
     return state;
   }
 
-  /* Go on with other parameters, but as many rods: they keep their places and velocities. */
+  /* Go on with other parameters: rods keep their places and velocities. */
   function setChain(state, chain) {
     state.chain = { ...chain };
     const middle = (chain.size - 1) / 2;
@@ -65,8 +62,6 @@ const ChainPhysics = (() => {
     chain.restitution === 1 && chain.gap === 0 && exponent(chain) === 2 && held < 0;
 
   const position = (state, i) => state.y[i] + 2 * RADIUS * (i - (state.y.length - 1) / 2);
-
-  // -- kicks ----------------------------
 
   /* The exact decay and noise of a velocity under damping and noise alone. */
   function ornsteinUhlenbeck(chain, duration) {
@@ -117,10 +112,7 @@ const ChainPhysics = (() => {
     }
   }
 
-  // -- flight with collisions -----------
-
-  /* e = 1: equal masses exchange their velocities, as if points passed through each other and
-     exchanged their names. */
+  /* e = 1: points exchange their velocities, as if they passed each other and exchanged names. */
   function sort(state) {
     const { y, v, met } = state;
     for (let i = 1; i < y.length; i++) {
@@ -148,8 +140,8 @@ const ChainPhysics = (() => {
     sort(state);
   }
 
-  /* Any e: the contact that closes first, then the next. y holds where a point with its present
-     velocity would have been at the beginning, so that no point moves before the end. */
+  /* Any e: the contact that closes first, then the next. y holds where a point with its velocity
+     would have been at the beginning: none moves before the end. */
   function driftInOrder(state, step) {
     const { y, v, due, joined } = state, contacts = y.length - 1;
     const most = 1000 * y.length; // with more collisions in one step the chain has run away
@@ -186,14 +178,14 @@ const ChainPhysics = (() => {
   function first(due, v, contacts) {
     let found = 0;
     for (let c = 1; c < contacts; c++) {
-      if (due[c] < due[found]) found = c;
-      else if (due[c] === due[found] && v[c] - v[c + 1] > v[found] - v[found + 1]) found = c;
+      const faster = due[c] === due[found] && v[c] - v[c + 1] > v[found] - v[found + 1];
+      if (due[c] < due[found] || faster) found = c;
     }
     return found;
   }
 
-  /* Let the rods left and right of a contact collide, with all that stick to them: momentum stays,
-     and the relative velocity changes by -e. Return the outermost rods of the two clusters. */
+  /* Let the rods left and right of a contact collide, with all that stick to them. Return the
+     outermost rods of the two clusters. */
   function collide(state, contact, now, step) {
     const { y, v, joined, met, held, chain } = state;
     met[contact] = 1;
@@ -209,9 +201,8 @@ const ChainPhysics = (() => {
     const common = vLeft + (vRight - vLeft) * share;
     // Flippers (e > 1) act when rods meet, not on rods that touch at the beginning of the step.
     const e = now === 0 ? Math.min(chain.restitution, 1) : chain.restitution;
-    // With a gap the springs of two rods pull differently. At `now` the rods should have got this
-    // much more from them than by the half kick at the beginning, and the one at the end takes it
-    // back. So the true relative velocity rebounds.
+    // With a gap the springs pull differently: this much more by now than the half kick at the
+    // beginning, which the one at the end takes back. So the true relative velocity rebounds.
     const alone = a === contact && b === contact + 1 && held !== a && held !== b;
     const ahead = alone && chain.gap > 0
       ? springsAhead(state, contact, y[contact] + vLeft * now, now - step.duration / 2) : 0;
@@ -239,8 +230,6 @@ const ChainPhysics = (() => {
       state.v[i] = velocity;
     }
   }
-
-  // -- in time --------------------------
 
   /* Take so many steps of this duration. The state is that in the middle of a kick. */
   function advance(state, duration, steps) {

@@ -1,12 +1,11 @@
-/* The pictures of what is measured: density, velocity widths, velocities and energy, each on axes
-   with numbers, beside theory. */
+/* The pictures of what is measured, each on axes with numbers, beside theory. */
 "use strict";
 
 const ChainPlots = (() => {
   const LEFT = 44, BELOW = 34, ABOVE = 20, RIGHT = 12; // pixels around a plot for its numbers and words
   const GAUSS = Array.from({ length: 121 }, (_, k) => (k - 60) / 10); // where a free rod's p(v) is drawn
 
-  /* A canvas as wide as its place, drawn at the screen's own resolution. */
+  /* A canvas at the screen's own resolution. */
   function fit(canvas) {
     const ratio = devicePixelRatio, box = canvas.getBoundingClientRect();
     const width = Math.round(box.width * ratio), height = Math.round(box.height * ratio);
@@ -117,7 +116,7 @@ const ChainPlots = (() => {
         pen.globalAlpha = 1;
       };
       this.within(() => {
-        this.path([[points[0][0], 0], ...points, [points[points.length - 1][0], 0]]);
+        this.path([[points[0][0], 0], ...points, [points.at(-1)[0], 0]]);
         fill(() => pen.fill());
       });
       this.name(text, (x, y) => fill(() => pen.fillRect(x, y - 5, 12, 10)));
@@ -157,14 +156,14 @@ const ChainPlots = (() => {
 
   const measuredIn = ({ settled }) => (settled ? "measured" : "not settled yet");
 
-  /* Pictures by name. `seen` has {half, measurement, history, restitution, unit, counted, inUnits, exact,
-     theory}: velocities are divided by the `unit`, those of the distributions are counted in `counted`
-     units, and `theory` is what is known of the chain: {short, widths, density, other: {short, density}}.
-     `gas`: {box, forces, found, exact} for its picture of the pressure, and null for a chain on springs. Each picture returns what is seen on it as a sentence. */
+  /* Pictures by name, of {half, measurement, history, restitution, unit, counted, inUnits, exact, theory,
+     gas}: velocities are divided by the `unit`, those of the distributions counted in `counted` units, the
+     `theory` is {short, widths, density, other}, and `gas` {box, forces, found, exact}. Each returns what is
+     seen on it as a sentence. */
   const pictures = {
     density(canvas, colour, { half, measurement, exact, theory }) {
       // Stated errors are those of densities averaged as in the paper.
-      const averaged = theory && theory.density, alike = averaged ? ChainMeasuring.averaged : (points) => points;
+      const averaged = theory?.density, alike = averaged ? ChainMeasuring.averaged : (points) => points;
       const measured = alike(measurement.coverage()), most = Math.max(0.1, ...measured.map(([, share]) => share));
       const plot = new Plot(canvas, colour, {
         x: [-half, half], y: [0, Math.min(1.05, 1.15 * most)], xTitle: "position x [R]",
@@ -176,11 +175,11 @@ const ChainPlots = (() => {
       if (averaged && theory.other) plot.line(theory.other.density, theory.other.short, [6, 3]);
       const covered = measured.filter(([, share]) => share > 0.01).map(([x]) => x), percent = Math.round(100 * most);
       return `Density, ${measuredIn(measurement)}: rods cover a place for up to ${percent} % of the time, from x = ` +
-        `${Math.round(covered[0])} to ${Math.round(covered[covered.length - 1])} R.`;
+        `${Math.round(covered[0])} to ${Math.round(covered.at(-1))} R.`;
     },
 
     widths(canvas, colour, { measurement, unit, inUnits, theory }) {
-      const widths = measurement.widths().map((each) => each / unit), known = theory && theory.widths;
+      const widths = measurement.widths().map((each) => each / unit), known = theory?.widths;
       const plot = new Plot(canvas, colour, {
         x: [0, widths.length + 1], y: around([...widths, ...(known || [])], 0.2), xTitle: "rod i", apart: 1,
         yTitle: `velocity width [${inUnits}]`,
@@ -199,7 +198,8 @@ const ChainPlots = (() => {
       const fastest = Math.max(inUnits === "W" ? 4 : 0.1, slow, fast);
       const plot = new Plot(canvas, colour, {
         x: [-fastest, fastest], y: [-4.2, 0.4],
-        xTitle: gas ? "velocity of a rod of mass mᵢ, v √(mᵢ/m) [W]" : `velocity v [${inUnits}], at the ends outward`,
+        xTitle: gas ? "velocity v √(mᵢ/m) of a rod of mass mᵢ [W]"
+          : `velocity v [${inUnits}], at the ends outward`,
         yTitle: `p(v) [${inUnits === "W" ? "1/W" : "T/R"}]`, powers: true,
       });
       const gauss = GAUSS.map((v) => log([v, Math.exp((-v * v) / 2) / Math.sqrt(2 * Math.PI)]));
@@ -214,7 +214,8 @@ const ChainPlots = (() => {
     /* Of a gas in several boxes, with the line through them and the exact one. */
     pressure(canvas, colour, { gas: { box, forces, found, exact } }) {
       const points = forces.map(({ chain, value, error }) => [chain.box, 1 / value, error / value ** 2]);
-      const last = 1.1 * Math.max(box, ...points.map(([x]) => x)), at = ({ start, slope }, x) => [x, slope * (x - start)];
+      const last = 1.1 * Math.max(box, ...points.map(([x]) => x));
+      const at = ({ start, slope }, x) => [x, slope * (x - start)];
       const plot = new Plot(canvas, colour, {
         x: [0, last], y: [0, 1.1 * Math.max(at(exact, last)[1], ...points.map(([, y]) => y))],
         xTitle: "length of the box X [R]", yTitle: "1/force on a wall [T²/(M R)]",

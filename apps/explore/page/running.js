@@ -44,7 +44,7 @@ const ChainRunning = (() => {
     else changed();
   }
 
-  /* Let the chain settle for so long before it is shown; what takes too long to compute is left over. */
+  /* Let the chain settle before it is shown; what takes too long to compute is left over. */
   function settle(due) {
     const quarter = P.relaxationTime(world.state.chain) / 4, begun = performance.now();
     for (; due > 0 && performance.now() - begun < PATIENCE; due -= quarter) laws().go(world.state, quarter);
@@ -91,7 +91,7 @@ const ChainRunning = (() => {
     remember();
     if (state.diverged || (state.chain.restitution > 1 && energy > RUN_AWAY * world.touched)) world.ranAway = true;
     if (!pushed) return;
-    pushed.fastest = Math.max(pushed.fastest, state.v[state.v.length - 1] / unit());
+    pushed.fastest = Math.max(pushed.fastest, state.v.at(-1) / unit());
     if (state.time < pushed.until) return;
     world.pushes.push(pushed);
     world.pushed = null;
@@ -113,7 +113,7 @@ const ChainRunning = (() => {
     stride *= 2;
   }
 
-  /* Go on in slow motion until rods meet, and return the contacts where they do. */
+  /* Go on in slow motion until rods meet, and return where. */
   function step() {
     setSpeed(SLOW);
     for (let row = 0; row < 4000 && !world.ranAway; row++) {
@@ -155,7 +155,7 @@ const ChainRunning = (() => {
     return true;
   }
 
-  /* Let the held rod move towards the hand, no faster than a hand may. */
+  /* Let the held rod move towards the hand. */
   function follow(duration) {
     const { state, hand } = world, most = FASTEST_HAND * unit();
     const speedUp = (hand.x - P.position(state, hand.rod)) / duration;
@@ -171,8 +171,8 @@ const ChainRunning = (() => {
     else changed(true);
   }
 
-  /* Above e = 1: the rate at which the energy has grown, by least squares, and that of the theory for
-     weak damping where simulations confirm it to 5 % (kinetic_equation/weak_damping.py). */
+  /* Above e = 1: the rate at which the energy has grown, by least squares, and where simulations confirm
+     it to 5 % that of kinetic_equation/weak_damping.py. */
   function growthRates() {
     const points = world.history.filter(([, growth]) => growth > GROWN), n = points.length, { chain } = world.state;
     if (n < 5 || chain.spring !== "linear") return null;
@@ -184,12 +184,27 @@ const ChainRunning = (() => {
     return { found, theory: holds ? (gain / Math.PI) * Math.sqrt(P.STIFFNESS / P.MASS) - damping / P.MASS : null };
   }
 
-  /* The number of rods above which a weakly damped chain runs away, to first order in e - 1. */
+  /* The longest weakly damped chain that does not run away, to first order in e - 1. */
   const criticalSize = ({ restitution, damping }) =>
     (Math.PI * damping) / (Math.sqrt(P.STIFFNESS * P.MASS) * (restitution - 1));
 
+  /* What the chain does, in words. */
+  function happening() {
+    const { measurement: { settled, settling, time } } = world;
+    if (world.ranAway) return `The chain has run away: its energy has grown ${RUN_AWAY} times${growth()}.`;
+    if (world.pushed) return "A push is under way.";
+    if (!settled) return `Settling for another ${Math.ceil(settling)} T, drawn pale.`;
+    return `Measured for ${Math.round(time)} T.`;
+  }
+
+  function growth() {
+    const { found, theory } = growthRates() || {}, exponential = (rate) => `exp(${rate.toPrecision(2)} t/T)`;
+    if (!found) return "";
+    return `, like ${exponential(found)}${theory ? `; theory for weak damping: ${exponential(theory)}` : ""}`;
+  }
+
   return {
-    world, unit, begin, change, goOn, step, push, setSpeed, take, letGo, growthRates, criticalSize,
+    world, unit, begin, change, goOn, step, push, setSpeed, take, letGo, growthRates, criticalSize, happening,
     ROWS_A_SECOND, RUN_AWAY, GAUGED, showOn: (shown) => { stage = shown; },
   };
 })();

@@ -13,6 +13,9 @@ const ChainScales = (() => {
   const freeLength = ({ box, size }) => box - 2 * RADIUS * size;
   const masses = ({ size, mass_ratio: ratio }) => Array.from({ length: size }, (_, i) => MASS * (i % 2 ? ratio : 1));
 
+  /* The smallest box of a gas. */
+  const narrowest = (chain) => (isGas(chain) ? 2 * RADIUS * chain.size + 2 : 0);
+
   /* The exponent n of the springs' potential k |d|^n/n, and their force over k. */
   const exponent = (chain) => (chain.spring === "quadratic" ? 3 : 2);
   const pull = (d, n) => (n === 2 ? d : d * Math.abs(d));
@@ -67,8 +70,8 @@ const ChainScales = (() => {
     return Math.min(step, (0.09 * MASS) / (2 * chain.damping * (1 + cooling)));
   }
 
-  /* The exact motion of one rod on a linear spring over a time, as in laws/exact_flight.py: how y
-     and v follow from those before, and the triangular root of the covariance of the noise. */
+  /* The exact motion of a rod on a linear spring, as in laws/exact_flight.py, and the triangular root of
+     the covariance of its noise. */
   function propagator(chain, duration) {
     const b = chain.damping / (2 * MASS), square = STIFFNESS / MASS, excess = (square - b * b) * duration ** 2;
     const fade = Math.exp(-b * duration), turn = Math.sqrt(Math.abs(excess));
@@ -87,7 +90,7 @@ const ChainScales = (() => {
   }
 
   return {
-    RADIUS, MASS, STIFFNESS, isGas, freeLength, masses, exponent, pull, freeWidth, thermalLength, relaxationTime,
+    RADIUS, MASS, STIFFNESS, isGas, freeLength, masses, narrowest, exponent, pull, freeWidth, thermalLength, relaxationTime,
     timeStep, propagator,
   };
 })();

@@ -24,5 +24,5 @@ const ChainSliders = (() => {
     control.after(stepping("+", 1, "more"));
   }
 
-  return { button, surround };
+  return { surround };
 })();

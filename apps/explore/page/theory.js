@@ -5,7 +5,7 @@ const ChainTheory = (() => {
   let solved = null, asking = null;
   const exact = { chain: null, due: 0, density: null };
 
-  /* How good a theory says that it is; an error that is null was not measured for such chains. */
+  /* How good a theory says that it is; an error that was not measured is null. */
   function stated({ title, error, border, density_error: ofDensity }) {
     const within = (bound) => (bound === 0 ? "exact" : `within ${Number((100 * bound).toPrecision(2))} %`);
     const known = [];
@@ -49,8 +49,7 @@ const ChainTheory = (() => {
     return exact.density;
   }
 
-  /* Ask the server for the best theory of a chain, and call `show(text)` while it is solved and with
-     what came of it. */
+  /* Ask the server for the best theory of a chain, and `show(text)` of it meanwhile and in the end. */
   async function ask(chain, address, show) {
     const stop = new AbortController(), begun = performance.now();
     asking = { chain, stop };

@@ -1,0 +1,34 @@
+"""Which theories the page's server solves, and that a class understands why it has none."""
+
+import re
+
+import pytest
+
+from crazybilliards.apps.explore.theory import solve
+
+USUAL = {"restitution": "1", "amplitude": "1", "damping": "1", "gap": "0", "spring": "linear"}
+GROWS = "by the kinetic equation its energy grows without bound"
+UNSOLVED = "its equations could not be solved for this chain; fewer rods"
+ADVICE = r"--|_|\bcells\b|tolerance|Python|simulate|GMRES|Newton"
+
+
+@pytest.mark.validate
+@pytest.mark.compiled
+@pytest.mark.parametrize(
+    ("chain", "said"),
+    [
+        ({"size": 40, "restitution": 1.05}, GROWS),
+        ({"size": 200, "restitution": 1.1, "damping": 10, "gap": 5}, UNSOLVED),
+        ({"size": 30, "restitution": 0, "amplitude": 0.1, "gap": 5}, UNSOLVED),
+        ({"size": 40, "restitution": 1.05, "amplitude": 0}, "without noise there is no steady"),
+        ({"size": 20, "restitution": 1.02}, None),
+        ({"size": 100, "restitution": 0, "damping": 0.3, "gap": 0.5}, None),
+    ],
+)
+def test_energy_grows_only_if_the_solver_has_found_so(chain, said):
+    """Chains above e = 1 that could not be solved, or have a solution, are not said to run away."""
+    answer = solve(USUAL | {name: str(value) for name, value in chain.items()}, lambda: False)
+    assert ("best" in answer) == (said is None)
+    if said:
+        assert answer["refused"].startswith(said)
+        assert not re.search(ADVICE, answer["refused"])
