@@ -90,7 +90,7 @@ const ChainScales = (() => {
   }
 
   return {
-    RADIUS, MASS, STIFFNESS, isGas, freeLength, masses, narrowest, exponent, pull, freeWidth, thermalLength, relaxationTime,
-    timeStep, propagator,
+    RADIUS, MASS, STIFFNESS, isGas, freeLength, masses, narrowest, exponent, pull, freeWidth, thermalLength,
+    relaxationTime, timeStep, propagator,
   };
 })();
