@@ -19,7 +19,7 @@ _SEEN = 0.01  # of the height of the picture, between a curve and a line
 # Standard errors between a curve and lines from node to node that noise makes: at most, of hundreds
 # of nodes whose errors are themselves uncertain, and their root mean square, 1.2 to 1.3.
 _LARGEST, _TYPICAL = 6.0, 2.0
-_NOISE = 20.0  # standard errors: an axis is not lower, so that noise alone does not fill it
+_NOISE = 20.0  # median errors: an axis is not lower, so that noise alone does not fill it
 
 
 def draw_measured(
@@ -68,7 +68,7 @@ def draw_measured(
         band = same | {"alpha": 0.3 * same.get("alpha", 1.0), "linewidth": 0}
         ax.fill_between(x, curve - width, curve + width, **band)
     if error is not None:
-        keep_room(ax, y, _NOISE * float(np.nanmax(spread)))
+        keep_room(ax, y, _NOISE * float(np.nanmedian(spread)))
 
 
 def _every(count: int, most: int) -> NDArray[np.int64]:

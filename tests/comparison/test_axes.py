@@ -23,7 +23,7 @@ def measured(widths, error):
     """Return widths of rods as a simulation would report them, in units of the free rod's."""
     found = EXACT.assign(velocity_width=EXACT.velocity_width.copy(data=UNIT * widths))
     errors = {
-        f"{name}_error": ("particle", np.full(100, size))
+        f"{name}_error": ("particle", size * np.ones(100))
         for name, size in (("velocity_width", UNIT * error), ("mean_displacement", 1e-9))
     }
     return found.assign(errors).assign_attrs(source="simulation")
@@ -75,6 +75,17 @@ def test_a_theory_alone_is_not_magnified_and_fills_the_axis_if_it_bends(bend):
     for ax, unit in ((theory, UNIT), (beside.axes[0], 1.0)):
         share = share_of_the_axis(ax, [0, unit * bend])
         assert share < 1e-4 if bend < 1e-3 else share > 0.8
+
+
+def test_large_errors_of_a_few_rods_leave_the_axis_to_the_others():
+    """Those of the outermost are often ten times the others, and the bars are seen whole."""
+    errors = np.where(np.abs(PLACE) > 0.97, 0.1, 0.01)
+    widths = 0.3 + 0.4 * PLACE**2
+    ax, unit = by_draw_widths(widths, errors)
+    assert share_of_the_axis(ax, unit * widths) > 0.6
+    low, high = ax.get_ylim()
+    assert low > 0.2
+    assert high > (widths + errors).max()
 
 
 def test_a_second_curve_widens_the_axis_of_the_first():
