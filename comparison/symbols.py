@@ -67,7 +67,7 @@ def draw_measured(
         ax.plot(x, curve, linewidth=0.8, label="" if kept.size else look["label"], **same)
         band = same | {"alpha": 0.3 * same.get("alpha", 1.0), "linewidth": 0}
         ax.fill_between(x, curve - width, curve + width, **band)
-    if error is not None:
+    if np.isfinite(spread).any():
         keep_room(ax, y, _NOISE * float(np.nanmedian(spread)))
 
 
