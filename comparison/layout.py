@@ -110,7 +110,8 @@ def label_outer(axes: Sequence[Axes], *, x: str, y: str) -> None:
 
     The last row may be shorter than the others.
     """
-    for ax in {ax.get_subplotspec().colspan.start: ax for ax in axes}.values():
+    places = [(place, ax) for ax in axes if (place := ax.get_subplotspec())]
+    for ax in {place.colspan.start: ax for place, ax in places}.values():
         ax.set_xlabel(x)
         ax.tick_params(labelbottom=True)
     for ax in filter(at_the_left, axes):
