@@ -17,14 +17,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties
 
-from crazybilliards.model.arrays import Array
-
 Columns = Literal[1, 2]
 
 _STYLE = "crazybilliards.comparison.figures"
 _WIDTHS: dict[Columns, float] = {1: 3.4, 2: 7.0}  # inches
 _LEAST_WIDTH = 1.6  # of a panel: narrower ones go below one another
-LEAST_SEEN = 0.1  # of the free rod's width: an axis of widths or displacements is not lower
 
 _columns: ContextVar[Columns | None] = ContextVar("columns", default=None)
 
@@ -116,16 +113,6 @@ def label_outer(axes: Sequence[Axes], *, x: str, y: str) -> None:
         ax.tick_params(labelbottom=True)
     for ax in filter(at_the_left, axes):
         ax.set_ylabel(y)
-
-
-def keep_room(ax: Axes, values: Array, least: float) -> None:
-    """Keep the vertical axis at least so high around these values: it does not magnify less."""
-    low, high = np.nanmin(values), np.nanmax(values)
-    if np.isfinite(least) and high - low < least:
-        middle = (low + high) / 2
-        room = [(0.0, middle - least / 2), (0.0, middle + least / 2)]
-        ax.update_datalim(room, updatex=False)
-        ax.autoscale_view(scalex=False)
 
 
 def legend_above(figure: Figure, ax: Axes, title: str | None = None) -> None:

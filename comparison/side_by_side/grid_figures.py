@@ -20,16 +20,9 @@ from matplotlib.lines import Line2D
 
 from crazybilliards.comparison.coverage import smooth
 from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_rods, overlay
-from crazybilliards.comparison.layout import (
-    LEAST_SEEN,
-    entitle,
-    keep_room,
-    legend_above,
-    letter,
-    panels,
-    picture_width,
-)
+from crazybilliards.comparison.layout import entitle, legend_above, letter, panels, picture_width
 from crazybilliards.comparison.side_by_side.grid import ELASTIC, KINETIC, SIMULATION, TITLES
+from crazybilliards.comparison.symbols import LEAST_SEEN, keep_room
 from crazybilliards.comparison.widths import displacement_unit, free_widths
 from crazybilliards.model import chain_of
 from crazybilliards.model.arrays import Array

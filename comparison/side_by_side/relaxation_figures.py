@@ -16,16 +16,10 @@ from matplotlib.figure import Figure
 from crazybilliards.comparison.coverage import smooth
 from crazybilliards.comparison.drawing import overlay
 from crazybilliards.comparison.encoding import Picture
-from crazybilliards.comparison.layout import (
-    LEAST_SEEN,
-    entitle,
-    keep_room,
-    label_outer,
-    legend_above,
-    panels,
-)
+from crazybilliards.comparison.layout import entitle, label_outer, legend_above, panels
 from crazybilliards.comparison.side_by_side.grid import SIMULATION
 from crazybilliards.comparison.side_by_side.relaxation import LEGEND, PARTICLES, cloud
+from crazybilliards.comparison.symbols import LEAST_SEEN, keep_room
 from crazybilliards.comparison.widths import displacement_unit
 from crazybilliards.model import Chain, chain_of
 
