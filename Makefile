@@ -79,6 +79,7 @@ coverage: $(VENV)/installed-coverage
 	$(BIN)/coverage combine -q
 	$(BIN)/coverage report --skip-covered
 
+# Scripts import those beside them, and a twin of the tests, by their bare names.
 check: $(VENV)/installed-check
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
