@@ -79,10 +79,12 @@ coverage: $(VENV)/installed-coverage
 	$(BIN)/coverage combine -q
 	$(BIN)/coverage report --skip-covered
 
+# Scripts import those beside them, and a twin of the tests, by their bare names.
 check: $(VENV)/installed-check
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	MYPYPATH=$(LINKS) $(BIN)/mypy -p crazybilliards
+	MYPYPATH=$(LINKS):benchmarks:docs/figures:tests/twins $(BIN)/mypy studies benchmarks docs/figures
 
 # --strict: a package that could not be looked up is a failure.
 audit: $(VENV)/installed-test $(VENV)/installed-docs $(VENV)/installed-audit

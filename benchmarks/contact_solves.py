@@ -7,20 +7,23 @@ impulses, as Contact Dynamics codes do.
 import numpy as np
 import pytest
 from gauss_seidel import solve
+from pytest_benchmark.fixture import BenchmarkFixture
 
 from crazybilliards.model import Chain
+from crazybilliards.model.arrays import Array
 from crazybilliards.particles import stepping
 from crazybilliards.particles.dynamics import make_dynamics
 from crazybilliards.particles.laws.avalanche import make_tally
-from crazybilliards.particles.laws.law import drift, make_scratch
+from crazybilliards.particles.laws.law import Law, Scratch, drift, make_scratch
 from crazybilliards.particles.noise import fill, make_noise
 
 SIZE, TIME_STEP = 1000, 1e-3
 UNSEEN = make_tally(2, contacts=False)
+Settled = tuple[Law, Scratch, list[tuple[Array, Array]]]
 
 
 @pytest.fixture(scope="module")
-def solver():
+def solver() -> Settled:
     """Return a settled chain's law and fifty successive states, the next kick already given."""
     chain = Chain(size=SIZE, restitution=0)
     dynamics = make_dynamics(chain, TIME_STEP, speed=1.0, method="contact-dynamics")
@@ -38,10 +41,10 @@ def solver():
 
 
 @pytest.mark.benchmark(group=f"50 contact solves of {SIZE} rods")
-def test_exact(benchmark, solver):
+def test_exact(benchmark: BenchmarkFixture, solver: Settled) -> None:
     law, scratch, states = solver
 
-    def solve_all():
+    def solve_all() -> None:
         for y, v in states:
             drift(y.copy(), v.copy(), np.zeros(SIZE), TIME_STEP, law, scratch, UNSEEN)
 
@@ -50,10 +53,10 @@ def test_exact(benchmark, solver):
 
 @pytest.mark.benchmark(group=f"50 contact solves of {SIZE} rods")
 @pytest.mark.parametrize("tolerance", [1e-3, 1e-10])
-def test_gauss_seidel(benchmark, solver, tolerance):
+def test_gauss_seidel(benchmark: BenchmarkFixture, solver: Settled, tolerance: float) -> None:
     _, _, states = solver
 
-    def solve_all():
+    def solve_all() -> None:
         impulses, bounds = np.zeros((2, SIZE - 1))
         for y, v in states:
             solve(y, v.copy(), np.zeros(SIZE), TIME_STEP, 0.0, tolerance, impulses, bounds)

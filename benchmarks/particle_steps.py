@@ -13,20 +13,23 @@ included, and therefore takes many steps, however long the chain.
 
 import numpy as np
 import pytest
+from pytest_benchmark.fixture import BenchmarkFixture
 
 from crazybilliards.model import Chain
+from crazybilliards.model.arrays import Array
 from crazybilliards.model.kernels import kernel
+from crazybilliards.model.parameters import Spring
 from crazybilliards.particles import stepping
 from crazybilliards.particles.dynamics import make_dynamics
 from crazybilliards.particles.laws.avalanche import make_tally
-from crazybilliards.particles.laws.law import make_scratch
-from crazybilliards.particles.noise import fill, make_noise
+from crazybilliards.particles.laws.law import Method, make_scratch
+from crazybilliards.particles.noise import Noise, fill, make_noise
 from crazybilliards.particles.scales import centre_width, default_time_step
 
 PARTICLE_STEPS = 1_000_000
 LEAST_STEPS = 20  # of one call
 SIZES = (10, 100, 1000, 10_000, 100_000, 1_000_000)
-WORK = {
+WORK: dict[str, tuple[float, Method, float | None, Spring]] = {
     "exact, e = 1, any step": (1.0, "event-driven", 1.0, "linear"),
     "sort, e = 1, quadratic springs, default step": (1.0, "event-driven", None, "quadratic"),
     "isotonic, e = 0, dt = 1e-3": (0.0, "event-driven", 1e-3, "linear"),
@@ -38,7 +41,7 @@ NOISE = "noise alone"
 
 
 @kernel
-def draw_noise(noise, kicks, size, steps):
+def draw_noise(noise: Noise, kicks: Array, size: int, steps: int) -> None:
     """Draw the noise of some steps, of as many at a time as have room in ``kicks``."""
     rows = kicks.size // size
     for taken in range(0, steps, rows):
@@ -48,7 +51,7 @@ def draw_noise(noise, kicks, size, steps):
 @pytest.mark.benchmark(max_time=3.0)
 @pytest.mark.parametrize("size", SIZES)
 @pytest.mark.parametrize("work", [NOISE, *WORK])
-def test_step(benchmark, work, size):
+def test_step(benchmark: BenchmarkFixture, work: str, size: int) -> None:
     benchmark.group = f"L={size:7d}"
     steps = max(PARTICLE_STEPS // size, LEAST_STEPS)
     benchmark.extra_info.update(work=work, size=size, particle_steps=steps * size)

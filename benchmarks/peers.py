@@ -20,6 +20,7 @@ import sys
 import time
 from importlib.metadata import version
 from pathlib import Path
+from typing import Any
 
 import mujoco
 import numba
@@ -170,10 +171,11 @@ def run(program: Program, noise: np.random.Generator, steps: int) -> tuple[float
 
 def cost_of_simulate(chain: Chain) -> float:
     """Return the seconds of a step of ``simulate``, noise included."""
-    options = {"time_step": TIME_STEP, "seed": 1, "progress": False, "observe": "snapshots"}
-    simulate(chain, duration=WARMUP * TIME_STEP, every=1, warmup=0, **options)  # compiles
+    options: dict[str, Any] = {"time_step": TIME_STEP, "seed": 1, "observe": "snapshots"}
+    options |= {"every": 1, "warmup": 0, "progress": False}
+    simulate(chain, duration=WARMUP * TIME_STEP, **options)  # compiles
     started = time.process_time()
-    simulate(chain, duration=WARMUP * TIME_STEP, every=1, warmup=0, **options)
+    simulate(chain, duration=WARMUP * TIME_STEP, **options)
     return (time.process_time() - started) / WARMUP
 
 
@@ -192,7 +194,7 @@ def measure_siconos(python: str) -> tuple[float, list[float]]:
     """Return the same for Siconos, which needs another version of numpy than this package."""
     chain = Chain(size=LONG)
     same = {name: getattr(chain, name) for name in ("mass", "damping", "stiffness")}
-    asked = {"sizes": [LONG, SHORT], "chain": same | {"time_step": TIME_STEP}}
+    asked: dict[str, Any] = {"sizes": [LONG, SHORT], "chain": same | {"time_step": TIME_STEP}}
     asked |= {"warmup": WARMUP, "measured": MEASURED, "blocks": BLOCKS}
     script = Path(__file__).with_name("siconos_steps.py")
     answer = subprocess.check_output([python, script, json.dumps(asked)], text=True)

@@ -1,6 +1,7 @@
 """Two replicas in one thread and in two: the kernels hold no lock, so two should take half."""
 
 import pytest
+from pytest_benchmark.fixture import BenchmarkFixture
 
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
@@ -14,7 +15,7 @@ CASES = {
 
 @pytest.mark.parametrize("case", CASES)
 @pytest.mark.parametrize("threads", [1, 2])
-def test_replicas(benchmark, case, threads):
+def test_replicas(benchmark: BenchmarkFixture, case: str, threads: int) -> None:
     chain, duration = CASES[case]
     benchmark.group = f"two replicas, {case}"
     benchmark.pedantic(

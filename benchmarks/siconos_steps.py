@@ -20,7 +20,9 @@ TIMED = 20  # steps of the long chain, of which one takes a second
 class Rods:
     """Coordinates on a line, whose neighbours cannot pass each other."""
 
-    def __init__(self, size, time_step, mass, damping, stiffness):
+    def __init__(
+        self, size: int, time_step: float, mass: float, damping: float, stiffness: float
+    ) -> None:
         model = kernel.NonSmoothDynamicalSystem(0, 1e6)
         matrices = [np.eye(1) * each for each in (mass, stiffness, damping)]
         self.rods = [kernel.LagrangianLinearTIDS([0.0], [0.0], *matrices) for _ in range(size)]
@@ -35,7 +37,7 @@ class Rods:
         )
         self.time_step = time_step
 
-    def run(self, noise, steps):
+    def run(self, noise: np.random.Generator, steps: int) -> tuple[float, float]:
         """Return the seconds of a step, and the mean of v^2."""
         seconds = squares = 0.0
         for _ in range(steps):

@@ -9,20 +9,22 @@ import time
 
 import numpy as np
 from numba import njit
+from pde import FieldCollection
 
 from crazybilliards.kinetic import compressed
-from crazybilliards.kinetic.fluids.eulerian_frame import make_constants
+from crazybilliards.kinetic.fluids.eulerian_frame import Constants, make_constants
 from crazybilliards.kinetic.fluids.finite_volumes import eulerian_rate, make_rate
 from crazybilliards.kinetic.fluids.pde_solver import Flow, make_state
 from crazybilliards.kinetic.fluids.position_cells import make_faces, starting_fields
 from crazybilliards.kinetic.starts import read_start
 from crazybilliards.model import Chain
+from crazybilliards.model.arrays import Array
 
 STEPS = 5000
 
 
 @njit
-def bare_loop(fields, dt, steps, constants):
+def bare_loop(fields: Array, dt: float, steps: int, constants: Constants) -> Array:
     for _ in range(steps):
         k1 = dt * eulerian_rate(fields, constants)
         k2 = dt * eulerian_rate(fields + 0.5 * k1, constants)
@@ -51,6 +53,7 @@ def main() -> None:
         found = flow.solve(
             state, STEPS * dt, dt, tracker=None, solver="runge-kutta", backend="numba"
         )
+        assert isinstance(found, FieldCollection)
         np.testing.assert_allclose(found.data, expected, atol=1e-12)
         stepping = flow.diagnostics["controller"]["profiler"]["solver"]
         scale = 1e9 / (STEPS * cells)

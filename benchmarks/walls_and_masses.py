@@ -10,6 +10,7 @@ of the rounds' ratios.
 
 import argparse
 import time
+from collections.abc import Iterator
 from statistics import median
 
 import numpy as np
@@ -27,7 +28,7 @@ RODS_AND_STEPS = 50_000  # of a round
 UNSEEN = make_tally(2, contacts=False)
 
 
-def pairs(size):
+def pairs(size: int) -> Iterator[tuple[str, Chain, Chain, float]]:
     """Return chains with walls or masses, each after the plain one, and the step of both."""
     elastic, lossy = Chain(size=size), Chain(size=size, restitution=0.9)
     step = default_time_step(lossy)
@@ -41,7 +42,7 @@ def pairs(size):
 class Steps:
     """A chain that takes steps of one length, and how long each round of them took."""
 
-    def __init__(self, chain, time_step):
+    def __init__(self, chain: Chain, time_step: float) -> None:
         generator = np.random.default_rng(0)
         width = centre_width(chain)
         y = np.sort(generator.normal(scale=width * Chain().thermal_length, size=chain.size))
@@ -53,9 +54,10 @@ class Steps:
         self.size, self.steps = chain.size, RODS_AND_STEPS // chain.size
         for _ in range(30):
             stepping.advance(*self.state, self.steps)
-        self.times, self.collisions = [], 0
+        self.times: list[float] = []
+        self.collisions = 0
 
-    def go(self):
+    def go(self) -> None:
         """Take the steps of a round."""
         begin = time.perf_counter()
         self.collisions += stepping.advance(*self.state, self.steps)

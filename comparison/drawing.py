@@ -77,7 +77,7 @@ def overlay(
         every theory its own colour and line style, up to 28. Of more than 60 values (200 in a
         picture for print) evenly spaced ones and the last are drawn as symbols. Where the symbols
         of a simulation would hide waves between them, all its values are drawn instead, as a thin
-        line in a band of one standard error.
+        line in a band of one standard error. The picture is at least twenty median errors high.
     quantity
         A variable over x, time, particle, contact, mode, separation, velocity or velocity_bin.
         Densities must be smoothed all or not at all. ``velocity_density`` is that of a rod picked

@@ -102,6 +102,19 @@ def at_the_left(ax: Axes) -> bool:
     return place is None or place.is_first_col()
 
 
+def label_outer(axes: Sequence[Axes], *, x: str, y: str) -> None:
+    """Label shared axes below the lowest panel of every column, with numbers, and at the left.
+
+    The last row may be shorter than the others.
+    """
+    places = [(place, ax) for ax in axes if (place := ax.get_subplotspec())]
+    for ax in {place.colspan.start: ax for place, ax in places}.values():
+        ax.set_xlabel(x)
+        ax.tick_params(labelbottom=True)
+    for ax in filter(at_the_left, axes):
+        ax.set_ylabel(y)
+
+
 def legend_above(figure: Figure, ax: Axes, title: str | None = None) -> None:
     """Put the legend of one panel over all of them, in as many columns as fit."""
     handles, labels = ax.get_legend_handles_labels()

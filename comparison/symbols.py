@@ -1,4 +1,4 @@
-"""Measured values as symbols, and as a line in a band where symbols would hide the curve."""
+"""Measured values as symbols, as a line where symbols would hide the curve, and room for noise."""
 
 from __future__ import annotations
 
@@ -14,10 +14,12 @@ from numpy.typing import NDArray
 from crazybilliards.model.arrays import Array
 
 MOST_SYMBOLS = 60
+LEAST_SEEN = 0.1  # of the free rod's width: an axis of widths or displacements is not lower
 _SEEN = 0.01  # of the height of the picture, between a curve and a line
 # Standard errors between a curve and lines from node to node that noise makes: at most, of hundreds
 # of nodes whose errors are themselves uncertain, and their root mean square, 1.2 to 1.3.
 _LARGEST, _TYPICAL = 6.0, 2.0
+_NOISE = 20.0  # median errors: an axis is not lower, so that noise alone does not fill it
 
 
 def draw_measured(
@@ -65,6 +67,18 @@ def draw_measured(
         ax.plot(x, curve, linewidth=0.8, label="" if kept.size else look["label"], **same)
         band = same | {"alpha": 0.3 * same.get("alpha", 1.0), "linewidth": 0}
         ax.fill_between(x, curve - width, curve + width, **band)
+    if np.isfinite(spread).any():
+        keep_room(ax, y, _NOISE * float(np.nanmedian(spread)))
+
+
+def keep_room(ax: Axes, values: Array, least: float) -> None:
+    """Keep the vertical axis at least so high around these values: it does not magnify less."""
+    low, high = np.nanmin(values), np.nanmax(values)
+    if np.isfinite(least) and high - low < least:
+        middle = (low + high) / 2
+        room = [(0.0, middle - least / 2), (0.0, middle + least / 2)]
+        ax.update_datalim(room, updatex=False)
+        ax.autoscale_view(scalex=False)
 
 
 def _every(count: int, most: int) -> NDArray[np.int64]:

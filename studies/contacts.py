@@ -156,11 +156,11 @@ def tabulate_short(duration: float) -> None:
         centre = measured(chain, duration).sel(contact=slice(9, 11))
         ratio = (centre.contact_temperature / centre.relative_temperature).mean()
         # Neighbouring contacts err together.
-        errors = [
-            (centre[f"{name}_temperature_error"] / centre[f"{name}_temperature"]).mean()
+        contact, relative = (
+            float((centre[f"{name}_temperature_error"] / centre[f"{name}_temperature"]).mean())
             for name in ("contact", "relative")
-        ]
-        error = float(ratio) * np.hypot(*errors)
+        )
+        error = float(ratio) * np.hypot(contact, relative)
         print_row(chain.size, f"{chain.restitution:g}", f"{float(ratio):.2f} ± {error:.2f}")
 
 

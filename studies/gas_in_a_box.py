@@ -11,8 +11,9 @@ from __future__ import annotations
 
 import math
 import warnings
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 import xarray as xr
@@ -27,7 +28,8 @@ from crazybilliards.model.arrays import Array
 from crazybilliards.particles import simulate
 from studies.common import options, print_heads, print_row, save_picture
 
-LOOKS = {  # the lines, in order
+Found = TypeVar("Found")
+LOOKS: dict[str, dict[str, Any]] = {  # the lines, in order
     "isothermal fluid": {"color": COLOURS[1], "linestyle": "--"},
     "fluid with a temperature": {"color": COLOURS[0], "linestyle": "-"},
     "one mass, exact": {"color": COLOURS[6], "linestyle": ":", "linewidth": 1.5},
@@ -55,7 +57,7 @@ SHARE = 0.1  # Gamma l/LW, how far a rod flies in m/gamma
 def gas(size: int, room: float, damping: float, ratio: float = 1.0) -> Chain:
     """Return a chain without springs at T = 1, of the mean mass 1; ``room`` is l."""
     kick, light = math.sqrt(2 * damping), 2 / (1 + ratio)
-    walls = {"box": room + 2 * size, "stiffness": 0.0, "mass_ratio": ratio}
+    walls: dict[str, Any] = {"box": room + 2 * size, "stiffness": 0.0, "mass_ratio": ratio}
     return Chain(size=size, mass=light, damping=damping, amplitude=kick, **walls)
 
 
@@ -74,8 +76,8 @@ def run(
         chain, damping = chain.replace(damping=0.0, amplitude=0.0), 0.0
     light = chain.rod_masses.min()
     steps = math.ceil(every * damping / (0.1 * light)) if chain.mass_ratio != 1 else 1
-    how = {"average": "ensemble", "replicas": start.sizes["replica"], "threads": 1, "seed": 2}
-    how |= {"every": every, "time_step": every / max(steps, 1), "progress": False}
+    how: dict[str, Any] = {"average": "ensemble", "replicas": start.sizes["replica"], "seed": 2}
+    how |= {"threads": 1, "every": every, "time_step": every / max(steps, 1), "progress": False}
     return simulate(chain, start=start, duration=duration, observe="snapshots", **how)
 
 
@@ -110,8 +112,8 @@ def fluid_wave(chain: Chain, kind: str | None) -> Array:
     columns = {"density": np.full(x.size, 1 / 3), "label": label}
     columns |= {"velocity_variance": np.ones(x.size), "flow_velocity": 0.01 * np.sin(k * label)}
     start = xr.Dataset({name: ("x", each) for name, each in columns.items()}, {"x": x})
-    times = {"duration": PERIOD / k, "every": PERIOD / k / WAVE_TIMES, "progress": False}
-    flow = hydrodynamics(chain, start, velocity_variance=kind, **times)
+    times: dict[str, Any] = {"duration": PERIOD / k, "every": PERIOD / k / WAVE_TIMES}
+    flow = hydrodynamics(chain, start, velocity_variance=kind, progress=False, **times)
     rod = np.sin(k * (np.arange(L) + 0.5))
     wave = flow.mean_velocity.transpose("time", "particle").values @ rod
     return wave / wave[0]
@@ -166,10 +168,8 @@ def release(damping: float) -> dict[str, tuple[Array, Array]]:
     """Return the share of the rods beyond the middle, over time, with errors; and the lines."""
     curves = {}
     for ratio, (size, runs) in RELEASED.items():
-        chain, generator = (
-            gas(size, size, (damping or NONE) / size, ratio),
-            np.random.default_rng(1),
-        )
+        chain = gas(size, size, (damping or NONE) / size, ratio)
+        generator = np.random.default_rng(1)
         y = np.sort(generator.uniform(-size / 2, 0, (runs, size)), axis=1)
         v = generator.normal(size=y.shape) / np.sqrt(chain.rod_masses)
         states = {"position": chain.physical(y), "velocity": v}
@@ -187,14 +187,12 @@ def fluid_release(chain: Chain, kind: str | None) -> Array:
     L, end = chain.size, chain.box / 2
     label = np.linspace(0, L, 2001)
     x = label / 2 - L / 2 + 2 * (label - L / 2)  # y from -l/2 to 0, and l = L
-    columns = {
-        "density": np.append(np.full(x.size, 0.4), [0, 0]),
-        "label": np.append(label, [L, L]),
-    }
+    columns = {"density": np.append(np.full(x.size, 0.4), [0, 0])}
+    columns |= {"label": np.append(label, [L, L])}
     x = np.append(x, [x[-1] + 1e-6, end])
     start = xr.Dataset({name: ("x", each) for name, each in columns.items()}, {"x": x})
-    times = {"duration": RELEASE_END * L, "every": RELEASE_END * L / RELEASE_TIMES}
-    how = {"frame": "eulerian", "progress": False}  # has the jumps of shocks
+    times: dict[str, Any] = {"duration": RELEASE_END * L, "every": RELEASE_END * L / RELEASE_TIMES}
+    how: dict[str, Any] = {"frame": "eulerian", "progress": False}  # has the jumps of shocks
     flow = hydrodynamics(chain, start, velocity_variance=kind, **times, **how)
     y = np.maximum.accumulate(flow.x.values - 2 * (flow.label.values - L / 2), axis=1)
     pairs = zip(y, flow.label.values, strict=True)
@@ -242,8 +240,8 @@ def pressure(restitution: float) -> Array:
     for seed, filling in enumerate(FILLINGS):
         room = 2 * GAS_SIZE * (1 - filling) / filling
         chain = gas(GAS_SIZE, room, SHARE * GAS_SIZE / room).replace(restitution=restitution)
-        times = {"duration": GAS_TIMES[restitution] / chain.damping, "threads": 1}
-        how = {"observe": ["walls", "widths"], "seed": seed, "progress": False}
+        times: dict[str, Any] = {"duration": GAS_TIMES[restitution] / chain.damping, "threads": 1}
+        how: dict[str, Any] = {"observe": ["walls", "widths"], "seed": seed, "progress": False}
         found = simulate(chain, **times, **how)
         middle = found.velocity_width.values[GAS_SIZE // 4 : -GAS_SIZE // 4]
         square = 1.0 if restitution == 1 else float((middle**2).mean())
@@ -267,7 +265,7 @@ def draw_pressure(found: dict[float, Array]) -> Figure:
     for number, (e, rows) in zip((4, 2), found.items(), strict=True):
         label = "rods, $e = 1$" if e == 1 else f"$e = {e}$, with $mW_v^2$ for $T$"
         values, errors, _ = rows.T
-        look = {"number": number, "linestyle": "none", "zorder": 3}
+        look: dict[str, Any] = {"number": number, "linestyle": "none", "zorder": 3}
         draw_points(axes[0], filling, values, errors, label=label, **look)
         draw_points(axes[1], filling, values / tonks(filling), errors / tonks(filling), **look)
     axes[0].set(yscale="log", ylabel=r"pressure $P$ [$T/2R$]")
@@ -285,14 +283,16 @@ def tell_pressure(found: dict[float, Array]) -> None:
             print_row(f"{filling:g}", f"{e:g}", f"{value:.4f}", over, f"{width:.3f}")
 
 
+def show(
+    path: Path, found: Found, tell: Callable[[Found], None], draw: Callable[[Found], Figure]
+) -> None:
+    tell(found)
+    save_picture(path, draw, found)
+
+
 if __name__ == "__main__":
     warnings.filterwarnings("ignore", "equal elastic rods|damping=0")  # that is what is shown
-    folder = options(__doc__, folder=Path).folder
-    for name, compute, tell, draw, of in (
-        ("sound", lambda each: sound(*each), tell_sound, draw_sound, WAVES),
-        ("release", release, tell_release, draw_release, RELEASES),
-        ("pressure", pressure, tell_pressure, draw_pressure, tuple(GAS_TIMES)),
-    ):
-        found = {each: compute(each) for each in of}
-        tell(found)
-        save_picture(folder / f"gas_{name}.png", draw, found)
+    to = options(__doc__, folder=Path).folder
+    show(to / "gas_sound.png", {each: sound(*each) for each in WAVES}, tell_sound, draw_sound)
+    show(to / "gas_release.png", {G: release(G) for G in RELEASES}, tell_release, draw_release)
+    show(to / "gas_pressure.png", {e: pressure(e) for e in GAS_TIMES}, tell_pressure, draw_pressure)

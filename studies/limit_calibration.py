@@ -10,6 +10,7 @@ the seconds of one limit. The truth is exact at e = 1. Elsewhere it was computed
 """
 
 import time
+from typing import Any
 
 import numpy as np
 
@@ -37,9 +38,9 @@ def main() -> None:
     print_heads("chain", "accuracy", "seeds", "rms", "bias", "stated bias", "s")
     for chain, accuracy, width, uncertain in CHAINS:
         truth = width or chain.free_velocity_width
-        how = {"accuracy": accuracy, "observe": "widths", "threads": 1, "progress": False}
+        how: dict[str, Any] = {"accuracy": accuracy, "observe": "widths", "threads": 1}
         begin = time.process_time()
-        limits = [simulate_limit(chain, seed=seed, **how) for seed in seeds]
+        limits = [simulate_limit(chain, seed=seed, progress=False, **how) for seed in seeds]
         seconds = (time.process_time() - begin) / len(seeds)
         off = np.array([float(each.central_velocity_width) for each in limits]) - truth
         stated = np.array([float(each.central_velocity_width_error) for each in limits])

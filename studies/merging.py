@@ -16,10 +16,11 @@ import time
 import numpy as np
 
 from crazybilliards.model import Chain
+from crazybilliards.model.arrays import Array
 from crazybilliards.model.kernels import kernel
-from crazybilliards.particles.dynamics import make_dynamics
-from crazybilliards.particles.laws.avalanche import make_tally
-from crazybilliards.particles.laws.law import make_scratch
+from crazybilliards.particles.dynamics import Dynamics, make_dynamics
+from crazybilliards.particles.laws.avalanche import Tally, make_tally
+from crazybilliards.particles.laws.law import Scratch, make_scratch
 from crazybilliards.particles.noise import fill, make_noise
 from crazybilliards.particles.scales import centre_width, default_time_step
 from crazybilliards.particles.stepping import WHOLE, take_step
@@ -32,7 +33,15 @@ QUANTITIES = ("W_v, middle third", "relative velocity", "W_v, ends")
 
 
 @kernel(allocates=True)
-def run(y, v, noise, dynamics, scratch, tally, sums):
+def run(
+    y: Array,
+    v: Array,
+    noise: Array,
+    dynamics: Dynamics,
+    scratch: Scratch,
+    tally: Tally,
+    sums: Array,
+) -> int:
     """Take a step for each row of ``noise``; add the squares after each, and return collisions."""
     size, collisions, step = y.size, 0, dynamics.step
     low, high = size // 3, size - size // 3

@@ -167,16 +167,16 @@ def tables(results: Results) -> dict[str, Table]:
         ]
         shares = [f"{shared.value:.3f} ± {shared.error:.3f}", f"{covariance(theory).value:.3f}"]
         rows.append([f"{e:g}", f"{size}", *lengths, *shares, f"{together:.2f}"])
-    sticky, theory = (
+    sticky, sticky_theories = (
         {size: each for (e, size), each in found.items() if e == 0} for found in (runs, theories)
     )
     guesses = {size: guess(run) for size, run in sticky.items()}
-    fits = {size: fit_border_power_law(each) for size, each in theory.items()}
+    fits = {size: fit_border_power_law(each) for size, each in sticky_theories.items()}
     powers = {size: f"{fit.exponent:.3f} ± {fit.exponent_error:.3f}" for size, fit in fits.items()}
     return {
         "correlation_lengths": rows,
         "long_chains_simulation": along_lengths(sticky, r"$\sqrt{2/3}\,P/\Gamma$", guesses),
-        "long_chains_theory": along_lengths(theory, r"$\nu$", powers),
+        "long_chains_theory": along_lengths(sticky_theories, r"$\nu$", powers),
     }
 
 

@@ -39,7 +39,9 @@ def simulated(chain: Chain, factor: float, folder: Path) -> xr.Dataset:
     """Return the ensemble, simulated now or before."""
     name = f"L{chain.size}_e{chain.restitution:g}_gamma{chain.damping:.4g}_by{factor:g}.nc"
     if (folder / name).exists():
-        return load(folder / name)
+        kept = load(folder / name)
+        assert isinstance(kept, xr.Dataset)
+        return kept
     elastic = chain.replace(restitution=1.0)
     states = equilibrium_states(elastic, ROD_COUNT // chain.size, seed=1)
     y = factor * elastic.reduced(states.position.values)
@@ -96,8 +98,8 @@ def table(folder: Path, held_out: bool) -> Table:
             found = f"{100 * error:+.1f} ± {100 * noise:.1f}", time, f"{100 * stated:.1f}"
             yield e, size, damping, factor, *found
         else:
-            found = f"{abs(error):.4f}", f"{noise:.4f}"
-            yield "relax_phase_space", "kinetic_energy", *place, factor, *found
+            rounded = f"{abs(error):.4f}", f"{noise:.4f}"
+            yield "relax_phase_space", "kinetic_energy", *place, factor, *rounded
 
 
 if __name__ == "__main__":

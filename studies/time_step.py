@@ -22,10 +22,10 @@ from crazybilliards.model import Chain
 from crazybilliards.model.arrays import middle_tenth
 from crazybilliards.model.kernels import kernel
 from crazybilliards.particles.dynamics import Dynamics, make_dynamics
-from crazybilliards.particles.laws.avalanche import make_tally
+from crazybilliards.particles.laws.avalanche import Tally, make_tally
 from crazybilliards.particles.laws.closed_contacts import CRITICAL_RESTITUTION, strengthen
 from crazybilliards.particles.laws.law import Scratch, drift, make_scratch
-from crazybilliards.particles.noise import fill, make_noise
+from crazybilliards.particles.noise import Noise, fill, make_noise
 from crazybilliards.particles.scales import default_time_step
 from crazybilliards.reproduction.claims.repetition import error_of_mean
 from studies.common import Table, options, percents, print_table
@@ -76,7 +76,7 @@ def make_copy(chain: Chain, time_step: float) -> Copy:
 
 
 @kernel(allocates=True)
-def advance(copy, tally):
+def advance(copy: Copy, tally: Tally) -> None:
     """One step: kick by the noise in ``copy.kicks`` and the spring, drift, half a spring kick."""
     y, v, step, anchors = copy.y, copy.v, copy.dynamics.step, copy.dynamics.anchors
     if step.closed != 1.0:
@@ -87,7 +87,7 @@ def advance(copy, tally):
 
 
 @kernel(allocates=True)
-def measure(copy):
+def measure(copy: Copy) -> None:
     d, squares = copy.y - copy.dynamics.anchors, copy.v**2
     copy.sums[0] += d
     copy.sums[1] += d * d
@@ -96,7 +96,9 @@ def measure(copy):
 
 
 @kernel(allocates=True)
-def run(copies, noise, tally, steps, measured, finer):
+def run(
+    copies: tuple[Copy, ...], noise: Noise, tally: Tally, steps: int, measured: bool, finer: int
+) -> None:
     """Take steps, each ``finer`` times as long as that of the copy before it, under one noise.
 
     All copies are measured after each of the longest steps, whose number is given.

@@ -111,6 +111,7 @@ def held_out() -> Iterator[Checked]:
     """Give chains at a quarter of the step, an eighth where W_v depends on it most."""
     durations = {16: 80_000.0, 24: 80_000.0, 70: 40_000.0, 140: 25_000.0, 230: 20_000.0}
     durations[420] = 12_000.0
+    parameters: list[tuple[int, float, float]]
     parameters = [(16, 0, 1), (70, 0, 1), (230, 0, 1), (420, 0, 1), (24, 0.1, 1), (140, 0.1, 1)]
     parameters += [(70, 0.3, 1), (230, 0.3, 1.8), (16, 0.4, 0.6), (140, 0.55, 1), (70, 0.68, 1.8)]
     parameters += [(420, 0.68, 1), (230, 0.8, 1), (24, 0.88, 0.6), (420, 0.88, 1), (140, 0.93, 1)]

@@ -9,6 +9,7 @@ the error is linear in the shaded band and logarithmic beyond it.
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -41,10 +42,10 @@ def errors(folder: Path, *, pairs: bool) -> pd.DataFrame:
         found.append(alone.assign(centre_error=rod, border_error=rod, held_out=False))
     for table in ("derived_with", "held_out"):
         both = pd.read_csv(folder / f"correlations_{table}.csv")
-        bars = both["error of the centre, a rod, the border, %"].str.split(", ", expand=True)
+        parts = both["error of the centre, a rod, the border, %"].str.split(", ", expand=True)
         which = "" if pairs else " without"
         values = {place: both[f"W_v {place}{which}, %"] for place in ("centre", "border")}
-        bars = {"centre_error": bars[0].astype(float), "border_error": bars[2].astype(float)}
+        bars = {"centre_error": parts[0].astype(float), "border_error": parts[2].astype(float)}
         found.append(both.assign(**values, **bars, held_out=table == "held_out"))
     every = pd.concat(found)
     usual = (every.gamma == 1) | (every.e > 1)
@@ -58,14 +59,14 @@ def draw_errors(ax: Axes, found: pd.DataFrame, which: str, sizes: list[int]) -> 
     """Draw a line for each of the sizes, and one symbol for all chains held out."""
     driven = found.e > 1
     usual = found[~found.held_out & ~driven]
-    groups = {f"$L = {size}$": usual[size == usual.L] for size in sizes}
+    groups = {f"$L = {size}$": usual[usual["L"] == size] for size in sizes}
     groups["held out"] = found[found.held_out]
     for number, (label, group) in enumerate(groups.items()):
         if not len(group):
             continue
         shown = group.sort_values("place")
         points = shown.place, shown[which], shown[f"{which}_error"]
-        look = {"markerfacecolor": "none", "linestyle": "-", "linewidth": 0.8}
+        look: dict[str, Any] = {"markerfacecolor": "none", "linestyle": "-", "linewidth": 0.8}
         if label == "held out":
             look |= {"markerfacecolor": COLOURS[number], "linestyle": "none"}
         draw_points(ax, *points, number=number, label=label, **look)
@@ -93,8 +94,8 @@ def finish(ax: Axes) -> None:
     ax.set_xlim(LEFT, 1.5 * DRIVEN)
     box = {"facecolor": "white", "edgecolor": "none", "pad": 0}
     for y in (0, 1):
-        frame = {"transform": ax.get_xaxis_transform(), "ha": "center", "va": "center"}
-        ax.text(DRIVEN / 2, y, "//", bbox=box, **frame)
+        frame: dict[str, Any] = {"ha": "center", "va": "center", "bbox": box}
+        ax.text(DRIVEN / 2, y, "//", transform=ax.get_xaxis_transform(), **frame)
 
 
 def draw(folder: Path) -> Figure:

@@ -1,4 +1,4 @@
-"""Densities as a simulation would report them, and what a picture of one shows."""
+"""Densities as a simulation would report them, and what pictures of them and of others show."""
 
 import numpy as np
 import xarray as xr
@@ -27,6 +27,24 @@ def drawn(ax):
         np.concatenate([empty, *lines])[:, 0],
         lambda x: np.interp(x, *points.T),
     )
+
+
+def columns_without_numbers(figure):
+    """Return the columns of panels whose lowest has no numbers or no name below it."""
+    figure.draw_without_rendering()
+    lowest = {ax.get_subplotspec().colspan.start: ax for ax in figure.axes if ax.get_title("left")}
+    below = {
+        column: [each.get_text() for each in ax.get_xticklabels() if each.get_visible()]
+        for column, ax in lowest.items()
+        if ax.get_xlabel()
+    }
+    return [column for column in lowest if not any(below.get(column, []))]
+
+
+def share_of_the_axis(ax, values):
+    """Return how much of the height of a picture these values take."""
+    low, high = ax.get_ylim()
+    return np.ptp(values) / (high - low)
 
 
 X = np.arange(-1400, 1401) * 0.1

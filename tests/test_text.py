@@ -171,6 +171,17 @@ def test_markdown_shows_all_of_a_page():
         )
 
 
+def test_lines_of_pages_are_120_characters_wide_at_most():
+    """Except rows of tables. The table of claims is written by a program."""
+    pages = {*(ROOT / "docs").rglob("*.md")} - {ROOT / "docs/paper/claims.md"}
+    assert not [
+        f"{page.relative_to(ROOT)}:{number}"
+        for page in sorted(pages)
+        for number, line in enumerate(page.read_text(encoding="utf-8").splitlines(), 1)
+        if len(line) > 120 and not line.startswith("|")
+    ]
+
+
 def test_newcomers_see_one_way_to_import():
     """``import crazybilliards as cb`` and ``cb.simulate``; a room only for what cb has not."""
     taken = re.compile(r"^\W*from crazybilliards[\w.]* import (\([^)]*\)|.*)", re.MULTILINE)

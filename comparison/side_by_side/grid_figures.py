@@ -22,6 +22,7 @@ from crazybilliards.comparison.coverage import smooth
 from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_rods, overlay
 from crazybilliards.comparison.layout import entitle, legend_above, letter, panels, picture_width
 from crazybilliards.comparison.side_by_side.grid import ELASTIC, KINETIC, SIMULATION, TITLES
+from crazybilliards.comparison.symbols import LEAST_SEEN, keep_room
 from crazybilliards.comparison.widths import displacement_unit, free_widths
 from crazybilliards.model import chain_of
 from crazybilliards.model.arrays import Array
@@ -194,8 +195,9 @@ def draw_widths(tree: xr.DataTree) -> Figure:
                     place = theory.normalized_particle
                     [line] = ax.plot(place, values, style, color=colour, zorder=3)
                     drawn.append((ax, line, stated_error(theory, name) / unit))
+                    keep_room(ax, values.values, LEAST_SEEN)
     along_the_chain(axes[0])
-    axes[0].set(ylabel="velocity width $W_v/W$", ylim=(0, None))
+    axes[0].set(ylabel="velocity width $W_v/W$")
     along_the_chain(axes[1])
     axes[1].set(ylabel=rf"displacement $\langle\Delta x\rangle/{symbol}$")
     fade(drawn)
@@ -253,18 +255,19 @@ def draw_profile(theory: xr.Dataset, name: str) -> Figure:
     chain = chain_of(theory)
     figure, axes = panels(1, 2)
     drawn = []
-    for ax, quantity, label in (
-        (axes[0], "velocity_width", "velocity width $W_v$ [R/T]"),
-        (axes[1], "mean_displacement", r"displacement $\langle\Delta x\rangle$ [R]"),
+    length = displacement_unit(chain)[1]
+    for ax, quantity, label, unit in (
+        (axes[0], "velocity_width", "velocity width $W_v$ [R/T]", chain.free_velocity_width),
+        (axes[1], "mean_displacement", r"displacement $\langle\Delta x\rangle$ [R]", length),
     ):
         [line] = ax.plot(theory.normalized_particle, theory[quantity], color=COLOURS[0], label=name)
         drawn.append((ax, line, stated_error(theory, quantity)))
+        keep_room(ax, theory[quantity].values, LEAST_SEEN * unit)
         along_the_chain(ax)
         ax.set(ylabel=label)
     for number, width in enumerate(free_widths(chain)):
         of_both = None if number else "free rod (and e = 1)"
         axes[0].axhline(width, color="0.4", linestyle=":", label=of_both)
     axes[0].legend()
-    axes[0].set_ylim(bottom=0)
     fade(drawn)
     return figure

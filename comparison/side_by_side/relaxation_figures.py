@@ -16,14 +16,15 @@ from matplotlib.figure import Figure
 from crazybilliards.comparison.coverage import smooth
 from crazybilliards.comparison.drawing import overlay
 from crazybilliards.comparison.encoding import Picture
-from crazybilliards.comparison.layout import entitle, legend_above, panels
+from crazybilliards.comparison.layout import entitle, label_outer, legend_above, panels
 from crazybilliards.comparison.side_by_side.grid import SIMULATION
 from crazybilliards.comparison.side_by_side.relaxation import LEGEND, PARTICLES, cloud
+from crazybilliards.comparison.symbols import LEAST_SEEN, keep_room
 from crazybilliards.comparison.widths import displacement_unit
 from crazybilliards.model import Chain, chain_of
 
 _NAMES = {PARTICLES: SIMULATION} | LEGEND
-_DENSITY = r"density $\rho$ [1/R]"
+_DENSITY, _POSITION = r"density $\rho$ [1/R]", "position $x$ [R]"
 _ON_A_SCREEN: Any = {
     "font.size": 13,
     "axes.titlesize": 13,
@@ -50,10 +51,10 @@ def draw_spacetime(tree: xr.DataTree) -> Figure:
             rasterized=True,
         )
         entitle(ax, name)
-        ax.set(xlabel="position $x$ [R]", ylabel="time $t$ [T]", xlim=_extent(densities))
-        ax.label_outer()
+        ax.set_xlim(_extent(densities))
     if len(axes) > len(densities):
         axes.pop().remove()
+    label_outer(axes, x=_POSITION, y="time $t$ [T]")
     figure.colorbar(image, ax=axes, label=_DENSITY)
     return figure
 
@@ -72,9 +73,9 @@ def draw_profiles(tree: xr.DataTree) -> Figure:
         }
         overlay(shown, ax=ax)
         entitle(ax, f"$t = {times[moment]:.3g}$ T")
-        ax.set(xlim=extent, xlabel="position $x$ [R]", ylabel=_DENSITY)
-        ax.label_outer()
+        ax.set(xlim=extent, xlabel="", ylabel="")
         _draw_walls(ax, _chain(tree))
+    label_outer(axes, x=_POSITION, y=_DENSITY)
     legend_above(figure, axes[0])
     return figure
 
@@ -94,9 +95,8 @@ def draw_cloud(tree: xr.DataTree) -> Figure:
                 curves[name][which].attrs = {"long_name": "", "units": "1"}
         overlay(curves, which, ax=ax)
         ax.set_ylabel(f"{label} / ${symbol}$")
-        low, high = ax.get_ylim()
-        if high - low < 0.1:  # do not magnify the noise of a centre at rest
-            ax.set_ylim(low - 0.05, high + 0.05)
+        for curve in curves.values():  # the noise of a centre at rest
+            keep_room(ax, curve[which].values, LEAST_SEEN)
     legend_above(figure, axes[0])
     return figure
 
@@ -136,12 +136,7 @@ def _stage(densities: dict[str, xr.Dataset]) -> tuple[FigureCanvasAgg, Axes]:
     overlay(fluids, ax=ax)
     high = max(float(each.density.max()) for each in densities.values())
     ends = [float(end) for each in densities.values() for end in each.x[[0, -1]]]
-    ax.set(
-        xlim=(min(ends), max(ends)),
-        ylim=(0, 1.05 * high),
-        xlabel="position $x$ [R]",
-        ylabel=_DENSITY,
-    )
+    ax.set(xlim=(min(ends), max(ends)), ylim=(0, 1.05 * high), xlabel=_POSITION, ylabel=_DENSITY)
     _draw_walls(ax, chain_of(rods))
     legend_above(figure, ax)
     return canvas, ax

@@ -59,8 +59,10 @@ def imports() -> Graph:
 def _imported(path: Path, known: dict[str, Path]) -> set[str]:
     found = set()
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("crazybilliards."):
-            source = node.module.removeprefix("crazybilliards.")
+        if not isinstance(node, ast.ImportFrom):
+            continue
+        package, _, source = (node.module or "").partition(".")
+        if package == "crazybilliards" and source:
             for alias in node.names:
                 inner = f"{source}.{alias.name}"
                 found.add(inner if inner in known else source)
@@ -194,8 +196,7 @@ def described() -> str:
 
 def write(path: Path) -> None:
     """Write the picture, the same every time: no date, no random names."""
-    style = {"svg.hashsalt": "crazybilliards", "figure.constrained_layout.use": True}
-    with mpl.rc_context(style):
+    with mpl.rc_context({"svg.hashsalt": "crazybilliards", "figure.constrained_layout.use": True}):
         figure = draw()
         metadata = {"Date": None, "Description": described()}
         figure.savefig(path, format="svg", metadata=metadata, facecolor="white")

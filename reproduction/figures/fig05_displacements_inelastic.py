@@ -69,7 +69,7 @@ def draw(results: Results) -> Figure:
         for ax, name in zip(axes, ("mean_displacement", "displacement_width"), strict=True):
             draw_rods(ax, run, name, number=number, unit=s, label=f"$L = {size}$")
     axes[0].set(ylabel=r"mean displacement $\langle\Delta x\rangle/s$")
-    axes[1].set(ylabel="displacement width $W_x/s$", ylim=(0, None))
+    axes[1].set(ylabel="displacement width $W_x/s$")
     for ax in axes:
         along_the_chain(ax)
     axes[0].legend()

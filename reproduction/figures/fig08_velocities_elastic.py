@@ -103,6 +103,6 @@ def _draw_long_chains(ax: Axes, results: Results) -> None:
         draw_rods(ax, run, "velocity_width", number=number, unit=unit, label=label)
     ax.axhline(1, color="black", linestyle=":", label="exact")
     along_the_chain(ax)
-    ax.set(ylabel="velocity width $W_v/W$", ylim=(0, 1.6))
+    ax.set(ylabel="velocity width $W_v/W$")
     entitle(ax, f"$L = {LARGE}$")
-    ax.legend(loc="upper center", ncols=2)
+    ax.legend(ncols=2)

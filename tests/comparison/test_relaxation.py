@@ -5,8 +5,11 @@ from base64 import b64decode
 import imageio_ffmpeg
 import numpy as np
 import pytest
+import xarray as xr
+from drawn_pictures import columns_without_numbers, share_of_the_axis
 
 from crazybilliards.comparison import compare_relaxation, deviation, film, smooth
+from crazybilliards.comparison.layout import house_style
 from crazybilliards.comparison.side_by_side.relaxation import cloud, condensed, label_distances
 from crazybilliards.comparison.side_by_side.relaxation_figures import (
     _densities,
@@ -104,8 +107,34 @@ def test_the_pictures_show_every_description(tree):
         *("(d)  rods of this fluid", ""),
     ]
     assert len(draw_profiles(tree).axes) == 4
+    assert columns_without_numbers(draw_profiles(tree)) == []
     labels = draw_cloud(tree).axes[0].get_legend_handles_labels()[1]
     assert set(labels) == {"simulation", "isothermal fluid", "fluid with temperature", "exact"}
+
+
+@pytest.mark.parametrize("columns", [1, 2])
+@pytest.mark.parametrize("number", [2, 3, 4, 5])
+def test_every_column_of_panels_has_numbers_below_it(tree, columns, number):
+    """Of an odd number of panels the last one is missing."""
+    keys = ["particles", "isothermal", "evolving", "rods", "exact"][:number]
+    fewer = xr.DataTree.from_dict({key: tree["evolving"].to_dataset() for key in keys})
+    with house_style(columns):
+        figure = draw_spacetime(fewer)
+        assert len([ax for ax in figure.axes if ax.get_title("left")]) == number
+        assert columns_without_numbers(figure) == []
+
+
+@pytest.mark.parametrize("how_far", [1e-9, 0.3])
+def test_a_cloud_at_rest_is_not_magnified(tree, how_far):
+    """And the motion of one that moves fills the axis."""
+    moving = tree["evolving"].to_dataset().isel(time=[0] * 30)
+    s = chain_of(moving).thermal_length
+    moving = moving.assign_coords(time=moving.time.copy(data=np.arange(30.0)))
+    wave = how_far * s * np.sin(np.arange(30.0))
+    moving["mean_displacement"] = moving.mean_displacement + xr.DataArray(wave, dims="time")
+    picture = draw_cloud(xr.DataTree.from_dict({"particles": moving, "evolving": moving}))
+    share = share_of_the_axis(picture.axes[1], wave / s)
+    assert share < 0.01 if how_far < 0.01 else share > 0.8
 
 
 def test_the_cloud_of_the_ensemble_is_the_exact_one_within_its_error_bars(tree):
