@@ -59,10 +59,12 @@ def again(browser):
     return before, browser.execute_script(SHOWN)
 
 
-@pytest.mark.parametrize("screen", SCREENS)
-def test_whatever_is_clicked_is_in_the_address(browser, address, screen):
+@pytest.mark.parametrize(
+    ("screen", "challenge"), [("wide", "push"), ("narrow", "push"), ("narrow", "maxwell")]
+)
+def test_whatever_is_clicked_is_in_the_address(browser, address, screen, challenge):
     """Every button, slider and entry of a list; each time a reload shows the same page."""
-    visit(browser, address + "#challenge=push", screen, quiet=True)
+    visit(browser, f"{address}#challenge={challenge}", screen, quiet=True)
     way = "mouse" if screen == "wide" else "touch"
     for k in range(len(browser.find_elements("css selector", CONTROLS))):
         element = browser.find_elements("css selector", CONTROLS)[k]
@@ -119,7 +121,7 @@ def test_challenges_and_answers_stay_through_a_reload_and_do_not_travel_with_the
         ("#size=20&size=30", "size is given twice"),
         ("#size=20&gap=<b>", "gap must be a number from 0 to 5 with at most 3 decimals, got <b>"),
         ("#speed=4", "speed must be 0.3 or 3 or 30 or 100 or 300, got 4"),
-        ("#challenge=x", "challenge must be push or runaway or ends, got x"),
+        ("#challenge=x", "challenge must be push or runaway or ends or pressure or maxwell or count, got x"),
         ("#challenge=push&preset=gap", "it names a challenge and a preset"),
     ],
 )

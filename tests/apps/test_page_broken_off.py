@@ -124,7 +124,7 @@ def test_messages_are_seen_above_the_rods(browser, address, screen):
     place = "return [...document.querySelectorAll('.stage, .note')].map((each) => "
     place += "each.getBoundingClientRect().toJSON())"
     before = browser.execute_script(place)[1]["y"]
-    for name in browser.execute_script("return ChainAddress.NAMES"):
+    for name in browser.execute_script("return ChainAddress.SPRUNG"):
         press(browser, control(browser, "push"))
         browser.execute_script(
             "arguments[0].scrollIntoView({block: 'nearest'})", control(browser, name)

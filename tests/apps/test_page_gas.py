@@ -64,7 +64,7 @@ def test_two_rods_count_the_digits_of_pi_in_every_box(browser, address):
 @pytest.mark.parametrize(
     ("name", "values", "said"),
     [
-        ("length", [{"box": box} for box in (80, 50, 160)], r"begins at (2\.0\d\d|1\.9\d\d) ± 0\.0"),
+        ("pressure", [{"box": box} for box in (80, 50, 160)], r"begins at (2\.0\d\d|1\.9\d\d) ± 0\.0"),
         ("maxwell", [{"mass_ratio": m} for m in (1, 2)], r"one mass: 1\.00 ± 0\.00, of two: 2\.[678]"),
         ("count", [{"mass_ratio": m} for m in (100, 10000, 1)], "3 with 1, 31 with 100, 314 with 10000"),
     ],
@@ -77,7 +77,7 @@ def test_a_challenge_of_the_gas_is_solved_and_then_answered(
     assert not control(browser, "push").is_displayed()
     for value in values:
         assert text(browser, "answer") == ""
-        assert ("exact" in text(browser, "gauge")) == (name != "length")
+        assert ("exact" in text(browser, "gauge")) == (name != "pressure")
         slide(browser, **value)
         last = rows(browser, 1500)
     assert re.search(said, last)

@@ -106,6 +106,7 @@ def test_a_push_that_is_broken_off_says_so_and_the_next_one_meets_a_calm_chain(b
 @pytest.mark.validate
 def test_questions_come_before_their_answers_and_pictures_fill_their_axes(browser, address):
     """What is measured takes half of the height or more, where it differs from rod to rod."""
+    visit(browser, address, quiet=True)
     ids = browser.execute_script("return ChainPresets.list.map(({ id }) => id)")
     assert len(ids) == len(set(ids)) == 9
     for name in ids:
