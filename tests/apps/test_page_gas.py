@@ -101,3 +101,20 @@ def test_the_gauge_is_beside_the_exact_force_and_the_box_holds_its_rods(browser,
     assert control(browser, "push").is_displayed()
     assert not control(browser, "box").is_displayed()
     assert errors(browser) == []
+
+
+@pytest.mark.parametrize(
+    ("name", "spring", "about"),
+    [
+        ("ends", "none", "rods on springs"),
+        ("push", "none", "rods on springs"),
+        ("maxwell", "linear", "a gas in a box"),
+        ("pressure", "quadratic", "a gas in a box"),
+    ],
+)
+def test_a_question_about_springs_is_not_judged_on_a_gas(browser, address, name, spring, about):
+    visit(browser, f"{address}#challenge={name}&speed=300", quiet=True)
+    slide(browser, spring=spring)
+    assert rows(browser, 1000) == f"This question is about {about}."
+    assert text(browser, "answer") == ""
+    assert errors(browser) == []

@@ -76,6 +76,11 @@
   function judge() {
     judging = false;
     if (!chosen.watch || world.hand) return; // a rod in the hand does not move by itself
+    const gas = P.isGas(chosen.chain);
+    if (gas !== P.isGas(world.state.chain)) {
+      find("said").textContent = `This question is about ${gas ? "a gas in a box" : "rods on springs"}.`;
+      return;
+    }
     const { done, said, pending } = chosen.watch(world), mark = find(`challenge-${chosen.id}`);
     find("said").textContent = said;
     const known = solved.has(chosen.id);
