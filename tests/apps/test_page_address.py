@@ -5,7 +5,7 @@ from urllib.parse import parse_qsl, urlsplit
 
 import pytest
 from browser import errors, until
-from driven_page import CHAIN, SCREENS, challenges, control, press, slide, text, visit
+from driven_page import CHAIN, challenges, control, press, slide, text, visit
 
 pytestmark = pytest.mark.validate
 
@@ -121,7 +121,10 @@ def test_challenges_and_answers_stay_through_a_reload_and_do_not_travel_with_the
         ("#size=20&size=30", "size is given twice"),
         ("#size=20&gap=<b>", "gap must be a number from 0 to 5 with at most 3 decimals, got <b>"),
         ("#speed=4", "speed must be 0.3 or 3 or 30 or 100 or 300, got 4"),
-        ("#challenge=x", "challenge must be push or runaway or ends or pressure or maxwell or count, got x"),
+        (
+            "#challenge=x",
+            "challenge must be push or runaway or ends or pressure or maxwell or count, got x",
+        ),
         ("#challenge=push&preset=gap", "it names a challenge and a preset"),
     ],
 )

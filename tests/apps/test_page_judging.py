@@ -28,14 +28,18 @@ for (let run = 0; run < RUNS; run++) {
 }
 found = wrong;
 """
-# Two masses come to Maxwell's distribution, one mass never does. A gauge is wrong if it is more than
-# 3.5 of its errors away from the law.
+# Two masses come to Maxwell's distribution, one mass never does. A gauge is wrong if it is more
+# than 3.5 of its errors away from the law.
 GASES = """
 let wrong = 0;
 for (let run = 0; run < RUNS; run++) {
-  const mass_ratio = [1, 2, 3, 10][run % 4], chain = {size: 20, box: 80, mass_ratio, spring: "none"};
-  const state = ChainGas.makeState(chain, run + 1), measured = new ChainMeasuring.Measurement(state, 60);
-  while (measured.settling > 0 || measured.blocks.length < 40) ChainGas.go(state, 5), measured.add(state, 5, 1);
+  const mass_ratio = [1, 2, 3, 10][run % 4];
+  const state = ChainGas.makeState({size: 20, box: 80, mass_ratio, spring: "none"}, run + 1);
+  const measured = new ChainMeasuring.Measurement(state, 60);
+  while (measured.settling > 0 || measured.blocks.length < 40) {
+    ChainGas.go(state, 5);
+    measured.add(state, 5, 1);
+  }
   const kurtosis = (n) => measured.kurtosis(n), { value, error } = measured.force(10);
   wrong += ChainJudging.verdict(40, kurtosis, 2).above !== mass_ratio > 1;
   wrong += Math.abs(value - ChainGas.law(state)) > 3.5 * error;
