@@ -19,6 +19,8 @@ SIZES = (10, 30, 100, 300, LARGE)
 RESTITUTIONS = (0.0, 0.5, 0.75, 0.85, 0.92, 0.95)
 STEPS = (1e-2, 3e-3, 1e-3)  # at which the perfectly inelastic chain runs besides the default one
 
+OTHER_STEP = 1e-2  # at which the others do, to see whether the step decides a claim
+
 # By the number of rods from which on it is granted. The longest chains have warm-ups of their own:
 # W_v and <dx> of 1000 rods that start at their anchors are steady, to 2 %, after 20 time units at
 # e = 0 and 0.95. The relaxation time, 8.4, is that of the motion of all rods together.
@@ -50,6 +52,11 @@ _AT_STEP: dict[int, Granted] = {
 _ENOUGH = 8, {"duration": 50_000.0}  # which takes a quarter of a second, so that both can afford it
 _ELASTIC: Granted = {"quick": _ENOUGH, "full": _ENOUGH}
 _FLIPPERS: Granted = {"quick": (4, {"duration": 1000.0}), "full": (8, {"duration": 8000.0})}
+_AGAIN: Granted = {
+    "quick": (4, {"duration": 40.0, "warmup": 20.0}),
+    "full": (4, {"duration": 200.0, "warmup": 50.0}),
+}
+_FLIPPERS_AGAIN: Granted = {"quick": (4, {"duration": 300.0}), "full": (4, {"duration": 1500.0})}
 
 
 def _granted(by_size: Mapping[int, Granted], size: int) -> Granted:
@@ -74,8 +81,16 @@ def at_step(size: int, step: float | None) -> Runs:
         f"L={size} dt={step:g}",
         Chain(size=size, restitution=0.0),
         _granted(_AT_STEP, size),
-        {"time_step": step, "observe": ["widths"]},
+        {"time_step": step, "observe": ["widths", "velocities"]},
     )
+
+
+def at_other_step(runs: Runs) -> Runs:
+    """Return runs of the same chain of 1000 rods, or of flippers, at the step ``OTHER_STEP``."""
+    chain = runs.chain
+    if chain == Chain(size=LARGE, restitution=0.0):
+        return at_step(LARGE, OTHER_STEP)
+    return runs.at_step(OTHER_STEP, _FLIPPERS_AGAIN if chain.restitution > 1 else _AGAIN)
 
 
 def at_steps(sizes: Iterable[int] = SIZES) -> list[Runs]:
