@@ -146,7 +146,9 @@ def _free_centre(results: Results, restitution: float) -> list[Claim]:
 def _equipartition(run: xr.Dataset) -> float:
     chain = chain_of(run)
     kinetic = chain.mass * central_width(run) ** 2
-    return float(np.log(kinetic / (chain.stiffness * central_width(run, of="displacement_width") ** 2)))
+    return float(
+        np.log(kinetic / (chain.stiffness * central_width(run, of="displacement_width") ** 2))
+    )
 
 
 def _damping(run: xr.Dataset) -> float:
