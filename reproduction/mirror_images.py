@@ -24,10 +24,10 @@ def mirrored(run: xr.Dataset) -> xr.Dataset:
     apart = np.abs(2 * run.particle.values - (size + 1)) > _CLOSE * size
     values = {}
     for name, sign in _SIGNS.items():
-        own, error = run[name], run[f"{name}_error"].values
-        image, image_error = own.values[::-1], error[::-1]
+        own, error = run[name].values, run[f"{name}_error"].values
+        image, image_error = own[::-1], error[::-1]
         mean = np.sqrt((own**2 + image**2) / 2) if sign > 0 else (own - image) / 2
-        values[name] = mean.assign_attrs(own.attrs)
         both = np.where(apart, np.hypot(error, image_error), error + image_error) / 2
+        values[name] = run[name].copy(data=mean)
         values[f"{name}_error"] = run[f"{name}_error"].copy(data=both)
     return run.assign(values)

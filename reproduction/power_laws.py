@@ -22,8 +22,9 @@ def nu(run: xr.Dataset) -> float:
 def fits_in_plot(runs: Iterable[xr.Dataset]) -> tuple[Estimate, float]:
     """Compare the fits with the widths in a plot of all runs, both axes logarithmic.
 
-    Widths are those of mirror images together. Returns the distance that decides as a share of the plotted range, which ends at the free rod's
-    width, and the largest vertical one in standard errors.
+    Widths are averaged over mirror images. Returns the distance that decides as a share of the
+    plotted range, which ends at the free rod's width, and the largest vertical one in standard
+    errors.
     """
     runs = [mirrored(run) for run in runs]
     free = np.log(chain_of(runs[0]).free_velocity_width)

@@ -144,11 +144,9 @@ def _free_centre(results: Results, restitution: float) -> list[Claim]:
 
 
 def _equipartition(run: xr.Dataset) -> float:
+    ratio = central_width(run) / central_width(run, of="displacement_width")
     chain = chain_of(run)
-    kinetic = chain.mass * central_width(run) ** 2
-    return float(
-        np.log(kinetic / (chain.stiffness * central_width(run, of="displacement_width") ** 2))
-    )
+    return float(np.log(chain.mass / chain.stiffness * ratio**2))
 
 
 def _damping(run: xr.Dataset) -> float:
