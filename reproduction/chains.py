@@ -38,7 +38,7 @@ _INELASTIC: dict[int, Granted] = {
     1: {**_DISSIPATIVE[1], "full": (8, {"duration": 400_000.0})},
     31: {**_DISSIPATIVE[1], "full": (8, {"duration": 96_000.0})},
     101: {**_DISSIPATIVE[101], "full": (20, {"duration": 6000.0})},
-    LARGE: {**_DISSIPATIVE[LARGE], "full": (60, {"duration": 500.0, "warmup": 50.0})},
+    LARGE: {**_DISSIPATIVE[LARGE], "full": (50, {"duration": 500.0, "warmup": 50.0})},
 }
 _AT_STEP: dict[int, Granted] = {
     1: {"quick": (4, {"duration": 400.0}), "full": (6, {"duration": 6000.0})},
@@ -68,7 +68,7 @@ def dissipative(size: int, restitution: float, amplitude: float = 1.0) -> Runs:
     return Runs(
         f"L={size} e={restitution:g} A={amplitude:g}",
         Chain(size=size, restitution=restitution, amplitude=amplitude),
-        _granted(_DISSIPATIVE if restitution else _INELASTIC, size),
+        _granted(_INELASTIC if (restitution, amplitude) == (0, 1) else _DISSIPATIVE, size),
         {"observe": ["widths", "velocities"]},
     )
 
