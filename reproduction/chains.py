@@ -55,6 +55,9 @@ _AT_STEP: dict[int, Granted] = {
 _ENOUGH = 8, {"duration": 50_000.0}  # which takes a quarter of a second, so that both can afford it
 _ELASTIC: Granted = {"quick": _ENOUGH, "full": _ENOUGH}
 _FLIPPERS: Granted = {"quick": (4, {"duration": 1000.0}), "full": (8, {"duration": 8000.0})}
+# Whether the fit of a power law to the profile of these, (size, damping), misses a rod needs more.
+_MOST_FLIPPERS = (100, 4.0)
+_FLIPPERS_LONG: Granted = {**_FLIPPERS, "full": (40, {"duration": 8000.0})}
 _AGAIN: Granted = {
     "quick": (4, {"duration": 40.0, "warmup": 20.0}),
     "full": (4, {"duration": 200.0, "warmup": 50.0}),
@@ -116,7 +119,7 @@ def flippers(size: int, damping: float) -> Runs:
     return Runs(
         f"L={size} gamma={damping:g}",
         Chain(size=size, restitution=1.05, damping=damping),
-        _FLIPPERS,
+        _FLIPPERS_LONG if (size, damping) == _MOST_FLIPPERS else _FLIPPERS,
         {"observe": ["widths", "velocities", "collisions", "avalanches", "triggered-collisions"]},
     )
 
