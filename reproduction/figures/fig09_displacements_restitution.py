@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
-from scipy.optimize import curve_fit
+from scipy.optimize import least_squares
 
 from crazybilliards.comparison.distances import distances_in_plot
 from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_rods, mark_clipped
@@ -74,10 +74,10 @@ def _power_law_claim(results: Results) -> Claim:
 
     return Claim(
         "<dx> does not follow a power law",
-        f"a b i^nu to the left half of the rods, averaged with their mirror images, e = "
+        f"b i^nu fitted to the left half, rods averaged with their mirror images, e = "
         f"{', '.join(f'{e:g}' for e in _RUNS)}, both axes linear: how much further than an eye "
         f"sees, {EYE:g} of the plotted range, the symbol that decides is away from the nearest "
-        "point of the line, where it fits best:",
+        "point of the line, at the e where it fits best:",
         found=least(_power_law, _RUNS),
         source="section seq:e_larger, fig.5",
         ours="the form of the power law, and whether the axes are linear",
@@ -93,7 +93,7 @@ def _power_law_claim(results: Results) -> Claim:
 
 def _power_law(i: Array, scale: float, nu: float, shift: float) -> Array:
     """Return a power law, which has no use for the shift."""
-    return np.asarray(scale * i**nu + 0 * shift)
+    return np.asarray(scale * i**nu)
 
 
 def _two_power_laws(i: Array, scale: float, nu: float, shift: float) -> Array:
@@ -106,7 +106,11 @@ def _beyond_the_eye(run: xr.Dataset, law: Law) -> Estimate:
     """Return the distance from the best fit that decides, as a share of the plot, less EYE."""
     half = run.isel(particle=slice(0, LARGE // 2))
     i, shift = half.particle.values.astype(float), half.mean_displacement.values
-    values, _ = curve_fit(law, i, shift, p0=(shift[0], -0.1, 0.0), maxfev=20_000)
+
+    def residuals(values: Array) -> Array:
+        return law(i, *values.tolist()) - shift
+
+    values = least_squares(residuals, (shift[0], -0.1, 0.0), x_scale="jac").x
     fine = np.geomspace(1, i[-1], 2000)
     off = distances_in_plot(i, shift, fine, law(fine, *values))
     errors = half.mean_displacement_error.values / np.ptp(shift)

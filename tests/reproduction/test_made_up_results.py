@@ -17,7 +17,7 @@ from crazybilliards.model.vocabulary import result
 from crazybilliards.reproduction.figures import FIGURES
 from crazybilliards.reproduction.vanishing_step import central_limit, limit_estimate, limits
 
-AVALANCHES, ENERGY = FIGURES[5], FIGURES[14]
+AVALANCHES, DISPLACEMENTS, ENERGY, GAPS = (FIGURES[number - 1] for number in (6, 9, 15, 19))
 
 # -- limits dt -> 0: W_v(i) is a sum of two power laws ----------------------------------------
 
@@ -206,3 +206,44 @@ def test_an_exponent_has_the_spread_of_its_ranges_as_an_error():
     )
     assert most > least + 0.1
     assert power_law.found.error == pytest.approx((most - least) / 2, rel=0.02)
+
+
+# -- figures 9 and 19: displacements ----------------------------------------------------------
+
+
+def claims_of_displacements(figure, shift, spread):
+    """Return the claims of a figure, by what they state, for a <dx> and for W_x over W_v."""
+    results = {}
+    for name, case in figure.cases("quick").items():
+        if case.job == "simulate":
+            run = made_up(case.chain, case.job, seed=case.settings["seed"])
+            moved = shift(run.particle.values - (case.chain.size + 1) / 2)
+            values = {"mean_displacement": moved, "displacement_width": spread(run)}
+            for quantity, value in values.items():
+                run[quantity] = ("particle", value)
+                run[f"{quantity}_error"] = ("particle", NOISE * np.abs(value))
+            results[name] = run
+    return {claim.statement: claim for claim in figure.claims(results)}
+
+
+@pytest.mark.parametrize(
+    ("law", "verdict"),
+    [
+        (lambda r: (500.5 - r) ** -1.2 - (500.5 + r) ** -1.2, "not reproduced"),
+        (lambda r: np.arctanh(r / 501), "cannot be decided"),  # two small powers are nearly that
+        (lambda r: np.sign(r) * (np.abs(r) > 300), "reproduced"),
+    ],
+)
+def test_a_power_law_of_displacements_is_recognised(law, verdict):
+    told = claims_of_displacements(DISPLACEMENTS, law, lambda run: run.velocity_width.values)
+    assert told["<dx> does not follow a power law"].verdict == verdict
+
+
+@pytest.mark.parametrize(("factor", "verdict"), [(1.0, "reproduced"), (0.8, "not reproduced")])
+def test_rods_in_the_centre_move_like_free_ones_only_if_springs_alone_hold_them(factor, verdict):
+    def spread(run):
+        return factor * run.velocity_width.values * np.sqrt(chain_of(run).mass)
+
+    told = claims_of_displacements(GAPS, lambda r: r, spread)
+    for e in ("0", "0.75", "0.95"):
+        assert told[f"rods in the centre move like free ones, e = {e}"].verdict == verdict
