@@ -38,11 +38,11 @@ _INELASTIC: dict[int, Granted] = {
     1: {**_DISSIPATIVE[1], "full": (8, {"duration": 400_000.0})},
     31: {**_DISSIPATIVE[1], "full": (8, {"duration": 96_000.0})},
     101: {**_DISSIPATIVE[101], "full": (20, {"duration": 6000.0})},
-    LARGE: {**_DISSIPATIVE[LARGE], "full": (50, {"duration": 500.0, "warmup": 50.0})},
+    LARGE: {**_DISSIPATIVE[LARGE], "full": (40, {"duration": 500.0, "warmup": 50.0})},
 }
 # At the largest restitution widths fluctuate for longer: whether the fit misses a rod there needs
 # more runs.
-_LARGEST: Granted = {**_DISSIPATIVE[LARGE], "full": (30, {"duration": 500.0, "warmup": 50.0})}
+_LARGEST: Granted = {**_DISSIPATIVE[LARGE], "full": (24, {"duration": 500.0, "warmup": 50.0})}
 _AT_STEP: dict[int, Granted] = {
     1: {"quick": (4, {"duration": 400.0}), "full": (6, {"duration": 6000.0})},
     100: {"quick": (4, {"duration": 400.0}), "full": (6, {"duration": 3000.0})},
@@ -57,7 +57,7 @@ _ELASTIC: Granted = {"quick": _ENOUGH, "full": _ENOUGH}
 _FLIPPERS: Granted = {"quick": (4, {"duration": 1000.0}), "full": (8, {"duration": 8000.0})}
 # Whether the fit of a power law to the profile of these, (size, damping), misses a rod needs more.
 _MOST_FLIPPERS = (100, 4.0)
-_FLIPPERS_LONG: Granted = {**_FLIPPERS, "full": (40, {"duration": 8000.0})}
+_FLIPPERS_LONG: Granted = {**_FLIPPERS, "full": (32, {"duration": 8000.0})}
 _AGAIN: Granted = {
     "quick": (4, {"duration": 40.0, "warmup": 20.0}),
     "full": (4, {"duration": 200.0, "warmup": 50.0}),

@@ -99,7 +99,7 @@ def _power_law(i: Array, scale: float, nu: float, shift: float) -> Array:
 def _two_power_laws(i: Array, scale: float, nu: float, shift: float) -> Array:
     ends = (np.maximum(end - shift, 1e-3) for end in (i, LARGE + 1 - i))
     left, right = (end**nu for end in ends)
-    return np.asarray(scale * (left - right) / nu)
+    return np.asarray(scale * (left - right))
 
 
 def _beyond_the_eye(run: xr.Dataset, law: Law) -> Estimate:
@@ -110,7 +110,7 @@ def _beyond_the_eye(run: xr.Dataset, law: Law) -> Estimate:
     def residuals(values: Array) -> Array:
         return law(i, *values.tolist()) - shift
 
-    values = least_squares(residuals, (shift[0], -0.1, 0.0), x_scale="jac").x
+    values = least_squares(residuals, (shift[0], -0.5, 0.0), x_scale="jac").x
     fine = np.geomspace(1, i[-1], 2000)
     off = distances_in_plot(i, shift, fine, law(fine, *values))
     errors = half.mean_displacement_error.values / np.ptp(shift)

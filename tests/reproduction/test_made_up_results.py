@@ -221,7 +221,7 @@ def claims_of_displacements(figure, shift, spread):
             values = {"mean_displacement": moved, "displacement_width": spread(run)}
             for quantity, value in values.items():
                 run[quantity] = ("particle", value)
-                run[f"{quantity}_error"] = ("particle", NOISE * np.abs(value))
+                run[f"{quantity}_error"] = ("particle", 0.1 * NOISE * np.abs(value))
             results[name] = run
     return {claim.statement: claim for claim in figure.claims(results)}
 
