@@ -24,7 +24,7 @@ LABEL = r"limit $dt \to 0$"
 # scatter between them, and at larger restitutions, where they cost ten times as much.
 _INELASTIC: Granted = {
     "quick": (4, {"accuracy": 0.06, "warmup": 30.0}),
-    "full": (4, {"accuracy": 0.005}),
+    "full": (5, {"accuracy": 0.005}),
 }
 _DISSIPATIVE: Granted = {
     "quick": (1, {"accuracy": 0.1, "warmup": 30.0}),
