@@ -78,8 +78,8 @@ def simulate(
         None: the time between snapshots.
     method
         ``"event-driven"``: every collision in its order in time. ``"contact-dynamics"``: all
-        contacts of a step at once, the paper's method, which is right only if there are few
-        collisions in a step.
+        contacts of a step at once, the paper's method. At e > 0 it takes energy in every step in
+        which a rod touches both neighbours, and such steps add up, with a wide gap too.
     stepper
         ``"splitting"`` (of second order if event-driven) or ``"euler"`` (the paper's, first order).
     merging

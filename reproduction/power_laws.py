@@ -11,6 +11,7 @@ from crazybilliards.comparison.distances import distances_in_plot
 from crazybilliards.comparison.fits import fit_border_power_law
 from crazybilliards.model import chain_of
 from crazybilliards.reproduction.claims.verdicts import Estimate, furthest_in_plot
+from crazybilliards.reproduction.mirror_images import mirrored
 
 
 def nu(run: xr.Dataset) -> float:
@@ -21,10 +22,11 @@ def nu(run: xr.Dataset) -> float:
 def fits_in_plot(runs: Iterable[xr.Dataset]) -> tuple[Estimate, float]:
     """Compare the fits with the widths in a plot of all runs, both axes logarithmic.
 
-    Returns the distance that decides as a share of the plotted range, which ends at the free rod's
-    width, and the largest vertical one in standard errors.
+    Widths are averaged over mirror images. Returns the distance that decides as a share of the
+    plotted range, which ends at the free rod's width, and the largest vertical one in standard
+    errors.
     """
-    runs = list(runs)
+    runs = [mirrored(run) for run in runs]
     free = np.log(chain_of(runs[0]).free_velocity_width)
     lowest = np.log(min(float(run.velocity_width.min()) for run in runs))
     longest = np.log(max(run.sizes["particle"] for run in runs))

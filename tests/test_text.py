@@ -117,8 +117,9 @@ def first_order():
 
 def verdicts():
     [counts] = re.findall(r"Statements of the paper: (.*?) \|", words("docs/paper/claims.md"))
-    number = [int(part.split()[0]) for part in counts.split(", ")]
-    told = f"Of {sum(number)} statements {number[0]} are reproduced, {number[1]} are not"
+    number = {name: int(count) for count, name in re.findall(r"(\d+) ([a-z ]+)", counts)}
+    total, held, failed = sum(number.values()), number["reproduced"], number["not reproduced"]
+    told = f"Of {total} statements {held} are reproduced, {failed} are not"
     return {"docs/paper/paper.md": [told]}
 
 

@@ -8,7 +8,7 @@ error. Runs also share the work among processes.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -46,6 +46,11 @@ class Runs:
     granted: Granted
     settings: Mapping[str, Any]  #: which are the same at both qualities
     job: str = "simulate"  #: or "simulate_limit" for the limit of a vanishing time step
+
+    def at_step(self, step: float, granted: Granted) -> Runs:
+        """Return runs of the same chain at a fixed time step."""
+        settings = {**self.settings, "time_step": step}
+        return replace(self, name=f"{self.name} dt={step:g}", granted=granted, settings=settings)
 
     def cases(self, quality: Quality) -> Cases:
         """Return the cases ``NAME/0``, ``NAME/1``, ..."""

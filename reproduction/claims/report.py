@@ -43,7 +43,8 @@ _INTRODUCTION = (
     "Figures of R. Mani, L. Böttcher, H. J. Herrmann and D. Helbing, "
     "[arXiv:1404.7460](https://arxiv.org/abs/1404.7460), computed anew. A claim holds if its "
     "number lies inside its limits with three standard errors to spare. It fails if the number "
-    "lies outside with three to spare. Otherwise it is undecided."
+    "lies outside with three to spare. Otherwise it is undecided. A number at another choice has "
+    "no verdict beside it if it decides nothing."
 )
 
 

@@ -123,6 +123,10 @@ class Claim:
             return "undecided"
         return "reproduced" if holds else "not reproduced"
 
+    def _verdict_there(self, found: Estimate) -> str:
+        """Return what to write after a number at another choice: nothing if it decides nothing."""
+        return "" if found.lies(self.within) is None else f", {self._named(found)}"
+
     @property
     def details(self) -> dict[str, str]:
         """What there is to say about it, by what it is."""
@@ -136,7 +140,7 @@ class Claim:
             "found here": self.words or f"{self.quantity} {self.found}{limit}".strip(),
             "our choice, not given in the paper": self.ours,
             "at other choices": "; ".join(
-                f"{choice}: {found}, {self._named(found)}"
+                f"{choice}: {found}{self._verdict_there(found)}"
                 for choice, found in self.elsewhere.items()
             ),
             "why": "" if self.verdict == "reproduced" else self.reason,

@@ -22,7 +22,14 @@ from crazybilliards.reproduction.chains import (
     correlated_equation,
 )
 from crazybilliards.reproduction.claims.study import Cases, Quality, Results, all_of
-from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, around, in_plot, worst
+from crazybilliards.reproduction.claims.verdicts import (
+    Claim,
+    Estimate,
+    Found,
+    around,
+    in_plot,
+    worst,
+)
 from crazybilliards.reproduction.power_laws import fits_in_plot, nu
 from crazybilliards.reproduction.predictions import CROSSES, PAIRS
 from crazybilliards.reproduction.vanishing_step import LABEL, common_bias, limit_estimate, limits
@@ -65,28 +72,28 @@ def exponent(results: Results, size: int, step: float | None = None) -> Estimate
 
 def claims(results: Results) -> list[Claim]:
     """Check: two power laws fit, nu is -0.46, the same for all L."""
-    runs = {size: each.pooled(results) for size, each in _RUNS.items()}
     found = {size: exponent(results, size) for size in _SIZES}
-    listed = ", ".join(f"{size}: {each}" for size, each in found.items())
-    free = _RUNS[LARGE].chain.free_velocity_width
-    widest = max(runs.values(), key=lambda run: float(run.velocity_width.max()))
-    at = int(widest.velocity_width.values.argmax())
-    border = Estimate(*(float(widest[n][at]) / free for n in ("velocity_width", _ERROR)))
+    fits = {step: fits_in_plot(_pooled(results, step)) for step in (None, *STEPS)}
+    same = {step: _same_exponent(results, step) for step in (None, *STEPS)}
     return [
         Claim(
             "collisions make every velocity distribution narrower than a free rod's",
             "1 - W_v/W of the fastest rod of all four chains:",
-            found=Estimate(1 - border.value, border.error),
+            found=_narrower(_pooled(results)),
             source="section seq:e_0, fig.2",
             ours=_OURS,
+            elsewhere={f"dt = {step:g}": _narrower(_pooled(results, step)) for step in STEPS},
         ),
         Claim(
             "W_v(i) can be fitted by a sum of two power laws",
             **in_plot(
-                "four chains and their fits, both axes logarithmic", *fits_in_plot(runs.values())
+                "four chains, rods averaged with their mirror images, and their fits, both axes "
+                "logarithmic",
+                *fits[None],
             ),
             source=_SOURCE,
             ours=_OURS,
+            elsewhere={f"dt = {step:g}": fits[step][0] for step in STEPS},
         ),
         *(
             Claim(
@@ -104,15 +111,34 @@ def claims(results: Results) -> list[Claim]:
         ),
         Claim(
             "the same exponent for all L",
-            **worst(
-                f"{listed}; difference of two",
-                [one.minus(other) for one, other in itertools.combinations(found.values(), 2)],
-                _SAME,
-            ),
+            **same[None],
             source=_SOURCE,
             ours=_OURS,
+            elsewhere={f"dt = {step:g}": same[step]["found"] for step in STEPS},
         ),
     ]
+
+
+def _pooled(results: Results, step: float | None = None) -> list[xr.Dataset]:
+    """Return the four chains at a time step; None: the default one."""
+    return [at_step(size, step).pooled(results) for size in _SIZES]
+
+
+def _narrower(runs: list[xr.Dataset]) -> Estimate:
+    """Return 1 - W_v/W of the fastest rod of all chains."""
+    widest = max(runs, key=lambda run: float(run.velocity_width.max()))
+    at = int(widest.velocity_width.values.argmax())
+    free = _RUNS[LARGE].chain.free_velocity_width
+    width, error = (float(widest[name][at]) / free for name in ("velocity_width", _ERROR))
+    return Estimate(1 - width, error)
+
+
+def _same_exponent(results: Results, step: float | None) -> Found:
+    """Return what decides whether the exponents of two chains differ."""
+    found = {size: exponent(results, size, step) for size in _SIZES}
+    pairs = itertools.combinations(found.values(), 2)
+    listed = ", ".join(f"{size}: {each}" for size, each in found.items())
+    return worst(f"{listed}; difference of two", [one.minus(two) for one, two in pairs], _SAME)
 
 
 def _weighted_nu(run: xr.Dataset) -> float:

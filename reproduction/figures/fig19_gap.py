@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from collections.abc import Callable, Sequence
 from functools import partial
 
 import numpy as np
@@ -12,10 +13,11 @@ from matplotlib.figure import Figure
 from crazybilliards.comparison.drawing import along_the_chain, draw_rods
 from crazybilliards.comparison.layout import at_the_left, entitle, legend_above, panels
 from crazybilliards.comparison.widths import central_width
-from crazybilliards.reproduction.chains import LARGE, dissipative
+from crazybilliards.model import chain_of
+from crazybilliards.reproduction.chains import LARGE, OTHER_STEP, at_other_step, dissipative
 from crazybilliards.reproduction.claims.repetition import Granted, Runs
 from crazybilliards.reproduction.claims.study import Results, all_of
-from crazybilliards.reproduction.claims.verdicts import Claim, around
+from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, around
 
 TITLE = "Velocity variances of chains with gaps"
 CAPTION = (
@@ -25,6 +27,7 @@ CAPTION = (
 
 _RESTITUTIONS = (0.0, 0.75, 0.95)
 _GAPS = (0.05, 0.2, 1.0)
+_WIDE = 3.0  # a gap that hardly any rods cross, where only the motion in the centre is looked at
 _GRANTED: Granted = {
     "quick": (4, {"duration": 80.0, "warmup": 50.0}),
     "full": (4, {"duration": 600.0, "warmup": 100.0}),
@@ -32,6 +35,7 @@ _GRANTED: Granted = {
 _claim = partial(
     Claim, source="appendix, fig:mom_var_gaps", ours="the gaps, the restitutions and the time step"
 )
+_THERE = f"dt = {OTHER_STEP:g}"
 _FLAT = 0.1  # change of ln W_v^2 that still counts as a plateau
 
 
@@ -43,7 +47,18 @@ def _runs(restitution: float, gap: float) -> Runs:
     return Runs(f"{without.name} g={gap:g}", chain, _GRANTED, {"observe": ["widths"]})
 
 
-cases = partial(all_of, [_runs(e, gap) for e in _RESTITUTIONS for gap in (0.0, *_GAPS)])
+_EVERY = [_runs(e, gap) for e in _RESTITUTIONS for gap in (0.0, *_GAPS)]
+_ALMOST_FREE = [_runs(e, _WIDE) for e in _RESTITUTIONS]
+cases = partial(all_of, [*_EVERY, *map(at_other_step, _EVERY), *_ALMOST_FREE])
+
+
+def _measured(
+    results: Results, restitution: float, gap: float, quantity: Callable[[xr.Dataset], float]
+) -> tuple[Estimate, Estimate]:
+    """Return the quantity at the default step and at the other one."""
+    runs = _runs(restitution, gap)
+    one, other = (each.estimate(results, quantity) for each in (runs, at_other_step(runs)))
+    return one, other
 
 
 def _change(run: xr.Dataset) -> float:
@@ -66,42 +81,97 @@ def _border_layer(run: xr.Dataset) -> float:
 
 def _widening(results: Results, restitution: float) -> Claim:
     """Decide whether the plateau widens with every larger gap, by the least of the gains."""
-    layers = [_runs(restitution, gap).estimate(results, _border_layer) for gap in _GAPS]
-    gains = [narrow.minus(wide) for narrow, wide in itertools.pairwise(layers)]
+    each = [_measured(results, restitution, gap, _border_layer) for gap in _GAPS]
+    layers, again = zip(*each, strict=True)
     listed = ", ".join(f"{layer} at g = {gap:g}" for gap, layer in zip(_GAPS, layers, strict=True))
     return _claim(
         f"the larger the gap, the wider the plateau, e = {restitution:g}",
         f"rods at each border where ln W_v^2 is more than {_FLAT:g} above the centre's: {listed}; "
         "what the plateau gains at each border, at least:",
-        found=min(gains, key=lambda gain: gain.value - 3 * gain.error),
+        found=_least_gain(layers),
+        elsewhere={_THERE: _least_gain(again)},
         reason="at the larger gaps the plateau reaches the last rod or two already",
     )
 
 
+def _least_gain(layers: Sequence[Estimate]) -> Estimate:
+    gains = [narrow.minus(wide) for narrow, wide in itertools.pairwise(layers)]
+    return min(gains, key=lambda gain: gain.value - 3 * gain.error)
+
+
 def claims(results: Results) -> list[Claim]:
-    """Check: a plateau with a gap, the wider the larger the gap; none without."""
+    """Check: a plateau with a gap, the wider the larger the gap, and free rods in it."""
     return [
         claim
         for restitution in _RESTITUTIONS
-        for claim in (*_plateau(results, restitution), _widening(results, restitution))
+        for claim in (
+            *_plateau(results, restitution),
+            _widening(results, restitution),
+            *_free_centre(results, restitution),
+        )
     ]
+
+
+def _free_centre(results: Results, restitution: float) -> list[Claim]:
+    """Decide whether the centre moves like a free rod that is damped more strongly.
+
+    Such a rod has less than the free width, and m <v^2> = k <(dx - <dx>)^2>.
+    """
+    gap, *others = reversed(_GAPS)
+    balance, again = _measured(results, restitution, gap, _equipartition)
+    damped, damped_again = _measured(results, restitution, gap, _damping)
+    return [
+        _claim(
+            f"rods in the centre move like free ones, e = {restitution:g}",
+            f"g = {gap:g}, ln of m W_v^2/(k W_x^2) in the centre, which is 0 for a free rod of any "
+            "damping:",
+            found=balance,
+            within=around(0.0, _FLAT),
+            elsewhere={
+                f"g = {gap:g}, {_THERE}": again,
+                **{
+                    f"g = {other:g}": _runs(restitution, other).estimate(results, _equipartition)
+                    for other in (*others, _WIDE)
+                },
+            },
+            reason="with a small gap neighbours confine a rod more than its spring does",
+        ),
+        _claim(
+            f"but with a larger dissipation, e = {restitution:g}",
+            f"g = {gap:g}, ln of W^2/W_v^2 in the centre, that of the dissipation over gamma:",
+            found=damped,
+            elsewhere={_THERE: damped_again},
+        ),
+    ]
+
+
+def _equipartition(run: xr.Dataset) -> float:
+    ratio = central_width(run) / central_width(run, of="displacement_width")
+    chain = chain_of(run)
+    return float(np.log(chain.mass / chain.stiffness * ratio**2))
+
+
+def _damping(run: xr.Dataset) -> float:
+    return 2 * float(np.log(chain_of(run).free_velocity_width / central_width(run)))
 
 
 def _plateau(results: Results, restitution: float) -> list[Claim]:
     what = "ln of W_v^2 half-way to the border over that in the centre:"
+    found = {gap: _measured(results, restitution, gap, _change) for gap in (0.0, *_GAPS)}
     with_a_gap = [
         _claim(
             f"plateau in the interior, e = {restitution:g}, g = {gap:g}",
             what,
-            found=_runs(restitution, gap).estimate(results, _change),
+            found=found[gap][0],
+            elsewhere={_THERE: found[gap][1]},
             within=around(0.0, _FLAT),
             reason="the gap is too small for the interior to become homogeneous",
         )
         for gap in _GAPS
     ]
-    without = _runs(restitution, 0.0).estimate(results, _change)
+    without, again = found[0.0]
     statement = f"no plateau without a gap, e = {restitution:g}"
-    return [*with_a_gap, _claim(statement, what, found=without)]
+    return [*with_a_gap, _claim(statement, what, found=without, elsewhere={_THERE: again})]
 
 
 def draw(results: Results) -> Figure:

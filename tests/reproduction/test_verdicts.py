@@ -103,9 +103,10 @@ def test_a_choice_decides_only_where_it_was_varied_and_changed_the_verdict():
 
 def test_the_number_is_told_with_its_limits_and_with_that_at_other_choices():
     number = {"found": Estimate(-1.6, 0.01), "within": around(-2.2, 0.05), "source": "fig:trigger"}
-    elsewhere = {"dt = 0.02": Estimate(-2.21, 0.01)}
+    elsewhere = {"dt = 0.02": Estimate(-2.21, 0.01), "dt = 0.01": Estimate(-2.3, 0.1)}
     claim = Claim("exponent", **number, elsewhere=elsewhere)
-    assert claim.details["at other choices"] == "dt = 0.02: -2.210 ± 0.010, reproduced"
+    told = "dt = 0.02: -2.210 ± 0.010, reproduced; dt = 0.01: -2.30 ± 0.10"  # which decides nothing
+    assert claim.details["at other choices"] == told
     assert "at other choices" not in Claim("it", **number).details
     measured = Estimate(0.1, 0.02)
 
