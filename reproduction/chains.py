@@ -71,8 +71,7 @@ def _granted(by_size: Mapping[int, Granted], size: int) -> Granted:
 
 def dissipative(size: int, restitution: float, amplitude: float = 1.0) -> Runs:
     """Return runs of a dissipative chain at the default time step."""
-    by_size = _INELASTIC if (restitution, amplitude) == (0, 1) else _DISSIPATIVE
-    granted = _granted(by_size, size)
+    granted = _granted(_DISSIPATIVE if restitution else _INELASTIC, size)
     if (size, restitution, amplitude) == (LARGE, RESTITUTIONS[-1], 1):
         granted = _LARGEST
     return Runs(

@@ -52,7 +52,7 @@ FLOORS = {
         {"moving_pictures"},
     ),
     "reproduction": (
-        {"claims", "fits"},
+        {"claims", "fits", "mirror_images"},
         {"chains", "distributions", "power_laws", "vanishing_step"},
         {"predictions"},
         {"figures"},

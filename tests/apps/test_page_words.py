@@ -64,7 +64,7 @@ def test_each_picture_is_said_in_numbers(browser, address):
         rows(browser, 1)
         assert re.fullmatch(said, browser.execute_script(LABEL))
     stage = control(browser, "stage").get_attribute("aria-label")
-    assert re.search(r"The rods .* Now \d+ of 20 rods move to the right\.$", stage, re.DOTALL)
+    assert re.search(r"The rods, .* Now \d+ of 20 rods move to the right\.$", stage, re.DOTALL)
     visit(browser, address + "#size=20&speed=100")  # it moves
     assert len({browser.execute_async_script(FRAME) for _ in range(30)}) <= 2
 
