@@ -119,3 +119,8 @@ def test_a_question_about_springs_is_not_judged_on_a_gas(browser, address, name,
     assert rows(browser, 1000) == f"This question is about {about}."
     assert text(browser, "answer") == ""
     assert errors(browser) == []
+
+
+def test_gases_of_few_rods_do_not_count_and_the_page_says_so(browser, address):
+    visit(browser, f"{address}#challenge=maxwell&size=9", quiet=True)
+    assert re.search("one mass: not known.*Only gases of 10 rods or more", rows(browser, 1500))
