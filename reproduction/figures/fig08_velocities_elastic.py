@@ -105,4 +105,4 @@ def _draw_long_chains(ax: Axes, results: Results) -> None:
     along_the_chain(ax)
     ax.set(ylabel="velocity width $W_v/W$")
     entitle(ax, f"$L = {LARGE}$")
-    ax.legend(ncols=2)
+    ax.legend(loc="center")
