@@ -90,9 +90,9 @@ def force_balance(
         to 1000 rods, linear springs, gaps up to 10 s, e = 1. ``attrs["density_model_error"]``
         is the largest error of the smoothed density, relative to
         close packing, and ``attrs["mean_displacement_model_error"]`` that of ``mean_displacement``
-        in thermal lengths. In a box the density is off by up to 0.18 within a rod length of the
-        walls, where the rods have layers. For others the errors are NaN, with an
-        ``UnmeasuredWarning``.
+        in thermal lengths. In a box without a gap or without springs the density is off by up to
+        0.18 within a rod length of the walls, where the rods have layers. For others the errors are
+        NaN, with an ``UnmeasuredWarning``.
 
     Raises
     ------
