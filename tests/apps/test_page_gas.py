@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from browser import errors
 from driven_page import SCREENS, challenges, control, press, rows, slide, text, visit
+from selenium.webdriver.common.action_chains import ActionChains
 
 import crazybilliards as cb
 from crazybilliards.particles.dynamics import make_dynamics
@@ -124,3 +125,13 @@ def test_a_question_about_springs_is_not_judged_on_a_gas(browser, address, name,
 def test_gases_of_few_rods_do_not_count_and_the_page_says_so(browser, address):
     visit(browser, f"{address}#challenge=maxwell&size=9", quiet=True)
     assert re.search("one mass: not known.*Only gases of 10 rods or more", rows(browser, 1500))
+
+
+def test_the_key_p_does_nothing_to_a_gas(browser, address):
+    visit(browser, f"{address}#challenge=maxwell", quiet=True)
+    rows(browser, 400)  # it judges
+    speeds = "return Array.from(ChainRunning.world.state.v)"
+    before = browser.execute_script(speeds)
+    ActionChains(browser).send_keys("p").perform()
+    assert browser.execute_script(speeds) == before
+    assert text(browser, "note") == ""

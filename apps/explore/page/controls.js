@@ -206,6 +206,7 @@
   }
 
   function push() {
+    if (world.state.masses) return; // the rods of a gas are not pushed
     note("");
     if (!takeRod()) return;
     breakOff(`Rod ${rod} was pushed`);
