@@ -156,8 +156,9 @@ def _moment_claim(results: Results, moment: str, least: int) -> Claim:
         f"the power law of avalanche sizes has no well-defined {moment}",
         f"it has none if the exponent is above -{least}; exponent plus {least}, {chosen}:",
         found=choices.pop(chosen),
-        source="abstract; section seq:e_0; Conclusion",
-        ours=_OURS,
+        source="abstract; introduction",
+        ours=f"{_OURS}; that the steep power laws, which the paper says avalanches generate, are "
+        "those of their sizes",
         elsewhere=choices,
         reason="the exponent depends on what the paper does not give; with its own, -2.2, there is "
         "a mean and no variance, and in a finite chain, where N_c is below L, there are both",

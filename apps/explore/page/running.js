@@ -125,7 +125,7 @@ const ChainRunning = (() => {
 
   /* Add a velocity to a rod, to the right. Calmly: the chain settles before, if it has a steady state. */
   function push(rod, calmly = false) {
-    if (world.ranAway || world.state.masses) return;
+    if (world.ranAway) return;
     const { state, measurement } = world, { chain } = state, speedUp = KICK * unit();
     if (calmly && !measurement.settled && chain.restitution <= 1) settle(measurement.settling);
     const { settled } = measurement;
@@ -205,6 +205,6 @@ const ChainRunning = (() => {
 
   return {
     world, unit, begin, change, goOn, step, push, setSpeed, take, letGo, growthRates, criticalSize, happening,
-    ROWS_A_SECOND, RUN_AWAY, GAUGED, showOn: (shown) => { stage = shown; },
+    ROWS_A_SECOND, GAUGED, showOn: (shown) => { stage = shown; },
   };
 })();
