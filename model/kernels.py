@@ -118,15 +118,21 @@ def _warn(problem: str, reason: str) -> None:
         warnings.warn(f"{problem}: {reason}", RuntimeWarning, stacklevel=3)
 
 
-def inlined(function: Callable[..., Any] | None = None, *, fused: bool = False) -> Any:
+def inlined(
+    function: Callable[..., Any] | None = None, *, fused: bool = False, once: bool = False
+) -> Any:
     """Compile ``function`` into every kernel that calls it; a decorator.
 
     For helpers with many arrays, for which the call costs more than the work. ``fused``: as
-    in :func:`kernel`.
+    in :func:`kernel`. ``once``: only one kernel calls it, by naming every argument's place. It
+    becomes a part of that kernel before anything is compiled. Otherwise it is compiled alone
+    first, and everything that it calls is optimised once more with it. This takes seconds for
+    what calls all operators.
     """
     if function is None:
-        return partial(inlined, fused=fused)
-    return _compiled(function, fused=fused, allocates=False, forceinline=True)
+        return partial(inlined, fused=fused, once=once)
+    how = {"inline": "always"} if once else {"forceinline": True}
+    return _compiled(function, fused=fused, allocates=False, **how)
 
 
 @inlined

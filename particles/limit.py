@@ -180,7 +180,7 @@ def simulate_limit(
     copies = make_replicas(run)
     checks = [] if run.exact else make_replicas(_at_twice_the_step(run))
     with announced(progress):
-        compile_kernels()
+        compile_kernels([run])
     keeper = None if kept is None else Checkpoint(kept, identity(run), interval)
     resumed = nullcontext() if keeper is None else keeper.resumed([*copies, *checks])
     with interrupts_noted() as signals, resumed:  # between two looks as well

@@ -23,14 +23,17 @@ W^2 = (T/m)/(1 - gamma dt/2m).
 import numpy as np
 
 from crazybilliards.model import spring
+from crazybilliards.model.arrays import Array
 from crazybilliards.model.kernels import copy, inlined, kernel
+from crazybilliards.particles.dynamics import Dynamics
 from crazybilliards.particles.laws import unequal
+from crazybilliards.particles.laws.avalanche import Tally
 from crazybilliards.particles.laws.closed_contacts import find_clusters, strengthen
 from crazybilliards.particles.laws.exact_flight import propagate
-from crazybilliards.particles.laws.law import EXACT, drift
+from crazybilliards.particles.laws.law import EXACT, Scratch, drift
 from crazybilliards.particles.laws.sort import sort_pairs
 from crazybilliards.particles.laws.walls import fold
-from crazybilliards.particles.noise import fill
+from crazybilliards.particles.noise import Noise, fill
 
 FIRST, WHOLE, LAST = range(3)  # parts of a kick
 
@@ -64,7 +67,7 @@ def draw_kicks(noise, kicks, width, due):  # type: ignore[no-untyped-def]
     return rows
 
 
-@kernel
+@inlined(once=True)
 def _take_unequal_step(y, v, kicks, part, dynamics, scratch, tally):  # type: ignore[no-untyped-def]
     """Do as ``take_step``, with rods of unequal masses or between walls."""
     anchors, step, second = dynamics.anchors, dynamics.step, dynamics.second
@@ -81,7 +84,7 @@ def _take_unequal_step(y, v, kicks, part, dynamics, scratch, tally):  # type: ig
     return drift(y, v, anchors, step.time_step, dynamics.law, scratch, tally)
 
 
-@inlined
+@inlined(once=True)
 def take_step(y, v, kicks, part, dynamics, scratch, tally):  # type: ignore[no-untyped-def]
     """Kick the rods and, unless it was the LAST half, let them drift; changes ``kicks``, (L,).
 
@@ -100,7 +103,7 @@ def take_step(y, v, kicks, part, dynamics, scratch, tally):  # type: ignore[no-u
     return drift(y, v, dynamics.anchors, step.time_step, dynamics.law, scratch, tally)
 
 
-@inlined
+@inlined(once=True)
 def _fly(y, v, noise, dynamics, scratch, steps):  # type: ignore[no-untyped-def]
     """Take steps of a chain whose motion is known exactly; collisions are not counted."""
     width, row, rows, walled = 2 * y.size, 0, 0, dynamics.law.unequal
@@ -113,12 +116,11 @@ def _fly(y, v, noise, dynamics, scratch, steps):  # type: ignore[no-untyped-def]
             fold(y, v, dynamics.law.low, dynamics.law.high)
         sort_pairs(y, v, scratch)
         row += 1
-    return 0
 
 
-@inlined
+@inlined(once=True)
 def _step(y, v, noise, dynamics, scratch, tally, steps):  # type: ignore[no-untyped-def]
-    """Take steps of kicks and drifts."""
+    """Take steps of kicks and drifts; return the collisions, or -1 if the chain diverged."""
     if steps == 0:
         return 0
     step, size = dynamics.step, y.size
@@ -145,19 +147,6 @@ def _step(y, v, noise, dynamics, scratch, tally, steps):  # type: ignore[no-unty
 
 
 @kernel
-def advance(y, v, noise, dynamics, scratch, tally, steps):  # type: ignore[no-untyped-def]
-    """Take ``steps`` steps of the chain in place; return the collisions, or -1 if diverged.
-
-    ``y`` and ``v`` are float arrays of shape (L,) in the reduced coordinate. ``noise`` is a stream
-    for this thread alone (``noise.py``). For ``scratch`` see ``laws/law.py``, for ``tally``
-    ``laws/avalanche.py``.
-    """
-    if dynamics.law.operator == EXACT:
-        return _fly(y, v, noise, dynamics, scratch, steps)
-    return _step(y, v, noise, dynamics, scratch, tally, steps)
-
-
-@kernel
 def bounded(y, v, fastest):  # type: ignore[no-untyped-def]
     """Return whether all values are finite and no rod is faster than ``fastest``."""
     for i in range(y.size):
@@ -166,7 +155,7 @@ def bounded(y, v, fastest):  # type: ignore[no-untyped-def]
     return True
 
 
-@inlined
+@inlined(once=True)
 def _keep(source, target, tally):  # type: ignore[no-untyped-def]
     """Copy what ``tally`` records of collisions, from or to the scratch space."""
     for contact in range(tally.contacts.size):
@@ -180,23 +169,67 @@ def _keep(source, target, tally):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def record(  # type: ignore[no-untyped-def]
-    y, v, noise, dynamics, scratch, tally, stride, y_buffer, v_buffer
-):
+def record_flight(y, v, noise, dynamics, scratch, stride, y_buffer, v_buffer):  # type: ignore[no-untyped-def]
+    """Do as ``record`` does, with a chain whose motion is known exactly."""
+    for snapshot in range(y_buffer.shape[0]):
+        _fly(y, v, noise, dynamics, scratch, stride)
+        if not bounded(y, v, dynamics.fastest):
+            return snapshot, 0
+        copy(y, y_buffer[snapshot])
+        copy(v, v_buffer[snapshot])
+    return y_buffer.shape[0], 0
+
+
+@kernel
+def record_steps(y, v, noise, dynamics, scratch, tally, stride, y_buffer, v_buffer):  # type: ignore[no-untyped-def]
+    """Do as ``record`` does, in steps of kicks and drifts."""
+    collisions = 0
+    _keep(tally, scratch, tally)
+    for snapshot in range(y_buffer.shape[0]):
+        met = _step(y, v, noise, dynamics, scratch, tally, stride)
+        if met < 0 or not bounded(y, v, dynamics.fastest):
+            _keep(scratch, tally, tally)
+            return snapshot, collisions
+        _keep(tally, scratch, tally)
+        collisions += met
+        copy(y, y_buffer[snapshot])
+        copy(v, v_buffer[snapshot])
+    return y_buffer.shape[0], collisions
+
+
+def record(
+    y: Array,
+    v: Array,
+    noise: Noise,
+    dynamics: Dynamics,
+    scratch: Scratch,
+    tally: Tally,
+    stride: int,
+    y_buffer: Array,
+    v_buffer: Array,
+) -> tuple[int, int]:
     """Fill the buffers, shape (snapshots, L), with the state after every ``stride`` steps.
 
-    Return the number of valid snapshots. It is smaller than the buffers if the chain diverged,
+    ``y`` and ``v`` are float arrays of shape (L,) in the reduced coordinate, changed in place.
+    ``noise`` is a stream for this thread alone (``noise.py``). For ``scratch`` see ``laws/law.py``,
+    for ``tally`` ``laws/avalanche.py``.
+
+    Return the number of valid snapshots and the collisions until then, which are 0 where rods are
+    sorted. There are fewer snapshots than the buffers have room for if the chain diverged,
     because a drift had too many collisions or a rod became too fast. Contacts and impacts are then
     those up to the last valid snapshot, but avalanches and speeds of impacts
     include those of diverging steps.
     """
-    _keep(tally, scratch, tally)
-    for snapshot in range(y_buffer.shape[0]):
-        met = advance(y, v, noise, dynamics, scratch, tally, stride)
-        if met < 0 or not bounded(y, v, dynamics.fastest):
-            _keep(scratch, tally, tally)
-            return snapshot
-        _keep(tally, scratch, tally)
-        copy(y, y_buffer[snapshot])
-        copy(v, v_buffer[snapshot])
-    return y_buffer.shape[0]
+    state = y, v, noise, dynamics, scratch
+    if dynamics.law.operator == EXACT:
+        return record_flight(*state, stride, y_buffer, v_buffer)
+    return record_steps(*state, tally, stride, y_buffer, v_buffer)
+
+
+def advance(
+    y: Array, v: Array, noise: Noise, dynamics: Dynamics, scratch: Scratch, tally: Tally, steps: int
+) -> int:
+    """Take ``steps`` steps in place as ``record``; return the collisions, or -1 if diverged."""
+    last = np.empty((2, 1, y.size))
+    valid, collisions = record(y, v, noise, dynamics, scratch, tally, steps, *last)
+    return collisions if valid else -1

@@ -34,7 +34,7 @@ from crazybilliards.model.parameters import WALLS_AND_MASSES
 from crazybilliards.model.process import announced, cores
 from crazybilliards.model.progress import waiting_for
 from crazybilliards.model.randomness import Seed, seed_of
-from crazybilliards.particles.simulation import compile_kernels
+from crazybilliards.particles.simulation import compile_kernels, make_run
 
 Folder = str | os.PathLike[str]
 
@@ -188,7 +188,8 @@ def _computed(
             workers = process_pool(min(processes, len(every)))
         if not all(case.file(place).exists() for case in every):
             with announced(progress):
-                compile_kernels()
+                simulated = [found[SIMULATION] for found in cases.values()]
+                compile_kernels(make_run(case.chain, **case.settings) for case in simulated)
         outcome = compute_missing(every, place, workers, threads=threads, progress=progress)
         if isinstance(outcome.stopped, RuntimeError):
             raise outcome.stopped

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crazybilliards.model import Chain
-from crazybilliards.model.kernels import inlined, kernel
+from crazybilliards.model.kernels import inlined
 from crazybilliards.model.parameters import WALLS_AND_MASSES
 from crazybilliards.particles.laws import (
     contact_dynamics,
@@ -185,7 +185,7 @@ def make_law(
     return Law(operator, chain.restitution, merge_speed, most, pull, exponent, *around)
 
 
-@kernel
+@inlined(once=True)
 def _drift_unequal(y, v, anchors, dt, law, scratch, tally):  # type: ignore[no-untyped-def]
     """Drift as ``drift`` does with rods of unequal masses, or between walls."""
     if law.operator == ISOTONIC:
@@ -201,7 +201,7 @@ def _drift_unequal(y, v, anchors, dt, law, scratch, tally):  # type: ignore[no-u
     return event_driven.drift(y, v, anchors, dt, law, scratch, tally)
 
 
-@inlined
+@inlined(once=True)
 def drift(y, v, anchors, dt, law, scratch, tally):  # type: ignore[no-untyped-def]
     """Advance ``y`` and ``v`` in place by ``dt`` with the operator that ``law`` names."""
     if law.unequal:

@@ -22,7 +22,7 @@ from crazybilliards.model.kernels import copy, inlined, kernel
 from crazybilliards.particles.laws import event_driven
 
 
-@kernel
+@inlined(once=True)
 def drift(y, v, anchors, dt, law, scratch, tally):  # type: ignore[no-untyped-def]
     """Advance ``y`` and ``v`` by ``dt``, one collision after the other; return their number."""
     n = y.size

@@ -24,7 +24,7 @@ from crazybilliards.particles.observers.base import (
 )
 from crazybilliards.particles.run import Run
 from crazybilliards.particles.schedule import Schedule
-from crazybilliards.particles.stepping import record
+from crazybilliards.particles.stepping import advance, record
 
 # Number of particle steps between two checks for Ctrl-C (about 20 ms), and the most positions in
 # the snapshots between them, which then stay in a processor's cache.
@@ -209,13 +209,12 @@ class Replica:
 
     def _advance(self, scratch: Any, tally: Tally, steps: int) -> bool:
         """Take steps without snapshots; return False if the chain diverged."""
-        last = np.empty((2, 1, self.y.size))
-        return self._record(scratch, tally, steps, 1, *last) == 1
+        return advance(self.y, self.v, self.noise, self.dynamics, scratch, tally, steps) >= 0
 
     def _record(self, scratch: Any, tally: Tally, due: int, n: int, y: Array, v: Array) -> int:
         """Fill ``n`` rows of the buffers, ``due`` steps apart; return the number of valid rows."""
         state = self.y, self.v, self.noise, self.dynamics, scratch, tally
-        return int(record(*state, due, y[:n], v[:n]))
+        return record(*state, due, y[:n], v[:n])[0]
 
     def _block(self) -> tuple[int, int]:
         """Return the block of the next snapshot, and how many it still needs; make room for it."""

@@ -174,7 +174,7 @@ def test_kernels_compile_no_texts():
     numba's cache keeps the machine code of a kernel with the names of all functions in it.
     """
     compile_kernels()
-    for each in (deposit, stepping.advance, stepping.record):
+    for each in (deposit, stepping.record_flight, stepping.record_steps):
         kept = each._cache._cache_file._load_index().values()
         codes = [Path(each.stats.cache_path, name).read_bytes() for name in kept]
         assert codes

@@ -155,7 +155,8 @@ def test_steps_that_diverge_do_not_count():
         tally = make_tally(5, contacts=True)._replace(impacts=make_impacts(5))
         buffers, noise = np.zeros((2, most, 5)), make_noise(np.random.SeedSequence(3))
         state = np.zeros(5), np.zeros(5), noise, dynamics._replace(fastest=fastest)
-        return record(*state, make_scratch(5), tally, 7, *buffers), buffers[1], tally.impacts
+        valid, _ = record(*state, make_scratch(5), tally, 7, *buffers)
+        return valid, buffers[1], tally.impacts
 
     _, speeds, _ = recorded(9, np.inf)
     number, _, kept = recorded(99, np.abs(speeds).max())
