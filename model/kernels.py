@@ -124,10 +124,10 @@ def inlined(
     """Compile ``function`` into every kernel that calls it; a decorator.
 
     For helpers with many arrays, for which the call costs more than the work. ``fused``: as
-    in :func:`kernel`. ``once``: only one kernel calls it, by naming every argument's place. It
-    becomes a part of that kernel before anything is compiled. Otherwise it is compiled alone
-    first, and everything that it calls is optimised once more with it. This takes seconds for
-    what calls all operators.
+    in :func:`kernel`. ``once``: one kernel calls it, without a ``*``. It becomes a part of that
+    kernel before anything is compiled. Otherwise it is compiled alone first, and all that it calls
+    is optimised once more with it, which takes seconds for what calls all operators. It is not for
+    what a loop calls with tuples of many arrays: they would be copied at every call.
     """
     if function is None:
         return partial(inlined, fused=fused, once=once)

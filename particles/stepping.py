@@ -84,7 +84,7 @@ def _take_unequal_step(y, v, kicks, part, dynamics, scratch, tally):  # type: ig
     return drift(y, v, anchors, step.time_step, dynamics.law, scratch, tally)
 
 
-@inlined(once=True)
+@inlined
 def take_step(y, v, kicks, part, dynamics, scratch, tally):  # type: ignore[no-untyped-def]
     """Kick the rods and, unless it was the LAST half, let them drift; changes ``kicks``, (L,).
 
@@ -103,7 +103,7 @@ def take_step(y, v, kicks, part, dynamics, scratch, tally):  # type: ignore[no-u
     return drift(y, v, dynamics.anchors, step.time_step, dynamics.law, scratch, tally)
 
 
-@inlined(once=True)
+@inlined
 def _fly(y, v, noise, dynamics, scratch, steps):  # type: ignore[no-untyped-def]
     """Take steps of a chain whose motion is known exactly; collisions are not counted."""
     width, row, rows, walled = 2 * y.size, 0, 0, dynamics.law.unequal
