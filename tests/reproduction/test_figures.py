@@ -32,9 +32,9 @@ STEP_LESS = ("velocities-elastic", "arctanh", "density", "amplitude")
 
 @pytest.fixture(scope="module", autouse=True)
 def _short_limits():
-    """Let a limit end after 40 correlation times, where it otherwise takes at least 320."""
+    """Let a limit end after 20 correlation times, where it otherwise takes at least 320."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(limit, "_LEAST", 40.0)
+        patch.setattr(limit, "_LEAST", 20.0)
         yield
 
 
