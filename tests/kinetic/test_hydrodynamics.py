@@ -209,7 +209,7 @@ def test_a_shock_does_not_depend_on_a_very_soft_spring(stiffness):
     chain = Chain(size=400, radius=0.5, mass=1.0, stiffness=stiffness, damping=damping)
     chain = chain.replace(amplitude=np.sqrt(2 * damping))
     flow = hydrodynamics(
-        chain, shock_tube(chain), 10, every=10, velocity_variance=1.0, frame="eulerian", **QUIET
+        chain, shock_tube(chain), 20, every=20, velocity_variance=1.0, frame="eulerian", **QUIET
     ).isel(time=-1)
     behind = (flow.x > 2) & (flow.x < 8)
     assert float(flow.flow_velocity[behind].median()) == pytest.approx(0.908, abs=0.01)
