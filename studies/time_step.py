@@ -19,8 +19,8 @@ from typing import NamedTuple
 import numpy as np
 
 from crazybilliards.model import Chain
-from crazybilliards.model.arrays import middle_tenth
-from crazybilliards.model.kernels import kernel
+from crazybilliards.model.arrays import Array, middle_tenth
+from crazybilliards.model.kernels import inlined, kernel
 from crazybilliards.particles.dynamics import Dynamics, make_dynamics
 from crazybilliards.particles.laws.avalanche import Tally, make_tally
 from crazybilliards.particles.laws.closed_contacts import CRITICAL_RESTITUTION, strengthen
@@ -75,50 +75,65 @@ def make_copy(chain: Chain, time_step: float) -> Copy:
     return Copy(chain.reduced_anchors.copy(), v, dynamics, scratch, kicks, sums)
 
 
-@kernel(allocates=True)
+@inlined(once=True)
 def advance(copy: Copy, tally: Tally) -> None:
     """One step: kick by the noise in ``copy.kicks`` and the spring, drift, half a spring kick."""
     y, v, step, anchors = copy.y, copy.v, copy.dynamics.step, copy.dynamics.anchors
     if step.closed != 1.0:
         strengthen(copy.kicks, copy.scratch.clusters, step.closed)
-    v[:] = step.decay * v + step.noise * copy.kicks - step.kick * (y - anchors)
+    for i in range(v.size):
+        v[i] = step.decay * v[i] + step.noise * copy.kicks[i] - step.kick * (y[i] - anchors[i])
     drift(y, v, anchors, step.time_step, copy.dynamics.law, copy.scratch, tally)
-    v -= step.kick * (y - anchors)
+    for i in range(v.size):
+        v[i] -= step.kick * (y[i] - anchors[i])
 
 
-@kernel(allocates=True)
+@kernel
 def measure(copy: Copy) -> None:
-    d, squares = copy.y - copy.dynamics.anchors, copy.v**2
-    copy.sums[0] += d
-    copy.sums[1] += d * d
-    copy.sums[2] += squares
-    copy.sums[3] += squares * squares
+    sums, anchors = copy.sums, copy.dynamics.anchors
+    for i in range(copy.v.size):
+        d, square = copy.y[i] - anchors[i], copy.v[i] ** 2
+        sums[0, i] += d
+        sums[1, i] += d * d
+        sums[2, i] += square
+        sums[3, i] += square * square
 
 
-@kernel(allocates=True)
+@kernel
 def run(
-    copies: tuple[Copy, ...], noise: Noise, tally: Tally, steps: int, measured: bool, finer: int
+    copies: tuple[Copy, ...],
+    noise: Noise,
+    xi: Array,
+    tally: Tally,
+    steps: int,
+    measured: bool,
+    finer: int,
 ) -> None:
     """Take steps, each ``finer`` times as long as that of the copy before it, under one noise.
 
-    All copies are measured after each of the longest steps, whose number is given.
+    All copies are measured after each of the longest steps, whose number is given. ``xi`` has
+    room for the noise of a step.
     """
-    finest, longest = copies[0], finer ** (len(copies) - 1)
-    xi, step = np.empty(finest.y.size), finest.dynamics.step
+    longest = finer ** (len(copies) - 1)
+    step = copies[0].dynamics.step
     for taken in range(1, steps * longest + 1):
         fill(noise, xi)
-        finest.kicks[:] = xi
-        advance(finest, tally)
         ratio = 1
-        for number in range(1, len(copies)):
-            copy, ratio = copies[number], ratio * finer
-            # The Ornstein-Uhlenbeck noise of all finest steps in one of this copy.
+        for number in range(len(copies)):
+            copy = copies[number]
             for i in range(xi.size):
-                copy.kicks[i] = step.decay * copy.kicks[i] + step.noise * xi[i]
+                if number == 0:
+                    copy.kicks[i] = xi[i]
+                else:  # the Ornstein-Uhlenbeck noise of all finest steps in one of this copy
+                    copy.kicks[i] = step.decay * copy.kicks[i] + step.noise * xi[i]
             if taken % ratio == 0:
-                copy.kicks[:] /= copy.dynamics.step.noise
+                if number > 0:
+                    for i in range(xi.size):
+                        copy.kicks[i] /= copy.dynamics.step.noise
                 advance(copy, tally)
-                copy.kicks[:] = 0.0
+                for i in range(xi.size):
+                    copy.kicks[i] = 0.0
+            ratio *= finer
         if measured and taken % longest == 0:
             for copy in copies:
                 measure(copy)
@@ -128,10 +143,10 @@ def measure_all(copies: tuple[Copy, ...], finer: int, duration: float, seed: int
     """Run the copies, the finest one first, and return the number of the longest steps."""
     noise = make_noise(np.random.SeedSequence(seed))
     tally = make_tally(copies[0].y.size, contacts=False)
-    longest = copies[-1].dynamics.step.time_step
+    xi, longest = np.empty(copies[0].y.size), copies[-1].dynamics.step.time_step
     steps = math.ceil(duration / longest)
     for taken, measured in ((math.ceil(WARM_UP / longest), False), (steps, True)):
-        run(copies, noise, tally, taken, measured, finer)
+        run(copies, noise, xi, tally, taken, measured, finer)
     return steps
 
 

@@ -159,6 +159,9 @@ def _best_fit(i: Array, width: Array, weight: Array, shifted: bool) -> tuple[Arr
     def model(i: Array, scale: float, nu: float, c: float = 0.0) -> Array:
         return _sum_of_powers(i, scale, nu, c, size=i.size)
 
+    def slopes(i: Array, scale: float, nu: float, c: float = 0.0) -> Array:
+        return _slopes_of_powers(i, scale, nu, c)[:, :number]
+
     number = 3 if shifted else 2
     bounds = ([0.0, _STEEPEST, -float(i.size)][:number], [np.inf, 0.0, 1.0][:number])
     best: tuple[float, Array, Array] | None = None
@@ -175,6 +178,7 @@ def _best_fit(i: Array, width: Array, weight: Array, shifted: bool) -> tuple[Arr
                 sigma=weight,
                 absolute_sigma=True,
                 bounds=bounds,
+                jac=slopes,
                 x_scale=(scale, 0.1, 1.0)[:number],
                 ftol=1e-12,
                 xtol=1e-10,
@@ -205,3 +209,11 @@ def _inside(values: Array, bounds: tuple[list[float], list[float]]) -> bool:
 def _sum_of_powers(i: Array, scale: float, exponent: float, origin: float, *, size: int) -> Array:
     laws = (i - origin) ** exponent + (size + 1 - origin - i) ** exponent
     return np.asarray(scale * laws)
+
+
+def _slopes_of_powers(i: Array, scale: float, exponent: float, origin: float) -> Array:
+    """Return the derivatives with respect to scale, exponent and origin, a column each."""
+    distance = np.array([i - origin, i.size + 1 - origin - i])
+    laws = distance**exponent
+    columns = laws, scale * laws * np.log(distance), -scale * exponent * laws / distance
+    return np.array([column.sum(axis=0) for column in columns]).T

@@ -72,9 +72,11 @@ def exponent(results: Results, size: int, step: float | None = None) -> Estimate
 
 def claims(results: Results) -> list[Claim]:
     """Check: two power laws fit, nu is -0.46, the same for all L."""
-    found = {size: exponent(results, size) for size in _SIZES}
+    exponents = {
+        step: {size: exponent(results, size, step) for size in _SIZES} for step in (None, *STEPS)
+    }
     fits = {step: fits_in_plot(_pooled(results, step)) for step in (None, *STEPS)}
-    same = {step: _same_exponent(results, step) for step in (None, *STEPS)}
+    same = {step: _same_exponent(found) for step, found in exponents.items()}
     return [
         Claim(
             "collisions make every velocity distribution narrower than a free rod's",
@@ -103,11 +105,11 @@ def claims(results: Results) -> list[Claim]:
                 source=_SOURCE,
                 ours="the time step, the weights" + (" and the size" if size < LARGE else ""),
                 elsewhere={
-                    **{f"dt = {step:g}": exponent(results, size, step) for step in STEPS},
+                    **{f"dt = {step:g}": exponents[step][size] for step in STEPS},
                     "rods weighed by their error bars": _RUNS[size].estimate(results, _weighted_nu),
                 },
             )
-            for size, each in found.items()
+            for size, each in exponents[None].items()
         ),
         Claim(
             "the same exponent for all L",
@@ -133,9 +135,8 @@ def _narrower(runs: list[xr.Dataset]) -> Estimate:
     return Estimate(1 - width, error)
 
 
-def _same_exponent(results: Results, step: float | None) -> Found:
+def _same_exponent(found: dict[int, Estimate]) -> Found:
     """Return what decides whether the exponents of two chains differ."""
-    found = {size: exponent(results, size, step) for size in _SIZES}
     pairs = itertools.combinations(found.values(), 2)
     listed = ", ".join(f"{size}: {each}" for size, each in found.items())
     return worst(f"{listed}; difference of two", [one.minus(two) for one, two in pairs], _SAME)

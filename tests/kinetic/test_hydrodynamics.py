@@ -138,7 +138,7 @@ def test_shocks_of_two_clumps_survive(frame, fluid):
     chain = Chain(size=20, amplitude=5)
     s, W = chain.thermal_length, chain.free_velocity_width
     start = two_clumps(chain, 6 * s, 4 * W)
-    arguments = {"frame": frame, "velocity_variance": fluid, "cells": 200} | QUIET
+    arguments = {"frame": frame, "velocity_variance": fluid, "cells": 100} | QUIET
     flow = hydrodynamics(chain, start, 4, every=0.5, **arguments)
     for name in flow.data_vars:
         assert np.isfinite(flow[name]).all(), name

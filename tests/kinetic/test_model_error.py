@@ -139,7 +139,7 @@ def test_chains_drawn_at_random_keep_to_the_stated_errors():
 def stated(start, cells=6, **changes):
     chain = Chain(**({"size": 20, "restitution": 0.92} | changes))
     begin = start(chain.replace(restitution=1.0))
-    flow = relax_phase_space(chain, begin, 0.1, cells=cells, progress=False)
+    flow = relax_phase_space(chain, begin, 0.1, every=0.1, cells=cells, progress=False)
     return flow.attrs["kinetic_energy_model_error"]
 
 

@@ -18,18 +18,16 @@ from crazybilliards.particles.observers.base import Averaged
 @pytest.mark.filterwarnings("ignore:.*spectra are NaN")
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="forks, reads /proc")
 @pytest.mark.compiled
-@pytest.mark.parametrize(
-    "copies", [2, *(pytest.param(n, marks=pytest.mark.validate) for n in (1, 4))]
-)
+@pytest.mark.parametrize("copies", [2, pytest.param(1, marks=pytest.mark.validate)])
 def test_made_longer_and_killed_and_resumed_it_is_one_long_run(copies, tmp_path):
     how = {"observe": ("widths", "density", "energy", "velocities", "time-correlations")}
     how |= {"seed": 4, "replicas": copies, "threads": copies, "progress": False}
-    chain, long = Chain(size=40, restitution=0.7, gap=0.1), 6000 // copies
+    chain, long = Chain(size=40, restitution=0.7, gap=0.1), 4000 // copies
     undisturbed = simulate(chain, duration=long, **how)
     state = tmp_path / "job" / "state"
     state.parent.mkdir()
     how |= {"checkpoint": state, "checkpoint_interval": 0.05}
-    assert simulate(chain, duration=1666.6 / copies, **how).attrs["status"] == "completed"
+    assert simulate(chain, duration=1111.1 / copies, **how).attrs["status"] == "completed"
     written = state.stat().st_mtime_ns
     child = begin(lambda _: simulate(chain, duration=long, **how), state.parent)
     until(lambda: state.stat().st_mtime_ns != written)

@@ -12,6 +12,7 @@ import pytest
 
 from crazybilliards.comparison.sweeps import Case
 from crazybilliards.comparison.sweeps.jobs import JOBS
+from crazybilliards.particles import limit
 from crazybilliards.reproduction.claims.verdicts import Verdict
 from crazybilliards.reproduction.figures import FIGURES
 
@@ -27,6 +28,14 @@ QUICK = [
 
 # Claims at e = 1, which hold at any step; and on the amplitude, which is a factor at any step.
 STEP_LESS = ("velocities-elastic", "arctanh", "density", "amplitude")
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _short_limits():
+    """Let a limit end after 20 correlation times, where it otherwise takes at least 320."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(limit, "_LEAST", 20.0)
+        yield
 
 
 @cache  # figures share cases, and shortened ones may be equal
