@@ -59,9 +59,10 @@ class Flow(PDEBase):
     def evolution_rate(self, state: Any, t: float = 0) -> Any:
         """Return the rates of change, in what has of py-pde's fields only the attribute it reads.
 
-        To make fields for every rate would take longer than most rates.
+        To make fields for every rate would take longer than most rates. The values lie in an array
+        with cells around them, for which a rate would be compiled once more.
         """
-        return _Rates(self.rate(state.data, t))
+        return _Rates(self.rate(np.ascontiguousarray(state.data), t))
 
 
 def make_state(fields: Mapping[str, Array], ends: tuple[float, float]) -> FieldCollection:
