@@ -1,5 +1,6 @@
 """Shared by all tests."""
 
+import gc
 import os
 import signal
 import sys
@@ -33,6 +34,11 @@ def pytest_collection_modifyitems(config, items):
         for item in items:
             if item.get_closest_marker("posix"):
                 item.add_marker(pytest.mark.skip(reason="needs signals, streams, links of POSIX"))
+
+
+def pytest_collection_finish():
+    """Keep what was imported out of each search for garbage."""
+    gc.freeze()
 
 
 def pytest_itemcollected(item):

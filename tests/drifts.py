@@ -6,15 +6,23 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
+from crazybilliards.model.kernels import kernel
 from crazybilliards.particles.dynamics import make_dynamics
+from crazybilliards.particles.laws import law as laws
 from crazybilliards.particles.laws.avalanche import make_tally, make_waves
 from crazybilliards.particles.laws.impacts import make_impacts
-from crazybilliards.particles.laws.law import CONTACTS, EVENTS, Law, drift, make_scratch
+from crazybilliards.particles.laws.law import CONTACTS, EVENTS, Law, make_scratch
 from crazybilliards.particles.noise import make_noise
 from crazybilliards.particles.stepping import advance
 
 OPERATORS = (EVENTS, CONTACTS)  # for any restitution
 UNSEEN = make_tally(2, contacts=False)
+
+
+@kernel
+def drift(y, v, anchors, dt, law, scratch, tally):
+    """Do what the one of the laws does, which is a part of kernels and in no cache of its own."""
+    return laws.drift(y, v, anchors, dt, law, scratch, tally)
 
 
 def everything(size):
@@ -64,11 +72,11 @@ def drifted(
     y, v = (np.array(each, dtype=float) for each in state)
     tally = make_tally(y.size, contacts=True)
     tally = tally._replace(impacts=make_impacts(y.size), struck=np.zeros((2, 2)))
-    high, masses = np.abs(y).max() + around.room or 1.0, np.resize(around.masses, y.size)
+    high, masses = float(np.abs(y).max() + around.room or 1.0), np.resize(around.masses, y.size)
     walls = [0.0] if high < math.inf else []
     inverse = np.array([*walls, *(1 / masses), *walls] if around != PLAIN else [])
     merging = merge_speed if min(e, around.wall) < 1 else 0.0
-    springs = pull, exponent, -high, high, around.wall, around != PLAIN
+    springs = pull, exponent, -high, high, float(around.wall), around != PLAIN
     law, scratch = Law(operator, e, merging, most, *springs), make_scratch(y.size, inverse)
     anchors = gap * (np.arange(y.size) - (y.size - 1) / 2)
     collisions = drift(y, v, anchors, dt, law, scratch, tally)

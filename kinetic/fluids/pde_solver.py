@@ -38,6 +38,10 @@ class FlowFields(NamedTuple):
     unsteadiness: Array  # rms rate of change of eta and V in scaled units, (times,)
 
 
+class _Rates(NamedTuple):
+    data: Array
+
+
 class Flow(PDEBase):
     """Equations of motion given as a compiled function of (fields, time).
 
@@ -53,10 +57,12 @@ class Flow(PDEBase):
         return self.rate
 
     def evolution_rate(self, state: Any, t: float = 0) -> Any:
-        """Return the rates of change as fields, for py-pde's own checks."""
-        result = state.copy()
-        result.data = self.rate(state.data, t)
-        return result
+        """Return the rates of change, in what has of py-pde's fields only the attribute it reads.
+
+        To make fields for every rate would take longer than most rates. The values lie in an array
+        with cells around them, for which a rate would be compiled once more.
+        """
+        return _Rates(self.rate(np.ascontiguousarray(state.data), t))
 
 
 def make_state(fields: Mapping[str, Array], ends: tuple[float, float]) -> FieldCollection:

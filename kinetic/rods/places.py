@@ -29,7 +29,6 @@ from typing import NamedTuple
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline, CubicSpline
 from scipy.special import betainc, betaincinv, betaln, log_ndtr, ndtr, ndtri
-from scipy.stats import gennorm
 
 from crazybilliards.kinetic.exact.gibbs_measure import recursion_of
 from crazybilliards.kinetic.statics.label_closure import stationary
@@ -171,6 +170,8 @@ def elastic_rods(chain: Chain) -> RodPlaces:
 
 
 def _without_gap(chain: Chain) -> RodPlaces:
+    from scipy.stats import gennorm  # which takes longer to import than most theories to solve
+
     law, n = exchangeable(chain.size), chain.potential_exponent
     free = gennorm(n, scale=n ** (1 / n))
     # The lower tail is the accurate one.

@@ -35,7 +35,6 @@ import numpy as np
 import xarray as xr
 from scipy.integrate import solve_bvp
 from scipy.special import gamma, gammaincc
-from scipy.stats import gennorm
 
 from crazybilliards.kinetic.accuracy import expected
 from crazybilliards.model import Chain, spring
@@ -202,6 +201,8 @@ def stationary(chain: Chain) -> Stationary:
 
 def _free_lattice(n: int, lam: float, zeta: Array) -> tuple[Array, Array]:
     """Density exp(P) and share t of rods without collisions: a thermally smeared lattice."""
+    from scipy.stats import gennorm  # which takes longer to import than most theories to solve
+
     free = gennorm(n, scale=n ** (1 / n))
     if lam < 1e-3:
         return free.pdf(zeta), free.sf(zeta)

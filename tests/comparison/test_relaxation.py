@@ -1,6 +1,7 @@
 """The relaxation of one chain in all descriptions."""
 
 from base64 import b64decode
+from functools import cache
 
 import imageio_ffmpeg
 import numpy as np
@@ -58,8 +59,9 @@ def test_with_a_gap_the_fluid_with_temperature_stays_close(release, by):
 GAS = Chain(size=20, box=80, stiffness=0, mass=1, damping=0.01, amplitude=0.02**0.5)
 
 
+@cache
 def released(chain, release, by):
-    """Follow a gas in a box until its points have crossed it."""
+    """Follow a gas in a box until its points have crossed it; do not change what is returned."""
     how = {"duration": 40, "every": 8, "replicas": 400, "progress": False}
     return compare_relaxation(chain, release, by, **how)
 

@@ -4,13 +4,13 @@ from itertools import groupby
 
 import numpy as np
 import pytest
+from drifts import UNSEEN, drift
 from hypothesis import given
 from hypothesis import strategies as st
 
 from crazybilliards.model import Chain
 from crazybilliards.particles import dynamics as dynamics_module
 from crazybilliards.particles.dynamics import Step, make_dynamics, make_step
-from crazybilliards.particles.laws.avalanche import make_tally
 from crazybilliards.particles.laws.closed_contacts import (
     CLOSED_KICK,
     CRITICAL_RESTITUTION,
@@ -18,12 +18,10 @@ from crazybilliards.particles.laws.closed_contacts import (
     make_clusters,
     strengthen,
 )
-from crazybilliards.particles.laws.law import EVENTS, ISOTONIC, Law, drift, make_scratch
+from crazybilliards.particles.laws.law import EVENTS, ISOTONIC, Law, make_scratch
 from crazybilliards.particles.noise import fill, make_noise
 from crazybilliards.particles.stepping import FIRST, LAST, WHOLE, advance, kick
 from studies.time_step import QUANTITIES, compared
-
-UNSEEN = make_tally(2, contacts=False)
 
 
 def listed(clusters):

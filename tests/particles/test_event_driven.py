@@ -3,13 +3,13 @@
 import next_collision
 import numpy as np
 import pytest
-from drifts import everything
+from drifts import drift, everything
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from crazybilliards.particles.laws.avalanche import make_tally
 from crazybilliards.particles.laws.event_driven import LONG
-from crazybilliards.particles.laws.law import EVENTS, Law, drift, make_scratch
+from crazybilliards.particles.laws.law import EVENTS, Law, make_scratch
 
 MOST = 400
 

@@ -2,20 +2,12 @@
 
 import numpy as np
 import pytest
-from drifts import PLAIN, UNSEEN, Around, drifted, mirrored, require_alike, require_kept
+from drifts import PLAIN, UNSEEN, Around, drift, drifted, mirrored, require_alike, require_kept
 from gauss_seidel import solve
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from crazybilliards.particles.laws.law import (
-    CONTACTS,
-    EVENTS,
-    ISOTONIC,
-    SORT,
-    Law,
-    drift,
-    make_scratch,
-)
+from crazybilliards.particles.laws.law import CONTACTS, EVENTS, ISOTONIC, SORT, Law, make_scratch
 
 OPERATORS = {"sort": SORT, "isotonic": ISOTONIC, "events": EVENTS, "contacts": CONTACTS}
 

@@ -151,6 +151,7 @@ INTERRUPTED = {
 }
 
 
+@pytest.mark.usefixtures("sketched")
 @pytest.mark.compiled
 @pytest.mark.posix
 @pytest.mark.parametrize(

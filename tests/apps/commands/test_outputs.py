@@ -70,6 +70,7 @@ def test_a_file_belongs_to_one_process_at_a_time(arguments, refused, run, tmp_pa
     assert sorted(path.name for path in tmp_path.iterdir()) == ["grid.toml", "run.nc"]
 
 
+@pytest.mark.usefixtures("sketched")
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="needs a device that is full")
 def test_a_reader_that_goes_and_a_full_disk_cost_no_work(arguments, tmp_path):
     reading, writing = os.pipe()
@@ -83,6 +84,7 @@ def test_a_reader_that_goes_and_a_full_disk_cost_no_work(arguments, tmp_path):
             (tmp_path / name).unlink()
 
 
+@pytest.mark.usefixtures("sketched")
 @pytest.mark.posix
 @pytest.mark.parametrize(
     ("name", "closed"), [*product(ALONE, [(0, 1, 2)]), ("theory", (1,)), ("theory", (2,))]
@@ -118,6 +120,7 @@ def test_a_long_title_and_caption_use_the_width_of_the_terminal(monkeypatch, cap
     assert (lines[0], lines[-1]) == (title, "Smoothed as in the paper; [sigma] is a unit.")
 
 
+@pytest.mark.usefixtures("sketched")
 @pytest.mark.compiled
 @pytest.mark.parametrize("name", [*SMALL, "sweep"])
 def test_json_is_one_object_with_every_file_written(name, arguments, run, tmp_path, monkeypatch):
