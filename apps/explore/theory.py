@@ -39,7 +39,7 @@ def solve(query: Mapping[str, str], is_gone: Callable[[], bool]) -> Answer | Non
     ``refused``, with ``busy`` if too many wait.
     """
     try:
-        parameters = _read(query)
+        parameters = read(query)
     except ValueError as error:
         return {"refused": str(error)}
     if not _PLACES.acquire(blocking=False):
@@ -56,7 +56,7 @@ def solve(query: Mapping[str, str], is_gone: Callable[[], bool]) -> Answer | Non
         _PLACES.release()
 
 
-def _read(query: Mapping[str, str]) -> Parameters:
+def read(query: Mapping[str, str]) -> Parameters:
     """Return the chain of a query."""
     values: dict[str, Any] = dict(query)
     for name, text in query.items():
