@@ -168,7 +168,7 @@ def test_what_is_counted_or_known_is_not_broken_off(browser, address):
     assert text(browser, "note") == "A chain was begun anew, which broke off the judging."
     press(browser, challenges(browser)[2])
     slide(browser, size=60, restitution=0.5)
-    assert "clearly above 3" in rows(browser, 3000)
+    assert "clearly above 3" in rows(browser, 1000)
     slide(browser, restitution=0.6)
     assert text(browser, "note") == ""
 
