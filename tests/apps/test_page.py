@@ -30,6 +30,7 @@ from selenium.webdriver.common.actions.action_builder import ActionBuilder
 
 from crazybilliards.apps.explore.theory import compute, read
 from crazybilliards.model import Chain
+from crazybilliards.model.parameters import Parameters
 
 ROOT = Path(__file__).parents[2]
 pytestmark = pytest.mark.validate
@@ -60,6 +61,11 @@ const look = () => (waiting() ? requestAnimationFrame(look) : done());
 window.answer(text), look()"""
 ELSEWHERE = """return performance.getEntriesByType('resource').map((each) => each.name)
   .filter((name) => !name.startsWith(location.origin) && !name.startsWith('data:'))"""
+
+
+def goes_on(browser):
+    browser.set_script_timeout(20)
+    browser.execute_async_script(GOES_ON)
 
 
 def test_the_files_are_small_plain_and_ask_nobody_else():
@@ -94,7 +100,7 @@ def test_every_challenge_is_reached_and_the_chain_goes_on(browser, address, scre
         press(browser, button, way)
         assert browser.execute_script(CHAIN) == chain
     press(browser, control(browser, "restart"), way)
-    browser.execute_async_script(GOES_ON)
+    goes_on(browser)
     assert errors(browser) == []
 
 
@@ -107,7 +113,7 @@ def test_every_preset_is_seen_by_everybody_and_fits(browser, address, screen):
     for chain in browser.execute_script("return ChainPresets.list.map(({chain}) => chain)"):
         control(browser, "preset").send_keys("\ue015")
         assert browser.execute_script(CHAIN) == chain
-        browser.execute_async_script(GOES_ON)
+        goes_on(browser)
         assert min(browser.execute_script(DRAWN)) > 5000
         if screen == "wide":
             assert browser.execute_script(SEEN, control(browser, "stage"), "nearest")[1]
@@ -208,8 +214,9 @@ def test_what_the_server_answers_is_said_of_a_chain(browser, address, chain, sai
     slide(browser, **chain)
     asked, meanwhile = browser.execute_script(HOLD, control(browser, "solve"))
     assert meanwhile == "Being solved, 0 s."
-    answer = compute(read(dict(parse_qsl(urlsplit(asked).query))))
-    browser.execute_async_script(ANSWER, json.dumps(answer))
+    parameters = read(dict(parse_qsl(urlsplit(asked).query)))
+    assert parameters == Parameters(size=20, **chain)
+    browser.execute_async_script(ANSWER, json.dumps(compute(parameters)))
     assert re.match(said, text(browser, "theory"))
     slide(browser, damping=0.5)
     assert text(browser, "theory") == ""

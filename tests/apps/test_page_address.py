@@ -82,7 +82,7 @@ def again(browser):
     ("beginning", "wanted", "number"),
     [
         ("challenge=push", "^(challenge|preset|reveal|restart)", 17),
-        ("challenge=push&size=4", "^(?!challenge|preset|save|solve)", 45),
+        ("challenge=push&size=4&speed=30", "^(?!challenge|preset|save|solve)", 45),
         ("challenge=maxwell&size=4", "^(?!challenge|preset|save|solve)", 31),
     ],
 )
