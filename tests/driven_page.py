@@ -19,6 +19,20 @@ return [element.contains(document.elementFromPoint(x, y)),
   ['stage', 'second'].every((name) => shown(document.querySelector(`[data-chain=${name}]`)))];
 """
 
+# All controls, and how a script of the page uses one: with the events that a hand causes.
+ALL = "document.querySelectorAll('.chain :is(button, select, input)')"
+USE = """
+function use(control, entry = null) {
+  if (control.tagName === 'BUTTON') return control.click();
+  if (entry) control.value = entry.value;
+  else if (control.tagName === 'SELECT') control.selectedIndex++;
+  else if (Number(control.value) > Number(control.min)) control.stepDown();
+  else control.stepUp();
+  for (const type of ['input', 'change'])
+    control.dispatchEvent(new Event(type, {bubbles: true}));
+}
+"""
+
 
 def visit(browser, address, screen="wide", *, dark=False, quiet=False):
     """Open the page; ``quiet``: for a reader who wants nothing to move."""
@@ -28,6 +42,12 @@ def visit(browser, address, screen="wide", *, dark=False, quiet=False):
         browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [still]})
     browser.get("about:blank")
     browser.get(address)
+
+
+def turn(browser, setting):
+    """Let the open page obey another address, without a reload."""
+    obeyed = "addEventListener('hashchange', () => arguments[1](), {once: true});"
+    browser.execute_async_script(f"{obeyed} location.hash = arguments[0]", setting)
 
 
 def control(browser, name):
@@ -43,7 +63,8 @@ def press(browser, element, way="mouse"):
         element.send_keys("\ue007")
         return
     browser.execute_script(SEEN, element, "center")
-    actions = ActionBuilder(browser, mouse=PointerInput(way, way))
+    # By default the pointer would take a quarter of a second to come.
+    actions = ActionBuilder(browser, mouse=PointerInput(way, way), duration=0)
     actions.pointer_action.move_to(element).pointer_down().pointer_up()
     actions.perform()
 

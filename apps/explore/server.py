@@ -60,6 +60,7 @@ class _Handler(BaseHTTPRequestHandler):
 
     protocol_version = "HTTP/1.1"
     timeout = 30  # s that a visitor may be silent
+    disable_nagle_algorithm = True  # the content follows the headers without a wait of 40 ms
     server_version, sys_version = "crazybilliards", ""
 
     def __init__(self, names: Collection[str], *arguments: Any) -> None:

@@ -39,7 +39,7 @@ def solve(query: Mapping[str, str], is_gone: Callable[[], bool]) -> Answer | Non
     ``refused``, with ``busy`` if too many wait.
     """
     try:
-        parameters = _read(query)
+        parameters = read(query)
     except ValueError as error:
         return {"refused": str(error)}
     if not _PLACES.acquire(blocking=False):
@@ -56,7 +56,7 @@ def solve(query: Mapping[str, str], is_gone: Callable[[], bool]) -> Answer | Non
         _PLACES.release()
 
 
-def _read(query: Mapping[str, str]) -> Parameters:
+def read(query: Mapping[str, str]) -> Parameters:
     """Return the chain of a query."""
     values: dict[str, Any] = dict(query)
     for name, text in query.items():
@@ -97,27 +97,33 @@ def _solve_in_process(parameters: Parameters, is_gone: Callable[[], bool]) -> An
 
 
 def _compute(parameters: Parameters, there: Connection) -> None:
-    """Send the theories of the chain, or why there is none."""
+    """Send the answer for a chain from a process that ends with the server."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the server ends this process
     end_with_parent()
+    there.send(compute(parameters))
+
+
+def compute(parameters: Parameters) -> Answer:
+    """Return the theories of a chain, or why there is none, in this process."""
     from dataclasses import asdict
 
     from crazybilliards.comparison.stationary_theories import THEORIES, choose_theory
     from crazybilliards.kinetic.accuracy import UnmeasuredWarning
     from crazybilliards.model import Chain
 
-    warnings.simplefilter("ignore", UnmeasuredWarning)  # the page shows what is not known
     chain = Chain(**asdict(parameters))
     other = THEORIES["force_balance"]
-    try:
-        best = choose_theory(chain).theory
-        coarse = {} if best.refusal(chain, _TOLERANCE) else _TOLERANCE
-        answer = {"best": _result(best, best.solve(chain, **coarse))}
-        if not other.refusal(chain):
-            answer["other"] = _result(other, other.solve(chain))
-        there.send(answer)
-    except ValueError as error:
-        there.send({"refused": _why_none(parameters, str(error))})
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UnmeasuredWarning)  # the page shows what is not known
+        try:
+            best = choose_theory(chain).theory
+            coarse = {} if best.refusal(chain, _TOLERANCE) else _TOLERANCE
+            answer = {"best": _result(best, best.solve(chain, **coarse))}
+            if not other.refusal(chain):
+                answer["other"] = _result(other, other.solve(chain))
+        except ValueError as error:
+            return {"refused": _why_none(parameters, str(error))}
+    return answer
 
 
 def _why_none(chain: Parameters, error: str) -> str:

@@ -11,10 +11,11 @@ from pathlib import Path
 from typing import Any
 
 CHROMIUM, DRIVER = Path("/usr/bin/chromium"), Path("/usr/bin/chromedriver")
+# Without the last flag a page that is driven by a script may change its address 20 times a second.
 FLAGS = (
     "--headless=new --no-sandbox --disable-gpu --disable-quic --no-first-run "
     "--disable-background-networking --disable-component-update --disable-sync "
-    "--window-size=1400,1040 --hide-scrollbars"
+    "--window-size=1400,1040 --hide-scrollbars --disable-ipc-flooding-protection"
 )
 COMMAND = [sys.executable, "-c", "from crazybilliards.apps.commands.line import main; main()"]
 
@@ -67,7 +68,7 @@ def until(condition: Callable[[], Any], seconds: float = 300.0) -> Any:
     end = time.monotonic() + seconds
     while not (found := condition()):
         assert time.monotonic() < end, "waited for too long"
-        time.sleep(0.05)
+        time.sleep(0.01)
     return found
 
 

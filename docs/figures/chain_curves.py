@@ -18,7 +18,7 @@ from crazybilliards.model import Chain
 CURVES = Path(__file__).parents[2] / "apps" / "explore" / "page" / "curves.js"
 SHOWN = ("size", "restitution", "damping", "gap")  # all have A = 1 and linear springs
 TURNING = Chain(size=60, restitution=1.05)  # at which damping is it as hot outside as inside?
-DAMPINGS = (2.5, 3.0, 3.5, 4.0, 5.0)
+DAMPINGS = (2.5, 3.0, 3.5, 5.0)
 SEEN = (2.5, 5.0)  # of which the page has a question
 CHALLENGES = (
     Chain(size=20, restitution=0.9, damping=0.3, gap=0.5),

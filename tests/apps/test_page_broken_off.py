@@ -2,76 +2,129 @@
 
 import pytest
 from browser import errors
-from driven_page import SCREENS, challenges, control, press, rows, slide, text, visit
+from driven_page import (
+    ALL,
+    SCREENS,
+    USE,
+    challenges,
+    control,
+    press,
+    rows,
+    slide,
+    text,
+    turn,
+    visit,
+)
 from selenium.webdriver.common.actions.action_builder import ActionBuilder
 from selenium.webdriver.common.actions.pointer_input import PointerInput
 
 pytestmark = pytest.mark.validate
 
-CONTROLS = ".chain :is(button, select, input)"
-# What goes on is marked; once the mark is gone, or the theory is not asked for, it was broken off.
+# What goes on, and how it begins. It is marked: once the mark is gone, or the theory is not asked
+# for, it was broken off.
 GOES_ON = {
     "the push under way": "ChainRunning.world.pushed?.marked",
     "the judging": "ChainRunning.world.measurement.blocks.marked && !ChainRunning.world.hand",
     "the computation of the theory": "Boolean(ChainTheory.asked())",
 }
+BEGIN = {
+    "the push under way": "click('push'); ChainRunning.world.pushed.marked = true;",
+    "the judging": """
+      for (let k = 0; k < 60; k++) ChainRunning.goOn();
+      ChainFrames.draw();
+      if (said('said').includes('next verdict falls'))
+        ChainRunning.world.measurement.blocks.marked = true;""",
+    "the computation of the theory": """
+      window.fetch = () => new Promise(() => {});  // it takes for ever
+      click('solve');""",
+}
+FIND = """
+const find = (name) => document.querySelector(`[data-chain="${name}"]`);
+const click = (name) => find(name).click(), said = (name) => find(name).textContent;
+"""
+# Of each control that is seen: its name, that of its slider, whether all went on before it was
+# used, and after it, and what the page then said. It comes back to its address before each.
+EVERYTHING = """
+const [left, elsewhere, done] = arguments, found = [], beginning = location.hash;
+const turn = (hash) => new Promise((turned) => {
+  addEventListener('hashchange', turned, {once: true});
+  location.hash = hash;
+});
+(async () => {
+  const shown = Array.from(ALL).filter((control) => control.checkVisibility());
+  for (const control of shown) {
+    const name = control.dataset.chain ?? control.ariaLabel;
+    if (left.includes(name)) continue;
+    await turn(elsewhere);
+    await turn(beginning);
+    begin();
+    const began = goesOn();
+    use(control);
+    const label = control.closest('.slider')?.querySelector('label').textContent ?? '';
+    found.push([name, label.split(' [')[0], began, goesOn(), said('note')]);
+  }
+})().then(() => done(found), (error) => done(String(error.stack)));
+"""
 HOLDS = "return ChainPhysics.position(ChainRunning.world.state, 0) / ChainDrawing.reach("
 HOLDS += "ChainRunning.world.state.chain) * arguments[0].clientWidth / 2"
 
 
+def beginning(what):
+    """Return the address of a short chain, where a push, a judgement or a theory soon begins."""
+    return "challenge=ends&size=4" if "judging" in what else "challenge=push&size=4&speed=30"
+
+
 def begin(browser, address, screen, what):
     """Open the page, where a push, a judgement or a theory is under way."""
-    visit(browser, address + ("#challenge=ends" if "judging" in what else ""), screen, quiet=True)
-    if "push" in what:
-        press(browser, control(browser, "push"))
-        browser.execute_script("ChainRunning.world.pushed.marked = true")
-    elif "judging" in what:
-        assert "next verdict falls" in rows(browser, 60)
-        browser.execute_script("ChainRunning.world.measurement.blocks.marked = true")
-    else:
-        browser.execute_script("window.fetch = () => new Promise(() => {})")  # it takes for ever
-        press(browser, control(browser, "solve"))
-    assert browser.execute_script(f"return {GOES_ON[what]}")
+    challenge = "ends" if "judging" in what else "push"
+    visit(browser, f"{address}#challenge={challenge}", screen, quiet=True)
+    assert browser.execute_script(f"{FIND} {BEGIN[what]} return {GOES_ON[what]}")
 
 
-def change(browser, element, way):
-    """Use a control; return its words and why it breaks off what goes on, if it does."""
-    tag, name = element.tag_name, element.get_attribute("data-chain") or ""
-    label = browser.execute_script(
-        "return arguments[0].closest('.slider')?.querySelector('label').textContent", element
-    )
-    if tag == "button":
-        press(browser, element, way)
-    else:
-        element.send_keys("\ue015" if tag == "select" else "\ue012")
-    if label:
-        return f"The {label.split(' [')[0]} changed"
-    return "Rod 1 was pushed" if name == "push" else "A chain was begun anew"
+def check(what, name, label, goes_on, note):
+    """Look whether the page says that a control has broken off what goes on; return whether so."""
+    if goes_on:
+        assert "broke off" not in note, name
+        return False
+    why = f"The {label} changed" if label else "A chain was begun anew"
+    why = "Rod 1 was pushed" if name == "push" else why
+    assert note == f"{why}, which broke off {what}.", name
+    return True
 
 
-SCREENED = list(zip(("narrow", "wide", "wide"), GOES_ON, strict=True))
-
-
-@pytest.mark.parametrize(("screen", "what"), SCREENED)
-def test_every_control_that_breaks_something_off_says_so_and_why(browser, address, screen, what):
-    way, broken, names = "mouse" if screen == "wide" else "touch", 0, {}
-    visit(browser, address, screen, quiet=True)
-    for k, shown in enumerate(browser.find_elements("css selector", CONTROLS)):
-        name = shown.get_attribute("data-chain") or shown.get_attribute("aria-label")
-        names[k] = name if shown.is_displayed() else "hidden"
-    for k, name in names.items():
-        if name in ("save", "solve", "step", "hidden"):
-            continue
-        begin(browser, address, screen, what)
-        element = browser.find_elements("css selector", CONTROLS)[k]
-        why, said = change(browser, element, way), text(browser, "note")
-        if browser.execute_script(f"return {GOES_ON[what]}"):
-            assert "broke off" not in said, name
-        else:
-            assert said == f"{why}, which broke off {what}.", name
-            broken += 1
+@pytest.mark.parametrize("what", GOES_ON)
+def test_every_control_that_breaks_something_off_says_so_and_why(browser, address, what):
+    visit(browser, f"{address}#{beginning(what)}", quiet=True)
+    script = f"{FIND} {USE} const ALL = {ALL}, goesOn = () => {GOES_ON[what]};"
+    script += f"const begin = () => {{ {BEGIN[what]} }}; {EVERYTHING}"
+    left = ["save", "solve", "step"]
+    found = browser.execute_async_script(script, left, "#size=3&restitution=0.5&speed=30")
+    broken = 0
+    for name, label, began, goes_on, note in found:
+        assert began, name
+        broken += check(what, name, label, goes_on, note)
     assert broken >= 18
     assert errors(browser) == []
+
+
+@pytest.mark.parametrize(("screen", "way"), [("wide", "mouse"), ("narrow", "touch")])
+def test_a_hand_on_a_control_breaks_off_too(browser, address, screen, way):
+    """One control of each kind."""
+    visit(browser, address, screen, quiet=True)
+    for what in GOES_ON:
+        for name in ("challenge-ends", "preset", "restitution", "speed"):
+            turn(browser, f"#{beginning(what)}&restitution=0.5")
+            turn(browser, f"#{beginning(what)}")
+            assert browser.execute_script(f"{FIND} {BEGIN[what]} return {GOES_ON[what]}")
+            element = control(browser, name)
+            if element.tag_name == "button":
+                press(browser, element, way)
+            else:
+                element.send_keys("\ue015" if element.tag_name == "select" else "\ue012")
+            label = "restitution e" if name == "restitution" else ""
+            goes_on = browser.execute_script(f"return {GOES_ON[what]}")
+            broken = check(what, name, label, goes_on, text(browser, "note"))
+            assert broken == (name != "speed")
 
 
 @pytest.mark.parametrize("what", list(GOES_ON)[:2])
@@ -115,7 +168,7 @@ def test_what_is_counted_or_known_is_not_broken_off(browser, address):
     assert text(browser, "note") == "A chain was begun anew, which broke off the judging."
     press(browser, challenges(browser)[2])
     slide(browser, size=60, restitution=0.5)
-    assert "clearly above 3" in rows(browser, 3000)
+    assert "clearly above 3" in rows(browser, 1000)
     slide(browser, restitution=0.6)
     assert text(browser, "note") == ""
 
@@ -124,17 +177,21 @@ def test_what_is_counted_or_known_is_not_broken_off(browser, address):
 def test_messages_are_seen_above_the_rods(browser, address, screen):
     """Also where one has scrolled to a slider, and nothing moves when they appear."""
     visit(browser, address, screen, quiet=True)
-    place = "return [...document.querySelectorAll('.stage, .note')].map((each) => "
+    place = "[...document.querySelectorAll('.stage, .note')].map((each) => "
     place += "each.getBoundingClientRect().toJSON())"
-    before = browser.execute_script(place)[1]["y"]
-    for name in browser.execute_script("return ChainAddress.SPRUNG"):
-        press(browser, control(browser, "push"))
-        browser.execute_script(
-            "arguments[0].scrollIntoView({block: 'nearest'})", control(browser, name)
-        )
-        control(browser, name).send_keys("\ue015" if name == "spring" else "\ue012")
-        assert "which broke off the push" in text(browser, "note")
-        note, stage = browser.execute_script(place)
+    before = browser.execute_script(f"return {place}")[1]["y"]
+    script = f"""{FIND} {USE}
+    return ChainAddress.SPRUNG.map((name) => {{
+      click('push');
+      find(name).scrollIntoView({{block: 'nearest'}});
+      find(name).focus();
+      use(find(name));
+      return [said('note'), ...{place}];
+    }});"""
+    found = browser.execute_script(script)
+    assert len(found) == 6
+    for said, note, stage in found:
+        assert "which broke off the push" in said
         assert 0 <= note["top"] < note["bottom"] <= stage["top"] + 1 < SCREENS[screen][1]
     browser.execute_script("scrollTo(0, 0)")
-    assert browser.execute_script(place)[1]["y"] == before
+    assert browser.execute_script(f"return {place}")[1]["y"] == before

@@ -6,7 +6,7 @@ from dataclasses import asdict
 import numpy as np
 import pytest
 from browser import errors
-from driven_page import SCREENS, challenges, control, press, rows, slide, text, visit
+from driven_page import challenges, control, press, rows, slide, text, turn, visit
 from selenium.webdriver.common.action_chains import ActionChains
 
 import crazybilliards as cb
@@ -33,19 +33,24 @@ return [1, 100, 1e4, 1e6].map((mass_ratio) => [8, 30, 600].map((box) => {
 """
 
 
+@pytest.fixture(scope="module")
+def page(browser, address):
+    visit(browser, address, quiet=True)
+    return browser
+
+
 @pytest.mark.compiled
 @pytest.mark.parametrize("mass_ratio", [1, 3, 100])
 @pytest.mark.parametrize("box", [41, 60])
-def test_a_gas_flies_like_that_of_the_package(browser, address, box, mass_ratio):
+def test_a_gas_flies_like_that_of_the_package(page, box, mass_ratio):
     """Until the rods have met a hundred times or more; later two masses forget how they began."""
-    visit(browser, address, quiet=True)
     gas = cb.Chain(size=20, amplitude=0, damping=0, stiffness=0, box=box, mass_ratio=mass_ratio)
     rng = np.random.default_rng(8)
     free, duration, steps = box - 40, (box - 40) / 40, 20
     y, v = np.sort(rng.uniform(-free / 2, free / 2, 20)), rng.normal(size=20)
     chain = asdict(gas) | {"spring": "none"}
     given = chain, y.tolist(), v.tolist(), duration, steps
-    found_y, found_v, met, *hits, impulse = browser.execute_script(FLIGHT, *given)
+    found_y, found_v, met, *hits, impulse = page.execute_script(FLIGHT, *given)
     assert met > 100
     assert sum(hits) > 5
     momentum = gas.rod_masses * v
@@ -56,18 +61,21 @@ def test_a_gas_flies_like_that_of_the_package(browser, address, box, mass_ratio)
     assert impulse >= abs((gas.rod_masses * v - momentum).sum())
 
 
-def test_two_rods_count_the_digits_of_pi_in_every_box(browser, address):
-    visit(browser, address, quiet=True)
-    assert browser.execute_script(COUNTED) == [[n] * 3 for n in (3, 31, 314, 3141)]
+def test_two_rods_count_the_digits_of_pi_in_every_box(page):
+    assert page.execute_script(COUNTED) == [[n] * 3 for n in (3, 31, 314, 3141)]
 
 
-@pytest.mark.parametrize("screen", SCREENS)
 @pytest.mark.parametrize(
-    ("name", "values", "said"),
+    ("screen", "name", "values", "said"),
     [
-        ("pressure", {"box": (80, 50, 160)}, r"begins at (2\.0\d\d|1\.9\d\d) ± 0\.0"),
-        ("maxwell", {"mass_ratio": (1, 2)}, r"one mass: 1\.00 ± 0\.00, of two: 2\.[678]"),
-        ("count", {"mass_ratio": (100, 10000, 1)}, "3 with 1, 31 with 100, 314 with 10000"),
+        ("wide", "pressure", {"box": (80, 50, 160)}, r"begins at (2\.0\d\d|1\.9\d\d) ± 0\.0"),
+        ("wide", "maxwell", {"mass_ratio": (1, 2)}, r"one mass: 1\.00 ± 0\.00, of two: 2\.[678]"),
+        (
+            "narrow",
+            "count",
+            {"mass_ratio": (100, 10000, 1)},
+            "3 with 1, 31 with 100, 314 with 10000",
+        ),
     ],
 )
 def test_a_challenge_of_the_gas_is_solved_and_then_answered(
@@ -105,20 +113,18 @@ def test_the_gauge_is_beside_the_exact_force_and_the_box_holds_its_rods(browser,
     assert errors(browser) == []
 
 
-@pytest.mark.parametrize(
-    ("name", "spring", "about"),
-    [
+def test_a_question_about_springs_is_not_judged_on_a_gas(browser, address):
+    visit(browser, address, quiet=True)
+    for name, spring, about in (
         ("ends", "none", "rods on springs"),
         ("push", "none", "rods on springs"),
         ("maxwell", "linear", "a gas in a box"),
         ("pressure", "quadratic", "a gas in a box"),
-    ],
-)
-def test_a_question_about_springs_is_not_judged_on_a_gas(browser, address, name, spring, about):
-    visit(browser, f"{address}#challenge={name}&speed=300", quiet=True)
-    slide(browser, spring=spring)
-    assert rows(browser, 1000) == f"This question is about {about}."
-    assert text(browser, "answer") == ""
+    ):
+        turn(browser, f"#challenge={name}&speed=300")
+        slide(browser, spring=spring)
+        assert rows(browser, 1000) == f"This question is about {about}."
+        assert text(browser, "answer") == ""
     assert errors(browser) == []
 
 
