@@ -236,7 +236,7 @@ def make_replicas(run: Run) -> list[Replica]:
 def compile_kernels(runs: Iterable[Run] = ()) -> None:
     """Compile the kernels of some runs, or load them from numba's cache; no runs: all kernels.
 
-    Chains whose motion is known exactly need few of them, which take a quarter of the time.
+    Chains whose motion is known exactly need few of them, which take a sixth of the time.
     """
     flights = {run.dynamics().law.operator == EXACT for run in runs} or {True, False}
     y, v = np.zeros((2, 2))

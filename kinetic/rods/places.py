@@ -170,7 +170,7 @@ def elastic_rods(chain: Chain) -> RodPlaces:
 
 
 def _without_gap(chain: Chain) -> RodPlaces:
-    from scipy.stats import gennorm  # which takes longer to import than most theories to solve
+    from scipy.stats import gennorm  # its import takes half a second, and few calls need it
 
     law, n = exchangeable(chain.size), chain.potential_exponent
     free = gennorm(n, scale=n ** (1 / n))

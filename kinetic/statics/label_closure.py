@@ -201,7 +201,7 @@ def stationary(chain: Chain) -> Stationary:
 
 def _free_lattice(n: int, lam: float, zeta: Array) -> tuple[Array, Array]:
     """Density exp(P) and share t of rods without collisions: a thermally smeared lattice."""
-    from scipy.stats import gennorm  # which takes longer to import than most theories to solve
+    from scipy.stats import gennorm  # its import takes half a second, and few calls need it
 
     free = gennorm(n, scale=n ** (1 / n))
     if lam < 1e-3:
