@@ -215,17 +215,19 @@ def distances_in_plot(
     give logarithms.
     """
     x, y, line_x, line_y = (np.asarray(each, dtype=float) for each in (x, y, line_x, line_y))
-    symbols, corners = (
-        np.stack([_in_range(a, x, x_range), _in_range(b, y, y_range)], axis=-1)
-        for a, b in ((x, y), (line_x, line_y))
-    )
-    begin, piece = corners[:-1], np.diff(corners, axis=0)
-    length = np.maximum((piece**2).sum(axis=-1), np.finfo(float).tiny)
+    begins, pieces = [], []
+    for corners in (_in_range(line_x, x, x_range), _in_range(line_y, y, y_range)):
+        begins.append(corners[:-1])
+        pieces.append(np.diff(corners))
+    (begin_x, begin_y), (piece_x, piece_y) = begins, pieces
+    length = np.maximum(piece_x**2 + piece_y**2, np.finfo(float).tiny)
     distances = np.empty(x.size)
-    for k, symbol in enumerate(symbols):
-        along = np.clip(((symbol - begin) * piece).sum(axis=-1) / length, 0, 1)
-        away = symbol - begin - along[:, None] * piece
-        distances[k] = np.sqrt((away**2).sum(axis=-1).min())
+    symbols = zip(_in_range(x, x, x_range), _in_range(y, y, y_range), strict=True)
+    for k, (symbol_x, symbol_y) in enumerate(symbols):
+        from_x, from_y = symbol_x - begin_x, symbol_y - begin_y
+        along = np.clip((from_x * piece_x + from_y * piece_y) / length, 0, 1)
+        squares = (from_x - along * piece_x) ** 2 + (from_y - along * piece_y) ** 2
+        distances[k] = np.sqrt(squares.min())
     return distances
 
 

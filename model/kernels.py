@@ -11,6 +11,9 @@ For a short chain this took far longer than the work. numba's ``_nrt=False`` swi
 off for kernels that allocate no memory. Where a later numba does not know this option, kernels
 count again and are slower.
 
+Processes that start together, those of a sweep say, need the same kernels. One of them compiles,
+and the others wait until they can load what it has written.
+
 The cache only saves time. If it cannot be written, as in a container without a home or on a full
 disk, kernels are compiled in every process, with one warning.
 """
@@ -28,14 +31,57 @@ from types import ModuleType
 from typing import Any
 
 import numpy as np
+from filelock import FileLock
 from numba import njit
+from numba.core.compiler_lock import global_compiler_lock
 from numba.core.options import DefaultOptions
 
 from crazybilliards.model.fingerprint import fingerprint_of
 from crazybilliards.model.process import announce_compilation, interrupts_held_back
 
 _ANEW = "the kernels are compiled anew in every process, which takes some seconds"
+_LONGEST = 120.0  # s to wait for another process, which may have been stopped
 _warned: set[str] = set()
+
+
+class _Turn:
+    """The turn of this process to compile the kernels of a folder, and all that they call.
+
+    All of it happens while this thread holds numba's own lock.
+    """
+
+    def __init__(self) -> None:
+        self.depth = 0  # of kernels that are being compiled, each for the one before
+        self.lock: FileLock | None = None
+
+    def begins(self, folder: Path) -> bool:
+        """Wait for other processes; return False if nothing changed, as this one had its turn."""
+        if self.lock is not None:
+            return False
+        self.lock = FileLock(folder / ".compiling", timeout=_LONGEST, fallback_to_soft=False)
+        # Without a lock, on a file system that has none say, it is only done twice.
+        with suppress(OSError, NotImplementedError):
+            self.lock.acquire()
+        return True
+
+    def ends_with(self, compile_: Callable[..., Any]) -> Callable[..., Any]:
+        """Let the turn end when the first of the kernels is compiled."""
+
+        def compiled(signature: Any) -> Any:
+            with global_compiler_lock:
+                self.depth += 1
+                try:
+                    return compile_(signature)
+                finally:
+                    self.depth -= 1
+                    if self.depth == 0 and self.lock is not None:
+                        self.lock.release()
+                        self.lock = None
+
+        return compiled
+
+
+_turn = _Turn()
 
 
 def _compiled(function: Callable[..., Any], *, fused: bool, allocates: bool, **options: Any) -> Any:
@@ -61,7 +107,7 @@ def kernel(
         # Compiled code does not warn of numbers that are infinite or undefined.
         return np.errstate(all="ignore")(dispatcher)
     # Ctrl-C while numba registers its functions would leave it without them in this process.
-    dispatcher.compile = interrupts_held_back()(dispatcher.compile)
+    dispatcher.compile = interrupts_held_back()(_turn.ends_with(dispatcher.compile))
     try:
         dispatcher.enable_caching()
     except RuntimeError:
@@ -91,15 +137,20 @@ def _let_it_fail(kept: Any) -> None:
 
     def load_or_none(*arguments: Any) -> Any:
         try:
-            found = load(*arguments)
+            return load(*arguments)
         # Unpickling a damaged file can raise anything. The newly compiled kernel replaces it.
         except Exception as error:
             _warn("numba's cache cannot be read, compiling anew", f"{kept.cache_path}: {error}")
             with suppress(OSError):
                 kept.flush()
-            found = None
+            return None
+
+    def load_in_turn(*arguments: Any) -> Any:
+        found = load_or_none(*arguments)
         if found is None:
             announce_compilation()
+            if _turn.begins(Path(kept.cache_path)):
+                found = load_or_none(*arguments)  # if another process has compiled it
         return found
 
     def save_if_possible(*arguments: Any) -> None:
@@ -108,7 +159,7 @@ def _let_it_fail(kept: Any) -> None:
         except Exception as error:  # saving reads what is there, too
             _warn(_ANEW, f"{kept.cache_path}: {error}; NUMBA_CACHE_DIR can name another folder")
 
-    kept.load_overload, kept.save_overload = load_or_none, save_if_possible
+    kept.load_overload, kept.save_overload = load_in_turn, save_if_possible
 
 
 def _warn(problem: str, reason: str) -> None:

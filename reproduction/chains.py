@@ -74,6 +74,8 @@ def dissipative(size: int, restitution: float, amplitude: float = 1.0) -> Runs:
     granted = _granted(_DISSIPATIVE if restitution else _INELASTIC, size)
     if (size, restitution, amplitude) == (LARGE, RESTITUTIONS[-1], 1):
         granted = _LARGEST
+    if amplitude != 1:
+        granted = _DISSIPATIVE[LARGE]
     return Runs(
         f"L={size} e={restitution:g} A={amplitude:g}",
         Chain(size=size, restitution=restitution, amplitude=amplitude),

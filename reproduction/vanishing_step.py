@@ -23,11 +23,11 @@ LABEL = r"limit $dt \to 0$"
 # Number of limits, and the accuracy of each: at e = 0, where exponents have their errors from the
 # scatter between them, and at larger restitutions, where they cost ten times as much.
 _INELASTIC: Granted = {
-    "quick": (4, {"accuracy": 0.1, "warmup": 30.0}),
-    "full": (5, {"accuracy": 0.005}),
+    "quick": (4, {"accuracy": 0.1, "warmup": 20.0}),
+    "full": (5, {"accuracy": 0.01}),
 }
 _DISSIPATIVE: Granted = {
-    "quick": (1, {"accuracy": 0.1, "warmup": 30.0}),
+    "quick": (1, {"accuracy": 0.1, "warmup": 20.0}),
     "full": (1, {"accuracy": 0.024}),
 }
 

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 import textwrap
+from contextlib import nullcontext
 from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -23,6 +25,7 @@ if TYPE_CHECKING:
 
 # Of what there is to say about a claim.
 _PRINTED = ("its number", "found here", "at other choices", "why")
+_MANY = 6  # figures: a process takes as long to get ready to draw as for two of them
 # By what is asked for: names of the table of claims and of the page with everything.
 _REPORTS = {"all": ("claims.md", "report.html"), "analytics": ("analytics.md", "analytics.html")}
 
@@ -88,11 +91,13 @@ def command(
     from crazybilliards.model.storage import write_atomically
     from crazybilliards.reproduction.claims.report import all_cases, html, markdown
 
-    computing = engine(processes, scheduler)
-    with writing_to(output):
-        compute_cases(all_cases(wanted, chosen), output / "cases", computing, keep_old=False)
-        drawing = {"columns": columns, "formats": [] if vector is None else [vector]}
-        reproduced = _draw(wanted, chosen, output, **drawing)
+    with writing_to(output), engine(processes, scheduler) as workers:
+        cases = all_cases(wanted, chosen)
+        compute_cases(cases, output / "cases", nullcontext(workers), keep_old=False)
+        how = {"columns": columns, "formats": [] if vector is None else [vector]}
+        # The workers of a cluster need not see the folder, and few figures are drawn sooner here.
+        here = scheduler is not None or len(wanted) < _MANY
+        reproduced = _draw(wanted, chosen, output, executor=None if here else workers, **how)
         if which in _REPORTS:
             for name, written in zip(_REPORTS[which], (markdown, html), strict=True):
                 write_atomically(output / name, written(reproduced, chosen).encode())
@@ -114,6 +119,7 @@ def _draw(studies: list[Study], quality: Quality, output: Path, **how: Any) -> l
     import matplotlib
 
     matplotlib.use("Agg")
+    os.environ["MPLBACKEND"] = "Agg"  # of processes that have not started yet
     from crazybilliards.model.progress import waiting_for
     from crazybilliards.model.storage import write_atomically
     from crazybilliards.reproduction.claims.report import reproduce as draw

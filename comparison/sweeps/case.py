@@ -160,7 +160,9 @@ class Case:
             If the file is damaged or holds another case.
         """
         path = self.file(folder)
-        attributes = load_attributes(path)
+        self._check(path, load_attributes(path), keep_old)
+
+    def _check(self, path: Path, attributes: Mapping[Any, Any], keep_old: bool) -> None:
         if stored_parameters(attributes) != self.arguments:
             raise ValueError(f"{path}: not the case that its name says")
         if not keep_old and attributes.get("source_fingerprint") != self.source:
@@ -171,9 +173,10 @@ class Case:
 
     def load(self, folder: Path, *, keep_old: bool = False) -> xr.Dataset:
         """Read its result from ``folder``; arguments and errors are those of :meth:`check_file`."""
-        self.check_file(folder, keep_old=keep_old)
-        result = load(self.file(folder))
+        path = self.file(folder)
+        result = load(path)
         assert isinstance(result, xr.Dataset)
+        self._check(path, result.attrs, keep_old)
         return result
 
 

@@ -129,6 +129,8 @@ def compute_missing(
             tell(outcome)
             if missing:
                 missing.sort(key=work.__getitem__)
+                if not isinstance(given, Sweep):  # which has one kind of job
+                    _kernels_first(missing, given)
                 todo = map(given.case if isinstance(given, Sweep) else given.__getitem__, missing)
                 total = sum(work[number] for number in missing)
                 with workers as executor, _progress(progress, total, len(missing)) as bar:
@@ -141,6 +143,17 @@ def compute_missing(
         finally:
             _write_index(folder)
     return outcome
+
+
+def _kernels_first(missing: list[int], given: Sequence[Case]) -> None:
+    """Begin with a simulation that compiles all kernels; go on with theories, which need none.
+
+    Another worker can solve these meanwhile. It would have to wait in a simulation.
+    """
+    simulations = [place for place in missing if given[place].job.startswith("simulate")]
+    first = next((place for place in simulations if given[place].chain.restitution != 1), None)
+    others = set(simulations) - {first}
+    missing.sort(key=lambda place: (place != first, place in others))
 
 
 def warn_of_short_runs(reasons: Sequence[str]) -> None:

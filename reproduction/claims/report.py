@@ -8,14 +8,16 @@ import platform
 import re
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator
+from concurrent.futures import Executor
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 from html import escape, unescape
 from importlib.metadata import version
 from pathlib import Path
 from typing import get_args
 
 import matplotlib.pyplot as plt
+import xarray as xr
 from markdown_it import MarkdownIt
 
 from crazybilliards.comparison.layout import Columns, house_style
@@ -70,20 +72,37 @@ def reproduce(
     *,
     columns: Columns | None = None,
     formats: Collection[str] = (),
+    executor: Executor | None = None,
 ) -> Iterator[Reproduced]:
-    """Draw studies and check their claims, one after another, from the cases in ``folder``.
+    """Draw studies and check their claims, in their order, from the cases in ``folder``.
 
     ``columns``: the width of the pictures, as
     :func:`crazybilliards.comparison.layout.house_style` takes it. ``formats``: file formats of
-    matplotlib, besides PNG.
+    matplotlib, besides PNG. ``executor``: in whose processes it is done; None: in this one.
     """
-    load = cache(lambda case: case.load(folder))  # many studies share cases
-    for study in studies:
-        cases = study.cases(quality)
-        results = {name: load(case) for name, case in cases.items()}
-        with house_style(columns):
-            pictures = _drawn(study, results, ("png", *formats))
-        yield Reproduced(study, pictures, study.claims(results), describe(cases.values()))
+    draw = partial(
+        _reproduced, quality=quality, folder=folder, columns=columns, formats=("png", *formats)
+    )
+    try:
+        yield from (map if executor is None else executor.map)(draw, studies)
+    finally:
+        _loaded.cache_clear()  # the folder may hold other results next time
+
+
+def _reproduced(
+    study: Study, quality: Quality, folder: Path, columns: Columns | None, formats: Collection[str]
+) -> Reproduced:
+    cases = study.cases(quality)
+    results = {name: _loaded(case, folder) for name, case in cases.items()}
+    with house_style(columns):
+        pictures = _drawn(study, results, formats)
+    return Reproduced(study, pictures, study.claims(results), describe(cases.values()))
+
+
+@cache
+def _loaded(case: Case, folder: Path) -> xr.Dataset:
+    """Load a result once, because many studies share cases."""
+    return case.load(folder)
 
 
 def _drawn(study: Study, results: Results, formats: Iterable[str]) -> dict[str, bytes]:

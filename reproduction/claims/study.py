@@ -29,6 +29,15 @@ def all_of(needed: Iterable[Needed], quality: Quality) -> Cases:
     return {name: case for each in needed for name, case in each.cases(quality).items()}
 
 
+# They have names, so that a study can be sent to another process.
+def _no_cases(quality: Quality) -> Cases:
+    return {}
+
+
+def _no_claims(results: Results) -> list[Claim]:
+    return []
+
+
 @dataclass(frozen=True, kw_only=True)
 class Study:
     """A question put to simulations and theories, answered by a picture and by checked claims."""
@@ -39,9 +48,9 @@ class Study:
     caption: str  #: what a reader needs to understand the picture
     draw: Callable[[Results], Figure]  #: of the results of the cases, by the same names
     #: The simulations and theories that it needs, by names of its own.
-    cases: Callable[[Quality], Cases] = lambda quality: {}
+    cases: Callable[[Quality], Cases] = _no_cases
     #: What is claimed beside what was found.
-    claims: Callable[[Results], list[Claim]] = lambda results: []
+    claims: Callable[[Results], list[Claim]] = _no_claims
 
     @property
     def label(self) -> str:

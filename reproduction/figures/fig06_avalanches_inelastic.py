@@ -57,7 +57,7 @@ _SIZES = {"triggered_count": (3, 20), "avalanche_count": (20, 150)}
 _OTHER_SIZES = {"triggered_count": (2, 10), "avalanche_count": (10, 100)}
 _SOURCE = "section seq:e_0, fig:trigger"
 _OURS = "the time step, the sizes fitted, and what counts as a collision among rods in contact"
-cases = partial(all_of, _RUNS.values())
+cases = partial(all_of, [*_RUNS.values()])
 
 
 def _exponent(

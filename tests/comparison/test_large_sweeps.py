@@ -85,14 +85,20 @@ def test_ctrl_c_ends_a_sweep_without_another_look_at_its_cases(planned, tmp_path
     assert len(planned) <= 1
 
 
-def test_the_shortest_cases_come_first(tmp_path):
-    class Noting(Executor):
-        def submit(self, function, /, case, source):
-            seen.append(case)
-            future = Future()
-            future.set_exception(ValueError("not computed"))
-            return future
+class Noting(Executor):
+    """Notes the cases in their order, and computes none."""
 
+    def __init__(self, seen):
+        self.seen = seen
+
+    def submit(self, function, /, case, source):
+        self.seen.append(case)
+        future = Future()
+        future.set_exception(ValueError("not computed"))
+        return future
+
+
+def test_the_shortest_cases_come_first(tmp_path):
     seen = []
     for name, values, order in (
         ("size", [5, 50, 10], [5, 5, 10, 10, 50, 50]),
@@ -102,8 +108,21 @@ def test_the_shortest_cases_come_first(tmp_path):
         seen.clear()
         settings = {} if name == "duration" else {"duration": 100}
         grid = {"seed": [1, 2], name: values}
-        run_cases(Sweep(grid, settings=settings), tmp_path, Noting(), progress=False)
+        run_cases(Sweep(grid, settings=settings), tmp_path, Noting(seen), progress=False)
         assert [each.arguments[name] for each in seen] == order
+
+
+def test_theories_are_solved_while_the_first_simulation_compiles_the_kernels(tmp_path):
+    """The first one that needs all kernels: exact flight at restitution 1 needs few."""
+
+    def simulation(size, restitution):
+        return Case("simulate", Chain(size=size, restitution=restitution), {"duration": 100})
+
+    simulations = [simulation(3, 1.0), simulation(4, 0.5), simulation(5, 0.5)]
+    theories = [Case("phase_space", Chain(size=size, restitution=0.5), {}) for size in (10, 30)]
+    seen = []
+    run_cases([*simulations, *theories], tmp_path, Noting(seen), progress=False)
+    assert seen == [simulations[1], *theories, simulations[0], simulations[2]]
 
 
 def test_a_wrong_case_at_the_end_of_a_grid_is_found_before_any_work(counting, tmp_path):

@@ -4,9 +4,11 @@ import linecache
 import os
 import subprocess
 import sys
+from functools import partial
 from pathlib import Path
 
 import pytest
+from filelock import FileLock
 
 from crazybilliards.model import kernels
 from crazybilliards.model.grid import deposit
@@ -132,6 +134,51 @@ def test_a_cache_that_cannot_be_written_or_read_costs_no_run(tmp_path):
         (warning,) = run_two(tmp_path, NUMBA_CACHE_DIR=str(cache))
         assert f"{cache}" in warning
         assert "cannot be read" in warning
+
+
+TURN = """
+from crazybilliards.model.kernels import kernel
+
+@kernel
+def cubed(x):
+    return x**3
+
+print("ready", flush=True)
+input()
+cubed(2.0)
+print(sum(cubed.stats.cache_misses.values()))
+"""
+
+
+@pytest.mark.compiled
+def test_of_processes_that_need_the_same_kernel_one_compiles_it(tmp_path):
+    (tmp_path / "turn.py").write_text(TURN)
+    start = partial(
+        subprocess.Popen,
+        [sys.executable, "-B", "turn.py"],
+        cwd=tmp_path,
+        env={**os.environ, "NUMBA_CACHE_DIR": ""},
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    with start() as one, start() as other:
+        assert [each.stdout.readline() for each in (one, other)] == ["ready\n"] * 2
+        for each in (one, other):  # neither has ended when the other begins
+            each.stdin.write("\n")
+            each.stdin.flush()
+        assert sorted(each.communicate()[0] for each in (one, other)) == ["0\n", "1\n"]
+
+
+def test_a_process_that_was_stopped_while_it_compiled_holds_up_nobody_for_ever(
+    tmp_path, monkeypatch
+):
+    monkeypatch.setattr(kernels, "_LONGEST", 0.01)
+    turn = kernels._Turn()
+    with FileLock(tmp_path / ".compiling"):
+        assert turn.begins(tmp_path)
+        assert turn.ends_with(lambda signature: 2 * signature)(3) == 6
+    assert turn.lock is None
 
 
 INTERRUPTED = """
