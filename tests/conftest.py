@@ -26,7 +26,12 @@ signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def pytest_collection_modifyitems(config, items):
-    """Leave out the torture unless it is asked for; skip what Windows cannot do."""
+    """Leave out the torture unless it is asked for; skip what Windows cannot do.
+
+    If tests run in two processes, one of them begins with compiling the kernels. The other begins
+    with theories, which need none.
+    """
+    items.sort(key=_needs_kernels)
     if "torture" not in " ".join([config.option.markexpr, *config.args]):
         config.hook.pytest_deselected(items=[each for each in items if _is_torture(each)])
         items[:] = [each for each in items if not _is_torture(each)]
@@ -45,6 +50,13 @@ def pytest_itemcollected(item):
     """Mark what lies in the folder of the torture."""
     if item.path.parent.name == "torture":
         item.add_marker("torture")
+
+
+def _needs_kernels(item):
+    """Sort files: the one that compiles the kernels, those that need none, and the others."""
+    if item.path.name == "test_kernels.py":
+        return 0
+    return 1 if item.path.parent.name == "kinetic" and not hasattr(item.module, "simulate") else 2
 
 
 def _is_torture(item):

@@ -175,8 +175,8 @@ class Case:
         """Read its result from ``folder``; arguments and errors are those of :meth:`check_file`."""
         path = self.file(folder)
         result = load(path)
-        assert isinstance(result, xr.Dataset)
         self._check(path, result.attrs, keep_old)
+        assert isinstance(result, xr.Dataset)
         return result
 
 

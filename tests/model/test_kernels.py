@@ -15,6 +15,21 @@ from crazybilliards.model.grid import deposit
 from crazybilliards.particles import stepping
 from crazybilliards.particles.simulation import compile_kernels
 
+@pytest.mark.compiled
+def test_kernels_compile_no_texts():
+    """A slice that is assigned to a slice brings in the message of an error: a third more time.
+
+    numba's cache keeps the machine code of a kernel with the names of all functions in it.
+    """
+    compile_kernels()
+    for each in (deposit, stepping.record_flight, stepping.record_steps):
+        kept = each._cache._cache_file._load_index().values()
+        codes = [Path(each.stats.cache_path, name).read_bytes() for name in kept]
+        assert codes
+        assert any(each.__name__.encode() in code for code in codes)
+        assert not any(b"unicode" in code for code in codes), each
+
+
 CALLER = """
 import inner.middle
 from constants import SHIFT
@@ -212,18 +227,3 @@ except KeyboardInterrupt:
 def test_ctrl_c_while_a_kernel_is_compiled_leaves_it_usable(tmp_path):
     """Without its functions, which are registered once, numba would not know ``sum`` any more."""
     assert run_two(tmp_path, INTERRUPTED, NUMBA_CACHE_DIR=str(tmp_path / "cache")) == []
-
-
-@pytest.mark.compiled
-def test_kernels_compile_no_texts():
-    """A slice that is assigned to a slice brings in the message of an error: a third more time.
-
-    numba's cache keeps the machine code of a kernel with the names of all functions in it.
-    """
-    compile_kernels()
-    for each in (deposit, stepping.record_flight, stepping.record_steps):
-        kept = each._cache._cache_file._load_index().values()
-        codes = [Path(each.stats.cache_path, name).read_bytes() for name in kept]
-        assert codes
-        assert any(each.__name__.encode() in code for code in codes)
-        assert not any(b"unicode" in code for code in codes), each
