@@ -128,7 +128,7 @@ LIMIT, PLAIN_LIMIT = (
     for size, e in ((20, 0.0), (50, 0.95))
 )
 JOBS = {
-    "simulate": (Killed(ELASTIC, 3), ()),
+    "simulate": (Killed(ELASTIC, 3), pytest.mark.validate),
     "simulate, e < 1": (Killed(RUN, 3), pytest.mark.validate),
     "limit": (Killed(LIMIT, 2), ()),
     "limit, e = 0.95": (Killed(PLAIN_LIMIT, 2), pytest.mark.validate),

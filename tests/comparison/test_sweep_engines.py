@@ -110,6 +110,7 @@ if __name__ == "__main__":
 """
 
 
+@pytest.mark.validate
 @pytest.mark.skipif(sys.platform == "win32", reason="sends by another function there")
 def test_a_worker_that_has_half_sent_its_result_holds_up_nothing(tmp_path):
     """Neither the block nor the end of the script."""
@@ -120,6 +121,7 @@ def test_a_worker_that_has_half_sent_its_result_holds_up_nothing(tmp_path):
     assert (done.returncode, done.stdout.split()) == (0, said), done.stderr
 
 
+@pytest.mark.validate
 @pytest.mark.compiled
 def test_a_dask_worker_killed_in_the_middle_costs_nothing(cluster, tmp_path):
     from distributed import Client

@@ -100,6 +100,7 @@ def test_rods_move_and_stretch_with_the_chain(gap):
     np.testing.assert_allclose(stretched.label, label, atol=1e-5)
 
 
+@pytest.mark.validate
 @pytest.mark.compiled
 def test_a_quench_is_that_of_simulated_chains():
     hot = TWELVE.replace(amplitude=2.5)
@@ -241,7 +242,9 @@ def test_widths_of_waves_have_their_limits():
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize(("restitution", "gap"), [(0.65, 0.3), (0.8, 0.0)])
+@pytest.mark.parametrize(
+    ("restitution", "gap"), [(0.65, 0.3), pytest.param(0.8, 0.0, marks=pytest.mark.validate)]
+)
 def test_kinetic_equation_against_simulated_rods(restitution, gap, solved):
     """Before, the density was 0.12 of close packing off, and with a gap there was no W_x."""
     chain = Chain(size=30, restitution=restitution, gap=gap)

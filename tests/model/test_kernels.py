@@ -15,6 +15,7 @@ from crazybilliards.model.grid import deposit
 from crazybilliards.particles import stepping
 from crazybilliards.particles.simulation import compile_kernels
 
+
 @pytest.mark.compiled
 def test_kernels_compile_no_texts():
     """A slice that is assigned to a slice brings in the message of an error: a third more time.

@@ -18,7 +18,8 @@ from crazybilliards.particles.observers.base import Averaged
 @pytest.mark.filterwarnings("ignore:.*spectra are NaN")
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="forks, reads /proc")
 @pytest.mark.compiled
-@pytest.mark.parametrize("copies", [2, pytest.param(1, marks=pytest.mark.validate)])
+@pytest.mark.validate
+@pytest.mark.parametrize("copies", [2, 1])
 def test_made_longer_and_killed_and_resumed_it_is_one_long_run(copies, tmp_path):
     how = {"observe": ("widths", "density", "energy", "velocities", "time-correlations")}
     how |= {"seed": 4, "replicas": copies, "threads": copies, "progress": False}

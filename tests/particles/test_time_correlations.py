@@ -33,7 +33,7 @@ def pulls(run, of, expected):
 
 @pytest.mark.compiled
 @pytest.mark.parametrize("e", [1.0, 0.5])
-@pytest.mark.parametrize("damping", [1.0, CRITICAL, 10.0])
+@pytest.mark.parametrize("damping", [1.0, pytest.param(CRITICAL, marks=pytest.mark.validate), 10.0])
 def test_the_centre_of_mass_is_a_damped_oscillator_at_any_restitution(damping, e):
     chain = Chain(size=5, restitution=e, damping=damping)
     how = {"duration": 20_000, "replicas": 2, "seed": 3, "progress": False}
