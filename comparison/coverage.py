@@ -137,7 +137,9 @@ def _box(source: xr.Dataset) -> xr.Dataset:
         convolved[name] = convolved[name].copy(data=average(source[name].values))
     if "density_block" in convolved:
         blocks = convolved.density_block
-        error = blocks.std("block", ddof=1) / np.sqrt(blocks.count("block"))
+        # Not by their std(): older versions of xarray warn if there is one block only.
+        number, squares = blocks.count("block"), (blocks - blocks.mean("block")) ** 2
+        error = np.sqrt(squares.sum("block") / (number * (number - 1)))
         convolved["density_error"] = error.assign_attrs(source.density_error.attrs)
     return convolved
 
