@@ -126,6 +126,7 @@ ATTRIBUTES = {
 OF_FLUID, OF_RODS = "fluid", "rods"
 
 _RODS_TOLERANCE = 1e-6
+_AXES = frozenset({"x", "y", "velocity", "time"})
 
 
 def result(
@@ -247,7 +248,10 @@ def chain_of(dataset: xr.Dataset) -> Chain:
 
 
 def require(dataset: xr.Dataset, names: Iterable[str]) -> None:
-    """Raise a ValueError naming the first of ``names`` that the result lacks."""
+    """Raise a ValueError naming the first of ``names`` that the result lacks, or has without axes.
+
+    xarray counts from 0 along an axis that has no coordinate, and these would be no positions.
+    """
     if not isinstance(dataset, xr.Dataset):
         raise ValueError(f"not a crazybilliards result: {shown(dataset)}")
     for name in names:
@@ -255,6 +259,8 @@ def require(dataset: xr.Dataset, names: Iterable[str]) -> None:
             known = list(map(str, dataset.data_vars))
             has = ", ".join(known) or "nothing"
             raise ValueError(f"the result has no {name!r}; it has {has}{meant(name, known)}")
+        for axis in _AXES.intersection(map(str, dataset[name].dims)).difference(dataset.coords):
+            raise ValueError(f"the {name} of the result has no coordinate {axis!r}")
 
 
 def require_all_particles(dataset: xr.Dataset, size: int, who: str) -> None:

@@ -152,7 +152,7 @@ def test_type_checkers_find_the_rooms_in_the_environment_of_make(tmp_path):
 
 # `make run`, smaller. Kernels, a theory, pictures and a file.
 RUN = ["compare", "--size", "4", "--duration", "300", "--amplitude", "10", "--output", "results"]
-WRITTEN = {"cases", "comparison.nc", "density.png", "displacement.png"}
+WRITTEN = {"cases", "comparison.nc", "density.png", "displacement.png", "widths.png"}
 NOBODY = 12345
 # A user that no list of users knows. Such a user could not even start a Python that lies in root's
 # home, so this one may read everything.

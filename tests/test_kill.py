@@ -175,7 +175,7 @@ def test_killed_at_random_moments_it_ends_with_the_bits_of_an_undisturbed_run(
             end(child, how, group=how == signal.SIGINT or generator.random() < 0.5)
             require_same(contents(folder), undisturbed)
         assert end(begin(killed.job, folder)) == 0
-        require_same(contents(folder), undisturbed)
+        require_same(contents(folder), undisturbed, finished=True)
         left = ("-interrupted.", ".part")
         final = {path.name for path in folder.rglob("*") if not any(map(path.name.count, left))}
         assert final == {path.name for path in clean.rglob("*")}

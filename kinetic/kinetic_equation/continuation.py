@@ -236,7 +236,7 @@ def _no_steady_state(chain: Chain, drag: float) -> ValueError:
         return ValueError(
             f"no steady state: with {chain.size} rods and damping={chain.damping:g} the energy "
             f"grows without bound before restitution {e:.4g}, below the {chain.restitution:g} of "
-            "this chain; critical_size (crazybilliards theory --critical) gives the largest size"
+            "this chain; critical_size gives the largest size"
         )
     return NotSolvedError(
         f"the kinetic equation could not be solved at restitution {1 - 2 * drag / chain.size:.4g}"

@@ -14,6 +14,7 @@ from crazybilliards.kinetic.starts import read_start, require_rods
 from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array
 from crazybilliards.model.checks import refuse_units
+from crazybilliards.model.vocabulary import require
 
 REACH = 6.5  # of a mesh, in widths of a Gaussian
 
@@ -32,6 +33,7 @@ def read_phase_space(chain: Chain, units: Units, start: xr.Dataset) -> PhaseSpac
     length, velocity = units
     if "phase_space_density" not in start:
         return _maxwellian(chain, units, start)
+    require(start, ("phase_space_density",))
     density = start.phase_space_density
     if density.dims != ("y", "velocity"):
         raise ValueError(

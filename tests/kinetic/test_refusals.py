@@ -81,6 +81,8 @@ flow(moved.assign(density=-moved.density)) | not negative
 flow(moved.assign(flow_velocity=moved.flow_velocity * np.nan)) | flow_velocity
 flow(moved.assign(velocity_variance=-moved.velocity_variance)) | positive
 flow(moved.drop_vars("density")) | no 'density'
+flow(moved.drop_vars("x")) | no coordinate 'x'
+rod_by_rod(force_balance(five).drop_vars("x")) | no coordinate 'x'
 flow(moved.astype(str)) | must be numbers
 flow(displaced(many, 1.0), many, 1.0, every=1e-6) | would take ... GiB of memory
 flow(displaced(wide, 0.5), wide, frame="eulerian", cells=100) | wide, 0.5 at most ...give cells=613
@@ -98,6 +100,7 @@ relax_phase_space(five, moved, 5.0, time_step=-1.0) | time_step
 relax_phase_space(five, steady[["velocity_width"]], 5.0) | density
 relax_phase_space(five, f.transpose("velocity", "y"), 5.0) | over y and velocity
 relax_phase_space(five, f * np.nan, 5.0) | finite
+relax_phase_space(five, f.drop_vars("velocity"), 5.0) | no coordinate 'velocity'
 relax_phase_space(Chain(size=6), steady, 5.0) | add up to the chain's 6 rods
 relax_phase_space(five, moved.assign(flow_velocity=moved.label + 1e100), 5.0) | too far apart
 """
