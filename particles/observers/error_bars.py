@@ -46,7 +46,7 @@ def jackknife(
 def jackknife_error(value: Array, left_out: Array, counts: NDArray[np.int64]) -> Array:
     """Return the standard error from the values with one block left out each, (blocks, ...).
 
-    ``counts`` as in :func:`jackknife`.
+    ``counts`` as in :func:`jackknife`. It is infinite where it is unknown.
     """
     number = counts.sum(axis=0)
     used = (counts > 0) & (number - counts > 0)
@@ -59,7 +59,9 @@ def jackknife_error(value: Array, left_out: Array, counts: NDArray[np.int64]) ->
     pseudovalues = ratio * value - (ratio - 1) * left_out
     terms = used * (pseudovalues - mean) ** 2 / (ratio - 1)
     variance = terms.sum(axis=0) / np.maximum(blocks, 1)
-    return np.where(blocks < 2, np.inf, np.sqrt(variance))
+    # What one block alone has, the longest lags say, is not a number without it.
+    unknown = (blocks < 2) | (np.isnan(variance) & np.isfinite(value))
+    return np.where(unknown, np.inf, np.sqrt(variance))
 
 
 def _behind(array: NDArray[Any], dimensions: int) -> NDArray[Any]:

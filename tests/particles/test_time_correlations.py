@@ -31,6 +31,16 @@ def pulls(run, of, expected):
     }
 
 
+@pytest.mark.filterwarnings("ignore:.*spectra are NaN")
+def test_the_error_of_a_lag_that_one_block_holds_alone_is_infinite():
+    run = simulate(Chain(size=6), duration=50, observe="time-correlations", progress=False)
+    for name in ("velocity_autocorrelation", "mean_squared_displacement"):
+        error = run[f"{name}_error"].values
+        assert not np.isnan(error).any()
+        assert np.isinf(error[:, -1]).all()
+        assert np.isfinite(error[:, 0]).all()
+
+
 @pytest.mark.compiled
 @pytest.mark.parametrize("e", [1.0, 0.5])
 @pytest.mark.parametrize("damping", [1.0, pytest.param(CRITICAL, marks=pytest.mark.validate), 10.0])

@@ -137,6 +137,8 @@ def require_sound(result):
             first = result[values.dims[-2]]
             inside = first + result.separation <= first.size
             values = result[name].where(inside, 0.0).variable
+        if "spectrum" in str(name) and np.isnan(values).all():  # of too short a run, with a warning
+            continue
         # Infinite where nothing is known, as in a run of one block.
         if str(name).endswith("_error") or name == "autocorrelation_time":
             assert not np.isnan(values).any(), name

@@ -165,6 +165,7 @@ STARTED = (kinetic.hydrodynamics, kinetic.relax_phase_space)
 
 
 @pytest.mark.filterwarnings("ignore:amplitude=0 and a start at rest")
+@pytest.mark.filterwarnings("ignore:.*spectra are NaN")
 @pytest.mark.parametrize("function", EXPLORED, ids=lambda function: function.__name__)
 def test_a_result_is_sound_or_refused(function):
     examples, always, drawn = EXPLORED[function]
