@@ -55,7 +55,7 @@ class _Turn:
         self.lock: FileLock | None = None
 
     def begins(self, folder: Path) -> bool:
-        """Wait for other processes; return False if nothing changed, as this one had its turn."""
+        """Wait for other processes. False: this one has its turn already, so nothing is new."""
         if self.lock is not None:
             return False
         self.lock = FileLock(folder / ".compiling", timeout=_LONGEST, fallback_to_soft=False)

@@ -1,6 +1,7 @@
 """Reproducing the paper: verdicts follow from numbers, every figure is there, the page is whole."""
 
 import json
+import pickle
 import re
 from collections import Counter
 from contextlib import nullcontext
@@ -12,7 +13,7 @@ import pytest
 from small_sweeps import AtOnce
 
 from crazybilliards.apps.commands import reproduce as reproduce_command
-from crazybilliards.comparison.sweeps import Case, run_cases
+from crazybilliards.comparison.sweeps import Case, process_pool, run_cases
 from crazybilliards.comparison.sweeps.jobs import JOBS
 from crazybilliards.model import Chain
 from crazybilliards.reproduction.claims.repetition import Runs
@@ -81,6 +82,23 @@ def test_list_needs_no_folder(command, tmp_path):
     assert len(lines) == 19
     assert lines[16].split()[:2] == ["17", "density"]
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.validate
+def test_other_processes_draw_the_same(tmp_path):
+    studies = find_studies("model,arctanh")
+    assert run_cases(all_cases(studies, "quick"), tmp_path, AtOnce(), progress=False) == {}
+    here = list(reproduce(studies, "quick", tmp_path))
+    with process_pool(2) as pool:
+        there = list(reproduce(studies, "quick", tmp_path, executor=pool))
+    for one, other in zip(here, there, strict=True):
+        assert (one.study.name, one.pictures) == (other.study.name, other.pictures)
+        assert [each.details for each in one.claims] == [each.details for each in other.claims]
+
+
+@pytest.mark.parametrize("study", FIGURES, ids=lambda study: study.name)
+def test_every_study_can_be_sent_to_another_process(study):
+    assert pickle.loads(pickle.dumps(study)).cases("quick") == study.cases("quick")
 
 
 def test_pictures_come_in_other_widths_and_as_vector_graphics(command, tmp_path):
