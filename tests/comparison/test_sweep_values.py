@@ -131,4 +131,6 @@ def test_ctrl_c_while_the_index_is_made_is_not_lost(tmp_path):
         interrupted.append(True)
     finally:
         sys.setprofile(None)
-    assert interrupted == came  # older pandas does not go there
+    if not came:
+        pytest.skip("this pandas does not call it")
+    assert interrupted
