@@ -14,10 +14,11 @@ from crazybilliards.kinetic.kinetic_equation.stationary_result import density_an
 from crazybilliards.kinetic.kinetic_equation.velocity_moments import moments
 from crazybilliards.kinetic.kinetic_equation.velocity_space import VelocitySpace
 from crazybilliards.kinetic.kinetic_equation.weak_form import Units
-from crazybilliards.kinetic.rods.places import LabelledPoints, are_resolved, rods_of
-from crazybilliards.kinetic.rods.profiles import over_positions
+from crazybilliards.kinetic.rods.places import LabelledPoints, RodPlaces, are_resolved, rods_of
+from crazybilliards.kinetic.rods.profiles import ascending, over_positions
 from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array
+from crazybilliards.model.grid import position_grid
 from crazybilliards.model.vocabulary import OF_FLUID, OF_RODS, result
 
 
@@ -40,13 +41,14 @@ def snapshot(
     y, v, values = space.sampled(f)
     # Ripples in the vacuum are left out, so that the positions ascend.
     alive = np.maximum(profiles.density, 0.0)
-    label = np.maximum.accumulate(space.cumulative(alive))
     number = chain.size / (alive @ profiles.weights)
     return {
         "y": length * y,
         "v": velocity * v,
         "points": number / length * alive,
-        "below": np.clip(number * label, 0.0, chain.size),
+        "below": number * np.maximum(ascending(space.cumulative(alive)), 0.0),
+        # Counted from its own end, as the difference to all of them would be rounding errors there.
+        "beyond": number * np.maximum(ascending(space.cumulative(alive[::-1])), 0.0)[::-1],
         "phase_space_density": chain.size / (length * velocity) * values,
         "mean_displacement": length * of.position - chain.reduced_anchors,
         "mean_velocity": velocity * of.velocity,
@@ -68,17 +70,7 @@ def in_vocabulary(
     status: str,
 ) -> xr.Dataset:
     """Put the outputs into the common vocabulary, on the axes of the last, largest mesh."""
-    x = positions(chain, units.length, last)
-    density, label = np.empty((2, len(outputs), x.size))
-    for i, output in enumerate(outputs):
-        y, points, below = (output[name] for name in ("y", "points", "below"))
-        if are_resolved(chain):
-            labelled = LabelledPoints(chain.size, y, points, below, chain.size - below)
-            variance = output["velocity_width"] ** 2 - output["mean_velocity"] ** 2
-            rods = rods_of(chain, labelled, chain.mass * float(variance.mean()))
-            density[i], label[i] = over_positions(chain, x, rods)
-        else:
-            density[i], label[i] = density_and_label(chain, x, y, points, below)
+    x, density, label = _over_positions(chain, outputs, positions(chain, units.length, last))
     y, v = outputs[-1]["y"], outputs[-1]["v"]
     phase_space = np.zeros((len(outputs), y.size, v.size))
     for place, output in zip(phase_space, outputs, strict=True):
@@ -108,3 +100,27 @@ def in_vocabulary(
         status=status,
         end_time=times[-1],
     ).assign_attrs(density_of=OF_RODS if are_resolved(chain) else OF_FLUID)
+
+
+def _over_positions(
+    chain: Chain, outputs: list[dict[str, Any]], x: Array
+) -> tuple[Array, Array, Array]:
+    """Return positions that hold all rods at all times, at least ``x``, density and label there."""
+    if not are_resolved(chain):
+        fluid = [
+            density_and_label(chain, x, *(output[name] for name in ("y", "points", "below")))
+            for output in outputs
+        ]
+        return x, *np.swapaxes(fluid, 0, 1)
+    # Their tables, which need much memory, are made twice and not kept.
+    farthest = max(float(np.abs(_rods(chain, output).places).max()) for output in outputs)
+    x = max(x, position_grid(chain, farthest - chain.reduced_anchors[-1]), key=len)
+    rods = [over_positions(chain, x, _rods(chain, output)) for output in outputs]
+    return x, *np.swapaxes(rods, 0, 1)
+
+
+def _rods(chain: Chain, output: dict[str, Any]) -> RodPlaces:
+    points = (output[name] for name in ("y", "points", "below", "beyond"))
+    variance = output["velocity_width"] ** 2 - output["mean_velocity"] ** 2
+    labelled = LabelledPoints(chain.size, *points)
+    return rods_of(chain, labelled, chain.mass * float(variance.mean()))

@@ -27,6 +27,7 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline, CubicSpline
 from scipy.special import betainc, betaincinv, betaln, log_ndtr, ndtr, ndtri
 
@@ -77,8 +78,9 @@ class LabelledPoints:
         y, density = y[kept], density[kept]
         # The smaller of the two numbers is more accurate.
         score = np.where(below < beyond, 1, -1)[kept] * ndtri(share[kept])
-        highest = np.maximum.accumulate
-        new = np.append(True, (score[1:] > highest(score)[:-1]) & (y[1:] > highest(y)[:-1]))
+        # From the middle outwards, so that both sides of a symmetric state are the same.
+        middle = np.abs(score).argmin()
+        new = _farther_out(score, middle) & _farther_out(y, middle)
         y, score, density = y[new], score[new], density[new]
         secant = np.diff(y) / np.diff(score)
         # Three times the smaller secant at most keeps the cubic monotonic.
@@ -93,6 +95,15 @@ class LabelledPoints:
         inside = np.clip(score, *self.ends)
         slope = self._curve(inside, 1)
         return self._curve(inside) + slope * (score - inside), slope
+
+
+def _farther_out(values: Array, middle: np.intp) -> NDArray[np.bool_]:
+    """Return which values are farther out than all those between them and the middle one."""
+    up, down = (
+        side[1:] > np.maximum.accumulate(side)[:-1]
+        for side in (values[middle:], -values[middle::-1])
+    )
+    return np.concatenate([down[::-1], [True], up])
 
 
 def are_resolved(chain: Chain) -> bool:

@@ -33,7 +33,14 @@ def over_positions(chain: Chain, x: Array, rods: RodPlaces) -> tuple[Array, Arra
     # A rod counts as one from the first node beyond its table.
     ends = np.searchsorted(x, rods.places[:, -1] + shift[:, 0], side="right")
     label += np.searchsorted(np.sort(ends), np.arange(x.size), side="right")
-    return density, np.maximum.accumulate(label)
+    return density, ascending(label)
+
+
+def ascending(values: Array) -> Array:
+    """Return values that ascend but for ripples without the ripples, the same if mirrored."""
+    from_below = np.maximum.accumulate(values)
+    from_above = np.minimum.accumulate(values[::-1])[::-1]
+    return np.asarray((from_below + from_above) / 2)
 
 
 def _at_nodes(
@@ -57,4 +64,5 @@ def _at_nodes(
     a, b = step * slope[rod, cell], step * slope[rod, cell + 1]
     c, d, t = 3 * rise - 2 * a - b, a + b - 2 * rise, (at - left) / step
     value = start + t * (a + t * (c + t * d))
-    return rod, node, value, np.maximum(a + t * (2 * c + 3 * t * d), 0.0) / step
+    p = np.maximum(a + t * (2 * c + 3 * t * d), 0.0) / step
+    return rod, node, np.clip(value, 0.0, 1.0), p

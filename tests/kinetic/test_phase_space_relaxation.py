@@ -145,3 +145,14 @@ def test_interrupt_keeps_what_there_is(monkeypatch):
     flow = relax_phase_space(CHAIN, displaced(CHAIN, 1.0), 5.0, cells=8, progress=False)
     assert flow.attrs["status"] == "interrupted"
     assert flow.time.size == 3
+
+
+@pytest.mark.parametrize("size", [1, 4])
+def test_a_symmetric_state_stays_symmetric_and_on_the_grid(size):
+    """Also on a mesh so coarse that f has ripples in the vacuum."""
+    chain = Chain(size=size, radius=0.3, damping=0.5, amplitude=1.0)
+    flow = relax_phase_space(chain, compressed(chain, 1.15), 1.0, cells=12, progress=False)
+    highest = float(flow.density.max())
+    np.testing.assert_allclose(flow.density, flow.density[:, ::-1], atol=1e-9 * highest)
+    np.testing.assert_allclose(flow.label + flow.label[:, ::-1].values, size, rtol=1e-9)
+    assert float(flow.density[:, [0, -1]].max()) < 1e-9 * highest

@@ -75,7 +75,7 @@ EXPLORED = {
     "hydrodynamics, eulerian": (scaled_chains(), st.floats(0.5, 2.0), FEW, ROUGHLY),
     "hydrodynamics, eulerian, evolving": (scaled_chains(), st.floats(0.5, 2.0), FEW, ROUGHLY),
     "phase_space": (NEAR_ONE, st.just(1.0), EXAMPLES, 1e-6),
-    "relax_phase_space": (NEAR_ONE, st.floats(0.8, 1.2), FEW, ROUGHLY),
+    "relax_phase_space": (NEAR_ONE, st.floats(0.8, 1.2), FEW, 1e-6),
 }
 
 
