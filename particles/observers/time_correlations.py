@@ -9,6 +9,7 @@ import numpy as np
 from crazybilliards.model import Chain
 from crazybilliards.model.calls import public, warn_user
 from crazybilliards.model.checks import check_integer, check_real
+from crazybilliards.model.kernels import kernel
 from crazybilliards.model.parameters import WALLS_AND_MASSES
 from crazybilliards.particles.observers.base import Array, Averaged, Integers, Snapshots, Variables
 from crazybilliards.particles.observers.modes import momentum_weights
@@ -26,6 +27,27 @@ _QUANTITIES = (
     "mean_squared_displacement",
     "velocity_spectrum",
 )
+
+
+@kernel
+def _add_pairs(sums, known, now, taken, last):  # type: ignore[no-untyped-def]
+    """Add the pairs of new snapshots with ``known`` ones, the new ones included, at all lags.
+
+    Both hold velocities and displacements, (2, snapshots, series). Of the snapshots before the new
+    ones only the last ``taken`` exist.
+    """
+    new, series = now.shape[1:]
+    before = known.shape[1] - new
+    for lag in range(last + 1):
+        row = last + 1 + lag
+        for k in range(max(lag - taken, 0), new):
+            then = before + k - lag
+            for s in range(series):
+                step = now[1, k, s] - known[1, then, s]
+                sums[lag, s] += known[0, then, s] * now[0, k, s]
+                sums[row, s] += step * step
+            sums[lag, series] += 1
+            sums[row, series] += 1
 
 
 @public
@@ -151,22 +173,12 @@ class TimeCorrelations(Averaged):
         if self.schedule.ensemble:
             if snapshots.first == 0:
                 self.before[...] = now[:, :1]
-            self._add(sums, 0, self.before, now)
+            _add_pairs(sums, self.before, now, 0, 0)  # a block of an ensemble is one snapshot
             return
         taken = -(-snapshots.first // self.spacing)
         known = np.concatenate([self.before, now], axis=1)
-        end = known.shape[1]
-        for lag in range(self.last + 1):
-            begin = end - new + max(lag - taken, 0)  # the first ones have nothing before them
-            self._add(sums, lag, known[:, begin - lag : end - lag], known[:, begin:])
+        _add_pairs(sums, known, now, taken, self.last)
         self.before[...] = known[:, new:]
-
-    def _add(self, sums: Array, lag: int, then: Array, now: Array) -> None:
-        """Add pairs of velocities and displacements, each of the shape (2, pairs, series)."""
-        row, step = self.last + 1 + lag, now[1] - then[1]
-        sums[lag, :-1] += np.einsum("sp,sp->p", then[0], now[0])
-        sums[row, :-1] += np.einsum("sp,sp->p", step, step)
-        sums[[lag, row], -1] += now.shape[1]
 
     def _series(self, values: Array) -> Array:
         """Return the chosen rods and the waves of snapshots, (snapshots, rods and waves)."""
