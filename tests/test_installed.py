@@ -54,6 +54,7 @@ def installed(tmp_path_factory):
 PACKED = ("*.py", "*.pyi", "py.typed", "*.mplstyle", "*.css", "*.js", "*.html", "*.csv")
 
 
+@pytest.mark.validate
 def test_the_wheel_holds_every_module_and_stub(installed):
     with zipfile.ZipFile(installed[0]) as archive:
         shipped = {name for name in archive.namelist() if not name.split("/")[0].endswith("info")}
@@ -66,6 +67,7 @@ def test_the_wheel_holds_every_module_and_stub(installed):
     assert shipped == {path.as_posix() for path in wanted}
 
 
+@pytest.mark.validate
 def test_the_page_of_the_package_index_has_no_relative_link(installed):
     """The index shows it alone; its script is that of the README."""
     with zipfile.ZipFile(installed[0]) as archive:
@@ -78,6 +80,7 @@ def test_the_page_of_the_package_index_has_no_relative_link(installed):
     assert script in (ROOT / "README.md").read_text(encoding="utf-8")
 
 
+@pytest.mark.validate
 def test_the_wheel_installed(installed, tmp_path):
     _, binaries = installed
     for folder in (tmp_path, ROOT):
@@ -117,6 +120,7 @@ cb.simulate(chain, duration="1")  # type: ignore[arg-type]
 """
 
 
+@pytest.mark.validate
 def test_type_checkers_see_through(installed, tmp_path):
     """``warn_unused_ignores`` makes mistakes that are not found errors."""
     pytest.importorskip("mypy")

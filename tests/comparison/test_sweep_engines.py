@@ -58,16 +58,17 @@ def cluster():
 
 
 @pytest.mark.compiled
-def test_processes_and_dask_give_the_same_results(grid, cluster, tmp_path):
+@pytest.mark.parametrize("engine", ["processes", pytest.param("dask", marks=pytest.mark.validate)])
+def test_processes_and_dask_give_the_same_results(engine, grid, request, tmp_path):
     cases = read_sweep(grid).cases()
-    with process_pool(1) as pool:
-        for name, executor in {"here": AtOnce(), "pool": pool, "dask": cluster}.items():
-            assert run_cases(cases, tmp_path / name, executor, progress=False) == {}
+    dask = nullcontext(request.getfixturevalue("cluster")) if engine == "dask" else None
+    with dask or process_pool(1) as executor:
+        for name, each in {"here": AtOnce(), "there": executor}.items():
+            assert run_cases(cases, tmp_path / name, each, progress=False) == {}
     for case in cases:
-        here, pool, dask = (case.load(tmp_path / name) for name in ("here", "pool", "dask"))
-        for other in (pool, dask):
-            other.attrs["seconds"] = here.attrs["seconds"]
-            assert here.identical(other)
+        here, there = (case.load(tmp_path / name) for name in ("here", "there"))
+        there.attrs["seconds"] = here.attrs["seconds"]
+        assert here.identical(there)
 
 
 # A worker sends the first half of its result. Then it dies; or the caller gives up.
@@ -165,6 +166,7 @@ def scheduler(tmp_path):
     process.wait()
 
 
+@pytest.mark.validate
 @pytest.mark.parametrize("number", [1, 1100], ids=["all submitted", "not all submitted"])
 def test_the_death_of_the_scheduler_is_one_line(number, scheduler, tmp_path, monkeypatch, caplog):
     process, address = scheduler
