@@ -86,11 +86,11 @@ def coefficients(chain: Chain, units: Units, order: int) -> Coefficients:
 
 @BilinearForm
 def transport(f, p, w):  # type: ignore[no-untyped-def]
-    """Evaluate the weak form with given force and integrals I1, I3."""
-    v = w.x[1]
-    through = (w.force + w.damping * v + w.drag * w.I1) * f + w.noise * grad(f)[1]
-    spread = w.diffusion * (w.I3 * grad(f)[1] + w.I3v * f)
-    return v * f * grad(p)[0] - (through + spread) * grad(p)[1]
+    """Evaluate the weak form: points move, and a flux -(drift f + spread f_v) changes their v.
+
+    scikit-fem evaluates it for all pairs of the 9 functions of a cell, so sums are made before.
+    """
+    return w.x[1] * f * grad(p)[0] - (w.drift * f + w.spread * grad(f)[1]) * grad(p)[1]
 
 
 class Mean(NamedTuple):
@@ -153,10 +153,12 @@ class Equation:
 
     def matrix(self, mean: Mean) -> csc_matrix:
         """Assemble the weak form with given force and integrals, on the unknowns."""
-        fields = {name: self.space.field(table) for name, table in mean._asdict().items()}
-        names = ("damping", "drag", "diffusion")
-        numbers = {name: getattr(self.numbers, name) for name in names}
-        whole = transport.assemble(self.space.basis, **fields, **numbers)
+        numbers, v = self.numbers, self.space.v
+        collisions = numbers.drag * mean.I1 + numbers.diffusion * mean.I3v
+        drift = mean.force + numbers.damping * v + collisions
+        spread = mean.noise + numbers.diffusion * mean.I3
+        fields = {"drift": self.space.field(drift), "spread": self.space.field(spread)}
+        whole = transport.assemble(self.space.basis, **fields)
         return (self.space.unknowns.T @ whole @ self.space.unknowns).tocsc()
 
     def variation(self, f: Array) -> Callable[[Array], Array]:
