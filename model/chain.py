@@ -166,14 +166,9 @@ class Chain(Parameters):
         return -end, end
 
     @property
-    def masses(self) -> NDArray[np.float64]:
-        """Masses of the first and the second rod, which the others have in turn [M]."""
-        return self.mass * np.array([1.0, self.mass_ratio])[: self.size]
-
-    @property
     def rod_masses(self) -> NDArray[np.float64]:
         """Masses of the rods [M], shape (L,)."""
-        return np.resize(self.masses, self.size)
+        return self.mass * np.where(np.arange(self.size) % 2, self.mass_ratio, 1.0)
 
     @property
     def mean_mass(self) -> float:

@@ -36,7 +36,7 @@ _SLOWEST_MODE = 1.241  # rate of a strongly damped rod on a quadratic spring, in
 def spring_rate(chain: Chain) -> float:
     """w0 = sqrt(F'(d)/m) [1/T]; a quadratic spring's is taken at U(d) = 10 T, the temperature."""
     chain.require_known("the rate of the springs", knows)
-    lightest = chain.masses.min()
+    lightest = chain.rod_masses[:2].min()
     if chain.spring == "linear":
         return math.sqrt(chain.stiffness / lightest)
     if chain.stiffness == 0 or chain.temperature == 0:
@@ -86,7 +86,7 @@ def _width_in_box(chain: Chain) -> float:
 def default_time_step(chain: Chain) -> float:
     """Return a step that resolves spring, damping and, for e != 1, the noise; see the module."""
     chain.require_known("the default time step", knows)
-    lightest = chain.masses.min()
+    lightest = chain.rod_masses[:2].min()
     fastest = max(spring_rate(chain), chain.damping / lightest)
     if fastest == 0:
         raise ValueError(
@@ -126,7 +126,7 @@ def time_step_error(
     """
     chain.require_known("the time-step error", knows)
     gap, unequal = chain.lattice_gap, chain.mass_ratio != 1 or chain.box > 0
-    lightest = float(chain.masses.min())
+    lightest = float(chain.rod_masses[:2].min())
     restitutions = [chain.restitution] if chain.size > 1 else []
     restitutions += [chain.wall_restitution] if chain.box else []
     elastic = all(e == 1 for e in restitutions)
@@ -198,9 +198,9 @@ def settling_time(chain: Chain) -> float:
     chain.require_known("the settling time", knows)
     if chain.damping == 0:
         return math.inf
-    times = [_settling_time(chain, float(mass)) for mass in chain.masses]
+    times = [_settling_time(chain, float(mass)) for mass in chain.rod_masses[:2]]
     if chain.box and chain.temperature > 0:
-        in_box = max(2 * chain.masses.max() / chain.damping, _crossing_time(chain))
+        in_box = max(2 * chain.rod_masses[:2].max() / chain.damping, _crossing_time(chain))
         return float(in_box if chain.stiffness == 0 else min(max(times), in_box))
     return max(times)
 
@@ -208,7 +208,7 @@ def settling_time(chain: Chain) -> float:
 def _crossing_time(chain: Chain) -> float:
     """Time constant of the slowest wave of density in a box, diffusive or free [T]."""
     wave_number = math.pi / (2 * chain.walls[1])
-    slowest = math.sqrt(chain.temperature / chain.masses.max())
+    slowest = math.sqrt(chain.temperature / chain.rod_masses[:2].max())
     diffusion = chain.damping / (wave_number**2 * chain.temperature)
     return max(diffusion, math.sqrt(2) / (wave_number * slowest))
 
@@ -238,7 +238,7 @@ def correlation_time(chain: Chain) -> float:
     swings = chain.damping / stiffness if stiffness > 0 else 0.0
     if chain.box and chain.temperature > 0:
         swings = min(swings or math.inf, _crossing_time(chain))
-    return max(float(chain.masses.max()) / chain.damping, swings)
+    return max(float(chain.rod_masses[:2].max()) / chain.damping, swings)
 
 
 def _relaxing_stiffness(chain: Chain) -> float:
@@ -267,7 +267,7 @@ def first_decay(chain: Chain) -> float:
     if chain.damping == 0:
         return math.inf
     width = centre_width(chain)
-    rates = [chain.damping / chain.masses.min(), spring_rate(chain)]
+    rates = [chain.damping / chain.rod_masses[:2].min(), spring_rate(chain)]
     if chain.size > 1 and chain.temperature > 0:
         room = 2.5 * width * chain.thermal_length / chain.size + chain.gap
         room = min(room, 2 * chain.walls[1] / chain.size)
@@ -278,7 +278,7 @@ def first_decay(chain: Chain) -> float:
 def typical_speed(chain: Chain, duration: float, y: Array, v: Array) -> float:
     """Upper estimate of the speed that noise and the start's own energy give a rod [R/T]."""
     chain.require_known("the typical speed", knows)
-    lightest = chain.masses.min()
+    lightest = chain.rod_masses[:2].min()
     heating = min(duration, lightest / (2 * chain.damping) if chain.damping else np.inf)
     noise = chain.amplitude / lightest * np.sqrt(heating)
     spring = np.sqrt(2 * chain.potential(y - chain.reduced_anchors).max() / lightest)

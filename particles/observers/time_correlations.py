@@ -173,7 +173,7 @@ class TimeCorrelations(Averaged):
         if self.schedule.ensemble:
             if snapshots.first == 0:
                 self.before[...] = now[:, :1]
-            _add_pairs(sums, self.before, now, 0, 0)  # a block of an ensemble is one snapshot
+            _add_pairs(sums, np.repeat(self.before, new, axis=1), now, 0, 0)
             return
         taken = -(-snapshots.first // self.spacing)
         known = np.concatenate([self.before, now], axis=1)

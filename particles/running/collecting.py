@@ -130,7 +130,7 @@ def _time_step_error(run: Run, measured: xr.Dataset) -> float:
     width = centre_width(run.chain) * run.chain.free_velocity_width
     if "velocity_width" in measured:
         masses = run.chain.rod_masses[measured.particle.values.astype(int) - 1]
-        widths = measured.velocity_width.values * masses / run.chain.masses.min()
+        widths = measured.velocity_width.values * masses / run.chain.rod_masses[:2].min()
         width = float(np.min(widths, initial=np.inf, where=widths > 0))
     step = run.schedule.time_step
     return time_step_error(run.chain, step, width, stepper=run.stepper, method=run.method)
