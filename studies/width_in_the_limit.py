@@ -2,8 +2,8 @@
 
     python -m studies.width_in_the_limit FOLDER
 
-One limit for every length. Those of up to 1000 rods are the first of the five of figure 4. The
-tables give W_v with the cost of its limit, its slopes, and fits along the chain.
+One limit for every length. The tables give W_v with the cost of its limit, its slopes, and fits
+along the chain.
 """
 
 from __future__ import annotations

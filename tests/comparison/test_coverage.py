@@ -126,6 +126,7 @@ def _with_parts():
     yield coverage_density(equilibrium_states(chain, 5).isel(particle=[1, 18])), 2
 
 
+@pytest.mark.compiled
 def test_a_grid_that_was_cut_or_thinned_is_not_smoothed():
     for result, rods in _with_parts():
         _refused_in_part(result, rods)

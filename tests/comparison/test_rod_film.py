@@ -52,6 +52,7 @@ def test_walls_are_where_they_are_and_the_heavier_rods_are_the_taller_ones(ratio
         assert (np.ptp(outlines) > 60) == (number % 2 == tall)
 
 
+@pytest.mark.compiled
 def test_bars_are_the_collisions():
     observe = ["snapshots", "collisions"]
     chain = Chain(size=10, restitution=0.8, gap=0.2)
@@ -140,6 +141,7 @@ def test_the_order_of_dimensions_does_not_matter(run):
     assert np.array_equal(rod_film.motion_of(run.transpose(), 5).x, rod_film.motion_of(run, 5).x)
 
 
+@pytest.mark.compiled
 def test_what_cannot_be_filmed_is_refused(run):
     hot, none = Chain(size=100, restitution=1.3), "no snapshots in time"
     for what, how, said in (

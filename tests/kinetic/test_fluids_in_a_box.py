@@ -77,6 +77,7 @@ def test_rod_by_rod_has_the_layers_at_the_walls(size, filling, stiffness, gap):
     assert 2 * np.abs(smooth(fluid).density - exact.density.interp(x=rods.x).fillna(0)).max() > 0.02
 
 
+@pytest.mark.compiled
 def test_the_rods_of_a_fluid_at_rest_do_not_depend_on_the_masses():
     """The fluid has T = m W^2 with the mean mass, and with a gap its rods depend on T."""
     chain = in_a_box(10.0, gap=0.3, mass_ratio=5.0)
@@ -127,6 +128,7 @@ def waved(chain, height, mode=1, *, adiabatic=False):
     return xr.Dataset({name: ("x", values) for name, values in fields.items()}, {"x": x})
 
 
+@pytest.mark.compiled
 @pytest.mark.filterwarnings("ignore:equal elastic rods")
 @pytest.mark.parametrize(("frame", "accuracy"), [("label", 0.002), ("eulerian", 0.01)])
 @pytest.mark.parametrize(
@@ -153,6 +155,7 @@ def test_standing_waves_have_the_frequency_of_sound(frame, accuracy, kind, ratio
     np.testing.assert_allclose(flow.rods, 20, rtol=1e-12)
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize(("ratio", "slow"), [(30.0, 0.2)])
 def test_heat_relaxes_with_the_mean_of_the_inverse_masses(ratio, slow):
     """A gas that is too hot everywhere cools as exp(-2 gamma <1/m> t)."""
@@ -168,6 +171,7 @@ def test_heat_relaxes_with_the_mean_of_the_inverse_masses(ratio, slow):
         np.testing.assert_allclose(inside - 1, np.exp(-rate * flow.time), atol=2e-3)
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize(
     ("frame", "kind", "scaled", "tolerance"),
     [
@@ -195,6 +199,7 @@ def test_a_gas_released_from_one_half_diffuses_as_its_points(frame, kind, scaled
     np.testing.assert_allclose(1 - np.array(left)[1:] / size, exact[scaled], atol=tolerance)
 
 
+@pytest.mark.compiled
 def test_a_gas_at_rest_stays_and_comes_back_to_rest_on_springs():
     chain = in_a_box(10.0, gap=0.3)
     hot = force_balance(chain.replace(amplitude=8))
@@ -207,6 +212,7 @@ def test_a_gas_at_rest_stays_and_comes_back_to_rest_on_springs():
         assert np.abs(off).max() < 1e-3
 
 
+@pytest.mark.compiled
 def test_a_fluid_of_equal_rods_says_how_wrong_it_is():
     """Of the slowest wave: at weak damping half its height or more, at strong damping nothing."""
     k = math.pi / 20

@@ -128,6 +128,7 @@ def test_a_plain_density_profile_is_a_start():
     np.testing.assert_allclose(flow.centre, reference.centre, atol=1e-3)
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("frame", ["label", "eulerian"])
 @pytest.mark.parametrize("duration", [1e-12, 1e-50])
 def test_the_shortest_duration_is_not_taken_for_ctrl_c(frame, duration):

@@ -57,6 +57,7 @@ def test_the_fluid_is_far_from_them():
     assert deviation(exact, smooth(rod_by_rod(force_balance(chain)))).maximum < 1e-5
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("frame", ["label", "eulerian"])
 def test_rods_of_a_breathing_cloud_are_exact(frame):
     """The points of a released chain stay Gaussian, with the width that is known in closed form."""
@@ -131,6 +132,7 @@ def _theories():
     yield rod_by_rod(force_balance(chain.replace(gap=0.2), velocity_variance=run))
 
 
+@pytest.mark.compiled
 @pytest.mark.filterwarnings("ignore::crazybilliards.kinetic.UnmeasuredWarning")
 def test_no_rod_is_lost():
     for theory in _theories():

@@ -28,6 +28,7 @@ def pulls(run, exact, *names):
     return np.concatenate(off)
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("time_step", [0.1, 1.0, 30.0])
 def test_without_springs_the_steady_state_is_exact_at_any_step(time_step):
     chain = gas(5)
@@ -40,6 +41,7 @@ def test_without_springs_the_steady_state_is_exact_at_any_step(time_step):
     assert (run.attrs["flight"], run.attrs["time_step_error"]) == ("exact", 0.0)
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize(
     ("size", "time_step"), [(1, 1.0), pytest.param(50, 0.2, marks=pytest.mark.validate), (50, 30.0)]
 )
@@ -54,6 +56,7 @@ def test_the_pressure_is_that_of_points_at_any_step(size, time_step):
     assert (np.abs(run.wall_collision_rate - rate) < 5 * run.wall_collision_rate_error).all()
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("time_step", [pytest.param(0.1, marks=pytest.mark.validate), 0.8])
 def test_on_linear_springs_the_steady_state_is_exact_at_any_step(time_step):
     chain = gas(5, room=2.0, stiffness=1, amplitude=3, damping=0.5)
@@ -65,6 +68,7 @@ def test_on_linear_springs_the_steady_state_is_exact_at_any_step(time_step):
     assert (run.wall_force_error < 0.005 * run.wall_force).all()
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize(
     "parameters",
     [
@@ -89,6 +93,7 @@ def started(chain, y, v):
     return xr.Dataset({"position": (dims, x), "velocity": (dims, v)})
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("damping", [0.0, 0.05])
 @pytest.mark.parametrize("time_step", [5.0, 0.7])
 def test_a_gas_released_from_one_half_fills_the_box_as_its_points_do(damping, time_step):
@@ -112,6 +117,7 @@ def test_a_gas_released_from_one_half_fills_the_box_as_its_points_do(damping, ti
     assert (np.abs(share.mean(axis=1) - exact)[1:] < 5 * error[1:]).all()
 
 
+@pytest.mark.compiled
 def test_equal_masses_keep_their_speeds_and_two_masses_reach_maxwells_law():
     """Velocities +-1 without noise; at a fixed energy Maxwell's kurtosis is 3L/(L + 2)."""
     size, replicas = 200, 30
@@ -135,6 +141,7 @@ def test_equal_masses_keep_their_speeds_and_two_masses_reach_maxwells_law():
         assert abs(fourth.mean() - 3 * size / (size + 2)) < 5 * error < 0.3
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize(("e", "found"), [(0.99, 0.9505), (0.9, 0.7416), (0.5, 0.5568)])
 def test_a_granular_gas_is_as_cold_as_the_balance_of_energy_says(e, found):
     """50 rods with Gamma l/(L W) = 0.1; ``found`` in other simulations, whose error is 1e-3."""

@@ -77,6 +77,7 @@ def test_of_equal_contacts_the_faster_and_then_the_left_one_is_first(together):
         np.testing.assert_array_equal(v[::side] * side, [-0.15625, 0.28125, 0.875])
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize(
     ("size", "e"),
     # A collapse of many rods has a test of its own.
