@@ -44,6 +44,7 @@ def test_a_tilde_is_the_home_folder(tmp_path, monkeypatch, run):
     assert not list(here.iterdir())
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("name", ["hydrodynamics, label", "phase_space", "equilibrium", "simulate"])
 def test_settings_of_numpy_break_nothing(name):
     chain = cb.Chain(size=6, gap=0.1, **SOLVERS[name].needs)

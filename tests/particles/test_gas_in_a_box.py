@@ -152,6 +152,7 @@ def test_a_granular_gas_is_as_cold_as_the_balance_of_energy_says(e, found):
     assert centre_width(chain) == pytest.approx(found, rel=0.02)
 
 
+@pytest.mark.compiled
 def test_two_masses_have_one_temperature_and_the_step_resolves_the_lighter_ones():
     chain = Chain(size=6, mass_ratio=0.01, damping=0.5, gap=1)
     run = simulate(chain, duration=3000)
@@ -162,6 +163,7 @@ def test_two_masses_have_one_temperature_and_the_step_resolves_the_lighter_ones(
     assert default_time_step(chain) == default_time_step(light)
 
 
+@pytest.mark.compiled
 def test_a_gas_forgets_its_start_by_diffusion_or_by_free_flight():
     """The slowest wave of density decays as exp(-k^2 M(t)/2), k = pi/room."""
     for damping, room in ((0.01, 5.0), (5.0, 30.0)):

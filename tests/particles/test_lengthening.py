@@ -38,6 +38,7 @@ def test_made_longer_and_killed_and_resumed_it_is_one_long_run(copies, tmp_path)
     xr.testing.assert_identical(simulate(chain, duration=long, **how), undisturbed)
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("e", [0.8, 1.0])
 @pytest.mark.parametrize(("size", "replicas", "box"), [(1, 3, 0), (3, 1, 0), (3, 1, 8)])
 def test_all_observers_measure_in_parts_what_they_measure_at_once(size, replicas, box, e, tmp_path):
@@ -62,6 +63,7 @@ def test_a_chunk_that_the_end_cuts_is_measured_again_as_a_whole(tmp_path):
     xr.testing.assert_identical(run, whole)
 
 
+@pytest.mark.compiled
 def test_blocks_are_added_up_in_pairs_and_stay_longer_than_the_memory():
     """The error of a mean is right, from 33 to 64 blocks, as that of a known process."""
     chain = Chain(size=1, damping=2)

@@ -198,6 +198,7 @@ def test_two_observers_that_would_give_one_name_are_refused():
         a_run(Chain(), observe=observe, average="ensemble")
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("changed", [{}, {"box": 10, "mass_ratio": 3}])
 def test_snapshots_are_recorded_beside_all_other_observers(changed, tmp_path):
     how = {"duration": 1300, "every": 1.0, "replicas": 2, "seed": 4, "progress": False}

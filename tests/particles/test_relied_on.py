@@ -57,6 +57,7 @@ def test_the_error_of_the_step_is_never_zero_where_there_is_one(chain, settings,
     assert 0 < error < 1 if known else np.isnan(error)
 
 
+@pytest.mark.compiled
 def test_the_error_of_eulers_step_is_that_of_a_free_rod():
     chain = Chain(size=3, damping=4.0)
     run = simulate(chain, duration=40_000, time_step=0.2, stepper="euler", seed=1, **QUIET)

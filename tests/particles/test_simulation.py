@@ -33,6 +33,7 @@ def test_elastic_chain_is_in_its_exact_equilibrium(size, gap, spring):
         assert float(np.abs((run[name] - exact[name]) / error).max()) < 5, name
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize(("e", "damping"), [(0, 1), (0.9, 1), (1, 1), (1.05, 4)])
 def test_the_same_seed_gives_the_same_bits_whatever_the_threads(e, damping):
     chain = Chain(size=30, gap=0.1, restitution=e, damping=damping)
@@ -45,6 +46,7 @@ def test_the_same_seed_gives_the_same_bits_whatever_the_threads(e, damping):
     assert (other.velocity_width != one.velocity_width).all()
 
 
+@pytest.mark.compiled
 def test_an_equilibrium_start_needs_no_warm_up():
     chain = Chain(size=20, gap=0.3)
     start = equilibrium_states(chain, 64, seed=3)
@@ -126,6 +128,7 @@ def test_long_times_between_snapshots_are_taken_in_parts(average, observe, monke
     xr.testing.assert_allclose(simulate(chain, **options), whole, rtol=1e-9, atol=1e-9)
 
 
+@pytest.mark.compiled
 def test_ctrl_c_before_anything_was_measured_is_raised(ctrl_c):
     ctrl_c(Replica, "_advance", bool)
     with pytest.raises(KeyboardInterrupt):
@@ -145,6 +148,7 @@ def test_memory_does_not_grow_with_the_duration():
     assert peaks[2] < peaks[1] + 3e6
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("average", ["time", "ensemble"])
 def test_a_short_run_may_have_short_steps(average):
     """A thousand steps of 1e-9 T cost nothing, and a thousand of them show how noise begins."""

@@ -101,6 +101,7 @@ def test_a_spectrum_is_right_or_not_given(chain, relaxations):
     assert (abs(found - exact_spectrum(chain, run.frequency[low])) < 5 * error + folded).all()
 
 
+@pytest.mark.compiled
 @pytest.mark.validate
 @pytest.mark.parametrize("damping", [1.0, 10.0])
 def test_stated_errors_are_the_scatter_in_runs_of_twenty_longest_lags(damping):

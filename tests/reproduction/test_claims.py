@@ -122,6 +122,7 @@ def test_moments_of_a_gaussian():
             mean_shape(run.drop_vars(name), [1, 2], name)
 
 
+@pytest.mark.compiled
 def test_the_centre_is_the_same_rods_everywhere():
     """Four of 30 rods in claims, in comparisons with a theory, and in limits of the step."""
     chain = Chain(size=30, restitution=0.9)

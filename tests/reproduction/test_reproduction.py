@@ -84,6 +84,7 @@ def test_list_needs_no_folder(command, tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.compiled
 @pytest.mark.validate
 def test_other_processes_draw_the_same(tmp_path):
     studies = find_studies("model,arctanh")
