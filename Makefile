@@ -74,8 +74,8 @@ torture: $(VENV)/installed-test
 # Coverage cannot be measured in compiled kernels. Tests that are quick enough run them as Python.
 coverage: $(VENV)/installed-coverage
 	$(BIN)/coverage erase
-	NUMBA_DISABLE_JIT=1 $(BIN)/coverage run -m pytest -n 2 -m "not compiled"
-	$(BIN)/coverage run -m pytest -n 2 -m compiled
+	OPENBLAS_NUM_THREADS=1 NUMBA_DISABLE_JIT=1 $(BIN)/coverage run $(IN_TWO) -m "not compiled"
+	OPENBLAS_NUM_THREADS=1 $(BIN)/coverage run $(IN_TWO) -m compiled
 	$(BIN)/coverage combine -q
 	$(BIN)/coverage report --skip-covered
 
