@@ -25,11 +25,11 @@ export PYTHONDONTWRITEBYTECODE :=
 
 help:
 	@echo "make run        compare simulation and theory at e = 1; figures into $(OUTPUT)/"
-	@echo "make test       run the tests that are quick (3 min)"
+	@echo "make test       run the tests that are quick (4 min)"
 	@echo "make validate   run the others: statistics, long runs, kills, wheel, dask, the page in a browser (4 min)"
 	@echo "make test-lowest  run the tests with the oldest allowed version of every package"
-	@echo "make torture    test kills, full disks, bad input and long runs (11 min; docs/reliability.md)"
-	@echo "make coverage   show which lines the tests reach, kernels included (11 min)"
+	@echo "make torture    test kills, full disks, bad input and long runs (15 min; docs/reliability.md)"
+	@echo "make coverage   show which lines the tests reach, kernels included (14 min)"
 	@echo "make check      check lint, format and types"
 	@echo "make audit      look up known vulnerabilities of every package used (needs the network)"
 	@echo "make reproduce  draw every figure and check every claim of the paper (2 min; QUALITY=full 18 min;"

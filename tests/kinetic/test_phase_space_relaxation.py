@@ -18,6 +18,7 @@ from crazybilliards.kinetic import (
 from crazybilliards.kinetic.exact.breathing import breathing_cloud
 from crazybilliards.kinetic.kinetic_equation import relaxation as phase_space_relaxation
 from crazybilliards.kinetic.kinetic_equation.continuation import continued, elastic_state
+from crazybilliards.kinetic.rods import places
 from crazybilliards.model import Chain
 
 CHAIN = Chain(size=30)
@@ -156,3 +157,15 @@ def test_a_symmetric_state_stays_symmetric_and_on_the_grid(size):
     np.testing.assert_allclose(flow.density, flow.density[:, ::-1], atol=1e-9 * highest)
     np.testing.assert_allclose(flow.label + flow.label[:, ::-1].values, size, rtol=1e-9)
     assert float(flow.density[:, [0, -1]].max()) < 1e-9 * highest
+
+
+def test_more_rods_than_are_told_apart_have_the_density_of_a_fluid(monkeypatch):
+    chain = Chain(size=60, damping=0.5, amplitude=10.0)
+    start = compressed(chain, 0.9)
+    rods = relax_phase_space(chain, start, 1.0, every=0.5, cells=12, progress=False)
+    monkeypatch.setattr(places, "MOST_RODS", 50)
+    fluid = relax_phase_space(chain, start, 1.0, every=0.5, cells=12, progress=False)
+    assert (rods.attrs["density_of"], fluid.attrs["density_of"]) == ("rods", "fluid")
+    np.testing.assert_allclose(fluid.density.integrate("x"), 60, rtol=1e-3)
+    off = rods.label.interp(x=fluid.x) - fluid.label
+    assert 0.01 < float(np.abs(off).max()) < 0.5  # of a rod, which is a spread around its place
