@@ -37,7 +37,7 @@ def over_positions(chain: Chain, x: Array, rods: RodPlaces) -> tuple[Array, Arra
 
 
 def ascending(values: Array) -> Array:
-    """Return values that ascend but for ripples without the ripples, the same if mirrored."""
+    """Take the ripples out of values that ascend otherwise; both directions are treated alike."""
     from_below = np.maximum.accumulate(values)
     from_above = np.minimum.accumulate(values[::-1])[::-1]
     return np.asarray((from_below + from_above) / 2)
