@@ -32,6 +32,7 @@ def solve(
     """
     n = y.size
     w = np.ones(n) if inverse is None else inverse
+    reduced = 1 / (w[:-1] + w[1:])  # masses; a division in every sweep would take twice as long
     for i in range(n - 1):
         closing = v[i] - v[i + 1]
         gap = y[i + 1] - y[i]
@@ -47,7 +48,7 @@ def solve(
     while largest > tolerance:
         largest = 0.0
         for i in range(n - 1):
-            missing = (bounds[i] - (v[i + 1] - v[i])) / (w[i] + w[i + 1])
+            missing = (bounds[i] - (v[i + 1] - v[i])) * reduced[i]
             new = max(impulses[i] + missing, 0.0)
             change = new - impulses[i]
             impulses[i] = new
