@@ -32,7 +32,7 @@ help:
 	@echo "make coverage   show which lines the tests reach, kernels included (14 min)"
 	@echo "make check      check lint, format and types"
 	@echo "make audit      look up known vulnerabilities of every package used (needs the network)"
-	@echo "make reproduce  draw every figure and check every claim of the paper (2 min; QUALITY=full 20 min;"
+	@echo "make reproduce  draw every figure and check every claim of the paper (2 min; QUALITY=full 15 min;"
 	@echo "                WHICH=analytics: only the paper's analytics section, 1 min)"
 	@echo "make kernels    compile the kernels, which the first simulation does otherwise (30 s)"
 	@echo "make lessons    write the lessons without outputs and solutions, for learners, into $(LESSONS)/"

@@ -43,7 +43,7 @@ def command(
     quality: Annotated[
         str,
         typer.Option(
-            help="All figures take 2 minutes (quick) or 18 (full) on two cores.",
+            help="All figures take 2 minutes (quick) or 15 (full) on two cores.",
             metavar="quick|full",
         ),
     ] = "quick",
