@@ -200,7 +200,7 @@ def on_fine_mesh(
             return state, rods, error
         if more * _FINER > most_cells:
             raise ValueError(
-                f"the kinetic equation's widths are accurate to {error:.1e} only, not to "
+                f"the kinetic equation's widths are accurate to {error:.3g} only, not to "
                 f"tolerance={tolerance:g}; cells={more} accepts that"
             )
 
