@@ -25,15 +25,16 @@ Table = Iterable[Sequence[object]]
 def options(description: str | None, **defaults: object) -> argparse.Namespace:
     """Read ``--name value`` for each of the defaults; one that is a list takes several values.
 
-    An option whose default is a type has to be given, without its name. One whose default is False
-    takes no value.
+    An option whose default is a type has to be given, without its name; a folder is made before any
+    work. One whose default is False takes no value.
     """
     parser = argparse.ArgumentParser(
         description=description, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     for name, default in defaults.items():
         if isinstance(default, type):
-            parser.add_argument(name, type=default, metavar=name.upper())
+            kind = _made if default is Path else default
+            parser.add_argument(name, type=kind, metavar=name.upper())
         elif isinstance(default, list):
             parser.add_argument(f"--{name}", type=type(default[0]), nargs="*", default=default)
         elif default is False:
@@ -41,6 +42,16 @@ def options(description: str | None, **defaults: object) -> argparse.Namespace:
         else:
             parser.add_argument(f"--{name}", type=type(default), default=default)
     return parser.parse_args()
+
+
+def _made(name: str) -> Path:
+    """Return a folder, made if it is missing."""
+    folder = Path(name)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise argparse.ArgumentTypeError(f"no folder can be made there: {error}") from error
+    return folder
 
 
 def carry_out(

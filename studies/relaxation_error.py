@@ -82,7 +82,6 @@ def errors(chain: Chain, factor: float, folder: Path) -> tuple[float, float, flo
 
 
 def table(folder: Path, held_out: bool) -> Table:
-    folder.mkdir(parents=True, exist_ok=True)
     if held_out:
         yield "e", "L", "Gamma", "y times", "largest error, %", "at t [T]", "stated, %"
     else:

@@ -222,7 +222,6 @@ def rows_of(folder: Path, lengths: Sequence[float], place: Place) -> list[Row]:
 
 
 def table(folder: Path, drawn: bool) -> Table:
-    folder.mkdir(parents=True, exist_ok=True)
     lengths = OTHER_LENGTHS if drawn else LENGTHS
     with process_pool() as workers:
         chains = list(held_out() if drawn else places())

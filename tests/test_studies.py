@@ -21,6 +21,7 @@ from studies import (
     validity_picture,
     width_in_the_limit,
 )
+from studies.common import options
 
 TABLES = Path(__file__).parents[1] / "docs" / "tables"
 STUDIES = (critical_size, neighbours, validity, width_in_the_limit)
@@ -30,6 +31,16 @@ def described(chain, status="completed", **variables):
     """Return a result of a chain with these variables, as far as a study looks at it."""
     provenance = json.dumps({"chain": chain.parameters()})
     return xr.Dataset(variables, attrs={"status": status, "provenance": provenance})
+
+
+def test_a_folder_is_made_before_any_work_or_refused(tmp_path, monkeypatch, capsys):
+    (tmp_path / "file").touch()
+    monkeypatch.setattr("sys.argv", ["study", str(tmp_path / "new" / "folder")])
+    assert options("", folder=Path).folder.is_dir()
+    monkeypatch.setattr("sys.argv", ["study", str(tmp_path / "file")])
+    with pytest.raises(SystemExit):
+        options("", folder=Path)
+    assert "no folder can be made there" in capsys.readouterr().err
 
 
 def test_tables_have_the_columns_of_those_in_the_documentation(monkeypatch):
