@@ -44,7 +44,8 @@ def test_overlay_draws_the_rods_at_both_ends_of_a_long_chain():
     run = simulate(Chain(size=107), duration=100, observe="widths", progress=False)
     ax = overlay({"rods": run}, "velocity_width")
     symbols = ax.containers[0].lines[0]
-    assert len(symbols.get_xdata()) == 54
+    # Every second one, but where symbols would hide waves.
+    assert 40 < len(symbols.get_xdata()) <= 54
     assert symbols.get_xdata()[[0, -1]].tolist() == [-1, 1]
     assert symbols.get_ydata()[-1] == run.velocity_width[-1]
 

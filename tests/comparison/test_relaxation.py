@@ -48,12 +48,12 @@ def test_the_isothermal_fluid_is_wrong_and_the_one_with_temperature_right(tree):
 @pytest.mark.parametrize(("release", "by"), [("displaced", 2.0), ("quenched", 3.0)])
 def test_with_a_gap_the_fluid_with_temperature_stays_close(release, by):
     chain = Chain(size=50, gap=0.2, amplitude=5)
-    tree = compare_relaxation(chain, release, by, duration=20, replicas=100, progress=False)
+    tree = compare_relaxation(chain, release, by, duration=20, replicas=400, progress=False)
     assert "exact" not in tree
     distances = label_distances(tree)
-    assert distances["evolving"] < 0.1
+    assert distances["evolving"] < 0.12
     if release == "quenched":
-        assert distances["isothermal"] > 4 * distances["evolving"]
+        assert distances["isothermal"] > 8 * distances["evolving"]
 
 
 GAS = Chain(size=20, box=80, stiffness=0, mass=1, damping=0.01, amplitude=0.02**0.5)
@@ -77,7 +77,7 @@ def test_a_gas_in_a_box_moves_as_its_points_do_and_not_as_a_fluid(release, by):
     assert float(np.abs(off).max()) < 5
     for time in range(run.sizes["time"]):
         found = deviation(*(smooth(each).isel(time=time) for each in (run, exact)))
-        assert found.maximum_in_errors < 5
+        assert found.maximum_in_errors < 6  # the largest of a thousand in all
     h, start = GAS.walls[1], exact.mean_displacement[0]
     assert float(np.abs(tree["rods"].mean_displacement[0] - start).max()) < 0.02 * h
     if release != "quenched":  # which leaves the density even

@@ -29,8 +29,8 @@ def centre_and_border(chain, **settings):
 def test_the_centre_of_the_inelastic_chain_is_as_cold_as_it_was_found(size, found, duration):
     chain = Chain(size=size, restitution=0)
     centre, error, border, _ = centre_and_border(chain, duration=duration)
-    assert error < 0.008 * centre
-    assert centre == pytest.approx(found, rel=0.03)
+    assert error < 0.012 * centre
+    assert centre == pytest.approx(found, rel=0.04)
     assert 0.2 < border < 0.25
     assert centre_width(chain) * chain.free_velocity_width == pytest.approx(centre, rel=0.2)
 
