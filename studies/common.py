@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import csv
+import hashlib
 import math
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -80,11 +81,17 @@ def carry_out(
         save_picture(folder / f"{Path(sys.argv[0]).stem}.png", draw, results)
 
 
-def save_picture(path: Path, draw: Callable[[Any], Figure], of: Any) -> None:
-    """Draw ``of`` in the style of the documentation."""
+def save_picture(
+    path: Path, draw: Callable[[Any], Figure], of: Any, tables: Sequence[Path] = ()
+) -> None:
+    """Draw ``of`` in the style of the documentation.
+
+    A picture of ``tables`` names their digest, so that a test finds a picture of older ones.
+    """
     mpl.use("Agg")
+    digest = hashlib.sha256(b"".join(table.read_bytes() for table in tables)).hexdigest()
     with house_style():
-        draw(of).savefig(path)
+        draw(of).savefig(path, metadata={"Source": digest} if tables else None)
 
 
 def print_table(rows: Table) -> None:

@@ -20,6 +20,7 @@ from crazybilliards.comparison.drawing import COLOURS, draw_points
 from crazybilliards.comparison.layout import entitle, legend_above, panels
 from studies.common import options, save_picture
 
+TABLES = "kinetic_equation", "correlations_derived_with", "correlations_held_out"
 EARLIER = (45, 180, 600)  # rods of the chains held out earlier
 LEAST_DRAWN = 30  # rods, if not held out: chains of 10 are in the tables only
 LINEAR = 2.0  # per cent; the axis is linear up to there, and logarithmic beyond
@@ -36,17 +37,17 @@ def errors(folder: Path, *, pairs: bool) -> pd.DataFrame:
     """Return the errors of a theory, one row a chain of the usual damping, and driven ones."""
     found = []
     if not pairs:
-        alone = pd.read_csv(folder / "kinetic_equation.csv")
+        alone = pd.read_csv(folder / f"{TABLES[0]}.csv")
         alone = alone.rename(columns=lambda name: name.removesuffix(", %"))
         rod = alone["error of a rod"]  # bounds that of the centre
         found.append(alone.assign(centre_error=rod, border_error=rod, held_out=False))
-    for table in ("derived_with", "held_out"):
-        both = pd.read_csv(folder / f"correlations_{table}.csv")
+    for table in TABLES[1:]:
+        both = pd.read_csv(folder / f"{table}.csv")
         parts = both["error of the centre, a rod, the border, %"].str.split(", ", expand=True)
         which = "" if pairs else " without"
         values = {place: both[f"W_v {place}{which}, %"] for place in ("centre", "border")}
         bars = {"centre_error": parts[0].astype(float), "border_error": parts[2].astype(float)}
-        found.append(both.assign(**values, **bars, held_out=table == "held_out"))
+        found.append(both.assign(**values, **bars, held_out=table == TABLES[2]))
     every = pd.concat(found)
     usual = (every.gamma == 1) | (every.e > 1)
     drawn = every.held_out | (every.L >= LEAST_DRAWN) & ~every.L.isin(EARLIER)
@@ -118,4 +119,5 @@ def draw(folder: Path) -> Figure:
 
 if __name__ == "__main__":
     folder = options(__doc__, folder=Path).folder
-    save_picture(folder / "validity.png", draw, folder)
+    tables = [folder / f"{name}.csv" for name in TABLES]
+    save_picture(folder / "validity.png", draw, folder, tables)

@@ -1,6 +1,7 @@
 """Scripts in studies/: their tables have the heads of the documentation's, and right numbers."""
 
 import csv
+import hashlib
 import json
 from pathlib import Path
 
@@ -8,6 +9,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 import xarray as xr
+from PIL import Image
 
 from crazybilliards.comparison.sweeps.jobs import JOBS
 from crazybilliards.kinetic.kinetic_equation import criticality
@@ -65,6 +67,16 @@ def test_the_picture_of_the_errors_has_every_chain_that_was_held_out():
         found = validity_picture.errors(TABLES, pairs=pairs)
         usual = [each for each in validity.held_out() if each.chain.damping == 1]
         assert found.held_out.sum() == len(usual)
+
+
+@pytest.mark.parametrize(
+    ("picture", "tables"),
+    [("validity", validity_picture.TABLES), ("correlated_displacements", ["displacement_widths"])],
+)
+def test_pictures_of_tables_are_drawn_from_those_that_are_shown(picture, tables):
+    drawn = Image.open(TABLES.parent / "figures" / f"{picture}.png").text["Source"]
+    contents = b"".join((TABLES / f"{name}.csv").read_bytes() for name in tables)
+    assert drawn == hashlib.sha256(contents).hexdigest()
 
 
 # -- the critical size --------------------------------------------------------------------------

@@ -1,8 +1,10 @@
 """Draw the errors of the displacement widths in the theory with pair correlations.
 
 Run it to write correlated_displacements.png beside it, from docs/tables/displacement_widths.csv.
+The picture names the digest of its table, so that a test finds a picture of an older one.
 """
 
+import hashlib
 from pathlib import Path
 
 import matplotlib as mpl
@@ -43,7 +45,8 @@ def main() -> None:
             ax.set_yticks(range(0, 21, 5))
         axes[0].set_ylabel("largest error of $W_x$ [%]")
         axes[0].legend()
-        figure.savefig(Path(__file__).with_suffix(".png"))
+        digest = hashlib.sha256(TABLE.read_bytes()).hexdigest()
+        figure.savefig(Path(__file__).with_suffix(".png"), metadata={"Source": digest})
         plt.close(figure)
 
 

@@ -105,7 +105,7 @@ def phase_space(
     Notes
     -----
     Compared with simulations (L = 100, gamma = 1, particles 3 to L - 2) velocity widths are
-    within 0.8 % for e = 0.95 to 1, 1.0 % at 0.9, and 6.6 % at 0.8. Displacement widths of all
+    within 1.2 % for e = 0.95 to 1, 1.3 % at 0.9, and 6.9 % at 0.8. Displacement widths of all
     rods are within 5 % at 0.95 and 7 % at 0.9 (:mod:`crazybilliards.kinetic.rods.waves`). With a
     gap the rods need an exact equilibrium (:mod:`crazybilliards.kinetic.rods.places`), which takes
     a second for 1000 rods.
