@@ -4,7 +4,7 @@
 
 Chains of many restitutions and lengths are simulated and compared with both theories. The chains
 held out were written down and committed before one of them was simulated, after the last change of
-the theory. Takes two hours on one core. ``studies.validity_picture`` draws the tables.
+the theory. Takes an hour on one core. ``studies.validity_picture`` draws the tables.
 """
 
 from __future__ import annotations
