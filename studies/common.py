@@ -89,7 +89,8 @@ def save_picture(
     A picture of ``tables`` names their digest, so that a test finds a picture of older ones.
     """
     mpl.use("Agg")
-    digest = hashlib.sha256(b"".join(table.read_bytes() for table in tables)).hexdigest()
+    contents = "".join(table.read_text(encoding="utf-8") for table in tables)
+    digest = hashlib.sha256(contents.encode()).hexdigest()
     with house_style():
         draw(of).savefig(path, metadata={"Source": digest} if tables else None)
 

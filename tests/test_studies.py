@@ -75,8 +75,8 @@ def test_the_picture_of_the_errors_has_every_chain_that_was_held_out():
 )
 def test_pictures_of_tables_are_drawn_from_those_that_are_shown(picture, tables):
     drawn = Image.open(TABLES.parent / "figures" / f"{picture}.png").text["Source"]
-    contents = b"".join((TABLES / f"{name}.csv").read_bytes() for name in tables)
-    assert drawn == hashlib.sha256(contents).hexdigest()
+    contents = "".join((TABLES / f"{name}.csv").read_text(encoding="utf-8") for name in tables)
+    assert drawn == hashlib.sha256(contents.encode()).hexdigest()
 
 
 # -- the critical size --------------------------------------------------------------------------

@@ -45,7 +45,7 @@ def main() -> None:
             ax.set_yticks(range(0, 21, 5))
         axes[0].set_ylabel("largest error of $W_x$ [%]")
         axes[0].legend()
-        digest = hashlib.sha256(TABLE.read_bytes()).hexdigest()
+        digest = hashlib.sha256(TABLE.read_text(encoding="utf-8").encode()).hexdigest()
         figure.savefig(Path(__file__).with_suffix(".png"), metadata={"Source": digest})
         plt.close(figure)
 
