@@ -2,8 +2,7 @@ from .combining import combine as combine
 from .coverage import coverage_density as coverage_density, smooth as smooth
 from .distances import Deviation as Deviation, deviation as deviation
 from .drawing import overlay as overlay
-from .encoding import Player as Player
-from .moving_pictures import film as film
+from .films import Player as Player, film as film
 from .fits import (
     Fit as Fit,
     fit_arctanh as fit_arctanh,

@@ -85,7 +85,7 @@ def command(
 
 
 def _write(film: bool, tree: xr.DataTree, folder: Path, suffix: str) -> None:
-    from crazybilliards.comparison.moving_pictures import film as write_film
+    from crazybilliards.comparison.films import film as write_film
     from crazybilliards.comparison.side_by_side import relaxation_figures as figures
     from crazybilliards.comparison.side_by_side.relaxation import condensed
     from crazybilliards.model import save

@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
 import xarray as xr
+from matplotlib.animation import FuncAnimation
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from crazybilliards.comparison.coverage import smooth
 from crazybilliards.comparison.drawing import overlay
-from crazybilliards.comparison.encoding import Picture
 from crazybilliards.comparison.layout import entitle, label_outer, legend_above, panels
 from crazybilliards.comparison.side_by_side.grid import SIMULATION
 from crazybilliards.comparison.side_by_side.relaxation import LEGEND, PARTICLES, cloud
@@ -25,13 +22,6 @@ from crazybilliards.model import Chain, chain_of
 
 _NAMES = {PARTICLES: SIMULATION} | LEGEND
 _DENSITY, _POSITION = r"density $\rho$ [1/R]", "position $x$ [R]"
-_ON_A_SCREEN: Any = {
-    "font.size": 13,
-    "axes.titlesize": 13,
-    "legend.fontsize": 12,
-    "legend.frameon": False,
-}
-_FILM = 8, 4.5  # inches of 100 dots; the encoder needs even numbers of dots
 _MOMENTS = (0.0, 0.05, 0.1, 1.0)  # of the duration, for the profiles
 _LEAST_DRAWN = 2e-3  # of close packing: pictures end where every density is lower
 
@@ -101,45 +91,34 @@ def draw_cloud(tree: xr.DataTree) -> Figure:
     return figure
 
 
-def relaxation_pictures(tree: xr.DataTree, most: int) -> tuple[Iterator[Picture], int]:
-    """Return pictures of rho(x, t) of the simulation and the fluids, and how many there are."""
+def relaxation_animation(tree: xr.DataTree, most: int) -> tuple[FuncAnimation, int]:
+    """Return the film of rho(x, t) of the simulation and the fluids, and its number of pictures."""
     densities = _densities(tree)
     extent = _extent(densities)
-    densities = {name: each[["density"]].sel(x=slice(*extent)) for name, each in densities.items()}
     last = densities[SIMULATION].time.size - 1
     chosen = np.unique(np.linspace(0, last, most).round().astype(int))
-    shown = {name: each.isel(time=chosen) for name, each in densities.items()}
-    return _pictures(shown), chosen.size
-
-
-def _pictures(densities: dict[str, xr.Dataset]) -> Iterator[Picture]:
-    with plt.rc_context(_ON_A_SCREEN):
-        canvas, ax = _stage(densities)
-        lines = {str(line.get_label()): line for line in ax.lines}
-        for number, time in enumerate(densities[SIMULATION].time.values):
-            ax.set_title(f"$t = {time:.2f}$ T")
-            for name, each in densities.items():
-                lines[name].set_ydata(each.density.values[number])
-            canvas.draw()
-            canvas.figure.set_layout_engine("none")  # after the first picture nothing moves
-            yield np.array(canvas.buffer_rgba())
-
-
-def _stage(densities: dict[str, xr.Dataset]) -> tuple[FigureCanvasAgg, Axes]:
-    """Draw the lines at the first time."""
-    figure = Figure(figsize=_FILM, dpi=100, layout="constrained")
-    canvas, ax = FigureCanvasAgg(figure), figure.subplots()
+    densities = {
+        name: each[["density"]].sel(x=slice(*extent)).isel(time=chosen)
+        for name, each in densities.items()
+    }
+    figure, ax = plt.subplots(figsize=(8, 4.5), layout="constrained")
     rods = densities[SIMULATION]
     # Every bin: symbols that tell the curve at one time may show false waves at another.
     ax.plot(rods.x, rods.density[0], color="black", linewidth=1, label=SIMULATION, zorder=3)
     fluids = {name: each.isel(time=0) for name, each in densities.items() if name != SIMULATION}
     overlay(fluids, ax=ax)
     high = max(float(each.density.max()) for each in densities.values())
-    ends = [float(end) for each in densities.values() for end in each.x[[0, -1]]]
-    ax.set(xlim=(min(ends), max(ends)), ylim=(0, 1.05 * high), xlabel=_POSITION, ylabel=_DENSITY)
+    ax.set(xlim=extent, ylim=(0, 1.05 * high), xlabel=_POSITION, ylabel=_DENSITY)
     _draw_walls(ax, chain_of(rods))
     legend_above(figure, ax)
-    return canvas, ax
+    lines = {str(line.get_label()): line for line in ax.lines}
+
+    def show(picture: int) -> None:
+        ax.set_title(f"{title(tree)}: $t = {float(rods.time[picture]):.2f}$ T")
+        for name, each in densities.items():
+            lines[name].set_ydata(each.density.values[picture])
+
+    return FuncAnimation(figure, show, chosen.size, repeat=False), chosen.size
 
 
 def _draw_walls(ax: Axes, chain: Chain) -> None:
