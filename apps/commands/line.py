@@ -5,52 +5,18 @@ from __future__ import annotations
 import inspect
 import sys
 import warnings
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
-from typer.core import TyperGroup
 
-import crazybilliards as cb
-from crazybilliards.apps.commands import compare, explore, relax, reproduce, simulate, sweep, theory
-from crazybilliards.apps.commands.answers import with_json
-from crazybilliards.apps.commands.mistakes import explained
+from crazybilliards.apps.commands import batches, chains
 from crazybilliards.apps.commands.output import INTERRUPTED
-from crazybilliards.apps.commands.streams import READER_GONE, plain_streams
-from crazybilliards.model.checks import meant, shown
-
-_LONGEST = 400  # characters of an error message
-
-
-class _Commands(TyperGroup):
-    """Takes the first letters of a command for it, and ``help`` for ``--help``.
-
-    No name of a command is the beginning of another.
-    """
-
-    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        return super().parse_args(ctx, [*args[1:2], "--help"] if args[:1] == ["help"] else args)
-
-    def resolve_command(self, ctx: Any, args: list[str]) -> Any:
-        name = args[0]
-        near = [each for each in self.commands if each.startswith(name)]
-        if len(near) == 1:
-            return super().resolve_command(ctx, [*near, *args[1:]])
-        if name in dir(cb):
-            from crazybilliards.comparison.stationary_theories import THEORIES
-
-            solved = f"crazybilliards theory {name} solves it"
-            hint = f"; {solved if name in THEORIES else f'in Python it is crazybilliards.{name}'}"
-        else:
-            hint = f"; did you mean {' or '.join(near)}?" if near else meant(name, self.commands)
-        known = ", ".join(self.commands)
-        raise ValueError(f"no command {shown(name)}{hint or f'; the commands are {known}'}")
-
 
 app = typer.Typer(
-    cls=_Commands,
     add_completion=False,
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
+    no_args_is_help=True,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
@@ -63,9 +29,8 @@ def _show_version(wanted: bool) -> None:
         raise typer.Exit
 
 
-@app.callback(invoke_without_command=True)
+@app.callback()
 def crazybilliards(
-    context: typer.Context,
     version: Annotated[
         bool,
         typer.Option(
@@ -81,16 +46,45 @@ def crazybilliards(
 
     Example: crazybilliards compare --output results
     """
-    if context.invoked_subcommand is None:
-        print(context.get_help())
 
 
-for module in (compare, simulate, theory, relax, reproduce, sweep, explore):
-    app.command(
-        module.__name__.rpartition(".")[2],
-        # Given like this it is not cut to one line.
-        short_help=(inspect.getdoc(module.command) or "").partition("\n")[0],
-    )(module.command if module is explore else with_json(module.command))
+def explore(
+    port: Annotated[int, typer.Option(help="Port to serve the page at; 0: any free one.")] = 5006,
+    address: Annotated[
+        str, typer.Option(help="Address to serve it at; the default is this machine only.")
+    ] = "127.0.0.1",
+    allow_host: Annotated[
+        list[str] | None,
+        typer.Option(help="Name of a hub that forwards to the page; may be repeated."),
+    ] = None,
+    open_to_network: Annotated[
+        bool, typer.Option("--open-to-network", help="Allow an address that other machines reach.")
+    ] = False,
+    browser: Annotated[
+        bool, typer.Option("--browser/--no-browser", help="Open the page in the browser.")
+    ] = True,
+) -> None:
+    """Watch a chain move in the browser and turn its knobs, theory beside it, until Ctrl-C.
+
+    Example: crazybilliards explore --port 5007
+    """
+    from crazybilliards.apps.explore.server import serve
+
+    serve(port, address, browser, open_to_network, allow_host or ())
+
+
+for command in (
+    chains.compare,
+    chains.simulate,
+    chains.theory,
+    chains.relax,
+    batches.reproduce,
+    batches.sweep,
+    explore,
+):
+    # Given like this it is not cut to one line.
+    short = (inspect.getdoc(command) or "").partition("\n")[0]
+    app.command(command.__name__, short_help=short)(command)
 
 
 def main() -> None:
@@ -99,38 +93,26 @@ def main() -> None:
 
     # Commands state the expected errors of theories, unknown ones too.
     warnings.filterwarnings("ignore", "the error of .* was not measured")
-    with plain_streams() as output, terminated_like_interrupted() as signals:
-        status = _run()
-    if isinstance(output.failed, BrokenPipeError):  # crazybilliards ... | head, say
-        status = status or READER_GONE
-    elif output.failed is not None:
-        status = _complain(f"standard output: {output.failed.strerror}")
-    if status == INTERRUPTED and signals:
-        status = 128 + signals[0]  # as shells say that a signal ended it: 143 for SIGTERM
-    elif status == INTERRUPTED:
+    with terminated_like_interrupted() as signals:
+        status, why = _run()
+    if why:
+        print(f"crazybilliards: {why}", file=sys.stderr)
+    if status == INTERRUPTED and not signals:
         # Python then ends by the signal itself. After an exit status a loop of a shell goes on.
         sys.excepthook = lambda *_: None
         raise KeyboardInterrupt
-    sys.exit(status)
+    sys.exit(128 + signals[0] if status == INTERRUPTED else status)  # 143 for SIGTERM
 
 
-def _run() -> int | None:
+def _run() -> tuple[int, str]:
     try:
-        status = app(standalone_mode=False)
-        if status == INTERRUPTED:
-            print("crazybilliards: interrupted", file=sys.stderr)
+        status = app(standalone_mode=False) or 0
+    except (KeyboardInterrupt, typer.Abort):
+        status = INTERRUPTED
     except typer.TyperException as error:
-        status = _complain(explained(error))
-    except ValueError as error:
-        status = _complain(str(error))
+        return 2, f"error: {error.format_message()}"
     except OSError as error:
-        status = _complain(f"{error.filename or 'file'}: {error.strerror or error}")
-    return status
-
-
-def _complain(message: str) -> int:
-    message = " ".join(message.split())
-    if len(message) > _LONGEST:  # it quotes an argument without end
-        message = f"{message[:_LONGEST]} ..."
-    print(f"crazybilliards: error: {message}", file=sys.stderr)
-    return 2
+        return 2, f"error: {error.filename or 'file'}: {error.strerror or error}"
+    except ValueError as error:
+        return 2, f"error: {' '.join(str(error).split())[:400]}"
+    return status, "interrupted" if status == INTERRUPTED else ""

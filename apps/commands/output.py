@@ -1,91 +1,65 @@
-"""What the commands share: reading lists, folders, figures, and the exit status."""
+"""What the commands share: folders, figures, tables, and how they end."""
 
 from __future__ import annotations
 
+import json
+import math
 import os
 import sys
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any
 
 import typer
-
-from crazybilliards.apps.commands.answers import note, say, wrote
-from crazybilliards.model.checks import shown
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
 INTERRUPTED = 130
-
-Number = TypeVar("Number", int, float)
-Result = TypeVar("Result", "xr.Dataset", "xr.DataTree")
-
-
-def numbers(name: str, text: str, kind: Callable[[str], Number]) -> list[Number]:
-    """Read numbers separated by commas."""
-    try:
-        return [kind(part) for part in text.split(",")]
-    except ValueError:
-        raise ValueError(f"{name} takes numbers separated by commas, got {shown(text)}") from None
+_STATUS = {"completed": 0, "interrupted": INTERRUPTED, "diverged": 1}
 
 
 @contextmanager
-def writing_to(output: Path | None, *, file: bool = False) -> Iterator[None]:
-    """Hold what a command writes to, a folder or a file, against other processes meanwhile.
-
-    Raises a ValueError before any work if ``output`` cannot become or is not a folder, or a file;
-    an OSError if another process holds it, or nothing can be written there.
-    """
+def writing_to(output: Path | None) -> Iterator[None]:
+    """Hold a folder, which is made, against other processes; refuse it before any work."""
     if output is None:
         yield
         return
     from crazybilliards.model.locks import locked
     from crazybilliards.model.storage import make_folder
 
-    folder = output.parent if file else output
-    check_folder(folder)
-    if file and output.is_dir():
-        raise ValueError(f"output must be a file, but {output} is a folder")
-    made = [each for each in (folder, *folder.parents) if not each.exists()]
-    make_folder(folder)
-    try:
-        with locked(output):
-            yield
-    finally:
-        for each in made:  # a folder in which nothing was written
-            with suppress(OSError):
-                each.rmdir()
-
-
-def check_folder(path: Path) -> None:
-    """Raise, before any work, if ``path`` cannot become or is not a folder to write to."""
-    found = next(each for each in (path, *path.absolute().parents) if os.path.lexists(each))
-    if path.suffix == ".nc" and not path.exists():
-        raise ValueError(f"output must be a folder, got {path}; only simulate takes a file FILE.nc")
+    found = next(each for each in (output, *output.absolute().parents) if os.path.lexists(each))
     if not found.is_dir():
-        kind = "a file" if found.exists() else "a link that leads nowhere"
-        raise ValueError(f"output must be a folder, but {found} is {kind}")
+        raise ValueError(f"output must be a folder, but {found} is none")
     if not os.access(found, os.W_OK | os.X_OK):
         raise ValueError(f"output: no permission to write to {found}")
+    make_folder(output)
+    with locked(output):
+        yield
 
 
-def result_file(output: Path, name: str) -> Path:
-    """Return ``output`` if it is FILE.nc, or the file ``name`` in it if it is a folder."""
-    if output.is_dir():
-        return output / name
-    if output.suffix[1:2].isalpha() and output.suffix != ".nc":  # a folder may be called e0.9
-        raise ValueError(f"output must be a folder or a file whose name ends in .nc, got {output}")
-    return output if output.suffix == ".nc" else output / name
+def keep(
+    result: xr.Dataset | xr.DataTree,
+    output: Path | None,
+    name: str,
+    drawings: Mapping[str, Callable[[], Figure]] | None = None,
+) -> list[str]:
+    """Write NAME.nc, then pictures, into a folder, if there is one; return their names."""
+    if output is None:
+        return []
+    from crazybilliards.model import save
+
+    status = result.attrs["status"]
+    suffix = "" if status == "completed" else f"-{status}"
+    written = [str(save(result, output / f"{name}{suffix}.nc"))]
+    for picture, draw in (drawings or {}).items():
+        written.append(_write_figure(draw, output / f"{picture}{suffix}.png"))
+    return written
 
 
-def write_figures(folder: Path, suffix: str, drawings: Mapping[str, Callable[[], Figure]]) -> None:
-    """Draw pictures and write each, none of them half, before the next one is drawn.
-
-    Ctrl-C then costs no picture that was drawn.
-    """
+def _write_figure(draw: Callable[[], Figure], path: Path) -> str:
     from io import BytesIO
 
     import matplotlib
@@ -94,56 +68,74 @@ def write_figures(folder: Path, suffix: str, drawings: Mapping[str, Callable[[],
     import matplotlib.pyplot as plt
 
     from crazybilliards.comparison.layout import house_style
-    from crazybilliards.model.progress import waiting_for
     from crazybilliards.model.storage import write_atomically
 
-    for number, (name, draw) in enumerate(drawings.items(), start=1):
-        path, picture = folder / f"{name}{suffix}.png", BytesIO()
-        with waiting_for(f"drawing {path.name}, {number} of {len(drawings)}"), house_style():
-            figure = draw()
-            figure.savefig(picture, format="png")
-            plt.close(figure)
-        write_atomically(path, picture.getvalue())
-        wrote(path)
+    picture = BytesIO()
+    with house_style():
+        figure = draw()
+        figure.savefig(picture, format="png")
+        plt.close(figure)
+    write_atomically(path, picture.getvalue())
+    return str(path)
 
 
-def complain_of_divergence(run: xr.Dataset) -> None:
-    """Say on standard error that a simulation has no steady state."""
-    from crazybilliards.model import chain_of
+def table(rows: Sequence[Mapping[str, Any]], columns: Mapping[str, str]) -> str:
+    """Return rows as a table, ``{name: heading}``; NAME_error stands beside NAME, "-" for NaN."""
+    import pandas as pd
 
-    chain, end = chain_of(run), run.attrs["end_time"]
-    when = f"at t = {end:g} T" if end else "before anything was measured"
-    print(
-        f"crazybilliards: L = {chain.size}, e = {chain.restitution:g}: the simulation diverged "
-        f"{when}. Collisions bring in more energy than the damping takes out.",
-        file=sys.stderr,
-    )
+    shown = [{head: _cell(row, name) for name, head in columns.items()} for row in rows]
+    return str(pd.DataFrame(shown).to_string(index=False))
 
 
-def conclude(
-    output: Path | None,
-    result: Result,
-    write: Callable[[Result, Path, str], None],
-    show: Callable[[Result], None],
-    kept: str = "FOLDER keeps the figures and the data",
+def _cell(row: Mapping[str, Any], name: str) -> str:
+    value, error = row.get(name), row.get(f"{name}_error", math.nan)
+    if value is None or value != value:
+        return "-"
+    if isinstance(value, str):
+        return value
+    return f"{value:.4g}" + ("" if math.isnan(error) else f" +- {error:.1g}")
+
+
+def rods_table(result: xr.Dataset) -> str:
+    """Return widths and displacements of some rods, with their standard errors if there are any."""
+    from crazybilliards.model.vocabulary import unit_of
+
+    symbols = {"velocity_width": "W_v", "mean_displacement": "<dx>", "displacement_width": "W_x"}
+    columns = {
+        name: f"{symbol} [{unit_of(result[name])}]"
+        for name, symbol in symbols.items()
+        if name in result
+    }
+    L = result.sizes["particle"]
+    kept = [each for name in columns for each in (name, f"{name}_error") if each in result]
+    rows = [
+        {name: result[name][i - 1].item() for name in ("particle", *kept)}
+        for i in sorted({1, 2, L // 10, L // 4, L // 2} & {*range(1, L + 1)})
+    ]
+    return table(rows, {"particle": "particle"} | columns)
+
+
+def end(
+    facts: Mapping[str, Any], as_json: bool, *text: str, status: str = "completed", why: str = ""
 ) -> None:
-    """Write what was computed, show it, and end the command with the status that tells a shell.
+    """Print the text or, as JSON, the facts; end the command with the status for a shell."""
+    print(json.dumps(_plain(facts), indent=1) if as_json else "\n".join(filter(None, text)))
+    if why:
+        print(f"crazybilliards: {why}", file=sys.stderr)
+    if _STATUS[status]:
+        raise typer.Exit(_STATUS[status])
 
-    ``write(result, output, suffix)`` is called if there is an ``output``, which else would be
-    ``kept``; the suffix of names is ``-interrupted`` or ``-diverged`` unless the run was completed.
-    ``show(result)`` is called even if nothing can be written any more, because it then prints all
-    there is.
-    """
-    status = result.attrs["status"]
-    note(status=status)
-    try:
-        if output is not None:
-            write(result, output, "" if status == "completed" else f"-{status}")
-    finally:
-        show(result)
-    if output is None:
-        say(f"Nothing was written; --output {kept}.")
-    if status == "interrupted":
-        raise typer.Exit(INTERRUPTED)
-    if status != "completed":
-        raise typer.Exit(1)
+
+def written_lines(written: Sequence[str]) -> str:
+    """Return a line for each file that was written, or how to have them."""
+    return "\n".join(map("wrote {}".format, written)) or "Nothing was written; --output FOLDER does."
+
+
+def _plain(value: Any) -> Any:
+    """Return what JSON can hold; it has no number that is not finite."""
+    if isinstance(value, Mapping):
+        return {str(key): _plain(each) for key, each in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(each) for each in value]
+    value = value.item() if hasattr(value, "item") else value  # of numpy
+    return None if isinstance(value, float) and not math.isfinite(value) else value

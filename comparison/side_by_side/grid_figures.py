@@ -271,3 +271,11 @@ def draw_profile(theory: xr.Dataset, name: str) -> Figure:
     axes[0].legend()
     fade(drawn)
     return figure
+
+
+def draw_density_alone(theory: xr.Dataset, name: str) -> Figure:
+    """Draw the density of a theory alone, called ``name`` in the legend."""
+    figure, [ax] = panels(1, 1, wanted=1)
+    overlay({name: theory}, ax=ax).legend(loc="lower center")
+    fade([(ax, ax.lines[0], stated_error(theory, "density"))])
+    return figure
