@@ -13,8 +13,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from concurrent.futures import Executor
-from contextlib import AbstractContextManager, ExitStack, nullcontext
+from contextlib import ExitStack
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -23,8 +22,7 @@ from numpy.typing import ArrayLike
 
 from crazybilliards.comparison.fits import fit_arctanh
 from crazybilliards.comparison.stationary_theories import THEORIES
-from crazybilliards.comparison.sweeps import Case, process_pool
-from crazybilliards.comparison.sweeps.running import compute_missing, warn_of_short_runs
+from crazybilliards.comparison.sweeps import Case, process_pool, run_cases
 from crazybilliards.kinetic import equilibrium, force_balance, rod_by_rod
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain, chain_of
@@ -176,35 +174,32 @@ def _computed(
 ) -> tuple[dict[str, dict[str, xr.Dataset]], str]:
     """Compute the cases; return their results by name and key, and the status of all of them."""
     threads = check_integer("threads", cores() if threads is None else threads, least=1)
-    if processes is not None:
-        check_integer("processes", processes, least=1)
     every = [case for found in cases.values() for case in found.values()]
-    warn_of_short_runs([found[SIMULATION].too_short for found in cases.values()])
     with ExitStack() as stack:
         place = stack.enter_context(TemporaryDirectory()) if folder is None else folder
         place = check_path("folder", place)
-        workers: AbstractContextManager[Executor | None] = nullcontext()
-        if processes is not None:
-            workers = process_pool(min(processes, len(every)))
-        if not all(case.file(place).exists() for case in every):
-            with announced(progress):
-                simulated = [found[SIMULATION] for found in cases.values()]
-                compile_kernels(make_run(case.chain, **case.settings) for case in simulated)
-        outcome = compute_missing(every, place, workers, threads=threads, progress=progress)
-        if isinstance(outcome.stopped, RuntimeError):
-            raise outcome.stopped
+        pool = None if processes is None else stack.enter_context(process_pool(processes))
+        status, failed = "completed", {}
+        with announced(progress):
+            simulated = [found[SIMULATION] for found in cases.values()]
+            compile_kernels(make_run(case.chain, **case.settings) for case in simulated)
+        try:
+            failed = run_cases(every, place, pool, threads=threads, progress=progress)
+        except KeyboardInterrupt:
+            status = "interrupted"
         results = {name: _read(found, place) for name, found in cases.items()}
-    for case, reason in outcome.failed.items():
+    for case, reason in failed.items():
         if case.job not in THEORIES:
             raise ValueError(reason)
         _warn_of_no_theory(case.chain, case.job, reason.removeprefix("ValueError: "))
     results = {name: found for name, found in results.items() if SIMULATION in found}
     if not results:
         raise KeyboardInterrupt
-    if outcome.stopped is not None:
-        return results, "interrupted"
-    diverged = any(each[SIMULATION].attrs["status"] == "diverged" for each in results.values())
-    return results, "diverged" if diverged else "completed"
+    if status == "completed" and any(
+        each[SIMULATION].attrs["status"] == "diverged" for each in results.values()
+    ):
+        status = "diverged"
+    return results, status
 
 
 def _warn_of_no_theory(chain: Chain, job: str, reason: str) -> None:
@@ -219,7 +214,6 @@ def _read(cases: Mapping[str, Case], folder: Path) -> dict[str, xr.Dataset]:
             results[key] = case.load(folder)
         except (FileNotFoundError, ValueError):
             continue
-        del results[key].attrs["seconds"]  # the same call gives the same tree
     return results
 
 

@@ -11,33 +11,42 @@ computed it. A file of other parameters or of other source code does not count a
 from __future__ import annotations
 
 import hashlib
+import inspect
 import json
-import sys
-import time
 import warnings
-from collections.abc import Mapping
-from contextlib import nullcontext
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from functools import cache, cached_property
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray as xr
-from threadpoolctl import ThreadpoolController
+from threadpoolctl import threadpool_limits
 
-from crazybilliards.comparison.sweeps.jobs import JOBS
+from crazybilliards.comparison.stationary_theories import THEORIES
 from crazybilliards.kinetic.accuracy import UnmeasuredWarning
 from crazybilliards.model import Chain, load
 from crazybilliards.model.checks import check_arguments, check_choice
+from crazybilliards.model.fingerprint import room_fingerprint
 from crazybilliards.model.progress import silent
 from crazybilliards.model.storage import load_attributes, small_netcdf
-from crazybilliards.particles import ShortRunWarning
+from crazybilliards.particles import ShortRunWarning, simulate, simulate_limit
+from crazybilliards.particles.limit import limit_run
+from crazybilliards.particles.simulation import make_run
 
-
-class OutdatedError(ValueError):
-    """A file was computed by other source code than the current code."""
+JOBS: dict[str, Callable[..., xr.Dataset]] = {
+    "simulate": simulate,
+    "simulate_limit": simulate_limit,
+    **{name: theory.solve for name, theory in THEORIES.items()},
+}
+# Arguments that do not change the numbers, and arguments that are not plain values.
+_NO_SETTINGS = {"chain", "start", "threads", "checkpoint", "checkpoint_interval", "progress"}
+# Computed when this module is imported, together with that code: an edit during an interactive
+# session does not change it.
+_SOURCES = {
+    job: room_fingerprint("model", "kinetic" if job in THEORIES else "particles") for job in JOBS
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,11 +63,6 @@ class Case:
     settings
         Arguments of the job, plain values only; the others have their defaults.
 
-    Attributes
-    ----------
-    work
-        Number of particle steps, to put short cases first and to estimate the total time.
-
     Raises
     ------
     ValueError
@@ -74,14 +78,24 @@ class Case:
     job: str
     chain: Chain
     settings: Mapping[str, Any]
-    work: float = field(init=False)
 
     def __post_init__(self) -> None:
-        job = JOBS[check_choice("job", self.job, sorted(JOBS))]
-        check_arguments(self.job, self.settings, sorted(job.settings))
+        defaults = default_settings(check_choice("job", self.job, sorted(JOBS)))
+        check_arguments(self.job, self.settings, sorted(defaults))
         settings = {name: plain(name, value) for name, value in self.settings.items()}
-        object.__setattr__(self, "settings", {**_default_settings(self.job), **settings})
-        object.__setattr__(self, "work", job.work(self.chain, **self.settings))
+        object.__setattr__(self, "settings", {**defaults, **settings})
+        _ = self.too_short
+
+    @cached_property
+    def too_short(self) -> str:
+        """In what a simulation is too short for the memory of the chain, or nothing; checks all."""
+        if self.job == "simulate":
+            return make_run(self.chain, start=None, **self.settings).too_short
+        if self.job == "simulate_limit":
+            limit_run(self.chain, **self.settings)
+        else:
+            THEORIES[self.job].check(self.chain, **self.settings)
+        return ""
 
     @property
     def arguments(self) -> dict[str, Any]:
@@ -97,11 +111,8 @@ class Case:
     @property
     def title(self) -> str:
         """The job and what is not the default, but for the random numbers and the observers."""
-        changed = [
-            f"{name} {value}"
-            for name, value in self.changed.items()
-            if name not in ("job", "seed", "observe")
-        ]
+        hidden = {"job", "seed", "observe"}
+        changed = [f"{name} {value}" for name, value in self.changed.items() if name not in hidden]
         return f"{self.job}: {', '.join(changed) or 'defaults'}"
 
     @cached_property
@@ -111,19 +122,9 @@ class Case:
 
     @cached_property
     def _digest(self) -> str:
-        """Hash of the job and of the changed parameters."""
+        """Hash of the job and of the changed parameters: its name, and its random numbers."""
         text = json.dumps({"job": self.job, **self.changed}, sort_keys=True)
         return hashlib.sha256(text.encode()).hexdigest()
-
-    @property
-    def key(self) -> str:
-        """Name of the case, 20 hexadecimal digits: a hash of its job and changed parameters."""
-        return self._digest[:20]
-
-    @property
-    def own_seed(self) -> int:
-        """The seed of its random numbers, which follows from the same parameters as its key."""
-        return int(self._digest[20:35], 16)
 
     def __hash__(self) -> int:
         return hash(self.canonical)
@@ -131,98 +132,56 @@ class Case:
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Case) and self.canonical == other.canonical
 
-    @property
-    def too_short(self) -> str:
-        """In what a simulation is too short for the memory of the chain, or nothing."""
-        return JOBS[self.job].too_short(self.chain, **self.settings)
-
-    @property
-    def source(self) -> str:
-        """Fingerprint of the source code that its result depends on."""
-        return JOBS[self.job].source
-
     def file(self, folder: Path) -> Path:
         """Return the name of its file in ``folder``."""
-        return folder / f"{self.key}.nc"
+        return folder / f"{self._digest[:20]}.nc"
 
-    def check_file(self, folder: Path, *, keep_old: bool = False) -> None:
-        """Raise unless ``folder`` holds its result.
+    def is_in(self, folder: Path, *, keep_old: bool = False) -> bool:
+        """Return whether ``folder`` holds its result; ``keep_old``: also of other source code."""
+        try:
+            attributes = load_attributes(self.file(folder))
+        except (FileNotFoundError, ValueError):
+            return False
+        same = keep_old or attributes.get("source_fingerprint") == _SOURCES[self.job]
+        return same and stored_parameters(attributes) == self.arguments
 
-        ``keep_old`` accepts a result that other source code of the package computed.
-
-        Raises
-        ------
-        FileNotFoundError
-            If there is no file.
-        OutdatedError
-            If other source code of the package computed the file; it is a ValueError.
-        ValueError
-            If the file is damaged or holds another case.
-        """
-        path = self.file(folder)
-        self._check(path, load_attributes(path), keep_old)
-
-    def _check(self, path: Path, attributes: Mapping[Any, Any], keep_old: bool) -> None:
-        if stored_parameters(attributes) != self.arguments:
-            raise ValueError(f"{path}: not the case that its name says")
-        if not keep_old and attributes.get("source_fingerprint") != self.source:
-            raise OutdatedError(
-                f"{path}: computed by other source code of crazybilliards; compute it anew, or "
-                "take it as it is with keep_old=True"
-            )
-
-    def load(self, folder: Path, *, keep_old: bool = False) -> xr.Dataset:
-        """Read its result from ``folder``; arguments and errors are those of :meth:`check_file`."""
-        path = self.file(folder)
-        result = load(path)
-        self._check(path, result.attrs, keep_old)
+    def load(self, folder: Path) -> xr.Dataset:
+        """Read its result from ``folder``; raises as :func:`crazybilliards.model.load`."""
+        result = load(self.file(folder))
+        if stored_parameters(result.attrs) != self.arguments:
+            raise ValueError(f"{self.file(folder)}: not the case that its name says")
         assert isinstance(result, xr.Dataset)
         return result
 
 
-def compute(case: Case, source: str, threads: int = 1) -> bytes:
-    """Compute a case in a worker, and return its result as a NetCDF file.
+def compute(case: Case, source: str | None = None, threads: int = 1) -> bytes:
+    """Compute a case and return its result as a NetCDF file.
 
     ``source`` is the fingerprint of the sender's source code. A worker with other source code
-    refuses, because its result would count as one of the sender's code. A simulation uses
-    ``threads``, on which no number depends.
+    refuses, because its result would count as one of the sender's code.
     """
-    if case.source != source:
-        raise ValueError(
-            f"the worker runs other source code of crazybilliards (version {_version()})"
-        )
-    begin = time.perf_counter()
-    own: dict[str, int] = {"seed": case.own_seed} if "seed" in case.settings else {}
-    own |= {"threads": threads} if case.job.startswith("simulate") else {}
+    if source not in (None, _SOURCES[case.job]):
+        raise ValueError("the worker runs other source code of crazybilliards")
+    how = dict(case.settings)
+    if "seed" in how:
+        how["seed"] = int(case._digest[20:35], 16)
+    if case.job not in THEORIES:
+        how |= {"threads": threads, "progress": False}
     # Linear algebra in threads sums in another order, and it would make other workers wait.
-    with _libraries().limit(limits=1), warnings.catch_warnings(), silent():
+    with threadpool_limits(1), warnings.catch_warnings(), silent():
         # The result states that its error is unknown; a line per process would not say of which.
         warnings.simplefilter("ignore", UnmeasuredWarning)
         warnings.simplefilter("ignore", ShortRunWarning)  # said of the whole sweep
-        result = JOBS[case.job].function(case.chain, **{**case.settings, **own})
+        result = JOBS[case.job](case.chain, **how)
     if result.attrs["status"] == "interrupted":
         raise KeyboardInterrupt
-    result.attrs |= {
-        "case": case.canonical,
-        "source_fingerprint": source,
-        "package_version": _version(),
-        "seconds": time.perf_counter() - begin,
-    }
-    # On a dask worker xarray would use a lock of the whole cluster; these bytes need no lock.
-    alone = sys.modules["dask"].config.set(scheduler="sync") if "dask" in sys.modules else None
-    with alone or nullcontext():
-        return small_netcdf(result)
+    result.attrs |= {"case": case.canonical, "source_fingerprint": _SOURCES[case.job]}
+    return small_netcdf(result)
 
 
-@cache
-def _libraries() -> ThreadpoolController:
-    """Find the linear-algebra libraries; the jobs, which are imported, have loaded all of them."""
-    return ThreadpoolController()
-
-
-@cache
-def _version() -> str:
-    return version("crazybilliards")
+def source_of(case: Case) -> str:
+    """Return the fingerprint of the source code that the result of a case depends on."""
+    return _SOURCES[case.job]
 
 
 def stored_parameters(attributes: Mapping[Any, Any]) -> dict[str, Any]:
@@ -233,21 +192,21 @@ def stored_parameters(attributes: Mapping[Any, Any]) -> dict[str, Any]:
     """
     try:
         stored = dict(json.loads(attributes["case"]))
-        defaults = _defaults(stored["job"])
+        return _defaults(stored["job"]) | stored
     except (KeyError, TypeError, ValueError):
         return {}
-    return defaults | stored if "size" in stored else {}  # every version has stored the size
+
+
+@cache
+def default_settings(job: str) -> dict[str, Any]:
+    """Return the arguments of a job that are settings, with their defaults."""
+    arguments = inspect.signature(JOBS[job]).parameters.items()
+    return _plain_all({k: each.default for k, each in arguments if k not in _NO_SETTINGS})
 
 
 @cache
 def _defaults(job: str) -> dict[str, Any]:
-    """Return the default parameters of a case."""
-    return {"job": job, **_plain_all(Chain().parameters()), **_default_settings(job)}
-
-
-@cache
-def _default_settings(job: str) -> dict[str, Any]:
-    return _plain_all(JOBS[job].settings)
+    return {"job": job, **_plain_all(Chain().parameters()), **default_settings(job)}
 
 
 def _plain_all(values: Mapping[str, Any]) -> dict[str, Any]:
