@@ -47,14 +47,10 @@ def _quota(group: Path) -> float:
 
 def end_with_parent() -> None:
     """End this process when the one that started it ends, even if that one was killed."""
-    from multiprocessing import parent_process  # here, because most commands start none
-
-    parent = parent_process()
-    if parent is None:
-        return
+    import psutil  # here, because most commands start no process
 
     def follow() -> None:
-        parent.join()
+        psutil.Process(os.getppid()).wait()
         os._exit(1)
 
     threading.Thread(target=follow, daemon=True).start()

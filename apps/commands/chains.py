@@ -243,8 +243,8 @@ def compare(
     }
     if min(map(len, values.values())) > 1:
         raise ValueError("give several values of amplitude or of restitution, not of both")
-    over = max(values, key=lambda name: (len(values[name]), name == "restitution" and restitution))
-    over = over if len(values[over]) > 1 else ("restitution" if restitution else "amplitude")
+    several = [name for name, each in values.items() if len(each) > 1]
+    [over] = several or ["amplitude" if restitution is None else "restitution"]
     chain = chain.replace(**{name: each[0] for name, each in values.items()})
     from crazybilliards.comparison.side_by_side import grid
     from crazybilliards.comparison.side_by_side import grid_figures as figures
@@ -349,5 +349,5 @@ def relax(
             written.append(str(write_film(tree, output / "relaxation.html")))
     found = relaxation.label_distances(tree)
     rows = [{"theory": key, "distance": distance} for key, distance in found.items()]
-    shown = table(rows, {"theory": "theory", "distance": "rms distance"}), written_lines(written)
+    shown = table(rows, {"theory": "theory", "distance": "rms distance, theory minus simulation"}), written_lines(written)
     end({"distances": rows, "written": written}, as_json, *shown, status=tree.attrs["status"])

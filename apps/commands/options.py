@@ -41,6 +41,7 @@ def with_chain_options(*without: str, **defaults: Any) -> Callable[[Any], Callab
 
         command.__annotations__.pop("chain")  # its class is not loaded yet
         _, *others = inspect.signature(command, eval_str=True).parameters.values()
+        others = [each.replace(kind=inspect.Parameter.KEYWORD_ONLY) for each in others]
         with_options.__signature__ = inspect.Signature(options + others)  # type: ignore[attr-defined]
         with_options.__annotations__ = {each.name: each.annotation for each in options + others}
         with_options.__doc__, with_options.__name__ = command.__doc__, command.__name__

@@ -7,7 +7,7 @@ import math
 import os
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -35,9 +35,15 @@ def writing_to(output: Path | None) -> Iterator[None]:
         raise ValueError(f"output must be a folder, but {found} is none")
     if not os.access(found, os.W_OK | os.X_OK):
         raise ValueError(f"output: no permission to write to {found}")
+    made = [each for each in (output, *output.absolute().parents) if not each.exists()]
     make_folder(output)
-    with locked(output):
-        yield
+    try:
+        with locked(output):
+            yield
+    finally:
+        for each in made:  # a folder in which nothing was written
+            with suppress(OSError):
+                each.rmdir()
 
 
 def keep(
