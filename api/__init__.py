@@ -31,9 +31,7 @@ def __getattr__(name: str) -> Any:
 
         return version("crazybilliards")
     if name not in _ROOM_OF:
-        from crazybilliards.model.public_names import missing
-
-        raise missing(__name__, name, __all__)
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return getattr(import_module(f"{__name__}.{_ROOM_OF[name]}"), name)
 
 

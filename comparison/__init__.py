@@ -3,6 +3,6 @@
 The public names are listed in ``__init__.pyi``. Each loads its module when it is first used.
 """
 
-from crazybilliards.model.public_names import hand_out
+import lazy_loader
 
-__getattr__, __dir__, __all__ = hand_out(__name__)
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

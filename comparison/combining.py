@@ -10,14 +10,12 @@ import numpy as np
 import xarray as xr
 
 from crazybilliards.model import chain_of
-from crazybilliards.model.calls import public
 from crazybilliards.model.checks import is_list, shown
 from crazybilliards.model.vocabulary import require
 
 _NO_RUN = "takes results of simulate: other error bars do not fall with the number of results"
 
 
-@public
 def combine(runs: Sequence[xr.Dataset] | xr.Dataset) -> xr.Dataset:
     """Return the mean of runs of one chain with other seeds, as one result.
 

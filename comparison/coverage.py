@@ -22,7 +22,6 @@ from scipy.ndimage import convolve1d
 
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.arrays import Array
-from crazybilliards.model.calls import public
 from crazybilliards.model.grid import deposit, position_grid, require_all_held, require_even
 from crazybilliards.model.vocabulary import require, result
 
@@ -31,7 +30,6 @@ _SMOOTHED = {"density", "density_block"}
 _ROUGH = 0.01  # of the rods, by which the sum of a density of one's own may be wrong
 
 
-@public
 def coverage_density(source: xr.Dataset) -> xr.Dataset:
     """First step of the paper: the fraction of each bin that rods cover, divided by 2R.
 
@@ -61,7 +59,6 @@ def coverage_density(source: xr.Dataset) -> xr.Dataset:
     return _covered(source, "coverage_density")
 
 
-@public
 def smooth(source: xr.Dataset) -> xr.Dataset:
     """Both steps of the paper: :func:`coverage_density`, then the running average over 2R.
 

@@ -13,7 +13,7 @@ from crazybilliards.comparison.coverage import require_same_smoothing, smooth
 from crazybilliards.comparison.widths import WidthDeviation, width_deviation
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.arrays import Array
-from crazybilliards.model.calls import public, warn_user
+from crazybilliards.model.warn import warn_user
 from crazybilliards.model.checks import check_real, shown
 from crazybilliards.model.grid import require_even
 from crazybilliards.model.vocabulary import require
@@ -47,7 +47,6 @@ class Deviation:
     rms_in_errors: float | None
 
 
-@public
 def deviation(
     result: xr.Dataset, reference: xr.Dataset, floor: float = 1e-3, *, raw: bool = False
 ) -> Deviation:

@@ -20,7 +20,6 @@ from crazybilliards.comparison.coverage import require_same_smoothing
 from crazybilliards.comparison.curves import Curve, axis_label, find_curve, is_of_one_rod
 from crazybilliards.comparison.layout import house_style, panels
 from crazybilliards.comparison.symbols import MOST_SYMBOLS, draw_measured
-from crazybilliards.model.calls import public
 from crazybilliards.model.checks import check_choice, check_path, got, shown
 from crazybilliards.model.storage import write_atomically
 
@@ -57,7 +56,6 @@ _LINES = _looks(
 )
 
 
-@public
 def overlay(
     results: Mapping[str, xr.Dataset],
     quantity: str = "density",

@@ -25,7 +25,6 @@ from crazybilliards.comparison.drawing import DIRECTIONS
 from crazybilliards.comparison.side_by_side.relaxation_figures import relaxation_animation
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.arrays import Array
-from crazybilliards.model.calls import public
 from crazybilliards.model.checks import check_path, check_real
 from crazybilliards.model.parameters import WALLS_AND_MASSES
 from crazybilliards.model.progress import progress_bar
@@ -40,7 +39,6 @@ _LOOK: Any = {"font.size": 12} | {f"axes.spines.{side}": False for side in ("lef
 _GREY = "#777777"
 
 
-@public
 class Player:
     """A film in HTML, which a notebook shows; ``html`` is the text."""
 
@@ -51,7 +49,6 @@ class Player:
         return self.html
 
 
-@public
 def film(
     run: xr.Dataset | xr.DataTree | Chain,
     path: str | os.PathLike[str] | None = None,

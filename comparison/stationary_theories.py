@@ -26,7 +26,6 @@ from crazybilliards.kinetic.kinetic_equation.stationary import check_phase_space
 from crazybilliards.kinetic.rods.places import are_resolved
 from crazybilliards.kinetic.statics.balance import check_force_balance, force_balance
 from crazybilliards.model import Chain
-from crazybilliards.model.calls import public
 from crazybilliards.model.checks import check_choice
 from crazybilliards.model.progress import silent, watched
 
@@ -102,7 +101,6 @@ _COLUMNS = (
 )
 
 
-@public
 def theories(chain: Chain) -> xr.Dataset:
     """List the theories of the steady state: which take a chain, their errors, what they cost.
 
@@ -152,7 +150,6 @@ def theories(chain: Chain) -> xr.Dataset:
     return table.assign_attrs(best=best)
 
 
-@public
 def best_theory(
     chain: Chain,
     quantity: str = "velocity_width",

@@ -21,7 +21,7 @@ from importlib.resources import files
 from typing import Any, NamedTuple
 
 from crazybilliards.model import Chain
-from crazybilliards.model.calls import warn_user
+from crazybilliards.model.warn import warn_user
 
 # Coordinates in the tables, in order. The density of shorter rods is less wrong, so that of the
 # largest s/R counts beyond it, too.

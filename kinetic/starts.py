@@ -21,7 +21,6 @@ from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.kinetic.statics.label_closure import fluid_reach, stationary
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.arrays import Array
-from crazybilliards.model.calls import public
 from crazybilliards.model.checks import check_real, refuse_units, shown
 from crazybilliards.model.grid import position_grid, thermal_reach
 from crazybilliards.model.parameters import WALLS_AND_MASSES
@@ -37,13 +36,11 @@ _CRYSTAL = (
 _NO_SIGN_CHANGE = -1  # status of a root that scipy did not look for; those below are failures
 
 
-@public
 def displaced(chain: Chain, shift: float) -> xr.Dataset:
     """Return the stationary state at restitution 1, moved by ``shift`` [R] as a whole."""
     return _stationary_image(chain, shift=check_real("shift", shift, signed=True))
 
 
-@public
 def compressed(chain: Chain, factor: float) -> xr.Dataset:
     """Return the stationary state at restitution 1, with y multiplied by ``factor`` > 0.
 

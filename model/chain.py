@@ -24,18 +24,16 @@ from __future__ import annotations
 import math
 from collections.abc import Collection
 from dataclasses import dataclass, fields, replace
-from typing import TYPE_CHECKING, Any, Self, SupportsIndex
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from crazybilliards.model import spring
-from crazybilliards.model.calls import missing_attribute, public
 from crazybilliards.model.checks import check_arguments, refuse_units, shown
-from crazybilliards.model.parameters import KNOWN, Parameters, Spring
+from crazybilliards.model.parameters import KNOWN, Parameters
 
 
-@public
 @dataclass(frozen=True, kw_only=True)
 class Chain(Parameters):
     """The checked parameters of one chain; the defaults are the paper's reference at e = 1.
@@ -78,28 +76,6 @@ class Chain(Parameters):
     >>> chain.replace(gap=0.5).anchors[:2]
     array([-11.25,  -8.75])
     """
-
-    if TYPE_CHECKING:  # a dataclass would ask for an int of Python as size
-
-        def __init__(
-            self,
-            *,
-            size: SupportsIndex = 100,
-            restitution: float = 1.0,
-            amplitude: float = 1.0,
-            damping: float = 1.0,
-            stiffness: float = 1.0,
-            gap: float = 0.0,
-            radius: float = 1.0,
-            mass: float = 4 * math.pi / 3,
-            spring: Spring = "linear",
-            box: float = 0.0,
-            wall_restitution: float = 1.0,
-            mass_ratio: float = 1.0,
-        ) -> None: ...
-
-    else:  # type checkers would take every attribute to be there
-        __getattr__ = missing_attribute
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -6,13 +6,11 @@ import math
 import os
 import re
 import reprlib
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable
 from difflib import get_close_matches
 from numbers import Integral, Real
 from pathlib import Path
 from typing import Any, TypeGuard
-
-from crazybilliards.model.words import NOTES, OWNERS, SYMBOLS, WORDS
 
 # Squares and ratios of parameters must neither overflow nor underflow.
 _SMALLEST, _LARGEST = 1e-60, 1e60
@@ -159,12 +157,10 @@ def meant(value: object, choices: Iterable[str]) -> str:
 
 
 def nearest(value: object, choices: Iterable[str]) -> str:
-    """Return the accepted name that a word stands for or that is spelled alike, or nothing."""
+    """Return the accepted name that is spelled alike, or nothing."""
     choices = tuple(choices)
     if not isinstance(value, str):
         return ""
-    if value in WORDS:
-        return next((name for name in WORDS[value] if name in choices), "")
     return "".join(get_close_matches(value, choices, 1))
 
 
@@ -172,30 +168,4 @@ def check_arguments(owner: str, given: Iterable[str], known: Iterable[str]) -> N
     """Raise a ValueError for the names of arguments that ``owner`` does not take."""
     known = tuple(known)
     if wrong := [name for name in given if name not in known]:
-        raise ValueError(f"{owner} takes any of {known}, got {with_meanings(wrong, known)}")
-
-
-def with_meanings(wrong: Sequence[str], known: Collection[str]) -> str:
-    """Return wrong names of arguments, each with what was meant."""
-    hints = [(shown(name), meant_argument(name, known)) for name in wrong]
-    if len(hints) == 1:
-        return "".join(hints[0])
-    return ", ".join(f"{name} ({hint[2:]})" if hint else name for name, hint in hints)
-
-
-def meant_argument(name: str, known: Collection[str]) -> str:
-    """Return the argument that was meant, by a symbol of the paper, a word or nearly, or nothing.
-
-    One that ``known`` lacks, because another function takes it, is named with this function.
-    """
-    if name in NOTES:
-        return f"; {NOTES[name]}"
-    if name in SYMBOLS:
-        argument = SYMBOLS[name]
-        here = "" if argument in known else f", an argument of {OWNERS[argument]}"
-        return f"; {argument} is {name} of the paper{here}"
-    near = meant(name, known) if name in WORDS or name not in OWNERS else ""
-    # Of words, only those for properties of a chain have one meaning wherever they are given.
-    other = [each for each in WORDS.get(name, ()) if OWNERS.get(each) == "Chain"]
-    argument = name if name in OWNERS else "".join(other)
-    return near or (f"; {argument} is an argument of {OWNERS[argument]}" if argument else "")
+        raise ValueError(f"{owner} takes any of {known}, got {shown(wrong[0])}{meant(wrong[0], known)}")

@@ -23,7 +23,6 @@ import numpy as np
 import xarray as xr
 from xarray.backends import ScipyDataStore
 
-from crazybilliards.model.calls import public
 from crazybilliards.model.checks import check_path
 from crazybilliards.model.process import interrupts_held_back
 
@@ -32,7 +31,6 @@ _MARK = b"\ncrazybilliards-1 sha256 "
 _TRAILER = len(_MARK) + 64 + 1  # hexadecimal digest and a newline
 
 
-@public
 def save(result: xr.Dataset | xr.DataTree, path: str | os.PathLike[str]) -> Path:
     """Write a result, or a tree of results, to a NetCDF file; return its path.
 
@@ -54,7 +52,6 @@ def save(result: xr.Dataset | xr.DataTree, path: str | os.PathLike[str]) -> Path
 
 
 # A Ctrl-C would be lost in __del__ of a file, or become another error in what h5py calls.
-@public
 @interrupts_held_back()
 def load(path: str | os.PathLike[str]) -> xr.Dataset | xr.DataTree:
     """Read a result that :func:`save` wrote, all of it into memory.

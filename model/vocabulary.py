@@ -18,7 +18,6 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from crazybilliards.model.calls import public
 from crazybilliards.model.chain import Chain
 from crazybilliards.model.checks import meant, shown
 
@@ -238,7 +237,6 @@ def _require_all_rods(chain: Chain, label: ArrayLike) -> None:
         )
 
 
-@public
 def chain_of(dataset: xr.Dataset) -> Chain:
     """Return the chain a result was computed for, read from its provenance."""
     try:

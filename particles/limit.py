@@ -31,7 +31,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from crazybilliards.model import Chain
-from crazybilliards.model.calls import public, warn_user
+from crazybilliards.model.warn import warn_user
 from crazybilliards.model.checks import check_integer, check_path, check_real
 from crazybilliards.model.process import announced, cores, interrupts_noted
 from crazybilliards.model.randomness import Seed, seed_of
@@ -98,7 +98,6 @@ class LimitRun(Run):
         return (error / width) ** 2 <= max(wanted**2 - bias**2, wanted**2 / 4)
 
 
-@public
 def simulate_limit(
     chain: Chain,
     *,

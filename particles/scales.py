@@ -18,7 +18,6 @@ import numpy as np
 
 from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array
-from crazybilliards.model.calls import public
 from crazybilliards.model.parameters import WALLS_AND_MASSES
 from crazybilliards.particles.laws.closed_contacts import CRITICAL_RESTITUTION
 
@@ -167,7 +166,6 @@ def _noise_error(e: float, ratio: float, method: str, corrected: bool) -> float:
     return max(_REBOUNDS * abs(1 - e) * ratio**1.5, _LONG * ratio**4)
 
 
-@public
 def relaxation_time(chain: Chain) -> float:
     """Time in which a chain forgets its start [T], but for a factor e.
 

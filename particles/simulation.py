@@ -12,7 +12,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from crazybilliards.model import Chain
-from crazybilliards.model.calls import public, warn_user
+from crazybilliards.model.warn import warn_user
 from crazybilliards.model.checks import check_integer, check_path, check_real
 from crazybilliards.model.grid import deposit
 from crazybilliards.model.process import announced, cores
@@ -35,7 +35,6 @@ class ShortRunWarning(UserWarning):
     """An average over time is too short for the memory of the chain."""
 
 
-@public
 def simulate(
     chain: Chain,
     *,

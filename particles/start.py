@@ -8,7 +8,6 @@ from numpy.typing import ArrayLike
 
 from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array, check_numbers
-from crazybilliards.model.calls import public
 from crazybilliards.model.checks import check_integer, shown
 from crazybilliards.model.memory import require_memory
 from crazybilliards.model.parameters import WALLS_AND_MASSES
@@ -20,7 +19,6 @@ knows: frozenset[str] = WALLS_AND_MASSES
 MOST_REPLICAS = 10**15  # more than any memory holds, and still exact as a float
 
 
-@public
 def given_start(
     chain: Chain, position: ArrayLike, velocity: ArrayLike = 0.0, *, replicas: int = 1
 ) -> xr.Dataset:

@@ -12,7 +12,6 @@ from scipy.optimize import curve_fit
 from crazybilliards.comparison.fits.fit import Fit, least_squares, root_mean_square
 from crazybilliards.model import chain_of
 from crazybilliards.model.arrays import Array
-from crazybilliards.model.calls import public
 from crazybilliards.model.vocabulary import require, require_all_particles
 
 _STEEPEST = -5.0  # of the exponents that are tried
@@ -20,7 +19,6 @@ _STARTS = ((-0.5, 0.0), (-0.5, 0.8), (-1.0, -5.0), (-0.1, 0.0))  # of nu and c
 _LEAST_RODS = 5
 
 
-@public
 def fit_arctanh(source: xr.Dataset) -> Fit:
     """Fit <dx>(x) = B arctanh(C x) to the mean displacements at the mean positions.
 
@@ -82,7 +80,6 @@ def _arctanh(x: Array, scale: float, steepness: float) -> Array:
     return scale * np.arctanh(steepness * x)
 
 
-@public
 def fit_border_power_law(
     source: xr.Dataset, *, shifted: bool = True, weighted: bool = False
 ) -> Fit:

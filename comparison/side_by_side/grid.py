@@ -26,7 +26,7 @@ from crazybilliards.comparison.sweeps import Case, process_pool, run_cases
 from crazybilliards.kinetic import equilibrium, force_balance, rod_by_rod
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain, chain_of
-from crazybilliards.model.calls import public, warn_user
+from crazybilliards.model.warn import warn_user
 from crazybilliards.model.checks import as_written, check_integer, check_path, is_list, shown
 from crazybilliards.model.parameters import WALLS_AND_MASSES
 from crazybilliards.model.process import announced, cores
@@ -53,7 +53,6 @@ TITLES = (
 _REPLICAS = 2
 
 
-@public
 def compare(
     chain: Chain,
     over: Mapping[str, ArrayLike],

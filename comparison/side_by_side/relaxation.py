@@ -29,7 +29,6 @@ from crazybilliards.kinetic.fluids.one_mass import has_one_mass
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.kinetic.starts import gathered, wave
 from crazybilliards.model import Chain, chain_of
-from crazybilliards.model.calls import public
 from crazybilliards.model.checks import check_choice, check_integer, check_real
 from crazybilliards.model.parameters import WALLS_AND_MASSES
 from crazybilliards.model.progress import waiting_for
@@ -51,7 +50,6 @@ LEGEND = {
 }
 
 
-@public
 def compare_relaxation(
     chain: Chain,
     release: Release = "compressed",

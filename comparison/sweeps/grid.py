@@ -38,7 +38,7 @@ from crazybilliards.comparison.sweeps.case import (
     stored_parameters,
 )
 from crazybilliards.model import Chain, load
-from crazybilliards.model.calls import public, warn_user
+from crazybilliards.model.warn import warn_user
 from crazybilliards.model.checks import as_written, check_arguments, check_path, is_list, shown
 from crazybilliards.model.vocabulary import ATTRIBUTES, described
 
@@ -46,7 +46,6 @@ _CHAIN = [each.name for each in fields(Chain)]
 _TEXTS = ("status", "provenance", "file")  # are always variables
 
 
-@public
 @dataclass(frozen=True)
 class Sweep:
     """A grid of cases. Each case is made and checked when it is needed.
@@ -119,7 +118,6 @@ def read_sweep(path: str | os.PathLike[str]) -> Sweep:
     return Sweep(grid, job, chain, settings)
 
 
-@public
 def load_sweep(folder: str | os.PathLike[str]) -> xr.Dataset:
     """Read all cases of a folder into one Dataset over the parameters in which they differ.
 

@@ -17,7 +17,7 @@ from contextlib import contextmanager
 from loky import ProcessPoolExecutor, cpu_count
 
 from crazybilliards.comparison.sweeps.case import Case, compute, source_of
-from crazybilliards.model.calls import public, warn_user
+from crazybilliards.model.warn import warn_user
 from crazybilliards.model.checks import check_integer, check_path
 from crazybilliards.model.locks import locked
 from crazybilliards.model.process import end_with_parent
@@ -26,7 +26,6 @@ from crazybilliards.model.storage import make_folder, write_sealed
 from crazybilliards.particles import ShortRunWarning
 
 
-@public
 @contextmanager
 def process_pool(processes: int | None = None) -> Iterator[Executor]:
     """Run cases in processes of this machine, one for each core unless told otherwise.
@@ -54,7 +53,6 @@ def _prepare_worker() -> None:
     end_with_parent()
 
 
-@public
 def run_cases(
     cases: Iterable[Case],
     folder: str | os.PathLike[str],

@@ -51,7 +51,6 @@ from crazybilliards.kinetic.kinetic_equation.velocity_space import one_thread
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array
-from crazybilliards.model.calls import public
 from crazybilliards.model.progress import waiting_for
 
 _MOST_CELLS = 80  # of a mesh that is not asked for
@@ -65,7 +64,6 @@ _SIZES = 10, 1000
 _DAMPINGS = 0.14, 1.5  # gamma/sqrt(k m)
 
 
-@public
 def correlated_phase_space(
     chain: Chain, *, tolerance: float = 2e-3, cells: int | None = None
 ) -> xr.Dataset:

@@ -25,7 +25,6 @@ from crazybilliards.kinetic.exact.gibbs_measure import equilibrium
 from crazybilliards.kinetic.requirements import output_times, require_chain
 from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array
-from crazybilliards.model.calls import public
 from crazybilliards.model.checks import check_real
 from crazybilliards.model.memory import require_memory
 from crazybilliards.model.vocabulary import result
@@ -33,7 +32,6 @@ from crazybilliards.model.vocabulary import result
 _OUTPUTS = 100
 
 
-@public
 def breathing_cloud(
     chain: Chain,
     duration: float,

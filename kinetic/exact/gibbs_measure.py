@@ -36,7 +36,6 @@ from crazybilliards.kinetic.exact.between_walls import BoxRecursion, box_recursi
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array
-from crazybilliards.model.calls import public
 from crazybilliards.model.checks import check_integer
 from crazybilliards.model.grid import position_grid, require_resolved, thermal_reach
 from crazybilliards.model.memory import require_memory
@@ -51,7 +50,6 @@ _NODES_PER_WIDTH = 10
 _MOST_STATES = 10**15  # more than any memory holds, and still exact as a float
 
 
-@public
 def equilibrium(chain: Chain) -> xr.Dataset:
     """Exact stationary state of the elastic chain: any gap, both springs, also in a box.
 
@@ -123,7 +121,6 @@ def _in_vocabulary(chain: Chain, recursion: Recursion | BoxRecursion) -> xr.Data
     return dataset.assign_attrs(density_of=OF_RODS)
 
 
-@public
 def equilibrium_states(chain: Chain, replicas: int, seed: Seed = 0) -> xr.Dataset:
     """Draw ``replicas`` independent states of the elastic chain in its stationary state.
 

@@ -60,7 +60,7 @@ from crazybilliards.kinetic.statics.profiles import (
 )
 from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array
-from crazybilliards.model.calls import public, warn_user
+from crazybilliards.model.warn import warn_user
 from crazybilliards.model.checks import check_choice, check_integer, shown
 from crazybilliards.model.grid import position_grid
 from crazybilliards.model.memory import require_memory
@@ -75,7 +75,6 @@ _NO_FLUID = 0.1  # error of a wave that is told of
 _BYTES_PER_NODE = 100  # and output: the fields while they are computed, and in the result
 
 
-@public
 def hydrodynamics(
     chain: Chain,
     start: xr.Dataset | None = None,

@@ -36,7 +36,6 @@ from crazybilliards.kinetic.kinetic_equation.weak_form import Coefficients
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array
-from crazybilliards.model.calls import public
 from crazybilliards.model.progress import waiting_for
 
 _CELLS = 24
@@ -61,7 +60,6 @@ class CriticalValue(NamedTuple):
     error: float
 
 
-@public
 def critical_size(chain: Chain) -> CriticalValue:
     """Return the number of rods from which on a chain with e > 1 has no steady state.
 

@@ -45,7 +45,6 @@ from crazybilliards.kinetic.requirements import output_times, require_chain
 from crazybilliards.kinetic.starts import check_start
 from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array
-from crazybilliards.model.calls import public
 from crazybilliards.model.checks import check_integer, check_real
 from crazybilliards.model.memory import require_memory
 from crazybilliards.model.progress import progress_bar
@@ -65,7 +64,6 @@ _ENLARGED = 1.4
 _LIKE = 0.1  # share of the points that a start may have in other places than an equilibrium
 
 
-@public
 @one_thread
 def relax_phase_space(
     chain: Chain,

@@ -48,7 +48,6 @@ from crazybilliards.kinetic.rods.places import (
 )
 from crazybilliards.kinetic.rods.waves import displacement_widths
 from crazybilliards.model import Chain
-from crazybilliards.model.calls import public
 from crazybilliards.model.checks import check_integer
 from crazybilliards.model.progress import waiting_for
 
@@ -59,7 +58,6 @@ _SOLVED_DAMPINGS = 0.01, 25.0
 _LARGEST_SOLVED_LATTICE = 80.0
 
 
-@public
 def phase_space(
     chain: Chain,
     *,

@@ -15,7 +15,6 @@ from crazybilliards.kinetic.rods.profiles import over_positions
 from crazybilliards.kinetic.statics.label_closure import BY_LABELS
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.arrays import Array
-from crazybilliards.model.calls import public
 from crazybilliards.model.grid import require_all_held, require_even
 from crazybilliards.model.parameters import WALLS_AND_MASSES
 from crazybilliards.model.vocabulary import (
@@ -27,7 +26,6 @@ from crazybilliards.model.vocabulary import (
 )
 
 
-@public
 def rod_by_rod(theory: xr.Dataset) -> xr.Dataset:
     """Return a result with the density of the rods in place of that of a fluid.
 

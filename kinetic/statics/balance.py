@@ -53,12 +53,10 @@ from crazybilliards.kinetic.statics.profiles import (
 from crazybilliards.kinetic.statics.variable_temperature import solve_variable_temperature
 from crazybilliards.kinetic.statics.wright_closure import solve_wright_closure
 from crazybilliards.model import Chain
-from crazybilliards.model.calls import public
 from crazybilliards.model.parameters import WALLS_AND_MASSES
 from crazybilliards.model.vocabulary import OF_FLUID
 
 
-@public
 def force_balance(
     chain: Chain,
     displacement: Prescribed | None = None,

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from crazybilliards.model.calls import public
 from crazybilliards.model.checks import check_integer
 from crazybilliards.particles.observers.base import Array, Averaged, Integers, Snapshots, Variables
 from crazybilliards.particles.run import Run
@@ -12,7 +11,6 @@ from crazybilliards.particles.run import Run
 _MOST = 100_000
 
 
-@public
 class Covariances(Averaged):
     """Covariances of velocities and of gaps, over rods up to ``separations`` places apart.
 

@@ -7,7 +7,7 @@ from typing import Self
 
 import numpy as np
 
-from crazybilliards.model.calls import public, warn_user
+from crazybilliards.model.warn import warn_user
 from crazybilliards.model.checks import check_real
 from crazybilliards.model.grid import deposit, position_grid, thermal_reach
 from crazybilliards.particles.observers.base import Array, Averaged, Integers, Snapshots, Variables
@@ -32,7 +32,6 @@ def _reach(run: Run) -> float:
     return float(thermal + max(0.0, run.swing - 0.75 * thermal))
 
 
-@public
 class Density(Averaged):
     """Density of the rods' centres on the position grid, in hat weights, block by block.
 

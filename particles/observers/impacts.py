@@ -8,7 +8,6 @@ from typing import Self
 
 import numpy as np
 
-from crazybilliards.model.calls import public
 from crazybilliards.model.checks import check_integer
 from crazybilliards.model.parameters import WALLS_AND_MASSES
 from crazybilliards.particles.laws.avalanche import Tally
@@ -28,7 +27,6 @@ from crazybilliards.particles.run import Run
 from crazybilliards.particles.scales import typical_speed
 
 
-@public
 class Impacts(Averaged):
     """Force, loss, relative temperatures and speeds at each contact, from every single collision.
 

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from crazybilliards.model import Chain
-from crazybilliards.model.calls import public, warn_user
+from crazybilliards.model.warn import warn_user
 from crazybilliards.model.checks import check_integer, check_real
 from crazybilliards.model.kernels import kernel
 from crazybilliards.model.parameters import WALLS_AND_MASSES
@@ -50,7 +50,6 @@ def _add_pairs(sums, known, now, taken, last):  # type: ignore[no-untyped-def]
             sums[row, series] += 1
 
 
-@public
 class TimeCorrelations(Averaged):
     """Autocorrelations in time of every chosen rod, of long waves and of the centre of mass.
 

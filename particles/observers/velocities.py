@@ -7,7 +7,6 @@ from typing import Self
 
 import numpy as np
 
-from crazybilliards.model.calls import public
 from crazybilliards.model.checks import check_integer
 from crazybilliards.particles.observers.base import Array, Averaged, Integers, Snapshots, Variables
 from crazybilliards.particles.run import Run
@@ -33,7 +32,6 @@ _QUANTITIES = {
 }
 
 
-@public
 class Velocities(Averaged):
     """velocity_density: probability density of each chosen particle's velocity.
 

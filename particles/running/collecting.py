@@ -11,7 +11,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from crazybilliards.model.arrays import Array
-from crazybilliards.model.calls import warn_user
+from crazybilliards.model.warn import warn_user
 from crazybilliards.model.checks import shown
 from crazybilliards.model.parameters import WALLS_AND_MASSES
 from crazybilliards.model.vocabulary import VOCABULARY, result
