@@ -1,8 +1,7 @@
-"""The running process: its cores, its signals, and the announcement that it compiles."""
+"""The running process: its signals, and the announcement that it compiles."""
 
 from __future__ import annotations
 
-import math
 import os
 import signal
 import sys
@@ -10,39 +9,12 @@ import threading
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from contextvars import ContextVar
-from pathlib import Path
-
-from crazybilliards.model.control_groups import limiting_groups
 
 # The signals that ask a program to end. Windows has no SIGHUP.
 _ENDING = [
     getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)
 ]
 _to_announce: ContextVar[bool] = ContextVar("to_announce", default=False)
-
-
-def cores(root: Path = Path("/")) -> int:
-    """Return how many cores this process may use.
-
-    A container or a batch job may allow it a share of their time only, or Slurm fewer of them.
-    ``root`` is for tests.
-    """
-    affinity = getattr(os, "sched_getaffinity", None)
-    allowed: list[float] = [len(affinity(0)) if affinity else os.cpu_count() or 1]
-    allowed += [_quota(group) for group in limiting_groups(root)]
-    task = os.environ.get("SLURM_CPUS_PER_TASK", "")
-    if task.isdecimal():
-        allowed.append(int(task))
-    return max(math.ceil(min(allowed)), 1)
-
-
-def _quota(group: Path) -> float:
-    """Return how many cores a control group may use at a time; inf if there is no limit."""
-    try:
-        quota, period = (group / "cpu.max").read_text().split()
-        return int(quota) / int(period)
-    except (OSError, ValueError):  # the outermost group has none; "max" is no number
-        return math.inf
 
 
 def end_with_parent() -> None:

@@ -27,13 +27,14 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from loky import cpu_count
 import xarray as xr
 from numpy.typing import ArrayLike
 
 from crazybilliards.model import Chain
 from crazybilliards.model.warn import warn_user
 from crazybilliards.model.checks import check_integer, check_path, check_real
-from crazybilliards.model.process import announced, cores, interrupts_noted
+from crazybilliards.model.process import announced, interrupts_noted
 from crazybilliards.model.randomness import Seed, seed_of
 from crazybilliards.particles.laws.exact_flight import independent_rods
 from crazybilliards.particles.observers import Observer, find_observers
@@ -161,7 +162,7 @@ def simulate_limit(
     >>> bool(limit.central_velocity_width_error < 0.06 * limit.central_velocity_width)
     True
     """
-    threads = check_integer("threads", cores() if threads is None else threads, least=1)
+    threads = check_integer("threads", cpu_count() if threads is None else threads, least=1)
     interval = check_real("checkpoint_interval", checkpoint_interval)
     kept = None if checkpoint is None else check_path("checkpoint", checkpoint)
     run = limit_run(

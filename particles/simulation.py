@@ -8,6 +8,7 @@ from contextlib import nullcontext
 from typing import Any
 
 import numpy as np
+from loky import cpu_count
 import xarray as xr
 from numpy.typing import ArrayLike
 
@@ -15,7 +16,7 @@ from crazybilliards.model import Chain
 from crazybilliards.model.warn import warn_user
 from crazybilliards.model.checks import check_integer, check_path, check_real
 from crazybilliards.model.grid import deposit
-from crazybilliards.model.process import announced, cores
+from crazybilliards.model.process import announced
 from crazybilliards.model.randomness import Seed, seed_of
 from crazybilliards.particles.dynamics import Stepper, make_dynamics
 from crazybilliards.particles.laws.avalanche import make_tally
@@ -170,7 +171,7 @@ def simulate(
     seed = seed_of(seed)
     checkpoint_interval = check_real("checkpoint_interval", checkpoint_interval)
     kept = None if checkpoint is None else check_path("checkpoint", checkpoint)
-    threads = check_integer("threads", cores() if threads is None else threads, least=1)
+    threads = check_integer("threads", cpu_count() if threads is None else threads, least=1)
     run = make_run(
         chain,
         duration=duration,

@@ -18,6 +18,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import xarray as xr
+from loky import cpu_count
 from numpy.typing import ArrayLike
 
 from crazybilliards.comparison.fits import fit_arctanh
@@ -29,7 +30,7 @@ from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.warn import warn_user
 from crazybilliards.model.checks import as_written, check_integer, check_path, is_list, shown
 from crazybilliards.model.parameters import WALLS_AND_MASSES
-from crazybilliards.model.process import announced, cores
+from crazybilliards.model.process import announced
 from crazybilliards.model.progress import waiting_for
 from crazybilliards.model.randomness import Seed, seed_of
 from crazybilliards.particles.simulation import compile_kernels, make_run
@@ -172,7 +173,7 @@ def _computed(
     progress: bool,
 ) -> tuple[dict[str, dict[str, xr.Dataset]], str]:
     """Compute the cases; return their results by name and key, and the status of all of them."""
-    threads = check_integer("threads", cores() if threads is None else threads, least=1)
+    threads = check_integer("threads", cpu_count() if threads is None else threads, least=1)
     every = [case for found in cases.values() for case in found.values()]
     with ExitStack() as stack:
         place = stack.enter_context(TemporaryDirectory()) if folder is None else folder
