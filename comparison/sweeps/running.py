@@ -118,12 +118,15 @@ def _computed(
             except ValueError as error:
                 yield case, error
         return
-    under_way = {executor.submit(compute, case, source_of(case)): case for case in cases}
-    for future in as_completed(under_way):
-        error = future.exception()
-        if isinstance(error, BrokenProcessPool):
-            raise RuntimeError(
-                "a worker process died (out of memory?); finished cases are kept, and the same "
-                "call computes the rest"
-            ) from error
-        yield under_way[future], error if isinstance(error, Exception) else future.result()
+    try:
+        under_way = {executor.submit(compute, case, source_of(case)): case for case in cases}
+        for future in as_completed(under_way):
+            error = future.exception()
+            if isinstance(error, BrokenProcessPool):
+                raise error
+            yield under_way[future], error if isinstance(error, Exception) else future.result()
+    except BrokenProcessPool as error:
+        raise RuntimeError(
+            "a worker process died (out of memory?); finished cases are kept, and the same "
+            "call computes the rest"
+        ) from error
