@@ -110,7 +110,6 @@ Case("simulation", chain, {}) | job must be one of
 Case("simulate", chain, {"length": 3}) | simulate takes any of
 Case("simulate", chain, {"duration": -1}) | duration must be
 Case("simulate", chain, {"duration": {"a": 1}}) | plain value
-Case("simulate_limit", chain, {"accuracy": 2}) | accuracy must lie between
 cb.Sweep({"restitution": [0.3, 0.1 + 0.2]}) | grid: restitution holds 0.3 twice
 cb.Sweep({"restitution": np.eye(2)}) | grid: restitution must be a list of values, got array([[1.
 cb.Sweep({"restitution": {"a": 1}}) | grid: restitution must be a list of values, got {'a': 1}

@@ -31,13 +31,11 @@ from crazybilliards.model.checks import check_arguments, check_choice
 from crazybilliards.model.fingerprint import room_fingerprint
 from crazybilliards.model.progress import silent
 from crazybilliards.model.storage import load_attributes, small_netcdf
-from crazybilliards.particles import ShortRunWarning, simulate, simulate_limit
-from crazybilliards.particles.limit import limit_run
+from crazybilliards.particles import ShortRunWarning, simulate
 from crazybilliards.particles.simulation import make_run
 
 JOBS: dict[str, Callable[..., xr.Dataset]] = {
     "simulate": simulate,
-    "simulate_limit": simulate_limit,
     **{name: theory.solve for name, theory in THEORIES.items()},
 }
 # Arguments that do not change the numbers, and arguments that are not plain values.
@@ -56,7 +54,7 @@ class Case:
     Parameters
     ----------
     job
-        ``"simulate"``, ``"simulate_limit"`` or the name of a theory in
+        ``"simulate"``, or the name of a theory in
         :mod:`crazybilliards.comparison.stationary_theories`.
     chain
         The chain.
@@ -91,10 +89,7 @@ class Case:
         """In what a simulation is too short for the memory of the chain, or nothing; checks all."""
         if self.job == "simulate":
             return make_run(self.chain, start=None, **self.settings).too_short
-        if self.job == "simulate_limit":
-            limit_run(self.chain, **self.settings)
-        else:
-            THEORIES[self.job].check(self.chain, **self.settings)
+        THEORIES[self.job].check(self.chain, **self.settings)
         return ""
 
     @property

@@ -96,7 +96,6 @@ def test_every_number_about_a_result_has_a_meaning_and_a_unit():
     coarse = {"cells": 6, "tolerance": 0.1}
     settings = {
         "simulate": {"duration": 100},
-        "simulate_limit": {"accuracy": 0.05},
         "phase_space": coarse,
         "correlated_phase_space": coarse,
     }

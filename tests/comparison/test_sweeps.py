@@ -105,7 +105,7 @@ def test_key_and_seed_follow_from_what_is_not_the_default():
 
 
 def test_every_theory_is_a_job():
-    assert set(JOBS) == {"simulate", "simulate_limit", *THEORIES}
+    assert set(JOBS) == {"simulate", *THEORIES}
     for name, theory in THEORIES.items():
         assert Case(name, Chain(size=10), {}).key
         assert JOBS[name].function is theory.solve
