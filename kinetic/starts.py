@@ -131,8 +131,8 @@ class Start(NamedTuple):
 
     def positions(self, labels: Array) -> Array:
         """Return x where N(x) is ``labels``, which lie strictly inside (0, L)."""
-        known = np.maximum.accumulate(self.label(self.x))
-        cell = np.clip(np.searchsorted(known, labels, side="left") - 1, 0, self.x.size - 2)
+        counts = np.maximum.accumulate(self.label(self.x))
+        cell = np.clip(np.searchsorted(counts, labels, side="left") - 1, 0, self.x.size - 2)
         low, high = self.x[cell], self.x[cell + 1]
         find_root: Any = elementwise.find_root  # its stubs know no args
         root = find_root(lambda x, wanted: self.label(x) - wanted, (low, high), args=(labels,))

@@ -267,9 +267,9 @@ def _log_cumulative(phi: Array) -> Array:
 def _add_rod(x: Array, centres: Array, p: Array, density: Array, label: Array) -> None:
     """Add one rod's probabilities ``p`` at positions ``centres`` to density and label on x."""
     likely = np.flatnonzero(p > 1e-20 * np.max(p))
-    kept = slice(max(likely[0] - 2, 0), likely[-1] + 3)
-    positions = centres[kept]
-    curve = CubicSpline(positions, p[kept] / (positions[1] - positions[0]))
+    window = slice(max(likely[0] - 2, 0), likely[-1] + 3)
+    positions = centres[window]
+    curve = CubicSpline(positions, p[window] / (positions[1] - positions[0]))
     cumulative = curve.antiderivative()
     # Both ends belong to the rod: at a wall, where it may be on a node, its density is not 0.
     first, last = np.searchsorted(x, positions[0]), np.searchsorted(x, positions[-1], "right")

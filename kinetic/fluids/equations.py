@@ -60,12 +60,12 @@ from crazybilliards.kinetic.statics.profiles import (
 )
 from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array
-from crazybilliards.model.warn import warn_user
 from crazybilliards.model.checks import check_choice, check_integer, shown
 from crazybilliards.model.grid import position_grid
 from crazybilliards.model.memory import require_memory
 from crazybilliards.model.parameters import WALLS_AND_MASSES
 from crazybilliards.model.vocabulary import OF_FLUID, result
+from crazybilliards.model.warn import warn_user
 
 Frame = Literal["label", "eulerian"]
 Evolving = Literal["evolving"]
@@ -162,8 +162,8 @@ def hydrodynamics(
         cells = check_integer("cells", cells, least=8)
         if cells > MOST_CELLS:
             raise ValueError(f"cells must be at most {MOST_CELLS}, got {shown(cells)}")
-    known = read_start(chain, start)
-    nodes = position_grid(chain, float(np.abs(known.x).max())).size + chain.size
+    initial = read_start(chain, start)
+    nodes = position_grid(chain, float(np.abs(initial.x).max())).size + chain.size
     require_memory(f"every: {times.size} outputs", _BYTES_PER_NODE * float(nodes) * times.size)
     fluid, exchange = chain, 1.0
     if chain.mass_ratio != 1:
@@ -171,19 +171,19 @@ def hydrodynamics(
         exchange = chain.mean_mass * float((1 / chain.rod_masses).mean())
     how: Any = {"thermal": kind == "evolving", "exchange": exchange, "progress": progress}
     if frame == "label":
-        fields = solve_on_labels(fluid, known, times, cells, **how)
+        fields = solve_on_labels(fluid, initial, times, cells, **how)
     else:
-        fields = solve_on_positions(fluid, known, times, cells, variance, frozen, **how)
+        fields = solve_on_positions(fluid, initial, times, cells, variance, frozen, **how)
     method = {
         "frame": frame,
         "displacement": "prescribed" if frozen else "by labels",
         "velocity_variance": kind,
         "cells": fields.cells,
     }
-    found = _result(chain, fields, times, method)
+    result = _result(chain, fields, times, method)
     if has_one_mass(chain):
-        found.attrs["wave_model_error"] = _wave_error(chain, times[-1], kind)
-    return found
+        result.attrs["wave_model_error"] = _wave_error(chain, times[-1], kind)
+    return result
 
 
 def _wave_error(chain: Chain, duration: float, kind: str) -> float:

@@ -85,7 +85,7 @@ def solve_on_positions(
             break
     else:
         raise ValueError("the rods spread without end on the grid of positions")
-    unsteadiness = np.array([_unsteadiness(each, constants) for each in solution])
+    unsteadiness = np.array([_unsteadiness(state, constants) for state in solution])
     return _on_grid(chain, faces, solution, constants, unsteadiness)
 
 
@@ -202,11 +202,11 @@ def _fastest(fields: Array, constants: Constants) -> float:
     """Largest speed of a signal."""
     log_pressure, v, log_variance = primitive(fields, constants).T
     free = constants.dilute * np.exp(log_pressure - log_variance)
-    here = free > 1e-9 * free.max()
+    occupied = free > 1e-9 * free.max()
     sound = math.sqrt(3) if len(fields) == 3 else 1.0
     W = math.sqrt(constants.heat)
     speed = np.abs(v) + sound * W * np.exp(log_variance / 2) * (1 + constants.rod * free)
-    return float(speed[here].max())
+    return float(speed[occupied].max())
 
 
 def _unsteadiness(fields: Array, constants: Constants) -> float:
@@ -216,10 +216,10 @@ def _unsteadiness(fields: Array, constants: Constants) -> float:
     rates = eulerian_rate(fields, constants)
     # d(nV)/dt = n dV/dt + V dn/dt
     acceleration = (rates[1] - v * rates[0]) / n
-    here = n > 1e-9 * n.max()
-    share = fields[0][here] / fields[0][here].sum()
+    occupied = n > 1e-9 * n.max()
+    share = fields[0][occupied] / fields[0][occupied].sum()
     s = constants.size / constants.dilute
-    square = v[here] ** 2 / constants.heat + (acceleration[here] * s / constants.heat) ** 2
+    square = v[occupied] ** 2 / constants.heat + (acceleration[occupied] * s / constants.heat) ** 2
     return float(np.sqrt(share @ square))
 
 
@@ -231,18 +231,18 @@ def _on_grid(
     h, middle = faces[1] - faces[0], (faces[1:] + faces[:-1]) / 2
     farthest = float(faces[-1] - chain.anchors[-1])
     x = position_grid(chain, max(farthest, thermal_reach(chain)))
-    here = np.clip(x, faces[0], faces[-1])
+    within = np.clip(x, faces[0], faces[-1])
     density, label, velocity, variance = np.empty((4, len(solution), x.size))
     rods, rod_velocities = np.empty((2, len(solution), L))
     for i, fields in enumerate(solution):
         _, v, log_variance = primitive(fields, constants).T
         count = CubicSpline(faces, np.concatenate([[0.0], np.cumsum(fields[0]) * h]))
-        label[i] = count(here)
+        label[i] = count(within)
         # A spline through a shock may overshoot vacuum and close packing.
-        there = np.clip(count(here, 1), 0.0, (1 - 1e-9) * chain.close_packed_density)
-        density[i] = np.where(here == x, there, 0.0)
-        velocity[i] = np.interp(here, middle, v)
-        variance[i] = np.interp(here, middle, constants.heat * np.exp(log_variance))
+        reduced = np.clip(count(within, 1), 0.0, (1 - 1e-9) * chain.close_packed_density)
+        density[i] = np.where(within == x, reduced, 0.0)
+        velocity[i] = np.interp(within, middle, v)
+        variance[i] = np.interp(within, middle, constants.heat * np.exp(log_variance))
         rods[i] = np.interp(chain.rank + L / 2, np.maximum.accumulate(label[i]), x)
         rod_velocities[i] = np.interp(rods[i], x, velocity[i])
     fields = (density, label, velocity, variance, rods, rod_velocities)

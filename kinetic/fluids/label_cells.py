@@ -17,7 +17,7 @@ _FEWEST_CELLS, _FEWEST_IN_A_BOX, _MOST_CELLS = 100, 400, 4000
 _WEAKEST = 1e-8  # springs, K, that hold cells at their places
 
 
-class Cells(NamedTuple):
+class LabelCells(NamedTuple):
     """The cells of labels and their calibration by the stationary state."""
 
     labels: Array  # of the cells' middles, (M,); between walls the first and the last are images
@@ -28,7 +28,7 @@ class Cells(NamedTuple):
     weights: Array  # where a face lies between its two cells, (M - 1,)
 
 
-def make_cells(state: Stationary, exponent: int, number: int | None) -> Cells:
+def make_cells(state: Stationary, exponent: int, number: int | None) -> LabelCells:
     """Calibrate cells on the stationary state; ``number`` None: 0.045 s wide at the edges."""
     eta_faces = _faces(state, number)
     faces, log_density = state.profile(eta_faces)
@@ -49,7 +49,9 @@ def make_cells(state: Stationary, exponent: int, number: int | None) -> Cells:
         shares, density = np.pad(shares, 1, mode="edge"), pressure
         faces, eta_faces = bounds, np.concatenate([[-end], eta_faces, [end]])
     distance = np.diff(eta)
-    return Cells(labels, shares, faces, eta, density * distance, (eta_faces - eta[:-1]) / distance)
+    return LabelCells(
+        labels, shares, faces, eta, density * distance, (eta_faces - eta[:-1]) / distance
+    )
 
 
 def mirrored(values: Array, end: float) -> Array:

@@ -36,7 +36,7 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from crazybilliards.kinetic.fluids.finite_volumes import minmod
-from crazybilliards.kinetic.fluids.label_cells import Cells, make_cells, mirrored
+from crazybilliards.kinetic.fluids.label_cells import LabelCells, make_cells, mirrored
 from crazybilliards.kinetic.fluids.pde_solver import FlowFields, make_state, solve
 from crazybilliards.kinetic.starts import Start
 from crazybilliards.kinetic.statics.label_closure import Stationary, stationary
@@ -171,7 +171,7 @@ def solve_on_labels(
 
 
 def _starting_fields(
-    chain: Chain, cells: Cells, state: Stationary, start: Start, *, thermal: bool
+    chain: Chain, cells: LabelCells, state: Stationary, start: Start, *, thermal: bool
 ) -> dict[str, Array]:
     """Put a start on the cells.
 
@@ -212,7 +212,7 @@ def _starting_fields(
 
 
 def _on_positions(
-    chain: Chain, cells: Cells, state: Stationary, solution: Array, unsteadiness: Array
+    chain: Chain, cells: LabelCells, state: Stationary, solution: Array, unsteadiness: Array
 ) -> FlowFields:
     """Put the solution onto positions and particles, in the chain's units.
 
@@ -233,22 +233,22 @@ def _on_positions(
     labels, log_density = state.profile(nodes)
     rod_nodes = state.at(chain.rank / L)[0]
 
-    place = [_continued(rest, each, nodes) for each in moved]
+    place = [_continued(rest, y, nodes) for y in moved]
     position = [s * eta + 2 * R * L * labels for eta, _ in place]
-    farthest = max(float(np.abs(each[[0, -1]]).max()) for each in position) - chain.anchors[-1]
+    farthest = max(float(np.abs(y[[0, -1]]).max()) for y in position) - chain.anchors[-1]
     x = position_grid(chain, max(farthest, thermal_reach(chain)))
     density, label, velocity, variance = np.empty((4, len(solution), x.size))
     rods, rod_velocities = np.empty((2, len(solution), L))
-    for i, (known, (_, slope)) in enumerate(zip(position, place, strict=True)):
-        here = np.clip(x, known[0], known[-1])
-        log_reduced = PchipInterpolator(known, log_density - np.log(slope))(here)
-        reduced = np.where(x == here, L / s * np.exp(log_reduced), 0.0)
+    for i, (edges, (_, slope)) in enumerate(zip(position, place, strict=True)):
+        within = np.clip(x, edges[0], edges[-1])
+        log_reduced = PchipInterpolator(edges, log_density - np.log(slope))(within)
+        reduced = np.where(x == within, L / s * np.exp(log_reduced), 0.0)
         density[i] = reduced / (1 + 2 * R * reduced)
-        label[i] = L * (0.5 + PchipInterpolator(known, labels)(here))
-        label[i][x < known[0]], label[i][x > known[-1]] = 0.0, L
-        velocity[i] = W * np.interp(here, known, _continued(rest, flow[i], nodes)[0])
+        label[i] = L * (0.5 + PchipInterpolator(edges, labels)(within))
+        label[i][x < edges[0]], label[i][x > edges[-1]] = 0.0, L
+        velocity[i] = W * np.interp(within, edges, _continued(rest, flow[i], nodes)[0])
         inner = s * moved[i] + 2 * R * L * cells.faces
-        variance[i] = W**2 * np.interp(here, inner, theta[i])
+        variance[i] = W**2 * np.interp(within, inner, theta[i])
         rods[i] = s * _continued(rest, moved[i], rod_nodes)[0] + 2 * R * chain.rank
         rod_velocities[i] = W * _continued(rest, flow[i], rod_nodes)[0]
     fields = (density, label, velocity, variance, rods, rod_velocities)
@@ -266,11 +266,11 @@ def _refined(faces: Array, end: float) -> Array:
     return np.append(np.concatenate(fine), end)
 
 
-def _continued(known: Array, values: Array, wanted: Array) -> tuple[Array, Array]:
+def _continued(nodes: Array, values: Array, wanted: Array) -> tuple[Array, Array]:
     """Interpolate, linearly beyond the ends; return values and slopes."""
-    spline = PchipInterpolator(known, values)
-    inside = np.clip(wanted, known[0], known[-1])
-    slopes = np.diff(values)[[0, -1]] / np.diff(known)[[0, -1]]
-    slope = np.where(wanted < known[0], slopes[0], slopes[1])
+    spline = PchipInterpolator(nodes, values)
+    inside = np.clip(wanted, nodes[0], nodes[-1])
+    slopes = np.diff(values)[[0, -1]] / np.diff(nodes)[[0, -1]]
+    slope = np.where(wanted < nodes[0], slopes[0], slopes[1])
     slope = np.where(wanted == inside, spline(inside, 1), slope)
     return spline(inside) + (wanted - inside) * slope, slope

@@ -28,13 +28,13 @@ def make_faces(
     """Return the positions [R] of the cells' faces, beyond the farthest swing."""
     s, W, L = length_unit(chain), chain.free_velocity_width, chain.size
     density = start.label(start.x, 1)
-    there = density > _POPULATED * density.max()
+    populated = density > _POPULATED * density.max()
     label = start.label(start.x)
-    u = (start.x - (2 * chain.radius + chain.lattice_gap) * (label - L / 2))[there] / s
-    swing = float(np.hypot(u, start.velocity(start.x)[there] / W).max())
+    u = (start.x - (2 * chain.radius + chain.lattice_gap) * (label - L / 2))[populated] / s
+    swing = float(np.hypot(u, start.velocity(start.x)[populated] / W).max())
     half = (chain.radius + chain.lattice_gap / 2) * L / s + wider * max(_ROOM, swing + _MARGIN)
     half = min(half, chain.box / (2 * s) if chain.box else math.inf)
-    finest = _finest(chain, start, duration, there) / s
+    finest = _finest(chain, start, duration, populated) / s
     if number is None:
         number = min(math.ceil(2 * half / (_CELL * finest)), _MOST_BY_DEFAULT)
     enough = 2 * half / (_WIDEST_CELL * finest)
@@ -47,14 +47,14 @@ def make_faces(
     return s * np.linspace(-half, half, number + 1)
 
 
-def _finest(chain: Chain, start: Start, duration: float, there: NDArray[np.bool_]) -> float:
+def _finest(chain: Chain, start: Start, duration: float, populated: NDArray[np.bool_]) -> float:
     """Return the length that cells have to resolve [R].
 
     It is the thermal length, or less if the spring is so soft that the rods, or the waves that a
     steep place of the start sends out, are short against it.
     """
-    rods = float(np.ptp(start.x[there]))
-    density, slope = (np.abs(start.label(start.x[there], order)).max() for order in (1, 2))
+    rods = float(np.ptp(start.x[populated]))
+    density, slope = (np.abs(start.label(start.x[populated], order)).max() for order in (1, 2))
     steep = float(density / slope) if slope > 0 else math.inf
     waves = chain.free_velocity_width * duration
     return min(length_unit(chain), rods / 20, max(waves, steep, rods / 100))

@@ -79,18 +79,18 @@ def rod_by_rod(theory: xr.Dataset) -> xr.Dataset:
     x, times = theory.x.values, np.atleast_2d(theory.label.values).shape[0]
     at_times = [_at_one_time(chain, x, _slice(theory, k)) for k in range(times)]
     leading = theory.label.dims[:-1]
-    found = theory.copy()
+    result = theory.copy()
     for name, (along, _) in at_times[0].items():
-        values = np.array([each[name][1] for each in at_times])
+        values = np.array([moment[name][1] for moment in at_times])
         meaning = described(*VOCABULARY[name])
-        found[name] = ((*leading, along), values if leading else values[0], meaning)
-    mean = found.mean_displacement
+        result[name] = ((*leading, along), values if leading else values[0], meaning)
+    mean = result.mean_displacement
     position = described(*VOCABULARY["mean_position"])
-    found = found.assign_coords(
+    result = result.assign_coords(
         particle=("particle", np.arange(chain.size) + 1, described(*VOCABULARY["particle"])),
         mean_position=(mean.dims, mean.values + chain.anchors, position),
     )
-    return found.assign_attrs(density_of=OF_RODS, **_errors(theory, chain))
+    return result.assign_attrs(density_of=OF_RODS, **_errors(theory, chain))
 
 
 def _check(theory: xr.Dataset) -> Chain:
@@ -126,7 +126,7 @@ def _at_one_time(chain: Chain, x: Array, fluid: xr.Dataset) -> dict[str, tuple[s
     points = LabelledPoints(chain.size, y, n, below, below[-1] - below)
     rods = rods_of(chain, points, _temperature(chain, fluid))
     density, label = over_positions(chain, x, rods)
-    found = {
+    moments = {
         "density": ("x", density),
         "label": ("x", label),
         "mean_displacement": ("particle", rods.mean() - chain.reduced_anchors),
@@ -134,8 +134,8 @@ def _at_one_time(chain: Chain, x: Array, fluid: xr.Dataset) -> dict[str, tuple[s
     }
     if "flow_velocity" in fluid:
         velocity = rods.mean(np.interp(rods.places, y, fluid.flow_velocity.values))
-        found["mean_velocity"] = ("particle", velocity)
-    return found
+        moments["mean_velocity"] = ("particle", velocity)
+    return moments
 
 
 def _temperature(chain: Chain, fluid: xr.Dataset) -> float:

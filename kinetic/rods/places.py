@@ -74,10 +74,10 @@ class LabelledPoints:
     def __init__(self, size: int, y: Array, density: Array, below: Array, beyond: Array) -> None:
         """Read the points' density n and the numbers below and beyond each ascending y."""
         share = np.minimum(below, beyond) / size
-        kept = share > _FARTHEST
-        y, density = y[kept], density[kept]
+        occupied = share > _FARTHEST
+        y, density = y[occupied], density[occupied]
         # The smaller of the two numbers is more accurate.
-        score = np.where(below < beyond, 1, -1)[kept] * ndtri(share[kept])
+        score = np.where(below < beyond, 1, -1)[occupied] * ndtri(share[occupied])
         # From the middle outwards, so that both sides of a symmetric state are the same.
         middle = np.abs(score).argmin()
         new = _farther_out(score, middle) & _farther_out(y, middle)
@@ -120,11 +120,11 @@ def rods_of(chain: Chain, points: LabelledPoints, temperature: float) -> RodPlac
     # Beyond the last points, rods are moved as these are.
     inside = np.clip(score, *points.ends)
     places, slope = points.at(inside)
-    known = inside == score
+    inner = inside == score
     at_rest = rest.places.copy()
     for beyond, end in zip((score < inside, score > inside), points.ends, strict=True):
         at_rest[beyond] = _place_at_rest(cold, end)
-    stretch = np.where(known, slope / slope_at_rest, 1.0)
+    stretch = np.where(inner, slope / slope_at_rest, 1.0)
     return _mapped(rest, rest.places + (places - at_rest), stretch)
 
 

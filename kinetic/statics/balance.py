@@ -105,17 +105,17 @@ def force_balance(
     >>> round(theory.density.max().item(), 4)  # 0.5 is close packing
     0.4593
     """
-    chain, given, variance = check_force_balance(chain, displacement, velocity_variance)
-    if given is not None:
-        return solve_wright_closure(chain, given).assign_attrs(density_of=OF_FLUID)
+    chain, prescribed, variance = check_force_balance(chain, displacement, velocity_variance)
+    if prescribed is not None:
+        return solve_wright_closure(chain, prescribed).assign_attrs(density_of=OF_FLUID)
     if variance is not None:
-        found = solve_variable_temperature(chain, variance)
+        result = solve_variable_temperature(chain, variance)
     else:
-        found = solve_label_closure(chain)
+        result = solve_label_closure(chain)
     if velocity_variance is not None:  # measured for the free variance only
-        found.attrs |= Accuracy().named()
-    warn_if_unmeasured("the force balance", found.attrs["density_model_error"])
-    return found.assign_attrs(density_of=OF_FLUID)
+        result.attrs |= Accuracy().named()
+    warn_if_unmeasured("the force balance", result.attrs["density_model_error"])
+    return result.assign_attrs(density_of=OF_FLUID)
 
 
 def check_force_balance(
@@ -127,9 +127,9 @@ def check_force_balance(
 
     Return the elastic chain with this temperature, and the profiles <dx>(x) and W^2(x) if given.
     """
-    given = read_displacement(chain, displacement)
+    prescribed = read_displacement(chain, displacement)
     chain, variance = read_velocity_variance(chain, velocity_variance)
-    if given is not None and variance is not None:
+    if prescribed is not None and variance is not None:
         raise ValueError(
             "displacement and a profile of velocity_variance cannot be given together: leave out "
             "displacement, which then follows by labels, or give a number as velocity_variance"
@@ -142,14 +142,16 @@ def check_force_balance(
         knows=WALLS_AND_MASSES,
         remedy="; give velocity_variance for others",
     )
-    if given is not None and chain.box:
+    if prescribed is not None and chain.box:
         if chain.stiffness == 0:
             raise ValueError("displacement: without springs it has no effect; leave it out")
         end = chain.box / 2
-        given = given._replace(left=max(given.left, -end), right=min(given.right, end))
-    if given is not None and not given.left < 0 < given.right:
+        prescribed = prescribed._replace(
+            left=max(prescribed.left, -end), right=min(prescribed.right, end)
+        )
+    if prescribed is not None and not prescribed.left < 0 < prescribed.right:
         raise ValueError(
             "displacement must be given on both sides of x = 0, got the interval "
-            f"({given.left:g}, {given.right:g})"
+            f"({prescribed.left:g}, {prescribed.right:g})"
         )
-    return chain, given, variance
+    return chain, prescribed, variance

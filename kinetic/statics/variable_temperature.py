@@ -116,16 +116,16 @@ def _end(warmth: Warmth, crowd: float, lam: float) -> float:
 def _newton(basis: Basis, P: Array, warmth: Warmth, crowd: float, lam: float) -> Array:
     """Solve the discrete equations from a guess."""
     x = basis.global_coordinates()[0]
-    known = {"warmth": warmth(x), "crowd": crowd, "lam": lam}
+    fields = {"warmth": warmth(x), "crowd": crowd, "lam": lam}
     end = float(basis.mesh.p[0].max())
     outflow = basis.zeros()
     places = basis.doflocs[0]
     outflow[np.argmax(places)] = outflow[np.argmin(places)] = (crowd + lam) / 2 - end
     for _ in range(_MOST_STEPS):
         at_points = basis.interpolate(P)
-        right = outflow - _residual.assemble(basis, P=at_points, **known)
+        right = outflow - _residual.assemble(basis, P=at_points, **fields)
         try:
-            step = splu(_jacobian.assemble(basis, P=at_points, **known).tocsc()).solve(right)
+            step = splu(_jacobian.assemble(basis, P=at_points, **fields).tocsc()).solve(right)
         except RuntimeError as error:  # "exactly singular"
             raise ValueError(f"the force balance did not converge: {error}") from error
         alive = P.max() - _DEAD < P
@@ -189,20 +189,20 @@ def _assemble(
     count = CubicHermiteSpline(vertices, label / label[-1], share(vertices))
     farthest = s * vertices[-1] - float(chain.anchors[-1])
     x = position_grid(chain, farthest)
-    here = np.clip(x / s, vertices[0], vertices[-1])
-    labels = L * np.clip(count(here), 0.0, 1.0)
+    within = np.clip(x / s, vertices[0], vertices[-1])
+    labels = L * np.clip(count(within), 0.0, 1.0)
     displacement = x - (2 * chain.radius + chain.lattice_gap) * (labels - L / 2)
     # Displacements are computed by label: as differences of positions of many rods they would be
     # lost in rounding.
-    known, first = np.unique(label / label[-1] - 0.5, return_index=True)
-    at_vertices = vertices[first] - (crowd + chain.lattice_gap * L / s) * known
-    mean = s * PchipInterpolator(known, at_vertices)(chain.rank / L)
+    shares, first = np.unique(label / label[-1] - 0.5, return_index=True)
+    at_vertices = vertices[first] - (crowd + chain.lattice_gap * L / s) * shares
+    mean = s * PchipInterpolator(shares, at_vertices)(chain.rank / L)
     pressure = chain.temperature * L / s * np.exp(log_pressure(vertices[[0, -1]]))
     return result(
         chain,
         {
             **({"wall_force": ("wall", pressure)} if chain.box else {}),
-            "density": ("x", np.where(here == x / s, share(here), 0.0) * L / s),
+            "density": ("x", np.where(within == x / s, share(within), 0.0) * L / s),
             "label": ("x", labels),
             "displacement": ("x", displacement),
             "mean_displacement": ("particle", mean),
@@ -234,15 +234,15 @@ def _between_walls(chain: Chain, variance: Profile) -> xr.Dataset:
     log_p = brentq(lambda p: labels(p)[-1] - L, free.min() - 1, free.max() + 1, xtol=1e-13)
     p, label = np.exp(log_p), labels(log_p)
     grid = position_grid(chain)
-    here = np.clip(grid, -end, end)
-    hot = np.asarray(variance.function(here), dtype=float)
-    counted = L * np.clip(PchipInterpolator(x, label / label[-1])(here), 0.0, 1.0)
+    within = np.clip(grid, -end, end)
+    hot = np.asarray(variance.function(within), dtype=float)
+    counted = L * np.clip(PchipInterpolator(x, label / label[-1])(within), 0.0, 1.0)
     rods = np.interp(np.arange(L) + 0.5, L * label / label[-1], x)
     return result(
         chain,
         {
             "wall_force": ("wall", np.full(2, chain.mean_mass * p)),
-            "density": ("x", np.where(here == grid, p / (hot + 2 * R * p), 0.0)),
+            "density": ("x", np.where(within == grid, p / (hot + 2 * R * p), 0.0)),
             "label": ("x", counted),
             "displacement": ("x", grid - (2 * R + chain.lattice_gap) * (counted - L / 2)),
             "mean_displacement": ("particle", rods - chain.anchors),

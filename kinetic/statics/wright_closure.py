@@ -60,18 +60,18 @@ def solve_wright_closure(chain: Chain, profile: Profile) -> xr.Dataset:
         if high > 1e15:
             raise ValueError("displacement: no density of this profile adds up to the chain's rods")
     constant = brentq(excess, -700.0, high, xtol=1e-13, rtol=1e-14)
-    found = density(constant, at_edges)
-    ends = found[[0, -1]]
+    densities = density(constant, at_edges)
+    ends = densities[[0, -1]]
     for value, end, limit in zip(ends, edges[[0, -1]], (profile.left, profile.right), strict=True):
         if math.isinf(limit) and value > _NOTHING * chain.close_packed_density:
             raise ValueError(f"displacement does not hold the rods together at x = {end:g}")
 
     rods = ((half * density(constant, potential)) @ weights).cumsum()
-    farthest = float(np.abs(edges[found > _VACUUM * found.max()]).max() - chain.anchors[-1])
+    farthest = float(np.abs(edges[densities > _VACUUM * densities.max()]).max() - chain.anchors[-1])
     grid = position_grid(chain, max(farthest, fluid_reach(chain)))
-    here = np.clip(grid, edges[0], edges[-1])
+    within = np.clip(grid, edges[0], edges[-1])
     inside = (grid > profile.left) & (grid < profile.right)
-    values = density(constant, PchipInterpolator(edges, at_edges)(here))
+    values = density(constant, PchipInterpolator(edges, at_edges)(within))
     displacement = np.zeros(grid.size)  # beyond the profile
     displacement[inside] = profile.function(grid[inside])
     walls = {}
@@ -84,7 +84,7 @@ def solve_wright_closure(chain: Chain, profile: Profile) -> xr.Dataset:
         {
             **walls,
             "density": ("x", np.where(inside, values, 0.0)),
-            "label": ("x", np.interp(here, edges, np.append(0.0, rods))),
+            "label": ("x", np.interp(within, edges, np.append(0.0, rods))),
             "displacement": ("x", displacement),
         },
         coordinates={"x": grid},
