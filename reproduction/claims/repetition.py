@@ -45,7 +45,6 @@ class Runs:
     #: "full": (8, {"duration": 2e4})} say.
     granted: Granted
     settings: Mapping[str, Any]  #: which are the same at both qualities
-    job: str = "simulate"  #: or "simulate_limit" for the limit of a vanishing time step
 
     def at_step(self, step: float, granted: Granted) -> Runs:
         """Return runs of the same chain at a fixed time step."""
@@ -57,7 +56,7 @@ class Runs:
         number, own = self.granted[quality]
         return {
             f"{self.name}/{seed}": Case(
-                self.job, self.chain, {**own, **self.settings, "seed": seed}
+                "simulate", self.chain, {**own, **self.settings, "seed": seed}
             )
             for seed in range(number)
         }

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from crazybilliards.comparison.drawing import COLOURS, draw_points, draw_rods
 from crazybilliards.comparison.fits import fit_border_power_law
-from crazybilliards.comparison.layout import mosaic
+from crazybilliards.comparison.layout import panels
 from crazybilliards.reproduction.chains import (
     LARGE,
     STEPS,
@@ -32,14 +32,13 @@ from crazybilliards.reproduction.claims.verdicts import (
 )
 from crazybilliards.reproduction.power_laws import fits_in_plot, nu
 from crazybilliards.reproduction.predictions import CROSSES, PAIRS
-from crazybilliards.reproduction.vanishing_step import LABEL, common_bias, limit_estimate, limits
 
 TITLE = "Velocity widths at e = 0: power laws from both borders"
 CAPTION = (
     "(a) W_v against the rod's number, e = 0, at the default time step, with the fits a [(i - "
     "c)^nu + (L + 1 - c - i)^nu] to all rods; dotted, in (b) crosses: the kinetic equation with "
-    "pair correlations. (b) The exponent against the time step; the leftmost open symbol of each "
-    "size is the default step, the full one the limit. (c) W_v over its limit dt -> 0."
+    "pair correlations. (b) The exponent against the time step; the leftmost symbol of each size "
+    "is the default step."
 )
 
 _SIZES = (30, 100, 300, LARGE)
@@ -54,9 +53,9 @@ _OURS = "the sizes below 1000 and the time step"
 
 
 def cases(quality: Quality) -> Cases:
-    """E = 0, four sizes, four time steps and the limit; the theory with pair correlations."""
+    """E = 0, four sizes, four time steps; the theory with pair correlations."""
     theories = [correlated_equation(size, 0.0) for size in _SOLVED[quality]]
-    return all_of([*at_steps(_SIZES), *map(limits, _SIZES), *theories], quality)
+    return all_of([*at_steps(_SIZES), *theories], quality)
 
 
 def _predicted(results: Results) -> dict[int, xr.Dataset]:
@@ -147,16 +146,9 @@ def _weighted_nu(run: xr.Dataset) -> float:
 
 
 def draw(results: Results) -> Figure:
-    """Draw W_v(i) with its fits and over that of the limit, and nu against the time step."""
-    figure, axes = mosaic(
-        [["widths", "exponents"], ["ratio", "exponents"]],
-        height=4.0,
-        width_ratios=(1.4, 1),
-        height_ratios=(1.9, 1),
-    )
-    widths, ratio = axes["widths"], axes["ratio"]
-    ratio.sharex(widths)
-    widths.set(xscale="log", yscale="log", ylabel="velocity width $W_v/W$")
+    """Draw W_v(i) with its fits, and nu against the time step."""
+    figure, (widths, exponents) = panels(1, 2, height=3.2, width_ratios=(1.4, 1))
+    widths.set(xscale="log", yscale="log")
     for number, (size, runs) in enumerate(_RUNS.items()):
         run = runs.pooled(results)
         unit = runs.chain.free_velocity_width
@@ -165,31 +157,19 @@ def draw(results: Results) -> Figure:
         half = np.geomspace(1, size, 200)
         fit = fit_border_power_law(run)(half) / unit
         widths.plot(half, fit, color=COLOURS[number])
-        draw_rods(ratio, _over_limit(results, size), "velocity_width", label="", **look)
     widths.plot([], [], color="0.4", label="fit of two power laws")
     for size, theory in _predicted(results).items():
         unit, colour = _RUNS[size].chain.free_velocity_width, COLOURS[_SIZES.index(size)]
         widths.plot(theory.particle, theory.velocity_width / unit, ":", color=colour, zorder=4)
     widths.plot([], [], ":", color="0.4", label=_PAIRS)
     widths.legend(loc="lower left")
-    widths.tick_params(labelbottom=False)
-    ratio.axhline(1, color="0.4", linewidth=0.8)
-    ratio.set(xlabel="particle $i$", ylabel=f"$W_v$ over that of\n{LABEL}")
-    _draw_steps(axes["exponents"], results)
+    widths.set(xlabel="particle $i$", ylabel="velocity width $W_v/W$")
+    _draw_steps(exponents, results)
     return figure
 
 
-def _over_limit(results: Results, size: int) -> xr.Dataset:
-    """Return W_v(i) at the default step over that of the limits, whose bias is common to all."""
-    run, limit = (runs.pooled(results) for runs in (_RUNS[size], limits(size)))
-    ratio = run.velocity_width / limit.velocity_width
-    squares = sum((each[_ERROR] / each.velocity_width) ** 2 for each in (run, limit))
-    bias = common_bias(limits(size).members(results))
-    return run.assign({"velocity_width": ratio, _ERROR: ratio * np.sqrt(squares + bias**2)})
-
-
 def _draw_steps(ax: Axes, results: Results) -> None:
-    """Draw nu against the time step, the limit as full symbols at the left margin."""
+    """Draw nu against the time step, the theory's as crosses at the left margin."""
     theories = _predicted(results)
     first = 0.3 * min(chain_step(results, size) for size in _SIZES)
     for number, size in enumerate(_SIZES):
@@ -197,19 +177,15 @@ def _draw_steps(ax: Axes, results: Results) -> None:
         each = [exponent(results, size, step) for step in (None, *reversed(STEPS))]
         order = np.argsort(steps)
         values, errors = np.transpose(each)[:, order]
-        look: Any = {"number": number, "linewidth": 0.8}
-        draw_points(ax, np.array(steps)[order], values, errors, linestyle="-", **look)
-        at = first * 1.25 ** (number - 1.5)  # beside one another
-        limit = limit_estimate(results, size, nu)
-        draw_points(ax, at, *limit, markerfacecolor=COLOURS[number], **look)
+        look: Any = {"number": number, "linewidth": 0.8, "linestyle": "-"}
+        draw_points(ax, np.array(steps)[order], values, errors, **look)
         if size in theories:
+            at = first * 1.25 ** (number - 1.5)  # beside one another
             ax.plot(at, nu(theories[size]), **_CROSS | {"color": COLOURS[number]})
     ax.axhline(_PAPER, color="0.4", linestyle="--", label="paper")
-    ax.plot([], [], "o", color="0.4", markerfacecolor="none", label="at a time step")
-    ax.plot([], [], "o", color="0.4", label=LABEL)
     ax.plot([], [], **_CROSS | {"color": "0.4"}, label=_PAIRS)
     ax.legend(loc="upper right")
     ax.set(xscale="log", xlabel="time step $dt$ [T]", ylabel=r"exponent $\nu$")
-    ax.set_xticks([first, 1e-3, 1e-2], [r"$\to 0$", "$10^{-3}$", "$10^{-2}$"])
+    ax.set_xticks([first, 1e-3, 1e-2], ["theory", "$10^{-3}$", "$10^{-2}$"])
     ax.set_xticks([tenth * k for tenth in (1e-3, 1e-2) for k in range(2, 10)], minor=True)
     ax.set_xlim(0.5 * first, 4e-2)

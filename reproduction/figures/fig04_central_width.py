@@ -19,14 +19,13 @@ from crazybilliards.reproduction.claims.repetition import Granted, Runs
 from crazybilliards.reproduction.claims.study import Results, all_of
 from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, around
 from crazybilliards.reproduction.fits import fit_scaling
-from crazybilliards.reproduction.vanishing_step import LABEL, central_limit, limits
 
 TITLE = "The central width against the size at e = 0"
 CAPTION = (
     "Root mean square velocity of the middle tenth of the rods, e = 0. Grey line: a fit to the "
     "default time step, L = 10 to 1000. Dashed: the paper's exponent. (b) The ratio to the fit. "
-    "Full circles: the limit of a vanishing step. Longer chains than the paper's are at time steps "
-    "whose velocity kick is two thirds of the width at every size."
+    "Longer chains than the paper's are at time steps whose velocity kick is two thirds of the "
+    "width at every size."
 )
 
 _PAPER, _PRECISION = -0.38, 0.005  # "with exponent -0.38": half a unit of the last digit
@@ -53,7 +52,7 @@ _LONG = [
     )
     for size, granted in _GRANTED.items()
 ]
-cases = partial(all_of, [*at_steps(), *map(limits, SIZES), *_LONG])
+cases = partial(all_of, [*at_steps(), *_LONG])
 
 
 def _widths(results: Results, every: Iterable[Runs]) -> dict[int, Estimate]:
@@ -101,13 +100,10 @@ def draw(results: Results) -> Figure:
     series = {"default step": _widths(results, _at_step(None))}
     series |= {f"$dt = {step:g}$": _widths(results, _at_step(step)) for step in STEPS}
     series["kick 2/3 of $W_v$"] = _widths(results, _LONG)
-    series[LABEL] = {size: central_limit(results, size) for size in SIZES}
     for number, (label, widths) in enumerate(series.items()):
         sizes = np.array(list(widths))
         values, errors = np.array(list(widths.values())).T
         look: Any = {"number": number}
-        if label == LABEL:  # full, above the others
-            look |= {"marker": ".", "color": "black", "markerfacecolor": "black", "zorder": 4}
         draw_points(top, sizes, values / unit, errors / unit, label=label, **look)
         draw_points(bottom, sizes, values / reference(sizes), errors / reference(sizes), **look)
     ends = np.array([8, 2e4])

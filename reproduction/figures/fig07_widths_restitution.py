@@ -29,18 +29,15 @@ from crazybilliards.reproduction.figures.fig12_widths_damping import bulge
 from crazybilliards.reproduction.fits import fit_exponential
 from crazybilliards.reproduction.power_laws import fits_in_plot, nu
 from crazybilliards.reproduction.predictions import CROSSES, LINES, by_restitution, predicted
-from crazybilliards.reproduction.vanishing_step import LABEL, central_limit, limits
 
 TITLE = "Velocity widths for several restitutions"
 CAPTION = (
     "(a) W_v against the normalized particle number, L = 1000 (e = 1: L = 100). Lines: the kinetic "
     "equation in the colour of its e, dashed without pair correlations, full with them; nothing of "
     "the simulation goes into these lines. (b) The exponent of the two power laws against the "
-    "restitution, and a exp(-lambda (1 - e)) + d fitted to it. (c) W_v in the centre at the "
-    "default time step and in the limit of a vanishing one."
+    "restitution, and a exp(-lambda (1 - e)) + d fitted to it. (c) W_v in the centre."
 )
 
-IN_LIMIT: Mapping[Quality, tuple[float, ...]] = {"quick": (0.0,), "full": RESTITUTIONS}
 _RUNS = {e: dissipative(LARGE, e) for e in RESTITUTIONS}
 _AGAIN = {e: at_other_step(runs) for e, runs in _RUNS.items()}
 _THERE = f"dt = {OTHER_STEP:g}"
@@ -52,12 +49,11 @@ _OURS = "the restitutions (those of fig.5, and 0.5) and the time step"
 
 
 def cases(quality: Quality) -> Cases:
-    """L = 1000 at six restitutions, L = 100 at e = 1; limits; theories."""
-    in_limit = [limits(LARGE, e) for e in IN_LIMIT[quality]]
+    """L = 1000 at six restitutions, L = 100 at e = 1; theories."""
     return (
         all_of([*_RUNS.values(), *_AGAIN.values()], quality)
         | by_restitution(quality)
-        | all_of([*in_limit, elastic(_ELASTIC_SIZE)], quality)
+        | all_of([elastic(_ELASTIC_SIZE)], quality)
     )
 
 
@@ -133,7 +129,7 @@ def _residuals(found: dict[float, Estimate]) -> list[Estimate]:
 
 
 def draw(results: Results) -> Figure:
-    """Draw W_v(i) with the kinetic equation, -nu against e with its fit, and the limits."""
+    """Draw W_v(i) with the kinetic equation, -nu against e with its fit."""
     figure, axes = mosaic(
         [["widths", "exponents"], ["widths", "centre"]], height=3.9, width_ratios=(1.4, 1)
     )
@@ -172,15 +168,9 @@ def _draw_theories(ax: Axes, results: Results, e: float, unit: float, colour: st
 
 def _draw_centre(ax: Axes, results: Results) -> None:
     unit = _RUNS[0.0].chain.free_velocity_width
-    full: dict[str, Any] = {"number": 2, "color": COLOURS[0], "markerfacecolor": COLOURS[0]}
-    widths = {e: runs.estimate(results, central_width) for e, runs in _RUNS.items()}
-    there = [e for e in RESTITUTIONS if limits(LARGE, e).members(results)]
-    for found, label, style in (
-        (widths, "default step", {**_OPEN, "markersize": 5}),
-        ({e: central_limit(results, LARGE, e) for e in there}, LABEL, full),
-    ):
-        values, errors = np.array(list(found.values())).T / unit
-        draw_points(ax, list(found), values, errors, label=label, **style)
+    widths = [runs.estimate(results, central_width) for runs in _RUNS.values()]
+    values, errors = np.transpose(widths) / unit
+    draw_points(ax, list(_RUNS), values, errors, label="simulation", **_OPEN)
     for theory, of_theory in predicted(results).items():
         centres = [central_width(each) / unit for each in of_theory.values()]
         ax.plot(list(of_theory), centres, **CROSSES[theory], label=theory)

@@ -5,10 +5,10 @@ import pytest
 from scipy.stats import norm, t
 
 from crazybilliards.comparison.distances import distances_in_plot
-from crazybilliards.comparison.widths import border_width, central_width, width_deviation
+from crazybilliards.comparison.widths import border_width, central_width
 from crazybilliards.model import Chain
 from crazybilliards.model.vocabulary import result
-from crazybilliards.particles import simulate, simulate_limit
+from crazybilliards.particles import simulate
 from crazybilliards.reproduction.claims.repetition import Runs, error_of_mean, share_of_runs
 from crazybilliards.reproduction.claims.study import all_of
 from crazybilliards.reproduction.claims.verdicts import POSITIVE, Claim, Estimate
@@ -120,16 +120,3 @@ def test_moments_of_a_gaussian():
     for name in ("velocity_kurtosis", "velocity_skewness"):
         with pytest.raises(ValueError, match=f"the result has no '{name}'"):  # an old one
             mean_shape(run.drop_vars(name), [1, 2], name)
-
-
-@pytest.mark.compiled
-def test_the_centre_is_the_same_rods_everywhere():
-    """Four of 30 rods in claims, in comparisons with a theory, and in limits of the step."""
-    chain = Chain(size=30, restitution=0.9)
-    limit = simulate_limit(chain, accuracy=0.05, progress=False)
-    assert central_width(limit) == pytest.approx(float(limit.central_velocity_width), rel=1e-12)
-    middle = (limit.velocity_width.values[13:17] ** 2).mean()
-    assert central_width(limit) == pytest.approx(float(np.sqrt(middle)), rel=1e-12)
-    double = limit.assign(velocity_width=2 * limit.velocity_width)
-    double.velocity_width[:13], double.velocity_width[17:] = 7.0, 7.0
-    assert width_deviation(limit, double).centre == pytest.approx(1.0)

@@ -12,7 +12,6 @@ import pytest
 
 from crazybilliards.comparison.sweeps import Case
 from crazybilliards.comparison.sweeps.jobs import JOBS
-from crazybilliards.particles import limit
 from crazybilliards.reproduction.claims.verdicts import Verdict
 from crazybilliards.reproduction.figures import FIGURES
 
@@ -30,23 +29,12 @@ QUICK = [
 STEP_LESS = ("velocities-elastic", "arctanh", "density", "amplitude")
 
 
-@pytest.fixture(scope="module", autouse=True)
-def _short_limits():
-    """Let a limit end after 20 correlation times, where it otherwise takes at least 320."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(limit, "_LEAST", 20.0)
-        yield
-
-
 @cache  # figures share cases, and shortened ones may be equal
 def result(case):
     return JOBS[case.job].function(case.chain, **case.settings)
 
 
 def short_run(case):
-    if case.job == "simulate_limit":
-        settings = {**case.settings, "accuracy": 0.1, "warmup": 2.0}
-        return result(Case(case.job, case.chain, settings))
     if case.job == "correlated_phase_space":
         return result(Case(case.job, case.chain.replace(restitution=0.9), {"cells": 8}))
     if case.job == "phase_space":

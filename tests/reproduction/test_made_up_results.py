@@ -10,25 +10,21 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from crazybilliards.comparison.fits import fit_border_power_law
-from crazybilliards.comparison.widths import central_width
-from crazybilliards.model import Chain, chain_of
+from crazybilliards.model import chain_of
 from crazybilliards.model.vocabulary import result
 from crazybilliards.reproduction.figures import FIGURES
-from crazybilliards.reproduction.vanishing_step import central_limit, limit_estimate, limits
 
 AVALANCHES, DISPLACEMENTS, ENERGY, GAPS = (FIGURES[number - 1] for number in (6, 9, 15, 19))
 
-# -- limits dt -> 0: W_v(i) is a sum of two power laws ----------------------------------------
+# -- W_v(i) is a sum of two power laws --------------------------------------------------------
 
-NOISE, BIAS = 1e-3, 1e-3
-CHAIN = Chain(size=100, restitution=0.0)
+NOISE = 1e-3
 
 
-def made_up(chain, job, *, seed=0, steeper=0.0):
+def made_up(chain, job, *, seed=0):
     """Return a result: W_v(centre) = L^-0.38, nu by the paper's law of e, noise on every rod."""
     i = np.arange(1.0, chain.size + 1)
-    nu = steeper - (0.46 + 0.2457 * np.exp(-8.65 * (1 - chain.restitution)))
+    nu = -(0.46 + 0.2457 * np.exp(-8.65 * (1 - chain.restitution)))
     profile = i**nu + i[::-1] ** nu
     profile *= chain.size**-0.38 / profile.min()
     name = f"{chain.size} {chain.restitution} {job}".encode()
@@ -37,51 +33,13 @@ def made_up(chain, job, *, seed=0, steeper=0.0):
     width = profile * (1 + NOISE * normal[1] + tilt)
     variables = {"velocity_width": ("particle", width)}
     variables["velocity_width_error"] = ("particle", NOISE * width)
-    if job == "simulate_limit":
-        variables["central_velocity_width"] = ((), width.min())
-        variables["central_velocity_width_error"] = ((), np.hypot(NOISE, BIAS) * width.min())
     source = "theory" if job.endswith("phase_space") else "simulation"
-    run = result(chain, variables, source=source, method={"schedule": {"time_step": 5e-4}})
-    return run.assign_attrs(time_step_error=BIAS) if job == "simulate_limit" else run
-
-
-def test_the_time_step_that_is_left_does_not_average_out():
-    """Five limits: a fifth of the variance, all of the bias."""
-    runs = [made_up(CHAIN, "simulate_limit", seed=seed) for seed in range(5)]
-    five = {f"{limits(100).name}/{seed}": run for seed, run in enumerate(runs)}
-    value, error = central_limit(five, 100)
-    assert value == pytest.approx(100**-0.38, rel=5 * NOISE)
-    assert error / value == pytest.approx((NOISE**2 / 5 + BIAS**2) ** 0.5, rel=1e-2)
-    one = {f"{limits(100).name}/0": runs[0]}
-    alone = float(runs[0].central_velocity_width_error)
-    assert central_limit(one, 100).error == pytest.approx(alone, rel=1e-2)
-
-
-def test_an_exponent_is_uncertain_by_scatter_and_by_the_step_that_is_left():
-    """Equal limits do not scatter: what is left is the step, whose share b makes nu flatter.
-
-    A centre wider by b, less outside, lowers ln(W_v(border)/W_v(centre)) = 1.4 by some of b, and
-    nu by about as large a share.
-    """
-
-    def exponent(run):
-        return fit_border_power_law(run).exponent
-
-    first = made_up(CHAIN, "simulate_limit")
-    results = {f"{limits(100).name}/{k}": first for k in range(4)}
-    found = limit_estimate(results, 100, exponent)
-    assert found.value == exponent(first)
-    assert 0.5 * BIAS < found.error / abs(found.value) / 0.7 < 2 * BIAS
-    width = limit_estimate(results, 100, central_width)
-    assert width.error / width.value == pytest.approx(BIAS, rel=1e-2)
-    # And the scatter between limits counts, as it does between runs.
-    results[f"{limits(100).name}/1"] = made_up(CHAIN, "simulate_limit", steeper=0.04)
-    assert limit_estimate(results, 100, exponent).error > 0.01
+    return result(chain, variables, source=source, method={"schedule": {"time_step": 5e-4}})
 
 
 @pytest.mark.validate
 @pytest.mark.parametrize(("number", "theories"), [(3, 1), (4, 0), (7, 2)])
-def test_limits_are_drawn_and_theories_beside_the_runs(number, theories):
+def test_theories_are_drawn_beside_the_runs(number, theories):
     figure = FIGURES[number - 1]
     results = {
         name: made_up(case.chain, case.job, seed=case.settings.get("seed", 0))
