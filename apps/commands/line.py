@@ -49,7 +49,9 @@ def crazybilliards(
 
 
 def explore(
-    port: Annotated[int, typer.Option(help="Port to serve the page at; 0: any free one.")] = 5006,
+    port: Annotated[
+        int, typer.Option(min=0, max=65535, help="Port to serve the page at; 0: any free one.")
+    ] = 5006,
     address: Annotated[
         str, typer.Option(help="Address to serve it at; the default is this machine only.")
     ] = "127.0.0.1",

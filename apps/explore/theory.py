@@ -2,131 +2,109 @@
 
 from __future__ import annotations
 
+import json
 import math
-import multiprocessing
 import signal
+import sys
 import time
 import warnings
-from collections.abc import Callable, Mapping
-from contextlib import closing
-from multiprocessing.connection import Connection
-from threading import BoundedSemaphore, Lock
-from typing import Any
+from collections.abc import Callable
+from contextlib import suppress
+from subprocess import PIPE, Popen, TimeoutExpired
+from threading import Lock
+from typing import TYPE_CHECKING, Any
+from urllib.parse import parse_qsl
 
-from crazybilliards.model.checks import shown
-from crazybilliards.model.parameters import Parameters
 from crazybilliards.model.process import end_with_parent
 
+if TYPE_CHECKING:
+    from crazybilliards.model import Chain
+
 _TURN = Lock()  # one computes at a time, for all pages
-_PLACES = BoundedSemaphore(10)  # that compute or wait
-_LOOK = 0.2  # s between two looks whether somebody still waits
-_PATIENCE = 120  # s
+_PATIENCE = 120  # s that a theory may take, and that a visitor waits for the theories of others
+_LOOK = 0.2  # s between two looks whether the visitor still waits
 _MOST_RODS = 200  # of the page
 _MOST_POINTS = 500  # of a curve
 _TOLERANCE = {"tolerance": 0.01}  # of a velocity width, less than a line is thick
-_NUMBERS = {"size": int, "restitution": float, "amplitude": float, "damping": float, "gap": float}
+_KINDS = {"size": int, "restitution": float, "amplitude": float, "damping": float, "gap": float}
 
 Answer = dict[str, Any]
 
 
-def solve(query: Mapping[str, str], is_gone: Callable[[], bool]) -> Answer | None:
-    """Solve the best theory of the chain in a query; None as soon as nobody waits for it.
+def solve(query: str, is_gone: Callable[[], bool]) -> Answer | None:
+    """Return the :func:`answer` to a query from another process, None if the visitor is gone.
 
-    Returns ``best`` and, at e = 1, the force balance as ``other``: each with its ``title``, the
-    errors that it states (null: not measured) of W_v inside (``error``), at the ``border`` and of
-    the density (``density_error``), ``widths`` in free widths, and the ``density`` as pairs of x
-    and the share of time that a rod covers x, smoothed as in the paper. Or why there is none,
-    ``refused``, with ``busy`` if too many wait.
+    The process is killed when the visitor goes, and when it takes too long.
     """
+    if not _TURN.acquire(timeout=_PATIENCE):
+        return {"refused": "the theories of others are being solved"}
     try:
-        parameters = read(query)
-    except ValueError as error:
-        return {"refused": str(error)}
-    if not _PLACES.acquire(blocking=False):
-        return {"refused": "too many theories are waiting", "busy": True}
-    try:
-        while not _TURN.acquire(timeout=_LOOK):
-            if is_gone():
-                return None
-        try:
-            return _solve_in_process(parameters, is_gone)
-        finally:
-            _TURN.release()
+        if is_gone():
+            return None
+        command = [sys.executable, "-m", "crazybilliards.apps.explore.theory", query]
+        with Popen(command, stdout=PIPE) as process:
+            try:
+                return _wait_for(process, is_gone)
+            finally:
+                process.kill()
     finally:
-        _PLACES.release()
+        _TURN.release()
 
 
-def read(query: Mapping[str, str]) -> Parameters:
-    """Return the chain of a query."""
-    values: dict[str, Any] = dict(query)
-    for name, text in query.items():
-        if name not in (*_NUMBERS, "spring"):
-            raise ValueError(f"{shown(name)} is none of {', '.join(_NUMBERS)}, spring")
-        try:
-            values[name] = _NUMBERS.get(name, str)(text)
-        except ValueError:
-            raise ValueError(f"{name} must be a number, got {shown(text)}") from None
-    parameters = Parameters(**values)
-    if parameters.size > _MOST_RODS:
-        raise ValueError(f"size must be at most {_MOST_RODS}, got {parameters.size}")
-    return parameters
+def _wait_for(process: Popen[bytes], is_gone: Callable[[], bool]) -> Answer | None:
+    """Return what a process prints, None if the visitor goes before."""
+    end = time.monotonic() + _PATIENCE
+    while time.monotonic() < end:
+        if is_gone():
+            return None
+        with suppress(TimeoutExpired):
+            text, _ = process.communicate(timeout=_LOOK)
+            ended: Answer = {"refused": "the computation ended without an answer"}
+            return ended if process.returncode else json.loads(text)
+    return {"refused": f"it takes longer than {_PATIENCE} s"}
 
 
-def _solve_in_process(parameters: Parameters, is_gone: Callable[[], bool]) -> Answer | None:
-    """Solve in a process, which is killed when nobody waits or it takes too long."""
-    context = multiprocessing.get_context("spawn")
-    answer, there = context.Pipe(duplex=False)
-    process = context.Process(target=_compute, args=(parameters, there), daemon=True)
-    process.start()
-    there.close()
-    until = time.monotonic() + _PATIENCE
-    with closing(answer):
-        try:
-            while not answer.poll(_LOOK):
-                if is_gone():
-                    return None
-                if time.monotonic() > until:
-                    return {"refused": f"it takes longer than {_PATIENCE} s"}
-            found: Answer = answer.recv()
-        except (EOFError, OSError):
-            found = {"refused": "the computation ended without an answer"}
-        finally:
-            process.kill()
-            process.join()
-    return found
-
-
-def _compute(parameters: Parameters, there: Connection) -> None:
-    """Send the answer for a chain from a process that ends with the server."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the server ends this process
-    end_with_parent()
-    there.send(compute(parameters))
-
-
-def compute(parameters: Parameters) -> Answer:
-    """Return the theories of a chain, or why there is none, in this process."""
-    from dataclasses import asdict
-
-    from crazybilliards.comparison.stationary_theories import THEORIES, choose_theory
-    from crazybilliards.kinetic.accuracy import UnmeasuredWarning
+def read(query: str) -> Chain:
+    """Return the chain of a query; a TypeError or ValueError says what is wrong with it."""
     from crazybilliards.model import Chain
 
-    chain = Chain(**asdict(parameters))
+    texts = dict(parse_qsl(query, keep_blank_values=True))
+    chain = Chain(**{name: _KINDS.get(name, str)(text) for name, text in texts.items()})
+    if chain.size > _MOST_RODS:
+        raise ValueError(f"size must be at most {_MOST_RODS}, got {chain.size}")
+    return chain
+
+
+def answer(query: str) -> Answer:
+    """Return the theories of the chain in a query, or why there is none, ``refused``.
+
+    The theories are ``best`` and, at e = 1, the force balance as ``other``: each with its
+    ``title``, the errors that it states (null: not measured) of W_v inside (``error``), at the
+    ``border`` and of the density (``density_error``), ``widths`` in free widths, and the
+    ``density`` as pairs of x and the share of time that a rod covers x, smoothed as in the paper.
+    """
+    from crazybilliards.comparison.stationary_theories import THEORIES, choose_theory
+    from crazybilliards.kinetic.accuracy import UnmeasuredWarning
+
+    try:
+        chain = read(query)
+    except (TypeError, ValueError) as error:
+        return {"refused": str(error)}
     other = THEORIES["force_balance"]
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UnmeasuredWarning)  # the page shows what is not known
+    # The page shows what is not known.
+    with warnings.catch_warnings(action="ignore", category=UnmeasuredWarning):
         try:
             best = choose_theory(chain).theory
             coarse = {} if best.refusal(chain, _TOLERANCE) else _TOLERANCE
-            answer = {"best": _result(best, best.solve(chain, **coarse))}
+            theories = {"best": _result(best, best.solve(chain, **coarse))}
             if not other.refusal(chain):
-                answer["other"] = _result(other, other.solve(chain))
+                theories["other"] = _result(other, other.solve(chain))
         except ValueError as error:
-            return {"refused": _why_none(parameters, str(error))}
-    return answer
+            return {"refused": _why_none(chain, str(error))}
+    return theories
 
 
-def _why_none(chain: Parameters, error: str) -> str:
+def _why_none(chain: Chain, error: str) -> str:
     """Return why there is no theory of a chain, in words for a class."""
     if chain.amplitude == 0:
         return "without noise there is no steady motion"
@@ -157,3 +135,9 @@ def _result(theory: Any, solved: Any) -> Answer:
             zip(points.x.values.tolist(), points.values.round(5).tolist(), strict=True)
         ),
     }
+
+
+if __name__ == "__main__":
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the server ends this process
+    end_with_parent()
+    print(json.dumps(answer(sys.argv[1])))

@@ -1,9 +1,7 @@
 """The chain to play with in a browser: everybody can use it, and it knows what is achieved."""
 
-import json
 import re
 from pathlib import Path
-from urllib.parse import parse_qsl, urlsplit
 
 import chain_curves
 import numpy as np
@@ -24,15 +22,15 @@ from driven_page import (
     text,
     visit,
 )
+from matplotlib.colors import to_hex
 from matplotlib.image import imread
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.actions.action_builder import ActionBuilder
 
-from crazybilliards.apps.explore.theory import compute, read
+from crazybilliards.comparison.drawing import DIRECTIONS
 from crazybilliards.model import Chain
-from crazybilliards.model.parameters import Parameters
 
-ROOT = Path(__file__).parents[2]
+PAGE = Path(__file__).parents[2] / "apps" / "explore" / "page"
 pytestmark = pytest.mark.validate
 
 DRAWN = """return ['stage', 'second'].map((name) =>
@@ -48,19 +46,9 @@ const shown = Array.from({ALL}).filter((control) => control.checkVisibility());
 const changes = ChainAddress.NAMES.map((name) => shown.find((each) => each.dataset.chain === name));
 const look = (place) => (each) => [each.dataset.chain ?? each.ariaLabel, place, seen(each, place)];
 return [...shown.map(look('center')), ...changes.filter(Boolean).map(look('nearest'))];"""
-# The theory is asked for, and answered by the test in place of the server.
-HOLD = """let asked;
-window.fetch = (address) => new Promise((answer) => {
-  asked = address;
-  window.answer = (text) => answer({json: async () => JSON.parse(text)});
-});
-arguments[0].click();
-return [asked, document.querySelector('[data-chain=theory]').textContent];"""
-ANSWER = """const [text, done] = arguments, waiting = () => ChainTheory.asked();
-const look = () => (waiting() ? requestAnimationFrame(look) : done());
-window.answer(text), look()"""
 ELSEWHERE = """return performance.getEntriesByType('resource').map((each) => each.name)
   .filter((name) => !name.startsWith(location.origin) && !name.startsWith('data:'))"""
+LABEL = "return document.querySelector('[data-chain=second]').ariaLabel"
 
 
 def goes_on(browser):
@@ -68,24 +56,24 @@ def goes_on(browser):
     browser.execute_async_script(GOES_ON)
 
 
-def test_the_files_are_small_plain_and_ask_nobody_else():
-    files = (ROOT / "apps/explore/page").iterdir()
-    texts = {file.name: file.read_text(encoding="utf-8") for file in files}
-    scripts = {name: text for name, text in texts.items() if name.endswith(".js")}
-    assert sum(len(text.encode()) for text in scripts.values()) <= 100_000
-    assert all(text.count("\n") < 300 for text in texts.values())
+def test_the_files_are_small_and_ask_nobody_else():
+    texts = {file.name: file.read_text(encoding="utf-8") for file in PAGE.iterdir()}
+    scripts = {name: script for name, script in texts.items() if name.endswith(".js")}
+    assert sum(len(script.encode()) for script in scripts.values()) <= 100_000
     assert not re.search(r"http|import |export |innerHTML|eval\(", "".join(texts.values()))
-    for name, script in scripts.items():  # of one page: each adds one name
-        names = [line.split()[1] for line in script.splitlines() if line.startswith("const ")]
-        assert names == [f"Chain{name.removesuffix('.js').title()}"][name == "controls.js" :]
-        assert f'src="_static/{name}"' in texts["chain.html"]
-    assert "explore/page/chain.html" in (ROOT / "docs/chain.md").read_text(encoding="utf-8")
+    assert all(f'src="_static/{name}"' in texts["chain.html"] for name in scripts)
+
+
+def test_orange_moves_right_and_blue_left_in_page_and_film():
+    style = (PAGE / "chain.css").read_text(encoding="utf-8")
+    for name, end, colour in (("left", 0.0, "#0072b2"), ("right", 1.0, "#e69f00")):
+        assert re.search(rf"--{name}: (#\w+);", style)[1] == to_hex(DIRECTIONS(end)) == colour
 
 
 @pytest.mark.compiled
 def test_the_stored_curves_are_those_of_the_best_theories():
     texts = chain_curves.CURVES.read_text(encoding="utf-8"), chain_curves.script()
-    stored, solved = (re.split(r"(\d\.\d+)", text) for text in texts)
+    stored, solved = (re.split(r"(\d\.\d+)", script) for script in texts)
     assert stored[::2] == solved[::2]
     np.testing.assert_allclose(np.array(stored[1::2], float), np.float64(solved[1::2]), atol=0.0015)
 
@@ -95,8 +83,8 @@ def test_the_stored_curves_are_those_of_the_best_theories():
 )
 def test_every_challenge_is_reached_and_the_chain_goes_on(browser, address, screen, way):
     visit(browser, address, screen)
-    asked = browser.execute_script("return ChainChallenges.list.map(({chain}) => chain)")
-    for button, chain in zip(challenges(browser), asked, strict=True):
+    chains = browser.execute_script("return ChainChallenges.list.map(({chain}) => chain)")
+    for button, chain in zip(challenges(browser), chains, strict=True):
         press(browser, button, way)
         until(lambda expected=chain: browser.execute_script(CHAIN) == expected, 20)
     press(browser, control(browser, "restart"), way)
@@ -106,59 +94,51 @@ def test_every_challenge_is_reached_and_the_chain_goes_on(browser, address, scre
 
 @pytest.mark.parametrize("screen", SCREENS)
 def test_every_preset_is_seen_by_everybody_and_fits(browser, address, screen):
-    """In light and dark mode."""
+    """In light and dark mode. Each asks a question, whose answer is seen on demand."""
     for dark in (False, True):
         visit(browser, address, screen, dark=dark)
-        assert audit(browser)[0] == []
+        assert audit(browser) == []
     for chain in browser.execute_script("return ChainPresets.list.map(({chain}) => chain)"):
         control(browser, "preset").send_keys("\ue015")
         assert browser.execute_script(CHAIN) == chain
+        assert "?" in text(browser, "ask")
+        assert text(browser, "answer") == ""
         goes_on(browser)
         assert min(browser.execute_script(DRAWN)) > 5000
         if screen == "wide":
             assert browser.execute_script(SEEN, control(browser, "stage"), "nearest")[1]
+        press(browser, control(browser, "reveal"))
+        assert len(text(browser, "answer")) > 50
     assert browser.execute_script("return document.body.scrollWidth") <= SCREENS[screen][0]
     assert browser.execute_script(ELSEWHERE) == []
     assert errors(browser) == []
 
 
-@pytest.mark.parametrize("challenge", ["push", "pressure"])
+@pytest.mark.parametrize(("challenge", "number"), [("push", 30), ("pressure", 20)])
 @pytest.mark.parametrize("screen", SCREENS)
 def test_nothing_covers_a_control_and_the_picture_is_seen_with_it(
-    browser, address, screen, challenge
+    browser, address, screen, challenge, number
 ):
     visit(browser, f"{address}#challenge={challenge}", screen, quiet=True)
-    seen = browser.execute_script(ALL_SEEN)
-    assert len(seen) >= (30 if challenge == "push" else 20)
-    for name, place, found in seen:
-        assert found[0], (name, place)
-        if place == "nearest":
-            assert found == [True, True], name
-    for name in browser.execute_script("return ChainAddress.NAMES"):
-        if not control(browser, name).is_displayed():
-            continue
-        value = browser.execute_script(CHAIN)[name]
-        for button in browser.find_elements("css selector", f".slider:has(#chain-{name}) button"):
-            press(browser, button, "touch")  # less, then more
-            until(lambda n=name, v=value: browser.execute_script(CHAIN)[n] != v, 20)
-            value = browser.execute_script(CHAIN)[name]
+    controls = browser.execute_script(ALL_SEEN)
+    assert len(controls) >= number
+    for name, place, (uncovered, pictures) in controls:
+        assert uncovered, (name, place)
+        assert pictures or place == "center", name
 
 
 def test_keys_alone_reach_push_pause_and_change(browser, address):
     visit(browser, address, quiet=True)
-    fast = "return ChainRunning.world.state.v[arguments[0]]"
-    free = Chain(damping=0.3).free_velocity_width
-    speed = browser.execute_script(fast, 0)
+    fast = "return ChainRunning.world.state.v[0]"
+    push = 8 * Chain(damping=0.3).free_velocity_width
+    speed = browser.execute_script(fast)
     ActionChains(browser).send_keys("p").perform()  # on a fresh page, before anything has the focus
-    assert browser.execute_script(fast, 0) == pytest.approx(speed + 8 * free)
+    assert browser.execute_script(fast) == pytest.approx(speed + push)
     visit(browser, address, quiet=True)
     reached = tabbed(browser)
-    named = {each.accessible_name: outline for each, outline, *_ in reached}
-    assert len(named) == len(reached) == 33
-    assert min(named.values()) >= 3
-    speed = browser.execute_script(fast, 0)
-    control(browser, "push").send_keys(" ")
-    assert browser.execute_script(fast, 0) == pytest.approx(speed + 8 * free)
+    outlines = {element.accessible_name: outline for element, outline in reached}
+    assert len(outlines) == len(reached) == 33
+    assert min(outlines.values()) >= 3
     control(browser, "restitution").send_keys("\ue012")
     assert browser.execute_script(CHAIN)["restitution"] == 0.99
     time = browser.execute_script(TIME)
@@ -170,10 +150,25 @@ def test_keys_alone_reach_push_pause_and_change(browser, address):
     until(lambda: browser.execute_script(TIME) > time + 0.1, 20)
 
 
-@pytest.mark.parametrize("e", [0, 1])
-def test_a_rod_follows_the_pointer_and_pushes_the_others(browser, address, e):
+def test_each_picture_is_described_in_numbers(browser, address):
+    visit(browser, address + "#size=20&restitution=0.9&speed=100", quiet=True)
+    rows(browser, 200)
+    for option, description in (
+        ("density", r"Density, measured: rods .* \d+ % of the time, from x = -?\d+ to \d+ R\."),
+        ("widths", r"Velocity widths .*, measured: 0\.\d+, 0\.\d+, 0\.\d+ W; theory: 0.*\."),
+        ("velocities", r"Velocities, measured: .* \d\.\d W in the middle and \d\.\d W at .*"),
+        ("energy", r"Energy: from [\d.]+ to [\d.]+ times that of free rods within \d+ T\."),
+    ):
+        script = "arguments[0].value = arguments[1]"
+        browser.execute_script(script, control(browser, "second-picture"), option)
+        rows(browser, 1)
+        assert re.fullmatch(description, browser.execute_script(LABEL))
+    stage = control(browser, "stage").get_attribute("aria-label")
+    assert re.search(r"The rods, .* Now \d+ of 20 rods move to the right\.$", stage, re.DOTALL)
+
+
+def test_a_rod_follows_the_pointer_and_pushes_the_others(browser, address):
     visit(browser, address)
-    slide(browser, restitution=e)
     where = "const {state} = ChainRunning.world, half = ChainDrawing.reach(state.chain);"
     where += "return ChainPhysics.position(state, 0) / half * arguments[0].clientWidth / 2;"
     first = browser.execute_script(where, control(browser, "stage"))
@@ -189,63 +184,54 @@ def test_a_rod_follows_the_pointer_and_pushes_the_others(browser, address, e):
 
 
 @pytest.mark.compiled
-def test_a_theory_is_solved_on_request_and_says_its_error(browser, address):
-    visit(browser, address + "#size=20&restitution=0.95", quiet=True)
-    press(browser, control(browser, "solve"))
-    assert text(browser, "theory").startswith("Being solved")
-    until(lambda: not browser.execute_script("return ChainTheory.asked()"), 200)
-    said = r"kinetic .*: velocity widths within [\d.]+ %, .*density within"
-    assert re.match(said, text(browser, "theory"))
-    slide(browser, damping=0.5)
-    assert text(browser, "theory") == ""
-    assert errors(browser) == []
-
-
-@pytest.mark.compiled
 @pytest.mark.parametrize(
-    ("chain", "said"),
+    ("chain", "statement"),
     [
+        ({"restitution": 0.95}, r"kinetic .*: velocity widths within [\d.]+ %, .*density within"),
         ({"gap": 0.5}, r"exact equilibrium: exact\. force balance: .*density within"),
         ({"amplitude": 0}, "No theory: without noise there is no steady motion"),
     ],
 )
-def test_what_the_server_answers_is_said_of_a_chain(browser, address, chain, said):
+def test_a_theory_is_solved_on_request_and_states_its_error(browser, address, chain, statement):
     visit(browser, address + "#size=20", quiet=True)
     slide(browser, **chain)
-    asked, meanwhile = browser.execute_script(HOLD, control(browser, "solve"))
-    assert meanwhile == "Being solved, 0 s."
-    parameters = read(dict(parse_qsl(urlsplit(asked).query)))
-    assert parameters == Parameters(size=20, **chain)
-    browser.execute_async_script(ANSWER, json.dumps(compute(parameters)))
-    assert re.match(said, text(browser, "theory"))
+    press(browser, control(browser, "solve"))
+    assert text(browser, "theory").startswith("Being solved")
+    until(lambda: not browser.execute_script("return ChainTheory.asked()"), 200)
+    assert re.match(statement, text(browser, "theory"))
     slide(browser, damping=0.5)
     assert text(browser, "theory") == ""
     assert errors(browser) == []
 
 
-def test_a_theory_is_stopped(browser, address, solvers):
+@pytest.mark.parametrize("changes", [False, True])
+def test_a_theory_is_stopped_on_request_and_when_the_chain_changes(
+    browser, address, solvers, changes
+):
     visit(browser, address + "#size=200&restitution=0", quiet=True)
     press(browser, control(browser, "solve"))
     until(solvers, 60)
     assert text(browser, "solve") == "Stop"
-    press(browser, control(browser, "solve"))
+    if changes:
+        slide(browser, size=40, restitution=0.8)
+    else:
+        press(browser, control(browser, "solve"))
     until(lambda: text(browser, "solve") == "Solve the theory", 20)
-    assert text(browser, "theory") == ""
     until(lambda: not solvers(), 20)
+    assert text(browser, "theory") == ""
     assert errors(browser) == []
 
 
-@pytest.mark.parametrize("dark", [False, True])
-def test_the_rods_are_saved_as_a_picture(browser, address, dark, tmp_path):
+def test_the_rods_are_saved_as_a_picture(browser, address, tmp_path):
     allowed = {"behavior": "allow", "downloadPath": str(tmp_path)}
     browser.execute_cdp_cmd("Browser.setDownloadBehavior", allowed)
-    visit(browser, address, dark=dark)
+    visit(browser, address, dark=True)
     press(browser, control(browser, "save"))
     until((tmp_path / "chain.png").exists, 60)
     picture = imread(tmp_path / "chain.png")
     assert picture.shape[1] == control(browser, "stage").size["width"]
     assert len(np.unique(picture.reshape(-1, 4), axis=0)) > 50
-    assert (picture[0, 0, :3] > 0.5).all() != dark
+    assert (picture[0, 0, :3] < 0.5).all()
 
 
 @pytest.mark.parametrize(
@@ -260,17 +246,14 @@ def test_a_challenge_is_solved_by_its_sliders_and_then_answered(browser, address
     """By the last of the moves, each of which has come to its end when the page says something."""
     visit(browser, address, quiet=True)
     press(browser, challenges(browser)[number - 1])
-    for values, said in moves:
+    for values, verdict in moves:
         assert text(browser, "answer") == ""
         slide(browser, **values)
         for _ in range(50):
             if number == 1:
                 browser.execute_script("arguments[0].click()", control(browser, "push"))
-            if re.search(said, last := rows(browser, 400)):
+            if re.search(verdict, last := rows(browser, 400)):
                 break
-        assert re.search(said, last)
-    assert [each.text[-1] == "✓" for each in challenges(browser)].index(True) == number - 1
-    for seen in ("answer", "second"):
-        place = control(browser, seen).rect
-        assert place["height"] > 15
-        assert place["y"] + place["height"] <= SCREENS["wide"][1]
+        assert re.search(verdict, last)
+    assert [button.text[-1] == "✓" for button in challenges(browser)].index(True) == number - 1
+    assert len(text(browser, "answer")) > 50
