@@ -7,9 +7,8 @@ import os
 
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.animation import FuncAnimation
 
-from crazybilliards.comparison import Player
-from crazybilliards.comparison.encoding import encoded, kind_of_film
 from crazybilliards.reproduction.claims.repetition import error_of_mean
 
 BLUE, ORANGE, GREEN, PINK, RED, SKY = COLOURS = (
@@ -31,17 +30,12 @@ def panels(number=1, width=10, height=3.6, **settings):
 
 def played(figure, show, frames, a_second):
     """Return a film of a figure, in which ``show(frame)`` moves what moves."""
+    from IPython.display import HTML  # a lesson runs in Jupyter
 
-    def pictures():
-        for frame in frames:
-            show(frame)
-            figure.canvas.draw()
-            yield np.array(figure.canvas.buffer_rgba())
-
-    kind = kind_of_film(".html")
-    film = Player(encoded(pictures(), kind, a_second), kind)
+    film = FuncAnimation(figure, show, frames, interval=1000 / a_second)
+    player = HTML(film.to_jshtml(default_mode="loop"))
     plt.close(figure)  # or the notebook would also show the last picture
-    return film
+    return player
 
 
 def mean_and_error(values):
