@@ -135,7 +135,7 @@ docs: $(VENV)/installed-docs build/notebooks/executed
 linkcheck: $(VENV)/installed-docs build/notebooks/executed
 	$(BIN)/python -m sphinx -b linkcheck docs build/linkcheck
 
-# The other scripts of that folder need more than these packages, or two versions of this one.
+# The other scripts of that folder need more than these packages.
 MEASURED := particle_steps contact_solves replica_threads hydrodynamics
 benchmark: $(VENV)/installed-benchmark
 	mkdir -p $(OUTPUT)

@@ -19,7 +19,7 @@ from crazybilliards.model.vocabulary import VOCABULARY
 from crazybilliards.reproduction.figures import FIGURES
 
 ROOT = Path(__file__).parents[1]
-FRONT = sorted([*ROOT.glob("*.md"), *ROOT.glob(".github/*.md")])
+FRONT = sorted({*ROOT.glob("*.md"), *ROOT.glob(".github/*.md")} - {ROOT / "CHANGELOG.md"})
 PAGES = [*FRONT, *sorted((ROOT / "docs").rglob("*.md"))]
 ROOMS = ("api", "model", "particles", "kinetic", "comparison", "reproduction", "apps")
 CODE = (*ROOMS, "benchmarks", "docs", "notebooks", "studies")
