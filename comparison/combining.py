@@ -74,8 +74,8 @@ def combine(runs: Sequence[xr.Dataset] | xr.Dataset) -> xr.Dataset:
 
 
 def _is_run(provenance: dict[str, Any]) -> bool:
-    """Return whether it is that of a simulation; limits of a vanishing step share their bias."""
-    return "snapshots" in provenance and "accuracy" not in provenance
+    """Return whether it is that of a simulation."""
+    return "snapshots" in provenance
 
 
 def _check(runs: Sequence[xr.Dataset]) -> list[dict[str, Any]]:

@@ -1,4 +1,3 @@
-from .limit import simulate_limit as simulate_limit
 from .observers.avalanches import (
     Avalanches as Avalanches,
     TriggeredCollisions as TriggeredCollisions,

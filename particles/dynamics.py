@@ -71,6 +71,8 @@ def make_dynamics(
     ``speed`` is typical of the rods [R/T]. ``counted``: every collision is to be recorded at its
     contact, and ``struck`` every impulse on a wall.
     """
+    second = chain.replace(mass=chain.mass * chain.mass_ratio, mass_ratio=1.0)
+    one, other = (make_step(each, time_step, stepper, method) for each in (chain, second))
     law = make_law(
         chain,
         time_step,
@@ -81,19 +83,12 @@ def make_dynamics(
         struck=struck,
         halves=stepper == "splitting",
     )
-    second = chain.replace(mass=chain.mass * chain.mass_ratio, mass_ratio=1.0)
-    one, other = (make_step(each, time_step, stepper, method) for each in (chain, second))
     if law.operator == TURN:  # which has the springs in its flight
         one, other = one._replace(kick=0.0), other._replace(kick=0.0)
-    return Dynamics(
-        chain.reduced_anchors,
-        one,
-        other,
-        law,
-        make_propagator(chain, time_step),
-        _DIVERGED * speed if speed > 0 else math.inf,
-        inverse_masses(chain),
-    )
+    fastest = _DIVERGED * speed if speed > 0 else math.inf
+    inverse = inverse_masses(chain)
+    propagator = make_propagator(chain, time_step)
+    return Dynamics(chain.reduced_anchors, one, other, law, propagator, fastest, inverse)
 
 
 def default_merging(chain: Chain) -> float:

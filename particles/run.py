@@ -1,14 +1,16 @@
 """The description of a run: the checked arguments of ``simulate`` that determine its numbers.
 
-It is made once, before any work. Observers, kernels, checkpoints and the provenance read it.
+It is made once, before any work, and counts the run in whole steps, snapshots and blocks.
+Observers, kernels, checkpoints and the provenance read it.
 """
 
 from __future__ import annotations
 
 import hashlib
-from dataclasses import asdict, dataclass
+import math
+from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, get_args
+from typing import Any, Literal, get_args
 
 import numpy as np
 import xarray as xr
@@ -23,10 +25,11 @@ from crazybilliards.particles import dynamics, scales
 from crazybilliards.particles.dynamics import Dynamics, Stepper, default_merging, make_dynamics
 from crazybilliards.particles.laws.law import EXACT, Method, choose_operator
 from crazybilliards.particles.scales import start_swing, typical_speed
-from crazybilliards.particles.schedule import Average, Schedule, make_schedule, too_short
 from crazybilliards.particles.start import MOST_REPLICAS, replica_starts
+from crazybilliards.particles.timing import choose_step, count_blocks, default_warmup, too_short
 
 _GROUPS = 32  # of an ensemble: enough for an error bar good to an eighth
+_OUTPUTS = 100  # times of an ensemble, unless ``every`` is given
 
 # Measured peak memory: copies while observers are joined and averaged, and chunks of snapshots.
 _COPIES = 7
@@ -34,10 +37,17 @@ _BYTES_PER_ROD = 200
 _BYTES_PER_REPLICA = 10_000
 _CHUNKS = 4e7
 
+Average = Literal["time", "ensemble"]
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+
+@dataclass(kw_only=True, eq=False)
 class Run:
-    """A checked run; its fields are the arguments of ``simulate``.
+    """A checked run: steps of warm-up, then snapshots ``stride`` steps apart.
+
+    The snapshots are counted in up to ``blocks`` blocks, the first ones of ``block`` snapshots
+    each. In an ensemble every block is one snapshot, at one output time, the first after the
+    warm-up. The other fields are the arguments of ``simulate``. Where these are None, or no whole
+    number of steps, the run chooses or rounds them.
 
     Raises
     ------
@@ -48,47 +58,51 @@ class Run:
     """
 
     chain: Chain
-    duration: float
     observers: tuple[Any, ...]  # an ``Observer`` reads the run, and its module stands on this one
+    duration: float
+    warmup: float
+    time_step: float
+    every: float
+    method: Method
+    stepper: Stepper
+    merging: float
     seed: int
-    time_step: float | None
-    merging: float | None
     particles: ArrayLike | None
-    warmup: float | None = None
-    method: Method = "event-driven"
-    stepper: Stepper = "splitting"
+    replicas: int
+    average: Average
     start: xr.Dataset | None = None
-    replicas: int = 1
-    average: Average = "time"
-    every: float | None = None
+    warmup_steps: int = field(init=False)
+    stride: int = field(init=False)
+    snapshots: int = field(init=False)  # of each replica
+    blocks: int = field(init=False)
+    block: int = field(init=False)
+    too_short: str = field(init=False)  # in what it is too short for an average over time
 
     def __post_init__(self) -> None:
         for name, kinds in (("method", Method), ("stepper", Stepper), ("average", Average)):
             check_choice(name, getattr(self, name), get_args(kinds))
         self._require_known()
         merging = default_merging(self.chain) if self.merging is None else self.merging
-        object.__setattr__(self, "merging", check_real("merging", merging))
-        object.__setattr__(self, "seed", check_integer("seed", self.seed, least=0))
-        replicas = check_integer("replicas", self.replicas, least=1, most=MOST_REPLICAS)
-        object.__setattr__(self, "replicas", replicas)
-        # Each of these properties checks its own arguments and raises if they are wrong.
-        own = self.replicas * (_BYTES_PER_ROD * float(self.chain.size) + _BYTES_PER_REPLICA)
-        require_memory(f"replicas={self.replicas} of {self.chain.size} rods", own + _CHUNKS)
-        _check_observers(self)
-        _ = self.chosen, self.schedule
+        self.merging = check_real("merging", merging)
+        self.seed = check_integer("seed", self.seed, least=0)
+        self.replicas = check_integer("replicas", self.replicas, least=1, most=MOST_REPLICAS)
+        states = self.replicas * (_BYTES_PER_ROD * float(self.chain.size) + _BYTES_PER_REPLICA)
+        require_memory(f"replicas={self.replicas} of {self.chain.size} rods", states + _CHUNKS)
+        _ = self.chosen
+        self._count_steps()
         require_resolved(self.chain, float(self.chain.reduced_anchors[-1]))
         _ = self.starts
-        kept = self.groups * sum(observer.memory(self) for observer in self.observers)
+        sums = self.groups * sum(observer.memory(self) for observer in self.observers)
         names = ", ".join(observer.name for observer in self.observers)
         few = "ask for fewer particles, replicas or times"
-        require_memory(f"observe ({few}): {names}", own + _CHUNKS + _COPIES * kept)
+        require_memory(f"observe ({few}): {names}", states + _CHUNKS + _COPIES * sums)
 
     def _require_known(self) -> None:
         """Raise a ValueError if anything that reads the chain does not know a parameter of it.
 
         The start refuses by itself, see :attr:`starts`.
         """
-        if self.operator != EXACT:  # which refuses by itself, too
+        if not self.exact:  # which refuses by itself, too
             self.chain.require_known("simulate (springs, damping and noise)", dynamics.knows)
         self.chain.require_known("simulate (its time scales)", scales.knows)
         for observer in self.observers:
@@ -96,22 +110,66 @@ class Run:
                 by = f"observe: {observer.name!r} (by knows and reads_chain of its class)"
                 self.chain.require_known(by, observer.knows)
 
-    @cached_property
-    def schedule(self) -> Schedule:
-        """The run in whole numbers of steps and snapshots."""
-        return make_schedule(
+    def _count_steps(self) -> None:
+        """Check the times, choose those that are not given, and count steps and snapshots."""
+        duration = check_real("duration", self.duration, positive=True)
+        every = duration / _OUTPUTS if self.every is None and self.ensemble else self.every
+        warmup = self.warmup
+        if warmup is None:
+            no_warmup = self.ensemble or self.start is not None
+            warmup = 0.0 if no_warmup else default_warmup(self.chain)
+        warmup = check_real("warmup", warmup)
+        self.time_step, self.stride = choose_step(
             self.chain,
-            duration=self.duration,
-            warmup=self.warmup,
-            time_step=self.time_step,
-            every=self.every,
-            average=self.average,
-            replicas=self.replicas,
+            self.time_step,
+            every,
+            warmup,
+            duration,
             stepper=self.stepper,
             exact=self.exact,
-            started=self.start is not None,
             finest=min(observer.interval(self.chain) for observer in self.observers),
         )
+        self.every = self.stride * self.time_step
+        self.warmup_steps = math.ceil(warmup / self.time_step - 1e-9)
+        if self.ensemble:
+            intervals = duration / self.every
+            if intervals < 1 - 1e-9:
+                raise ValueError(f"every must be at most the duration {duration:g}, got {every:g}")
+            self.snapshots = self.blocks = math.ceil(intervals - 1e-9) + 1
+            self.block = 1
+        else:
+            counts = count_blocks(self.chain, duration, self.every, self.replicas)
+            self.snapshots, self.blocks, self.block = counts
+        shared = all(observer.shares_time for observer in self.observers)
+        at_rest = self.start is None or self.start.attrs.get("source") == "start"
+        timed = self.chain, duration, warmup, self.replicas, at_rest
+        self.too_short = "" if self.ensemble or shared else too_short(*timed)
+        self.warmup = self.warmup_steps * self.time_step
+        self.duration = (self.snapshots - self.ensemble) * self.stride * self.time_step
+
+    @property
+    def ensemble(self) -> bool:
+        """Whether averages are over the replicas at equal times."""
+        return self.average == "ensemble"
+
+    @property
+    def steps(self) -> int:
+        """Steps that a replica takes, warm-up included."""
+        return self.warmup_steps + (self.snapshots - self.ensemble) * self.stride
+
+    def step_of(self, snapshot: int) -> int:
+        """Return the number of steps before a snapshot, which is counted from 0."""
+        return self.warmup_steps + (snapshot + (not self.ensemble)) * self.stride
+
+    @property
+    def times(self) -> NDArray[np.float64]:
+        """Time of every snapshot of a replica, shape (snapshots,)."""
+        return self.time(np.arange(float(self.snapshots)))
+
+    def time(self, snapshot: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Time of snapshots by their numbers from 0; a half number is the middle of two."""
+        count = snapshot + (not self.ensemble)
+        return np.asarray(self.warmup + count * self.every)
 
     @cached_property
     def chosen(self) -> NDArray[np.int64]:
@@ -131,14 +189,23 @@ class Run:
         """Reduced positions and velocities at the start, one pair a replica."""
         return replica_starts(self.chain, self.start, self.replicas)
 
+    @property
+    def stays_at_rest(self) -> bool:
+        """Whether there is neither noise nor a velocity nor a stretched spring."""
+        if self.chain.amplitude > 0 or any(v.any() for _, v in self.starts):
+            return False
+        stretched = (np.abs(y - self.chain.reduced_anchors).max() for y, _ in self.starts)
+        return self.chain.stiffness == 0 or max(stretched) <= 1e-9 * self.chain.radius
+
     @cached_property
     def swing(self) -> float:
         """Largest distance from its anchor that the energy of the start gives a rod [R]."""
-        duration = self.schedule.warmup + self.schedule.duration
-        return max(start_swing(self.chain, duration, y, v) for y, v in self.starts)
+        time = self.warmup + self.duration
+        return max(start_swing(self.chain, time, y, v) for y, v in self.starts)
 
+    @cached_property
     def streams(self) -> list[np.random.SeedSequence]:
-        """Return the random numbers of every replica; a given start is a part of their seed.
+        """The random numbers of every replica; a given start is a part of their seed.
 
         Otherwise a run that continues another one would repeat its noise.
         """
@@ -153,7 +220,7 @@ class Run:
     @property
     def groups(self) -> int:
         """Number of groups of replicas; those of a group share their observers."""
-        return min(self.replicas, _GROUPS) if self.schedule.ensemble else self.replicas
+        return min(self.replicas, _GROUPS) if self.ensemble else self.replicas
 
     @property
     def copies(self) -> int:
@@ -164,8 +231,7 @@ class Run:
     def operator(self) -> int:
         """The operator that lets the rods of this run collide."""
         halves = self.stepper == "splitting"
-        counted = {"counted": self.counted, "struck": self.struck}
-        return choose_operator(self.chain, self.method, halves=halves, **counted)
+        return choose_operator(self.chain, self.method, halves=halves, **self.recorded)
 
     @property
     def exact(self) -> bool:
@@ -173,63 +239,35 @@ class Run:
         return self.operator == EXACT
 
     @property
-    def flight(self) -> str:
-        """How rods move between collisions: "exact", or "in steps" of kicks and drifts."""
-        return "exact" if self.exact else "in steps"
+    def recorded(self) -> dict[str, bool]:
+        """Whether observers need every single collision, and every impulse on a wall."""
+        return {
+            "counted": any(observer.single_collisions for observer in self.observers),
+            "struck": any(observer.meets_walls for observer in self.observers),
+        }
 
-    @property
-    def counted(self) -> bool:
-        """Whether an observer needs every single collision."""
-        return any(observer.single_collisions for observer in self.observers)
-
-    @property
-    def struck(self) -> bool:
-        """Whether an observer needs every impulse on a wall."""
-        return any(observer.meets_walls for observer in self.observers)
-
-    @property
-    def too_short(self) -> str:
-        """In what averages over time are too short for the memory of the chain, or nothing."""
-        shared = all(observer.shares_time for observer in self.observers)
-        if self.average != "time" or shared or self.stays_at_rest:
-            return ""
-        at_rest = self.start is None or self.start.attrs.get("source") == "start"
-        warmup = self.schedule.warmup if self.warmup is None else float(self.warmup)
-        return too_short(self.chain, float(self.duration), warmup, self.replicas, at_rest)
-
-    @property
-    def stays_at_rest(self) -> bool:
-        """Whether there is neither noise nor a velocity nor a stretched spring."""
-        if self.chain.amplitude > 0 or any(v.any() for _, v in self.starts):
-            return False
-        stretched = (np.abs(y - self.chain.reduced_anchors).max() for y, _ in self.starts)
-        return self.chain.stiffness == 0 or max(stretched) <= 1e-9 * self.chain.radius
-
+    @cached_property
     def dynamics(self) -> Dynamics:
-        """Return the numbers and arrays that the kernels need."""
-        duration = self.schedule.warmup + self.schedule.duration
+        """The numbers and arrays that the kernels need."""
+        time = self.warmup + self.duration
         return make_dynamics(
             self.chain,
-            self.schedule.time_step,
-            speed=max(typical_speed(self.chain, duration, y, v) for y, v in self.starts),
+            self.time_step,
+            speed=max(typical_speed(self.chain, time, y, v) for y, v in self.starts),
             method=self.method,
             stepper=self.stepper,
             merging=self.merging,
-            counted=self.counted,
-            struck=self.struck,
+            **self.recorded,
         )
 
     @property
     def vocabulary(self) -> dict[str, tuple[str, str]]:
-        """Meanings and units that the observers bring; of what one gives, those that it says."""
-        said = {name: said for each in self.observers for name, said in each.vocabulary.items()}
-        for each in self.observers:
-            given = {name.removesuffix("_error") for name in (*each.along, *each.gives)}
-            said |= {name: own for name, own in each.vocabulary.items() if name in given}
-        return said
+        """Meanings and units that the observers bring."""
+        return {name: said for each in self.observers for name, said in each.vocabulary.items()}
 
+    @property
     def provenance(self) -> dict[str, Any]:
-        """Return everything except the chain that determines the numbers, in a form for JSON."""
+        """Everything except the chain that determines the numbers, in a form for JSON."""
         return {
             "method": self.method,
             "stepper": self.stepper,
@@ -239,38 +277,13 @@ class Run:
             "observe": [str(observer) for observer in self.observers],
             "particles": "all" if self.particles is None else (self.chosen + 1).tolist(),
             "start": "at rest" if self.start is None else f"sha256 {self._digest_of_starts.hex()}",
-            "schedule": asdict(self.schedule),
+            "schedule": {
+                "time_step": self.time_step,
+                "warmup_steps": self.warmup_steps,
+                "stride": self.stride,
+                "blocks": self.blocks,
+                "snapshots": self.snapshots,
+                "block": self.block,
+                "ensemble": self.ensemble,
+            },
         }
-
-
-def _check_observers(run: Run) -> None:
-    """Raise if an observer cannot work in this run, or if two report the same variable."""
-    given: dict[str, Any] = {}
-    for observer in run.observers:
-        if run.chain.size < observer.least_rods:
-            raise ValueError(
-                f"observe: {observer.name!r} needs a chain of at least {observer.least_rods} rods"
-            )
-        if run.average == "ensemble" and not observer.ensemble:
-            raise ValueError(
-                f"observe: {observer.name!r} is averaged over time only, not over an ensemble"
-            )
-        if observer.meets_walls and not run.chain.box:
-            raise ValueError(
-                f"observe: {observer.name!r} needs a chain between walls, Chain(box=...)"
-            )
-        if (observer.single_collisions or observer.meets_walls) and run.method != "event-driven":
-            raise ValueError(
-                f"observe: {observer.name!r} needs single collisions, which only "
-                "method='event-driven' sees"
-            )
-        # The times of an ensemble are the same for all observers.
-        own = set(observer.along) - ({"time"} if run.average == "ensemble" else set())
-        for name in sorted(own | set(observer.gives)):
-            other = given.setdefault(name, observer)
-            common = name == "time" and observer.shares_time and other.shares_time
-            if other is not observer and not common:
-                raise ValueError(
-                    f"observe: {other.name!r} and {observer.name!r} would both give {name!r}; "
-                    "take one of them"
-                )

@@ -21,7 +21,7 @@ from crazybilliards.model.arrays import Array
 from crazybilliards.model.parameters import WALLS_AND_MASSES
 from crazybilliards.particles.laws.closed_contacts import CRITICAL_RESTITUTION
 
-# Parameters beside ``KNOWN`` with which these scales are right; every scale refuses others.
+# Parameters beside ``KNOWN`` with which these scales are right. A run refuses others.
 knows: frozenset[str] = WALLS_AND_MASSES
 
 _RESOLUTION, _KICK = 0.05, 0.3
@@ -34,7 +34,6 @@ _SLOWEST_MODE = 1.241  # rate of a strongly damped rod on a quadratic spring, in
 
 def spring_rate(chain: Chain) -> float:
     """w0 = sqrt(F'(d)/m) [1/T]; a quadratic spring's is taken at U(d) = 10 T, the temperature."""
-    chain.require_known("the rate of the springs", knows)
     lightest = chain.rod_masses[:2].min()
     if chain.spring == "linear":
         return math.sqrt(chain.stiffness / lightest)
@@ -60,7 +59,6 @@ def centre_width(chain: Chain) -> float:
     In a box the collisions of uncorrelated rods in a free length l are at least as frequent as
     these: w^2 - 1 + (1 - e^2) w^3 W m L/(sqrt(pi) gamma l) = 0.
     """
-    chain.require_known("the width in the centre", knows)
     e = chain.restitution
     if e >= 1 or chain.damping == 0 or chain.stiffness == chain.box == 0:
         return 1.0
@@ -84,7 +82,6 @@ def _width_in_box(chain: Chain) -> float:
 
 def default_time_step(chain: Chain) -> float:
     """Return a step that resolves spring, damping and, for e != 1, the noise; see the module."""
-    chain.require_known("the default time step", knows)
     lightest = chain.rod_masses[:2].min()
     fastest = max(spring_rate(chain), chain.damping / lightest)
     if fastest == 0:
@@ -123,7 +120,6 @@ def time_step_error(
     ``velocity_width`` is that of a light rod, or m W_v of a heavier one over the mass of a light
     one, whichever is smaller.
     """
-    chain.require_known("the time-step error", knows)
     gap, unequal = chain.lattice_gap, chain.mass_ratio != 1 or chain.box > 0
     lightest = float(chain.rod_masses[:2].min())
     restitutions = [chain.restitution] if chain.size > 1 else []
@@ -193,7 +189,6 @@ def relaxation_time(chain: Chain) -> float:
 
 def settling_time(chain: Chain) -> float:
     """Return the relaxation time or, where nothing ties the rods, that of velocities [T]."""
-    chain.require_known("the settling time", knows)
     if chain.damping == 0:
         return math.inf
     times = [_settling_time(chain, float(mass)) for mass in chain.rod_masses[:2]]
@@ -229,7 +224,6 @@ def correlation_time(chain: Chain) -> float:
     damping. With the critical damping, displacements are correlated for twice
     :func:`relaxation_time`.
     """
-    chain.require_known("the correlation time", knows)
     if chain.damping == 0:
         return 0.0
     stiffness = _relaxing_stiffness(chain)
@@ -261,7 +255,6 @@ def first_decay(chain: Chain) -> float:
     in the middle of a cloud of the width that a free rod has, or on the lattice of the gap.
     Infinite without damping.
     """
-    chain.require_known("the first decay", knows)
     if chain.damping == 0:
         return math.inf
     width = centre_width(chain)
@@ -275,7 +268,6 @@ def first_decay(chain: Chain) -> float:
 
 def typical_speed(chain: Chain, duration: float, y: Array, v: Array) -> float:
     """Upper estimate of the speed that noise and the start's own energy give a rod [R/T]."""
-    chain.require_known("the typical speed", knows)
     lightest = chain.rod_masses[:2].min()
     heating = min(duration, lightest / (2 * chain.damping) if chain.damping else np.inf)
     noise = chain.amplitude / lightest * np.sqrt(heating)
@@ -285,7 +277,6 @@ def typical_speed(chain: Chain, duration: float, y: Array, v: Array) -> float:
 
 def start_swing(chain: Chain, duration: float, y: Array, v: Array) -> float:
     """Largest displacement of a free rod with the start's energy, in this time if unbound [R]."""
-    chain.require_known("the swing of a start", knows)
     if chain.box:
         return chain.box
     displacement = y - chain.reduced_anchors

@@ -3,33 +3,28 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from contextlib import nullcontext
 from typing import Any
 
-import numpy as np
-from loky import cpu_count
 import xarray as xr
+from loky import cpu_count
 from numpy.typing import ArrayLike
 
 from crazybilliards.model import Chain
-from crazybilliards.model.warn import warn_user
 from crazybilliards.model.checks import check_integer, check_path, check_real
-from crazybilliards.model.grid import deposit
 from crazybilliards.model.process import announced
 from crazybilliards.model.randomness import Seed, seed_of
-from crazybilliards.particles.dynamics import Stepper, make_dynamics
-from crazybilliards.particles.laws.avalanche import make_tally
-from crazybilliards.particles.laws.law import EXACT, Method, make_scratch
-from crazybilliards.particles.noise import make_noise
-from crazybilliards.particles.observers import Observer, find_observers
-from crazybilliards.particles.run import Run
-from crazybilliards.particles.running.checkpoint import Checkpoint, identity
+from crazybilliards.model.warn import warn_user
+from crazybilliards.particles.dynamics import Stepper
+from crazybilliards.particles.laws.law import Method
+from crazybilliards.particles.observers import Observer, check_observers, find_observers
+from crazybilliards.particles.run import Average, Run
+from crazybilliards.particles.running.checkpoint import Checkpoint
 from crazybilliards.particles.running.collecting import collect
-from crazybilliards.particles.running.replica import Replica
+from crazybilliards.particles.running.replica import make_replicas
 from crazybilliards.particles.running.threads import run_all
-from crazybilliards.particles.schedule import Average
-from crazybilliards.particles.stepping import advance
+from crazybilliards.particles.stepping import compile_kernels
 
 
 class ShortRunWarning(UserWarning):
@@ -129,8 +124,7 @@ def simulate(
     checkpoint
         File for the state of the run, written every ``checkpoint_interval`` seconds and at
         Ctrl-C, SIGTERM or SIGHUP. The same call again continues from there and gives the same
-        bits, also with a longer ``duration``, unless it is an ensemble. A checkpoint of another
-        run, or one that another process is using, is refused.
+        bits. A checkpoint of another call, or one that another process is using, is refused.
     progress
         Show a progress bar with the time left, on a terminal or in a notebook. A text stands in
         front of it, to tell runs apart.
@@ -168,9 +162,8 @@ def simulate(
     >>> run.velocity_width.dims, run.attrs["status"]
     (('particle',), 'completed')
     """
-    seed = seed_of(seed)
     checkpoint_interval = check_real("checkpoint_interval", checkpoint_interval)
-    kept = None if checkpoint is None else check_path("checkpoint", checkpoint)
+    path = None if checkpoint is None else check_path("checkpoint", checkpoint)
     threads = check_integer("threads", cpu_count() if threads is None else threads, least=1)
     run = make_run(
         chain,
@@ -180,7 +173,7 @@ def simulate(
         method=method,
         stepper=stepper,
         merging=merging,
-        seed=seed,
+        seed=seed_of(seed),
         observe=observe,
         start=start,
         particles=particles,
@@ -188,20 +181,16 @@ def simulate(
         average=average,
         every=every,
     )
-    if run.too_short:
-        warn_user(run.too_short, ShortRunWarning)
     if run.stays_at_rest:
         warn_user("amplitude=0 and a start at rest: nothing will move")
+    elif run.too_short:
+        warn_user(run.too_short, ShortRunWarning)
     copies = make_replicas(run)
     with announced(bool(progress)):
-        compile_kernels([run])
-    keeper = None
-    if kept is not None:
-        # In an ensemble only the last replicas of each group are at hand.
-        longer = None if run.schedule.ensemble else run
-        keeper = Checkpoint(kept, identity(run), checkpoint_interval, longer)
-    with nullcontext() if keeper is None else keeper.resumed(copies):
-        interrupted = run_all(copies, threads, keeper, progress)
+        compile_kernels({run.exact})
+    state = None if path is None else Checkpoint(path, run, checkpoint_interval)
+    with nullcontext() if state is None else state.resumed(copies):
+        interrupted = run_all(copies, threads, state, progress)
     return collect(run, copies, interrupted)
 
 
@@ -213,36 +202,6 @@ def make_run(chain: Chain, *, observe: Any, **arguments: Any) -> Run:
     ValueError
         For a wrong argument, or if the run would not fit into memory.
     """
-    return Run(chain=chain, observers=find_observers(observe), **arguments)
-
-
-def make_replicas(run: Run) -> list[Replica]:
-    """Distribute the replicas over groups, each with observers of its own."""
-    streams = run.streams()
-    dynamics = run.dynamics()
-    return [
-        Replica(
-            run.schedule,
-            dynamics,
-            [run.starts[i] for i in members],
-            [streams[i] for i in members],
-            [observer.prepared(run, members.size) for observer in run.observers],
-            np.zeros(run.schedule.blocks, dtype=np.int64),
-        )
-        for members in np.array_split(np.arange(run.replicas), run.groups)
-    ]
-
-
-def compile_kernels(runs: Iterable[Run] = ()) -> None:
-    """Compile the kernels of some runs, or load them from numba's cache; no runs: all kernels.
-
-    Chains whose motion is known exactly need few of them, which take a sixth of the time.
-    """
-    flights = {run.dynamics().law.operator == EXACT for run in runs} or {True, False}
-    y, v = np.zeros((2, 2))
-    state = y, v, make_noise(np.random.SeedSequence(0))
-    for flight in flights:
-        # Counting collisions compiles event_driven.drift and everything that the others need.
-        dynamics = make_dynamics(Chain(size=2), 0.1, speed=1.0, counted=not flight)
-        advance(*state, dynamics, make_scratch(2), make_tally(2, contacts=True), 1)
-    deposit(y, -1.0, 0.1, np.zeros(30))
+    run = Run(chain=chain, observers=find_observers(observe), **arguments)
+    check_observers(run)
+    return run

@@ -106,7 +106,7 @@ def _states(start: xr.Dataset) -> list[Array]:
         raise ValueError(
             "start must be a result with position and velocity, which given_start(chain, position) "
             f"and equilibrium_states(chain, replicas) return, got {shown(found or start)}; "
-            "None is rest, and a run is made longer by its checkpoint"
+            "None is rest"
         )
     for name in names:
         dims = start[name].dims

@@ -20,20 +20,23 @@ then the drift. It is of first order: a free rod without a spring has
 W^2 = (T/m)/(1 - gamma dt/2m).
 """
 
+from collections.abc import Iterable
+
 import numpy as np
 
-from crazybilliards.model import spring
+from crazybilliards.model import Chain, spring
 from crazybilliards.model.arrays import Array
+from crazybilliards.model.grid import deposit
 from crazybilliards.model.kernels import copy, inlined, kernel
-from crazybilliards.particles.dynamics import Dynamics
+from crazybilliards.particles.dynamics import Dynamics, make_dynamics
 from crazybilliards.particles.laws import unequal
-from crazybilliards.particles.laws.avalanche import Tally
+from crazybilliards.particles.laws.avalanche import Tally, make_tally
 from crazybilliards.particles.laws.closed_contacts import find_clusters, strengthen
 from crazybilliards.particles.laws.exact_flight import propagate
-from crazybilliards.particles.laws.law import EXACT, Scratch, drift
+from crazybilliards.particles.laws.law import EXACT, Scratch, drift, make_scratch
 from crazybilliards.particles.laws.sort import sort_pairs
 from crazybilliards.particles.laws.walls import fold
-from crazybilliards.particles.noise import Noise, fill
+from crazybilliards.particles.noise import Noise, fill, make_noise
 
 FIRST, WHOLE, LAST = range(3)  # parts of a kick
 
@@ -233,3 +236,18 @@ def advance(
     last = np.empty((2, 1, y.size))
     valid, collisions = record(y, v, noise, dynamics, scratch, tally, steps, *last)
     return collisions if valid else -1
+
+
+def compile_kernels(flights: Iterable[bool] = (True, False)) -> None:
+    """Compile the kernels, or load them from numba's cache.
+
+    ``flights``: whether the motions of the chains are known exactly. Such chains need few of the
+    kernels, which take a sixth of the time.
+    """
+    y, v = np.zeros((2, 2))
+    state = y, v, make_noise(np.random.SeedSequence(0))
+    for exact in set(flights):
+        # Counting collisions compiles event_driven.drift and everything that the others need.
+        dynamics = make_dynamics(Chain(size=2), 0.1, speed=1.0, counted=not exact)
+        advance(*state, dynamics, make_scratch(2), make_tally(2, contacts=True), 1)
+    deposit(y, -1.0, 0.1, np.zeros(30))

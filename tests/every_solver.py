@@ -28,7 +28,7 @@ from crazybilliards.kinetic import (
     rod_by_rod,
 )
 from crazybilliards.model import Chain
-from crazybilliards.particles import simulate, simulate_limit
+from crazybilliards.particles import simulate
 
 Along = Callable[[np.ndarray], np.ndarray]
 
@@ -144,9 +144,4 @@ SOLVERS = {
     "simulate": _run(),
     "simulate, contact dynamics": _run(method="contact-dynamics"),
     "simulate, euler": _run(stepper="euler"),
-    "simulate_limit": Solver(
-        lambda chain, given: simulate_limit(
-            chain, accuracy=0.1, warmup=given.warmup, observe=("widths", "density"), progress=False
-        )
-    ),
 }

@@ -29,12 +29,11 @@ FLOORS = {
     "particles": (
         {"scales", "noise", "laws"},
         {"dynamics", "stepping"},
-        {"schedule", "start"},
+        {"start", "timing"},
         {"run"},
         {"observers"},
         {"running"},
         {"simulation"},
-        {"limit"},
     ),
     "kinetic": (
         {"accuracy", "requirements"},
@@ -53,7 +52,7 @@ FLOORS = {
     ),
     "reproduction": (
         {"claims", "fits", "mirror_images"},
-        {"chains", "distributions", "power_laws", "vanishing_step"},
+        {"chains", "distributions", "power_laws"},
         {"predictions"},
         {"figures"},
         {"reproducible"},

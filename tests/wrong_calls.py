@@ -21,7 +21,6 @@ cb.Chain(nonsense=3) | 'nonsense'; it takes by name size, restitution, amplitude
 cb.simulate(chain, chain=chain) | simulate: multiple values for argument 'chain'
 cb.Density(-3) | reach must be positive, got -3
 cb.simulate(chain, observe=cb.Density(reach=1e12)) | reach=1e+12 is too large for a grid
-cb.simulate_limit(chain, accuracy=0.1, replicas=10**400) | replicas must be an integer from 1 to
 cb.compare_elastic | any more: compare(chain, {'amplitude': [1, 3, 10, 30]})
 cb.animate | any more: film(tree) films what compare_relaxation returns
 cb.fit_growth | ; from crazybilliards.reproduction.fits import fit_growth
@@ -50,7 +49,6 @@ cb.simulate(chain, time=3) | did you mean 'duration'?
 cb.simulate(chain, steps=3) | did you mean 'duration'?
 cb.simulate(chain, T=3) | did you mean 'duration'?
 cb.simulate(chain, n=3) | size is an argument of Chain
-cb.simulate_limit(chain, duration=3) | did you mean 'accuracy'?
 cb.hydrodynamics(chain, exact, 1, frame="lagrangian") | did you mean 'label'?
 cb.TimeCorrelations(every=3) | every is an argument of simulate
 cb.overlay({"a": run}, "W_v") | did you mean 'velocity_width'?

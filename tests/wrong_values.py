@@ -59,8 +59,6 @@ cb.simulate(walled, observe="walls", method="contact-dynamics") | 'walls' needs 
 cb.simulate(walled, observe="walls", average="ensemble") | 'walls' is averaged over time only
 cb.simulate(walled, observe="avalanches") | 'avalanches'...does not know the chain's box
 cb.simulate(sorts, observe="triggered-collisions") | does not know the chain's mass_ratio
-cb.simulate_limit(walled) | simulate_limit does not know the chain's box: it must be 0...got 12
-cb.simulate_limit(sorts) | simulate_limit does not know the chain's mass_ratio
 cb.simulate(chain, particles="12") | particles must be a list
 cb.simulate(chain, particles=(6,)) | particles must ascend
 cb.simulate(chain, particles=(3, 2)) | particles must ascend
@@ -70,14 +68,6 @@ cb.simulate(chain, average="ensemble", duration=3, every=5) | every must be at m
 cb.simulate(chain, average="ensemble", duration=3, observe="snapshots", every=1e-30) | too small
 cb.simulate(chain, average="ensemble", duration=5.0, every=1e-9) | every = 1e-09 is too small
 cb.simulate(chain, average="ensemble", duration=1e8, every=1e-3, observe="snapshots") | GiB
-cb.simulate_limit(chain, accuracy=0.5) | accuracy must lie between 1e-4 and 0.1
-cb.simulate_limit(chain, replicas=0) | replicas must be
-cb.simulate_limit(chain, warmup=-1.0) | warmup must be
-cb.simulate_limit(chain, observe=("widths", "snapshots")) | 'snapshots' is not known to have a limit
-cb.simulate_limit(chain, observe=("widths", "impacts")) | 'impacts' is not known to have a limit
-cb.simulate_limit(chain, particles=[99]) | particles must ascend
-cb.simulate_limit(cb.Chain(amplitude=0)) | needs damping and amplitude
-cb.simulate_limit(cb.Chain(size=3_000_000), observe=("widths", "velocities")) | GiB
 cb.simulate(cb.Chain(size=10**9), replicas=10**9) | would take...GiB of memory
 cb.simulate(chain, replicas=10**12) | would take...GiB of memory
 cb.simulate(cb.Chain(size=10**7), observe="velocities") | would take...GiB of memory

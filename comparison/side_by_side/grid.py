@@ -33,7 +33,8 @@ from crazybilliards.model.parameters import WALLS_AND_MASSES
 from crazybilliards.model.process import announced
 from crazybilliards.model.progress import waiting_for
 from crazybilliards.model.randomness import Seed, seed_of
-from crazybilliards.particles.simulation import compile_kernels, make_run
+from crazybilliards.particles.simulation import make_run
+from crazybilliards.particles.stepping import compile_kernels
 
 Folder = str | os.PathLike[str]
 
@@ -182,7 +183,7 @@ def _computed(
         status, failed = "completed", {}
         with announced(progress):
             simulated = [found[SIMULATION] for found in cases.values()]
-            compile_kernels(make_run(case.chain, **case.settings) for case in simulated)
+            compile_kernels(make_run(case.chain, **case.settings).exact for case in simulated)
         try:
             failed = run_cases(every, place, pool, threads=threads, progress=progress)
         except KeyboardInterrupt:

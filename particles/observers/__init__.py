@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Collection
 
-from crazybilliards.model.checks import is_list, meant, nearest, shown
+from crazybilliards.model.checks import check_choice, is_list, shown
 from crazybilliards.particles.observers.avalanches import Avalanches, TriggeredCollisions
 from crazybilliards.particles.observers.base import Observer
 from crazybilliards.particles.observers.collisions import Collisions
@@ -21,6 +21,7 @@ from crazybilliards.particles.observers.time_correlations import TimeCorrelation
 from crazybilliards.particles.observers.velocities import Velocities
 from crazybilliards.particles.observers.walls import Walls
 from crazybilliards.particles.observers.widths import Widths
+from crazybilliards.particles.run import Run
 
 OBSERVERS: dict[str, type[Observer]] = {
     observer.name: observer
@@ -44,31 +45,45 @@ OBSERVERS: dict[str, type[Observer]] = {
 
 def find_observers(observe: str | Observer | Collection[str | Observer]) -> tuple[Observer, ...]:
     """Return the observers for the argument ``observe``, each name once."""
-    if isinstance(observe, str | Observer):
-        observe = [observe]
-    elif not is_list(observe):
-        raise ValueError(
-            f"observe takes a list of names or observers, got {shown(observe)}{_made(observe)}"
-        )
-    for each in observe:
-        if not isinstance(each, str | Observer):
-            raise ValueError(f"observe takes names and observers, got {shown(each)}{_made(each)}")
-        if isinstance(each, Observer) and not hasattr(each, "name"):
-            raise ValueError(f"observe: {type(each).__name__} must have a name")
-        if isinstance(each, str) and each not in OBSERVERS:
-            given = {name: of for of, observer in OBSERVERS.items() for name in observer.gives}
-            near = nearest(each, [*OBSERVERS, *given])
-            way = f"; {given[near]!r} gives {near!r}" if near in given else meant(each, OBSERVERS)
-            names = f"{tuple(sorted(OBSERVERS))} or a list of them"
-            raise ValueError(f"observe takes any of {names}, got {shown(each)}{way}")
-    if len(observe) == 0:
-        raise ValueError(f"observe must name at least one of {sorted(OBSERVERS)}")
+    names = [observe] if isinstance(observe, str | Observer) else observe
+    if not is_list(names) or len(names) == 0:
+        raise ValueError(f"observe takes a list of names or observers, got {shown(observe)}")
     return tuple(
-        OBSERVERS[each]() if isinstance(each, str) else each for each in dict.fromkeys(observe)
+        each
+        if isinstance(each, Observer)
+        else OBSERVERS[check_choice("observe", each, OBSERVERS)]()
+        for each in dict.fromkeys(names)
     )
 
 
-def _made(kind: object) -> str:
-    """Return how to make an observer of a class that was given in its place, or nothing."""
-    right = isinstance(kind, type) and issubclass(kind, Observer)
-    return f"; {kind.__name__}() makes one" if right else ""  # type: ignore[attr-defined]
+def check_observers(run: Run) -> None:
+    """Raise if an observer cannot work in this run, or if two report the same variable."""
+    owners: dict[str, Observer] = {}
+    for observer in run.observers:
+        if run.chain.size < observer.least_rods:
+            raise ValueError(
+                f"observe: {observer.name!r} needs a chain of at least {observer.least_rods} rods"
+            )
+        if run.ensemble and not observer.ensemble:
+            raise ValueError(
+                f"observe: {observer.name!r} is averaged over time only, not over an ensemble"
+            )
+        if observer.meets_walls and not run.chain.box:
+            raise ValueError(
+                f"observe: {observer.name!r} needs a chain between walls, Chain(box=...)"
+            )
+        if (observer.single_collisions or observer.meets_walls) and run.method != "event-driven":
+            raise ValueError(
+                f"observe: {observer.name!r} needs single collisions, which only "
+                "method='event-driven' sees"
+            )
+        # The times of an ensemble are the same for all observers.
+        names = {*observer.gives, *observer.along} - ({"time"} if run.ensemble else set())
+        for name in sorted(names):
+            other = owners.setdefault(name, observer)
+            common = name == "time" and observer.shares_time and other.shares_time
+            if other is not observer and not common:
+                raise ValueError(
+                    f"observe: {other.name!r} and {observer.name!r} would both give {name!r}; "
+                    "take one of them"
+                )

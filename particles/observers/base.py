@@ -10,7 +10,7 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from copy import copy
-from types import BuiltinFunctionType, FunctionType, NoneType
+from types import NoneType
 from typing import Any, ClassVar, NamedTuple, Self
 
 import numpy as np
@@ -19,17 +19,14 @@ from numpy.typing import ArrayLike, NDArray
 from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array
 from crazybilliards.particles.laws.avalanche import Tally
-from crazybilliards.particles.observers.declared import check_declarations
 from crazybilliards.particles.observers.error_bars import jackknife
 from crazybilliards.particles.run import Run
-from crazybilliards.particles.schedule import Schedule
 
 Integers = NDArray[np.int64]
 Variables = dict[str, tuple[tuple[str, ...], ArrayLike]]
 
-_KEPT = (np.ndarray, np.generic, int, float, complex, str)  # what a checkpoint can hold
-# What never changes and is made anew for the same run: by the constructor or by ``prepare``.
-_CONSTANT = (NoneType, Chain, Run, Schedule, FunctionType, BuiltinFunctionType, np.ufunc, type)
+# Attributes of an observer that never change. A checkpoint does not keep them.
+_CONSTANT = (NoneType, Chain, Run, Callable)
 
 
 class Snapshots(NamedTuple):
@@ -67,8 +64,6 @@ class Observer(ABC):
         Whether it needs every single collision, not only snapshots.
     ensemble
         Whether it can be averaged over replicas at equal times.
-    limit
-        Whether it reports averages that have a limit of a vanishing time step.
     shares_time
         Whether it has the times of all snapshots if another observer has them too.
     meets_walls
@@ -87,17 +82,10 @@ class Observer(ABC):
     least_rods: ClassVar[int] = 1
     single_collisions: ClassVar[bool] = False
     ensemble: ClassVar[bool] = True
-    limit: ClassVar[bool] = True
     shares_time: ClassVar[bool] = False
     meets_walls: ClassVar[bool] = False
     reads_chain: ClassVar[bool] = True
     knows: ClassVar[frozenset[str]] = frozenset()
-
-    def __init_subclass__(cls, **keywords: Any) -> None:
-        """Check what the class declares, unless it has no name and is a base of others."""
-        super().__init_subclass__(**keywords)
-        if hasattr(cls, "name"):
-            check_declarations(cls)
 
     def __str__(self) -> str:
         """Return the name and, if there are any, the parameters."""
@@ -119,38 +107,20 @@ class Observer(ABC):
         """Make the arrays for the sums, for a run and the number of replicas that share it."""
 
     def prepared(self, run: Run, copies: int) -> Self:
-        """Return an observer with the same parameters, prepared.
+        """Return an observer with the same parameters, prepared."""
+        observer = copy(self)
+        observer.prepare(run, copies)
+        return observer
 
-        Raises
-        ------
-        TypeError
-            If it has an attribute that a checkpoint cannot hold. It would be wrong when resumed.
+    def state(self) -> dict[str, Any]:
+        """Return the attributes that a checkpoint keeps: all but constants.
+
+        They must be arrays, numbers or texts. This includes a few small ones that never change, so
+        that none can be forgotten.
         """
-        fresh = copy(self)
-        fresh.prepare(run, copies)
-        fresh.state()
-        return fresh
-
-    def state(self) -> dict[str, ArrayLike]:
-        """Return the attributes that a checkpoint keeps: all that are arrays, numbers or text.
-
-        This includes a few small ones that never change, so that none can be forgotten.
-
-        Raises
-        ------
-        TypeError
-            If an attribute is neither one of these nor a constant.
-        """
-        kept = {}
-        for name, value in vars(self).items():
-            if _is_kept(value):
-                kept[name] = value
-            elif not _is_constant(value):
-                raise TypeError(
-                    f"{self.name}: {name} must be an array or a number, which a checkpoint can "
-                    f"hold, got {type(value).__name__}"
-                )
-        return kept
+        return {
+            name: value for name, value in vars(self).items() if not isinstance(value, _CONSTANT)
+        }
 
     def tally(self, tally: Tally) -> Tally:
         """Return the record of single collisions, with the arrays of this observer if any."""
@@ -190,7 +160,7 @@ class Averaged(Observer):
     The joined shape is then (groups, times, ...), and averages are over groups.
     """
 
-    schedule: Schedule
+    run: Run
     sums: Array
 
     def shape(self, run: Run) -> tuple[int, ...]:
@@ -199,12 +169,12 @@ class Averaged(Observer):
 
     def memory(self, run: Run) -> float:
         """Return the bytes of the sums."""
-        return 8.0 * run.schedule.blocks * math.prod(self.shape(run))
+        return 8.0 * run.blocks * math.prod(self.shape(run))
 
     def prepare(self, run: Run, copies: int) -> None:
         """Make the sums."""
-        self.schedule = run.schedule
-        self.sums = np.zeros((run.schedule.blocks, *self.shape(run)))
+        self.run = run
+        self.sums = np.zeros((run.blocks, *self.shape(run)))
 
     def merge(self) -> None:
         """Add up the sums of neighbouring blocks."""
@@ -213,14 +183,14 @@ class Averaged(Observer):
     def join(self, others: Sequence[Self]) -> None:
         """Append the blocks of other replicas, or the groups."""
         parts = [self.sums, *(other.sums for other in others)]
-        self.sums = np.stack(parts) if self.schedule.ensemble else np.concatenate(parts)
+        self.sums = np.stack(parts) if self.run.ensemble else np.concatenate(parts)
 
     def averages(
         self, quantities: Mapping[str, Callable[[Array], Array]], counts: Integers, *dimensions: str
     ) -> Variables:
         """Return every quantity, which is a function of the averaged sums, and its error."""
         sums = self.sums
-        if self.schedule.ensemble:
+        if self.run.ensemble:
             # Times at the end that not every group reached are left out.
             dimensions, sums = ("time", *dimensions), sums[:, : counts.shape[1]]
         variables: Variables = {}
@@ -231,20 +201,6 @@ class Averaged(Observer):
         return variables
 
 
-def _is_kept(value: object) -> bool:
-    """Return whether a checkpoint can hold it; an array of objects would be pickled."""
-    return isinstance(value, _KEPT) and not getattr(value, "dtype", np.dtype(float)).hasobject
-
-
-def _is_constant(value: object) -> bool:
-    if isinstance(value, tuple | frozenset):  # a tuple of arrays is none: they may change
-        return all(
-            _is_constant(each) or (_is_kept(each) and not isinstance(each, np.ndarray))
-            for each in value
-        )
-    return isinstance(value, _CONSTANT)
-
-
 def merge_pairs(blocks: NDArray[Any]) -> None:
     """Add up neighbours along the first axis in place; the second half is then free, and 0."""
     half = len(blocks) // 2
@@ -253,22 +209,11 @@ def merge_pairs(blocks: NDArray[Any]) -> None:
 
 
 def restore(owner: Any, name: str, value: NDArray[Any]) -> None:
-    """Set an attribute to a restored value; an array stays an array, a number a number.
-
-    The array of a longer run may be longer, as that of all snapshots is. Its rest stays as it is.
-    """
+    """Set an attribute to a restored value; an array stays an array, a number a number."""
     current = getattr(owner, name)
     if isinstance(current, np.ndarray):
-        place = leading(current, value)
-        if place is None or current.dtype != value.dtype:
+        if current.shape != value.shape or current.dtype != value.dtype:
             raise ValueError(f"the checkpoint's {name} does not fit this run")
-        place[...] = value  # in place: kernels write into the same array
+        current[...] = value  # in place: kernels write into the same array
     else:
         setattr(owner, name, type(current)(value))
-
-
-def leading(longer: NDArray[Any], shorter: NDArray[Any]) -> NDArray[Any] | None:
-    """Return the first places of ``longer``, of the shape of ``shorter``; None if it has not."""
-    if longer.ndim != shorter.ndim or any(np.less(longer.shape, shorter.shape)):
-        return None
-    return longer[tuple(slice(size) for size in shorter.shape)]

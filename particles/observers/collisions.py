@@ -23,6 +23,6 @@ class Collisions(Averaged):
         self.sums[snapshots.block, :-1] += snapshots.collisions
 
     def report(self, counts: Integers) -> Variables:
-        interval = self.schedule.stride * self.schedule.time_step
+        interval = self.run.every
         rate = {"collision_rate": lambda average: average / interval}
         return self.averages(rate, counts, "particle")

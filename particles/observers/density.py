@@ -7,9 +7,9 @@ from typing import Self
 
 import numpy as np
 
-from crazybilliards.model.warn import warn_user
 from crazybilliards.model.checks import check_real
 from crazybilliards.model.grid import deposit, position_grid, thermal_reach
+from crazybilliards.model.warn import warn_user
 from crazybilliards.particles.observers.base import Array, Averaged, Integers, Snapshots, Variables
 from crazybilliards.particles.run import Run
 
@@ -18,7 +18,7 @@ _TAIL, _WIDTHS = 40.0, 8.0  # of the energy, in T; of a displacement, in standar
 
 def _reach(run: Run) -> float:
     """Distance from its anchor that hardly any rod exceeds [R]."""
-    chain, time = run.chain, run.schedule.warmup + run.schedule.duration
+    chain, time = run.chain, run.warmup + run.duration
     thermal = thermal_reach(chain)
     if not np.isfinite(thermal):
         # Without damping or springs rods are heated, or spread, for the whole run.
@@ -89,7 +89,7 @@ class Density(Averaged):
             )
         spacing = self.spacing
         variables = self.averages({"density": lambda average: average / spacing}, counts, "x")
-        if self.schedule.ensemble:
+        if self.run.ensemble:
             # In an interrupted run a group has no density at times that it did not reach: NaN.
             known = np.where(counts > 0, counts, np.nan)[..., np.newaxis]
             means = self.sums[:, : counts.shape[-1]] / (known * spacing)

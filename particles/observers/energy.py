@@ -42,15 +42,15 @@ class Energy(Observer):
     knows = WALLS_AND_MASSES
 
     def prepare(self, run: Run, copies: int) -> None:
-        self.schedule = run.schedule
+        self.run = run
         self.every, self.together = self._keeps_every(run), 1
         self.chain = run.chain
-        times = run.schedule.snapshots if self.every else _MOST_TIMES
+        times = run.snapshots if self.every else _MOST_TIMES
         self.sums = np.zeros((1, times, 2))  # of the rods and of the springs
         self.counts = np.zeros((1, times), dtype=np.int64)
 
     def memory(self, run: Run) -> float:
-        return 24.0 * (run.schedule.snapshots if self._keeps_every(run) else _MOST_TIMES)
+        return 24.0 * (run.snapshots if self._keeps_every(run) else _MOST_TIMES)
 
     def observe(self, snapshots: Snapshots) -> None:
         relative = self.chain.rod_masses / self.chain.mass
@@ -69,13 +69,13 @@ class Energy(Observer):
         self.counts = np.concatenate([self.counts, *(other.counts for other in others)])
 
     def report(self, counts: Integers) -> Variables:
-        if self.schedule.ensemble:
+        if self.run.ensemble:
             energies, numbers = self.sums[:, : counts.shape[1]], counts
         else:
             reached = self._reached()
             energies, numbers = self.sums[:, reached], self.counts[:, reached]
         value, error = jackknife(_with_total, energies, numbers)
-        if not self.schedule.ensemble:
+        if not self.run.ensemble:
             unknown = (numbers == 0).any(axis=0)
             value[unknown] = error[unknown] = np.nan
         variables: Variables = {}
@@ -87,9 +87,9 @@ class Energy(Observer):
 
     def coordinates(self) -> dict[str, Array]:
         first = np.arange(self.counts.shape[1]) * self.together
-        # schedule.times would take too much memory in a long run.
+        # run.times would take too much memory in a long run.
         together = self.counts.sum(axis=0) / np.maximum((self.counts > 0).sum(axis=0), 1)
-        times = self.schedule.time(first + (together - 1) / 2)
+        times = self.run.time(first + (together - 1) / 2)
         return {"time": times[self._reached()]}
 
     def _reached(self) -> NDArray[np.bool_]:
@@ -100,7 +100,7 @@ class Energy(Observer):
     @staticmethod
     def _keeps_every(run: Run) -> bool:
         shared = sum(observer.shares_time for observer in run.observers) > 1
-        return run.schedule.ensemble or shared
+        return run.ensemble or shared
 
 
 def _with_total(energies: Array) -> Array:

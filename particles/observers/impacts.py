@@ -94,7 +94,7 @@ class Impacts(Averaged):
         self.current = make_impacts(run.chain.size)
         scale = run.chain.free_velocity_width
         if not 0 < scale < np.inf:
-            step = run.schedule.time_step
+            step = run.time_step
             scale = max(typical_speed(run.chain, step, y, v) for y, v in run.starts) or 1.0
         edges = FINEST * scale * np.sinh(np.linspace(0, LAST, self.bins + 1))
         self.edges, self.met = make_speeds(run.chain.size - 1, edges)
@@ -111,7 +111,7 @@ class Impacts(Averaged):
         self.met = self.met + sum(other.met for other in others)
 
     def report(self, counts: Integers) -> Variables:
-        per_time = self.mass / (self.schedule.stride * self.schedule.time_step)
+        per_time = self.mass / self.run.every
 
         def rebound(average: Array) -> Array:
             merged = (average[MOMENTUM_AFTER] == 0) & (average[MOMENTUM_BEFORE] > 0)

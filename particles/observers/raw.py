@@ -26,18 +26,17 @@ class Raw(Observer):
     name = "snapshots"
     gives = ("position", "velocity")
     along = ("time",)
-    limit = False
     shares_time = True
     reads_chain = False
 
     def prepare(self, run: Run, copies: int) -> None:
-        self.schedule = run.schedule
+        self.run = run
         self.chosen = run.chosen
         self.offsets = run.chain.physical(np.zeros(run.chain.size))[run.chosen]
-        self.y, self.v = np.full((2, copies, run.schedule.times.size, run.chosen.size), np.nan)
+        self.y, self.v = np.full((2, copies, run.times.size, run.chosen.size), np.nan)
 
     def memory(self, run: Run) -> float:
-        return 16.0 * run.chosen.size * run.schedule.snapshots * run.copies
+        return 16.0 * run.chosen.size * run.snapshots * run.copies
 
     def observe(self, snapshots: Snapshots) -> None:
         place = slice(snapshots.first, snapshots.first + len(snapshots.y))
@@ -50,14 +49,14 @@ class Raw(Observer):
 
     def report(self, counts: Integers) -> Variables:
         dimensions = ("replica", "time", "particle")
-        reached = slice(counts.shape[1]) if self.schedule.ensemble else self._reached()
+        reached = slice(counts.shape[1]) if self.run.ensemble else self._reached()
         return {
             "position": (dimensions, self.y[:, reached] + self.offsets),
             "velocity": (dimensions, self.v[:, reached]),
         }
 
     def coordinates(self) -> dict[str, Array]:
-        return {"time": self.schedule.times[self._reached()]}
+        return {"time": self.run.times[self._reached()]}
 
     def _reached(self) -> NDArray[np.bool_]:
         return np.asarray(np.isfinite(self.v).any(axis=(0, 2)))

@@ -7,10 +7,10 @@ import math
 import numpy as np
 
 from crazybilliards.model import Chain
-from crazybilliards.model.warn import warn_user
 from crazybilliards.model.checks import check_integer, check_real
 from crazybilliards.model.kernels import kernel
 from crazybilliards.model.parameters import WALLS_AND_MASSES
+from crazybilliards.model.warn import warn_user
 from crazybilliards.particles.observers.base import Array, Averaged, Integers, Snapshots, Variables
 from crazybilliards.particles.observers.modes import momentum_weights
 from crazybilliards.particles.run import Run
@@ -104,7 +104,6 @@ class TimeCorrelations(Averaged):
     name = "time-correlations"
     gives = tuple(f"{of}{name}" for of in ("", "wave_", "centre_") for name in _QUANTITIES)
     along = ("lag", "frequency", "wave")
-    limit = False
     knows = WALLS_AND_MASSES
 
     def __init__(
@@ -122,10 +121,9 @@ class TimeCorrelations(Averaged):
 
     def _plan(self, run: Run) -> tuple[int, int]:
         """Return the number of snapshots from one lag to the next, and the number of lags."""
-        if run.schedule.ensemble:
+        if run.ensemble:
             return 1, 0
-        longest, duration = self.longest or _memory(run.chain), run.schedule.duration
-        interval = run.schedule.stride * run.schedule.time_step
+        longest, duration, interval = self.longest or _memory(run.chain), run.duration, run.every
         if self.longest is self.lags is None and longest < math.inf:
             longest = min(longest, _LAGS * interval)
         if longest < duration:
@@ -133,7 +131,7 @@ class TimeCorrelations(Averaged):
             spacing = max(math.ceil(longest / interval / lags - 1e-9), 1)
             last = max(math.ceil(longest / interval / spacing - 1e-9), 1)
             longest = spacing * last * interval  # rounded up
-            if spacing * last < run.schedule.snapshots:
+            if spacing * last < run.snapshots:
                 return spacing, last
         raise ValueError(
             f"observe: {self.name!r} needs a duration above the longest lag {longest:.4g}, got "
@@ -157,7 +155,7 @@ class TimeCorrelations(Averaged):
         self.spacing, self.last = self._plan(run)
         self.size, self.anchors, self.chosen = run.chain.size, run.chain.reduced_anchors, run.chosen
         self.weights = momentum_weights(run.chain)
-        self.spreads = run.chain.spreads and not run.schedule.ensemble
+        self.spreads = run.chain.spreads and not run.ensemble
         self.needed = _memory(run.chain)  # of a spectrum
         self.before = np.zeros((2, max(self.last, 1), self.sums.shape[-1] - 1))
 
@@ -169,7 +167,7 @@ class TimeCorrelations(Averaged):
         sums[-2, :-1] += now[1].sum(axis=0)
         sums[-1, :-1] += np.einsum("sp,sp->p", now[1], now[1])
         sums[-2:, -1] += new
-        if self.schedule.ensemble:
+        if self.run.ensemble:
             if snapshots.first == 0:
                 self.before[...] = now[:, :1]
             _add_pairs(sums, np.repeat(self.before, new, axis=1), now, 0, 0)
@@ -190,7 +188,7 @@ class TimeCorrelations(Averaged):
         """Return means (times or lags, series); NaN where there are no terms."""
         sums, numbers = average[..., rows, :-1], average[..., rows, -1:]
         means = np.divide(sums, numbers, where=numbers > 0, out=np.full_like(sums, np.nan))
-        return means[:, 0] if self.schedule.ensemble else means
+        return means[:, 0] if self.run.ensemble else means
 
     def _velocities(self, average: Array) -> Array:
         return self._means(average, slice(self.last + 1))
@@ -211,7 +209,7 @@ class TimeCorrelations(Averaged):
         return np.asarray(self._interval * dct(self._velocities(average), type=1, axis=0))
 
     def report(self, counts: Integers) -> Variables:
-        ensemble, rods = self.schedule.ensemble, self.chosen.size
+        ensemble, rods = self.run.ensemble, self.chosen.size
         quantities = self._velocities, self._displacements, self._increments, self._spectrum
         kinds = dict(zip(_QUANTITIES, quantities, strict=True))
         if ensemble:
@@ -247,7 +245,7 @@ class TimeCorrelations(Averaged):
 
     @property
     def _interval(self) -> float:
-        return self.spacing * self.schedule.stride * self.schedule.time_step
+        return self.spacing * self.run.stride * self.run.time_step
 
     @property
     def _cut_off(self) -> bool:
@@ -256,7 +254,7 @@ class TimeCorrelations(Averaged):
 
     def coordinates(self) -> dict[str, Array]:
         waves = {"wave": np.arange(self.sums.shape[-1] - 1.0 - self.chosen.size)}
-        if self.schedule.ensemble:
+        if self.run.ensemble:
             return waves
         lags = np.arange(self.last + 1.0)
         frequencies = np.pi * lags / (self.last * self._interval)

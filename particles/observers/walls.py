@@ -41,7 +41,7 @@ class Walls(Averaged):
         self.current[...] = 0  # in place: kernels write into the same array
 
     def report(self, counts: Integers) -> Variables:
-        interval = self.schedule.stride * self.schedule.time_step
+        interval = self.run.every
         quantities = {
             "wall_force": lambda sums: self.mass / interval * sums[0],
             "wall_collision_rate": lambda sums: sums[1] / interval,

@@ -51,11 +51,11 @@ class Widths(Averaged):
 
     def report(self, counts: Integers) -> Variables:
         variables = self.averages(_QUANTITIES, counts, "particle")
-        if self.schedule.ensemble:
+        if self.run.ensemble:
             return variables
         variance = np.square(variables["displacement_width"][1])
         spread = np.square(variables["mean_displacement_error"][1])
-        duration = counts.sum() * self.schedule.stride * self.schedule.time_step
+        duration = counts.sum() * self.run.stride * self.run.time_step
         # A rod that never moves has no autocorrelation time: 0.
         time = np.divide(spread * duration, 2 * variance, where=variance > 0, out=0 * variance)
         if self.spreads:

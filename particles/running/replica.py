@@ -2,28 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterator, Mapping
 from threading import Event, Lock
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from crazybilliards.model.arrays import Array
-from crazybilliards.particles.dynamics import Dynamics
 from crazybilliards.particles.laws.avalanche import Tally, make_tally
 from crazybilliards.particles.laws.law import make_scratch
 from crazybilliards.particles.noise import STATE, make_noise
-from crazybilliards.particles.observers.base import (
-    Observer,
-    Snapshots,
-    leading,
-    merge_pairs,
-    restore,
-)
+from crazybilliards.particles.observers.base import Snapshots, merge_pairs, restore
 from crazybilliards.particles.run import Run
-from crazybilliards.particles.schedule import Schedule
 from crazybilliards.particles.stepping import advance, record
 
 # Number of particle steps between two checks for Ctrl-C (about 20 ms), and the most positions in
@@ -33,51 +24,42 @@ _CHUNK, _ROOM = 2**20, 2**17
 NEVER = 2**62
 
 
-@dataclass
+def make_replicas(run: Run) -> list[Replica]:
+    """Distribute the replicas of a run over groups, each with observers of its own."""
+    groups = np.array_split(np.arange(run.replicas), run.groups)
+    return [Replica(run, members) for members in groups]
+
+
 class Replica:
     """State and measurements of one copy of the chain, or of several, one after another.
 
     In an ensemble the replicas form groups that share their observers, so that a thousand replicas
-    take no more memory than a few.
+    take no more memory than a few. ``members``: the numbers of the replicas of the group, from 0.
     """
 
-    schedule: Schedule
-    dynamics: Dynamics
-    starts: Sequence[tuple[Array, Array]]
-    streams: Sequence[np.random.SeedSequence]
-    observers: list[Observer]
-    counts: NDArray[np.int64]  # snapshots taken, block by block
-    copy: int = 0  # the one under way
-    steps: int = 0  # that it has taken
-    snapshots: int = 0  # taken of it
-    over: bool = False  # it diverged
-    reached: int = NEVER  # the first block that a diverged copy did not fill
     # Attributes that a checkpoint keeps.
-    changing: ClassVar[Any] = (
-        *("copy", "y", "v", "counts", "length", "steps", "snapshots", "over", "reached"),
-    )
-    lock: Any = field(default_factory=Lock)  # held while a chunk is under way
+    changing = ("copy", "y", "v", "counts", "length", "steps", "snapshots", "over", "reached")
 
-    def __post_init__(self) -> None:
-        self.length = self.schedule.block  # of a block, in snapshots
-        self.before_the_end: dict[str, ArrayLike] | None = None  # a state, see ``_measure``
+    def __init__(self, run: Run, members: NDArray[np.int64]) -> None:
+        self.run, self.members, self.dynamics = run, members, run.dynamics
+        self.observers = [observer.prepared(run, members.size) for observer in run.observers]
+        self.counts = np.zeros(run.blocks, dtype=np.int64)  # snapshots taken, block by block
+        self.length = run.block  # of a block, in snapshots
+        self.copy = 0  # the one under way
+        self.reached = NEVER  # the first block that a diverged copy did not fill
+        self.lock = Lock()  # held while a chunk is under way
         self._start()
 
     def _start(self) -> None:
         """Set the chain to the start of the present copy."""
-        self.y, self.v = (np.array(each) for each in self.starts[self.copy])
-        self.noise = make_noise(self.streams[self.copy])
-        self.steps, self.snapshots, self.over = 0, 0, False
-
-    @property
-    def diverged(self) -> bool:
-        """Return whether any copy diverged so far."""
-        return self.reached < NEVER
+        number = self.members[self.copy]
+        self.y, self.v = (np.array(values) for values in self.run.starts[number])
+        self.noise = make_noise(self.run.streams[number])
+        self.steps = self.snapshots = 0  # that it has taken
+        self.over = False  # it diverged
 
     def state(self) -> dict[str, ArrayLike]:
-        """Return everything that changes during the run, from which a longer one can go on too."""
-        if self.before_the_end is not None:
-            return self.before_the_end
+        """Return everything that changes during the run."""
         state: dict[str, ArrayLike] = {name: getattr(self, name) for name in self.changing}
         state |= {f"noise {name}": getattr(self.noise, name) for name in STATE}
         for number, observer in enumerate(self.observers):
@@ -95,48 +77,19 @@ class Replica:
             for name in observer.state():
                 restore(observer, name, state[f"observer {number} {name}"])
 
-    def extend(self, snapshots: int) -> None:
-        """Go on up to this number of snapshots, to the bits of one run of this length."""
-        self.restore({name: np.array(value) for name, value in self.state().items()})
-        self.before_the_end = None
-        self.schedule = replace(self.schedule, snapshots=snapshots)
-
-    def require_continuing(self, shorter: Run) -> None:
-        """Raise unless the observers, which have seen nothing, continue those of a shorter run.
-
-        What both begin with may differ in the number of places for snapshots, and in nothing else.
-        Nor may the speeds at which rods merge and, for e > 1, at which they count as diverged.
-        """
-        now, before = self.dynamics, shorter.dynamics()
-        diverges = now.law.restitution > 1 and now.fastest != before.fastest
-        if diverges or now.law != before.law:
-            speed = "above which it has diverged" if diverges else "below which its rods merge"
-            raise ValueError(
-                f"the run cannot be made longer: the speed {speed} depends on the duration, "
-                "because the chain has so little damping"
-            )
-        for own, other in zip(self.observers, shorter.observers, strict=True):
-            for name, value in other.prepared(shorter, copies=1).state().items():
-                place = leading(np.asarray(own.state()[name]), np.asarray(value))
-                if place is None or place.tobytes() != np.asarray(value).tobytes():
-                    raise ValueError(
-                        f"observe: {own.name!r} cannot continue, because its {name} depends on the "
-                        "duration"
-                    )
-
     @property
     def total(self) -> float:
         """Time that the replica has to simulate, warm-up included."""
-        return len(self.starts) * self.schedule.steps * self.schedule.time_step
+        return self.members.size * self.run.steps * self.run.time_step
 
     @property
     def done(self) -> float:
         """Time that the replica has simulated."""
-        return (self.copy * self.schedule.steps + self.steps) * self.schedule.time_step
+        return (self.copy * self.run.steps + self.steps) * self.run.time_step
 
     def work(self, stop: Event) -> Iterator[float]:
         """Run and hold the lock during each chunk; yield the work ``done`` in every chunk."""
-        chunks = self.run(stop)
+        chunks = self._run(stop)
         while True:
             with self.lock:
                 before = self.done
@@ -145,12 +98,12 @@ class Replica:
                 after = self.done
             yield after - before
 
-    def run(self, stop: Event) -> Iterator[int]:
+    def _run(self, stop: Event) -> Iterator[int]:
         """Warm up and measure, copy by copy; yield the number of steps after every chunk."""
         while True:
             yield from self._warm_up(stop)
             yield from self._measure(stop)
-            if stop.is_set() or self.copy + 1 == len(self.starts):
+            if stop.is_set() or self.copy + 1 == self.members.size:
                 return
             self.copy += 1
             self._start()
@@ -158,8 +111,8 @@ class Replica:
     def _warm_up(self, stop: Event) -> Iterator[int]:
         scratch = self._scratch()
         uncounted = make_tally(self.y.size, contacts=False)
-        while self.steps < self.schedule.warmup_steps and not (self.over or stop.is_set()):
-            steps = min(self._chunk(), self.schedule.warmup_steps - self.steps)
+        while self.steps < self.run.warmup_steps and not (self.over or stop.is_set()):
+            steps = min(self._chunk(), self.run.warmup_steps - self.steps)
             if not self._advance(scratch, uncounted, steps):
                 self._diverge(0)
                 return
@@ -167,18 +120,14 @@ class Replica:
             yield steps
 
     def _measure(self, stop: Event) -> Iterator[int]:
-        schedule, chunk = self.schedule, self._chunk()
+        run, chunk = self.run, self._chunk()
         scratch, tally = self._scratch(), self._tally()
-        rows = max(min(chunk // schedule.stride, _ROOM // self.y.size), 1)
+        rows = max(min(chunk // run.stride, _ROOM // self.y.size), 1)
         y_buffer, v_buffer = np.empty((2, rows, self.y.size))
-        while self.snapshots < schedule.snapshots and not (self.over or stop.is_set()):
+        while self.snapshots < run.snapshots and not (self.over or stop.is_set()):
             block, left = self._block()
-            n = min(rows, left)
-            if schedule.snapshots - self.snapshots < n:
-                # A longer run would take this chunk as a whole, and add it up to other bits.
-                self.before_the_end = {name: np.array(each) for name, each in self.state().items()}
-                n = schedule.snapshots - self.snapshots
-            due = schedule.step_of(self.snapshots) - self.steps
+            n = min(rows, left, run.snapshots - self.snapshots)
+            due = run.step_of(self.snapshots) - self.steps
             tally.contacts[:] = 0
             if due == 0:  # the start of an ensemble
                 y_buffer[0], v_buffer[0], good, steps = self.y, self.v, 1, 0
@@ -218,7 +167,7 @@ class Replica:
 
     def _block(self) -> tuple[int, int]:
         """Return the block of the next snapshot, and how many it still needs; make room for it."""
-        if self.snapshots == self.schedule.blocks * self.length:
+        if self.snapshots == self.run.blocks * self.length:
             self.length *= 2
             merge_pairs(self.counts)
             for observer in self.observers:

@@ -14,7 +14,7 @@ from crazybilliards.particles.running.replica import Replica
 
 
 def run_all(
-    replicas: Sequence[Replica], threads: int, keeper: Checkpoint | None, progress: bool | str
+    replicas: Sequence[Replica], threads: int, checkpoint: Checkpoint | None, progress: bool | str
 ) -> bool:
     """Run the replicas in threads; return whether Ctrl-C, or a signal like it, stopped them.
 
@@ -22,6 +22,7 @@ def run_all(
     """
     stop, one_by_one = Event(), Lock()
     total = sum(replica.total for replica in replicas)
+    futures: list[Future[None]] = []
     with (
         interrupts_noted() as signals,
         progress_bar(
@@ -33,7 +34,6 @@ def run_all(
             unit_scale=True,
             bar_format="{l_bar}{bar}| {elapsed}<{remaining}, {rate_fmt}",
         ) as bar,
-        ThreadPoolExecutor(min(threads, len(replicas))) as pool,
     ):
 
         def work(replica: Replica) -> None:
@@ -42,42 +42,36 @@ def run_all(
                     # Rounded up, so that many short times never add up to less than all.
                     bar.update(min(done * (1 + 1e-9), total - bar.n))
 
-        futures: list[Future[None]] = []
         try:
-            futures.extend(pool.submit(work, replica) for replica in replicas)
-            _finish(futures, replicas, keeper, signals, stop)
-        except KeyboardInterrupt:  # from a handler that is not ours
-            signals.append(SIGINT)
-            _finish(futures, replicas, keeper, signals, stop)
-        except SystemExit:  # from such a handler of SIGTERM
-            stop.set()
-            _finish(futures, replicas, keeper, signals, stop)
-            raise
-        finally:
-            stop.set()  # otherwise leaving the block would wait for the end of the run
+            with ThreadPoolExecutor(min(threads, len(replicas))) as pool:
+                try:
+                    futures.extend(pool.submit(work, replica) for replica in replicas)
+                    _wait(futures, replicas, checkpoint, signals)
+                except KeyboardInterrupt:  # from a handler that is not ours
+                    signals.append(SIGINT)
+                finally:
+                    stop.set()  # otherwise leaving the block would wait for the end of the run
+        finally:  # also where such a handler ends the program
+            if checkpoint is not None and not any(future.exception() for future in futures):
+                checkpoint.save(replicas)
+        for future in futures:
+            future.result()
     return bool(signals)
 
 
-def _finish(
+def _wait(
     futures: list[Future[None]],
     replicas: Sequence[Replica],
-    keeper: Checkpoint | None,
+    checkpoint: Checkpoint | None,
     signals: Sequence[int],
-    stop: Event,
 ) -> None:
-    """Wait for all, or for the first failure; save checkpoints and react to signals soon."""
+    """Wait for all, for the first failure or for a signal; save checkpoints that are due."""
     timeout = min(max(0.02, 1e-4 * len(futures)), 0.5)  # to look at many futures takes time
-    if keeper is not None:
-        timeout = min(timeout, keeper.interval)
-    while True:
-        if signals:
-            stop.set()
+    if checkpoint is not None:
+        timeout = min(timeout, checkpoint.interval)
+    while not signals:
         done, pending = wait(futures, timeout=timeout, return_when=FIRST_EXCEPTION)
-        for future in done:
-            future.result()
-        if not pending:
-            break
-        if keeper is not None:
-            keeper.save_if_due(replicas)
-    if keeper is not None:
-        keeper.save(replicas)
+        if not pending or any(future.exception() for future in done):
+            return
+        if checkpoint is not None:
+            checkpoint.save_if_due(replicas)

@@ -9,7 +9,7 @@ from crazybilliards.comparison import Sweep, combine, load_sweep, overlay, smoot
 from crazybilliards.comparison.sweeps import run_cases
 from crazybilliards.kinetic import equilibrium
 from crazybilliards.model import Chain, load, save
-from crazybilliards.particles import simulate, simulate_limit
+from crazybilliards.particles import simulate
 
 QUIET = {"threads": 1, "progress": False}
 CHAIN = Chain(size=5, gap=0.3)
@@ -112,15 +112,12 @@ def test_what_cannot_be_combined_is_refused(runs):
     gap = simulate(CHAIN.replace(gap=0.4), duration=20, seed=8, **QUIET)
     some = simulate(CHAIN, duration=20, seed=8, particles=[1, 2], **QUIET)
     widths = simulate(CHAIN, duration=20, seed=8, observe="widths", **QUIET)
-    damped = CHAIN.replace(restitution=0.9)
-    limit = simulate_limit(damped, accuracy=0.1, observe="widths", **QUIET)
     for wrong, said in (
         ([one, gap], "of one chain, got .*gap=0.3.* and .*gap=0.4"),
         ([one, one], "other seeds, got 0 twice"),
         ([one, some], "have the same normalized_particle|have the same particle"),
         ([one, widths], "no 'density'"),
         ([one, equilibrium(CHAIN)], "takes results of simulate|has no"),
-        ([limit], "takes results of simulate"),
         ([smooth(one), smooth(two)], "before their densities are smoothed"),
         ([one, 3], "not a crazybilliards result: 3"),
         (one, "runs must be a list of results, .* got a Dataset"),

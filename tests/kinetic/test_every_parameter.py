@@ -5,13 +5,13 @@ call is refused with a ValueError, or the pair stands in ``MEANINGLESS`` with th
 are read from the class, and another value of each follows from its declaration.
 """
 
-import inspect
 import json
 from dataclasses import dataclass, field, fields
 from functools import cache
 
 import numpy as np
 import pytest
+from described_runs import a_run
 from every_solver import SOLVERS, Given
 from other_values import narrow_box, other_values
 from scipy.interpolate import CubicSpline
@@ -23,10 +23,9 @@ from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain
 from crazybilliards.model import chain as model_chain
 from crazybilliards.model.checks import check_real
-from crazybilliards.particles import dynamics, given_start, scales, simulate, start
+from crazybilliards.particles import dynamics, given_start, relaxation_time, scales, simulate, start
 from crazybilliards.particles.laws import law
 from crazybilliards.particles.observers import OBSERVERS, Observer
-from crazybilliards.particles.simulation import make_run
 
 CHAIN = Chain(size=4)
 START = displaced(CHAIN, 0.3)[["density", "label", "flow_velocity", "velocity_variance"]]
@@ -143,7 +142,7 @@ def differ(one, other):
 def test_every_public_solver_is_called():
     names = {name.split(",")[0] for name in SOLVERS}
     public = {*cb.kinetic.__all__} - {"UnmeasuredWarning"}
-    assert names == public | {"simulate", "simulate_limit"}
+    assert names == public | {"simulate"}
 
 
 def test_every_field_has_another_value():
@@ -244,40 +243,25 @@ def test_an_observer_refuses_what_it_does_not_know_unless_it_only_averages(
     name, all_know, monkeypatch
 ):
     box = narrow_box(3, 1.0) if OBSERVERS[name].meets_walls else 0.0
-    chain, how = Tilted(size=3, restitution=0.8, tilt=1.0, box=box), {"duration": 100, "seed": 0}
-    how |= dict.fromkeys(("time_step", "merging", "particles"))
-    make_run(chain, observe="widths", **how)
+    chain = Tilted(size=3, restitution=0.8, tilt=1.0, box=box)
+    a_run(chain, observe="widths")
     if not OBSERVERS[name].reads_chain:
-        make_run(chain, observe=name, **how)
+        a_run(chain, observe=name)
         return
     with pytest.raises(ValueError, match=f"observe: '{name}'.* does not know the chain's tilt"):
-        make_run(chain, observe=["widths", name], **how)
+        a_run(chain, observe=["widths", name])
     monkeypatch.setattr(OBSERVERS[name], "knows", {"tilt", "box"})
-    make_run(chain, observe=name, **how)
+    a_run(chain, observe=name)
 
 
 def test_an_observer_of_ones_own_refuses_it_unless_it_says_otherwise():
     assert Observer.reads_chain
 
 
-SCALES = [
-    name
-    for name, each in vars(scales).items()
-    if inspect.isfunction(each) and each.__module__ == scales.__name__ and name[0] != "_"
-]
-
-
-@pytest.mark.parametrize("name", SCALES)
-def test_every_scale_refuses_it(name):
+def test_what_is_asked_outside_of_a_run_refuses_it():
     chain = Tilted(size=3, tilt=1.0)
-    arguments = inspect.signature(getattr(scales, name)).parameters.values()
-    needed = [each for each in arguments if each.default is each.empty]
-    with pytest.raises(ValueError, match="does not know the chain's tilt"):
-        getattr(scales, name)(chain, *(np.ones(3) for _ in needed[1:]))
-
-
-def test_every_start_refuses_it():
-    chain = Tilted(size=3, tilt=1.0)
+    with pytest.raises(ValueError, match="relaxation_time does not know the chain's tilt"):
+        relaxation_time(chain)
     with pytest.raises(ValueError, match="a start does not know the chain's tilt"):
         given_start(chain, chain.anchors)
 

@@ -13,7 +13,7 @@ from filelock import FileLock
 from crazybilliards.model import kernels
 from crazybilliards.model.grid import deposit
 from crazybilliards.particles import stepping
-from crazybilliards.particles.simulation import compile_kernels
+from crazybilliards.particles.stepping import compile_kernels
 
 
 @pytest.mark.compiled

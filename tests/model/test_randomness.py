@@ -9,15 +9,12 @@ from crazybilliards.comparison import compare, compare_relaxation
 from crazybilliards.kinetic import equilibrium_states
 from crazybilliards.model import Chain
 from crazybilliards.model.randomness import seed_of
-from crazybilliards.particles import simulate, simulate_limit
+from crazybilliards.particles import simulate
 
 CHAIN = Chain(size=3)
 SHORT = {"duration": 100, "progress": False}
 FUNCTIONS = {
     "simulate": lambda **how: simulate(CHAIN, **SHORT, **how),
-    "simulate_limit": lambda **how: simulate_limit(
-        CHAIN, accuracy=0.1, threads=1, progress=False, **how
-    ),
     "equilibrium_states": lambda **how: equilibrium_states(CHAIN, 2, **how),
     "compare": lambda **how: compare(CHAIN, {"amplitude": [2.0]}, **SHORT, **how),
     "compare_relaxation": lambda **how: compare_relaxation(

@@ -1,8 +1,10 @@
-"""The jackknife over blocks."""
+"""Blocks of time: the jackknife over them, and how long they are."""
 
 import numpy as np
 import pytest
 
+from crazybilliards.model import Chain
+from crazybilliards.particles import simulate
 from crazybilliards.particles.observers.error_bars import jackknife
 
 
@@ -48,3 +50,18 @@ def test_one_block_tells_nothing_of_the_error():
     value, error = jackknife(mean, np.array([[2.0, 4.0]]), np.array([2]))
     np.testing.assert_array_equal(value, [1, 2])
     assert np.isinf(error).all()
+
+
+@pytest.mark.compiled
+def test_blocks_are_added_up_in_pairs_and_stay_longer_than_the_memory():
+    """The error of a mean is right, from 33 to 64 blocks, as that of a known process."""
+    chain = Chain(size=1, damping=2)
+    for duration in (2000, 40_000):
+        run = simulate(chain, duration=duration, replicas=2, observe="density", progress=False)
+        assert 32 <= run.sizes["block"] <= 64
+    # The mean of a displacement over a time t has the variance 2 tau <d^2>/t, tau = gamma/k.
+    how = {"duration": 5000, "observe": "widths", "progress": False, "replicas": 2}
+    runs = [simulate(chain, seed=seed, **how) for seed in range(40)]
+    found = np.mean([run.mean_displacement_error.item() ** 2 for run in runs])
+    known = 2 * chain.damping / chain.stiffness * chain.temperature / chain.stiffness / 10_000
+    assert found == pytest.approx(known, rel=5 * np.sqrt(2 / 40 / 32))

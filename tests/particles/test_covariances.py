@@ -6,7 +6,7 @@ import xarray as xr
 from scipy.fft import dct
 
 from crazybilliards.model import Chain
-from crazybilliards.particles import simulate, simulate_limit
+from crazybilliards.particles import simulate
 from crazybilliards.particles.dynamics import make_dynamics
 from crazybilliards.particles.laws.avalanche import make_tally
 from crazybilliards.particles.laws.impacts import make_impacts
@@ -129,22 +129,20 @@ def test_they_are_the_averages_of_the_snapshots(average):
 
 @pytest.mark.compiled
 def test_the_centre_of_mass_knows_nothing_of_collisions():
-    """All rods together: sum_ij <v_i v_j> = L W^2, at every restitution and in the limit."""
+    """All rods together: sum_ij <v_i v_j> = L W^2, at every restitution."""
     chain = Chain(size=8, restitution=0)
-    observe = ("widths", "modes", Covariances(separations=99))
-    limit = simulate_limit(chain, accuracy=0.02, seed=1, observe=observe, progress=False)
-    products = limit.velocity_covariance
-    assert limit.sizes["separation"] == 8
+    how = {"observe": ("modes", Covariances(separations=99)), "progress": False}
+    run = simulate(chain, duration=5000, seed=1, **how)
+    products = run.velocity_covariance
+    assert run.sizes["separation"] == 8
     every = 2 * products.sum() - products.sel(separation=0).sum()
-    np.testing.assert_allclose(every, 8 * limit.mode_velocity_variance[0])
-    of_mass = [each[0] for each in with_error(limit, "mode_velocity_variance")]
+    np.testing.assert_allclose(every, 8 * run.mode_velocity_variance[0])
+    of_mass = [each[0] for each in with_error(run, "mode_velocity_variance")]
     agree(of_mass, chain.free_velocity_width**2)
-    some = simulate_limit(
-        chain, accuracy=0.02, seed=1, observe=observe, particles=[2, 8], progress=False
-    )
+    some = simulate(chain, duration=5000, seed=1, particles=[2, 8], **how)
     assert some.contact.values.tolist() == [2]
     xr.testing.assert_identical(
-        some.neighbour_covariance, limit.neighbour_covariance.sel(contact=[2])
+        some.neighbour_covariance, run.neighbour_covariance.sel(contact=[2])
     )
     xr.testing.assert_identical(some.velocity_covariance, products.sel(particle=[2, 8]))
 

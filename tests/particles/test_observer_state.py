@@ -1,16 +1,13 @@
-"""What a checkpoint keeps of an observer, and what it refuses."""
-
-from types import SimpleNamespace
+"""What a checkpoint keeps of an observer."""
 
 import numpy as np
 import pytest
 from described_runs import a_run, some_snapshots
 
 from crazybilliards.model import Chain
-from crazybilliards.particles import simulate
 from crazybilliards.particles.laws.avalanche import make_tally
 from crazybilliards.particles.observers import OBSERVERS
-from crazybilliards.particles.observers.base import Averaged, restore
+from crazybilliards.particles.observers.base import restore
 
 BUILT_IN = [pytest.param(observer, id=name) for name, observer in OBSERVERS.items()]
 
@@ -48,74 +45,3 @@ def test_a_checkpoint_keeps_everything_that_observing_changes(observer, average)
     assert vars(original).keys() == vars(resumed).keys()
     for name, value in vars(original).items():
         assert np.array_equal(value, vars(resumed)[name], equal_nan=isinstance(value, np.ndarray))
-
-
-class Holding(Averaged):
-    """An observer with an attribute of some kind."""
-
-    name = "holding"
-    gives = ("density",)
-
-    def __init__(self, held):
-        self.held = held
-
-    def observe(self, snapshots):
-        pass
-
-    def report(self, counts):
-        return {}
-
-
-@pytest.mark.parametrize(
-    "held",
-    [
-        [],
-        {},
-        set(),
-        bytearray(),
-        np.random.default_rng(1),
-        object(),
-        iter([]),
-        (1, [2]),
-        (np.zeros(1),),
-        np.array([None]),
-        SimpleNamespace(count=0),
-    ],
-    ids=lambda held: type(held).__name__,
-)
-def test_what_a_checkpoint_cannot_hold_is_refused(held):
-    message = f"holding: held must be an array or a number, .* got {type(held).__name__}"
-    with pytest.raises(TypeError, match=message):
-        simulate(Chain(size=2), duration=200, observe=Holding(held), progress=False)
-
-
-@pytest.mark.parametrize(
-    "held",
-    [
-        *(None, True, 2, 0.5, 1j, "text", np.float32(3), np.arange(3), Chain(size=3)),
-        *((1, ("a", None)), frozenset({1}), np.cos, max, int, lambda y: y),
-    ],
-    ids=lambda held: type(held).__name__,
-)
-def test_what_a_checkpoint_holds_or_what_never_changes_is_taken(held):
-    run = a_run(Chain(size=2), duration=200, observe=Holding(held))
-    original, resumed = (run.observers[0].prepared(run, 1) for _ in range(2))
-    for name, value in original.state().items():
-        restore(resumed, name, np.array(value))
-    assert type(resumed.held) is type(held)
-    assert np.all(resumed.held == held)
-
-
-def test_an_attribute_made_while_measuring_is_refused_at_the_next_checkpoint(tmp_path):
-    class Late(Holding):
-        def observe(self, snapshots):
-            self.held = [snapshots.first]
-
-    with pytest.raises(TypeError, match="held must be an array or a number"):
-        simulate(
-            Chain(size=2),
-            duration=200,
-            observe=Late(0),
-            progress=False,
-            checkpoint=tmp_path / "state",
-        )

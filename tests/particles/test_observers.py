@@ -17,7 +17,6 @@ from crazybilliards.model.vocabulary import VOCABULARY
 from crazybilliards.particles import simulate
 from crazybilliards.particles.observers import OBSERVERS, Observer, Velocities
 from crazybilliards.particles.observers.base import Snapshots
-from crazybilliards.particles.observers.centre import Centre
 from crazybilliards.particles.observers.energy import Energy
 
 
@@ -32,8 +31,7 @@ def test_every_observer_is_a_public_name():
         own = [each for each in kind.__subclasses__() if each.__module__.startswith("crazyb")]
         return {kind} if not own else set().union(*map(leaves, own))
 
-    # The centre is what simulate_limit adds.
-    assert leaves(Observer) - {Centre} == set(OBSERVERS.values())
+    assert leaves(Observer) == set(OBSERVERS.values())
 
 
 @pytest.mark.compiled
@@ -104,10 +102,10 @@ def test_the_shape_of_a_distribution_is_that_of_the_velocities_not_of_their_bins
     n = 64_000  # the middles of equally likely intervals: a Gaussian to 1e-4
     gauss = run.chain.free_velocity_width * norm.ppf((np.arange(n) + 0.5) / n)
     v = np.random.default_rng(1).permutation(np.stack([gauss, np.exp(gauss)], axis=1))
-    for block, part in enumerate(np.array_split(v, run.schedule.blocks)):
+    for block, part in enumerate(np.array_split(v, run.blocks)):
         empty = np.zeros((len(part), 0), dtype=np.int64)
         observer.observe(Snapshots(block, 0, 0, np.zeros_like(part), part, empty))
-    counts = np.full(run.schedule.blocks, n // run.schedule.blocks)
+    counts = np.full(run.blocks, n // run.blocks)
     report = observer.report(counts)
     np.testing.assert_allclose(report["velocity_skewness"][1], skew(v), atol=1e-9)
     np.testing.assert_allclose(report["velocity_kurtosis"][1], kurtosis(v), rtol=1e-9, atol=1e-9)
@@ -119,7 +117,7 @@ def test_the_shape_of_a_distribution_is_that_of_the_velocities_not_of_their_bins
 def test_a_rod_with_one_velocity_has_no_shape():
     run = a_run(Chain(size=2), observe="velocities")
     observer = run.observers[0].prepared(run, 1)
-    counts = np.zeros(run.schedule.blocks, dtype=np.int64)
+    counts = np.zeros(run.blocks, dtype=np.int64)
     counts[:2] = 1
     for block in range(2):
         still = np.zeros((1, 2))
@@ -151,7 +149,7 @@ def test_the_autocorrelation_time_is_that_of_a_free_rod():
 
 def test_the_energy_of_a_run_of_a_billion_snapshots_takes_no_memory_for_their_times():
     run = a_run(Chain(), duration=6.4e9, time_step=0.1, warmup=0, observe="energy")
-    assert run.schedule.snapshots == 64 * 10**8
+    assert run.snapshots == 64 * 10**8
     [energy] = (observer.prepared(run, 1) for observer in run.observers)
     energy.together = 64 * 10**5  # after many additions in pairs
     energy.counts[:] = energy.together

@@ -6,12 +6,12 @@ no spring, one long step or many short ones, and chains of one to three rods.
 
 import numpy as np
 import pytest
+from described_runs import a_run
 from drifts import OPERATORS, PLAIN, Around, drifted, moved, require_alike, require_kept
 
 from crazybilliards.model import Chain
 from crazybilliards.particles.laws.exact_flight import make_propagator
 from crazybilliards.particles.laws.law import EVENTS, ISOTONIC, SORT
-from crazybilliards.particles.schedule import make_schedule
 
 RESTITUTIONS = [0.0, 0.05, 0.16, 0.17, 0.5, 0.9999, 1.0, 1.05]
 GAPS = [0.0, 0.3]
@@ -171,16 +171,16 @@ def test_steps_with_collisions_have_the_order_stated(method, size, order, gap, e
 
 @pytest.mark.parametrize("average", ["time", "ensemble"])
 @pytest.mark.parametrize("replicas", [1, 2, 7, 50, 63, 64, 100])
-def test_the_schedule_keeps_what_it_was_asked_for(replicas, average):
+def test_a_run_keeps_what_it_was_asked_for(replicas, average):
     for every in (0.1, 1 / 3, 0.7, np.pi, 1e-3, 1e4 / 7):
         for step in (None, 0.05, 0.033):
-            chain, asked = Chain(size=3, restitution=0.5), {"warmup": 7.7, "replicas": replicas}
-            asked |= {"every": every, "time_step": step, "average": average}
-            schedule = make_schedule(chain, duration=6400 * every, **asked)
-            assert schedule.stride * schedule.time_step == pytest.approx(every, rel=4e-16)
-            assert schedule.time_step <= (step or np.inf) * (1 + 1e-9)
+            asked = {"every": every, "time_step": step, "warmup": 7.7, "duration": 6400 * every}
+            asked |= {"average": average, "replicas": replicas, "observe": "energy"}
+            run = a_run(Chain(size=3, restitution=0.5), **asked)
+            assert run.every == pytest.approx(every, rel=4e-16)
+            assert run.time_step <= (step or np.inf) * (1 + 1e-9)
             if average == "ensemble":
-                assert schedule.times[0] == schedule.warmup >= 7.7 * (1 - 1e-9)
+                assert run.times[0] == run.warmup >= 7.7 * (1 - 1e-9)
                 continue
-            assert schedule.duration >= 6400 * every * (1 - 1e-9)
-            assert 10 <= schedule.blocks * replicas < 64 + replicas
+            assert run.duration >= 6400 * every * (1 - 1e-9)
+            assert 10 <= run.blocks * replicas < 64 + replicas

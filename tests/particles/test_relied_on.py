@@ -15,7 +15,6 @@ from crazybilliards.particles import (
     given_start,
     relaxation_time,
     simulate,
-    simulate_limit,
 )
 
 QUIET = {"progress": False, "threads": 1}
@@ -136,12 +135,6 @@ def test_what_free_rods_do_not_have_is_not_given():
     expected *= time - decay * (1 - np.exp(-time / decay))
     error = run.mean_squared_displacement_error.isel(particle=0, lag=-1)
     assert abs(grown - expected) < 5 * error
-
-
-def test_a_limit_with_a_short_warm_up_says_so():
-    with pytest.warns(ShortRunWarning, match="warmup=1 .* at least 41.89") as caught:
-        simulate_limit(Chain(size=2, restitution=0.5), accuracy=0.1, warmup=1, **QUIET)
-    assert caught[0].filename == __file__
 
 
 @pytest.mark.parametrize(

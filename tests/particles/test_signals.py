@@ -1,7 +1,6 @@
 """Ctrl-C, SIGTERM and SIGHUP during a run: nothing is lost, and nothing hangs."""
 
 import io
-import os
 import signal
 import subprocess
 import sys
@@ -10,7 +9,6 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
-import xarray as xr
 from forked import forked
 
 from crazybilliards.model import Chain
@@ -69,26 +67,6 @@ def test_ctrl_c_may_come_while_the_lock_of_the_threads_is_being_taken():
     ends = done.stdout.splitlines()
     assert len(ends) == 8
     assert set(ends) <= {"interrupted", "nothing was measured yet"}
-
-
-def test_ctrl_c_during_the_last_writing_keeps_everything(tmp_path, monkeypatch):
-    arguments = {"duration": 500, "progress": False, "checkpoint": tmp_path / "state"}
-    written = []
-    replace = os.replace
-
-    def interrupting(source, target):
-        written.append(target)
-        if len(written) == 2:  # the first shows that it can be written
-            raise KeyboardInterrupt
-        replace(source, target)
-
-    monkeypatch.setattr(os, "replace", interrupting)
-    run = simulate(Chain(size=10), **arguments)
-    assert (run.attrs["status"], len(written)) == ("interrupted", 3)
-    monkeypatch.undo()
-    resumed = simulate(Chain(size=10), **arguments)
-    xr.testing.assert_equal(resumed, run)
-    assert resumed.attrs["status"] == "completed"
 
 
 HANDLERS = {  # what a program does at a signal, how it then ends, and how many runs it gets

@@ -5,13 +5,11 @@ import tracemalloc
 import numpy as np
 import pytest
 import xarray as xr
-from described_runs import a_run
 
 from crazybilliards.kinetic import equilibrium, equilibrium_states
 from crazybilliards.model import Chain
-from crazybilliards.particles import given_start, simulate, simulation
+from crazybilliards.particles import given_start, simulate
 from crazybilliards.particles.dynamics import longest_step
-from crazybilliards.particles.laws.law import EXACT
 from crazybilliards.particles.observers.widths import Widths
 from crazybilliards.particles.running.replica import Replica
 
@@ -159,24 +157,3 @@ def test_a_short_run_may_have_short_steps(average):
     last = float(run.kinetic_energy[-1])
     error = float(run.kinetic_energy_error[-1]) if average == "ensemble" else 0.2 * last
     assert abs(last - heating * float(run.time[-1])) < 5 * error
-
-
-def test_only_kernels_that_the_runs_need_are_compiled(monkeypatch):
-    """All others take five times as long."""
-    flights = []
-    monkeypatch.setattr(
-        simulation,
-        "advance",
-        lambda y, v, noise, dynamics, *_: flights.append(dynamics.law.operator),
-    )
-    monkeypatch.setattr(simulation, "deposit", lambda *_: None)
-    alone, colliding = a_run(Chain(size=3)), a_run(Chain(size=3, restitution=0.5))
-    for runs, expected in (
-        ([alone, alone], {True}),
-        ([colliding], {False}),
-        ([alone, colliding], {True, False}),
-        ([], {True, False}),
-    ):
-        flights.clear()
-        simulation.compile_kernels(iter(runs))
-        assert {each == EXACT for each in flights} == expected

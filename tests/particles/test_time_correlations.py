@@ -171,9 +171,9 @@ def test_pairs_are_those_of_all_snapshots_however_they_come():
     run = a_run(chain, duration=200, every=1.0, particles=[2, 4], observe=observer)
     [own] = (each.prepared(run, 1) for each in run.observers)
     generator = np.random.default_rng(1)
-    snapshots, length = run.schedule.snapshots, run.schedule.block
+    snapshots, length = run.snapshots, run.block
     y, v = generator.normal(size=(2, snapshots, 4))
-    first, counts = 0, np.bincount(np.arange(snapshots) // length, minlength=run.schedule.blocks)
+    first, counts = 0, np.bincount(np.arange(snapshots) // length, minlength=run.blocks)
     while first < snapshots:
         block = first // length
         part = slice(first, min(first + generator.integers(1, 4), (block + 1) * length))
@@ -254,12 +254,11 @@ def test_the_lags_of_nobody_s_choice_resolve_the_first_decay(chain, parameters):
 def test_a_finer_time_between_snapshots_leaves_the_time_step_as_it_was():
     chain = Chain(size=5, restitution=0.8)
     widths, both = (
-        a_run(chain, observe=observe).schedule
-        for observe in ("widths", ["widths", "time-correlations"])
+        a_run(chain, observe=observe) for observe in ("widths", ["widths", "time-correlations"])
     )
     assert both.time_step == widths.time_step
     assert both.stride < widths.stride
-    given = a_run(chain, observe="time-correlations", time_step=0.05).schedule
+    given = a_run(chain, observe="time-correlations", time_step=0.05)
     assert given.time_step == 0.05
 
 
@@ -280,5 +279,3 @@ def test_lags_that_a_run_cannot_have_are_refused():
         assert run.lag.values.tolist() == [0.0, 1.0]
     with pytest.raises(ValueError, match="longest must be"):
         TimeCorrelations(longest=0)
-    with pytest.raises(ValueError, match="not known to have a limit"):
-        cb.simulate_limit(Chain(size=2), observe=["widths", "time-correlations"], progress=False)

@@ -6,7 +6,7 @@ import pytest
 import xarray as xr
 
 from crazybilliards.model import Chain, chain_of, load
-from crazybilliards.particles import simulate, simulate_limit
+from crazybilliards.particles import simulate
 
 
 def test_simulate_writes_what_the_function_returns(run, tmp_path):
@@ -26,19 +26,6 @@ def test_simulate_writes_what_the_function_returns(run, tmp_path):
     first = expected.isel(particle=0)
     assert f"{first.velocity_width:.4g} +- {first.velocity_width_error:.1g}" in done.stdout
     assert {path.name for path in tmp_path.iterdir()} == {"new", "state"}
-
-
-@pytest.mark.compiled
-def test_an_accuracy_gives_the_limit(run, tmp_path):
-    options = ["--size", 6, "--restitution", 0, "--accuracy", 0.05, "--seed", 2]
-    options += ["--warmup", 20, "--observe", "widths", "--threads", 1]
-    done = run("simulate", *options, "--output", tmp_path / "limit.nc")
-    assert done.returncode == 0, done.stderr
-    settings = {"seed": 2, "warmup": 20.0, "observe": "widths", "progress": False}
-    expected = simulate_limit(Chain(size=6, restitution=0), accuracy=0.05, **settings)
-    xr.testing.assert_identical(load(tmp_path / "limit.nc"), expected)
-    width = expected.central_velocity_width.item()
-    assert f"W_v in the centre as dt -> 0: {width:.5g} +- " in done.stdout
 
 
 OBSERVED = {
