@@ -61,7 +61,7 @@ def with_formula(work: str) -> str:
 
 def draw(costs: dict[str, dict[int, float]], figure: Path) -> None:
     with house_style():
-        drawn, [ax] = panels(1, 1, height=4.2, wanted=1)
+        drawn, [ax] = panels(1, 1, height=4.2)
         for number, (work, by_size) in enumerate(costs.items()):
             look: dict[str, Any] = {"color": "0.5", "linestyle": "--"}
             if work != NOISE:

@@ -5,28 +5,11 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
-import numpy as np
 import xarray as xr
 
 from crazybilliards.model.checks import shown
 from crazybilliards.model.vocabulary import VOCABULARY, chain_of, described, require, unit_of
 
-# Dimension: abscissa. A quantity over the particle has the one that is asked for.
-_ABSCISSAE = {
-    "x": "x",
-    "x_index": "x",  # of a sweep
-    "time": "time",
-    "contact": "normalized_contact",
-    "mode": "mode",
-    "wave": "wave",
-    "lag": "lag",
-    "frequency": "frequency",
-    "separation": "separation",
-    "velocity": "velocity",
-    "velocity_bin": "velocity_bin",
-    "impact_speed": "impact_speed",
-}
-_OVER = ", ".join([*sorted(set(_ABSCISSAE) - {"x_index"}), "or particle"])
 _RAISED = re.compile(r"([_^])(-?[\d.]+|[a-z](?:\+\w)?)(?![a-z])")
 # Variables by their symbols; others by their long names.
 _LABELS = {
@@ -45,6 +28,7 @@ _LABELS = {
     "relative_temperature": r"relative temperature $\langle(v_i-v_{i+1})^2\rangle/2$",
     "mode_velocity_variance": r"mode variance $\langle|v_q|^2\rangle$",
     "x": "position $x$",
+    "position": "position $x$",
     "time": "time $t$",
     "velocity": "velocity $v$",
     "velocity_bin": "velocity $v$",
@@ -72,7 +56,7 @@ def find_curve(label: str, dataset: xr.Dataset, quantity: str, along: str) -> Cu
     """Return a quantity of a result as a curve; ``along`` is the abscissa of the particles.
 
     Raise a ValueError if the result, which the message calls ``label``, lacks the quantity, or has
-    it over another dimension or several.
+    it over several dimensions.
     """
     if not isinstance(dataset, xr.Dataset):
         raise ValueError(f"{label}: not a crazybilliards result: {shown(dataset)}")
@@ -80,28 +64,20 @@ def find_curve(label: str, dataset: xr.Dataset, quantity: str, along: str) -> Cu
         dataset = _of_any_rod(dataset)
     require(dataset, (quantity,))
     values = dataset[quantity]
-    abscissae = _ABSCISSAE | {"particle": along}
-    if len(values.dims) != 1 or values.dims[0] not in abscissae:
-        message = f"{label}: {quantity} is over ({', '.join(map(str, values.dims))})"
-        over = [name for name in values.dims if name in abscissae]
-        for name in ("time", "particle", "wave"):
-            if len(over) > 1 and name in over:
-                over.remove(name)
-        if len(over) == 1:
-            others = [str(name) for name in values.dims if name not in over]
-            by_value = all(name in dataset.indexes and name not in abscissae for name in others)
-            how = "sel" if by_value else "isel"
-            ways = ", ".join(f"{name}=..." for name in others)
-            raise ValueError(f"{message}; choose a {' and a '.join(others)}: .{how}({ways})")
-        raise ValueError(f"{message}; overlay draws what is over {_OVER}")
-    require(dataset, (abscissae[str(values.dims[0])],))
-    if values.dims == ("velocity_bin",):  # the outer bins are empty
-        visited = np.flatnonzero(values > 0)
-        if visited.size:
-            dataset = dataset.isel(velocity_bin=slice(visited[0], visited[-1] + 1))
-    abscissa = dataset[abscissae[str(values.dims[0])]]
+    if values.ndim != 1:
+        raise ValueError(
+            f"{label}: {quantity} is over ({', '.join(map(str, values.dims))}); overlay draws what "
+            "is over one dimension: choose the others by .isel(time=...) or .sel(particle=...)"
+        )
+    [dimension] = map(str, values.dims)
+    # x_index is that of the densities of a sweep.
+    others = {"x_index": "x", "contact": "normalized_contact", "particle": along}
+    abscissa = others.get(dimension, dimension)
+    require(dataset, (abscissa,))
+    if dimension == "velocity_bin":  # the outer bins are empty
+        values = values.where(values > 0)
     error = dataset.get(f"{quantity}_error")
-    return Curve(abscissa, dataset[quantity], error, dataset.attrs.get("source") == "simulation")
+    return Curve(dataset[abscissa], values, error, dataset.attrs.get("source") == "simulation")
 
 
 def is_of_one_rod(dataset: xr.Dataset, quantity: str) -> bool:

@@ -13,10 +13,10 @@ from crazybilliards.comparison.coverage import require_same_smoothing, smooth
 from crazybilliards.comparison.widths import WidthDeviation, width_deviation
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.arrays import Array
-from crazybilliards.model.warn import warn_user
 from crazybilliards.model.checks import check_real, shown
 from crazybilliards.model.grid import require_even
 from crazybilliards.model.vocabulary import require
+from crazybilliards.model.warn import warn_user
 
 _SAME_RODS = 0.05  # of the number of rods, by which two densities of a chain may differ
 _WHOLE = 1e-3  # of the number of rods, by which they may if their grids end at other places

@@ -1,6 +1,6 @@
 """Films of rods, of a run or of a chain, and of the densities of a relaxation.
 
-matplotlib draws them (``FuncAnimation``) and writes them, as mp4, gif or a page with buttons.
+matplotlib draws them and writes them, as mp4, gif or a page with buttons.
 """
 
 from __future__ import annotations
@@ -8,34 +8,36 @@ from __future__ import annotations
 import math
 import os
 import tempfile
+from collections.abc import Callable, Iterable
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
 
-import matplotlib.pyplot as plt
 import numpy as np
 import xarray as xr
-from matplotlib import animation
+from matplotlib import animation, rcParams
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import CenteredNorm
+from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from crazybilliards.comparison.curves import axis_label
 from crazybilliards.comparison.drawing import DIRECTIONS
-from crazybilliards.comparison.side_by_side.relaxation_figures import relaxation_animation
+from crazybilliards.comparison.layout import TWO_COLUMNS, house_style
+from crazybilliards.comparison.side_by_side.relaxation_figures import relaxation_film
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.arrays import Array
 from crazybilliards.model.checks import check_path, check_real
 from crazybilliards.model.parameters import WALLS_AND_MASSES
 from crazybilliards.model.progress import progress_bar
 from crazybilliards.model.storage import write_atomically
+from crazybilliards.model.vocabulary import unit_of
 from crazybilliards.particles import simulate
 
 _A_SECOND = 25  # pictures
 _FINER = 4  # snapshots for one picture, of a chain that is simulated
 _FADING = 0.7  # of a flash, from one picture to the next
 _GROUND, _TALL, _LOW = -0.95, 0.5, 0.25  # heights of the anchors and of the two kinds of rods
-_LOOK: Any = {"font.size": 12} | {f"axes.spines.{side}": False for side in ("left", "top", "right")}
 _GREY = "#777777"
 
 
@@ -76,7 +78,8 @@ def film(
         The file, whose name ends in ``.mp4``, ``.gif`` or ``.html``. None: a player for a notebook.
         An mp4 needs ffmpeg, which ``pip install 'crazybilliards[film]'`` brings.
     seconds
-        Length of the film at 25 pictures a second; it is shorter if there are fewer snapshots.
+        Length of the film, with up to 25 pictures a second. A film of rods is shorter if there are
+        fewer snapshots, because it always has 25.
     duration
         Time to simulate, of a chain [T]; None: 20. A result has its own.
     springs
@@ -96,6 +99,8 @@ def film(
         For a chain whose simulation diverges, because it has no steady state.
     OSError
         If the file cannot be written. A former one stays as it was.
+    subprocess.CalledProcessError
+        If ffmpeg fails.
     """
     file = None if path is None else check_path("path", path)
     suffix = ".html" if file is None else file.suffix
@@ -108,83 +113,116 @@ def film(
         )
     if duration is not None and not isinstance(run, Chain):
         raise ValueError("duration is that of a chain to simulate, and this result has its own")
-    pictures = max(round(_A_SECOND * check_real("seconds", seconds, positive=True)), 1)
+    seconds = check_real("seconds", seconds, positive=True)
+    pictures = max(round(_A_SECOND * seconds), 1)
     if isinstance(run, Chain):
         duration = check_real("duration", 20.0 if duration is None else duration, positive=True)
-        every = duration / (_FINER * pictures)
-        run = simulate(
-            run, duration=duration, every=every, observe="snapshots", progress=progress
-        ).pipe(lambda each: each.assign_coords(time=each.time - each.time[0]))
-        if run.attrs["status"] == "diverged":
-            raise ValueError("run: this chain has no steady state to film: its simulation diverged")
-    draw = relaxation_animation if isinstance(run, xr.DataTree) else _rod_animation
-    with plt.rc_context(_LOOK):
-        moving, number = draw(run, pictures, *([springs] if draw is _rod_animation else []))
-        with progress_bar(progress, desc="film", total=number, leave=False) as bar:
-            content = written(moving, suffix, lambda *_: bar.update())
-    plt.close(moving._fig)
+        run = _short_run(run, duration, pictures, progress)
+    with house_style():
+        if isinstance(run, xr.DataTree):
+            figure, show, number = relaxation_film(run, pictures)
+            a_second = number / seconds
+        else:
+            figure, show, number = _rod_film(run, pictures, springs)
+            a_second = _A_SECOND
+        shown = progress_bar(progress, range(number), desc="film", leave=False)
+        content = _content(figure, show, shown, suffix, a_second)
     if file is None:
         return Player(content.decode())
     write_atomically(file, content)
     return file
 
 
-def written(moving: animation.Animation, suffix: str, drawn: Any = None) -> bytes:
-    """Return an animation as the content of a file whose name has this ending."""
+def _short_run(chain: Chain, duration: float, pictures: int, progress: bool) -> xr.Dataset:
+    """Simulate a chain with snapshots that are close enough to see collisions in them."""
+    every = duration / (_FINER * pictures)
+    run = simulate(chain, duration=duration, every=every, observe="snapshots", progress=progress)
+    if run.attrs["status"] == "interrupted":
+        raise KeyboardInterrupt
+    if run.attrs["status"] == "diverged":
+        raise ValueError("run: this chain has no steady state to film: its simulation diverged")
+    return run.assign_coords(time=run.time - run.time[0])
+
+
+def _content(
+    figure: Figure,
+    show: Callable[[int], None],
+    pictures: Iterable[int],
+    suffix: str,
+    a_second: float = _A_SECOND,
+) -> bytes:
+    """Return the content of a file whose name has this ending: a film of a figure.
+
+    ``show(picture)`` draws each of the ``pictures``; ``a_second`` is their number.
+    """
     writer: animation.AbstractMovieWriter
     if suffix == ".mp4":
-        writer = animation.FFMpegWriter(_A_SECOND, "h264", extra_args=["-pix_fmt", "yuv420p"])
+        writer = animation.FFMpegWriter(a_second, codec="h264")
     elif suffix == ".gif":
-        writer = animation.PillowWriter(_A_SECOND)
-    else:
-        writer = animation.HTMLWriter(_A_SECOND, embed_frames=True, default_mode="loop")
+        writer = animation.PillowWriter(a_second)
+    else:  # however large the page is, all pictures are in it
+        writer = animation.HTMLWriter(
+            a_second, embed_frames=True, default_mode="loop", embed_limit=math.inf
+        )
     with tempfile.TemporaryDirectory() as scratch:
-        moving.save(f"{scratch}/film{suffix}", writer, dpi=100, progress_callback=drawn)
-        return Path(scratch, f"film{suffix}").read_bytes()
+        file = Path(scratch, f"film{suffix}")
+        with writer.saving(figure, str(file), None):
+            for picture in pictures:
+                show(picture)
+                writer.grab_frame()
+                figure.set_layout_engine("none")  # what is around them stays where it is
+        return file.read_bytes()
 
 
 def _has_ffmpeg() -> bool:
     if find_spec("imageio_ffmpeg"):
         import imageio_ffmpeg
 
-        plt.rcParams["animation.ffmpeg_path"] = imageio_ffmpeg.get_ffmpeg_exe()
+        rcParams["animation.ffmpeg_path"] = imageio_ffmpeg.get_ffmpeg_exe()
     return animation.FFMpegWriter.isAvailable()
 
 
-def _rod_animation(
-    run: xr.Dataset, pictures: int, springs: bool
-) -> tuple[animation.FuncAnimation, int]:
-    """Return the film of a run with snapshots, and its number of pictures."""
+def _snapshots(run: xr.Dataset) -> xr.Dataset:
+    """Return the snapshots of one replica, over time and particle, with known velocities."""
     if not {"position", "velocity"} <= set(run) or {"time", "particle"} - set(run.position.dims):
         raise ValueError(
             "run has no snapshots in time, which simulate(chain, observe='snapshots') records; it "
             f"has {', '.join(map(str, run)) or 'nothing'} and is {run.attrs.get('status')}"
         )
-    chain = chain_of(run)
-    chain.require_known("film", WALLS_AND_MASSES)
     run = run.isel(replica=0) if "replica" in run.dims else run
     rods = run.dropna("time", subset=["velocity"]).transpose("time", "particle", ...)
-    time, x, v = rods.time.values, rods.position.values, rods.velocity.values
-    if time.size == 0:
+    if rods.time.size == 0:
         raise ValueError("run has no snapshot in which all velocities are known")
+    return rods
+
+
+def _rod_film(
+    run: xr.Dataset, pictures: int, springs: bool
+) -> tuple[Figure, Callable[[int], None], int]:
+    """Return a figure of rods, what draws a picture of the film into it, and their number."""
+    rods, chain = _snapshots(run), chain_of(run)
+    chain.require_known("film", WALLS_AND_MASSES)
+    time, x, v = rods.time.values, rods.position.values, rods.velocity.values
     chosen = np.unique(np.linspace(0, time.size - 1, pictures).round().astype(int))
     number = rods.particle.values.astype(int) - 1
     flash = _flashes(_met(chain, time, x, v) & (np.diff(number) == 1), chosen)
     anchors = chain.anchors[number] if springs else np.empty(0)
     tall = np.where(chain.rod_masses < chain.rod_masses.max(), _LOW, _TALL)[number]
 
-    figure, ax = plt.subplots(figsize=(9.6, 2.4), layout="constrained")
+    figure = Figure(figsize=(TWO_COLUMNS, 1.8), dpi=120)
+    ax = figure.subplots()
+    ax.set_xlabel(axis_label(rods.position))
+    width = _furnish(ax, chain, x, anchors)
     fastest = float(np.quantile(np.abs(v), 0.99)) or 1.0
     bodies = PolyCollection([], cmap=DIRECTIONS, edgecolor="black", linewidth=0.4)
     bodies.set_norm(CenteredNorm(halfrange=fastest))
     lines = ax.add_collection(LineCollection([], color=_GREY, linewidth=1))
     ax.add_collection(bodies)
-    bars = ax.scatter([], [], marker="_", linewidths=3, color=plt.rcParams["text.color"])
-    clock = ax.text(0.0, 1.04, "", transform=ax.transAxes)
-    R, width = chain.radius, _furnish(ax, chain, x, anchors)
-    figure.colorbar(bodies, ax=ax, label="velocity $v$ [R/T]", pad=0.01, extend="both")
-    half = max(R, width / 1500)  # a thinner rod would not be seen
+    bars = ax.scatter([], [], marker="_", linewidths=3, color="black")
+    figure.colorbar(bodies, ax=ax, label=axis_label(rods.velocity), pad=0.01, extend="both")
+    clock, unit = ax.text(0.0, 1.04, "", transform=ax.transAxes), unit_of(rods.time)
     digits = max(2, math.ceil(-math.log10(np.ptp(time) / time.size or 1.0)))
+    half = max(chain.radius, width / 1500)  # a thinner rod would not be seen
 
     def show(picture: int) -> None:
         now = chosen[picture]
@@ -196,13 +234,12 @@ def _rod_animation(
             levels = np.stack([np.full(number.size, _GROUND), -tall], axis=-1)
             ends = np.stack([anchors, x[now]], axis=-1)
             lines.set_segments(list(np.stack([ends, levels], axis=-1)))
-        bars.set_offsets(np.column_stack([x[now][:-1] + R, np.full(number.size - 1, 0.75)]))
+        met = x[now][:-1] + chain.radius
+        bars.set_offsets(np.column_stack([met, np.full(met.size, 0.75)]))
         bars.set_sizes(120 * flash[picture])
-        clock.set_text(f"t = {time[now]:.{digits}f} T")
-        if picture:  # after the first picture nothing moves
-            figure.set_layout_engine("none")
+        clock.set_text(f"t = {time[now]:.{digits}f} {unit}")
 
-    return animation.FuncAnimation(figure, show, chosen.size, repeat=False), chosen.size
+    return figure, show, chosen.size
 
 
 def _met(chain: Chain, time: Array, x: Array, v: Array) -> NDArray[np.bool_]:
@@ -231,7 +268,8 @@ def _furnish(ax: Axes, chain: Chain, x: Array, anchors: Array) -> float:
     walls = [-chain.box / 2, chain.box / 2] if chain.box else []
     seen = np.concatenate([x.ravel(), anchors, walls])
     ax.set(xlim=(seen.min() - 2 * R, seen.max() + 2 * R), ylim=(-1.1, 1.0), yticks=[])
-    ax.set_xlabel("position $x$ [R]")
+    ax.spines[["left", "top", "right"]].set_visible(False)
+    ax.tick_params(top=False)
     ax.text(1.0, 1.04, "\N{BLACK RECTANGLE}: two rods have met", ha="right", transform=ax.transAxes)
     if ratio != 1:
         text = f"tall rods: {max(ratio, 1 / ratio):.3g} times the mass of low ones"

@@ -57,7 +57,7 @@ def off_in_plot(v: Array, p: Array, line: Callable[[Array], Array], reach: float
 
 def figure_of_distributions(runs: Sequence[xr.Dataset], particles: Sequence[int]) -> Figure:
     """Return :func:`draw_distributions` as a figure of one panel, with a legend."""
-    figure, [ax] = panels(1, 1, height=2.9, wanted=1)
+    figure, [ax] = panels(1, 1, height=2.9)
     draw_distributions(ax, runs, particles)
     legend_above(figure, ax)
     return figure

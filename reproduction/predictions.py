@@ -64,7 +64,7 @@ def draw_flippers(
 
     ``shown`` has by label the runs, the theory, and the unit of their widths.
     """
-    figure, [ax] = panels(1, 1, height=3.1, wanted=1)
+    figure, [ax] = panels(1, 1, height=3.1)
     for number, (label, (runs, theory, unit)) in enumerate(shown.items()):
         draw_rods(ax, runs.pooled(results), "velocity_width", number=number, unit=unit, label=label)
         solved = results[theory.name]

@@ -215,7 +215,7 @@ def draw(duration: float) -> Figure:
         ax.set_ylim(bottom=0)
     axes[MODES].set(xlabel="mode $q$", xlim=(0.8, None), ylim=(0.02, 1))
     axes[MODES].set(xscale="log", yscale="log")
-    legend_above(figure, axes[0], "symbols: simulation, lines: theory")
+    legend_above(figure, axes[0], title="symbols: simulation, lines: theory")
     return figure
 
 

@@ -83,7 +83,7 @@ def tables(results: Results) -> dict[str, Table]:
 
 
 def draw(results: Results) -> Figure:
-    figure, [ax] = panels(1, 1, height=2.9, wanted=1)
+    figure, [ax] = panels(1, 1, height=2.9)
     for number, (e, line) in enumerate(LINES.items()):
         chains = [Chain(restitution=e, damping=damping) for damping in DAMPINGS]
         theory = [critical_size(chain).value for chain in chains]

@@ -21,7 +21,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from crazybilliards.comparison.drawing import COLOURS, draw_points
-from crazybilliards.comparison.layout import at_the_left, entitle, legend_above, panels
+from crazybilliards.comparison.layout import entitle, legend_above, panels
 from crazybilliards.kinetic import equilibrium_states, hydrodynamics
 from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array
@@ -128,8 +128,7 @@ def draw_sound(found: dict[tuple[float, float], dict[str, tuple[Array, Array]]])
         masses = "one mass" if ratio == 1 else "two masses"
         entitle(ax, f"{masses}, " + (rf"$\Gamma = {damping}\,\kappa W$" if damping else "undamped"))
         ax.set(xlim=(-0.06, PERIOD + 0.06), ylim=(-1.1, 1.1), xlabel=r"time $t$ [$1/\kappa W$]")
-        name = r"$\langle p(t)\,p(0)\rangle\,/\,\langle p(0)^2\rangle$"
-        ax.set_ylabel(name if at_the_left(ax) else "")
+    axes[0].set_ylabel(r"$\langle p(t)\,p(0)\rangle\,/\,\langle p(0)^2\rangle$")
     legend_above(figure, axes[0])
     return figure
 
@@ -216,7 +215,7 @@ def draw_release(found: dict[float, dict[str, tuple[Array, Array]]]) -> Figure:
         draw_lines(ax, RELEASE_T, curves)
         entitle(ax, rf"$\Gamma = {damping:g}\,W/l$" if damping else "undamped")
         ax.set(xlim=(-0.04, 2.04), xticks=(0, 1, 2), ylim=(0, 0.8), xlabel="time $t$ [$l/W$]")
-        ax.set_ylabel("share beyond the middle" if at_the_left(ax) else "")
+    axes[0].set_ylabel("share beyond the middle")
     legend_above(figure, axes[0])
     return figure
 
@@ -257,7 +256,7 @@ def tonks(filling: Array) -> Array:
 
 
 def draw_pressure(found: dict[float, Array]) -> Figure:
-    figure, axes = panels(2, 1, height=1.9, wanted=1, sharex=True, height_ratios=(2, 1))
+    figure, axes = panels(2, 1, height=1.9, sharex=True, height_ratios=(2, 1))
     filling, line = np.array(FILLINGS), np.linspace(0.03, 0.965, 200)
     axes[0].plot(line, tonks(line), color=COLOURS[0], label=r"$\rho T/(1 - 2R\rho)$")
     axes[0].plot(line, line, "--", color=COLOURS[1], label=r"ideal gas, $\rho T$")

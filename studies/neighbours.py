@@ -199,7 +199,7 @@ def draw(results: Results) -> Figure:
     axes[2].set(ylim=(0, 0.75), xlabel="separation $r$ [rods]")
     axes[2].set(ylabel=r"$\langle v_i v_{i+r}\rangle/T$, centre")
     entitle(axes[2], f"$L = {SNAPPED}$")
-    legend_above(figure, axes[0], "symbols: simulation, lines: theory")
+    legend_above(figure, axes[0], title="symbols: simulation, lines: theory")
     return figure
 
 

@@ -68,19 +68,12 @@ def keep(
 def _write_figure(draw: Callable[[], Figure], path: Path) -> str:
     from io import BytesIO
 
-    import matplotlib
-
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
-
     from crazybilliards.comparison.layout import house_style
     from crazybilliards.model.storage import write_atomically
 
     picture = BytesIO()
     with house_style():
-        figure = draw()
-        figure.savefig(picture, format="png")
-        plt.close(figure)
+        draw().savefig(picture, format="png")
     write_atomically(path, picture.getvalue())
     return str(path)
 

@@ -7,82 +7,90 @@ them, which are too small to be seen above; at e != 1 those from the simulation.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
 from typing import Any
 
-import matplotlib.pyplot as plt
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.colors import LogNorm, to_hex
+from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
 from crazybilliards.comparison.coverage import smooth
+from crazybilliards.comparison.curves import axis_label
 from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_rods, overlay
-from crazybilliards.comparison.layout import entitle, legend_above, letter, panels, picture_width
+from crazybilliards.comparison.layout import (
+    ONE_COLUMN,
+    TWO_COLUMNS,
+    entitle,
+    legend_above,
+    letter,
+    panels,
+)
 from crazybilliards.comparison.side_by_side.grid import ELASTIC, KINETIC, SIMULATION, TITLES
-from crazybilliards.comparison.symbols import LEAST_SEEN, keep_room
 from crazybilliards.comparison.widths import displacement_unit, free_widths
-from crazybilliards.model import chain_of
-from crazybilliards.model.arrays import Array
+from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.vocabulary import require
 
 _DECADES = 5  # of f in the image
 _SYMBOLS = {"amplitude": "A", "restitution": "e", "size": "L", "gap": "g", "damping": r"\gamma"}
-_LARGE, _FAINT = 0.2, 0.25  # a stated error, as a share of the axis; the opacity of such a curve
-_STYLES = {"exact": "-"} | dict(zip(KINETIC, ("--", "-"), strict=True))
+_EXACT = ELASTIC["exact"]
+# In a picture of chains and in one of theories.
+_DASHES = {"exact": "-"} | dict(zip(KINETIC, ("--", "-"), strict=True))
+_LOOKS: dict[str, dict[str, Any]] = {SIMULATION: {"color": "black"}} | {
+    title: {"color": colour, "linestyle": dashes}
+    for title, colour, dashes in zip(
+        [*ELASTIC.values(), *(TITLES[key] for key in KINETIC)],
+        COLOURS,
+        ("-", "--", ":", "-.", "--", "-"),
+        strict=False,
+    )
+}
+_CLOSE_PACKED_SHARE = 1e-4  # of close packing: pictures of densities end where they are lower
 
 
 def draw_density(tree: xr.DataTree) -> Figure:
-    """rho(x) of simulation and theories for each chain, all smoothed as the paper does.
+    """rho(x) of each simulated chain and the best theory, smoothed as the paper does.
 
-    The insets show the right edge, where the theories differ most, with every bin.
+    The panel below has the differences of all theories at the right end, where they are largest.
     """
-    figure, axes_of_all = _panels(tree)
-    for axes, group in zip(axes_of_all, tree.children.values(), strict=True):
+    figure, pairs = _pairs(tree)
+    for (whole, end), group in zip(pairs, tree.children.values(), strict=True):
         results = {name: smooth(result) for name, result in _results(group).items()}
         chain = chain_of(results[SIMULATION])
-        _draw(axes, results, "density", unit=chain.close_packed_density)
-        axes[0].set(ylabel=r"density $\rho$ [1/R]")
-        axes[1].set(xlabel="position $x$ [R]", ylabel=r"diff. $\times\, 2R$")
-        reference = results[_reference(results)]
-        inside = reference.density.values > 1e-4 * chain.close_packed_density
-        ends = reference.x.values[inside][[0, -1]]
-        axes[1].set_xlim(*ends)
-        _fade_as_in(axes[0], _draw_edge(axes[0], results, float(ends[1])))
-    legend_above(figure, axes_of_all[0][0])
+        unit = chain.close_packed_density
+        reference = _reference(results)
+        inside = results[reference].density.values > _CLOSE_PACKED_SHARE * unit
+        first, last = results[reference].x.values[inside][[0, -1]]
+        _draw_best(whole, results, "density")
+        whole.set_xlim(first, last)
+        shown = slice(last - _end_length(chain), last)
+        cut = {name: result.sel(x=shown) for name, result in results.items()}
+        _draw_differences(end, cut, "density", unit)
+        end.set_xlim(shown.start, shown.stop)
+    _label(pairs, "of close packing", "difference at the end")
+    legend_above(figure, *pairs[0])
     return figure
-
-
-def _draw_edge(ax: Axes, results: dict[str, xr.Dataset], end: float) -> Axes:
-    """Draw the outermost three thermal lengths, at least ten radii, into an inset; return it."""
-    chain = chain_of(results[SIMULATION])
-    begin = end - max(3 * chain.thermal_length if chain.stiffness else 0, 10 * chain.radius)
-    inset = ax.inset_axes((0.29, 0.13, 0.42, 0.56))
-    shown = {name: result.sel(x=slice(begin, end)) for name, result in results.items()}
-    run = shown.pop(SIMULATION)
-    look: Any = {"linestyle": "none", "marker": ".", "markersize": 1.5, "linewidth": 0.5}
-    inset.errorbar(run.x, run.density, run.get("density_error"), color="black", **look)
-    overlay(shown, ax=inset)
-    inset.set(xlabel="", ylabel="", xlim=(begin, end))
-    inset.tick_params(labelsize=6)
-    inset.locator_params(nbins=3)
-    ax.indicate_inset_zoom(inset, edgecolor="0.5")
-    return inset
 
 
 def draw_displacement(tree: xr.DataTree) -> Figure:
-    """<dx> of simulation and theories at the rods' mean positions, for each chain."""
-    figure, axes_of_all = _panels(tree)
-    for axes, group in zip(axes_of_all, tree.children.values(), strict=True):
+    """<dx> of each simulated chain and the best theory, at the rods' mean positions.
+
+    The panel below has the differences of all theories.
+    """
+    figure, pairs = _pairs(tree)
+    for (above, below), group in zip(pairs, tree.children.values(), strict=True):
         results = _results(group)
         symbol, unit = displacement_unit(chain_of(results[SIMULATION]))
-        _draw(axes, results, "mean_displacement", unit=unit)
-        axes[0].set(ylabel=r"displacement $\langle\Delta x\rangle$ [R]")
-        axes[1].set(xlabel=r"mean position $\langle x_i\rangle$ [R]", ylabel=f"diff. / ${symbol}$")
-    legend_above(figure, axes_of_all[0][0])
+        _draw_best(above, results, "mean_displacement")
+        _draw_differences(below, results, "mean_displacement", unit)
+    _label(pairs, f"of ${symbol}$", "difference")
+    legend_above(figure, *pairs[0])
     return figure
+
+
+def _end_length(chain: Chain) -> float:
+    """Return how much of a chain is shown as its end: three thermal lengths, at least ten radii."""
+    return max(3 * chain.thermal_length if chain.stiffness else 0.0, 10 * chain.radius)
 
 
 def _results(group: xr.DataTree) -> dict[str, xr.Dataset]:
@@ -92,77 +100,60 @@ def _results(group: xr.DataTree) -> dict[str, xr.Dataset]:
 
 def _reference(results: dict[str, xr.Dataset]) -> str:
     """Return the title of the result from which the others differ."""
-    return ELASTIC["exact"] if ELASTIC["exact"] in results else SIMULATION
+    return _EXACT if _EXACT in results else SIMULATION
 
 
-def _draw(axes: list[Axes], results: dict[str, xr.Dataset], quantity: str, unit: float) -> None:
-    """Draw the quantity, and its differences from the reference divided by ``unit``.
+def _draw_best(ax: Axes, results: dict[str, xr.Dataset], quantity: str) -> None:
+    """Draw the simulation over the exact equilibrium, or over the last of the other theories."""
+    best = _EXACT if _EXACT in results else list(results)[-1]
+    shown = {name: results[name] for name in (best, SIMULATION)}
+    overlay(
+        shown, quantity, along="mean_position", ax=ax, style={name: _LOOKS[name] for name in shown}
+    )
 
-    Without a theory there are no differences.
-    """
-    overlay(results, quantity, along="mean_position", ax=axes[0])
-    axes[0].set_xlabel("")
-    lines = {str(line.get_label()): line for line in axes[0].lines}
-    theories = {name: each for name, each in results.items() if name != SIMULATION}
-    fade((axes[0], lines[name], stated_error(each, quantity)) for name, each in theories.items())
-    if len(results) == 1:
-        return
+
+def _draw_differences(ax: Axes, results: dict[str, xr.Dataset], quantity: str, unit: float) -> None:
+    """Draw the differences from the reference in per cent of ``unit``."""
     reference = results[_reference(results)][quantity]
+    percent = unit / 100
     differences = {}
     for name, result in results.items():
-        difference = ((result[quantity] - reference) / unit).assign_attrs(reference.attrs)
+        difference = ((result[quantity] - reference) / percent).assign_attrs(reference.attrs)
         differences[name] = result.assign({quantity: difference})
         if f"{quantity}_error" in result:
-            differences[name][f"{quantity}_error"] = result[f"{quantity}_error"] / unit
-    overlay(differences, quantity, along="mean_position", ax=axes[1])
-    _fade_as_in(axes[0], axes[1])
+            differences[name][f"{quantity}_error"] = result[f"{quantity}_error"] / percent
+    looks = {name: _LOOKS[name] for name in results}
+    looks[SIMULATION] = {"color": "black", "marker": "none"}
+    overlay(differences, quantity, along="mean_position", ax=ax, style=looks)
 
 
-def stated_error(theory: xr.Dataset, quantity: str) -> Array:
-    """Return the error that a theory states of a quantity, in its unit; 0 where it states none."""
-    chain = chain_of(theory)
-    name, whole = {
-        "velocity_width": ("velocity_width_model_error", np.abs(theory[quantity].values)),
-        "mean_displacement": ("mean_displacement_model_error", displacement_unit(chain)[1]),
-        "density": ("density_model_error", chain.close_packed_density),
-    }[quantity]
-    return theory.attrs.get(name, 0.0) * whole * np.ones(theory[quantity].shape)
-
-
-def fade(drawn: Iterable[tuple[Axes, Line2D, Array]]) -> None:
-    """Make lines faint whose error is above a fifth of their axis, and draw it as a band."""
-    for ax, line, error in drawn:
-        low, high = ax.get_ylim()
-        if np.max(error) > _LARGE * (high - low):
-            line.set_alpha(_FAINT)
-            x, y = np.asarray(line.get_data(), dtype=float)
-            band: Any = {"color": line.get_color(), "alpha": _FAINT / 2, "linewidth": 0}
-            ax.fill_between(x, y - error, y + error, **band)
-            ax.set_ylim(low, high)
-
-
-def _fade_as_in(above: Axes, ax: Any) -> None:
-    """Draw lines as faintly as those with the same labels are above."""
-    opacities = {line.get_label(): line.get_alpha() for line in above.lines}
-    for line in ax.lines:
-        line.set_alpha(opacities.get(line.get_label()))
-
-
-def _panels(tree: xr.DataTree) -> tuple[Figure, list[list[Axes]]]:
-    """Make a lettered panel for each chain, with its title, and one for differences below it."""
+def _pairs(tree: xr.DataTree) -> tuple[Figure, list[tuple[Axes, Axes]]]:
+    """Make two panels for each chain, one below the other, with its title; four chains in a row."""
     number = len(tree.children)
-    width = picture_width(2 if number > 1 else 1)
-    columns = min(number, 2 if width > picture_width(1) else 1)
+    columns = min(number, 4)
     rows = math.ceil(number / columns)
-    figure = plt.figure(figsize=(width, 2.7 * rows + 0.3), layout="constrained")
-    parts = figure.subfigures(rows, columns, squeeze=False).ravel()[:number]
-    made = [list(part.subplots(2, 1, sharex=True, height_ratios=(3, 1.3))) for part in parts]
+    width = ONE_COLUMN if number == 1 else TWO_COLUMNS
+    figure = Figure(figsize=(width, 3.2 * rows + 0.4))
+    grid = figure.subplots(2 * rows, columns, squeeze=False, height_ratios=(3, 2) * rows)
+    upper, lower = list(grid[::2].ravel()), list(grid[1::2].ravel())
+    for ax in upper[number:] + lower[number:]:
+        ax.remove()
     if number > 1:
-        letter([above for above, _ in made])
-    for (above, _), group in zip(made, tree.children.values(), strict=True):
-        symbol, unit = displacement_unit(chain_of(group[SIMULATION].to_dataset()))
-        entitle(above, rf"{_varied(group)},  ${symbol} = {unit:.3g}\,R$")
-    return figure, made
+        letter(upper[:number])
+    for ax, group in zip(upper, tree.children.values(), strict=False):
+        entitle(ax, _varied(group))
+    return figure, list(zip(upper, lower, strict=True))[:number]
+
+
+def _label(pairs: list[tuple[Axes, Axes]], unit: str, what: str) -> None:
+    """Label the axes of the differences, and those of others only at the left."""
+    for above, below in pairs:
+        above.set_xlabel("")
+        if not below.get_subplotspec().is_first_col():
+            above.set_ylabel("")
+            below.set_ylabel("")
+        else:
+            below.set_ylabel(f"{what}\n[% {unit}]")
 
 
 def _varied(group: xr.DataTree) -> str:
@@ -174,38 +165,49 @@ def _varied(group: xr.DataTree) -> str:
 def draw_widths(tree: xr.DataTree) -> Figure:
     """W_v(i) and <dx_i> of every chain, in units of the free rod; lines are theories."""
     figure, axes = panels(1, 2, height=2.5)
-    count = len(tree.children)
-    many = plt.get_cmap("cividis")(np.linspace(0.0, 0.9, count))
-    colours = COLOURS if count <= len(COLOURS) else [to_hex(each) for each in many]
-    drawn = []
-    for number, (colour, group) in enumerate(zip(colours, tree.children.values(), strict=False)):
+    for number, group in enumerate(tree.children.values()):
         run = group[SIMULATION].to_dataset()
         chain = chain_of(run)
-        look: Any = {"number": number % len(COLOURS), "color": colour}
         symbol, length = displacement_unit(chain)
-        units = (chain.free_velocity_width, length)
-        for ax, name, unit in zip(
-            axes, ("velocity_width", "mean_displacement"), units, strict=True
-        ):
-            draw_rods(ax, run, name, unit=unit, label=_varied(group), **look)
-            for key, style in _STYLES.items():
+        units = {"velocity_width": chain.free_velocity_width, "mean_displacement": length}
+        for ax, (name, unit) in zip(axes, units.items(), strict=True):
+            draw_rods(ax, run, name, unit=unit, number=number, label=_varied(group))
+            for key, dashes in _DASHES.items():
                 if key in group:
-                    theory = group[key].to_dataset()
-                    values = theory[name] / unit
-                    place = theory.normalized_particle
-                    [line] = ax.plot(place, values, style, color=colour, zorder=3)
-                    drawn.append((ax, line, stated_error(theory, name) / unit))
-                    keep_room(ax, values.values, LEAST_SEEN)
-    along_the_chain(axes[0])
-    axes[0].set(ylabel="velocity width $W_v/W$")
-    along_the_chain(axes[1])
-    axes[1].set(ylabel=rf"displacement $\langle\Delta x\rangle/{symbol}$")
-    fade(drawn)
-    for key, style in _STYLES.items():
+                    look = {"color": COLOURS[number % len(COLOURS)], "linestyle": dashes}
+                    _draw_theory(ax, group[key].to_dataset(), name, unit, **look)
+    for key, dashes in _DASHES.items():
         if any(key in group for group in tree.children.values()):
-            axes[0].plot([], [], style, color="0.4", label=TITLES[key])
+            axes[0].plot([], [], dashes, color="0.4", label=TITLES[key])
+    axes[0].set(ylabel="velocity width $W_v/W$")
+    axes[1].set(ylabel=rf"displacement $\langle\Delta x\rangle/{symbol}$")
+    _finish_rods(axes)
     legend_above(figure, axes[0])
     return figure
+
+
+def _finish_rods(axes: list[Axes]) -> None:
+    """Begin the axis of widths at 0, so that it does not magnify the noise of equal widths."""
+    axes[0].set_ylim(0, 1.05 * axes[0].get_ylim()[1])
+    for ax in axes:
+        along_the_chain(ax)
+
+
+def _draw_theory(
+    ax: Axes, theory: xr.Dataset, quantity: str, unit: float = 1.0, **look: Any
+) -> None:
+    """Draw a theory as a line in a band of the error that it states, both divided by ``unit``."""
+    chain = chain_of(theory)
+    values = theory[quantity].values / unit
+    name, scale = {
+        "velocity_width": ("velocity_width_model_error", values),
+        "mean_displacement": ("mean_displacement_model_error", displacement_unit(chain)[1] / unit),
+        "density": ("density_model_error", chain.close_packed_density / unit),
+    }[quantity]
+    error = theory.attrs.get(name, 0.0) * scale
+    x = theory.x if quantity == "density" else theory.normalized_particle
+    ax.plot(x, values, **look)
+    ax.fill_between(x, values - error, values + error, color=look["color"], alpha=0.15, linewidth=0)
 
 
 def draw_phase_space(theory: xr.Dataset) -> Figure:
@@ -215,13 +217,14 @@ def draw_phase_space(theory: xr.Dataset) -> Figure:
     s, W = chain.thermal_length, chain.free_velocity_width
     f = theory.phase_space_density * (s * W / chain.size)
     y, v = theory.y / s, theory.velocity / W
-    floor = float(f.max()) * 10.0**-_DECADES
-    figure, [ax] = panels(1, 1, height=2.7, wanted=1)
+    highest = float(f.max())
+    floor = highest * 10.0**-_DECADES
+    figure, [ax] = panels(1, 1, height=2.7)
     image = ax.pcolormesh(
         y,
         v,
         np.maximum(f.values.T, floor),
-        norm=LogNorm(floor, float(f.max())),
+        norm=LogNorm(floor, highest),
         shading="gouraud",
         rasterized=True,
     )
@@ -229,18 +232,12 @@ def draw_phase_space(theory: xr.Dataset) -> Figure:
     alive = density.values > 1e-4 * float(density.max())
     square = (f * theory.velocity**2).integrate("velocity") / density
     width = np.sqrt(square[alive]) / W
-    for sign in (1, -1):
-        ax.plot(
-            y[alive],
-            sign * width,
-            color="white",
-            label=r"$\pm\langle v^2\rangle^{1/2}$ at $y$" if sign > 0 else None,
-        )
-    # The region above the floor, with a margin around it.
-    reach = [np.abs(axis[(f.values > floor).any(axis=1 - k)]).max() for k, axis in ((0, y), (1, v))]
+    ax.plot(y[alive], width, color="white", label=r"$\pm\langle v^2\rangle^{1/2}$ at $y$")
+    ax.plot(y[alive], -width, color="white")
+    above = f.where(f > floor, drop=True)
     ax.set(
-        xlim=(-reach[0], reach[0]),
-        ylim=(-reach[1], reach[1]),
+        xlim=(above.y[0] / s, above.y[-1] / s),
+        ylim=(above.velocity[0] / W, above.velocity[-1] / W),
         xlabel="reduced position $y/s$",
         ylabel="velocity $v/W$",
         title=rf"$L = {chain.size}$, $e = {chain.restitution:g}$, $\gamma = {chain.damping:g}$",
@@ -252,30 +249,22 @@ def draw_phase_space(theory: xr.Dataset) -> Figure:
 
 def draw_profile(theory: xr.Dataset, name: str) -> Figure:
     """W_v(i) and <dx_i> of a theory alone, called ``name`` in the legend."""
-    chain = chain_of(theory)
     figure, axes = panels(1, 2)
-    drawn = []
-    length = displacement_unit(chain)[1]
-    for ax, quantity, label, unit in (
-        (axes[0], "velocity_width", "velocity width $W_v$ [R/T]", chain.free_velocity_width),
-        (axes[1], "mean_displacement", r"displacement $\langle\Delta x\rangle$ [R]", length),
-    ):
-        [line] = ax.plot(theory.normalized_particle, theory[quantity], color=COLOURS[0], label=name)
-        drawn.append((ax, line, stated_error(theory, quantity)))
-        keep_room(ax, theory[quantity].values, LEAST_SEEN * unit)
-        along_the_chain(ax)
-        ax.set(ylabel=label)
-    for number, width in enumerate(free_widths(chain)):
-        of_both = None if number else "free rod (and e = 1)"
-        axes[0].axhline(width, color="0.4", linestyle=":", label=of_both)
+    for ax, quantity in zip(axes, ("velocity_width", "mean_displacement"), strict=True):
+        _draw_theory(ax, theory, quantity, color=COLOURS[0], label=name)
+        ax.set_ylabel(axis_label(theory[quantity]))
+    for number, width in enumerate(free_widths(chain_of(theory))):
+        label = None if number else "free rod (and e = 1)"
+        axes[0].axhline(width, color="0.4", linestyle=":", label=label)
+    _finish_rods(axes)
     axes[0].legend()
-    fade(drawn)
     return figure
 
 
 def draw_density_alone(theory: xr.Dataset, name: str) -> Figure:
     """Draw the density of a theory alone, called ``name`` in the legend."""
-    figure, [ax] = panels(1, 1, wanted=1)
-    overlay({name: theory}, ax=ax).legend(loc="lower center")
-    fade([(ax, ax.lines[0], stated_error(theory, "density"))])
+    figure, [ax] = panels(1, 1)
+    _draw_theory(ax, theory, "density", color=COLOURS[0], label=name)
+    ax.set(xlabel=axis_label(theory.x), ylabel=axis_label(theory.density))
+    ax.legend(loc="lower center")
     return figure

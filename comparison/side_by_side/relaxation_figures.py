@@ -3,69 +3,70 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
-import matplotlib.pyplot as plt
 import numpy as np
 import xarray as xr
-from matplotlib.animation import FuncAnimation
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from crazybilliards.comparison.coverage import smooth
+from crazybilliards.comparison.curves import axis_label
 from crazybilliards.comparison.drawing import overlay
-from crazybilliards.comparison.layout import entitle, label_outer, legend_above, panels
+from crazybilliards.comparison.layout import TWO_COLUMNS, entitle, legend_above, panels
 from crazybilliards.comparison.side_by_side.grid import SIMULATION
 from crazybilliards.comparison.side_by_side.relaxation import LEGEND, PARTICLES, cloud
-from crazybilliards.comparison.symbols import LEAST_SEEN, keep_room
 from crazybilliards.comparison.widths import displacement_unit
 from crazybilliards.model import Chain, chain_of
+from crazybilliards.model.vocabulary import unit_of
 
 _NAMES = {PARTICLES: SIMULATION} | LEGEND
-_DENSITY, _POSITION = r"density $\rho$ [1/R]", "position $x$ [R]"
 _MOMENTS = (0.0, 0.05, 0.1, 1.0)  # of the duration, for the profiles
 _LEAST_DRAWN = 2e-3  # of close packing: pictures end where every density is lower
+_AT_REST = 0.1  # an axis of the centre is not narrower, so that it does not magnify noise
+_LOOK = {SIMULATION: {"color": "black"}}
 
 
 def draw_spacetime(tree: xr.DataTree) -> Figure:
     """rho(x, t) of the simulation, both fluids and the rods, on one colour scale."""
     densities = _densities(tree)
-    figure, axes = panels(2, math.ceil(len(densities) / 2), height=2.3, sharex=True, sharey=True)
-    chain = _chain(tree)
+    columns = math.ceil(len(densities) / 2)
+    figure, axes = panels(2, columns, height=2.3, sharex=True, sharey=True)
+    highest = _chain(tree).close_packed_density
     for ax, (name, result) in zip(axes, densities.items(), strict=False):
         image = ax.pcolormesh(
-            result.x,
-            result.time,
-            result.density,
-            vmin=0,
-            vmax=chain.close_packed_density,
-            rasterized=True,
+            result.x, result.time, result.density, vmin=0, vmax=highest, rasterized=True
         )
         entitle(ax, name)
-        ax.set_xlim(_extent(densities))
-    if len(axes) > len(densities):
-        axes.pop().remove()
-    label_outer(axes, x=_POSITION, y="time $t$ [T]")
-    figure.colorbar(image, ax=axes, label=_DENSITY)
+    for ax in axes[len(densities) :]:
+        ax.remove()
+    axes = axes[: len(densities)]
+    axes[0].set_xlim(_extent(densities))
+    for ax in axes[-columns:]:  # the lowest of each column, because the last row may be shorter
+        ax.set_xlabel(axis_label(result.x))
+        ax.tick_params(labelbottom=True)
+    for ax in axes[::columns]:
+        ax.set_ylabel(axis_label(result.time))
+    figure.colorbar(image, ax=axes, label=axis_label(result.density))
     return figure
 
 
 def draw_profiles(tree: xr.DataTree) -> Figure:
     """rho(x) at a few times: simulation with its standard errors, over the lines of the fluids."""
     densities = _densities(tree)
-    times = densities[SIMULATION].time.values
-    chosen = np.round(np.array(_MOMENTS) * (times.size - 1)).astype(int)
+    time = densities[SIMULATION].time
     figure, axes = panels(2, 2, height=2.1, sharex=True, sharey=True)
     extent = _extent(densities)
-    for ax, moment in zip(axes, chosen, strict=True):
-        # Of what is shown, or the symbols would be few there.
+    for ax, share in zip(axes, _MOMENTS, strict=True):
+        moment = round(share * (time.size - 1))
         shown = {
             name: each.isel(time=moment).sel(x=slice(*extent)) for name, each in densities.items()
         }
-        overlay(shown, ax=ax)
-        entitle(ax, f"$t = {times[moment]:.3g}$ T")
-        ax.set(xlim=extent, xlabel="", ylabel="")
+        overlay(shown, ax=ax, style=_LOOK)
+        entitle(ax, f"$t = {float(time[moment]):.3g}$ {unit_of(time)}")
+        ax.set_xlim(extent)
+        ax.label_outer()
         _draw_walls(ax, _chain(tree))
-    label_outer(axes, x=_POSITION, y=_DENSITY)
     legend_above(figure, axes[0])
     return figure
 
@@ -73,26 +74,26 @@ def draw_profiles(tree: xr.DataTree) -> Figure:
 def draw_cloud(tree: xr.DataTree) -> Figure:
     """Width and centre of the cloud in the reduced coordinate against time, in units of s or h."""
     figure, axes = panels(1, 2, height=2.4)
-    symbol, s = displacement_unit(_chain(tree))
-    for ax, which, label in zip(
-        axes, ("cloud_width", "centre"), ("width of the cloud", "centre"), strict=True
-    ):
-        curves = {}
-        for key, name in _NAMES.items():
-            if key in tree and key != "rods":  # whose cloud is that of the fluid
-                found = cloud(tree[key].to_dataset())
-                curves[name] = (found / s).assign_attrs(tree[key].attrs)
-                curves[name][which].attrs = {"long_name": "", "units": "1"}
-        overlay(curves, which, ax=ax)
+    symbol, unit = displacement_unit(_chain(tree))
+    clouds = {  # that of the rods is that of the fluid
+        name: (cloud(tree[key].to_dataset()) / unit).assign_attrs(tree[key].attrs)
+        for key, name in _NAMES.items()
+        if key in tree and key != "rods"
+    }
+    quantities = {"cloud_width": "width of the cloud", "centre": "centre"}
+    for ax, (quantity, label) in zip(axes, quantities.items(), strict=True):
+        for each in clouds.values():
+            each[quantity].attrs = {"long_name": label, "units": "1"}
+        overlay(clouds, quantity, ax=ax, style=_LOOK)
         ax.set_ylabel(f"{label} / ${symbol}$")
-        for curve in curves.values():  # the noise of a centre at rest
-            keep_room(ax, curve[which].values, LEAST_SEEN)
+    low, high = axes[1].get_ylim()
+    axes[1].set_ylim(min(low, -_AT_REST), max(high, _AT_REST))
     legend_above(figure, axes[0])
     return figure
 
 
-def relaxation_animation(tree: xr.DataTree, most: int) -> tuple[FuncAnimation, int]:
-    """Return the film of rho(x, t) of the simulation and the fluids, and its number of pictures."""
+def relaxation_film(tree: xr.DataTree, most: int) -> tuple[Figure, Callable[[int], None], int]:
+    """Return a figure of rho(x), what draws a picture of the film into it, and their number."""
     densities = _densities(tree)
     extent = _extent(densities)
     last = densities[SIMULATION].time.size - 1
@@ -101,24 +102,25 @@ def relaxation_animation(tree: xr.DataTree, most: int) -> tuple[FuncAnimation, i
         name: each[["density"]].sel(x=slice(*extent)).isel(time=chosen)
         for name, each in densities.items()
     }
-    figure, ax = plt.subplots(figsize=(8, 4.5), layout="constrained")
+    figure = Figure(figsize=(TWO_COLUMNS, 3.9), dpi=120)
+    ax = figure.subplots()
     rods = densities[SIMULATION]
-    # Every bin: symbols that tell the curve at one time may show false waves at another.
     ax.plot(rods.x, rods.density[0], color="black", linewidth=1, label=SIMULATION, zorder=3)
     fluids = {name: each.isel(time=0) for name, each in densities.items() if name != SIMULATION}
     overlay(fluids, ax=ax)
     high = max(float(each.density.max()) for each in densities.values())
-    ax.set(xlim=extent, ylim=(0, 1.05 * high), xlabel=_POSITION, ylabel=_DENSITY)
+    ax.set(xlim=extent, ylim=(0, 1.05 * high))
     _draw_walls(ax, chain_of(rods))
     legend_above(figure, ax)
     lines = {str(line.get_label()): line for line in ax.lines}
 
     def show(picture: int) -> None:
-        ax.set_title(f"{title(tree)}: $t = {float(rods.time[picture]):.2f}$ T")
+        time = float(rods.time[picture])
+        ax.set_title(f"{title(tree)}: $t = {time:.2f}$ {unit_of(rods.time)}")
         for name, each in densities.items():
             lines[name].set_ydata(each.density.values[picture])
 
-    return FuncAnimation(figure, show, chosen.size, repeat=False), chosen.size
+    return figure, show, chosen.size
 
 
 def _draw_walls(ax: Axes, chain: Chain) -> None:

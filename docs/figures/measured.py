@@ -6,13 +6,10 @@ three chains, which takes ten seconds.
 
 from pathlib import Path
 
-import matplotlib as mpl
-import matplotlib.pyplot as plt
-
 from crazybilliards.comparison.coverage import smooth
 from crazybilliards.comparison.distances import deviation
 from crazybilliards.comparison.drawing import overlay
-from crazybilliards.comparison.layout import at_the_left, entitle, house_style, legend_above, panels
+from crazybilliards.comparison.layout import entitle, house_style, legend_above, panels
 from crazybilliards.kinetic import force_balance
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
@@ -37,13 +34,11 @@ def main() -> None:
                 print(f"e = {e:g}, {name}: {deviation(each, densities['simulation'])}")
             overlay(densities, ax=ax)
             entitle(ax, f"$e = {e:g}$")
-            ax.set(xlim=(-180, 180), xlabel="position $x$ [R]")
-            ax.set_ylabel(r"density $\rho$ [1/R]" if at_the_left(ax) else "")
+            ax.set_xlim(-180, 180)
+            ax.label_outer()
         legend_above(figure, axes[0])
         figure.savefig(Path(__file__).with_suffix(".png"))
-        plt.close(figure)
 
 
 if __name__ == "__main__":
-    mpl.use("Agg")
     main()

@@ -16,11 +16,10 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import get_args
 
-import matplotlib.pyplot as plt
 import xarray as xr
 from markdown_it import MarkdownIt
 
-from crazybilliards.comparison.layout import Columns, house_style
+from crazybilliards.comparison.layout import house_style
 from crazybilliards.comparison.sweeps import Case
 from crazybilliards.reproduction.claims.study import Quality, Results, Study
 from crazybilliards.reproduction.claims.verdicts import Claim, Verdict
@@ -70,19 +69,15 @@ def reproduce(
     quality: Quality,
     folder: Path,
     *,
-    columns: Columns | None = None,
     formats: Collection[str] = (),
     executor: Executor | None = None,
 ) -> Iterator[Reproduced]:
     """Draw studies and check their claims, in their order, from the cases in ``folder``.
 
-    ``columns``: the width of the pictures, as
-    :func:`crazybilliards.comparison.layout.house_style` takes it. ``formats``: file formats of
-    matplotlib, besides PNG. ``executor``: in whose processes it is done; None: in this one.
+    ``formats``: file formats of matplotlib, besides PNG. ``executor``: in whose processes it is
+    done; None: in this one.
     """
-    draw = partial(
-        _reproduced, quality=quality, folder=folder, columns=columns, formats=("png", *formats)
-    )
+    draw = partial(_reproduced, quality=quality, folder=folder, formats=("png", *formats))
     try:
         yield from (map if executor is None else executor.map)(draw, studies)
     finally:
@@ -90,11 +85,11 @@ def reproduce(
 
 
 def _reproduced(
-    study: Study, quality: Quality, folder: Path, columns: Columns | None, formats: Collection[str]
+    study: Study, quality: Quality, folder: Path, formats: Collection[str]
 ) -> Reproduced:
     cases = study.cases(quality)
     results = {name: _loaded(case, folder) for name, case in cases.items()}
-    with house_style(columns):
+    with house_style():
         pictures = _drawn(study, results, formats)
     return Reproduced(study, pictures, study.claims(results), describe(cases.values()))
 
@@ -113,7 +108,6 @@ def _drawn(study: Study, results: Results, formats: Iterable[str]) -> dict[str, 
         # The same picture is to give the same file, whenever it is drawn.
         drawn.savefig(picture, format=kind, metadata=_NO_DATE.get(kind))
         pictures[kind] = picture.getvalue()
-    plt.close(drawn)
     return pictures
 
 

@@ -27,7 +27,7 @@ _CEILING = 2.7  # height of the anchors
 def draw(results: Results) -> Figure:
     """Draw four rods on springs, displaced from their anchors."""
     chain = Chain(size=len(_DISPLACEMENTS), gap=1.6)
-    figure, [ax] = panels(1, 1, height=1.45, wanted=1)
+    figure, [ax] = panels(1, 1, height=1.45)
     for i, (anchor, shift) in enumerate(zip(chain.anchors, _DISPLACEMENTS, strict=True), start=1):
         _spring(ax, anchor, anchor + shift)
         ax.add_patch(Circle((anchor + shift, 0), chain.radius, facecolor="0.93", edgecolor="black"))

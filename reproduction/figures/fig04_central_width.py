@@ -94,7 +94,7 @@ def _exponent(fit: Fit) -> Estimate:
 
 def draw(results: Results) -> Figure:
     """Draw W_v in the centre against L for every time step."""
-    figure, (top, bottom) = panels(2, 1, height=2.0, wanted=1, height_ratios=(2, 1), sharex=True)
+    figure, (top, bottom) = panels(2, 1, height=2.0, height_ratios=(2, 1), sharex=True)
     unit = Chain().free_velocity_width
     reference = _fit(_widths(results, _at_step(None)))
     series = {"default step": _widths(results, _at_step(None))}

@@ -9,7 +9,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from crazybilliards.comparison.layout import at_the_left, entitle, panels
+from crazybilliards.comparison.layout import entitle, panels
 from crazybilliards.model import Chain
 from crazybilliards.reproduction.chains import LARGE
 from crazybilliards.reproduction.claims.repetition import Granted, Runs
@@ -184,8 +184,7 @@ def draw(results: Results) -> Figure:
         ax.plot(line, 0.06 * (line / 3) ** _PAPER, "k--", label="$N_c^{-2.2}$")
         ax.set(ylim=(1e-8, 1), xlim=(0.8, LARGE))
         ax.legend(loc="lower left")
-        if at_the_left(ax):
-            ax.set_ylabel("probability $p(N_c)$")
+    axes[0].set_ylabel("probability $p(N_c)$")
     return figure
 
 

@@ -94,7 +94,7 @@ def _tail_ratio(run: xr.Dataset) -> float:
 def draw(results: Results) -> Figure:
     """Draw p(v) of three rods, with an exponential tail at the border."""
     run = _RUNS.pooled(results)
-    figure, [ax] = panels(1, 1, height=2.9, wanted=1)
+    figure, [ax] = panels(1, 1, height=2.9)
     draw_distributions(ax, _RUNS.members(results), PARTICLES)
     # The leftmost rod is thrown to the left.
     v, p = (each.values[run.velocity_bin.values < 0] for each in (run.velocity_bin, _density(run)))

@@ -7,7 +7,7 @@ from functools import partial
 import xarray as xr
 from matplotlib.figure import Figure
 
-from crazybilliards.comparison.layout import at_the_left, entitle, panels
+from crazybilliards.comparison.layout import entitle, panels
 from crazybilliards.reproduction.chains import OTHER_STEP, at_other_step, flippers
 from crazybilliards.reproduction.claims.study import Results, all_of
 from crazybilliards.reproduction.claims.verdicts import Claim
@@ -66,7 +66,6 @@ def draw(results: Results) -> Figure:
             draw_sizes(ax, sizes, counts / counts.sum(), counts, number=number, label=label)
         ax.axvspan(_SPANNING, _SIZE, color="0.9", zorder=0, label="spans the system")
         entitle(ax, name)
-        if at_the_left(ax):
-            ax.set_ylabel("probability $p(N_c)$")
         ax.legend(loc="lower left")
+    axes[0].set_ylabel("probability $p(N_c)$")
     return figure

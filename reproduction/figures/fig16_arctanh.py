@@ -61,7 +61,7 @@ def draw(results: Results) -> Figure:
     fit = fit_arctanh(run)
     exact = equilibrium(chain)
     x = run.mean_position.values
-    figure, (top, bottom) = panels(2, 1, height=1.7, wanted=1, sharex=True, height_ratios=(2, 1))
+    figure, (top, bottom) = panels(2, 1, height=1.7, sharex=True, height_ratios=(2, 1))
     measured = run.mean_displacement.values
     error = run.mean_displacement_error.values
     look: Any = {"number": 0, "color": "black", "linewidth": 0.7, "label": "simulation"}

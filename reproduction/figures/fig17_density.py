@@ -19,10 +19,10 @@ from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, furthes
 
 TITLE = "Density at e = 1: simulation and theory"
 CAPTION = (
-    "L = 100, e = 1, four driving amplitudes. Circles: simulation, smoothed as in the "
-    "paper; a thin line where circles would hide steps. Other lines: "
-    f"{'; '.join(ELASTIC.values())}. Insets: the right edge, every bin. Below each: the difference "
-    "from the exact density in units of close packing. At e = 1 without a gap equation 19 "
+    "L = 100, e = 1, four driving amplitudes. Above: simulation, smoothed as in the paper, and "
+    "exact density. Below: the differences from the exact density at the right end, in per cent of "
+    f"close packing, of the simulation and of {'; '.join(list(ELASTIC.values())[1:])}. "
+    "At e = 1 without a gap equation 19 "
     "(diff_gl) is exact for the rods without their length, as points. What is approximate is to "
     "read rods off a fluid by 1/(1 - 2 rho R); rod by rod it is exact."
 )

@@ -11,7 +11,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from crazybilliards.comparison.drawing import along_the_chain, draw_rods
-from crazybilliards.comparison.layout import at_the_left, entitle, legend_above, panels
+from crazybilliards.comparison.layout import entitle, legend_above, panels
 from crazybilliards.comparison.widths import central_width
 from crazybilliards.model import chain_of
 from crazybilliards.reproduction.chains import LARGE, OTHER_STEP, at_other_step, dissipative
@@ -190,7 +190,6 @@ def draw(results: Results) -> Figure:
             draw_rods(ax, run, "velocity_variance", number=number, unit=unit, label=label)
         along_the_chain(ax)
         entitle(ax, f"$e = {restitution:g}$")
-        if at_the_left(ax):
-            ax.set_ylabel("velocity variance $W_v^2/W^2$")
+    axes[0].set_ylabel("velocity variance $W_v^2/W^2$")
     legend_above(figure, axes[0])
     return figure
