@@ -31,7 +31,7 @@ from crazybilliards.model.progress import silent, watched
 
 
 @dataclass(frozen=True)
-class Theory:
+class StationaryTheory:
     """A theory of a chain's steady state."""
 
     title: str  # in tables and legends
@@ -77,17 +77,23 @@ class Theory:
 THEORIES = {
     theory.name: theory
     for theory in (
-        Theory("exact equilibrium", equilibrium, check_equilibrium),
-        Theory("force balance", force_balance, check_force_balance),
-        Theory("kinetic equation", phase_space, check_phase_space),
-        Theory(
+        StationaryTheory("exact equilibrium", equilibrium, check_equilibrium),
+        StationaryTheory("force balance", force_balance, check_force_balance),
+        StationaryTheory("kinetic equation", phase_space, check_phase_space),
+        StationaryTheory(
             "kinetic equation with pair correlations",
             correlated_phase_space,
             check_correlated_phase_space,
         ),
     )
 }
-
+# What pictures call a result. Its name everywhere else is that of the function that computes it.
+TITLES = {
+    "simulation": "simulation",
+    **{name: theory.title for name, theory in THEORIES.items()},
+    "force_balance_arctanh": "force balance, arctanh fit",
+    "rod_by_rod": "force balance, rod by rod",
+}
 
 _COLUMNS = (
     ("takes", "whether the theory takes the chain", ""),
@@ -206,7 +212,7 @@ def best_theory(
 class Choice(NamedTuple):
     """A theory, and why it was chosen in one sentence."""
 
-    theory: Theory
+    theory: StationaryTheory
     why: str
 
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import multiprocessing
 import os
 import signal
 import sys
 import threading
+import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from contextvars import ContextVar
@@ -14,6 +16,7 @@ from contextvars import ContextVar
 _ENDING = [
     getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)
 ]
+_BETWEEN_LOOKS = 0.5  # at the parent of a process [s]
 _to_announce: ContextVar[bool] = ContextVar("to_announce", default=False)
 
 
@@ -21,8 +24,13 @@ def end_with_parent() -> None:
     """End this process when the one that started it ends, even if that one was killed."""
     import psutil  # here, because most commands start no process
 
+    parent = multiprocessing.parent_process()
+    assert parent is not None
+
     def follow() -> None:
-        psutil.Process(os.getppid()).wait()
+        # A dead parent that nobody has waited for still counts as a process, but not as the parent.
+        while os.getppid() == parent.pid and psutil.pid_exists(os.getppid()):
+            time.sleep(_BETWEEN_LOOKS)
         os._exit(1)
 
     threading.Thread(target=follow, daemon=True).start()

@@ -1,4 +1,4 @@
-"""A small sweep, and an executor that computes its cases here and now."""
+"""A small sweep, an executor that computes its cases here and now, and what a folder lacks."""
 
 from concurrent.futures import Executor, Future
 
@@ -21,3 +21,8 @@ def sweep(**changes):
     given = {"grid": {"size": [3, 5], "restitution": [0.5, 1.0]}, "chain": {"damping": 2.0}}
     given |= {"job": "simulate", "settings": {"duration": 100, "observe": ["widths", "density"]}}
     return Sweep(**(given | changes))
+
+
+def missing_cases(cases, folder, **options):
+    """Return the cases that a folder has no valid file of."""
+    return [case for case in cases if not case.is_in(folder, **options)]

@@ -18,7 +18,7 @@ import matplotlib as mpl
 import numpy as np
 import pytest
 from killed import begin, contents, end, members, require_same, until
-from missing_cases import missing_cases
+from small_sweeps import missing_cases
 from tqdm import tqdm
 
 from crazybilliards.apps.commands.line import main

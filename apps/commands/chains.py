@@ -259,10 +259,10 @@ def compare(
             "widths": partial(figures.draw_widths, tree),
         } | {
             f"phase_space_{name}": partial(
-                figures.draw_phase_space, group["kinetic_equation"].to_dataset()
+                figures.draw_phase_space, group["phase_space"].to_dataset()
             )
             for name, group in tree.children.items()
-            if "kinetic_equation" in group
+            if "phase_space" in group
         }
         written = keep(tree, output, "comparison", drawings)
     rows = _deviations(over, tree)

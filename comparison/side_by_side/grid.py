@@ -14,7 +14,6 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from contextlib import ExitStack
-from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import xarray as xr
@@ -27,30 +26,21 @@ from crazybilliards.comparison.sweeps import Case, process_pool, run_cases
 from crazybilliards.kinetic import equilibrium, force_balance, rod_by_rod
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain, chain_of
-from crazybilliards.model.warn import warn_user
 from crazybilliards.model.checks import as_written, check_integer, check_path, is_list, shown
 from crazybilliards.model.parameters import WALLS_AND_MASSES
 from crazybilliards.model.process import announced
 from crazybilliards.model.progress import waiting_for
 from crazybilliards.model.randomness import Seed, seed_of
+from crazybilliards.model.warn import warn_user
 from crazybilliards.particles.simulation import make_run
 from crazybilliards.particles.stepping import compile_kernels
 
 Folder = str | os.PathLike[str]
 
 SIMULATION = "simulation"
-ELASTIC = {
-    "exact": "exact",
-    "labels": "force balance, without fit",
-    "arctanh": "force balance, arctanh fit",
-    "rods": "force balance, rod by rod",
-}
-# The kinetic equations by their names in the results, and the jobs that solve them.
-KINETIC = {"kinetic_equation": "phase_space", "pair_correlations": "correlated_phase_space"}
-# What every result is called in pictures.
-TITLES = (
-    {SIMULATION: SIMULATION} | ELASTIC | {key: THEORIES[job].title for key, job in KINETIC.items()}
-)
+# The theories of a comparison, in the order of the pictures; their titles are in TITLES.
+ELASTIC = ("equilibrium", "force_balance", "force_balance_arctanh", "rod_by_rod")
+KINETIC = ("phase_space", "correlated_phase_space")
 
 _REPLICAS = 2
 
@@ -86,8 +76,7 @@ def compare(
     seed
         As in ``simulate``. Every chain has its own random numbers.
     processes
-        Processes to compute in. They are started anew, so a script must call this under
-        ``if __name__ == "__main__":``. None: this process.
+        Processes to compute in. None: this process.
     threads
         Threads to simulate in, in this process; None: one per core.
     progress
@@ -96,42 +85,37 @@ def compare(
     Returns
     -------
     xarray.DataTree
-        ``tree["amplitude_3/simulation"]`` and its theories beside it, results in the common
-        vocabulary, not smoothed. If all chains have e = 1: ``.../exact``, ``.../labels``,
-        ``.../rods`` and, with springs, ``.../arctanh``. Otherwise ``.../kinetic_equation``, and
-        ``.../pair_correlations`` where ``correlated_phase_space`` takes the chain; ``theories``
-        tells how good they are. A theory that has no steady state is left out, with a warning that
-        gives the reason. ``attrs["status"]`` is ``interrupted`` if Ctrl-C ended it early, and
-        ``diverged`` if a simulation diverged. The tree then holds the results so far.
+        ``tree["amplitude_3/simulation"]`` and its theories beside it by the names of their
+        functions, results in the common vocabulary, not smoothed. If all chains have e = 1:
+        ``equilibrium``, ``force_balance``, ``rod_by_rod`` and, with springs,
+        ``force_balance_arctanh``. Otherwise ``phase_space``, and ``correlated_phase_space`` where
+        it takes the chain; ``theories`` tells how good they are. A theory that has no steady state
+        is left out, with a warning that gives the reason. ``attrs["status"]`` is ``interrupted`` if
+        Ctrl-C ended it early, and ``diverged`` if a simulation diverged. The tree then holds the
+        results so far.
 
     Raises
     ------
     ValueError
         For a wrong argument, before any work.
     RuntimeError
-        If a worker process dies. What was finished stays in ``folder``.
+        If a simulation fails, for example because its process dies. What was finished stays in
+        ``folder``.
     """
     chains = _chains(chain, over)
     settings = {"duration": duration, "replicas": _REPLICAS, "seed": seed_of(seed)}
-    walls = {"observe": ("widths", "density", "walls")}
-    cases = {
-        name: {SIMULATION: Case("simulate", each, settings | (walls if each.box else {}))}
-        for name, each in chains.items()
-    }
-    if all(each.restitution == 1 for each in chains.values()):
-        results, status = _computed(cases, folder, processes, threads, progress)
-        with waiting_for("theories", progress):
-            return elastic_tree(
-                {name: found[SIMULATION] for name, found in results.items()}, status
-            )
-    for name, here in chains.items():
-        for key, job in KINETIC.items():
-            reason = THEORIES[job].refusal(here)
-            if not reason:
-                cases[name][key] = Case(job, here, {})
-            elif job == "phase_space":  # which takes nearly every chain
-                _warn_of_no_theory(here, job, reason)
-    return _tree(*_computed(cases, folder, processes, threads, progress))
+    elastic = all(chain.restitution == 1 for chain in chains.values())
+    cases = {}
+    for name, chain in chains.items():
+        walls = {"observe": ("widths", "density", "walls")} if chain.box else {}
+        cases[name] = {SIMULATION: Case("simulate", chain, settings | walls)}
+        if not elastic:
+            cases[name] |= _kinetic_cases(chain)
+    results, status = _computed(cases, folder, processes, threads, progress)
+    if not elastic:
+        return _tree(results, status)
+    with waiting_for("theories", progress):
+        return elastic_tree({name: group[SIMULATION] for name, group in results.items()}, status)
 
 
 def elastic_tree(runs: Mapping[str, xr.Dataset], status: str = "completed") -> xr.DataTree:
@@ -139,6 +123,14 @@ def elastic_tree(runs: Mapping[str, xr.Dataset], status: str = "completed") -> x
     return _tree(
         {name: {SIMULATION: run} | _elastic_theories(run) for name, run in runs.items()}, status
     )
+
+
+def _kinetic_cases(chain: Chain) -> dict[str, Case]:
+    """Return the cases of the kinetic equations that take a chain."""
+    refusals = {name: THEORIES[name].refusal(chain) for name in KINETIC}
+    if refusals["phase_space"]:  # which takes nearly every chain
+        _warn_of_no_theory(chain, "phase_space", refusals["phase_space"])
+    return {name: Case(name, chain, {}) for name, refusal in refusals.items() if not refusal}
 
 
 def _chains(chain: Chain, over: Mapping[str, ArrayLike]) -> dict[str, Chain]:
@@ -155,10 +147,10 @@ def _chains(chain: Chain, over: Mapping[str, ArrayLike]) -> dict[str, Chain]:
         raise ValueError(f"over: {name} must hold at least one value")
     chains = {}
     for value in values:
-        each = chain.replace(**{name: as_written(value)})
-        require_chain(each, "the comparison with theories", knows=WALLS_AND_MASSES)
-        number = each.parameters()[name]
-        chains[f"{name}_{number if isinstance(number, str) else f'{number:g}'}"] = each
+        changed = chain.replace(**{name: as_written(value)})
+        require_chain(changed, "the comparison with theories", knows=WALLS_AND_MASSES)
+        number = changed.parameters()[name]
+        chains[f"{name}_{number if isinstance(number, str) else f'{number:g}'}"] = changed
     if len(chains) != len(values):
         raise ValueError(
             f"over: the values of {name} must differ in their first six digits, got {list(values)}"
@@ -175,52 +167,41 @@ def _computed(
 ) -> tuple[dict[str, dict[str, xr.Dataset]], str]:
     """Compute the cases; return their results by name and key, and the status of all of them."""
     threads = check_integer("threads", cpu_count() if threads is None else threads, least=1)
-    every = [case for found in cases.values() for case in found.values()]
+    status, failed = "completed", {}
     with ExitStack() as stack:
         place = stack.enter_context(TemporaryDirectory()) if folder is None else folder
         place = check_path("folder", place)
         pool = None if processes is None else stack.enter_context(process_pool(processes))
-        status, failed = "completed", {}
         with announced(progress):
-            simulated = [found[SIMULATION] for found in cases.values()]
+            simulated = [group[SIMULATION] for group in cases.values()]
             compile_kernels(make_run(case.chain, **case.settings).exact for case in simulated)
         try:
+            every = [case for group in cases.values() for case in group.values()]
             failed = run_cases(every, place, pool, threads=threads, progress=progress)
         except KeyboardInterrupt:
             status = "interrupted"
-        results = {name: _read(found, place) for name, found in cases.items()}
+        results = {  # after Ctrl-C some may be missing, or outdated
+            name: {key: case.load(place) for key, case in group.items() if case.is_in(place)}
+            for name, group in cases.items()
+        }
     for case, reason in failed.items():
-        if case.job not in THEORIES:
-            raise ValueError(reason)
+        if case.job == "simulate":
+            raise RuntimeError(reason)
         _warn_of_no_theory(case.chain, case.job, reason.removeprefix("ValueError: "))
-    results = {name: found for name, found in results.items() if SIMULATION in found}
+    results = {name: group for name, group in results.items() if SIMULATION in group}
     if not results:
         raise KeyboardInterrupt
-    if status == "completed" and any(
-        each[SIMULATION].attrs["status"] == "diverged" for each in results.values()
-    ):
-        status = "diverged"
-    return results, status
+    diverged = any(group[SIMULATION].attrs["status"] == "diverged" for group in results.values())
+    return results, "diverged" if diverged and status == "completed" else status
 
 
 def _warn_of_no_theory(chain: Chain, job: str, reason: str) -> None:
     warn_user(f"e = {chain.restitution:g} has no {THEORIES[job].title}: {reason}")
 
 
-def _read(cases: Mapping[str, Case], folder: Path) -> dict[str, xr.Dataset]:
-    """Return the results that are there: after Ctrl-C some may be missing, or outdated."""
-    results = {}
-    for key, case in cases.items():
-        try:
-            results[key] = case.load(folder)
-        except (FileNotFoundError, ValueError):
-            continue
-    return results
-
-
 def _tree(results: Mapping[str, Mapping[str, xr.Dataset]], status: str) -> xr.DataTree:
     tree = xr.DataTree.from_dict(
-        {f"{name}/{key}": each for name, found in results.items() for key, each in found.items()}
+        {f"{name}/{key}": each for name, group in results.items() for key, each in group.items()}
     )
     tree.attrs |= {"status": status, "source": "comparison"}
     return tree
@@ -230,7 +211,11 @@ def _elastic_theories(run: xr.Dataset) -> dict[str, xr.Dataset]:
     """Return the theories by their names; the arctanh is fitted to the run."""
     chain = chain_of(run)
     balance = force_balance(chain)
-    theories = {"exact": equilibrium(chain), "labels": balance, "rods": rod_by_rod(balance)}
+    theories = {
+        "equilibrium": equilibrium(chain),
+        "force_balance": balance,
+        "rod_by_rod": rod_by_rod(balance),
+    }
     if chain.stiffness == 0:  # displacements then have no effect
         return theories
     try:
@@ -247,4 +232,4 @@ def _elastic_theories(run: xr.Dataset) -> dict[str, xr.Dataset]:
         name: getattr(fit, name)
         for name in ("scale", "scale_error", "steepness", "steepness_error", "misfit")
     }
-    return theories | {"arctanh": arctanh}
+    return theories | {"force_balance_arctanh": arctanh}

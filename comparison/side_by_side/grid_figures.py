@@ -26,20 +26,21 @@ from crazybilliards.comparison.layout import (
     letter,
     panels,
 )
-from crazybilliards.comparison.side_by_side.grid import ELASTIC, KINETIC, SIMULATION, TITLES
+from crazybilliards.comparison.side_by_side.grid import ELASTIC, KINETIC, SIMULATION
+from crazybilliards.comparison.stationary_theories import TITLES
 from crazybilliards.comparison.widths import displacement_unit, free_widths
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.vocabulary import require
 
 _DECADES = 5  # of f in the image
 _SYMBOLS = {"amplitude": "A", "restitution": "e", "size": "L", "gap": "g", "damping": r"\gamma"}
-_EXACT = ELASTIC["exact"]
+_EXACT = TITLES["equilibrium"]
 # In a picture of chains and in one of theories.
-_DASHES = {"exact": "-"} | dict(zip(KINETIC, ("--", "-"), strict=True))
+_DASHES = {"equilibrium": "-"} | dict(zip(KINETIC, ("--", "-"), strict=True))
 _LOOKS: dict[str, dict[str, Any]] = {SIMULATION: {"color": "black"}} | {
     title: {"color": colour, "linestyle": dashes}
     for title, colour, dashes in zip(
-        [*ELASTIC.values(), *(TITLES[key] for key in KINETIC)],
+        [TITLES[name] for name in (*ELASTIC, *KINETIC)],
         COLOURS,
         ("-", "--", ":", "-.", "--", "-"),
         strict=False,

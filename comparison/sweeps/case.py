@@ -110,6 +110,11 @@ class Case:
         changed = [f"{name} {value}" for name, value in self.changed.items() if name not in hidden]
         return f"{self.job}: {', '.join(changed) or 'defaults'}"
 
+    @property
+    def source(self) -> str:
+        """Fingerprint of the source code that its result depends on."""
+        return _SOURCES[self.job]
+
     @cached_property
     def canonical(self) -> str:
         """All parameters as text, the same for equal cases."""
@@ -137,7 +142,7 @@ class Case:
             attributes = load_attributes(self.file(folder))
         except (FileNotFoundError, ValueError):
             return False
-        same = keep_old or attributes.get("source_fingerprint") == _SOURCES[self.job]
+        same = keep_old or attributes.get("source_fingerprint") == self.source
         return same and stored_parameters(attributes) == self.arguments
 
     def load(self, folder: Path) -> xr.Dataset:
@@ -149,13 +154,13 @@ class Case:
         return result
 
 
-def compute(case: Case, source: str | None = None, threads: int = 1) -> bytes:
+def compute(case: Case, source: str, threads: int = 1) -> bytes:
     """Compute a case and return its result as a NetCDF file.
 
     ``source`` is the fingerprint of the sender's source code. A worker with other source code
     refuses, because its result would count as one of the sender's code.
     """
-    if source not in (None, _SOURCES[case.job]):
+    if source != case.source:
         raise ValueError("the worker runs other source code of crazybilliards")
     how = dict(case.settings)
     if "seed" in how:
@@ -170,13 +175,8 @@ def compute(case: Case, source: str | None = None, threads: int = 1) -> bytes:
         result = JOBS[case.job](case.chain, **how)
     if result.attrs["status"] == "interrupted":
         raise KeyboardInterrupt
-    result.attrs |= {"case": case.canonical, "source_fingerprint": _SOURCES[case.job]}
+    result.attrs |= {"case": case.canonical, "source_fingerprint": source}
     return small_netcdf(result)
-
-
-def source_of(case: Case) -> str:
-    """Return the fingerprint of the source code that the result of a case depends on."""
-    return _SOURCES[case.job]
 
 
 def stored_parameters(attributes: Mapping[Any, Any]) -> dict[str, Any]:

@@ -1,16 +1,16 @@
 """Sweeps: a grid over any parameters, described by a TOML file, read back as one Dataset.
 
-    [grid]                            # every combination of these
-    size = [30, 100, 300]
-    restitution = [0.0, 0.5, 0.95]
-    seed = [1, 2]
+[grid]                            # every combination of these
+size = [30, 100, 300]
+restitution = [0.0, 0.5, 0.95]
+seed = [1, 2]
 
-    [chain]                           # the same for all
-    damping = 2.0
+[chain]                           # the same for all
+damping = 2.0
 
-    [simulate]                        # the job, and its settings the same for all
-    duration = 1000
-    observe = ["widths"]
+[simulate]                        # the job, and its settings the same for all
+duration = 1000
+observe = ["widths"]
 """
 
 from __future__ import annotations
@@ -18,7 +18,6 @@ from __future__ import annotations
 import itertools
 import json
 import math
-import numbers
 import os
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
@@ -26,7 +25,6 @@ from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pandas as pd
 import xarray as xr
 
@@ -38,11 +36,11 @@ from crazybilliards.comparison.sweeps.case import (
     stored_parameters,
 )
 from crazybilliards.model import Chain, load
-from crazybilliards.model.warn import warn_user
 from crazybilliards.model.checks import as_written, check_arguments, check_path, is_list, shown
 from crazybilliards.model.vocabulary import ATTRIBUTES, described
+from crazybilliards.model.warn import warn_user
 
-_CHAIN = [each.name for each in fields(Chain)]
+_CHAIN = [parameter.name for parameter in fields(Chain)]
 _TEXTS = ("status", "provenance", "file")  # are always variables
 
 
@@ -84,9 +82,9 @@ class Sweep:
         settings = [*default_settings(self.job)] if self.job in JOBS else []
         check_arguments("[grid]", self.grid, [*_CHAIN, *settings])
         for values in itertools.product(*self.grid.values()):
-            here = dict(zip(self.grid, values, strict=True))
-            chain = {**self.chain, **{name: here.pop(name) for name in _CHAIN if name in here}}
-            yield Case(self.job, Chain().replace(**chain), {**self.settings, **here})
+            point = dict(zip(self.grid, values, strict=True))
+            chain = {**self.chain, **{name: point.pop(name) for name in _CHAIN if name in point}}
+            yield Case(self.job, Chain().replace(**chain), {**self.settings, **point})
 
     def cases(self) -> list[Case]:
         """Return all cases; raises a ValueError for the first one that is wrong."""
@@ -143,32 +141,34 @@ def load_sweep(folder: str | os.PathLike[str]) -> xr.Dataset:
         hold the same case, or if runs with different observers do not fit together.
     """
     place = check_path("folder", folder)
-    paths = sorted(place.glob("*.nc"))
+    paths = sorted(place.glob("[!.]*.nc"))  # hidden files are no results
     if not paths:
         raise ValueError(f"{folder}: holds no case of a sweep")
     results = [_read_case(path) for path in paths]
-    points = [stored_parameters(each.attrs) for each in results]
+    points = [stored_parameters(result.attrs) for result in results]
     if len({point["job"] for point in points}) > 1:
         raise ValueError(f"{folder}: holds cases of different jobs")
     if len({json.dumps(point, sort_keys=True) for point in points}) < len(points):
         raise ValueError(f"{folder}: two files hold the same case; remove one")
+    if unknown := {name for point in points for name in point.keys() ^ points[0].keys()}:
+        raise ValueError(f"{folder}: not all cases have the parameter {min(unknown)}")
     if len({result.attrs.get("source_fingerprint") for result in results}) > 1:
         warn_user(f"{folder}: different source code computed these cases")
     table = _varied(points)
     names = [str(name) for name in table]
-    fixed = {name: value for name, value in points[0].items() if name not in names}
-    results = _with_attributes(results, leave=names)
-    texts = [str(name) for name in results[0].data_vars if results[0][name].dtype == object]
     how: dict[str, Any] = {"join": "outer", "compat": "equals", "combine_attrs": "drop_conflicts"}
     joined = xr.concat(_alike(results), "case", data_vars="all", coords="different", **how)
+    joined = _with_attributes(joined, pd.DataFrame([result.attrs for result in results]), names)
     if names:
         index = pd.MultiIndex.from_frame(table)
         coordinates = xr.Coordinates.from_pandas_multiindex(index, "case")
         joined = joined.assign_coords(coordinates).unstack("case").transpose(*names, ...)
-        for name in texts:  # of missing cases
-            joined[name] = joined[name].fillna("")
+        for name, variable in joined.data_vars.items():
+            if variable.dtype == object:  # the texts of missing cases
+                joined[name] = variable.fillna("")
     else:
         joined = joined.squeeze("case")
+    fixed = {name: value for name, value in points[0].items() if name not in names}
     return joined.assign_attrs(parameters=json.dumps(fixed, sort_keys=True))
 
 
@@ -191,29 +191,24 @@ def _scalar(value: Any) -> Any:
     return json.dumps(value) if isinstance(value, list) else as_written(value)
 
 
-def _with_attributes(results: Sequence[xr.Dataset], leave: Sequence[str]) -> list[xr.Dataset]:
-    """Turn the attributes of single cases into variables, except those named in ``leave``.
+def _with_attributes(
+    joined: xr.Dataset, attributes: pd.DataFrame, names: Sequence[str]
+) -> xr.Dataset:
+    """Turn the attributes of single cases into variables along ``case``.
 
     ``case`` repeats the parameters, which are coordinates.
     """
-    made = list(results)
-    for name in sorted({name for each in results for name in each.attrs} - {"case", *leave}):
-        values = [each.attrs.get(name) for each in results]
-        given = [value for value in values if value is not None]
-        number = all(isinstance(value, numbers.Real) for value in given)
-        differs = len(given) < len(values) or len({str(value) for value in given}) > 1
-        if not (number or differs or name in _TEXTS):
+    joined.attrs.pop("case", None)
+    for name, column in attributes.drop(columns=["case", *names], errors="ignore").items():
+        if pd.api.types.is_numeric_dtype(column):
+            meaning, unit = ATTRIBUTES.get(name, (name.replace("_", " "), "1"))
+            joined[name] = ("case", column.to_numpy(float), described(meaning, unit))
+        elif name in _TEXTS or column.map(str).nunique() > 1:
+            joined[name] = ("case", column.fillna("").map(str).to_numpy(object))
+        else:
             continue
-        meaning, unit = ATTRIBUTES.get(name, (name.replace("_", " "), "1"))
-        about = described(meaning, unit) if number else {}
-        for place, (dataset, value) in enumerate(zip(made, values, strict=True)):
-            if number:
-                each = np.array(math.nan if value is None else value, dtype=float)
-            else:
-                each = np.array("" if value is None else str(value), dtype=object)
-            made[place] = dataset.assign({name: ((), each, about)})
-            made[place].attrs.pop(name, None)
-    return made
+        joined.attrs.pop(name, None)
+    return joined
 
 
 def _alike(results: Sequence[xr.Dataset]) -> Sequence[xr.Dataset]:

@@ -8,49 +8,25 @@ workers of a cluster need no common file system.
 from __future__ import annotations
 
 import os
-import signal
-from collections.abc import Iterable, Iterator
-from concurrent.futures import Executor, as_completed
-from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
+from collections.abc import Generator, Iterable, Iterator
+from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future
+from contextlib import closing
+from pathlib import Path
+from queue import SimpleQueue
+from typing import Any
 
-from loky import ProcessPoolExecutor, cpu_count
+from tqdm.auto import tqdm
 
-from crazybilliards.comparison.sweeps.case import Case, compute, source_of
-from crazybilliards.model.warn import warn_user
-from crazybilliards.model.checks import check_integer, check_path
+from crazybilliards.comparison.sweeps.case import Case, compute
+from crazybilliards.comparison.sweeps.grid import Sweep
+from crazybilliards.model.checks import check_path
 from crazybilliards.model.locks import locked
-from crazybilliards.model.process import end_with_parent
-from crazybilliards.model.progress import progress_bar
 from crazybilliards.model.storage import make_folder, write_sealed
+from crazybilliards.model.warn import warn_user
 from crazybilliards.particles import ShortRunWarning
 
-
-@contextmanager
-def process_pool(processes: int | None = None) -> Iterator[Executor]:
-    """Run cases in processes of this machine, one for each core unless told otherwise.
-
-    An exception in the block, such as Ctrl-C, kills them.
-
-    Examples
-    --------
-    >>> with process_pool(2) as pool:  # doctest: +SKIP
-    ...     failed = run_cases(Sweep({"restitution": [0.5, 1]}), "results", pool)
-    """
-    number = cpu_count() if processes is None else check_integer("processes", processes, least=1)
-    pool = ProcessPoolExecutor(number, initializer=_prepare_worker)
-    try:
-        yield pool
-    except BaseException:
-        pool.shutdown(kill_workers=True)
-        raise
-    pool.shutdown()
-
-
-def _prepare_worker() -> None:
-    """Ignore Ctrl-C, which the parent handles, and end when the parent ends."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    end_with_parent()
+# Cases that are submitted and have not returned: enough for a cluster, few in memory.
+_MOST_UNDER_WAY = 1000
 
 
 def run_cases(
@@ -65,68 +41,124 @@ def run_cases(
     """Compute the cases that have no file in ``folder``; return the reasons of failures.
 
     A file that is damaged, or that other source code of the package computed, is replaced when the
-    new result is there.
+    new result is there. An error in one case does not stop the others.
 
     Parameters
     ----------
     cases
-        A :class:`Sweep` or a list of cases; equal ones are computed once.
+        A :class:`Sweep`, of which few cases are in memory at a time, or a list of cases; equal
+        ones are computed once.
     folder
         Folder of the files, one per case; made if missing.
     executor
-        Executor of the cases: :func:`process_pool`, ``dask.distributed.Client(...).get_executor()``
-        or any other of ``concurrent.futures``. None: this process, in ``threads`` threads.
+        Executor of the cases: :func:`process_pool`, ``distributed.Client(...).get_executor()``
+        of a dask cluster, or any other of ``concurrent.futures``. None: this process.
+    threads
+        Threads of each simulation in this process; no number depends on them.
     keep_old
         Accept results that other source code of the package computed. Use it only if no number
         depends on the edits since.
     progress
-        Show a progress bar with the time left, on a terminal or in a notebook.
+        Show a progress bar with the time left, on a terminal.
 
     Raises
     ------
     ValueError
         For the first case that is wrong, before any work.
     RuntimeError
-        If a worker dies. Finished cases are kept.
+        If the executor cannot be used any more, because a worker or the scheduler died. Finished
+        cases are kept. (Workers of :func:`process_pool` are replaced.)
     OSError
         If the folder cannot be written to, or another process is filling it.
     """
-    place, given = check_path("folder", folder), list(dict.fromkeys(cases))
-    if short := [*filter(None, (case.too_short for case in given))]:
-        warn_user(f"{len(short)} of {len(given)} cases; the first: {short[0]}", ShortRunWarning)
+    place = check_path("folder", folder)
+    if not isinstance(cases, Sweep):
+        cases = list(dict.fromkeys(cases))
+    if short := [*filter(None, (case.too_short for case in cases))]:  # which checks all
+        warn_user(f"{len(short)} of {len(cases)} cases; the first: {short[0]}", ShortRunWarning)
     make_folder(place)
     failed: dict[Case, str] = {}
-    with locked(place):
-        missing = [case for case in given if not case.is_in(place, keep_old=keep_old)]
-        arriving = _computed(missing, executor, threads)
-        for case, result in progress_bar(progress, arriving, total=len(missing), unit=" cases"):
-            if isinstance(result, Exception):
-                failed[case] = f"{type(result).__name__}: {result}"
-            else:
-                write_sealed(case.file(place), result)
+    with locked(place), tqdm(total=len(cases), disable=None if progress else True) as bar:
+        missing = _missing(cases, place, keep_old, bar)
+        computed = _computed_by(executor, missing) if executor else _computed_here(missing, threads)
+        with closing(computed):
+            for case, result in computed:
+                if isinstance(result, bytes):
+                    write_sealed(case.file(place), result)
+                else:
+                    failed[case] = f"{type(result).__name__}: {result}"
+                    bar.set_postfix(failed=len(failed), refresh=False)
+                bar.update()
     return failed
 
 
-def _computed(
-    cases: list[Case], executor: Executor | None, threads: int
-) -> Iterator[tuple[Case, bytes | Exception]]:
-    """Yield each case with its file as it is computed, or with the error instead."""
-    if executor is None:
-        for case in cases:
-            try:
-                yield case, compute(case, threads=threads)
-            except ValueError as error:
-                yield case, error
-        return
+def _missing(cases: Iterable[Case], folder: Path, keep_old: bool, bar: tqdm[Any]) -> Iterator[Case]:
+    """Yield the cases that have no valid file, and warn of the first one that is replaced."""
+    replaced = False
+    for case in cases:
+        if case.is_in(folder, keep_old=keep_old):
+            bar.update()
+            continue
+        if not replaced and case.file(folder).exists():
+            replaced = True
+            warn_user(
+                f"{case.file(folder)}: damaged or of other source code; computing it anew, and "
+                "others like it (keep_old=True, --keep-old: keep those of other source code)"
+            )
+        yield case
+
+
+def _computed_here(
+    cases: Iterable[Case], threads: int
+) -> Generator[tuple[Case, bytes | Exception]]:
+    """Compute cases in this process; yield each with its file, or with the error instead."""
+    for case in cases:
+        try:
+            result: bytes | Exception = compute(case, case.source, threads)
+        except Exception as error:
+            result = error
+        yield case, result
+
+
+def _computed_by(
+    executor: Executor, cases: Iterator[Case]
+) -> Generator[tuple[Case, bytes | Exception]]:
+    """Submit cases; yield each, as it returns, with its file, or with the error instead."""
+    under_way: dict[Future[bytes], Case] = {}
+    returned: SimpleQueue[Future[bytes]] = SimpleQueue()
+    lost: Exception | None = None  # why the executor cannot be used any more
+    case = next(cases, None)
     try:
-        under_way = {executor.submit(compute, case, source_of(case)): case for case in cases}
-        for future in as_completed(under_way):
-            error = future.exception()
-            if isinstance(error, BrokenProcessPool):
-                raise error
-            yield under_way[future], error if isinstance(error, Exception) else future.result()
-    except BrokenProcessPool as error:
+        while case or under_way:
+            if case and len(under_way) < _MOST_UNDER_WAY and returned.empty():
+                try:
+                    future = executor.submit(compute, case, case.source)
+                except BrokenExecutor as error:
+                    case, lost = None, error
+                    continue
+                under_way[future] = case
+                future.add_done_callback(returned.put)
+                case = next(cases, None)
+                continue
+            future = returned.get()
+            result = _result(future)
+            if isinstance(result, BrokenExecutor | CancelledError):
+                case, lost = None, result  # others may have returned before
+            else:
+                yield under_way[future], result
+            del under_way[future]
+    finally:
+        for future in under_way:
+            future.cancel()
+    if lost:
         raise RuntimeError(
-            "a worker process died (out of memory?); finished cases are kept, and the same "
-            "call computes the rest"
-        ) from error
+            "a worker or the scheduler died; finished cases are kept, and the same call computes "
+            "the rest"
+        ) from lost
+
+
+def _result(future: Future[bytes]) -> bytes | Exception:
+    try:
+        return future.result()
+    except Exception as error:
+        return error

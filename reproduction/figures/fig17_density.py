@@ -11,6 +11,7 @@ from crazybilliards.comparison.distances import deviation, distances_in_plot
 from crazybilliards.comparison.fits import fit_arctanh
 from crazybilliards.comparison.side_by_side.grid import ELASTIC, elastic_tree
 from crazybilliards.comparison.side_by_side.grid_figures import draw_density
+from crazybilliards.comparison.stationary_theories import TITLES
 from crazybilliards.comparison.sweeps import Case
 from crazybilliards.kinetic import force_balance
 from crazybilliards.model import Chain, chain_of
@@ -21,7 +22,7 @@ TITLE = "Density at e = 1: simulation and theory"
 CAPTION = (
     "L = 100, e = 1, four driving amplitudes. Above: simulation, smoothed as in the paper, and "
     "exact density. Below: the differences from the exact density at the right end, in per cent of "
-    f"close packing, of the simulation and of {'; '.join(list(ELASTIC.values())[1:])}. "
+    f"close packing, of the simulation and of {'; '.join(TITLES[name] for name in ELASTIC[1:])}. "
     "At e = 1 without a gap equation 19 "
     "(diff_gl) is exact for the rods without their length, as points. What is approximate is to "
     "read rods off a fluid by 1/(1 - 2 rho R); rod by rod it is exact."

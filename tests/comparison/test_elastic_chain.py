@@ -3,7 +3,7 @@
 import os
 import re
 import signal
-from dataclasses import replace
+from functools import wraps
 from pathlib import Path
 
 import numpy as np
@@ -15,9 +15,11 @@ from crazybilliards.comparison.distances import deviations
 from crazybilliards.comparison.side_by_side import grid
 from crazybilliards.comparison.side_by_side.grid import ELASTIC
 from crazybilliards.comparison.side_by_side.grid_figures import draw_density, draw_displacement
+from crazybilliards.comparison.stationary_theories import TITLES
 from crazybilliards.comparison.sweeps import case, running
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.process import terminated_like_interrupted
+from crazybilliards.particles import simulate
 
 pytestmark = pytest.mark.compiled
 AMPLITUDES = {"amplitude": [1, 3, 10, 30]}
@@ -43,14 +45,16 @@ def test_the_start_page_has_the_numbers_that_make_run_prints():
         name: [round(100 * found[name][key].density.maximum, 2) for key in ELASTIC]
         for name in found
     }
-    largest = max(by_theory["exact"].density.maximum_in_errors for by_theory in found.values())
+    largest = max(
+        by_theory["equilibrium"].density.maximum_in_errors for by_theory in found.values()
+    )
     assert f"by at most {largest:.1f} standard errors in any bin" in page
 
 
 def test_simulation_and_exact_density_agree(tree):
     """Within 1 % of close packing, and within 5 standard errors everywhere."""
     for by_theory in all_deviations(tree).values():
-        exact = by_theory["exact"].density
+        exact = by_theory["equilibrium"].density
         assert exact.maximum < 0.01
         assert exact.maximum_in_errors < 5
         assert exact.rms_in_errors < 1.5
@@ -58,8 +62,8 @@ def test_simulation_and_exact_density_agree(tree):
 
 def test_every_velocity_width_is_the_free_one(tree):
     for by_theory in all_deviations(tree).values():
-        assert by_theory["arctanh"].velocity_width is None
-        for name in ("exact", "labels", "rods"):
+        assert by_theory["force_balance_arctanh"].velocity_width is None
+        for name in ("equilibrium", "force_balance", "rod_by_rod"):
             assert by_theory[name].velocity_width.largest_in_errors < 5
 
 
@@ -79,18 +83,18 @@ def test_the_force_balance_is_as_good_as_it_was_measured(tree):
         by_theory = {key: found.density for key, found in by_theory.items()}
         amplitude = name.removeprefix("amplitude_")
         labels, arctanh = measured[amplitude]
-        assert by_theory["labels"].maximum == pytest.approx(labels, abs=0.004)
-        assert by_theory["arctanh"].maximum == pytest.approx(arctanh, abs=0.005)
-        exact = by_theory["exact"]
-        assert by_theory["rods"].maximum == pytest.approx(exact.maximum, abs=1e-4)
-        assert by_theory["rods"].maximum_in_errors == pytest.approx(
+        assert by_theory["force_balance"].maximum == pytest.approx(labels, abs=0.004)
+        assert by_theory["force_balance_arctanh"].maximum == pytest.approx(arctanh, abs=0.005)
+        exact = by_theory["equilibrium"]
+        assert by_theory["rod_by_rod"].maximum == pytest.approx(exact.maximum, abs=1e-4)
+        assert by_theory["rod_by_rod"].maximum_in_errors == pytest.approx(
             exact.maximum_in_errors, abs=0.1
         )
 
 
 def test_inside_the_outermost_rods_the_fluid_is_right_where_hardly_anything_moves(tree):
     simulation, labels = (
-        smooth(tree[f"amplitude_1/{name}"].to_dataset()) for name in ("simulation", "labels")
+        smooth(tree[f"amplitude_1/{name}"].to_dataset()) for name in ("simulation", "force_balance")
     )
     off = np.abs(simulation.density - labels.density)[np.abs(simulation.x) < 98]
     assert 2 * off.max().item() < 0.016
@@ -100,10 +104,16 @@ def test_the_tree_holds_everything_with_its_chain(tree):
     assert tree.attrs["status"] == "completed"
     assert list(tree.children) == [f"amplitude_{a}" for a in (1, 3, 10, 30)]
     for group in tree.children.values():
-        assert list(group.children) == ["simulation", "exact", "labels", "rods", "arctanh"]
+        assert list(group.children) == [
+            "simulation",
+            "equilibrium",
+            "force_balance",
+            "rod_by_rod",
+            "force_balance_arctanh",
+        ]
         chains = {chain_of(each.to_dataset()) for each in group.children.values()}
         assert len(chains) == 1
-    arctanh = tree["amplitude_10/arctanh"]
+    arctanh = tree["amplitude_10/force_balance_arctanh"]
     assert arctanh.attrs["scale"] > 0
     assert arctanh.attrs["steepness_error"] > 0
 
@@ -113,8 +123,13 @@ def test_rods_that_hardly_touch_go_without_the_arctanh_but_lose_nothing():
         tree = compare(
             Chain(size=20, gap=5), {"amplitude": [1]}, duration=5000, seed=1, progress=False
         )
-    assert list(tree["amplitude_1"].children) == ["simulation", "exact", "labels", "rods"]
-    assert set(deviations(tree["amplitude_1"])) == {"exact", "labels", "rods"}
+    assert list(tree["amplitude_1"].children) == [
+        "simulation",
+        "equilibrium",
+        "force_balance",
+        "rod_by_rod",
+    ]
+    assert set(deviations(tree["amplitude_1"])) == {"equilibrium", "force_balance", "rod_by_rod"}
 
 
 @pytest.mark.parametrize("mass_ratio", [1, 3])
@@ -122,13 +137,13 @@ def test_a_gas_in_a_box_goes_without_the_fit_and_has_its_pressure(mass_ratio):
     chain = Chain(size=10, box=30, stiffness=0, mass_ratio=mass_ratio)
     tree = compare(chain, {"amplitude": [1]}, duration=5000, seed=1, progress=False)
     [group] = tree.children.values()
-    assert list(group.children) == ["simulation", "exact", "labels", "rods"]
+    assert list(group.children) == ["simulation", "equilibrium", "force_balance", "rod_by_rod"]
     run, law = group["simulation"], 10 * chain.temperature / 10
     assert (np.abs(run.wall_force - law) < 5 * run.wall_force_error).all()
     for key, found in deviations(group).items():
         np.testing.assert_allclose(group[key].wall_force, law, rtol=1e-9)
         assert found.velocity_width.largest_in_errors < 5
-    assert deviations(group)["rods"].density.maximum_in_errors < 5
+    assert deviations(group)["rod_by_rod"].density.maximum_in_errors < 5
     for draw in (draw_density, draw_displacement):
         figure = draw(tree)
         figure.canvas.draw()
@@ -153,13 +168,14 @@ def test_wrong_arguments_are_refused(chain, amplitudes, message):
 @pytest.fixture
 def computed(monkeypatch):
     """Note the amplitudes of the chains that are computed, in this process."""
-    seen, job = [], case.JOBS["simulate"]
+    seen = []
 
-    def simulate(chain, **settings):
+    @wraps(simulate)
+    def noted(chain, **settings):
         seen.append(chain.amplitude)
-        return job.function(chain, **settings)
+        return simulate(chain, **settings)
 
-    monkeypatch.setitem(case.JOBS, "simulate", replace(job, function=simulate))
+    monkeypatch.setitem(case.JOBS, "simulate", noted)
     return seen
 
 
@@ -181,7 +197,7 @@ def test_what_the_folder_holds_is_not_computed_again(computed, tmp_path):
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_signal_keeps_what_was_computed(number, monkeypatch, tmp_path):
     """In a command. A program that calls this has the handlers that it sets."""
-    write = running._write
+    write = running.write_sealed
 
     def stop(path, content):
         write(path, content)
@@ -189,11 +205,17 @@ def test_a_signal_keeps_what_was_computed(number, monkeypatch, tmp_path):
 
     how = {"folder": tmp_path, "progress": False, "duration": 500}
     with monkeypatch.context() as patch, terminated_like_interrupted():
-        patch.setattr(running, "_write", stop)
+        patch.setattr(running, "write_sealed", stop)
         cut = compare(Chain(size=5), {"amplitude": [1, 2]}, **how)
     assert cut.attrs["status"] == "interrupted"
     assert list(cut.children) == ["amplitude_1"]
-    assert list(cut["amplitude_1"].children) == ["simulation", "exact", "labels", "rods", "arctanh"]
+    assert list(cut["amplitude_1"].children) == [
+        "simulation",
+        "equilibrium",
+        "force_balance",
+        "rod_by_rod",
+        "force_balance_arctanh",
+    ]
     whole = compare(Chain(size=5), {"amplitude": [1, 2]}, **how)
     assert whole.attrs["status"] == "completed"
     assert whole["amplitude_1/simulation"].identical(cut["amplitude_1/simulation"])
@@ -203,7 +225,7 @@ def test_ctrl_c_before_anything_is_computed_is_ctrl_c(monkeypatch):
     def stop(*arguments, **settings):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(grid, "compute_missing", stop)
+    monkeypatch.setattr(grid, "run_cases", stop)
     with pytest.raises(KeyboardInterrupt):
         compare(Chain(size=5), {"amplitude": [1]}, duration=500, progress=False)
 
@@ -212,19 +234,19 @@ def test_pictures_show_simulation_and_exact_solution_and_the_differences_of_all_
     results = {key: each.to_dataset() for key, each in tree["amplitude_1"].children.items()}
     smoothed = {key: smooth(each).density for key, each in results.items()}
     shift = {key: each.mean_displacement for key, each in results.items()}
-    chain = chain_of(results["exact"])
+    chain = chain_of(results["equilibrium"])
     for draw, values, unit in (
         (draw_density, smoothed, chain.close_packed_density),
         (draw_displacement, shift, chain.thermal_length),
     ):
         figure = draw(tree)
         above, below = figure.get_axes()[0], figure.get_axes()[len(tree.children)]
-        assert set(above.get_legend_handles_labels()[1]) == {"simulation", "exact"}
+        assert set(above.get_legend_handles_labels()[1]) == {"simulation", TITLES["equilibrium"]}
         assert len(figure.legends[0].get_texts()) == 5
         lines = {line.get_label(): line for line in below.lines}
-        for key in ("labels", "arctanh", "rods"):  # the largest difference is at the end
-            percent = 100 * float(np.abs(values[key] - values["exact"]).max()) / unit
-            assert np.abs(lines[ELASTIC[key]].get_ydata()).max() == pytest.approx(percent, rel=1e-6)
+        for key in ELASTIC[1:]:  # the largest difference is at the end
+            percent = 100 * float(np.abs(values[key] - values["equilibrium"]).max()) / unit
+            assert np.abs(lines[TITLES[key]].get_ydata()).max() == pytest.approx(percent, rel=1e-6)
 
 
 def test_a_simulation_without_theories_can_be_drawn(tree):

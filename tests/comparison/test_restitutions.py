@@ -8,7 +8,7 @@ import pytest
 
 from crazybilliards.comparison import compare
 from crazybilliards.comparison.distances import deviations
-from crazybilliards.comparison.side_by_side.grid import KINETIC, SIMULATION, TITLES
+from crazybilliards.comparison.side_by_side.grid import KINETIC, SIMULATION
 from crazybilliards.comparison.side_by_side.grid_figures import (
     draw_density,
     draw_displacement,
@@ -16,6 +16,7 @@ from crazybilliards.comparison.side_by_side.grid_figures import (
     draw_profile,
     draw_widths,
 )
+from crazybilliards.comparison.stationary_theories import TITLES
 from crazybilliards.comparison.widths import width_deviation
 from crazybilliards.kinetic import equilibrium, phase_space
 from crazybilliards.model import Chain
@@ -73,7 +74,7 @@ def test_without_a_steady_state_there_is_a_warning_and_no_theory():
 
 
 def test_a_theory_is_a_line_in_a_band_of_the_error_that_it_states(tree):
-    theory = tree["restitution_0.9/kinetic_equation"].to_dataset()
+    theory = tree["restitution_0.9/phase_space"].to_dataset()
     theory.attrs |= {"velocity_width_model_error": 0.4, "mean_displacement_model_error": 2.0}
     widths, displacement = draw_profile(theory, "kinetic equation").axes
     for ax, name, error in (
@@ -97,7 +98,7 @@ def test_pictures(tree):
     widths = draw_widths(tree)
     assert widths.axes[0].get_ylabel() == "velocity width $W_v/W$"
     assert {text.get_text() for text in widths.legends[0].get_texts()} > titles - {SIMULATION}
-    theory = tree["restitution_0.9/kinetic_equation"].to_dataset()
+    theory = tree["restitution_0.9/phase_space"].to_dataset()
     assert "e = 0.9" in draw_phase_space(theory).axes[0].get_title()
     with pytest.raises(ValueError, match="phase_space_density"):
         draw_phase_space(tree[f"restitution_0.9/{SIMULATION}"].to_dataset())
@@ -107,9 +108,9 @@ def test_any_parameter_may_vary():
     """The theories are those of elastic chains only if all are elastic."""
     tree = compare(CHAIN.replace(restitution=0.9), {"amplitude": [2]}, duration=200, **QUIET)
     assert list(tree.children) == ["amplitude_2"]
-    assert "kinetic_equation" in tree["amplitude_2"]
+    assert "phase_space" in tree["amplitude_2"]
     tree = compare(CHAIN, {"size": [10, 12]}, duration=200, **QUIET)
-    assert "exact" in tree["size_12"]
+    assert "equilibrium" in tree["size_12"]
     titles = [ax.get_title(loc="left") for ax in draw_displacement(tree).axes]
     assert titles == ["(a)  $L = 10$", "(b)  $L = 12$", "", ""]
     spring = compare(CHAIN, {"spring": ["linear", "quadratic"]}, duration=200, **QUIET)

@@ -1,20 +1,15 @@
-"""What a sweep takes as values, and what tells which of its files holds which case."""
+"""What a sweep takes as values, and the texts that describe sweeps."""
 
 import functools
 import operator
-import os
-import signal
-import sys
 
 import numpy as np
 import pandas as pd
 import pytest
 import xarray as xr
-from small_sweeps import AtOnce
 
 import crazybilliards as cb
-from crazybilliards.comparison.sweeps import Case
-from crazybilliards.comparison.sweeps.index import write_index
+from crazybilliards.comparison.sweeps import Case, read_sweep
 from crazybilliards.model.checks import as_written
 
 SHORT = {"duration": 100, "observe": ["widths"]}
@@ -47,6 +42,16 @@ def test_common_parameters_need_not_be_a_chain_alone():
         cb.Sweep({"size": [2, 4]}, chain={"box": 7}).cases()
 
 
+def test_a_sweep_gives_the_cases_of_its_grid():
+    sweep = cb.Sweep({"size": [3, 4], "seed": [1, 2, 3]}, "simulate", {"gap": 1}, {"duration": 100})
+    assert len(sweep) == 6
+    assert [*sweep] == [
+        Case("simulate", cb.Chain(size=size, gap=1), {"duration": 100, "seed": seed})
+        for size in (3, 4)
+        for seed in (1, 2, 3)
+    ]
+
+
 def test_only_errors_of_rounding_are_taken_away():
     for value in (1 / 3, np.pi * 1e-30, 0.123456789012, 0.3 + 1e-9, 7, "text", None, True):
         assert repr(as_written(value)) == repr(value)
@@ -57,80 +62,44 @@ def test_only_errors_of_rounding_are_taken_away():
 
 def test_a_coordinate_is_found_as_it_is_printed(tmp_path):
     grid = {"restitution": np.arange(0.1, 0.35, 0.1), "seed": np.arange(2), "size": range(2, 4)}
-    assert cb.run_cases(cb.Sweep(grid, settings=SHORT), tmp_path, AtOnce(), progress=False) == {}
+    assert cb.run_cases(cb.Sweep(grid, settings=SHORT), tmp_path, progress=False) == {}
     loaded = cb.load_sweep(tmp_path)
     assert loaded.velocity_width.sel(restitution=0.3, seed=1, size=3).notnull().all()
     # One that was computed before the values of sweeps were rounded.
     case = Case("simulate", cb.Chain(size=2, restitution=0.1 + 0.6), SHORT)
-    cb.run_cases([case], tmp_path, AtOnce(), progress=False)
-    assert cb.load_sweep(tmp_path).file.sel(restitution=0.7, seed=0, size=2) == f"{case.key}.nc"
-
-
-def index(folder):
-    return pd.read_csv(folder / "index.csv")
-
-
-def test_an_index_tells_which_file_holds_which_case(tmp_path):
-    sweep = cb.Sweep(
-        {"size": [3, 2], "observe": [["widths"], ["widths", "collisions"]]},
-        settings={"duration": 100},
-    )
-    cases = sweep.cases()
-    cb.run_cases(cases[:3], tmp_path, AtOnce(), progress=False)
-    assert list(index(tmp_path)) == ["size", "observe", "file"]
-    assert set(index(tmp_path).file) == {f"{case.key}.nc" for case in cases[:3]}
-    before = os.stat(tmp_path / "index.csv").st_mtime_ns
-    cb.run_cases(cases[:3], tmp_path, AtOnce(), progress=False)
-    assert os.stat(tmp_path / "index.csv").st_mtime_ns == before
-    cb.run_cases(sweep, tmp_path, AtOnce(), progress=False)
-    table = index(tmp_path)
-    assert table["size"].is_monotonic_increasing
-    for case in cases:
-        text = str([*case.settings["observe"]]).replace("'", '"')
-        [found] = table[(table["size"] == case.chain.size) & (table.observe == text)].file
-        assert found == case.file(tmp_path).name
+    cb.run_cases([case], tmp_path, progress=False)
     loaded = cb.load_sweep(tmp_path)
-    assert set(loaded.file.values.ravel()) == set(table.file)
+    assert loaded.file.sel(restitution=0.7, seed=0, size=2) == case.file(tmp_path).name
 
 
-def test_a_sweep_that_is_interrupted_has_an_index(tmp_path):
-    class Stopped(AtOnce):
-        def submit(self, function, /, case, source):
-            if case.chain.size == 4:
-                raise KeyboardInterrupt
-            return super().submit(function, case, source)
+SWEEP = b"""[grid]
+size = [3, 4]
+restitution = [0.5, 1.0]
 
-    sweep = cb.Sweep({"size": [4, 3, 2]}, settings=SHORT)
-    with pytest.raises(KeyboardInterrupt):
-        cb.run_cases(sweep, tmp_path, Stopped(), progress=False)
-    assert index(tmp_path)["size"].tolist() == [2, 3]
-    (tmp_path / "damaged.nc").write_bytes(b"no result")
-    cb.save(cb.equilibrium(cb.Chain(size=3)), tmp_path / "foreign.nc")
-    write_index(tmp_path)
-    assert index(tmp_path)["size"].tolist() == [2, 3]
-    write_index(tmp_path / "nowhere")
-    assert not (tmp_path / "nowhere").exists()
+[simulate]
+duration = 200
+observe = ["widths"]
+"""
 
 
-def test_ctrl_c_while_the_index_is_made_is_not_lost(tmp_path):
-    """Numpy drops an error in this function, which it calls for some kinds of data of pandas."""
+@pytest.mark.parametrize("flips", [100, pytest.param(1000, marks=pytest.mark.torture)])
+def test_a_description_with_flipped_bits_or_cut_is_another_sweep_or_refused(flips, tmp_path):
+    """A text without checksum: what is still TOML and makes sense is a sweep."""
+    generator, refusals = np.random.default_rng(4), []
+    changed = [SWEEP[: cut * len(SWEEP) // 50] for cut in range(50)]
+    for _ in range(flips):
+        text = bytearray(SWEEP)
+        text[generator.integers(len(text))] ^= 1 << int(generator.integers(8))
+        changed.append(bytes(text))
+    for text in changed:
+        (tmp_path / "grid.toml").write_bytes(text)
+        try:
+            read_sweep(tmp_path / "grid.toml").cases()
+        except ValueError as error:
+            refusals.append(str(error))
+    assert flips / 2 < len(refusals) < flips + 50
 
-    def interrupt(frame, event, _):
-        if event == "call" and not came and frame.f_code.co_name == "npy_ctypes_check":
-            came.append(True)
-            signal.raise_signal(signal.SIGINT)
 
-    came = []
-    cases = cb.Sweep({"size": [2, 3]}, "equilibrium")
-    assert cb.run_cases(cases, tmp_path, AtOnce(), progress=False) == {}
-    interrupted = []
-    sys.setprofile(interrupt)
-    try:
-        write_index(tmp_path)
-    except KeyboardInterrupt:
-        interrupted.append(True)
-    finally:
-        sys.setprofile(None)
-    if not came:
-        pytest.skip("this pandas does not call it")
-    assert interrupted
+def test_the_mark_that_some_editors_write_before_a_text_is_left_out(tmp_path):
+    (tmp_path / "grid.toml").write_bytes(b"\xef\xbb\xbf" + SWEEP)
+    assert read_sweep(tmp_path / "grid.toml").grid

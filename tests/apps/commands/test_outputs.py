@@ -146,8 +146,8 @@ def test_json_is_one_object_with_every_file_written(name, arguments, run, tmp_pa
         assert facts["velocity_width_model_error"] == facts["density_model_error"] == 0
     if name == "compare":
         tree = load(folder / "comparison.nc")
-        [exact] = [row for row in facts["deviations"] if row["theory"] == "exact"]
-        found = deviations(tree["amplitude_10"])["exact"]
+        [exact] = [row for row in facts["deviations"] if row["theory"] == "equilibrium"]
+        found = deviations(tree["amplitude_10"])["equilibrium"]
         assert exact["amplitude"] == 10
         for name, value in asdict(found.density).items():
             assert exact[f"density_{name}"] == value
