@@ -21,7 +21,7 @@ def process_pool(processes: int | None = None) -> Iterator[Executor]:
     """Run cases in processes of this machine, one for each core unless told otherwise.
 
     A process that dies is replaced, and what it computed is computed once more. It has failed if
-    the next process dies of it, too. An exception in the block, such as Ctrl-C, kills all of them.
+    the next process dies of it, too. The end of the block kills the processes, whatever they do.
 
     Examples
     --------
@@ -32,9 +32,8 @@ def process_pool(processes: int | None = None) -> Iterator[Executor]:
     pool = _Processes(number)
     try:
         yield pool
-        pool.shutdown()
     finally:
-        pool.end_processes()
+        pool.kill()
 
 
 class _Processes(ThreadPoolExecutor):
@@ -48,7 +47,7 @@ class _Processes(ThreadPoolExecutor):
         super().__init__(number, initializer=self._prepare_thread)
         self._own = threading.local()
         self._pools: list[ProcessPoolExecutor] = []
-        self._ended = False
+        self._killed = False
 
     def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
         """Let one of the processes call the function."""
@@ -73,13 +72,13 @@ class _Processes(ThreadPoolExecutor):
         if self._own.pool is None:
             self._own.pool = ProcessPoolExecutor(1, initializer=_prepare_process)
             self._pools.append(self._own.pool)
-        if self._ended:
-            raise RuntimeError("the processes were ended")
+        if self._killed:
+            raise RuntimeError("the processes were killed")
         return self._own.pool
 
-    def end_processes(self) -> None:
-        """Kill the processes, which costs nothing when they have nothing to do any more."""
-        self._ended = True
+    def kill(self) -> None:
+        """Kill the processes and give up what is submitted."""
+        self._killed = True
         for pool in self._pools:
             pool.shutdown(wait=False, kill_workers=True)
         self.shutdown(cancel_futures=True)
