@@ -72,7 +72,7 @@ def make_dynamics(
     contact, and ``struck`` every impulse on a wall.
     """
     second = chain.replace(mass=chain.mass * chain.mass_ratio, mass_ratio=1.0)
-    one, other = (make_step(each, time_step, stepper, method) for each in (chain, second))
+    one, other = (make_step(sort, time_step, stepper, method) for sort in (chain, second))
     law = make_law(
         chain,
         time_step,

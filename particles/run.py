@@ -209,8 +209,8 @@ class Run:
 
         Otherwise a run that continues another one would repeat its noise.
         """
-        given = [] if self.start is None else list(self._digest_of_starts)
-        return np.random.SeedSequence([self.seed, *given]).spawn(self.replicas)
+        start = [] if self.start is None else list(self._digest_of_starts)
+        return np.random.SeedSequence([self.seed, *start]).spawn(self.replicas)
 
     @cached_property
     def _digest_of_starts(self) -> bytes:
@@ -263,7 +263,7 @@ class Run:
     @property
     def vocabulary(self) -> dict[str, tuple[str, str]]:
         """Meanings and units that the observers bring."""
-        return {name: said for each in self.observers for name, said in each.vocabulary.items()}
+        return {k: v for observer in self.observers for k, v in observer.vocabulary.items()}
 
     @property
     def provenance(self) -> dict[str, Any]:

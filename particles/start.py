@@ -101,11 +101,11 @@ def replica_starts(
 def _states(start: xr.Dataset) -> list[Array]:
     """Return positions and velocities of a start, each of shape (replicas, rods)."""
     names = ("position", "velocity")
-    found = sorted(map(str, start.data_vars)) if isinstance(start, xr.Dataset) else []
-    if not set(names) <= set(found):
+    variables = sorted(map(str, start.data_vars)) if isinstance(start, xr.Dataset) else []
+    if not set(names) <= set(variables):
         raise ValueError(
             "start must be a result with position and velocity, which given_start(chain, position) "
-            f"and equilibrium_states(chain, replicas) return, got {shown(found or start)}; "
+            f"and equilibrium_states(chain, replicas) return, got {shown(variables or start)}; "
             "None is rest"
         )
     for name in names:

@@ -139,11 +139,11 @@ def _step(y, v, noise, dynamics, scratch, tally, steps):  # type: ignore[no-unty
         if taken == steps:
             part = LAST
         kicks = scratch.kicks[row * size : (row + 1) * size]
-        met = take_step(y, v, kicks, part, dynamics, scratch, tally)
-        if met < 0:
+        number = take_step(y, v, kicks, part, dynamics, scratch, tally)
+        if number < 0:
             return -1
         row += 1
-        collisions += met
+        collisions += number
         if step.symmetric:
             part = WHOLE
     return collisions
@@ -189,12 +189,12 @@ def record_steps(y, v, noise, dynamics, scratch, tally, stride, y_buffer, v_buff
     collisions = 0
     _keep(tally, scratch, tally)
     for snapshot in range(y_buffer.shape[0]):
-        met = _step(y, v, noise, dynamics, scratch, tally, stride)
-        if met < 0 or not bounded(y, v, dynamics.fastest):
+        number = _step(y, v, noise, dynamics, scratch, tally, stride)
+        if number < 0 or not bounded(y, v, dynamics.fastest):
             _keep(scratch, tally, tally)
             return snapshot, collisions
         _keep(tally, scratch, tally)
-        collisions += met
+        collisions += number
         copy(y, y_buffer[snapshot])
         copy(v, v_buffer[snapshot])
     return y_buffer.shape[0], collisions

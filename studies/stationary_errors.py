@@ -17,7 +17,7 @@ import sys
 from collections.abc import Iterator, Sequence
 from functools import partial
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 import xarray as xr
@@ -95,10 +95,10 @@ def simulated(chain: cb.Chain, accuracy: float, seed: int, *more: str) -> xr.Dat
     step, width = default_time_step(chain), centre_width(chain) * chain.free_velocity_width
     while time_step_error(chain, step, width) > accuracy / 4:
         step *= 0.98
-    how = {"time_step": step, "observe": ("widths", *more), "seed": seed, "threads": 1}
+    how: dict[str, Any] = {"time_step": step, "observe": ("widths", *more), "seed": seed}
     duration = 320 * correlation_time(chain)
     while True:
-        run = cb.simulate(chain, duration=duration, progress=False, **how)
+        run = cb.simulate(chain, duration=duration, threads=1, progress=False, **how)
         middle = run.isel(particle=middle_tenth(chain.size))
         error = float((middle.velocity_width_error / middle.velocity_width).mean())
         if error < accuracy:

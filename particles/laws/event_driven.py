@@ -62,13 +62,13 @@ def _meeting(closing, gap, now, dt):  # type: ignore[no-untyped-def]
 @inlined
 def _fastest(begin, end, due, v):  # type: ignore[no-untyped-def]
     """Return the contact of a row that closes fastest among those due at time 0; ``end``: none."""
-    found, speed = INDEX(end), 0.0
+    fastest, speed = INDEX(end), 0.0
     for contact in range(begin, end):
         closing = v[contact] - v[contact + _1]
         closing = closing if due[contact] == 0.0 else 0.0
-        found = INDEX(contact) if closing > speed else found
+        fastest = INDEX(contact) if closing > speed else fastest
         speed = closing if closing > speed else speed
-    return found
+    return fastest
 
 
 @inlined
@@ -140,8 +140,8 @@ def _collide(contact, now, y, v, anchors, dt, law, scratch, tally):  # type: ign
     common = v_left + _part(v_right - v_left, right, left, single)
     ahead = 0.0
     if law.pull > 0.0 and single:
-        here = y[contact] + v_left * now
-        displacements = here - anchors[contact], here - anchors[neighbour]
+        place = y[contact] + v_left * now
+        displacements = place - anchors[contact], place - anchors[neighbour]
         ahead = springs_ahead(*displacements, law.pull, law.exponent, now - dt / 2)
     # Flippers act when rods meet. Otherwise rods at rest in contact, such as those at the start,
     # would exchange one kick again and again at the same time and gain energy without bound.
@@ -270,7 +270,7 @@ def drift(y, v, anchors, dt, law, scratch, tally):  # type: ignore[no-untyped-de
         if high != contact:
             move(high, list_of(high, due[high], scale, size, parts), following, preceding)
     if tree or collisions > law.most:
-        for each in range(following.size):
-            following[each] = preceding[each] = each
+        for node in range(following.size):
+            following[node] = preceding[node] = node
     _finish(y, v, dt, merged, scratch)
     return collisions if collisions <= law.most else -1

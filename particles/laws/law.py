@@ -150,7 +150,7 @@ def choose_operator(
         if halves and independent_rods(chain):
             right.insert(0, EXACT)
     unknown = chain.unknown().keys()
-    operator = next((each for each in right if unknown <= knows.get(each, set())), right[-1])
+    operator = next((n for n in right if unknown <= knows.get(n, set())), right[-1])
     chain.require_known(f"simulate ({NAMES[operator]})", knows.get(operator, ()))
     return operator
 

@@ -41,10 +41,10 @@ def collide(contact, a, b, now, y, v, anchors, dt, law, scratch, tally):  # type
     ahead = 0.0
     alike = w == w_right and anchors[contact] == anchors[neighbour]
     if law.pull > 0.0 and a == contact and b == neighbour and not alike:
-        here, since = y[contact] + v_left * now, now - dt / 2
-        ahead = springs_ahead(here - anchors[contact], 0.0, law.pull * w, law.exponent, since)
+        place, since = y[contact] + v_left * now, now - dt / 2
+        ahead = springs_ahead(place - anchors[contact], 0.0, law.pull * w, law.exponent, since)
         ahead += springs_ahead(
-            0.0, here - anchors[neighbour], law.pull * w_right, law.exponent, since
+            0.0, place - anchors[neighbour], law.pull * w_right, law.exponent, since
         )
     wall = single[contact] == 0.0 or single[neighbour] == 0.0
     e = law.wall_restitution if wall else law.restitution

@@ -81,9 +81,9 @@ def turn(y, v, dt, pull, low, high, struck):  # type: ignore[no-untyped-def]
     angle, room = rate * dt, high - low
     for i in range(y.size):
         if pull == 0.0:
-            there = y[i] + dt * v[i]
-            turns = np.floor((there - low) / room)
-            inside = min(max(there - turns * room, low), high)
+            place = y[i] + dt * v[i]
+            turns = np.floor((place - low) / room)
+            inside = min(max(place - turns * room, low), high)
             _strike(np.abs(turns), np.abs(v[i]), v[i] > 0.0, struck)
             mirrored = turns % 2.0 == 1.0
             y[i] = low + (high - inside) if mirrored else inside

@@ -49,10 +49,10 @@ def find_observers(observe: str | Observer | Collection[str | Observer]) -> tupl
     if not is_list(names) or len(names) == 0:
         raise ValueError(f"observe takes a list of names or observers, got {shown(observe)}")
     return tuple(
-        each
-        if isinstance(each, Observer)
-        else OBSERVERS[check_choice("observe", each, OBSERVERS)]()
-        for each in dict.fromkeys(names)
+        name
+        if isinstance(name, Observer)
+        else OBSERVERS[check_choice("observe", name, OBSERVERS)]()
+        for name in dict.fromkeys(names)
     )
 
 

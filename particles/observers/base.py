@@ -25,8 +25,8 @@ from crazybilliards.particles.run import Run
 Integers = NDArray[np.int64]
 Variables = dict[str, tuple[tuple[str, ...], ArrayLike]]
 
-# Attributes of an observer that never change. A checkpoint does not keep them.
-_CONSTANT = (NoneType, Chain, Run, Callable)
+# Attributes of an observer that never change, as functions do not. A checkpoint keeps none.
+_CONSTANT = (NoneType, Chain, Run)
 
 
 class Snapshots(NamedTuple):
@@ -89,10 +89,10 @@ class Observer(ABC):
 
     def __str__(self) -> str:
         """Return the name and, if there are any, the parameters."""
-        given = ", ".join(
+        parameters = ", ".join(
             f"{name}={value!r}" for name, value in vars(self).items() if value is not None
         )
-        return f"{self.name}({given})" if given else self.name
+        return f"{self.name}({parameters})" if parameters else self.name
 
     def interval(self, chain: Chain) -> float:
         """Return the longest time between snapshots that serves it where ``every`` is not given."""
@@ -119,7 +119,9 @@ class Observer(ABC):
         that none can be forgotten.
         """
         return {
-            name: value for name, value in vars(self).items() if not isinstance(value, _CONSTANT)
+            name: value
+            for name, value in vars(self).items()
+            if not (isinstance(value, _CONSTANT) or callable(value))
         }
 
     def tally(self, tally: Tally) -> Tally:

@@ -52,7 +52,7 @@ def jackknife_error(value: Array, left_out: Array, counts: NDArray[np.int64]) ->
     used = (counts > 0) & (number - counts > 0)
     blocks = _behind(used.sum(axis=0), value.ndim)
     used, ratio = (
-        _behind(each, left_out.ndim) for each in (used, number / np.where(used, counts, 1))
+        _behind(array, left_out.ndim) for array in (used, number / np.where(used, counts, 1))
     )
     ratio = np.where(used, ratio, 2)
     mean = blocks * value - (used * (1 - 1 / ratio) * left_out).sum(axis=0)

@@ -97,10 +97,10 @@ class Impacts(Averaged):
             step = run.time_step
             scale = max(typical_speed(run.chain, step, y, v) for y, v in run.starts) or 1.0
         edges = FINEST * scale * np.sinh(np.linspace(0, LAST, self.bins + 1))
-        self.edges, self.met = make_speeds(run.chain.size - 1, edges)
+        self.edges, self.numbers = make_speeds(run.chain.size - 1, edges)
 
     def tally(self, tally: Tally) -> Tally:
-        return tally._replace(impacts=self.current, speeds=Speeds(self.edges, self.met))
+        return tally._replace(impacts=self.current, speeds=Speeds(self.edges, self.numbers))
 
     def observe(self, snapshots: Snapshots) -> None:
         self.sums[snapshots.block] += self.current
@@ -108,15 +108,15 @@ class Impacts(Averaged):
 
     def join(self, others: Sequence[Self]) -> None:
         super().join(others)
-        self.met = self.met + sum(other.met for other in others)
+        self.numbers = self.numbers + sum(other.numbers for other in others)
 
     def report(self, counts: Integers) -> Variables:
         per_time = self.mass / self.run.every
 
         def rebound(average: Array) -> Array:
             merged = (average[MOMENTUM_AFTER] == 0) & (average[MOMENTUM_BEFORE] > 0)
-            found = _temperature(average, MOMENTUM_AFTER, ENERGY_AFTER)
-            return np.where(merged, 0.0, found)
+            temperature = _temperature(average, MOMENTUM_AFTER, ENERGY_AFTER)
+            return np.where(merged, 0.0, temperature)
 
         quantities = {
             "contact_force": lambda sums: per_time * (sums[MOMENTUM_BEFORE] + sums[MOMENTUM_AFTER]),
@@ -124,8 +124,8 @@ class Impacts(Averaged):
             "contact_temperature": lambda sums: _temperature(sums, MOMENTUM_BEFORE, ENERGY_BEFORE),
             "rebound_temperature": rebound,
         }
-        number = self.met.sum(axis=1, keepdims=True)
-        density = self.met / np.where(number > 0, number, np.nan) / np.diff(self.edges)
+        collisions = self.numbers.sum(axis=1, keepdims=True)
+        density = self.numbers / np.where(collisions > 0, collisions, np.nan) / np.diff(self.edges)
         return {
             "impact_speed_density": (("contact", "impact_speed"), density),
             **self.averages(quantities, counts, "contact"),

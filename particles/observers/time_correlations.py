@@ -198,8 +198,8 @@ class TimeCorrelations(Averaged):
 
     def _displacements(self, average: Array) -> Array:
         mean, square = (self._means(average, row) for row in (slice(-2, -1), slice(-1, None)))
-        found = (square[:1] + square - self._increments(average)) / 2 - mean[:1] * mean
-        return np.full_like(found, np.nan) if self.spreads else found
+        covariance = (square[:1] + square - self._increments(average)) / 2 - mean[:1] * mean
+        return np.full_like(covariance, np.nan) if self.spreads else covariance
 
     def _spectrum(self, average: Array) -> Array:
         from scipy.fft import dct
@@ -222,8 +222,8 @@ class TimeCorrelations(Averaged):
                 f"{self.needed:.4g}{longer}"
             )
         variables: Variables = {}
-        for name, (_, found) in self.averages(kinds, self._joined(counts)).items():
-            values = np.asarray(found)
+        for name, (_, measured) in self.averages(kinds, self._joined(counts)).items():
+            values = np.asarray(measured)
             along = "time" if ensemble else "frequency" if "spectrum" in name else "lag"
             own = {"particle": ("", values[:, :rods]), "wave": ("wave_", values[:, rods:])}
             for over, (of, part) in own.items():

@@ -99,11 +99,11 @@ class Checkpoint:
         content = read_sealed(self.path)
         try:
             arrays = dict(np.load(io.BytesIO(content), allow_pickle=False))
-            there = dict(json.loads(bytes(arrays["header"]))["identity"])
+            identity = dict(json.loads(bytes(arrays["header"]))["identity"])
         # numpy may raise anything for a file of another kind with a valid checksum, e.g. a result.
         except Exception as error:
             raise ValueError(f"{self.path}: not a checkpoint") from error
-        differing = [name for name in self.identity if there.get(name) != self.identity[name]]
+        differing = [name for name in self.identity if identity.get(name) != self.identity[name]]
         if differing:
             raise ValueError(
                 f"{self.path}: the checkpoint of another call, which differs in "

@@ -178,8 +178,8 @@ class Replica:
     def _observe(self, block: int, y: Array, v: Array, tally: Tally) -> None:
         """Give snapshots of a block to the observers."""
         shared = y, v, tally.contacts.view()
-        for each in shared:  # an observer that changed them would spoil what others measure
-            each.flags.writeable = False
+        for array in shared:  # an observer that changed them would spoil what others measure
+            array.flags.writeable = False
         snapshots = Snapshots(block, self.snapshots, self.copy, *shared)
         for observer in self.observers:
             observer.observe(snapshots)

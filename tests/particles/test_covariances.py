@@ -31,16 +31,6 @@ def with_error(run, name):
     return run[name], run[f"{name}_error"]
 
 
-def test_the_result_says_where_the_separations_were_cut():
-    chain = Chain(size=12)
-    some, every = (
-        simulate(chain, duration=100, observe=[each], progress=False).separation
-        for each in ("covariances", Covariances(separations=11))
-    )
-    assert some.attrs["comment"].startswith("cut at 10 of 11; Covariances(separations=")
-    assert "comment" not in every.attrs
-
-
 @pytest.mark.compiled
 def test_rods_that_never_meet_are_independent():
     chain = Chain(size=4, gap=100)

@@ -85,24 +85,6 @@ def test_numbers_are_those_of_box_and_muller():
         np.testing.assert_allclose(numbers(noise, BLOCK), box_muller(bits), rtol=0, atol=8e-15)
 
 
-def plain(function):
-    """Return the function as it was before numba compiled it."""
-    return getattr(function, "py_func", function)
-
-
-def test_polynomials_are_right_to_a_unit_in_the_last_place_or_three():
-    z = np.linspace(1e-9, (np.sqrt(2) - 1) / (np.sqrt(2) + 1), 10_001)
-    a = np.linspace(1e-9, np.pi / 4, 10_001)
-    polynomial = plain(module._polynomial)
-    for function, exact, x in (
-        (lambda z: z * polynomial(module._LOG, z * z), lambda z: 2 * np.arctanh(z), z),
-        (lambda a: a * polynomial(module._SIN, a * a), np.sin, a),
-        (lambda a: polynomial(module._COS, a * a), np.cos, a),
-    ):
-        for sign in (1, -1):
-            np.testing.assert_allclose(function(sign * x), exact(sign * x), rtol=7e-16)
-
-
 def test_radii_are_right_from_the_smallest_to_the_largest():
     """The uniform number is neither 0, of which the logarithm is infinite, nor 1."""
     b = [2**k + n for k in range(1, 52) for n in (-1, 0, 1)]
@@ -115,24 +97,6 @@ def test_radii_are_right_from_the_smallest_to_the_largest():
     np.testing.assert_allclose(radii, expected, rtol=1e-15)
     assert radii.max() == pytest.approx(8.571674348652905)
     assert radii.min() == pytest.approx(2.0**-26)
-
-
-def test_directions_are_symmetric_to_the_bit():
-    """Angles lie in the middle of their cells: those of f and of its complement are opposite."""
-    most = 2**QUARTER_BITS - 1
-    some = np.random.default_rng(5).integers(0, most, 1000)
-    fractions = np.array([0, 1, most // 2, most // 2 + 1, *some], dtype=np.uint64)
-    points = []
-    for each in (fractions, np.uint64(most) - fractions):
-        bits = each << np.uint64(12) | np.uint64(1) << np.uint64(62)
-        first, second = np.empty((2, bits.size))
-        module._rotate(bits, np.ones(bits.size), first, second)
-        points.append((first, second))
-    (sine, cosine), (other_sine, other_cosine) = points
-    np.testing.assert_array_equal(sine, -other_sine)
-    np.testing.assert_array_equal(cosine, other_cosine)
-    assert sine[3] == pytest.approx(np.pi / 2 * 2.0**-51, rel=1e-15)
-    assert (cosine >= np.sqrt(0.5) - 1e-15).all()
 
 
 @given(pieces=st.lists(st.integers(0, 2 * BLOCK) | st.integers(0, 20), max_size=8))

@@ -1,4 +1,4 @@
-"""Observers of a chain with walls and two masses, and what a run of it is warned of."""
+"""Observers of a chain with walls and two masses, and which gases have a steady state."""
 
 import numpy as np
 import pytest
@@ -9,7 +9,7 @@ from crazybilliards.comparison.widths import width_deviation
 from crazybilliards.kinetic import equilibrium
 from crazybilliards.model import Chain
 from crazybilliards.model.grid import position_grid
-from crazybilliards.particles import ShortRunWarning, simulate
+from crazybilliards.particles import simulate
 from crazybilliards.particles.observers import TimeCorrelations
 
 CHAIN = Chain(size=6, box=15, gap=0.2, restitution=0.9, wall_restitution=0.7, mass_ratio=3)
@@ -80,7 +80,7 @@ def test_an_even_number_of_two_sorts_is_not_averaged_with_its_mirror_image():
     assert found.largest_in_errors < 5
 
 
-# -- warnings ---------------------------------------------------------------------------------
+# -- steady states -------------------------------------------------------------------------------
 
 # gamma l/(L sqrt(m T)) is 0.1.
 GAS = Chain(
@@ -104,10 +104,3 @@ def test_a_gas_that_collisions_heat_too_much_has_no_steady_state(changed, critic
     reason = GAS.replace(**changed).why_unsteady
     assert critical in reason
     assert bool(critical) == bool(reason)
-
-
-@pytest.mark.parametrize("changed", [{"restitution": 1.04}, {"damping": 0}])
-def test_averages_over_time_without_a_steady_state_are_warned_of(changed):
-    chain, how = GAS.replace(**changed), {"duration": 10, "warmup": 0, "time_step": 0.1}
-    with pytest.warns(ShortRunWarning, match="Without a steady state"):
-        simulate(chain, **how, progress=False)
