@@ -130,28 +130,6 @@ def test_type_checkers_see_through(installed, tmp_path):
     run(sys.executable, "-m", "mypy", "--config-file", "mypy.ini", *python, "user.py", cwd=tmp_path)
 
 
-FIND = """
-import sys
-from importlib.machinery import PathFinder
-from pathlib import Path
-[place] = PathFinder.find_spec("crazybilliards").submodule_search_locations
-assert Path(place, "__init__.pyi").is_file() and Path(place, "py.typed").is_file()
-for room in sys.argv[1:]:
-    [folder] = PathFinder.find_spec(f"crazybilliards{room}", [place]).submodule_search_locations
-    assert Path(folder, "__init__.py").is_file()
-"""
-
-
-@pytest.mark.posix
-def test_type_checkers_find_the_rooms_in_the_environment_of_make(tmp_path):
-    """They look into folders on the path, and never ask a finder of an editable install."""
-    binaries, links = tmp_path / "venv" / "bin", tmp_path / "links"
-    run(sys.executable, "-m", "venv", "--without-pip", binaries.parent)
-    (binaries / "uv").touch()
-    run("make", "-C", ROOT, f"VENV={binaries.parent}", f"LINKS={links}", links)
-    run(binaries / "python", "-I", "-c", FIND, *filter(None, FOLDERS.values()), cwd=tmp_path)
-
-
 # -- where users run it ------------------------------------------------------------------------
 
 # `make run`, smaller. Kernels, a theory, pictures and a file.
@@ -189,11 +167,11 @@ def command(installed):
     run("chmod", "-R", "u+w", binaries.parent)
 
 
-def nowhere(folder, **environment):
+def nowhere(folder):
     """Return an environment without a home or a cache folder that one may write to."""
     kept = {name: value for name, value in os.environ.items() if not name.startswith("NUMBA")}
     home = dict.fromkeys(("HOME", "XDG_CACHE_HOME", "NUMBA_CACHE_DIR"), "/proc/none")
-    return kept | home | {"MPLCONFIGDIR": str(folder)} | environment
+    return kept | home | {"MPLCONFIGDIR": str(folder)}
 
 
 @torture
@@ -205,32 +183,3 @@ def test_a_user_who_may_write_nowhere_else_gets_results_and_one_warning(command,
     warnings = [line for line in done.stderr.splitlines() if "warning" in line]
     assert len(warnings) == 1, done.stderr
     assert "compiled anew in every process" in warnings[0]
-
-
-@torture
-def test_workers_do_not_repeat_the_warning(command, nobody):
-    become, folder = nobody
-    (folder / "grid.toml").write_text("[grid]\nsize = [3]\n[simulate]\nduration = 100\n")
-    sweep = ["sweep", "grid.toml", "--output", "results"]
-    done = run(*become, command, *sweep, cwd=folder, env=nowhere(folder))
-    assert done.stderr.count("compiled anew in every process") == 1, done.stderr
-    assert len(list((folder / "results").glob("*.nc"))) == 1
-
-
-@torture
-def test_a_cache_on_a_full_disk_costs_no_run(command, tmp_path):
-    cache = tmp_path / "cache"
-    cache.mkdir()
-    mount = ["mount", "-t", "tmpfs", "-o", "size=64k", "tmpfs", cache]
-    if subprocess.run([*map(str, mount)], check=False, capture_output=True).returncode:
-        pytest.skip("needs to mount a file system")
-    try:
-        there = nowhere(tmp_path, NUMBA_CACHE_DIR=str(cache))
-        # A short command: every kernel is compiled anew.
-        simulate = ["simulate", "--size", "4", "--duration", "300", "--output", "run.nc"]
-        done = run(command, *simulate, cwd=tmp_path, env=there)
-    finally:
-        subprocess.run(["umount", "--lazy", str(cache)], check=True)
-    assert (tmp_path / "run.nc").stat().st_size > 1000
-    assert "Traceback" not in done.stderr
-    assert done.stderr.count("No space left on device") == 1, done.stderr

@@ -145,7 +145,7 @@ def test_keys_alone_reach_push_pause_and_change(browser, address):
     until(lambda: browser.execute_script("return performance.now()") > 1000, 20)
     assert browser.execute_script(TIME) == time  # whoever wants no motion gets none
     press(browser, control(browser, "step"), "keys")
-    assert re.match(r"Met at t = [\d.]+ T: rods \d+ and \d+", text(browser, "status"))
+    assert re.match(r"Met at t = [\d.]+ t₀: rods \d+ and \d+", text(browser, "status"))
     control(browser, "play").send_keys(" ")
     until(lambda: browser.execute_script(TIME) > time + 0.1, 20)
 
@@ -157,7 +157,7 @@ def test_each_picture_is_described_in_numbers(browser, address):
         ("density", r"Density, measured: rods .* \d+ % of the time, from x = -?\d+ to \d+ R\."),
         ("widths", r"Velocity widths .*, measured: 0\.\d+, 0\.\d+, 0\.\d+ W; theory: 0.*\."),
         ("velocities", r"Velocities, measured: .* \d\.\d W in the middle and \d\.\d W at .*"),
-        ("energy", r"Energy: from [\d.]+ to [\d.]+ times that of free rods within \d+ T\."),
+        ("energy", r"Energy: from [\d.]+ to [\d.]+ times that of free rods within \d+ t₀\."),
     ):
         script = "arguments[0].value = arguments[1]"
         browser.execute_script(script, control(browser, "second-picture"), option)

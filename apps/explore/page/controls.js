@@ -24,14 +24,14 @@
     const right = state.v.filter((v) => v > 0).length, kicked = state.chain.amplitude > 0, unit = R.unit();
     const calm = !ChainFrames.running() || isDue();
     if (calm) stage.canvas.ariaLabel = `${shown} Now ${right} of ${state.v.length} rods move to the right.`;
-    const units = kicked ? { unit, counted: 1, inUnits: "W" } : { unit: 1, counted: unit, inUnits: "R/T" };
+    const units = kicked ? { unit, counted: 1, inUnits: "W" } : { unit: 1, counted: unit, inUnits: "R/t₀" };
     const { restitution } = state.chain, gas = state.masses ? gauged() : null;
     const seen = { half: stage.half, measurement, history: energies, restitution, ...units, exact, theory, gas };
     for (const [name, list] of Object.entries(pictures)) {
       const sentence = ChainPlots.pictures[list.value](find(name), stage.colour, seen);
       if (calm || !find(name).ariaLabel) find(name).ariaLabel = sentence;
     }
-    const scale = kicked ? `W = ${unit.toPrecision(2)} R/T.` : "Without noise there is no W.";
+    const scale = kicked ? `W = ${unit.toPrecision(2)} R/t₀.` : "Without noise there is no W.";
     find("status").textContent = `${scale} ${R.happening()}`;
     if (world.ranAway && world.pushed) breakOff("The chain ran away");
     find("solve").textContent = ChainTheory.asked() ? "Stop" : "Solve the theory";
@@ -45,7 +45,7 @@
     const known = !chosen.secret || solved.has(chosen.id), { value, error } = measurement.force();
     const few = measurement.blocks.length < 2, now = `${value.toPrecision(4)} ± ${error.toPrecision(1)}`;
     const told = known ? `, exact: L T/(X − 2RL) = ${law.toPrecision(4)}` : "";
-    find("gauge").textContent = `Force on a wall [M R/T²]: ${few ? "not measured yet" : now}${told}.`;
+    find("gauge").textContent = `Force on a wall [M R/t₀²]: ${few ? "not measured yet" : now}${told}.`;
     const free = P.freeLength(state.chain), exact = { start: box - free, slope: 1 / law / free, known };
     return { box, forces, found: ChainGas.line(forces), exact };
   }
@@ -192,7 +192,7 @@
     draw();
     setSpeed(world.speed);
     find("status").textContent = met.length
-      ? `Met at t = ${world.state.time.toFixed(2)} T: ${met.map((c) => `rods ${c + 1} and ${c + 2}`).join(", ")}.`
+      ? `Met at t = ${world.state.time.toFixed(2)} t₀: ${met.map((c) => `rods ${c + 1} and ${c + 2}`).join(", ")}.`
       : "No rods have met.";
   }
 

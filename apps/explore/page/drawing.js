@@ -93,7 +93,7 @@ const ChainDrawing = (() => {
       for (const c of met) pen.fillRect(((x[c] + x[c + 1]) / 2 + this.half) * scale - bar / 2, age, bar, 1);
     }
 
-    /* Draw rods, springs and strip. `age`: the time that the strip spans [T]. */
+    /* Draw rods, springs and strip. `age`: the time that the strip spans [t_0]. */
     draw(state, unit, age) {
       const { pen, width, height } = ChainPlots.fit(this.canvas), { colour } = this;
       const scale = width / (2 * this.half), place = (x) => (x + this.half) * scale;
@@ -123,7 +123,7 @@ const ChainDrawing = (() => {
       pen.textAlign = "left";
       for (const ago of ChainPlots.ticks(0, age, 3)) {
         const at = BAND + (ago / age) * (height - BAND - AXIS);
-        label(pen, ago ? `${ago} T ago` : "now", 7, at + 4, colour);
+        label(pen, ago ? `${ago} t₀ ago` : "now", 7, at + 4, colour);
         pen.fillRect(0, at, 4, 1);
       }
     }

@@ -8,7 +8,7 @@
 const ChainGas = (() => {
   const { freeLength, masses, makeNoise } = ChainPhysics;
 
-  /* All rods with the speed 1 R/T, to the left or right at random. Of two rods the light one rests,
+  /* All rods with the speed 1 R/t_0, to the left or right at random. Of two rods the light one rests,
      and the heavy one comes towards it. `impulse`: the momentum that both walls got; `series`: how
      often two rods met or met the walls until the second one first reached the right wall. */
   function makeState(chain, seed) {

@@ -17,12 +17,12 @@ const ChainJudging = (() => {
     return { next: Infinity };
   }
 
-  /* A verdict on what is measured, in words; `blockTime` in T. */
+  /* A verdict on what is measured, in words; `blockTime` in t_0. */
   function told({ next, above, value, error }, limit, { time, blockTime }) {
     if (above !== undefined)
       return `${value.toFixed(2)} ± ${error.toFixed(2)}, clearly ${above ? "above" : "below"} ${limit}`;
     if (next === Infinity) return `too close to ${limit} to tell in this time: change the chain`;
-    return `measured for ${Math.round(time)} T, and the next verdict falls at ${Math.round(next * blockTime)} T`;
+    return `measured for ${Math.round(time)} t₀, and the next verdict falls at ${Math.round(next * blockTime)} t₀`;
   }
 
   return { verdict, told };

@@ -253,7 +253,7 @@ const ChainPhysics = (() => {
     advance(state, duration / steps, steps);
   }
 
-  /* Kinetic and spring energy of all rods [M R^2/T^2]. */
+  /* Kinetic and spring energy of all rods [M R^2/t_0^2]. */
   function energy(state) {
     const n = exponent(state.chain);
     let total = 0;

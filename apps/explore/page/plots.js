@@ -200,7 +200,7 @@ const ChainPlots = (() => {
         x: [-fastest, fastest], y: [-4.2, 0.4],
         xTitle: gas ? "velocity v √(mᵢ/m) of a rod of mass mᵢ [W]"
           : `velocity v [${inUnits}], at the ends outward`,
-        yTitle: `p(v) [${inUnits === "W" ? "1/W" : "T/R"}]`, powers: true,
+        yTitle: `p(v) [${inUnits === "W" ? "1/W" : "t₀/R"}]`, powers: true,
       });
       const gauss = GAUSS.map((v) => log([v, Math.exp((-v * v) / 2) / Math.sqrt(2 * Math.PI)]));
       if (inUnits === "W") plot.line(gauss, gas ? "Maxwell" : restitution === 1 ? "exact" : "free rod");
@@ -218,7 +218,7 @@ const ChainPlots = (() => {
       const at = ({ start, slope }, x) => [x, slope * (x - start)];
       const plot = new Plot(canvas, colour, {
         x: [0, last], y: [0, 1.1 * Math.max(at(exact, last)[1], ...points.map(([, y]) => y))],
-        xTitle: "length of the box X [R]", yTitle: "1/force on a wall [T²/(M R)]",
+        xTitle: "length of the box X [R]", yTitle: "1/force on a wall [t₀²/(M R)]",
       });
       const draw = (line, ...how) => plot.line([at(line, line.start), at(line, last)], ...how);
       if (exact.known) draw(exact, "exact");
@@ -235,12 +235,12 @@ const ChainPlots = (() => {
       const of = inUnits === "W" ? "that of free rods" : "that of free rods at A = 1";
       const plot = new Plot(canvas, colour, {
         x: last > 0 ? [points[0][0], points[last][0]] : [0, 1], y: [Math.min(-1, ...ys), Math.max(1, ...ys) + 0.2],
-        xTitle: "time t [T]", yTitle: `energy / ${of}`, powers: true,
+        xTitle: "time t [t₀]", yTitle: `energy / ${of}`, powers: true,
       });
       plot.line(points, "measured", [1, 0]);
       if (last < 1) return "Energy: not measured yet.";
       const [from, to] = [ys[0], ys[last]].map((y) => Number((10 ** y).toPrecision(2)));
-      return `Energy: from ${from} to ${to} times ${of} within ${Math.round(points[last][0] - points[0][0])} T.`;
+      return `Energy: from ${from} to ${to} times ${of} within ${Math.round(points[last][0] - points[0][0])} t₀.`;
     },
   };
 

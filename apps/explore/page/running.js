@@ -8,8 +8,8 @@ const ChainRunning = (() => {
   const KICK = 8; // free velocity widths that a push adds
   const FASTEST_HAND = 16; // free velocity widths
   const RUN_AWAY = 1000; // times the energy after the last touch
-  const SEEN = 3; // the largest speed [T/s] at which a push and single collisions can be followed
-  const SLOW = 0.3; // T/s
+  const SEEN = 3; // the largest speed [t_0/s] at which a push and single collisions can be followed
+  const SLOW = 0.3; // t_0/s
   const KEPT = 800; // energies of the history
   const GAUGED = 10; // blocks after which the force on the walls is kept
   const GROWN = 10; // times the energy of free rods: beyond, noise hardly counts
@@ -193,12 +193,12 @@ const ChainRunning = (() => {
     const { measurement: { settled, settling, time } } = world;
     if (world.ranAway) return `The chain has run away: its energy has grown ${RUN_AWAY} times${growth()}.`;
     if (world.pushed) return "A push is under way.";
-    if (!settled) return `Settling for another ${Math.ceil(settling)} T, drawn pale.`;
-    return `Measured for ${Math.round(time)} T.`;
+    if (!settled) return `Settling for another ${Math.ceil(settling)} t₀, drawn pale.`;
+    return `Measured for ${Math.round(time)} t₀.`;
   }
 
   function growth() {
-    const { found, theory } = growthRates() || {}, exponential = (rate) => `exp(${rate.toPrecision(2)} t/T)`;
+    const { found, theory } = growthRates() || {}, exponential = (rate) => `exp(${rate.toPrecision(2)} t/t₀)`;
     if (!found) return "";
     return `, like ${exponential(found)}${theory ? `; theory for weak damping: ${exponential(theory)}` : ""}`;
   }

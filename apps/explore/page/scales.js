@@ -1,5 +1,5 @@
 /* The scales of a chain {size, restitution, amplitude, damping, gap, spring}: those of the package
-   (particles/scales.py), in units of R half a rod's length, M mass, T time. Without springs it is a
+   (particles/scales.py), in units of R half a rod's length, M mass, t_0 time. Without springs it is a
    gas {size, box, mass_ratio} between two walls: every second rod is so many times as heavy. */
 "use strict";
 
@@ -21,7 +21,7 @@ const ChainScales = (() => {
   const pull = (d, n) => (n === 2 ? d : d * Math.abs(d));
 
   /* W = A/sqrt(2 m gamma), the velocity width of a rod that meets no other. In a gas, where all rods
-     begin with the speed 1 R/T, sqrt(T/m) of the light rods once all have the mean energy T/2. */
+     begin with the speed 1 R/t_0, sqrt(T/m) of the light rods once all have the mean energy T/2. */
   function freeWidth(chain) {
     if (isGas(chain)) return Math.sqrt(masses(chain).reduce((sum, m) => sum + m / MASS, 0) / chain.size);
     return chain.amplitude / Math.sqrt(2 * MASS * chain.damping);
@@ -46,7 +46,7 @@ const ChainScales = (() => {
   }
 
   /* The time in which a rod that meets no other forgets where it was and how fast; in a gas that in
-     which a rod of the speed 1 R/T meets 22 others, and no multiple of the period of equal rods. */
+     which a rod of the speed 1 R/t_0 meets 22 others, and no multiple of the period of equal rods. */
   function relaxationTime(chain) {
     if (isGas(chain)) return (7 * Math.PI * freeLength(chain)) / chain.size;
     const half = chain.damping / (2 * MASS), stiff = relaxingStiffness(chain) / MASS;
