@@ -27,7 +27,7 @@ import numpy as np
 from scipy.special import gamma, hyp1f1, hyperu
 
 from crazybilliards.reproduction.claims.repetition import error_of_mean
-from studies.common import options, print_heads, print_row
+from studies.common import Table, options, print_table
 
 STRENGTHS = np.array([1.0, 1.15, 1.2, 1.25, 1.3])
 STEPS = (8, 16, 32)
@@ -69,9 +69,8 @@ def delay(strength: float, kicks: np.ndarray) -> float:
     return (total + remaining(x, u).sum()) / kicks.shape[1]
 
 
-def main() -> None:
-    batches = round(options(__doc__, millions=40.0).millions * 1e6 / BATCH)
-    print_heads("steps n", "D without correction", "strength where D = 0")
+def table(batches: int) -> Table:
+    yield "steps n", "D without correction", "strength where D = 0"
     for steps in STEPS:
         generator = np.random.default_rng(steps)
         found = np.empty((batches, STRENGTHS.size))
@@ -84,8 +83,8 @@ def main() -> None:
             curve = np.polyfit(STRENGTHS[1:], part.mean(axis=0)[1:], 2)
             roots.append(min(np.roots(curve).real, key=lambda root: abs(root - 1.2)))
         delays, strength = found[:, 0], f"{roots[0]:.4f} ± {error_of_mean(roots[1:]):.4f}"
-        print_row(steps, f"{delays.mean():.4f} ± {error_of_mean(delays):.4f}", strength)
+        yield steps, f"{delays.mean():.4f} ± {error_of_mean(delays):.4f}", strength
 
 
 if __name__ == "__main__":
-    main()
+    print_table(table(round(options(__doc__, millions=40.0).millions * 1e6 / BATCH)))

@@ -103,17 +103,6 @@ def print_table(rows: Table) -> None:
         sys.stdout.flush()
 
 
-def print_row(*cells: object) -> None:
-    """Print a row of a table in Markdown."""
-    print(f"| {' | '.join(map(str, cells))} |", flush=True)
-
-
-def print_heads(*heads: str) -> None:
-    """Print the heads of a table in Markdown."""
-    print_row(*heads)
-    print("|---" * len(heads) + "|")
-
-
 def percents(values: Iterable[float], errors: Iterable[float]) -> list[str]:
     """Return deviations in per cent with their signs and standard errors."""
     return [f"{d:+.2f} ± {s:.2f}" for d, s in zip(values, errors, strict=True)]

@@ -32,7 +32,7 @@ from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
 from crazybilliards.particles.observers import Covariances
 from crazybilliards.particles.scales import default_time_step
-from studies.common import Table, options, print_heads, print_row, print_table, save_picture
+from studies.common import Table, options, print_table, save_picture
 
 CHAINS = (
     Chain(size=30, restitution=0.9),
@@ -150,8 +150,8 @@ def at_places(duration: float) -> Table:
         yield rod, f"{own.mean():.3f} ± {error:.1g}", f"{seen.mean():.3f}"
 
 
-def tabulate_short(duration: float) -> None:
-    print_heads("rods", "e", "contact temperature over relative temperature, centre")
+def of_short_chains(duration: float) -> Table:
+    yield "rods", "e", "contact temperature over relative temperature, centre"
     for chain in SHORT:
         centre = measured(chain, duration).sel(contact=slice(9, 11))
         ratio = (centre.contact_temperature / centre.relative_temperature).mean()
@@ -161,7 +161,7 @@ def tabulate_short(duration: float) -> None:
             for name in ("contact", "relative")
         )
         error = float(ratio) * np.hypot(contact, relative)
-        print_row(chain.size, f"{chain.restitution:g}", f"{float(ratio):.2f} ± {error:.2f}")
+        yield chain.size, f"{chain.restitution:g}", f"{float(ratio):.2f} ± {error:.2f}"
 
 
 def ingredients(found: xr.Dataset, chain: Chain) -> dict[str, tuple[Values, Values, Values]]:
@@ -219,15 +219,8 @@ def draw(duration: float) -> Figure:
     return figure
 
 
-def main() -> None:
-    asked = options(__doc__, folder=Path, duration=12_000.0)  # time units of each run
-    print_table(at_contacts(asked.duration))
-    print()
-    print_table(at_places(asked.duration))
-    print()
-    tabulate_short(asked.duration)
-    save_picture(asked.folder / "ingredients.png", draw, asked.duration)
-
-
 if __name__ == "__main__":
-    main()
+    asked = options(__doc__, folder=Path, duration=12_000.0)  # time units of each run
+    for table in (at_contacts, at_places, of_short_chains):
+        print_table(table(asked.duration))
+    save_picture(asked.folder / "ingredients.png", draw, asked.duration)

@@ -11,9 +11,8 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -26,9 +25,8 @@ from crazybilliards.kinetic import equilibrium_states, hydrodynamics
 from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array
 from crazybilliards.particles import simulate
-from studies.common import options, print_heads, print_row, save_picture
+from studies.common import Table, options, print_table, save_picture
 
-Found = TypeVar("Found")
 LOOKS: dict[str, dict[str, Any]] = {  # the lines, in order
     "isothermal fluid": {"color": COLOURS[1], "linestyle": "--"},
     "fluid with a temperature": {"color": COLOURS[0], "linestyle": "-"},
@@ -144,10 +142,10 @@ def draw_lines(ax: Axes, t: Array, curves: dict[str, tuple[Array, Array]]) -> No
             ax.plot(t, curves[name][0], label=name, **look)
 
 
-def tell_sound(found: dict[tuple[float, float], dict[str, tuple[Array, Array]]]) -> None:
-    """Print the first minimum, and how far the fluids are (root mean square over time)."""
+def table_of_sound(found: dict[tuple[float, float], dict[str, tuple[Array, Array]]]) -> Table:
+    """Give the first minimum, and how far the fluids are (root mean square over time)."""
     heads = "mass ratio", "Gamma/kappa W", "minimum", "at kappa W t =", "at last", "errors"
-    print_heads(*heads, *(f"{name}, rms" for name in LOOKS))
+    yield *heads, *(f"{name}, rms" for name in LOOKS)
     for (ratio, damping), curves in found.items():
         values, errors = curves["rods"]
         least = int(values.argmin())
@@ -157,7 +155,7 @@ def tell_sound(found: dict[tuple[float, float], dict[str, tuple[Array, Array]]])
         ]
         low, last = (f"{values[n]:.3f} ± {errors[n]:.3f}" for n in (least, -1))
         time, mean = f"{PERIOD * least / WAVE_TIMES:.2f}", f"{np.sqrt((errors**2).mean()):.3f}"
-        print_row(f"{ratio:g}", f"{damping:g}", low, time, last, mean, *off)
+        yield f"{ratio:g}", f"{damping:g}", low, time, last, mean, *off
 
 
 # -- release --------------------------------------------------------------------------------------
@@ -220,14 +218,14 @@ def draw_release(found: dict[float, dict[str, tuple[Array, Array]]]) -> Figure:
     return figure
 
 
-def tell_release(found: dict[float, dict[str, tuple[Array, Array]]]) -> None:
+def table_of_release(found: dict[float, dict[str, tuple[Array, Array]]]) -> Table:
     shown = [RELEASE_TIMES * n // 16 for n in (2, 4, 6, 8, 12, 16)]
-    print_heads("Gamma l/W", "at tW/l =", *(f"{RELEASE_T[n]:g}" for n in shown))
+    yield "Gamma l/W", "at tW/l =", *(f"{RELEASE_T[n]:g}" for n in shown)
     for damping, curves in found.items():
         for name, (values, errors) in curves.items():
             bars = [f" ± {errors[n]:.3f}" if errors[n] else "" for n in shown]
             cells = [f"{values[n]:.3f}{bar}" for n, bar in zip(shown, bars, strict=True)]
-            print_row(f"{damping:g}", name, *cells)
+            yield f"{damping:g}", name, *cells
 
 
 # -- pressure -------------------------------------------------------------------------------------
@@ -273,25 +271,28 @@ def draw_pressure(found: dict[float, Array]) -> Figure:
     return figure
 
 
-def tell_pressure(found: dict[float, Array]) -> None:
-    print_heads("2R rho", "e", "2R P/mW_v^2", "over the line", "W_v/W")
+def table_of_pressure(found: dict[float, Array]) -> Table:
+    yield "2R rho", "e", "2R P/mW_v^2", "over the line", "W_v/W"
     for e, rows in found.items():
         for filling, (value, error, width) in zip(FILLINGS, rows, strict=True):
             law = filling / (1 - filling)
             over = f"{value / law:.4f} ± {error / law:.4f}"
-            print_row(f"{filling:g}", f"{e:g}", f"{value:.4f}", over, f"{width:.3f}")
+            yield f"{filling:g}", f"{e:g}", f"{value:.4f}", over, f"{width:.3f}"
 
 
-def show(
-    path: Path, found: Found, tell: Callable[[Found], None], draw: Callable[[Found], Figure]
-) -> None:
-    tell(found)
-    save_picture(path, draw, found)
+def main() -> None:
+    folder = options(__doc__, folder=Path).folder
+    waves = {wave: sound(*wave) for wave in WAVES}
+    print_table(table_of_sound(waves))
+    save_picture(folder / "gas_sound.png", draw_sound, waves)
+    shares = {damping: release(damping) for damping in RELEASES}
+    print_table(table_of_release(shares))
+    save_picture(folder / "gas_release.png", draw_release, shares)
+    pressures = {restitution: pressure(restitution) for restitution in GAS_TIMES}
+    print_table(table_of_pressure(pressures))
+    save_picture(folder / "gas_pressure.png", draw_pressure, pressures)
 
 
 if __name__ == "__main__":
     warnings.filterwarnings("ignore", "equal elastic rods|damping=0")  # that is what is shown
-    to = options(__doc__, folder=Path).folder
-    show(to / "gas_sound.png", {each: sound(*each) for each in WAVES}, tell_sound, draw_sound)
-    show(to / "gas_release.png", {G: release(G) for G in RELEASES}, tell_release, draw_release)
-    show(to / "gas_pressure.png", {e: pressure(e) for e in GAS_TIMES}, tell_pressure, draw_pressure)
+    main()

@@ -24,7 +24,7 @@ from crazybilliards.particles.laws.law import Scratch, make_scratch
 from crazybilliards.particles.noise import fill, make_noise
 from crazybilliards.particles.scales import centre_width, default_time_step
 from crazybilliards.particles.stepping import WHOLE, take_step
-from studies.common import options, percents, print_heads, print_row
+from studies.common import Table, options, percents, print_table
 
 WARM_UP = 60.0
 PARTS = 32
@@ -96,19 +96,18 @@ def deviations(sums: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return whole, np.sqrt((PARTS - 1) * each.var(axis=0))
 
 
-def main() -> None:
+def table(chain: Chain, thresholds: list[float], duration: float) -> Table:
+    yield "threshold", "collisions", "time", *QUANTITIES
+    sums, collisions, seconds = measured(chain, thresholds, duration)
+    rows = zip(*deviations(sums), strict=True)
+    for number, (threshold, row) in enumerate(zip(thresholds[1:], rows, strict=True), start=1):
+        ratios = (f"{values[number] / values[0]:.2f}" for values in (collisions, seconds))
+        yield f"{threshold:g}", *ratios, *percents(*row)
+
+
+if __name__ == "__main__":
     asked = options(
         __doc__, restitution=float, size=100, duration=30_000.0, thresholds=[0.03, 0.1, 0.3]
     )
     chain = Chain(size=asked.size, restitution=asked.restitution)
-    sums, collisions, seconds = measured(chain, asked.thresholds, asked.duration)
-    deviation, error = deviations(sums)
-    print(f"e = {asked.restitution:g}, L = {asked.size}, {collisions[0]:.3g} collisions at first")
-    print_heads("threshold", "collisions", "time", *QUANTITIES)
-    for number, threshold in enumerate(asked.thresholds[1:], start=1):
-        ratios = (f"{each[number] / each[0]:.2f}" for each in (collisions, seconds))
-        print_row(f"{threshold:g}", *ratios, *percents(deviation[number - 1], error[number - 1]))
-
-
-if __name__ == "__main__":
-    main()
+    print_table(table(chain, asked.thresholds, asked.duration))

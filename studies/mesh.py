@@ -14,7 +14,7 @@ import numpy as np
 
 from crazybilliards.kinetic import correlated_phase_space, phase_space
 from crazybilliards.model import Chain
-from studies.common import Table, print_heads, print_row, print_table
+from studies.common import Table, print_table
 
 CASES = ((0.95, 1.0), (1.05, 4.0))
 CELLS = (8, 12, 16, 22, 33, 44)
@@ -43,28 +43,25 @@ def without_correlations() -> Table:
             yield f"{restitution:g}", f"{damping:g}", name, *errors, f"{seconds:.1f}"
 
 
-def tabulate_with_correlations() -> None:
+def with_correlations() -> Table:
+    yield "cells", "centre", "a tenth", "border", "largest, 3 to L - 2"
     finest = correlated_phase_space(PAIRS, cells=FINEST_OF_PAIRS).velocity_width.values
     places = PAIRS.size // 2, PAIRS.size // 10, 0
-    print()
-    print_heads("cells", "centre", "a tenth", "border", "largest, 3 to L - 2")
     for cells in CELLS_OF_PAIRS:
         width = correlated_phase_space(PAIRS, cells=cells).velocity_width.values
         off = width / finest - 1
-        print_row(cells, *(f"{off[place]:+.1e}" for place in places), f"{abs(off[2:-2]).max():.1e}")
+        yield cells, *(f"{off[place]:+.1e}" for place in places), f"{abs(off[2:-2]).max():.1e}"
 
 
-def tabulate_cost() -> None:
-    print()
-    print_heads("e", "cells", "CPU seconds, 1000 rods")
+def cost() -> Table:
+    yield "e", "cells", "CPU seconds, 1000 rods"
     for restitution in RESTITUTIONS:
         begin = time.process_time()
         theory = correlated_phase_space(Chain(size=LONG, restitution=restitution))
         seconds = time.process_time() - begin
-        print_row(f"{restitution:g}", theory.attrs["cells"], f"{seconds:.0f}")
+        yield f"{restitution:g}", theory.attrs["cells"], f"{seconds:.0f}"
 
 
 if __name__ == "__main__":
-    print_table(without_correlations())
-    tabulate_with_correlations()
-    tabulate_cost()
+    for table in (without_correlations, with_correlations, cost):
+        print_table(table())

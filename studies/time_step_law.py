@@ -18,7 +18,7 @@ import numpy as np
 
 from crazybilliards.model import Chain
 from crazybilliards.particles.scales import centre_width
-from studies.common import options, percents, print_heads, print_row
+from studies.common import Table, options, percents, print_table
 from studies.time_step import Copy, make_copy, measure_all, reported
 
 RATIO = 3
@@ -34,7 +34,25 @@ def quantities(copy: Copy, steps: int) -> np.ndarray:
     return np.array([centre, math.sqrt(later), displacement, math.sqrt(squares)])
 
 
-def main() -> None:
+def table(chain: Chain, longest: float, levels: int, duration: float, runs: int) -> Table:
+    yield "r", "compared with r", *QUANTITIES
+    width = centre_width(chain) * chain.free_velocity_width
+    time_step = (longest * width * chain.mass / chain.amplitude) ** 2
+    steps = [time_step / RATIO**level for level in reversed(range(levels))]
+    rows = []
+    for seed in range(runs):
+        copies = tuple(make_copy(chain, step) for step in steps)
+        number = measure_all(copies, RATIO, duration / runs, seed)
+        rows.append([quantities(copy, number) for copy in copies])
+    values = np.array(rows)
+    deviation = 100 * np.log(values[:, 1:] / values[:, :1])
+    mean, error = deviation.mean(axis=0), deviation.std(axis=0, ddof=1) / math.sqrt(runs)
+    kicks = chain.amplitude / chain.mass * np.sqrt(steps) / values[:, 0, 0].mean()
+    for kick, *row in zip(kicks[1:], mean, error, strict=True):
+        yield f"{kick:.2f}", f"{kicks[0]:.2f}", *percents(*row)
+
+
+if __name__ == "__main__":
     asked = options(
         __doc__,
         restitution=float,
@@ -46,23 +64,4 @@ def main() -> None:
         runs=8,
     )
     chain = Chain(size=asked.size, restitution=asked.restitution, damping=asked.damping)
-    width = centre_width(chain) * chain.free_velocity_width
-    longest = (asked.longest * width * chain.mass / chain.amplitude) ** 2
-    steps = [longest / RATIO**level for level in reversed(range(asked.levels))]
-    found = []
-    for seed in range(asked.runs):
-        copies = tuple(make_copy(chain, step) for step in steps)
-        number = measure_all(copies, RATIO, asked.duration / asked.runs, seed)
-        found.append([quantities(copy, number) for copy in copies])
-    values = np.array(found)
-    deviation = 100 * np.log(values[:, 1:] / values[:, :1])
-    mean, error = deviation.mean(axis=0), deviation.std(axis=0, ddof=1) / math.sqrt(asked.runs)
-    kicks = chain.amplitude / chain.mass * np.sqrt(steps) / values[:, 0, 0].mean()
-    print(f"e = {asked.restitution:g}, L = {asked.size}, gamma = {asked.damping:g}, in %")
-    print_heads("r", "compared with r", *QUANTITIES)
-    for kick, of_step in zip(kicks[1:], zip(mean, error, strict=True), strict=True):
-        print_row(f"{kick:.2f}", f"{kicks[0]:.2f}", *percents(*of_step))
-
-
-if __name__ == "__main__":
-    main()
+    print_table(table(chain, asked.longest, asked.levels, asked.duration, asked.runs))
