@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from itertools import cycle
 from typing import Any, Literal, get_args
 
-import matplotlib.pyplot as plt
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
@@ -87,6 +86,8 @@ def overlay(
         if label not in results:
             raise ValueError(f"style: the results are {got(label, list(results))}")
     if ax is None:
+        import matplotlib.pyplot as plt  # the only picture that is shown by the reader's backend
+
         _, ax = plt.subplots(layout="constrained")
     symbols, dashes = cycle(SYMBOLS), cycle(_DASHES)
     for label, (abscissa, values, error, measured) in curves.items():

@@ -6,7 +6,6 @@ them, which are too small to be seen above; at e != 1 those from the simulation.
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
@@ -29,7 +28,7 @@ from crazybilliards.comparison.layout import (
 from crazybilliards.comparison.side_by_side.grid import ELASTIC, KINETIC, SIMULATION
 from crazybilliards.comparison.stationary_theories import TITLES
 from crazybilliards.comparison.widths import displacement_unit, free_widths
-from crazybilliards.model import Chain, chain_of
+from crazybilliards.model import chain_of
 from crazybilliards.model.vocabulary import require
 
 _DECADES = 5  # of f in the image
@@ -46,29 +45,28 @@ _LOOKS: dict[str, dict[str, Any]] = {SIMULATION: {"color": "black"}} | {
         strict=False,
     )
 }
-_CLOSE_PACKED_SHARE = 1e-4  # of close packing: pictures of densities end where they are lower
+_LEAST_DRAWN = 1e-4  # of close packing: pictures of densities end where they are lower
 
 
 def draw_density(tree: xr.DataTree) -> Figure:
     """rho(x) of each simulated chain and the best theory, smoothed as the paper does.
 
-    The panel below has the differences of all theories at the right end, where they are largest.
+    The panel below has the differences of all theories at the right end, where they are largest:
+    the outermost three thermal lengths, at least ten radii.
     """
     figure, pairs = _pairs(tree)
     for (whole, end), group in zip(pairs, tree.children.values(), strict=True):
         results = {name: smooth(result) for name, result in _results(group).items()}
         chain = chain_of(results[SIMULATION])
-        unit = chain.close_packed_density
-        reference = _reference(results)
-        inside = results[reference].density.values > _CLOSE_PACKED_SHARE * unit
-        first, last = results[reference].x.values[inside][[0, -1]]
+        density = results[_reference(results)].density
+        inside = density.x.values[density > _LEAST_DRAWN * chain.close_packed_density]
+        length = max(3 * chain.thermal_length if chain.stiffness else 0.0, 10 * chain.radius)
         _draw_best(whole, results, "density")
-        whole.set_xlim(first, last)
-        shown = slice(last - _end_length(chain), last)
-        cut = {name: result.sel(x=shown) for name, result in results.items()}
-        _draw_differences(end, cut, "density", unit)
-        end.set_xlim(shown.start, shown.stop)
-    _label(pairs, "of close packing", "difference at the end")
+        whole.set_xlim(inside[0], inside[-1])
+        last = slice(inside[-1] - length, inside[-1])
+        cut = {name: result.sel(x=last) for name, result in results.items()}
+        _draw_differences(end, cut, "density", chain.close_packed_density)
+    pairs[0][1].set_ylabel("difference at the end\n[% of close packing]")
     legend_above(figure, *pairs[0])
     return figure
 
@@ -84,14 +82,22 @@ def draw_displacement(tree: xr.DataTree) -> Figure:
         symbol, unit = displacement_unit(chain_of(results[SIMULATION]))
         _draw_best(above, results, "mean_displacement")
         _draw_differences(below, results, "mean_displacement", unit)
-    _label(pairs, f"of ${symbol}$", "difference")
+    pairs[0][1].set_ylabel(f"difference\n[% of ${symbol}$]")
     legend_above(figure, *pairs[0])
     return figure
 
 
-def _end_length(chain: Chain) -> float:
-    """Return how much of a chain is shown as its end: three thermal lengths, at least ten radii."""
-    return max(3 * chain.thermal_length if chain.stiffness else 0.0, 10 * chain.radius)
+def _pairs(tree: xr.DataTree) -> tuple[Figure, list[tuple[Axes, Axes]]]:
+    """Make two panels for each chain, one below the other, with its title."""
+    number = len(tree.children)
+    width = ONE_COLUMN if number == 1 else max(TWO_COLUMNS, TWO_COLUMNS / 4 * number)
+    figure = Figure(figsize=(width, 3.6))
+    upper, lower = figure.subplots(2, number, squeeze=False, height_ratios=(3, 2))
+    if number > 1:
+        letter(upper)
+    for ax, group in zip(upper, tree.children.values(), strict=True):
+        entitle(ax, _varied(group))
+    return figure, list(zip(upper, lower, strict=True))
 
 
 def _results(group: xr.DataTree) -> dict[str, xr.Dataset]:
@@ -105,56 +111,27 @@ def _reference(results: dict[str, xr.Dataset]) -> str:
 
 
 def _draw_best(ax: Axes, results: dict[str, xr.Dataset], quantity: str) -> None:
-    """Draw the simulation over the exact equilibrium, or over the last of the other theories."""
+    """Draw the simulation and the exact equilibrium, or the last of the other theories."""
     best = _EXACT if _EXACT in results else list(results)[-1]
     shown = {name: results[name] for name in (best, SIMULATION)}
-    overlay(
-        shown, quantity, along="mean_position", ax=ax, style={name: _LOOKS[name] for name in shown}
-    )
+    looks = {name: _LOOKS[name] for name in shown}
+    overlay(shown, quantity, along="mean_position", ax=ax, style=looks)
+    ax.set(xlabel="", ylabel=ax.get_ylabel() if ax.get_subplotspec().is_first_col() else "")
 
 
 def _draw_differences(ax: Axes, results: dict[str, xr.Dataset], quantity: str, unit: float) -> None:
     """Draw the differences from the reference in per cent of ``unit``."""
     reference = results[_reference(results)][quantity]
-    percent = unit / 100
     differences = {}
     for name, result in results.items():
-        difference = ((result[quantity] - reference) / percent).assign_attrs(reference.attrs)
-        differences[name] = result.assign({quantity: difference})
-        if f"{quantity}_error" in result:
-            differences[name][f"{quantity}_error"] = result[f"{quantity}_error"] / percent
+        difference = 100 / unit * (result[quantity] - reference)
+        differences[name] = result.assign({quantity: difference.assign_attrs(reference.attrs)})
+        if (error := result.get(f"{quantity}_error")) is not None:
+            differences[name][f"{quantity}_error"] = 100 / unit * error
     looks = {name: _LOOKS[name] for name in results}
     looks[SIMULATION] = {"color": "black", "marker": "none"}
     overlay(differences, quantity, along="mean_position", ax=ax, style=looks)
-
-
-def _pairs(tree: xr.DataTree) -> tuple[Figure, list[tuple[Axes, Axes]]]:
-    """Make two panels for each chain, one below the other, with its title; four chains in a row."""
-    number = len(tree.children)
-    columns = min(number, 4)
-    rows = math.ceil(number / columns)
-    width = ONE_COLUMN if number == 1 else TWO_COLUMNS
-    figure = Figure(figsize=(width, 3.2 * rows + 0.4))
-    grid = figure.subplots(2 * rows, columns, squeeze=False, height_ratios=(3, 2) * rows)
-    upper, lower = list(grid[::2].ravel()), list(grid[1::2].ravel())
-    for ax in upper[number:] + lower[number:]:
-        ax.remove()
-    if number > 1:
-        letter(upper[:number])
-    for ax, group in zip(upper, tree.children.values(), strict=False):
-        entitle(ax, _varied(group))
-    return figure, list(zip(upper, lower, strict=True))[:number]
-
-
-def _label(pairs: list[tuple[Axes, Axes]], unit: str, what: str) -> None:
-    """Label the axes of the differences, and those of others only at the left."""
-    for above, below in pairs:
-        above.set_xlabel("")
-        if not below.get_subplotspec().is_first_col():
-            above.set_ylabel("")
-            below.set_ylabel("")
-        else:
-            below.set_ylabel(f"{what}\n[% {unit}]")
+    ax.set_ylabel("")
 
 
 def _varied(group: xr.DataTree) -> str:

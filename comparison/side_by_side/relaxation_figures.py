@@ -32,7 +32,7 @@ def draw_spacetime(tree: xr.DataTree) -> Figure:
     densities = _densities(tree)
     columns = math.ceil(len(densities) / 2)
     figure, axes = panels(2, columns, height=2.3, sharex=True, sharey=True)
-    highest = _chain(tree).close_packed_density
+    highest = chain_of(densities[SIMULATION]).close_packed_density
     for ax, (name, result) in zip(axes, densities.items(), strict=False):
         image = ax.pcolormesh(
             result.x, result.time, result.density, vmin=0, vmax=highest, rasterized=True
@@ -41,7 +41,6 @@ def draw_spacetime(tree: xr.DataTree) -> Figure:
     for ax in axes[len(densities) :]:
         ax.remove()
     axes = axes[: len(densities)]
-    axes[0].set_xlim(_extent(densities))
     for ax in axes[-columns:]:  # the lowest of each column, because the last row may be shorter
         ax.set_xlabel(axis_label(result.x))
         ax.tick_params(labelbottom=True)
@@ -56,17 +55,13 @@ def draw_profiles(tree: xr.DataTree) -> Figure:
     densities = _densities(tree)
     time = densities[SIMULATION].time
     figure, axes = panels(2, 2, height=2.1, sharex=True, sharey=True)
-    extent = _extent(densities)
     for ax, share in zip(axes, _MOMENTS, strict=True):
         moment = round(share * (time.size - 1))
-        shown = {
-            name: each.isel(time=moment).sel(x=slice(*extent)) for name, each in densities.items()
-        }
-        overlay(shown, ax=ax, style=_LOOK)
+        overlay({n: each.isel(time=moment) for n, each in densities.items()}, ax=ax, style=_LOOK)
         entitle(ax, f"$t = {float(time[moment]):.3g}$ {unit_of(time)}")
-        ax.set_xlim(extent)
+        ax.margins(x=0)
         ax.label_outer()
-        _draw_walls(ax, _chain(tree))
+        _draw_walls(ax, chain_of(densities[SIMULATION]))
     legend_above(figure, axes[0])
     return figure
 
@@ -74,7 +69,7 @@ def draw_profiles(tree: xr.DataTree) -> Figure:
 def draw_cloud(tree: xr.DataTree) -> Figure:
     """Width and centre of the cloud in the reduced coordinate against time, in units of s or h."""
     figure, axes = panels(1, 2, height=2.4)
-    symbol, unit = displacement_unit(_chain(tree))
+    symbol, unit = displacement_unit(chain_of(tree[PARTICLES].to_dataset()))
     clouds = {  # that of the rods is that of the fluid
         name: (cloud(tree[key].to_dataset()) / unit).assign_attrs(tree[key].attrs)
         for key, name in _NAMES.items()
@@ -95,13 +90,9 @@ def draw_cloud(tree: xr.DataTree) -> Figure:
 def relaxation_film(tree: xr.DataTree, most: int) -> tuple[Figure, Callable[[int], None], int]:
     """Return a figure of rho(x), what draws a picture of the film into it, and their number."""
     densities = _densities(tree)
-    extent = _extent(densities)
     last = densities[SIMULATION].time.size - 1
     chosen = np.unique(np.linspace(0, last, most).round().astype(int))
-    densities = {
-        name: each[["density"]].sel(x=slice(*extent)).isel(time=chosen)
-        for name, each in densities.items()
-    }
+    densities = {name: each.isel(time=chosen) for name, each in densities.items()}
     figure = Figure(figsize=(TWO_COLUMNS, 3.9), dpi=120)
     ax = figure.subplots()
     rods = densities[SIMULATION]
@@ -109,7 +100,8 @@ def relaxation_film(tree: xr.DataTree, most: int) -> tuple[Figure, Callable[[int
     fluids = {name: each.isel(time=0) for name, each in densities.items() if name != SIMULATION}
     overlay(fluids, ax=ax)
     high = max(float(each.density.max()) for each in densities.values())
-    ax.set(xlim=extent, ylim=(0, 1.05 * high))
+    ax.set_ylim(0, 1.05 * high)
+    ax.margins(x=0)
     _draw_walls(ax, chain_of(rods))
     legend_above(figure, ax)
     lines = {str(line.get_label()): line for line in ax.lines}
@@ -130,7 +122,7 @@ def _draw_walls(ax: Axes, chain: Chain) -> None:
 
 def title(tree: xr.DataTree) -> str:
     """Say in one line what was released, and how."""
-    chain = _chain(tree)
+    chain = chain_of(tree[PARTICLES].to_dataset())
     return (
         f"{chain.size} rods, A = {chain.amplitude:g}, g = {chain.gap:g}, "
         f"{tree.attrs['release']} by {tree.attrs['by']:g} and released at t = 0"
@@ -138,27 +130,17 @@ def title(tree: xr.DataTree) -> str:
 
 
 def _densities(tree: xr.DataTree) -> dict[str, xr.Dataset]:
-    """Return the available smoothed densities by the names they are drawn with."""
+    """Return the smoothed densities by the names they are drawn with, where any is not small."""
     if PARTICLES not in tree:
         raise ValueError(
             f"run must be what compare_relaxation returns, got a tree of {list(tree.children)}"
         )
-    return {
+    densities = {
         name: smooth(tree[key].to_dataset())
         for key, name in _NAMES.items()
         if key in tree and "density" in tree[key]
     }
-
-
-def _extent(densities: dict[str, xr.Dataset]) -> tuple[float, float]:
-    """Return the interval outside of which every density is small at all times."""
-    ends = []
-    for result in densities.values():
-        threshold = _LEAST_DRAWN * chain_of(result).close_packed_density
-        inside = result.x.values[(result.density.values > threshold).any(axis=0)]
-        ends += [float(inside[0]), float(inside[-1])]
-    return min(ends), max(ends)
-
-
-def _chain(tree: xr.DataTree) -> Chain:
-    return chain_of(tree[PARTICLES].to_dataset())
+    least = _LEAST_DRAWN * chain_of(densities[SIMULATION]).close_packed_density
+    inside = [each.x.values[(each.density > least).any("time")] for each in densities.values()]
+    shown = slice(min(x[0] for x in inside), max(x[-1] for x in inside))
+    return {name: each.sel(x=shown) for name, each in densities.items()}

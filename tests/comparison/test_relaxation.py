@@ -158,7 +158,6 @@ def test_a_film_shows_all_densities_in_motion(tree):
         for line, key in zip(
             ax.lines, ("particles", "isothermal", "evolving", "rods"), strict=True
         ):
-            np.testing.assert_array_equal(line.get_xdata()[0], ax.get_xlim()[0])
             density = smooth(tree[key].to_dataset()).density.isel(time=moment)
             np.testing.assert_array_equal(line.get_ydata(), density.sel(x=line.get_xdata()))
 
