@@ -92,7 +92,6 @@ cb.compare_relaxation(walled, "gathered", 2) | share must be at most 1, got 2
 cb.compare_relaxation(walled, "confined", 2) | confined needs a box, and by <= 1, got by=2
 cb.fit_arctanh(walls) | fit_arctanh does not know the chain's box
 cb.fit_border_power_law(walls) | fit_border_power_law does not know the chain's box
-cb.overlay({"a": walls}, "wall_force") | wall_force is over (wall); overlay draws what is over
 """
 
 CASES = """

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import os
 import sys
 import warnings
 from typing import Annotated
@@ -93,6 +94,8 @@ def main() -> None:
     """Entry point: a user's mistake is one line on standard error and exit status 2."""
     from crazybilliards.model.process import terminated_like_interrupted
 
+    # Pictures go to files. matplotlib would refuse a backend that it does not know.
+    os.environ["MPLBACKEND"] = "agg"
     # Commands state the expected errors of theories, unknown ones too.
     warnings.filterwarnings("ignore", "the error of .* was not measured")
     with terminated_like_interrupted() as signals:

@@ -1,7 +1,11 @@
 """Pictures in print: widths of journals' columns, one style, letters on panels."""
 
+import os
+import sys
+
 import matplotlib.pyplot as plt
 import pytest
+from installation import run
 
 from crazybilliards.comparison.layout import house_style, legend_above, panels
 
@@ -28,3 +32,12 @@ def test_the_style_acts_inside_only():
     with house_style():
         assert plt.rcParams["font.size"] == 8
     assert dict(plt.rcParams) == before
+
+
+@pytest.mark.compiled
+def test_commands_draw_whatever_the_backend_of_the_reader_is(tmp_path):
+    options = ["--size", "4", "--duration", "200", "--amplitude", "1", "--output", tmp_path]
+    code = "from crazybilliards.apps.commands.line import main; main()"
+    environment = os.environ | {"MPLBACKEND": "nonsense"}
+    run(sys.executable, "-Wignore", "-c", code, "compare", *options, env=environment)
+    assert {path.stem for path in tmp_path.glob("*.png")} == {"density", "displacement", "widths"}
