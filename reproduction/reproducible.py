@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import re
 
-from crazybilliards.model.checks import meant, shown
+from crazybilliards.model.checks import shown
+from crazybilliards.model.words import meant
 from crazybilliards.reproduction.claims.study import Study
 from crazybilliards.reproduction.figures import FIGURES
 

@@ -104,7 +104,6 @@ def test_a_damaged_file_is_refused_or_read_right(kind, flips, files, tmp_path, m
 
     for library in ("h5py.File", "numpy.load", "xarray.open_datatree", "xarray.open_dataset"):
         monkeypatch.setattr(library, unsealed)
-    monkeypatch.setattr("crazybilliards.model.storage.ScipyDataStore", unsealed)
     generator = np.random.default_rng(3)
     for position in generator.integers(len(whole) - 1, size=flips):
         flipped = bytearray(whole)
