@@ -1,13 +1,14 @@
 """Locks: one process at a time keeps a checkpoint or fills a folder.
 
-The operating system frees a lock when the process ends, however it ends (package filelock).
+The operating system frees a lock when the process ends, however it ends (package filelock). Where
+a file system has no locks, two processes may do the same work twice.
 """
 
 from __future__ import annotations
 
 import errno
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 
 from filelock import FileLock, Timeout
@@ -22,11 +23,8 @@ def locked(path: Path) -> Iterator[None]:
     file = path / ".lock" if path.is_dir() else path.with_name(f".{path.name}.lock")
     try:
         with FileLock(file, timeout=0.1, poll_interval=0.01):
-            try:
-                yield
-            finally:
-                with suppress(PermissionError):  # on Windows, where filelock removes it
-                    file.unlink(missing_ok=True)
+            yield
+            file.unlink(missing_ok=True)
     except Timeout as error:
-        message = f"in use by another process, which holds {file.name}; wait until it has ended"
+        message = "in use by another process; wait until it has ended, or take another name"
         raise BlockingIOError(errno.EAGAIN, message, str(path)) from error
