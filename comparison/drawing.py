@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 
 from crazybilliards.comparison.coverage import require_same_smoothing
 from crazybilliards.comparison.curves import axis_label, find_curve, is_of_one_rod
-from crazybilliards.model.checks import check_choice, got
+from crazybilliards.model.checks import check_choice
 
 Along = Literal["normalized_particle", "mean_position"]
 
@@ -83,8 +83,7 @@ def overlay(
     _require_same_kind(results, quantity)
     style = style or {}
     for label in style:
-        if label not in results:
-            raise ValueError(f"style: the results are {got(label, list(results))}")
+        check_choice("style: a label", label, results)
     if ax is None:
         import matplotlib.pyplot as plt  # the only picture that is shown by the reader's backend
 

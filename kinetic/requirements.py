@@ -9,6 +9,7 @@ import numpy as np
 from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array
 from crazybilliards.model.checks import check_real
+from crazybilliards.model.words import check_chain
 
 _MOST_OUTPUTS = 1_000_000
 
@@ -34,6 +35,7 @@ def require_chain(
     restitution, at the end of that error. ``knows``: parameters beside ``KNOWN`` that this theory
     takes; all others go on refusing them.
     """
+    check_chain(chain)
     chain.require_known(theory, knows)
     if elastic and chain.restitution != 1:
         raise ValueError(

@@ -30,8 +30,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from crazybilliards.model import spring
-from crazybilliards.model.checks import check_arguments, refuse_units, shown
+from crazybilliards.model.checks import refuse_units, shown
 from crazybilliards.model.parameters import KNOWN, Parameters
+from crazybilliards.model.words import check_arguments, with_hints
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -115,8 +116,11 @@ class Chain(Parameters):
 
     def unknown(self) -> dict[str, Any]:
         """Return the parameters beside the known ones that are not as by default: the defaults."""
-        own = (each for each in fields(self) if each.name not in KNOWN)
-        return {each.name: each.default for each in own if getattr(self, each.name) != each.default}
+        return {
+            field.name: field.default
+            for field in fields(self)
+            if field.name not in KNOWN and getattr(self, field.name) != field.default
+        }
 
     # -- geometry ---------------------------------------------------------------------------
 
@@ -273,3 +277,7 @@ class Chain(Parameters):
         """Raise a ValueError with the reason if this chain has no steady state."""
         if reason := self.why_unsteady:
             raise ValueError(f"this chain has no steady state: {reason}")
+
+
+# A dataclass makes its own ``__init__``.
+Chain.__init__ = with_hints(Chain.__init__)  # type: ignore[method-assign]

@@ -7,10 +7,11 @@ import os
 import re
 import reprlib
 from collections.abc import Collection, Iterable
-from difflib import get_close_matches
 from numbers import Integral, Real
 from pathlib import Path
 from typing import Any, TypeGuard
+
+from crazybilliards.model.words import meant
 
 # Squares and ratios of parameters must neither overflow nor underflow.
 _SMALLEST, _LARGEST = 1e-60, 1e60
@@ -29,8 +30,6 @@ def shown(value: object) -> str:
     """
     if type(value).__module__.startswith("xarray."):
         return f"a {type(value).__name__}"
-    if isinstance(value, int) and value.bit_length() > 10_000:  # Python does not write its digits
-        return f"a number of {value.bit_length()} bits"
     return " ".join(_SHORTLY.repr(value).split())
 
 
@@ -61,29 +60,23 @@ def refuse_units(name: str, value: Any) -> None:
 
     Those of this package are in the chain's own units, and its DataArrays say so.
     """
-    if type(value).__module__.startswith("xarray."):
-        own = _OWN_UNIT.fullmatch(str(value.attrs.get("units", "")))
-        foreign = not own or _unit(getattr(value, "data", None)) is not None
-    elif (
-        isinstance(value, list | tuple) or getattr(getattr(value, "dtype", None), "kind", "") == "O"
-    ):
-        for each in value if is_list(value) else ():
-            if not isinstance(each, float | int):
-                refuse_units(name, each)
-        return
-    else:
-        foreign = _unit(value) is not None
-    if foreign:
+    # astropy calls it unit, pint and unyt units; xarray gives an attribute of this name.
+    unit = getattr(value, "units", getattr(value, "unit", None))
+    if unit is not None and not (isinstance(unit, str) and _OWN_UNIT.fullmatch(unit)):
         raise ValueError(
             f"{name} must be plain numbers, in the chain's own units, and not carry a unit, got "
             f"{shown(value)}"
         )
-
-
-def _unit(value: Any) -> Any:
-    """Return the unit that an object of astropy, pint, unyt and others has, or None."""
-    units = getattr(value, "units", None)
-    return getattr(value, "unit", None) if units is None else units
+    parts: Iterable[Any] = ()
+    if type(value).__module__.startswith("xarray."):
+        parts = [getattr(value, "data", None)]
+    elif isinstance(value, list | tuple):
+        parts = value
+    elif getattr(getattr(value, "dtype", None), "kind", "") == "O":
+        parts = value.ravel()
+    for part in parts:
+        if not isinstance(part, float | int):
+            refuse_units(name, part)
 
 
 def _is_a(kind: type, number: Any) -> bool:
@@ -130,7 +123,9 @@ def check_choice(name: str, value: object, choices: Iterable[str]) -> str:
     """Return ``value``, or raise a ValueError if ``name`` does not accept this word."""
     choices = tuple(choices)
     if not isinstance(value, str) or value not in choices:
-        raise ValueError(f"{name} must be one of {got(value, choices)}")
+        raise ValueError(
+            f"{name} must be one of {choices}, got {shown(value)}{meant(value, choices)}"
+        )
     return value
 
 
@@ -142,30 +137,3 @@ def check_path(name: str, path: object) -> Path:
         return Path(path).expanduser()
     except RuntimeError as error:
         raise ValueError(f"{name}: there is no home folder for {shown(str(path))}") from error
-
-
-def got(value: object, choices: Iterable[str]) -> str:
-    """Return the end of a message about a wrong name: what is accepted, what came, what is near."""
-    choices = tuple(choices)
-    return f"{choices}, got {shown(value)}{meant(value, choices)}"
-
-
-def meant(value: object, choices: Iterable[str]) -> str:
-    """Return a question whether the nearest accepted name was meant, or nothing."""
-    near = nearest(value, choices)
-    return f"; did you mean {near!r}?" if near else ""
-
-
-def nearest(value: object, choices: Iterable[str]) -> str:
-    """Return the accepted name that is spelled alike, or nothing."""
-    choices = tuple(choices)
-    if not isinstance(value, str):
-        return ""
-    return "".join(get_close_matches(value, choices, 1))
-
-
-def check_arguments(owner: str, given: Iterable[str], known: Iterable[str]) -> None:
-    """Raise a ValueError for the names of arguments that ``owner`` does not take."""
-    known = tuple(known)
-    if wrong := [name for name in given if name not in known]:
-        raise ValueError(f"{owner} takes any of {known}, got {shown(wrong[0])}{meant(wrong[0], known)}")

@@ -17,9 +17,12 @@ disk, kernels are compiled in every process, with one warning.
 from __future__ import annotations
 
 import multiprocessing
+import sys
 import warnings
-from collections.abc import Callable
-from functools import partial
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+from functools import cache, partial, wraps
 from typing import Any
 
 import numpy as np
@@ -27,10 +30,19 @@ from numba import njit
 from numba.core.options import DefaultOptions
 
 from crazybilliards.model.fingerprint import room_fingerprint
-from crazybilliards.model.process import announce_compilation, interrupts_held_back
+from crazybilliards.model.process import interrupts_noted
 
-_ANEW = "the kernels are compiled anew in every process, which takes some seconds"
-_warned: set[str] = set()
+_to_announce: ContextVar[bool] = ContextVar("to_announce", default=False)
+
+
+@contextmanager
+def announced(progress: bool) -> Iterator[None]:
+    """Print once that kernels are being compiled, if a kernel is not in numba's cache."""
+    before = _to_announce.set(progress)
+    try:
+        yield
+    finally:
+        _to_announce.reset(before)
 
 
 def _compiled(function: Callable[..., Any], *, fused: bool, allocates: bool, **options: Any) -> Any:
@@ -55,59 +67,72 @@ def kernel(
     if not hasattr(dispatcher, "enable_caching"):  # compilation is disabled
         # Compiled code does not warn of numbers that are infinite or undefined.
         return np.errstate(all="ignore")(dispatcher)
-    # Ctrl-C while numba registers its functions would leave it without them in this process.
-    dispatcher.compile = interrupts_held_back()(dispatcher.compile)
+    dispatcher.compile = _in_one_piece(dispatcher.compile)
     try:
         dispatcher.enable_caching()
     except RuntimeError:
-        # The process that started this one has already warned.
-        if multiprocessing.current_process().name == "MainProcess":
-            _warn(_ANEW, "there is no folder for numba's cache; NUMBA_CACHE_DIR can name one")
+        _warn("there is no folder for it")
         return dispatcher
-    # numba has no public way to add to the stamp, or to let a cache fail. If a later numba lacks
-    # the private names used here, its cache works unchanged.
-    if (kept := getattr(dispatcher, "_cache", None)) is not None:
-        _add_fingerprint(kept)
-        _let_it_fail(kept)
+    # numba has no public way to add to the stamp of its cache, or to let it fail. If a later numba
+    # lacks these private names, its cache works unchanged.
+    disk = getattr(dispatcher, "_cache", None)
+    index = getattr(disk, "_cache_file", None)
+    if hasattr(index, "_source_stamp"):
+        rooms = room_fingerprint("model", "particles", "kinetic")
+        index._source_stamp = (index._source_stamp, rooms)
+        _let_it_fail(disk)
     return dispatcher
 
 
-def _add_fingerprint(kept: Any) -> None:
-    """Add the fingerprint of all rooms with kernels to the stamp of an outdated cache."""
-    entries = getattr(kept, "_cache_file", None)
-    stamp = getattr(entries, "_source_stamp", None)
-    if entries is not None and stamp is not None:
-        entries._source_stamp = (stamp, room_fingerprint("model", "particles", "kinetic"))
+def _in_one_piece(compile_: Callable[..., Any]) -> Callable[..., Any]:
+    """Let Ctrl-C act after the compilation: numba would lose functions that it registers in it."""
+
+    @wraps(compile_)
+    def compile_whole(*arguments: Any) -> Any:
+        with interrupts_noted() as signals:
+            compiled = compile_(*arguments)
+        if signals:
+            raise KeyboardInterrupt
+        return compiled
+
+    return compile_whole
 
 
-def _let_it_fail(kept: Any) -> None:
+def _let_it_fail(disk: Any) -> None:
     """Make a cache that cannot be read or written a warning; numba makes it an error."""
-    load, save = kept.load_overload, kept.save_overload
 
-    def load_if_possible(*arguments: Any) -> Any:
-        found = None
-        try:
-            found = load(*arguments)
-        except Exception as error:  # unpickling a damaged file can raise anything
-            _warn("numba's cache cannot be read, compiling anew", f"{kept.cache_path}: {error}")
-        if found is None:
-            announce_compilation()
-        return found
+    def attempt(work: Callable[..., Any]) -> Callable[..., Any]:
+        def attempted(*arguments: Any) -> Any:
+            try:
+                return work(*arguments)
+            except Exception as error:  # a damaged file can raise anything
+                return _warn(getattr(error, "strerror", None) or str(error))
 
-    def save_if_possible(*arguments: Any) -> None:
-        try:
-            save(*arguments)
-        except Exception as error:  # saving reads what is there, too
-            _warn(_ANEW, f"{kept.cache_path}: {error}; NUMBA_CACHE_DIR can name another folder")
+        return attempted
 
-    kept.load_overload, kept.save_overload = load_if_possible, save_if_possible
+    load = attempt(disk.load_overload)
+
+    def load_or_announce(*arguments: Any) -> Any:
+        compiled = load(*arguments)
+        if compiled is None and _to_announce.get():
+            _to_announce.set(False)
+            message = "crazybilliards: compiling the kernels, once (they are cached) ..."
+            print(message, file=sys.stderr, flush=True)
+        return compiled
+
+    disk.load_overload, disk.save_overload = load_or_announce, attempt(disk.save_overload)
 
 
-def _warn(problem: str, reason: str) -> None:
-    """Warn of a problem once, and not again for every kernel."""
-    if problem not in _warned:
-        _warned.add(problem)
-        warnings.warn(f"{problem}: {reason}", RuntimeWarning, stacklevel=3)
+@cache  # Python forgets what it has warned of whenever filters of warnings change
+def _warn(problem: str) -> None:
+    """Warn once that the cache fails; the process that started this one has already warned."""
+    if multiprocessing.current_process().name == "MainProcess":
+        warnings.warn(
+            "the kernels are compiled anew in every process, which takes some seconds: numba's "
+            f"cache fails, {problem}; the environment variable NUMBA_CACHE_DIR names its folder",
+            RuntimeWarning,
+            stacklevel=2,
+        )
 
 
 def inlined(

@@ -1,14 +1,13 @@
 """Locks: one process at a time keeps a checkpoint or fills a folder.
 
-The operating system frees a lock when the process ends, however it ends (package filelock). Where
-a file system has no locks, two processes may do the same work twice.
+The operating system frees a lock when the process ends, however it ends (package filelock).
 """
 
 from __future__ import annotations
 
 import errno
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from filelock import FileLock, Timeout
@@ -23,8 +22,11 @@ def locked(path: Path) -> Iterator[None]:
     file = path / ".lock" if path.is_dir() else path.with_name(f".{path.name}.lock")
     try:
         with FileLock(file, timeout=0.1, poll_interval=0.01):
-            yield
-            file.unlink(missing_ok=True)
+            try:
+                yield
+            finally:
+                with suppress(PermissionError):  # on Windows, where filelock removes it
+                    file.unlink(missing_ok=True)
     except Timeout as error:
-        message = "in use by another process; wait until it has ended, or take another name"
+        message = f"in use by another process, which holds {file.name}; wait until it has ended"
         raise BlockingIOError(errno.EAGAIN, message, str(path)) from error

@@ -67,6 +67,6 @@ class Parameters:
     )
 
     def __post_init__(self) -> None:
-        for each in fields(self):
-            checked = each.metadata["check"](each.name, getattr(self, each.name))
-            object.__setattr__(self, each.name, checked)
+        for parameter in fields(self):
+            name, check = parameter.name, parameter.metadata["check"]
+            object.__setattr__(self, name, check(name, getattr(self, name)))

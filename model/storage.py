@@ -4,8 +4,7 @@ A file is an ordinary NetCDF file followed by a trailer with the SHA-256 of ever
 it (NetCDF readers ignore what follows the data). :func:`load` compares the two before any
 NetCDF library sees the bytes, so a damaged or truncated file can never give a wrong result.
 
-:func:`save` writes NetCDF-4, which can hold everything and costs tens of milliseconds a file. The
-many small files of a sweep are classic NetCDF, which costs one or two milliseconds a file.
+Files are NetCDF-4. The sweeps of version 0.5 and before are classic NetCDF, which is read, too.
 """
 
 from __future__ import annotations
@@ -21,10 +20,8 @@ from typing import Any
 import h5py
 import numpy as np
 import xarray as xr
-from xarray.backends import ScipyDataStore
 
 from crazybilliards.model.checks import check_path
-from crazybilliards.model.process import interrupts_held_back
 
 _CLASSIC, _NETCDF_4 = b"CDF", b"\x89HDF"  # the first bytes of a file
 _MARK = b"\ncrazybilliards-1 sha256 "
@@ -47,12 +44,10 @@ def save(result: xr.Dataset | xr.DataTree, path: str | os.PathLike[str]) -> Path
     path = check_path("path", path)
     if path.suffix != ".nc":
         raise ValueError(f"results are NetCDF files: the name must end in .nc, got {str(path)!r}")
-    write_sealed(path, bytes(result.to_netcdf(engine="h5netcdf")))
+    write_sealed(path, netcdf(result))
     return path
 
 
-# A Ctrl-C would be lost in __del__ of a file, or become another error in what h5py calls.
-@interrupts_held_back()
 def load(path: str | os.PathLike[str]) -> xr.Dataset | xr.DataTree:
     """Read a result that :func:`save` wrote, all of it into memory.
 
@@ -78,7 +73,6 @@ def load(path: str | os.PathLike[str]) -> xr.Dataset | xr.DataTree:
     return tree if tree.children else tree.to_dataset()
 
 
-@interrupts_held_back()  # as in ``load``
 def load_attributes(path: str | os.PathLike[str]) -> dict[str, Any]:
     """Read only the attributes of a result that :func:`save` wrote; raises as :func:`load`.
 
@@ -87,29 +81,23 @@ def load_attributes(path: str | os.PathLike[str]) -> dict[str, Any]:
     content = read_sealed(check_path("path", path))
     try:
         if content.startswith(_CLASSIC):
-            with ScipyDataStore(io.BytesIO(content)) as store:
-                return dict(store.get_attrs())
+            return dict(_load_classic(content).attrs)
         with h5py.File(io.BytesIO(content)) as file:
             return dict(file.attrs)
     except Exception as error:
         raise ValueError(f"{path}: not a result, though crazybilliards wrote it") from error
 
 
-def small_netcdf(result: xr.Dataset) -> bytes:
-    """Return a result as a classic NetCDF file, or as NetCDF-4 if that is needed to hold it.
-
-    Classic NetCDF has no integers beyond 32 bits. :func:`load` gives them their 64 bits back.
-    """
-    try:
-        return bytes(result.to_netcdf(engine="scipy", format="NETCDF3_64BIT"))
-    except ValueError:
-        return bytes(result.to_netcdf(engine="h5netcdf"))
+def netcdf(result: xr.Dataset | xr.DataTree) -> bytes:
+    """Return a result as the content of a NetCDF-4 file."""
+    return bytes(result.to_netcdf(engine="h5netcdf"))
 
 
 def _load_classic(content: bytes) -> xr.Dataset:
+    """Return a result; classic NetCDF has no integers beyond 32 bits, which get their 64 back."""
     with xr.open_dataset(io.BytesIO(content), engine="scipy") as file:
         result = file.load()
-    narrow = [name for name, each in result.variables.items() if each.dtype == np.int32]
+    narrow = [name for name, values in result.variables.items() if values.dtype == np.int32]
     return result.assign({name: result.variables[name].astype(np.int64) for name in narrow})
 
 

@@ -21,6 +21,7 @@ from crazybilliards.model.arrays import Array
 from crazybilliards.model.checks import check_choice, check_integer, check_real, is_list, shown
 from crazybilliards.model.grid import require_resolved
 from crazybilliards.model.memory import require_memory
+from crazybilliards.model.words import check_chain
 from crazybilliards.particles import dynamics, scales
 from crazybilliards.particles.dynamics import Dynamics, Stepper, default_merging, make_dynamics
 from crazybilliards.particles.laws.law import EXACT, Method, choose_operator
@@ -81,6 +82,7 @@ class Run:
     def __post_init__(self) -> None:
         for name, kinds in (("method", Method), ("stepper", Stepper), ("average", Average)):
             check_choice(name, getattr(self, name), get_args(kinds))
+        check_chain(self.chain)
         self._require_known()
         merging = default_merging(self.chain) if self.merging is None else self.merging
         self.merging = check_real("merging", merging)

@@ -19,6 +19,7 @@ import numpy as np
 from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array
 from crazybilliards.model.parameters import WALLS_AND_MASSES
+from crazybilliards.model.words import check_chain
 from crazybilliards.particles.laws.closed_contacts import CRITICAL_RESTITUTION
 
 # Parameters beside ``KNOWN`` with which these scales are right. A run refuses others.
@@ -183,6 +184,7 @@ def relaxation_time(chain: Chain) -> float:
     >>> round(relaxation_time(Chain()), 2)
     8.38
     """
+    check_chain(chain)
     chain.require_known("relaxation_time", knows)
     return math.inf if chain.stiffness == chain.box == 0 else settling_time(chain)
 

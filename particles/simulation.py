@@ -13,9 +13,10 @@ from numpy.typing import ArrayLike
 
 from crazybilliards.model import Chain
 from crazybilliards.model.checks import check_integer, check_path, check_real
-from crazybilliards.model.process import announced
+from crazybilliards.model.kernels import announced
 from crazybilliards.model.randomness import Seed, seed_of
 from crazybilliards.model.warn import warn_user
+from crazybilliards.model.words import with_hints
 from crazybilliards.particles.dynamics import Stepper
 from crazybilliards.particles.laws.law import Method
 from crazybilliards.particles.observers import Observer, check_observers, find_observers
@@ -31,6 +32,7 @@ class ShortRunWarning(UserWarning):
     """An average over time is too short for the memory of the chain."""
 
 
+@with_hints
 def simulate(
     chain: Chain,
     *,

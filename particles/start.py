@@ -12,6 +12,7 @@ from crazybilliards.model.checks import check_integer, shown
 from crazybilliards.model.memory import require_memory
 from crazybilliards.model.parameters import WALLS_AND_MASSES
 from crazybilliards.model.vocabulary import result
+from crazybilliards.model.words import check_chain
 
 # Parameters beside ``KNOWN`` with which a start is right: at the anchors, or where rods are put.
 knows: frozenset[str] = WALLS_AND_MASSES
@@ -48,6 +49,7 @@ def given_start(
     >>> compressed.position.values[0]
     array([-2.2,  0. ,  2.2])
     """
+    check_chain(chain)
     replicas = check_integer("replicas", replicas, least=1, most=MOST_REPLICAS)
     require_memory(f"replicas={replicas} of {chain.size} rods", 40.0 * replicas * chain.size)
     shape, dims = (replicas, chain.size), ("replica", "particle")

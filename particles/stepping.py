@@ -159,7 +159,7 @@ def bounded(y, v, fastest):  # type: ignore[no-untyped-def]
 
 
 @inlined(once=True)
-def _keep(source, target, tally):  # type: ignore[no-untyped-def]
+def _copy_records(source, target, tally):  # type: ignore[no-untyped-def]
     """Copy what ``tally`` records of collisions, from or to the scratch space."""
     for contact in range(tally.contacts.size):
         target.contacts[contact] = source.contacts[contact]
@@ -187,13 +187,13 @@ def record_flight(y, v, noise, dynamics, scratch, stride, y_buffer, v_buffer):  
 def record_steps(y, v, noise, dynamics, scratch, tally, stride, y_buffer, v_buffer):  # type: ignore[no-untyped-def]
     """Do as ``record`` does, in steps of kicks and drifts."""
     collisions = 0
-    _keep(tally, scratch, tally)
+    _copy_records(tally, scratch, tally)
     for snapshot in range(y_buffer.shape[0]):
         number = _step(y, v, noise, dynamics, scratch, tally, stride)
         if number < 0 or not bounded(y, v, dynamics.fastest):
-            _keep(scratch, tally, tally)
+            _copy_records(scratch, tally, tally)
             return snapshot, collisions
-        _keep(tally, scratch, tally)
+        _copy_records(tally, scratch, tally)
         collisions += number
         copy(y, y_buffer[snapshot])
         copy(v, v_buffer[snapshot])

@@ -51,9 +51,11 @@ FLOORS = {
         {"moving_pictures"},
     ),
     "reproduction": (
-        {"claims", "fits"},
-        {"chains", "distributions", "profiles"},
+        {"claims", "fits", "mirror_images"},
+        {"chains", "distributions", "power_laws"},
+        {"predictions"},
         {"figures"},
+        {"reproducible"},
     ),
     "apps": ({"explore"}, {"commands"}),
 }

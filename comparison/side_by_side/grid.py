@@ -27,11 +27,12 @@ from crazybilliards.kinetic import equilibrium, force_balance, rod_by_rod
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.checks import as_written, check_integer, check_path, is_list, shown
+from crazybilliards.model.kernels import announced
 from crazybilliards.model.parameters import WALLS_AND_MASSES
-from crazybilliards.model.process import announced
 from crazybilliards.model.progress import waiting_for
 from crazybilliards.model.randomness import Seed, seed_of
 from crazybilliards.model.warn import warn_user
+from crazybilliards.model.words import check_chain
 from crazybilliards.particles.simulation import make_run
 from crazybilliards.particles.stepping import compile_kernels
 
@@ -135,6 +136,7 @@ def _kinetic_cases(chain: Chain) -> dict[str, Case]:
 
 def _chains(chain: Chain, over: Mapping[str, ArrayLike]) -> dict[str, Chain]:
     """Return the chains by their names, such as ``amplitude_3``."""
+    check_chain(chain)
     if not isinstance(over, Mapping) or len(over) != 1:
         raise ValueError(
             "over must be one parameter of the chain and its values, such as "

@@ -27,10 +27,11 @@ from threadpoolctl import threadpool_limits
 from crazybilliards.comparison.stationary_theories import THEORIES
 from crazybilliards.kinetic.accuracy import UnmeasuredWarning
 from crazybilliards.model import Chain, load
-from crazybilliards.model.checks import check_arguments, check_choice
+from crazybilliards.model.checks import check_choice
 from crazybilliards.model.fingerprint import room_fingerprint
 from crazybilliards.model.progress import silent
-from crazybilliards.model.storage import load_attributes, small_netcdf
+from crazybilliards.model.storage import load_attributes, netcdf
+from crazybilliards.model.words import check_arguments
 from crazybilliards.particles import ShortRunWarning, simulate
 from crazybilliards.particles.simulation import make_run
 
@@ -176,7 +177,7 @@ def compute(case: Case, source: str, threads: int = 1) -> bytes:
     if result.attrs["status"] == "interrupted":
         raise KeyboardInterrupt
     result.attrs |= {"case": case.canonical, "source_fingerprint": source}
-    return small_netcdf(result)
+    return netcdf(result)
 
 
 def stored_parameters(attributes: Mapping[Any, Any]) -> dict[str, Any]:

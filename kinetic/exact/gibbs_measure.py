@@ -43,6 +43,7 @@ from crazybilliards.model.parameters import WALLS_AND_MASSES
 from crazybilliards.model.progress import waiting_for
 from crazybilliards.model.randomness import Seed, seed_of
 from crazybilliards.model.vocabulary import OF_RODS, result
+from crazybilliards.model.words import check_chain
 
 # Grid nodes in the width of the narrowest rod, which is the middle one without a gap.
 _NODES_PER_WIDTH = 10
@@ -76,6 +77,7 @@ def equilibrium(chain: Chain) -> xr.Dataset:
     >>> (equilibrium(chain).mean_displacement / chain.thermal_length).values.round(6)
     array([-0.56419,  0.56419])
     """
+    check_chain(chain)
     with waiting_for("exact equilibrium", seconds=expected_seconds("equilibrium", chain)):
         return _in_vocabulary(chain, recursion_of(chain))
 
@@ -139,6 +141,7 @@ def equilibrium_states(chain: Chain, replicas: int, seed: Seed = 0) -> xr.Datase
     ValueError
         As :func:`equilibrium`, and for a wrong ``replicas`` or ``seed``.
     """
+    check_chain(chain)
     replicas = check_integer("replicas", replicas, least=1, most=_MOST_STATES)
     seed = seed_of(seed)
     generator = np.random.default_rng(seed)

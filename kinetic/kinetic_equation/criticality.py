@@ -37,6 +37,7 @@ from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array
 from crazybilliards.model.progress import waiting_for
+from crazybilliards.model.words import check_chain
 
 _CELLS = 24
 _NOISE = (0.85, 0.7, 0.4, 0.2, 0.1, 0.05, 0.025)  # values of tau
@@ -87,6 +88,7 @@ def critical_size(chain: Chain) -> CriticalValue:
 
 def _require_drive(chain: Chain) -> float:
     """Return the damping gamma/sqrt(k m), or raise if the chain has no critical size."""
+    check_chain(chain)
     if chain.restitution <= 1:
         raise ValueError(
             "every size has a steady state unless restitution is above 1, got "

@@ -50,6 +50,7 @@ from crazybilliards.kinetic.rods.waves import displacement_widths
 from crazybilliards.model import Chain
 from crazybilliards.model.checks import check_integer
 from crazybilliards.model.progress import waiting_for
+from crazybilliards.model.words import check_chain
 
 _MOST_CELLS = 80  # of a mesh that is not asked for: 22, 33, 50 and 75 cells are tried
 _MOST_RODS = 100_000
@@ -153,6 +154,7 @@ def check_phase_space(
     chain: Chain, *, order: Literal[1, 2] | None, tolerance: float, cells: int | None
 ) -> Literal[1, 2]:
     """Raise for arguments that ``phase_space`` does not accept; return the order."""
+    check_chain(chain)
     check_mesh(tolerance, cells)
     if chain.size > _MOST_RODS:
         raise ValueError(f"size must be at most {_MOST_RODS}, got {chain.size}")

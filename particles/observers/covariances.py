@@ -72,7 +72,9 @@ class Covariances(Averaged):
     def report(self, counts: Integers) -> Variables:
         last = self.furthest + 1
         at_anchors = np.diff(self.anchors)
-        of_velocities = {"velocity_covariance": lambda average: _known(average[..., :last, :])}
+        of_velocities = {
+            "velocity_covariance": lambda average: _within_chain(average[..., :last, :])
+        }
 
         def of_gaps(average: Array) -> Array:
             products, mean = average[..., last:-1, :-1], average[..., -1, :-1]
@@ -80,7 +82,7 @@ class Covariances(Averaged):
             squared = np.zeros_like(products)
             for r in range(min(self.furthest, size - 1) + 1):
                 squared[..., r, : size - r] = mean[..., : size - r] * mean[..., r:]
-            return _known(products - squared)
+            return _within_chain(products - squared)
 
         of_contacts = {
             "mean_gap": lambda average: average[..., -1, :-1] + at_anchors,
@@ -99,7 +101,7 @@ class Covariances(Averaged):
         return {"separation": np.arange(self.furthest + 1, dtype=np.float64)}
 
 
-def _known(by_separation: Array) -> Array:
+def _within_chain(by_separation: Array) -> Array:
     """Return (..., rods, separations) from (..., separations, rods), NaN beyond the chain."""
     values = np.moveaxis(by_separation, -1, -2)
     size, separations = values.shape[-2:]

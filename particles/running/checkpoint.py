@@ -23,7 +23,6 @@ import numpy as np
 
 from crazybilliards.model.fingerprint import room_fingerprint
 from crazybilliards.model.locks import locked
-from crazybilliards.model.process import interrupts_held_back
 from crazybilliards.model.storage import make_folder, read_sealed, write_sealed
 from crazybilliards.particles.run import Run
 from crazybilliards.particles.running.replica import Replica
@@ -90,8 +89,7 @@ class Checkpoint:
                 for name, value in replica.state().items():
                     arrays[f"{number}/{name}"] = np.array(value)
         buffer = io.BytesIO()
-        with interrupts_held_back():  # zipfile would turn a signal into another error
-            np.savez(buffer, allow_pickle=False, **arrays)
+        np.savez(buffer, allow_pickle=False, **arrays)
         write_sealed(self.path, buffer.getvalue())
         self.saved = time.monotonic()
 

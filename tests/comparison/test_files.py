@@ -104,7 +104,6 @@ def test_a_damaged_file_is_refused_or_read_right(kind, flips, files, tmp_path, m
 
     for library in ("h5py.File", "numpy.load", "xarray.open_datatree", "xarray.open_dataset"):
         monkeypatch.setattr(library, unsealed)
-    monkeypatch.setattr("crazybilliards.model.storage.ScipyDataStore", unsealed)
     generator = np.random.default_rng(3)
     for position in generator.integers(len(whole) - 1, size=flips):
         flipped = bytearray(whole)
@@ -169,42 +168,34 @@ def test_a_file_of_another_kind_is_refused_and_kept(kind, strangers):
     assert len(strangers) == 22
 
 
-def test_a_checkpoint_of_another_version_is_refused(files, monkeypatch):
-    monkeypatch.setattr("crazybilliards.particles.running.checkpoint.version", lambda _: "0.0.1")
-    with pytest.raises(ValueError, match="a checkpoint of another run: version is"):
-        simulate(CHAIN, checkpoint=files["checkpoint"], **RUN)
-
-
 @pytest.mark.parametrize(
-    ("changed", "reason"),
+    "changed",
     [
-        ({"duration": 50.0}, "duration is"),
-        ({"warmup": 2.0}, "warmup is"),
-        ({"seed": 5, "duration": 500.0}, "seed is 0 there and 5 here; "),
-        ({"replicas": 2}, "replicas is 1 there and 2 here"),
-        ({"observe": "widths"}, "observe is"),
-        ({"particles": [1]}, "particles is"),
-        ({"time_step": 0.09, "warmup": 9.0}, "time_step is .* there and 0.09 here, "),
-        ({"every": 0.5}, ".*every is .* there and 0.5 here"),
-        ({"average": "ensemble"}, "average is time there and ensemble here; "),
-        ({"stepper": "euler"}, "stepper is"),
-        ({"merging": 0.02}, "merging is"),
-        ({"method": "contact-dynamics"}, "method is"),
-        (
-            {"start": given_start(CHAIN, CHAIN.anchors + 0.1)},
-            r"start is at rest there and sha256 \w{8}\.\.\. here; ",
-        ),
-        ({"chain": CHAIN.replace(gap=0.1)}, "gap is 0 there and 0.1 here; "),
-        ({"chain": CHAIN.replace(size=4)}, "size is 3 there and 4 here"),
-        ({"chain": CHAIN.replace(spring="quadratic")}, "spring is linear there and quadratic here"),
+        {"duration": 50.0},
+        {"warmup": 2.0},
+        {"seed": 5},
+        {"replicas": 2},
+        {"observe": "widths"},
+        {"particles": [1]},
+        {"time_step": 0.09},
+        {"every": 0.5},
+        {"average": "ensemble"},
+        {"stepper": "euler"},
+        {"merging": 0.02},
+        {"method": "contact-dynamics"},
+        {"start": given_start(CHAIN, CHAIN.anchors + 0.1)},
+        {"gap": 0.1},
+        {"size": 4},
+        {"spring": "quadratic"},
     ],
 )
-def test_a_good_checkpoint_of_another_run_is_refused_and_kept(changed, reason, files):
-    """By what was changed, and not by the times that are planned from it."""
-    before, said = files["checkpoint"].read_bytes(), f"a checkpoint of another run: {reason}"
-    with pytest.raises(ValueError, match=f"{said}.*remove the file") as caught:
-        simulate(**{"chain": CHAIN} | RUN | changed, checkpoint=files["checkpoint"])
-    assert "\n" not in str(caught.value)
+def test_a_checkpoint_of_another_call_is_refused_and_kept(changed, files):
+    chain, [name] = CHAIN, changed
+    if name in CHAIN.parameters():
+        chain, changed = CHAIN.replace(**changed), {}
+    before = files["checkpoint"].read_bytes()
+    with pytest.raises(ValueError, match=f"another call, which differs in .*{name}.*; remove"):
+        simulate(chain, checkpoint=files["checkpoint"], **RUN | changed)
     assert files["checkpoint"].read_bytes() == before
 
 

@@ -1,7 +1,5 @@
-"""Locks: one at a time, freed by any death, and no hindrance where there are none."""
+"""Locks: one process at a time, and a dead one blocks nobody."""
 
-import errno
-import os
 import signal
 import subprocess
 import sys
@@ -11,20 +9,19 @@ import pytest
 
 from crazybilliards.model.locks import locked
 
-fcntl = pytest.importorskip("fcntl")  # not on Windows
-
 HOLDER = """
 import sys, time
 from pathlib import Path
 from crazybilliards.model.locks import locked
 with locked(Path(sys.argv[1])):
     print("held", flush=True)
-    time.sleep(1000)
+    time.sleep(600)
 """
 
 
-@pytest.mark.parametrize("name", ["folder", "state"])
-def test_another_process_holds_it_until_it_dies_even_if_it_hangs(name, tmp_path):
+@pytest.mark.posix
+@pytest.mark.parametrize("name", ["state", "folder"])
+def test_a_lock_is_held_until_its_process_ends_however_it_ends(name, tmp_path):
     path = tmp_path / name
     if name == "folder":
         path.mkdir()
@@ -33,15 +30,13 @@ def test_another_process_holds_it_until_it_dies_even_if_it_hangs(name, tmp_path)
     ) as holder:
         assert holder.stdout.readline() == "held\n"
         holder.send_signal(signal.SIGSTOP)
-        reason = rf"in use by process {holder.pid} on .*; wait .*{name}"
-        with pytest.raises(BlockingIOError, match=reason), locked(path):
-            pass
+        with pytest.raises(BlockingIOError, match=f"in use by another process.*{name}"):
+            locked(path).__enter__()
         holder.kill()
         holder.wait()
-    [left] = tmp_path.rglob(".*.lock") if name == "state" else path.iterdir()
     with locked(path):
-        assert left.read_text().strip().startswith(f"process {os.getpid()} on ")
-    assert not left.exists()
+        pass
+    assert list(tmp_path.rglob("*.lock")) == []
 
 
 def test_another_thread_is_refused_as_well(tmp_path):
@@ -59,42 +54,6 @@ def test_another_thread_is_refused_as_well(tmp_path):
         thread.start()
         thread.join()
     assert len(refused) == 1
-
-
-def test_where_there_are_no_locks_work_goes_on(tmp_path, monkeypatch):
-    def flock(descriptor, operation):
-        raise OSError(errno.ENOLCK, "No locks available")
-
-    monkeypatch.setattr(fcntl, "flock", flock)
-    with locked(tmp_path), locked(tmp_path):
-        pass
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_a_lock_that_its_holder_removes_meanwhile_is_made_anew(tmp_path, monkeypatch):
-    """Between opening and locking the file, its former holder may have gone."""
-    flock, lock = fcntl.flock, tmp_path / ".lock"
-
-    def late(descriptor, operation):
-        monkeypatch.setattr(fcntl, "flock", flock)
-        lock.unlink()
-        flock(descriptor, operation)
-
-    monkeypatch.setattr(fcntl, "flock", late)
-    with locked(tmp_path):
-        assert lock.exists()
-        with pytest.raises(BlockingIOError), locked(tmp_path):
-            pass
-
-
-def test_no_room_for_it_is_an_error_that_names_it(tmp_path, monkeypatch):
-    def write(descriptor, content):
-        raise OSError(errno.ENOSPC, "No space left on device")
-
-    monkeypatch.setattr(os, "write", write)
-    with pytest.raises(OSError, match=r"No space left on device: '.*\.lock'"), locked(tmp_path):
-        pass
-    assert list(tmp_path.iterdir()) == []
 
 
 CONTENDER = """

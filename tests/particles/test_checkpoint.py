@@ -81,20 +81,6 @@ def test_a_checkpoint_without_a_part_is_refused(tmp_path):
             simulate(chain, checkpoint=path, **options)
 
 
-@pytest.mark.parametrize(
-    ("change", "name"),
-    [({"duration": 400}, "duration"), ({"seed": 1}, "seed"), ({"observe": "energy"}, "observe")],
-)
-def test_a_checkpoint_of_another_call_is_refused_and_stays(change, name, tmp_path):
-    chain, path = Chain(size=2), tmp_path / "state"
-    how = {"duration": 200, "progress": False, "checkpoint": path}
-    run, written = simulate(chain, **how), path.read_bytes()
-    with pytest.raises(ValueError, match=f"state: the checkpoint of another call.* in {name}; rem"):
-        simulate(chain, **how | change)
-    assert path.read_bytes() == written
-    xr.testing.assert_identical(simulate(chain, **how), run)
-
-
 def test_a_checkpoint_of_other_source_code_is_refused(tmp_path, monkeypatch):
     """An edited kernel would continue the run to numbers of which half are the old one's."""
     arguments = {"duration": 500, "progress": False, "checkpoint": tmp_path / "state"}

@@ -12,7 +12,6 @@ import pytest
 from forked import forked
 
 from crazybilliards.model import Chain
-from crazybilliards.model.process import terminated_like_interrupted
 from crazybilliards.model.storage import read_sealed
 from crazybilliards.particles import simulate
 from crazybilliards.particles.observers.widths import Widths
@@ -106,22 +105,3 @@ def test_a_loop_ends_at_a_signal_after_the_checkpoint_unless_it_asks_for_the_res
     assert done.stdout == runs * "interrupted\n"
     # The first checkpoint, before any work, has measured nothing.
     assert np.load(io.BytesIO(read_sealed(state)))["0/steps"] > 0
-
-
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_a_signal_in_the_middle_of_an_archive_acts_when_it_is_whole(tmp_path, monkeypatch, number):
-    """The archive would end as another error: it cannot be closed in the middle."""
-    whole, interrupted = [], np.savez
-
-    def savez(*arguments, **arrays):
-        signal.raise_signal(number)
-        interrupted(*arguments, **arrays)
-        whole.append(True)
-
-    monkeypatch.setattr(np, "savez", savez)
-    path = tmp_path / "state"
-    with pytest.raises(KeyboardInterrupt), terminated_like_interrupted():
-        simulate(Chain(size=3), duration=80, progress=False, checkpoint=path)
-    assert whole
-    assert not path.exists()
-    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler

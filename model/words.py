@@ -1,0 +1,72 @@
+"""What was meant by a wrong name, in one line: a symbol of the paper, or a name spelled alike."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Iterable
+from difflib import get_close_matches
+from functools import wraps
+from typing import ParamSpec, TypeVar
+
+Arguments = ParamSpec("Arguments")
+Result = TypeVar("Result")
+
+# The symbols of the paper, and the arguments of Chain and simulate that they stand for.
+SYMBOLS = {
+    "L": "size",
+    "R": "radius",
+    "m": "mass",
+    "k": "stiffness",
+    "gamma": "damping",
+    "\N{GREEK SMALL LETTER GAMMA}": "damping",
+    "A": "amplitude",
+    "e": "restitution",
+    "g": "gap",
+    "dt": "time_step",
+}
+
+
+def meant(name: object, known: Iterable[str]) -> str:
+    """Return the end of a message: the known name that was meant by a wrong one, or nothing."""
+    known = list(known)
+    if SYMBOLS.get(str(name)) in known:
+        return f"; {SYMBOLS[str(name)]} is {name} of the paper"
+    near = get_close_matches(str(name), known, 1)
+    return f"; did you mean {near[0]!r}?" if near else ""
+
+
+def check_arguments(owner: str, names: Iterable[str], known: Iterable[str]) -> None:
+    """Raise a ValueError for the first name of an argument that ``owner`` does not take."""
+    known = list(known)
+    for name in names:
+        if name not in known:
+            hint = meant(name, known) or f"; it takes {', '.join(known)}"
+            raise ValueError(f"{owner} has no argument {name!r}{hint}")
+
+
+def with_hints(function: Callable[Arguments, Result]) -> Callable[Arguments, Result]:
+    """Let a TypeError say what was meant by an argument that a function does not take.
+
+    A decorator; Python says only that the argument is unexpected.
+    """
+    owner = function.__qualname__.removesuffix(".__init__")
+    known = [name for name in inspect.signature(function).parameters if name != "self"]
+
+    @wraps(function)
+    def checked(*positional: Arguments.args, **named: Arguments.kwargs) -> Result:
+        try:
+            check_arguments(owner, named, known)
+        except ValueError as error:
+            raise TypeError(str(error)) from None
+        return function(*positional, **named)
+
+    return checked
+
+
+def check_chain(chain: object) -> None:
+    """Raise a TypeError unless this is a Chain: results are easily taken for their chain."""
+    if not hasattr(chain, "require_known"):
+        raise TypeError(
+            f"chain must be a Chain, got a {type(chain).__name__}: Chain(size=60) makes one, "
+            "chain_of(result) returns that of a result"
+        )
