@@ -132,7 +132,7 @@ def cases() -> dict[str, Case]:
 
 def row(results: Results, each: Checked) -> list[str]:
     """Return the errors of W_v without correlations."""
-    chain, run = each.chain, each.runs.pooled(results)
+    chain, run = each.chain, each.runs.mean(results)
     found = width_deviation(run, results[next(iter(each.theories))])
     lattice = [f"{chain.gap * chain.size / chain.thermal_length:.0f}"] if chain.gap else []
     errors = [percent(found.centre), percent(found.border)]
@@ -142,7 +142,7 @@ def row(results: Results, each: Checked) -> list[str]:
 
 def row_of_both(results: Results, each: Checked) -> list[str]:
     """Return the errors of W_v of both theories, and the relative temperatures."""
-    chain, run = each.chain, each.runs.pooled(results)
+    chain, run = each.chain, each.runs.mean(results)
     without, theory = (results[name] for name in each.theories)
     both = [width_deviation(run, found) for found in (without, theory)]
     centre, border = (each.runs.estimate(results, of) for of in (central_width, border_width))

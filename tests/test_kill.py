@@ -27,7 +27,7 @@ from crazybilliards.comparison.sweeps import read_sweep
 from crazybilliards.model import Chain, load, save
 from crazybilliards.model.storage import write_sealed
 from crazybilliards.particles import simulate
-from crazybilliards.reproduction.figures import fig17_density
+from crazybilliards.reproduction.figures import elastic
 
 pytestmark = [
     pytest.mark.skipif(not sys.platform.startswith("linux"), reason="forks, reads /proc"),
@@ -96,7 +96,8 @@ def prepared():
     for restitution in (0.9, 1.0):
         simulate(Chain(size=5, restitution=restitution), duration=200, progress=False)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(fig17_density, "_DURATION", 5000.0)
+        for runs in elastic._RUNS.values():
+            patch.setitem(runs.effort, "quick", (1, {"duration": 5000.0}))
         yield
 
 

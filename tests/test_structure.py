@@ -51,11 +51,9 @@ FLOORS = {
         {"moving_pictures"},
     ),
     "reproduction": (
-        {"claims", "fits", "mirror_images"},
-        {"chains", "distributions", "power_laws"},
-        {"predictions"},
+        {"claims", "fits"},
+        {"chains", "distributions", "profiles"},
         {"figures"},
-        {"reproducible"},
     ),
     "apps": ({"explore"}, {"commands"}),
 }

@@ -206,8 +206,8 @@ def test_the_concordance_has_every_equation_and_figure():
     assert numbers == list(range(1, 53))
     section, cells = rows("Figures")
     assert [int(cell.split()[0]) for cell in cells] == [figure.number for figure in FIGURES]
-    modules = re.findall(r"`(fig\d\d_\w+)`", section)
-    assert modules == [figure.stem.replace("-", "_") for figure in FIGURES]
+    names = re.findall(r"^\| \d+ `[^|]* \| `([\w-]+)`", section, re.MULTILINE)
+    assert names == [figure.name for figure in FIGURES]
 
 
 def test_links_to_settings_of_the_chain_name_its_parameters():

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from crazybilliards.comparison.sweeps import Case, Sweep
 
 _PRINTED = ("its number", "found here", "at other choices", "why")  # of what there is to say
-_REPORTS = {"all": ("claims.md", "report.html"), "analytics": ("analytics.md", "analytics.html")}
+_PAGES = {"all": "claims.md", "analytics": "analytics.md"}
 
 
 def sweep(
@@ -102,8 +102,8 @@ def reproduce(
     """Reproduce the figures of arXiv:1404.7460, and check what the paper claims.
 
     Writes a picture for each figure and prints what became of the paper's claims. For all figures
-    it also writes report.html, one page with everything in it, and claims.md; for analytics these
-    pages bear its name. Results are kept in the folder: drawing again is a matter of seconds, and
+    it also writes claims.md, one page about all of it that shows the pictures; for analytics it is
+    analytics.md. Results are kept in the folder: drawing again is a matter of seconds, and
     after Ctrl-C or a crash the same command goes on.
 
     Example: crazybilliards reproduce 16,17 --output results/paper
@@ -112,15 +112,14 @@ def reproduce(
     from crazybilliards.model.checks import check_choice
     from crazybilliards.model.storage import write_atomically
     from crazybilliards.reproduction.claims import report
-    from crazybilliards.reproduction.figures import FIGURES
-    from crazybilliards.reproduction.reproducible import find_studies
+    from crazybilliards.reproduction.figures import FIGURES, find_figures
 
     if show_list:
         studies = [{"number": each.number, "title": each.title} for each in FIGURES]
         lines = (f"{each.number:3}  {each.name:28s} {each.title}" for each in FIGURES)
         end({"studies": studies}, as_json, *lines)
         return
-    wanted, written = find_studies(which), []
+    wanted, written = find_figures(which), []
     chosen: Any = check_choice("quality", quality, ("quick", "full"))
     formats = [] if vector is None else [check_choice("vector", vector, ("pdf", "svg"))]
     with writing_to(output), process_pool(processes) as pool:
@@ -133,16 +132,16 @@ def reproduce(
             for kind, picture in each.pictures.items():
                 written.append(output / f"{each.study.stem}.{kind}")
                 write_atomically(written[-1], picture)
-        for name, page in zip(_REPORTS.get(which, ()), (report.markdown, report.html), strict=False):
-            written.append(output / name)
-            write_atomically(written[-1], page(done, chosen).encode())
+        if which in _PAGES:
+            written.append(output / _PAGES[which])
+            write_atomically(written[-1], report.markdown(done, chosen).encode())
     claims = [(each.study, claim) for each in done for claim in each.claims]
     facts = {
         "written": [str(each) for each in written],
         "summary": report.summary(done),
         "claims": [
             {"figure": study.name, "claim": claim.statement, **claim.details}
-            | {"number": claim.found._asdict(), "within": [*filter(isfinite, claim.within)]}
+            | {"number": claim.number._asdict(), "within": [*filter(isfinite, claim.within)]}
             for study, claim in claims
         ],
     }

@@ -1,4 +1,4 @@
-"""Independent runs of one chain: making their cases, averaging them, and errors from their scatter.
+"""What a figure needs: independent runs of one chain, and theories of it.
 
 A number drawn from a whole profile, an exponent say, has no simple error bar: neighbouring rods
 move together. It is worked out for every run by itself, and the scatter between the runs is its
@@ -7,28 +7,36 @@ error. Runs also share the work among processes.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 from scipy.stats import norm, t
 
+from crazybilliards.comparison.combining import combine
 from crazybilliards.comparison.sweeps import Case
 from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array
-from crazybilliards.reproduction.claims.study import Cases, Quality, Results
 from crazybilliards.reproduction.claims.verdicts import Estimate
 
-_SQUARED = ("velocity_width", "displacement_width")
+Quality = Literal["quick", "full"]
+Results = Mapping[str, xr.Dataset]  # of the cases, by the same names
+#: By quality: the number of runs, and the settings that are those of this quality alone.
+Effort = Mapping[Quality, tuple[int, Mapping[str, Any]]]
+
 _FEWEST = 4  # runs that show their scatter
-_COUNTED = ("avalanche_count", "triggered_count")
 
 
-# By quality: the number of runs, and settings that are those of this quality alone.
-Granted = Mapping[Quality, tuple[int, Mapping[str, Any]]]
+def effort(quick: tuple[float, ...], full: tuple[float, ...]) -> Effort:
+    """Return by quality the number of runs, their duration, and their warm-up unless left out."""
+    names = ("duration", "warmup")
+    return {
+        "quick": (int(quick[0]), dict(zip(names, quick[1:], strict=False))),
+        "full": (int(full[0]), dict(zip(names, full[1:], strict=False))),
+    }
 
 
 @dataclass(frozen=True)
@@ -41,23 +49,20 @@ class Runs:
 
     name: str  #: their cases go by NAME/0, NAME/1, ...
     chain: Chain
-    #: By quality: the number of runs and their settings, {"quick": (4, {"duration": 500.0}),
-    #: "full": (8, {"duration": 2e4})} say.
-    granted: Granted
+    effort: Effort  #: of each quality, see :func:`effort`
     settings: Mapping[str, Any]  #: which are the same at both qualities
 
-    def at_step(self, step: float, granted: Granted) -> Runs:
+    def at_step(self, step: float, effort: Effort) -> Runs:
         """Return runs of the same chain at a fixed time step."""
         settings = {**self.settings, "time_step": step}
-        return replace(self, name=f"{self.name} dt={step:g}", granted=granted, settings=settings)
+        return replace(self, name=f"{self.name} dt={step:g}", effort=effort, settings=settings)
 
-    def cases(self, quality: Quality) -> Cases:
+    def cases(self, quality: Quality) -> dict[str, Case]:
         """Return the cases ``NAME/0``, ``NAME/1``, ..."""
-        number, own = self.granted[quality]
+        number, own = self.effort[quality]
+        settings = {**own, **self.settings}
         return {
-            f"{self.name}/{seed}": Case(
-                "simulate", self.chain, {**own, **self.settings, "seed": seed}
-            )
+            f"{self.name}/{seed}": Case("simulate", self.chain, {**settings, "seed": seed})
             for seed in range(number)
         }
 
@@ -65,28 +70,9 @@ class Runs:
         """Return their results, as many as there are."""
         return [run for key, run in results.items() if key.rpartition("/")[0] == self.name]
 
-    def pooled(self, results: Results) -> xr.Dataset:
-        """Average them: widths in the mean square, counts summed."""
-        datasets = self.members(results)
-        together = xr.concat(datasets, "run", coords="different", compat="equals", join="exact")
-        values: dict[str, xr.DataArray] = {}
-        for variable in together.data_vars:
-            each = together[variable]
-            key = str(variable)
-            if key.endswith("_error"):
-                joined = (each**2).sum("run") ** 0.5 / len(datasets)
-            elif key in _SQUARED:
-                joined = (each**2).mean("run") ** 0.5
-            elif key in _COUNTED:
-                joined = each.sum("run")
-            else:
-                joined = each.mean("run")
-            values[key] = joined.assign_attrs(each.attrs)
-        run = datasets[0].assign(values)
-        if "mean_position" in together.coords and "run" in together.mean_position.dims:
-            middle = together.mean_position.mean("run").assign_attrs(together.mean_position.attrs)
-            run = run.assign_coords(mean_position=middle)
-        return run
+    def mean(self, results: Results) -> xr.Dataset:
+        """Return :func:`crazybilliards.comparison.combine` of them."""
+        return combine(self.members(results))
 
     def estimate(self, results: Results, quantity: Callable[[xr.Dataset], float]) -> Estimate:
         """Return the mean of a quantity over them, with the error from its scatter."""
@@ -97,10 +83,29 @@ class Runs:
     ) -> list[Estimate]:
         """Return :meth:`estimate` of each of several quantities."""
         values = np.array([quantities(run) for run in self.members(results)])
-        return [
-            Estimate(*map(float, each))
-            for each in zip(values.mean(axis=0), error_of_mean(values), strict=True)
-        ]
+        return list(map(Estimate, values.mean(axis=0).tolist(), error_of_mean(values).tolist()))
+
+    def estimate_together(
+        self, results: Results, quantity: Callable[[Sequence[xr.Dataset]], float]
+    ) -> Estimate:
+        """Return a quantity of all runs together, with the error from that of single runs."""
+        scatter = self.estimate(results, lambda run: quantity([run]))
+        return Estimate(quantity(self.members(results)), scatter.error)
+
+
+class Solution(NamedTuple):
+    """A theory of one chain, solved at the qualities for which there are settings."""
+
+    name: str
+    job: str
+    chain: Chain
+    settings: Mapping[Quality, Mapping[str, Any]]
+
+    def cases(self, quality: Quality) -> dict[str, Case]:
+        """Return its case, which has its name."""
+        if quality not in self.settings:
+            return {}
+        return {self.name: Case(self.job, self.chain, self.settings[quality])}
 
 
 def error_of_mean(values: ArrayLike) -> Array:
@@ -118,10 +123,10 @@ def error_of_mean(values: ArrayLike) -> Array:
     return np.asarray(factor * values.std(axis=0, ddof=1) / number**0.5)
 
 
-def share_of_runs(of_them: int, number: int) -> Estimate:
-    """Return what share of all runs it is, if it is ``of_them`` of ``number``: Laplace's rule.
+def share_of_runs(outcomes: Sequence[bool]) -> Estimate:
+    """Return what share of all runs has an outcome, as far as these show it: Laplace's rule.
 
     The error is not zero even if all runs are alike: 4 of 4 give 0.83 +- 0.14.
     """
-    share = (of_them + 1) / (number + 2)
-    return Estimate(share, (share * (1 - share) / (number + 3)) ** 0.5)
+    share = (sum(outcomes) + 1) / (len(outcomes) + 2)
+    return Estimate(share, (share * (1 - share) / (len(outcomes) + 3)) ** 0.5)

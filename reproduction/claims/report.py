@@ -1,43 +1,27 @@
-"""Studies carried out: pictures drawn from stored cases, claims checked, a report of all of it."""
+"""Studies carried out: pictures drawn from stored cases, claims checked, a page about all of it."""
 
 from __future__ import annotations
 
-import base64
 import io
 import platform
 import re
 from collections import Counter
-from collections.abc import Collection, Iterable, Iterator
-from concurrent.futures import Executor
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import cache, partial
-from html import escape, unescape
+from functools import cache
+from html import escape
 from importlib.metadata import version
 from pathlib import Path
 from typing import get_args
 
 import xarray as xr
-from markdown_it import MarkdownIt
 
 from crazybilliards.comparison.layout import house_style
 from crazybilliards.comparison.sweeps import Case
-from crazybilliards.reproduction.claims.study import Quality, Results, Study
+from crazybilliards.reproduction.claims.repetition import Quality
+from crazybilliards.reproduction.claims.study import Study
 from crazybilliards.reproduction.claims.verdicts import Claim, Verdict
 
-_HEAD = """<!doctype html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<title>Crazy 1d billiards, reproduced</title>
-<style>
-  body { font: 16px/1.5 system-ui, sans-serif; color: #222; overflow-wrap: break-word; }
-  body { max-width: 44rem; margin: 2rem auto; padding: 0 1rem; }
-  img { max-width: 100%; height: auto; }
-</style>
-</head>
-<body>
-"""
 _NO_DATE = {"pdf": {"CreationDate": None}, "svg": {"Date": None}}
 _VERSIONS = ("crazybilliards", "numpy", "numba", "scipy", "scikit-fem", "py-pde", "xarray")
 _INTRODUCTION = (
@@ -50,7 +34,7 @@ _INTRODUCTION = (
 
 
 @dataclass(frozen=True)
-class Reproduced:
+class Reproduction:
     """A study, drawn from its results, and what became of its claims."""
 
     study: Study
@@ -65,48 +49,35 @@ def all_cases(studies: Iterable[Study], quality: Quality) -> list[Case]:
 
 
 def reproduce(
-    studies: Iterable[Study],
-    quality: Quality,
-    folder: Path,
-    *,
-    formats: Collection[str] = (),
-    executor: Executor | None = None,
-) -> Iterator[Reproduced]:
+    studies: Iterable[Study], quality: Quality, folder: Path, *, formats: Collection[str] = ()
+) -> Iterator[Reproduction]:
     """Draw studies and check their claims, in their order, from the cases in ``folder``.
 
-    ``formats``: file formats of matplotlib, besides PNG. ``executor``: in whose processes it is
-    done; None: in this one.
+    ``formats``: file formats of matplotlib, besides PNG.
     """
-    draw = partial(_reproduced, quality=quality, folder=folder, formats=("png", *formats))
-    try:
-        yield from (map if executor is None else executor.map)(draw, studies)
-    finally:
-        _loaded.cache_clear()  # the folder may hold other results next time
+
+    @cache  # many studies share cases
+    def result(case: Case) -> xr.Dataset:
+        return case.load(folder)
+
+    for study in studies:
+        cases = study.cases(quality)
+        results = {name: result(case) for name, case in cases.items()}
+        with house_style():
+            pictures = _pictures(study, results, ("png", *formats))
+        claims = study.claims(results) if study.claims else []
+        yield Reproduction(study, pictures, claims, describe(cases.values()))
 
 
-def _reproduced(
-    study: Study, quality: Quality, folder: Path, formats: Collection[str]
-) -> Reproduced:
-    cases = study.cases(quality)
-    results = {name: _loaded(case, folder) for name, case in cases.items()}
-    with house_style():
-        pictures = _drawn(study, results, formats)
-    return Reproduced(study, pictures, study.claims(results), describe(cases.values()))
-
-
-@cache
-def _loaded(case: Case, folder: Path) -> xr.Dataset:
-    """Load a result once, because many studies share cases."""
-    return case.load(folder)
-
-
-def _drawn(study: Study, results: Results, formats: Iterable[str]) -> dict[str, bytes]:
-    drawn = study.draw(results)
+def _pictures(
+    study: Study, results: dict[str, xr.Dataset], formats: Iterable[str]
+) -> dict[str, bytes]:
+    figure = study.draw(results)
     pictures = {}
     for kind in formats:
         picture = io.BytesIO()
         # The same picture is to give the same file, whenever it is drawn.
-        drawn.savefig(picture, format=kind, metadata=_NO_DATE.get(kind))
+        figure.savefig(picture, format=kind, metadata=_NO_DATE.get(kind))
         pictures[kind] = picture.getvalue()
     return pictures
 
@@ -122,7 +93,7 @@ def describe(cases: Iterable[Case]) -> list[str]:
     ]
 
 
-def markdown(reproduced: list[Reproduced], quality: Quality) -> str:
+def markdown(reproductions: Sequence[Reproduction], quality: Quality) -> str:
     """Return a page of Markdown, to lie beside the pictures: a part for each study.
 
     It begins with a table that counts the verdicts of each study and leads to its part. The parts
@@ -137,21 +108,21 @@ def markdown(reproduced: list[Reproduced], quality: Quality) -> str:
         "",
         _INTRODUCTION,
         "",
-        *(f"* {line}" for line in summary(reproduced)),
+        *(f"* {line}" for line in summary(reproductions)),
         "",
         "| figure | verdicts |",
         "|---|---|",
     ]
-    for each in reproduced:
-        heading = each.study.heading
-        rows.append(f"| [{heading}](#{_anchor(heading)}) | {_counted(each.claims)} |")
-    for each in reproduced:
-        study = each.study
+    for reproduction in reproductions:
+        heading = reproduction.study.heading
+        rows.append(f"| [{heading}](#{_anchor(heading)}) | {_counts(reproduction.claims)} |")
+    for reproduction in reproductions:
+        study = reproduction.study
         rows += ["", f"## {study.heading}", ""]
-        rows += [f"![{study.title}]({study.file_name})", "", study.caption]
-        if each.parameters:
-            rows += ["", f"Computed: {_plain('; '.join(each.parameters))}."]
-        for claim in each.claims:
+        rows += [f"![{study.title}]({study.stem}.png)", "", study.caption]
+        if reproduction.parameters:
+            rows += ["", f"Computed: {_plain('; '.join(reproduction.parameters))}."]
+        for claim in reproduction.claims:
             rows += ["", f"**{_plain(claim.statement)}**", ""]
             rows += [f"* {name}: {_plain(text)}" for name, text in claim.details.items()]
     return "\n".join(rows) + "\n"
@@ -162,7 +133,7 @@ def _anchor(heading: str) -> str:
     return re.sub(r"[^\w -]", "", heading.lower()).replace(" ", "-")
 
 
-def _counted(claims: Iterable[Claim]) -> str:
+def _counts(claims: Iterable[Claim]) -> str:
     counts = Counter(claim.verdict for claim in claims)
     return ", ".join(
         f"{counts[verdict]} {verdict}" for verdict in get_args(Verdict) if counts[verdict]
@@ -174,22 +145,7 @@ def _plain(text: str) -> str:
     return re.sub(r"([*_|\[\]])", r"\\\1", escape(text, quote=False))
 
 
-def html(reproduced: list[Reproduced], quality: Quality) -> str:
-    """Return :func:`markdown` as one page, with the pictures in it."""
-    page = MarkdownIt("commonmark").enable("table").render(markdown(reproduced, quality))
-    page = re.sub(
-        "<h2>(.*?)</h2>",
-        lambda found: f'<h2 id="{_anchor(unescape(found[1]))}">{found[1]}</h2>',
-        page,
-    )
-    for each in reproduced:
-        embedded = base64.b64encode(each.pictures["png"]).decode()
-        named = f'src="{each.study.file_name}"'
-        page = page.replace(named, f'src="data:image/png;base64,{embedded}"')
-    return f"{_HEAD}{page}</body>\n</html>\n"
-
-
-def summary(reproduced: list[Reproduced]) -> list[str]:
+def summary(reproductions: Iterable[Reproduction]) -> list[str]:
     """Count the verdicts in a line, if there are any."""
-    claims = [claim for each in reproduced for claim in each.claims]
-    return [f"Statements of the paper: {_counted(claims)}"] if claims else []
+    claims = [claim for reproduction in reproductions for claim in reproduction.claims]
+    return [f"Statements of the paper: {_counts(claims)}"] if claims else []

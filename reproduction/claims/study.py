@@ -2,43 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Literal, Protocol
 
-import xarray as xr
 from matplotlib.figure import Figure
 
 from crazybilliards.comparison.sweeps import Case
+from crazybilliards.reproduction.claims.repetition import Quality, Results, Runs, Solution
 from crazybilliards.reproduction.claims.verdicts import Claim
 
-Quality = Literal["quick", "full"]
-Cases = dict[str, Case]
-Results = Mapping[str, xr.Dataset]
 
-
-class Needed(Protocol):
-    """A part of a study that names its cases: runs of a chain, or a theory."""
-
-    def cases(self, quality: Quality) -> Cases:
-        """Return its cases by their names."""
-
-
-def all_of(needed: Iterable[Needed], quality: Quality) -> Cases:
-    """Return the cases of several things that a study needs."""
-    return {name: case for each in needed for name, case in each.cases(quality).items()}
-
-
-# They have names, so that a study can be sent to another process.
-def _no_cases(quality: Quality) -> Cases:
-    return {}
-
-
-def _no_claims(results: Results) -> list[Claim]:
-    return []
-
-
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Study:
     """A question put to simulations and theories, answered by a picture and by checked claims."""
 
@@ -46,28 +20,20 @@ class Study:
     name: str  #: short, for the command line and for files
     title: str  #: one line
     caption: str  #: what a reader needs to understand the picture
-    draw: Callable[[Results], Figure]  #: of the results of the cases, by the same names
-    #: The simulations and theories that it needs, by names of its own.
-    cases: Callable[[Quality], Cases] = _no_cases
-    #: What is claimed beside what was found.
-    claims: Callable[[Results], list[Claim]] = _no_claims
+    needs: Sequence[Runs | Solution] = ()  #: the simulations and theories
+    draw: Callable[[Results], Figure]  #: the picture, from the results of all cases by their names
+    claims: Callable[[Results], list[Claim]] | None = None  #: beside what was found
 
-    @property
-    def label(self) -> str:
-        """What it is called in lists and tables."""
-        return f"{self.number} {self.name}"
+    def cases(self, quality: Quality) -> dict[str, Case]:
+        """Return the cases of all that it needs, by their names."""
+        return {name: case for need in self.needs for name, case in need.cases(quality).items()}
 
     @property
     def heading(self) -> str:
-        """The heading of its part of a report."""
+        """The heading of its part of the page."""
         return f"{self.number}. {self.title}"
 
     @property
     def stem(self) -> str:
         """The name of its picture without the ending."""
         return f"fig{self.number:02d}_{self.name}"
-
-    @property
-    def file_name(self) -> str:
-        """The name of its picture."""
-        return f"{self.stem}.png"

@@ -1,59 +1,32 @@
 """Claims set beside what was measured; the verdict is computed, never typed in.
 
-A :class:`Claim` is a **statement of the paper**, which names its ``source`` there by the label of
-the figure, equation or section. It comes out as
-
-* ``reproduced``;
-* ``not reproduced``;
-* ``undecided``, where the statistics do not suffice;
-* ``cannot be decided``, where it holds at one value of a parameter that the paper does not give,
-  and fails at another (``elsewhere`` says at which, with both numbers).
-
-**The rule.** Every claim comes down to one measured number and the interval in which it has to
-lie. It holds if the number lies inside with three standard errors to spare at either end. It fails
-if the number lies outside with three standard errors to spare. Otherwise it is undecided, and a
-longer simulation may decide it. Large errors can therefore help neither the paper nor us.
-
-The intervals are: up to half a unit of the last digit to either side of a number of the paper;
-everything above zero for something that is positive, or larger than something else; and a stated
-limit to either side of zero for something that vanishes, or is the same as something else.
-
-**Many differences.** That two curves are the same is decided by the worst of all differences. The
-largest of many numbers lies further off by chance than a single one does. The errors are therefore
-enlarged so that chance exceeds three of them in any of the differences as rarely as it exceeds
-three in one number: by 1.1 for two differences, by 1.6 for a thousand.
-
-**Choices.** ``ours`` lists parameters that the paper does not give, and changes no verdict.
-``elsewhere`` has the same number at other values of such a parameter, each judged by the rule.
-Only if one of the numbers holds and another one fails, the verdict changes.
-
-**Statements to the eye.** That a curve "matches" points, or that they "can be fitted" or
-"described" by it, is a statement about a plot. What decides is the distance of a symbol from the
-nearest point of the line in the plane of the plot (``distances_in_plot``). It has to be below 2 %
-of the plotted range, which an eye cannot see in a plot like the paper's: of an axis of 5 to 7 cm
-these are 1.0 to 1.4 mm, the size of a symbol. This limit was fixed before any distance was worked
-out. Beside a steep line this distance is far shorter than the vertical one, of which the largest is
-told in standard errors.
+A :class:`Claim` is a statement of the paper. It comes down to one measured number and the interval
+in which it has to lie. It is ``reproduced`` if the number lies inside with three standard errors to
+spare at either end, ``not reproduced`` if it lies outside with three to spare, and otherwise
+``undecided``. It ``cannot be decided`` if it holds at one value of a parameter that the paper does
+not give, and fails at another.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass, field
-from typing import Literal, NamedTuple, TypedDict
+from typing import Any, Literal, NamedTuple, TypeVar
 
 from scipy.stats import norm
 
 from crazybilliards.model.arrays import Array
 
 Verdict = Literal["reproduced", "not reproduced", "cannot be decided", "undecided"]
+Interval = tuple[float, float]
+Choice = TypeVar("Choice")
 
-EYE = 0.02  # of the plotted range: what no eye sees
+#: Of the plotted range: what no eye sees in a plot like the paper's. Of an axis of 5 to 7 cm this
+#: is 1.0 to 1.4 mm, the size of a symbol. It was fixed before any distance was worked out.
+EYE = 0.02
 POSITIVE = (0.0, math.inf)
 _SIGNIFICANT = 3.0
-
-Interval = tuple[float, float]
 
 
 class Estimate(NamedTuple):
@@ -71,6 +44,10 @@ class Estimate(NamedTuple):
 
     def __neg__(self) -> Estimate:
         return Estimate(-self.value, self.error)
+
+    def times(self, factor: float) -> Estimate:
+        """Return it in another unit."""
+        return Estimate(self.value * factor, self.error * factor)
 
     def minus(self, other: Estimate) -> Estimate:
         """Return the difference to an independent one."""
@@ -102,7 +79,7 @@ class Claim:
     source: str  #: labels of the paper's source, "fig. 3, eq:power_law"
     #: The number that decides, with its standard error. Deviations from a line are shares of the
     #: plotted range. The error of the worst of many differences is the enlarged one.
-    found: Estimate
+    number: Estimate
     within: Interval = POSITIVE  #: where it has to lie: above zero, or around a number
     words: str = ""  #: written in place of quantity and number
     elsewhere: Mapping[str, Estimate] = field(default_factory=dict)  #: by what was chosen instead
@@ -112,92 +89,106 @@ class Claim:
     @property
     def verdict(self) -> Verdict:
         """That of its number, unless the number at another choice contradicts it."""
-        others = {each.lies(self.within) for each in self.elsewhere.values()}
-        if {True, False} <= {self.found.lies(self.within), *others}:
+        others = {number.lies(self.within) for number in self.elsewhere.values()}
+        if {True, False} <= {self.number.lies(self.within), *others}:
             return "cannot be decided"
-        return self._named(self.found)
+        return self._verdict_of(self.number)
 
-    def _named(self, found: Estimate) -> Verdict:
-        holds = found.lies(self.within)
+    def _verdict_of(self, number: Estimate) -> Verdict:
+        holds = number.lies(self.within)
         if holds is None:
             return "undecided"
         return "reproduced" if holds else "not reproduced"
-
-    def _verdict_there(self, found: Estimate) -> str:
-        """Return what to write after a number at another choice: nothing if it decides nothing."""
-        return "" if found.lies(self.within) is None else f", {self._named(found)}"
 
     @property
     def details(self) -> dict[str, str]:
         """What there is to say about it, by what it is."""
         low, high = self.within
-        number = low != -high and math.isfinite(high)
+        of_the_paper = low != -high and math.isfinite(high)
         limit = f" (limit {high:g})" if low == -high else ""
-        told = {
+        others = []
+        for choice, number in self.elsewhere.items():
+            verdict = self._verdict_of(number)  # nothing is said of one that decides nothing
+            others.append(f"{choice}: {number}" + f", {verdict}" * (verdict != "undecided"))
+        texts = {
             "verdict": self.verdict,
             "in the paper": self.source,
-            "its number": f"{(low + high) / 2:g}" if number else "",
-            "found here": self.words or f"{self.quantity} {self.found}{limit}".strip(),
+            "its number": f"{(low + high) / 2:g}" if of_the_paper else "",
+            "found here": self.words or f"{self.quantity} {self.number}{limit}".strip(),
             "our choice, not given in the paper": self.ours,
-            "at other choices": "; ".join(
-                f"{choice}: {found}{self._verdict_there(found)}"
-                for choice, found in self.elsewhere.items()
-            ),
+            "at other choices": "; ".join(others),
             "why": "" if self.verdict == "reproduced" else self.reason,
         }
-        return {name: text for name, text in told.items() if text}
+        return {name: text for name, text in texts.items() if text}
 
 
-class Found(TypedDict):
-    """What a claim takes of :func:`worst` and :func:`in_plot`."""
-
-    found: Estimate
-    within: Interval
-    words: str
+# -- what a claim takes of measured numbers, as its keywords ----------------------------------
 
 
-def worst(quantity: str, differences: Iterable[Estimate], limit: float) -> Found:
-    """Return the difference that decides whether two things are the same to ``limit``."""
-    every = list(differences)
-    chance = float(norm.isf(norm.sf(_SIGNIFICANT) / len(every))) / _SIGNIFICANT
+def at_choices(
+    choices: Mapping[str, Choice], measured: Callable[[Choice], Estimate | dict[str, Any]]
+) -> dict[str, Any]:
+    """Return what is measured at our choice, the first one, and the numbers ``elsewhere``.
+
+    A choice is, for instance, the time step, by a name such as ``"dt = 0.01"``. ``measured`` gives
+    a number, or what :func:`worst` and :func:`in_plot` return.
+    """
+    keywords = {}
+    for name, choice in choices.items():
+        found = measured(choice)
+        keywords[name] = {"number": found} if isinstance(found, Estimate) else found
+    ours, *others = choices
+    return {**keywords[ours], "elsewhere": {name: keywords[name]["number"] for name in others}}
+
+
+def worst(quantity: str, differences: Iterable[Estimate], limit: float) -> dict[str, Any]:
+    """Return the difference that decides whether two things are the same to ``limit``.
+
+    The largest of many numbers lies further off by chance than a single one does. The errors are
+    therefore enlarged so that chance exceeds three of them in any of the differences as rarely as
+    it exceeds three in one number: by 1.1 for two differences, by 1.6 for a thousand.
+    """
+    measured = list(differences)
+    chance = float(norm.isf(norm.sf(_SIGNIFICANT) / len(measured))) / _SIGNIFICANT
     within = around(0.0, limit)
-    each = [Estimate(one.value, one.error * chance) for one in every]
-    at = each.index(_decisive(each, within))
-    largest = max((abs(one.value) / one.error for one in every if one.error > 0), default=math.nan)
+    enlarged = [Estimate(value, error * chance) for value, error in measured]
+    at = enlarged.index(_decisive(enlarged, within))
+    largest = max((abs(value) / error for value, error in measured if error > 0), default=math.nan)
     words = (
-        f"{quantity}: {every[at]}, the worst of {len(every)} (limit {limit:g}); largest "
+        f"{quantity}: {measured[at]}, the worst of {len(measured)} (limit {limit:g}); largest "
         f"difference {largest:.1f} standard errors"
     )
-    return {"found": each[at], "within": within, "words": words}
+    return {"number": enlarged[at], "within": within, "words": words}
 
 
-def _decisive(every: Sequence[Estimate], within: Interval) -> Estimate:
+def _decisive(numbers: Sequence[Estimate], within: Interval) -> Estimate:
     """Return the number that decides whether all lie inside, which need not be the largest one.
 
     It is one that lies outside or, if there is none, one of which its error does not allow to say.
     """
     order = {True: 0, None: 1, False: 2}
-    return max(every, key=lambda one: (order[one.lies(within)], abs(one.value)))
+    return max(numbers, key=lambda number: (order[number.lies(within)], abs(number.value)))
 
 
-def furthest_in_plot(deviations: Array, errors: Array) -> Estimate:
-    """Return the deviation, as a share of the plotted range, that decides :func:`in_plot`."""
-    each = [Estimate(*pair) for pair in zip(deviations.tolist(), errors.tolist(), strict=True)]
-    return _decisive(each, around(0.0, EYE))
+def furthest_in_plot(distances: Array, errors: Array) -> Estimate:
+    """Return the distance, as a share of the plotted range, that decides :func:`in_plot`."""
+    return _decisive(list(map(Estimate, distances.tolist(), errors.tolist())), around(0.0, EYE))
 
 
-def in_plot(quantity: str, distance: Estimate, vertical: float | None = None) -> Found:
+def in_plot(quantity: str, distance: Estimate, vertical: float | None = None) -> dict[str, Any]:
     """Return what decides whether an eye could see that a curve misses the points.
 
-    ``distance`` is that of a symbol from the nearest point of the curve, as a share of the plotted
-    range; of several symbols :func:`furthest_in_plot`. ``vertical``, the largest vertical distance
-    in standard errors, may be that of another symbol.
+    That a curve "matches" points, or that they "can be fitted" or "described" by it, is a statement
+    about a plot. ``distance`` is that of a symbol from the nearest point of the curve in the plane
+    of the plot, as a share of the plotted range (``distances_in_plot``); of several symbols
+    :func:`furthest_in_plot`. It has to be below ``EYE``. Beside a steep line it is far shorter than
+    the ``vertical`` one, of which the largest, that of another symbol perhaps, is told in standard
+    errors.
     """
-    percent = Estimate(100 * distance.value, 100 * distance.error)
     words = (
-        f"{quantity}: the symbol that decides is {percent} % of the plotted range away from the "
-        f"nearest point of the line (visible: {100 * EYE:g} %)"
+        f"{quantity}: the symbol that decides is {distance.times(100)} % of the plotted range away "
+        f"from the nearest point of the line (visible: {100 * EYE:g} %)"
     )
     if vertical is not None:
         words += f"; the largest vertical distance is {vertical:.1f} standard errors"
-    return {"found": distance, "within": around(0.0, EYE), "words": words}
+    return {"number": distance, "within": around(0.0, EYE), "words": words}

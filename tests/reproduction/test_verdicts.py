@@ -51,7 +51,7 @@ NU, SMALL, SEEN = around(-0.46, 0.01), around(0.0, 0.1), around(0.0, EYE)
     ],
 )
 def test_numbers(within, value, error, holds):
-    number = {"found": Estimate(value, error), "within": within, "reason": "why"}
+    number = {"number": Estimate(value, error), "within": within, "reason": "why"}
     claim = Claim("nu", **number, source="fig.2")
     assert claim.verdict == REPRODUCED[holds]
     assert ("why" in claim.details) is (holds is not True)
@@ -65,10 +65,10 @@ def every_kind(value, error):
     measured = Estimate(value, error)
     share = Estimate(value * EYE, error * EYE)
     return [
-        Claim("it", "is", source="fig.2", found=measured, within=around(0.0, 1.0)),
+        Claim("it", "is", source="fig.2", number=measured, within=around(0.0, 1.0)),
         Claim("it", source="fig.2", **worst("is", [measured], 1.0)),
         Claim("it", source="fig.2", **in_plot("is", share, 1.0)),
-        Claim("it", "is", source="fig.2", found=measured, within=POSITIVE),
+        Claim("it", "is", source="fig.2", number=measured, within=POSITIVE),
     ]
 
 
@@ -88,7 +88,7 @@ def test_a_choice_decides_only_where_it_was_varied_and_changed_the_verdict():
 
     def verdict(value, *others, **about):
         elsewhere = {f"choice {k}": Estimate(*each) for k, each in enumerate(others)}
-        number = {"found": Estimate(*value), "within": around(-2.2, 0.1)}
+        number = {"number": Estimate(*value), "within": around(-2.2, 0.1)}
         return Claim("exponent", **number, elsewhere=elsewhere, **about).verdict
 
     flat, right, steep, poor = (-1.6, 0.01), (-2.2, 0.01), (-3.0, 0.1), (-2.3, 0.2)
@@ -102,7 +102,7 @@ def test_a_choice_decides_only_where_it_was_varied_and_changed_the_verdict():
 
 
 def test_the_number_is_told_with_its_limits_and_with_that_at_other_choices():
-    number = {"found": Estimate(-1.6, 0.01), "within": around(-2.2, 0.05), "source": "fig:trigger"}
+    number = {"number": Estimate(-1.6, 0.01), "within": around(-2.2, 0.05), "source": "fig:trigger"}
     elsewhere = {"dt = 0.02": Estimate(-2.21, 0.01), "dt = 0.01": Estimate(-2.3, 0.1)}
     claim = Claim("exponent", **number, elsewhere=elsewhere)
     told = "dt = 0.02: -2.210 ± 0.010, reproduced; dt = 0.01: -2.30 ± 0.10"  # which decides nothing
@@ -111,14 +111,14 @@ def test_the_number_is_told_with_its_limits_and_with_that_at_other_choices():
     measured = Estimate(0.1, 0.02)
 
     def told(within):
-        details = Claim("it", "change", source="fig.2", found=measured, within=within).details
+        details = Claim("it", "change", source="fig.2", number=measured, within=within).details
         return details["found here"], details.get("its number")
 
     assert told(around(0.3, 0.01)) == ("change 0.100 ± 0.020", "0.3")
     assert told(around(0.0, 0.5)) == ("change 0.100 ± 0.020 (limit 0.5)", None)
     assert told(POSITIVE) == ("change 0.100 ± 0.020", None)
     assert in_plot("rods", measured, 3.0)["within"] == around(0.0, 0.02)
-    assert worst("both", [measured], 0.5)["found"] == pytest.approx(measured)
+    assert worst("both", [measured], 0.5)["number"] == pytest.approx(measured)
 
 
 @pytest.mark.parametrize(
@@ -153,7 +153,7 @@ def test_what_is_said_of_a_plot_and_on_the_page_of_claims_is_what_was_measured()
 def test_sameness_is_confirmed_only_if_a_difference_would_have_been_seen():
     """Chance takes the largest of many beyond three enlarged errors as often as one beyond 3."""
     for number in (1, 4, 1000):
-        _, error = worst("both", [Estimate(0.0, 1.0)] * number, 1.0)["found"]
+        _, error = worst("both", [Estimate(0.0, 1.0)] * number, 1.0)["number"]
         each = norm.cdf(3 * error) - norm.cdf(-3 * error)
         assert 1 - each**number == pytest.approx(2 * norm.sf(3), rel=2e-3)
     near, poor, off = Estimate(0.01, 0.002), Estimate(0.01, 0.05), Estimate(-0.3, 0.01)

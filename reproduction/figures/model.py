@@ -12,32 +12,26 @@ from matplotlib.patches import Circle
 from crazybilliards.comparison.drawing import COLOURS
 from crazybilliards.comparison.layout import panels
 from crazybilliards.model import Chain
-from crazybilliards.reproduction.claims.study import Results
-
-TITLE = "The model"
-CAPTION = (
-    "Rods of radius R, each tied by a damped spring to its own anchor and driven by white noise of "
-    "its own. Neighbouring anchors are 2R + g apart. Drawn by code, not to scale."
-)
+from crazybilliards.reproduction.claims.repetition import Results
+from crazybilliards.reproduction.claims.study import Study
 
 _DISPLACEMENTS = (-1.3, -0.4, 0.5, 0.3)
 _CEILING = 2.7  # height of the anchors
 
 
-def draw(results: Results) -> Figure:
-    """Draw four rods on springs, displaced from their anchors."""
+def _draw(results: Results) -> Figure:
     chain = Chain(size=len(_DISPLACEMENTS), gap=1.6)
     figure, [ax] = panels(1, 1, height=1.45)
     for i, (anchor, shift) in enumerate(zip(chain.anchors, _DISPLACEMENTS, strict=True), start=1):
-        _spring(ax, anchor, anchor + shift)
+        _draw_spring(ax, anchor, anchor + shift)
         ax.add_patch(Circle((anchor + shift, 0), chain.radius, facecolor="0.93", edgecolor="black"))
         ax.plot([anchor - 0.35, anchor + 0.35], [_CEILING] * 2, color=COLOURS[4], linewidth=2)
         ax.text(anchor, _CEILING + 0.5, rf"$x_{i}^0$", ha="center", color=COLOURS[4])
         ax.text(anchor + shift, 0, rf"$x_{i}$", ha="center", va="center")
-    _measure(ax, chain.anchors[1], chain.anchors[2], -1.5, r"$2R + g$")
-    _measure(ax, chain.anchors[0] + _DISPLACEMENTS[0], chain.anchors[0], -1.5, r"$\Delta x_1$")
+    _draw_length(ax, chain.anchors[1], chain.anchors[2], r"$2R + g$")
+    _draw_length(ax, chain.anchors[0] + _DISPLACEMENTS[0], chain.anchors[0], r"$\Delta x_1$")
     shaken = chain.anchors[3] + _DISPLACEMENTS[3]
-    _arrow(ax, shaken + 1.1, shaken + 2.3, 0, color=COLOURS[0])
+    _draw_arrow(ax, shaken + 1.1, shaken + 2.3, 0, color=COLOURS[0])
     ax.text(shaken + 1.2, 0.5, r"$A\,\xi_4(t)$", color=COLOURS[0])
     ax.axhline(-chain.radius, color="0.6", linewidth=0.8, zorder=0)
     ax.set(xlim=(chain.anchors[0] - 3, chain.anchors[-1] + 3.4), ylim=(-2.4, 4.1), aspect="equal")
@@ -45,7 +39,7 @@ def draw(results: Results) -> Figure:
     return figure
 
 
-def _spring(ax: Axes, anchor: float, centre: float) -> None:
+def _draw_spring(ax: Axes, anchor: float, centre: float) -> None:
     """Draw a spring from its anchor, above, down to the rod."""
     turns = 14
     along = np.concatenate([[0, 0.15], np.linspace(0.15, 0.85, turns), [0.85, 1]])
@@ -55,11 +49,22 @@ def _spring(ax: Axes, anchor: float, centre: float) -> None:
     ax.plot(x, _CEILING - (_CEILING - 1) * along, color="0.35", linewidth=0.9)
 
 
-def _measure(ax: Axes, start: float, end: float, height: float, text: str) -> None:
-    _arrow(ax, start, end, height, lw=0.9, shrinkA=0, shrinkB=0)
+def _draw_length(ax: Axes, start: float, end: float, text: str) -> None:
+    height = -1.5
+    _draw_arrow(ax, start, end, height, lw=0.9, shrinkA=0, shrinkB=0)
     ax.text((start + end) / 2, height - 0.75, text, ha="center")
 
 
-def _arrow(ax: Axes, start: float, end: float, height: float, **look: Any) -> None:
+def _draw_arrow(ax: Axes, start: float, end: float, height: float, **look: Any) -> None:
     look |= {"arrowstyle": "<->"}
     ax.annotate("", xy=(start, height), xytext=(end, height), arrowprops=look)
+
+
+MODEL = Study(
+    number=1,
+    name="model",
+    title="The model",
+    caption="Rods of radius R, each tied by a damped spring to its own anchor and driven by white "
+    "noise of its own. Neighbouring anchors are 2R + g apart. Drawn by code, not to scale.",
+    draw=_draw,
+)

@@ -1,0 +1,270 @@
+"""Figures 5 and 9: mean displacements of dissipative chains, by length and by restitution."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Mapping
+from functools import partial
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+from scipy.optimize import least_squares
+
+from crazybilliards.comparison.distances import distances_in_plot
+from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_rods, mark_clipped
+from crazybilliards.comparison.layout import legend_above, panels
+from crazybilliards.comparison.widths import central_width
+from crazybilliards.model import Chain, chain_of
+from crazybilliards.model.arrays import Array, middle_tenth
+from crazybilliards.reproduction import chains
+from crazybilliards.reproduction.claims.repetition import Results, Runs
+from crazybilliards.reproduction.claims.study import Study
+from crazybilliards.reproduction.claims.verdicts import (
+    EYE,
+    Claim,
+    Estimate,
+    at_choices,
+    furthest_in_plot,
+)
+from crazybilliards.reproduction.profiles import mirrored
+
+Quantity = Callable[[xr.Dataset], float]
+_S = Chain().thermal_length
+
+
+def _swelling(run: xr.Dataset) -> float:
+    """Return the slope of <dx> against i_n by least squares: all rods count."""
+    place = run.normalized_particle.values
+    return float(place @ run.mean_displacement.values / (place @ place))
+
+
+# -- figure 5: the perfectly inelastic chain, by its length -----------------------------------
+
+_SIZES = (30, 100, 300, chains.LARGE)
+
+
+def _claims_by_length(results: Results) -> list[Claim]:
+    confined = partial(central_width, of="displacement_width")
+    claims = []
+    for sizes in itertools.pairwise(_SIZES):
+        small, large = sizes
+        shrinks = f"the mean displacement decreases from L = {small} to L = {large}"
+        narrows = f"the interior is confined more strongly at L = {large} than at L = {small}"
+        slope, width = "slope of <dx> against i_n", "W_x in the centre, middle tenth"
+        claims += [
+            _decrease(results, sizes, _swelling, shrinks, slope, "fig.3_2"),
+            _decrease(results, sizes, confined, narrows, width, "fig.3_2, inset"),
+        ]
+    return claims
+
+
+def _decrease(
+    results: Results,
+    sizes: tuple[int, int],
+    measured: Quantity,
+    statement: str,
+    quantity: str,
+    label: str,
+) -> Claim:
+    """Decide at all time steps whether a quantity decreases from one size to the next."""
+
+    def both(step: float | None) -> list[Estimate]:
+        return [chains.inelastic(size, step).estimate(results, measured) for size in sizes]
+
+    small, large = both(None)
+    return Claim(
+        statement,
+        f"{quantity}: {small} less {large}, difference",
+        **at_choices(chains.STEPS, lambda step: Estimate.minus(*both(step))),
+        source=f"section seq:e_0, {label}",
+        ours="the sizes and the time step",
+    )
+
+
+def _draw_by_length(results: Results) -> Figure:
+    figure, axes = panels(1, 2)
+    for number, size in enumerate(_SIZES):
+        run = chains.inelastic(size).mean(results)
+        for ax, name in zip(axes, ("mean_displacement", "displacement_width"), strict=True):
+            draw_rods(ax, run, name, number=number, unit=_S, label=f"$L = {size}$")
+    axes[0].set(ylabel=r"mean displacement $\langle\Delta x\rangle/s$")
+    axes[1].set(ylabel="displacement width $W_x/s$")
+    for ax in axes:
+        along_the_chain(ax)
+    axes[0].legend()
+    return figure
+
+
+BY_LENGTH = Study(
+    number=5,
+    name="displacements-inelastic",
+    title="Mean displacements at e = 0",
+    caption="(a) Mean displacement and (b) its width (the paper's inset) against the normalized "
+    "particle number, e = 0, in units of the thermal length s.",
+    needs=chains.inelastic_at_steps(_SIZES),
+    claims=_claims_by_length,
+    draw=_draw_by_length,
+)
+
+# -- figure 9: 1000 rods, by their restitution ------------------------------------------------
+
+Law = Callable[[Array, float, float, float], Array]
+_RUNS = {e: chains.dissipative(chains.LARGE, e) for e in (0.0, 0.75, 0.85, 0.92, 0.95)}
+_STEPS = chains.all_at_both_steps(_RUNS)
+_FRAME = 0.7  # of the picture of all rods
+
+
+def _claims_by_restitution(results: Results) -> list[Claim]:
+    growing = [_growth_claim(results, low, high) for low, high in itertools.pairwise(_RUNS)]
+    return [*growing, _power_law_claim(results), *_energy_claims(results)]
+
+
+def _growth_claim(results: Results, low: float, high: float) -> Claim:
+    def slopes(group: Mapping[float, Runs]) -> list[Estimate]:
+        return [group[e].estimate(results, _swelling) for e in (high, low)]
+
+    of_high, of_low = slopes(_RUNS)
+    return Claim(
+        f"the mean displacement grows from e = {low:g} to {high:g}",
+        f"slope of <dx> against i_n: {of_low} and {of_high}, difference",
+        **at_choices(_STEPS, lambda group: Estimate.minus(*slopes(group))),
+        source="section seq:e_larger, fig.5",
+    )
+
+
+def _power_law_claim(results: Results) -> Claim:
+    """Decide whether power laws are visibly off in plots of <dx>, at every restitution."""
+
+    def least(law: Law, group: Mapping[float, Runs]) -> Estimate:
+        profiles = [mirrored(runs.mean(results)) for runs in group.values()]
+        distances = [_beyond_the_eye(run, law) for run in profiles]
+        return min(distances, key=lambda distance: distance.value - 3 * distance.error)
+
+    ours, other = _STEPS.values()
+    return Claim(
+        "<dx> does not follow a power law",
+        f"b i^nu fitted to the left half, rods averaged with their mirror images, e = "
+        f"{', '.join(f'{e:g}' for e in _RUNS)}, both axes linear: how much further than an eye "
+        f"sees, {EYE:g} of the plotted range, the symbol that decides is away from the nearest "
+        "point of the line, at the e where it fits best:",
+        number=least(_power_law, ours),
+        elsewhere={
+            f"dt = {chains.OTHER_STEP:g}": least(_power_law, other),
+            "the difference of two power laws, b [(i - c)^nu - (L + 1 - c - i)^nu]": least(
+                _two_power_laws, ours
+            ),
+        },
+        source="section seq:e_larger, fig.5",
+        ours="the form of the power law, and whether the axes are linear",
+        reason="the difference of two power laws with a small exponent is nearly an arctanh",
+    )
+
+
+def _power_law(i: Array, scale: float, nu: float, shift: float) -> Array:
+    """Return a power law, which has no use for the shift."""
+    return np.asarray(scale * i**nu)
+
+
+def _two_power_laws(i: Array, scale: float, nu: float, shift: float) -> Array:
+    left, right = (np.maximum(end - shift, 1e-3) ** nu for end in (i, chains.LARGE + 1 - i))
+    return np.asarray(scale * (left - right))
+
+
+def _beyond_the_eye(run: xr.Dataset, law: Law) -> Estimate:
+    """Return the distance from the best fit that decides, as a share of the plot, less EYE."""
+    half = run.isel(particle=slice(0, chains.LARGE // 2))
+    i, shift = half.particle.values.astype(float), half.mean_displacement.values
+
+    def residuals(values: Array) -> Array:
+        return law(i, *values.tolist()) - shift
+
+    values = least_squares(residuals, (shift[0], -0.5, 0.0), x_scale="jac").x
+    fine = np.geomspace(1, i[-1], 2000)
+    distances = distances_in_plot(i, shift, fine, law(fine, *values))
+    errors = half.mean_displacement_error.values / np.ptp(shift)
+    furthest = furthest_in_plot(distances, errors)
+    return Estimate(furthest.value - EYE, furthest.error)
+
+
+def _energy_claims(results: Results) -> list[Claim]:
+    """Decide whether rods at the border have more energy, and whether it is the potential one."""
+    e = max(_RUNS)
+
+    def excess(group: Mapping[float, Runs], sign: int) -> Estimate:
+        potential, kinetic = (
+            group[e].estimate(results, partial(_excess, name=name))
+            for name in ("potential", "kinetic")
+        )
+        # Both are of the same rods: their errors add.
+        return Estimate(potential.value + sign * kinetic.value, potential.error + kinetic.error)
+
+    parts = ", ".join(
+        f"{name} {_RUNS[e].estimate(results, partial(_excess, name=name))}"
+        for name in ("potential", "kinetic")
+    )
+    quantity = f"border's less centre's, in units of m W^2/2: {parts}"
+    claim = partial(Claim, source="section seq:e_larger", ours="the restitution")
+    return [
+        claim(
+            f"the energy is larger at the border, e = {e:g}",
+            f"{quantity}; their sum",
+            **at_choices(_STEPS, lambda group: excess(group, 1)),
+        ),
+        claim(
+            f"because the potential energy is, e = {e:g}",
+            f"{quantity}; potential less kinetic",
+            **at_choices(_STEPS, lambda group: excess(group, -1)),
+        ),
+    ]
+
+
+def _excess(run: xr.Dataset, name: str) -> float:
+    """Mean energy of the two border rods less that of the middle tenth, in units of m W^2/2."""
+    chain = chain_of(run)
+    if name == "kinetic":
+        energy = (run.velocity_width.values / chain.free_velocity_width) ** 2
+    else:
+        squares = run.mean_displacement.values**2 + run.displacement_width.values**2
+        energy = squares / chain.thermal_length**2
+    return float(energy[[0, -1]].mean() - energy[middle_tenth(energy.size)].mean())
+
+
+def _draw_by_restitution(results: Results) -> Figure:
+    figure, (whole, border) = panels(1, 2, height=2.5)
+    label = r"displacement $\langle\Delta x\rangle/s$"
+    border.set(xscale="log", xlabel="particle $i$", ylabel=label)
+    left = {"particle": slice(0, chains.LARGE // 2)}
+    for number, (e, runs) in enumerate(_RUNS.items()):
+        run = runs.mean(results)
+        look: Any = {"number": number, "unit": _S, "label": f"$e = {e:g}$"}
+        draw_rods(whole, run, "mean_displacement", **look)
+        draw_rods(border, run.isel(left), "mean_displacement", along="particle", **look)
+        for name, theories in chains.predictions(results).items():
+            if e in theories:
+                shift = theories[e].mean_displacement / _S
+                line: Any = {"color": COLOURS[number], "linestyle": chains.LINES[name]}
+                whole.plot(shift.normalized_particle, shift, **line)
+                border.plot(run.particle.isel(left), shift.isel(left), **line)
+    along_the_chain(whole)
+    whole.set(ylabel=label, ylim=(-_FRAME, _FRAME))
+    mark_clipped(whole)
+    for name, style in chains.LINES.items():
+        whole.plot([], [], style, color="0.4", label=name)
+    legend_above(figure, whole)
+    return figure
+
+
+BY_RESTITUTION = Study(
+    number=9,
+    name="displacements-restitution",
+    title="Mean displacements for several restitutions",
+    caption="Mean displacement, L = 1000, in units of the thermal length s, (a) of all rods "
+    "against the normalized particle number, (b) of the left half against the rod's number. Lines: "
+    "the kinetic equation, dashed without pair correlations, full with them. Triangles at the "
+    "frame of (a): rods beyond it, which (b) shows.",
+    needs=[*chains.all_of(chains.PREDICTIONS), *chains.all_of(_STEPS)],
+    claims=_claims_by_restitution,
+    draw=_draw_by_restitution,
+)

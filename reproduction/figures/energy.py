@@ -1,0 +1,210 @@
+"""Figure 15: kinetic energy of flippers in time: exponential growth, finite-time singularity."""
+
+from __future__ import annotations
+
+import math
+from functools import partial
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from crazybilliards.comparison.drawing import COLOURS
+from crazybilliards.comparison.layout import panels
+from crazybilliards.kinetic.kinetic_equation.weak_damping import weak_damping_growth_rate
+from crazybilliards.model import Chain
+from crazybilliards.model.arrays import Array
+from crazybilliards.reproduction.claims.repetition import Results, Runs, effort
+from crazybilliards.reproduction.claims.study import Study
+from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, around, at_choices
+from crazybilliards.reproduction.fits import fit_growth, fit_singularity
+
+_SOURCE = "section Anti-Dissipation, non_linear_vs_linear"
+_FEW = effort((4,), (6,))
+_BEGINNINGS = 100.0, 250.0  # of two spans in which collisions are counted; the first is from 1e3 on
+_SPAN = 50.0
+_GROWING = 1e3  # energy beyond which noise no longer matters [M R^2/T^2]
+_HALF_WAY = 150.0  # where the rate of linear springs is measured up to, and again from [T]
+# And beyond which damping matters little: how far beyond, the exponent depends on.
+_SINGULAR = (1e5, 1e6, 1e7, 1e8)
+_ENERGY = r"kinetic energy $E$ [M R$^2$/T$^2$]"
+
+
+def _from_rest(chain: Chain, duration: float, time_step: float) -> Runs:
+    """Return runs named by their springs."""
+    return Runs(
+        chain.spring,
+        chain,
+        effort((6,), (24,)),
+        {"warmup": 0.0, "observe": ["energy"], "duration": duration, "time_step": time_step},
+    )
+
+
+def _at_steps(*runs: Runs) -> dict[str, tuple[Runs, ...]]:
+    """Return runs of one time step, and those at a quarter of it, by the names of the steps."""
+    step = runs[0].settings["time_step"] / 4
+    again = tuple(one.at_step(step, _FEW) for one in runs)
+    return {"": runs, f"dt = {step:g}": again}
+
+
+_LINEAR = _from_rest(Chain(size=100, restitution=1.01, damping=0.4), 300.0, 0.02)
+# This spring stiffens as it is stretched: the step is short enough for the last moments.
+_QUADRATIC = _from_rest(_LINEAR.chain.replace(spring="quadratic"), 100.0, 0.002)
+_COUNTED = [
+    Runs(
+        f"collisions from {begin:g}",
+        _LINEAR.chain,
+        _FEW,
+        {"warmup": begin, "duration": _SPAN, "time_step": 0.02, "observe": ["collisions"]},
+    )
+    for begin in _BEGINNINGS
+]
+_NEEDS = (_at_steps(_LINEAR), _at_steps(_QUADRATIC), _at_steps(*_COUNTED))
+
+
+def _late(run: xr.Dataset, beyond: float) -> tuple[Array, Array]:
+    """Return times and energies from the first one above ``beyond``."""
+    energy = run.kinetic_energy.values
+    begin = int(np.argmax(energy > beyond))
+    return run.time.values[begin:], energy[begin:]
+
+
+def _early_rate(run: xr.Dataset) -> float:
+    time, energy = _late(run, _GROWING)
+    return fit_growth(time[time <= _HALF_WAY], energy[time <= _HALF_WAY]).rate
+
+
+def _late_rate(run: xr.Dataset) -> float:
+    late = run.time.values > _HALF_WAY
+    return fit_growth(run.time.values[late], run.kinetic_energy.values[late]).rate
+
+
+def _frequency(run: xr.Dataset) -> float:
+    return float(run.collision_rate.values[:-1].mean())  # the last rod has no right neighbour
+
+
+def _singularity(run: xr.Dataset, beyond: float) -> tuple[float, float]:
+    """Return exponent and t_c [T] of the fit from an energy on."""
+    fit = fit_singularity(*_late(run, beyond))
+    return fit.exponent, fit.time
+
+
+def _change(early: Estimate, late: Estimate) -> Estimate:
+    """Return the difference over the first one."""
+    return late.minus(early).times(1 / early.value)
+
+
+def _claims(results: Results) -> list[Claim]:
+    return [_frequency_claim(results), _growth_claim(results), _singularity_claim(results)]
+
+
+def _frequency_claim(results: Results) -> Claim:
+    def frequencies(counted: tuple[Runs, ...]) -> list[Estimate]:
+        return [runs.estimate(results, _frequency) for runs in counted]
+
+    steps = _at_steps(*_COUNTED)
+    early, late = frequencies(steps[""])
+    begin, then = _BEGINNINGS
+    return Claim(
+        "linear springs: the collision frequency C_f is about constant",
+        f"collisions of a contact per T: {early} from t = {begin:g} to {begin + _SPAN:g} T and "
+        f"{late} from {then:g} to {then + _SPAN:g} T, while the energy grows; the second less the "
+        "first, over the first:",
+        **at_choices(steps, lambda counted: _change(*frequencies(counted))),
+        within=around(0.0, 0.1),
+        source="section Anti-Dissipation",
+        ours="the spans of time",
+    )
+
+
+def _growth_claim(results: Results) -> Claim:
+    def rates(linear: tuple[Runs, ...]) -> list[Estimate]:
+        return [linear[0].estimate(results, rate) for rate in (_early_rate, _late_rate)]
+
+    steps = _at_steps(_LINEAR)
+    early, late = rates(steps[""])
+    return Claim(
+        "linear springs: exponential growth",
+        f"rate {early} per T from E = {_GROWING:.0e} to t = {_HALF_WAY:g} T, and {late} from there "
+        f"to {_LINEAR.settings['duration']:g} T; the second less the first, over the first:",
+        **at_choices(steps, lambda linear: _change(*rates(linear))),
+        within=around(0.0, 0.1),
+        source=_SOURCE,
+    )
+
+
+def _singularity_claim(results: Results) -> Claim:
+    def fits(quadratic: tuple[Runs, ...]) -> dict[float, list[Estimate]]:
+        """Return exponent and t_c by the energy from which on they are fitted."""
+        return {
+            beyond: quadratic[0].estimates(results, partial(_singularity, beyond=beyond))
+            for beyond in _SINGULAR
+        }
+
+    steps = {step: fits(quadratic) for step, quadratic in _at_steps(_QUADRATIC).items()}
+    listed = ", ".join(f"{beyond:.0e}: {exponent}" for beyond, (exponent, _) in steps[""].items())
+    _, time = steps[""][_SINGULAR[0]]
+    runs = _QUADRATIC.members(results)
+    diverged = sum(run.attrs["status"] == "diverged" for run in runs)
+    return Claim(
+        "quadratic springs: divergence in finite time, a power law of t_c - t",
+        f"{diverged} of {len(runs)} runs diverged, t_c = {time} T; exponent of E "
+        f"by the least energy fitted: {listed}; middle and half the spread, with the error",
+        **at_choices(steps, _middle),
+        source=f"{_SOURCE}, inset",
+    )
+
+
+def _middle(fits: dict[float, list[Estimate]]) -> Estimate:
+    """Return the middle of the exponents; half their spread, where it begins, is an error too."""
+    exponents = [exponent for exponent, _ in fits.values()]
+    low, high = min(exponents).value, max(exponents).value
+    error = max(exponent.error for exponent in exponents)
+    return Estimate((low + high) / 2, math.hypot((high - low) / 2, error))
+
+
+def _draw(results: Results) -> Figure:
+    figure, (left, right) = panels(1, 2, height=2.6)
+    for number, runs in enumerate((_LINEAR, _QUADRATIC)):
+        for run in runs.members(results):
+            left.semilogy(run.time, run.kinetic_energy, f"C{number}", linewidth=0.6, alpha=0.7)
+        left.plot([], [], f"C{number}", label=f"{runs.name} springs")
+    rate = weak_damping_growth_rate(_LINEAR.chain)
+    t = np.array([40.0, _HALF_WAY])
+    members = _LINEAR.members(results)
+    anchor = np.mean([np.interp(90, run.time, run.kinetic_energy) for run in members])
+    label = rf"theory: $\exp({rate:.3f}\,t/$T$)$"
+    left.semilogy(t, anchor * np.exp(rate * (t - 90)), "k--", label=label)
+    left.set(xlabel="time $t$ [T]", ylabel=_ENERGY, xlim=(0, _HALF_WAY), ylim=(1, 1e8))
+    left.legend()
+    _draw_singularity(right, results)
+    return figure
+
+
+def _draw_singularity(ax: Axes, results: Results) -> None:
+    look: Any = {"marker": ".", "markersize": 2, "color": COLOURS[1], "alpha": 0.6}
+    for run in _QUADRATIC.members(results):
+        _, time = _singularity(run, _SINGULAR[0])
+        left = time - run.time.values
+        ax.loglog(left[left > 0], run.kinetic_energy.values[left > 0], linestyle="none", **look)
+    ax.plot([], [], linestyle="none", **look, label="quadratic springs")
+    span = np.array([0.6, 6.0])
+    ax.loglog(span, 3e7 * span**-6.0, "k--", label="slope $-6$")
+    ax.set(xlabel="time left $t_c - t$ [T]", ylabel=_ENERGY, ylim=(1, 1e12))
+    ax.legend()
+
+
+ENERGY = Study(
+    number=15,
+    name="energy",
+    title="Kinetic energy of flippers in time",
+    caption="L = 100, e = 1.01, gamma = 0.4, from rest. (a) Every line is a run, cut off at 1e8 "
+    "and at t = 150. Dashed: the growth rate of a balance between damping and one collision "
+    "of every pair in half a period. (b) The runs with quadratic springs against the time left "
+    "until their t_c, fitted from E = 1e5 on.",
+    needs=[runs for steps in _NEEDS for both in steps.values() for runs in both],
+    claims=_claims,
+    draw=_draw,
+)

@@ -1,0 +1,239 @@
+"""Figures 2, 10 and 11: distributions of velocities at e = 0 and of flippers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import partial
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+from scipy.optimize import curve_fit
+
+from crazybilliards.comparison.layout import legend_above, panels
+from crazybilliards.comparison.widths import border_width, central_width
+from crazybilliards.model import chain_of
+from crazybilliards.model.arrays import Array, middle_tenth
+from crazybilliards.reproduction import chains
+from crazybilliards.reproduction.claims.repetition import Results, Runs
+from crazybilliards.reproduction.claims.study import Study
+from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, at_choices, in_plot
+from crazybilliards.reproduction.distributions import (
+    distance_in_plot,
+    draw_distributions,
+    figure_of_distributions,
+    histogram,
+    mean_shape,
+)
+from crazybilliards.reproduction.fits import tail_length
+
+# -- figure 2: the perfectly inelastic chain --------------------------------------------------
+
+_BULK = range(1, chains.LARGE + 1)[middle_tenth(chains.LARGE)]
+_WIDTHS_SHOWN = 5.0  # to either side in the plot of a distribution
+_INELASTIC = {name: chains.inelastic(chains.LARGE, step) for name, step in chains.STEPS.items()}
+
+
+def _misfit_of_gaussian(runs: Sequence[xr.Dataset]) -> float:
+    """Return how far p(v) in the bulk is off its best Gaussian, as a share of the plot.
+
+    Its height, centre and width are free.
+    """
+
+    def model(v: Array, height: float, centre: float, width: float) -> Array:
+        return np.asarray(height * np.exp(-(((v - centre) / width) ** 2) / 2))
+
+    width = float(np.sqrt(np.mean([central_width(run) ** 2 for run in runs])))
+    v, p = histogram(runs, _BULK, _WIDTHS_SHOWN * width)
+    values, _ = curve_fit(model, v, p, p0=(float(p.max()), 0.0, width))
+    return distance_in_plot(v, p, lambda v: model(v, *values), _WIDTHS_SHOWN * width)
+
+
+def _outward_skewness(run: xr.Dataset) -> float:
+    """Return that of the outer three rods; the mirror image of the left end is the right end."""
+    left, right = range(1, 4), range(chains.LARGE - 2, chains.LARGE + 1)
+    at_right, at_left = (mean_shape(run, end, "velocity_skewness") for end in (right, left))
+    return (at_right - at_left) / 2
+
+
+def _claims_inelastic(results: Results) -> list[Claim]:
+    def kurtosis(runs: Runs) -> Estimate:
+        return runs.estimate(results, lambda run: mean_shape(run, _BULK, "velocity_kurtosis"))
+
+    def skewness(runs: Runs) -> Estimate:
+        return runs.estimate(results, _outward_skewness)
+
+    def magnitude(runs: Runs) -> Estimate:
+        value, error = skewness(runs)
+        return Estimate(abs(value), error)
+
+    def narrowing(runs: Runs) -> Estimate:
+        border, centre = (runs.estimate(results, width) for width in (border_width, central_width))
+        return border.minus(centre)
+
+    ours, *others = _INELASTIC.items()
+    peaks = ", ".join(f"{step}: {kurtosis(runs)}" for step, runs in others)
+    source = "section seq:e_0, fig.1"
+
+    def misfit(runs: Runs) -> dict[str, Any]:
+        return in_plot(
+            "p(v) of the middle hundred rods and the Gaussian of best height, centre and width, "
+            f"both axes linear, v to {_WIDTHS_SHOWN:g} widths",
+            runs.estimate_together(results, _misfit_of_gaussian),
+        )
+
+    return [
+        Claim(
+            "in the bulk the distributions can be fitted by Gaussians",
+            **at_choices(_INELASTIC, misfit),
+            source=source,
+            ours="the time step, and whether the axes are linear",
+            reason="the shorter the step, the more peaked is the distribution and the longer are "
+            "its tails, while the kicks of a long step, which are Gaussian, hide this; excess "
+            f"kurtosis {kurtosis(ours[1])} at the {ours[0]}, {peaks}",
+        ),
+        Claim(
+            "close to the border the distributions are slightly skewed",
+            f"skewness of the outer three rods {skewness(ours[1])}, outward positive; its "
+            "magnitude",
+            **at_choices(_INELASTIC, magnitude),
+            source=source,
+        ),
+        Claim(
+            "narrower inside than at the border",
+            "W_v(border) - W_v(centre) =",
+            **at_choices(_INELASTIC, narrowing),
+            source=source,
+        ),
+    ]
+
+
+INELASTIC = Study(
+    number=2,
+    name="velocities-inelastic",
+    title="Velocity distributions at e = 0",
+    caption="L = 1000, e = 0. Symbols: simulation, rods i from the border to the centre. Lines: "
+    "Gaussians of the same width. Dotted: a free rod. Error bars: standard errors from independent "
+    "runs. Velocities in units of the free width W.",
+    needs=list(_INELASTIC.values()),
+    claims=_claims_inelastic,
+    draw=partial(
+        figure_of_distributions, runs=_INELASTIC["default step"], particles=(1, 10, 100, 500)
+    ),
+)
+
+# -- figures 10 and 11: flippers --------------------------------------------------------------
+
+_WEAKLY_DAMPED, _STRONGLY_DAMPED = (
+    chains.at_both_steps(chains.flippers(100, g)) for g in (4.0, 10.0)
+)
+_SIZE = 100
+_FLIPPERS_SHOWN = (1, 10, 50)
+_TAIL = 3.0  # widths of the rod, where the tail begins
+
+
+def _border_density(run: xr.Dataset) -> tuple[Array, Array]:
+    """Return outward speeds, descending, and p(v) of a border rod: the mean of both borders."""
+    v, p = run.velocity_bin.values, run.velocity_density
+    density = (p.sel(particle=1).values + p.sel(particle=_SIZE).values[::-1]) / 2
+    return v[v < 0], density[v < 0]  # the leftmost rod is thrown to the left
+
+
+def _tail_ratio(run: xr.Dataset) -> float:
+    """Length of the border's outward tail far out over that nearer by: 1 if exponential."""
+    v, p = _border_density(run)
+    width = border_width(run)
+    return tail_length(v, p, 5 * width) / tail_length(v, p, _TAIL * width)
+
+
+def _claims_weakly_damped(results: Results) -> list[Claim]:
+    def less(least: float, quantity: Callable[[xr.Dataset], float]) -> dict[str, Any]:
+        return at_choices(
+            _WEAKLY_DAMPED,
+            lambda runs: runs.estimate(results, quantity).minus(Estimate(least, 0.0)),
+        )
+
+    runs = _WEAKLY_DAMPED["default step"]
+    unit, ends = runs.chain.free_velocity_width, (1, _SIZE)
+    kurtosis = runs.estimate(results, lambda run: mean_shape(run, ends, "velocity_kurtosis"))
+    ratio = runs.estimate(results, _tail_ratio)
+    source = "section Anti-Dissipation, fig:mom_hist_antidiss_gamma4"
+    return [
+        Claim(
+            "every rod is faster than a free one",
+            "W_v/W of the slowest rod less 1:",
+            **less(1.0, lambda run: float(run.velocity_width.min()) / unit),
+            source=source,
+        ),
+        Claim(
+            "large velocities are likelier at the border than in the centre",
+            "W_v(border) - W_v(centre) =",
+            **less(0.0, lambda run: border_width(run) - central_width(run)),
+            source=source,
+        ),
+        Claim(
+            "the tail at the border falls off exponentially",
+            f"excess kurtosis {kurtosis}; length of the tail beyond 5 W_v over that beyond 3 W_v "
+            f"{ratio} (exponential: 1, Gaussian: 0.65), less half-way between the two",
+            **less(0.825, _tail_ratio),
+            source=f"{source}, inset",
+            reason="the tail falls off faster than an exponential",
+        ),
+    ]
+
+
+def _claims_strongly_damped(results: Results) -> list[Claim]:
+    def widening(run: xr.Dataset) -> float:
+        return central_width(run) - border_width(run)
+
+    return [
+        Claim(
+            "large velocities are likelier in the centre than at the border",
+            "W_v(centre) - W_v(border) =",
+            **at_choices(_STRONGLY_DAMPED, lambda runs: runs.estimate(results, widening)),
+            source="section Anti-Dissipation, fig:mom_hist_antidiss_gamma10",
+        )
+    ]
+
+
+def _draw_weakly_damped(results: Results) -> Figure:
+    runs = _WEAKLY_DAMPED["default step"].members(results)
+    figure, [ax] = panels(1, 1, height=2.9)
+    draw_distributions(ax, runs, _FLIPPERS_SHOWN)
+    both = [_border_density(run) for run in runs]
+    v, p = both[0][0], np.mean([density for _, density in both], axis=0)
+    begin = _TAIL * float(np.sqrt(np.mean([border_width(run) ** 2 for run in runs])))
+    length = tail_length(v, p, begin)
+    share = float((p * np.gradient(v))[v < -begin].sum())
+    out = np.linspace(begin, begin + 7 * length, 50)
+    tail = share / length * np.exp(-(out - begin) / length)
+    unit = chain_of(runs[0]).free_velocity_width
+    ax.plot(-out / unit, tail * unit, "--", color="0.3", label="exponential tail")
+    legend_above(figure, ax)
+    return figure
+
+
+WEAKLY_DAMPED = Study(
+    number=10,
+    name="velocities-flippers",
+    title="Velocity distributions at e = 1.05, gamma = 4",
+    caption="L = 100, e = 1.05, gamma = 4. Symbols: simulation. Lines: Gaussians of the same "
+    "width. Dashed: an exponential of the border's mean excess over three widths. Dotted: a free "
+    "rod. Error bars: standard errors from independent runs.",
+    needs=list(_WEAKLY_DAMPED.values()),
+    claims=_claims_weakly_damped,
+    draw=_draw_weakly_damped,
+)
+STRONGLY_DAMPED = Study(
+    number=11,
+    name="velocities-flippers-damped",
+    title="Velocity distributions at e = 1.05, gamma = 10",
+    caption="L = 100, e = 1.05, gamma = 10. Symbols: simulation. Lines: Gaussians of the same "
+    "width. Dotted: a free rod. Error bars: standard errors from independent runs.",
+    needs=list(_STRONGLY_DAMPED.values()),
+    claims=_claims_strongly_damped,
+    draw=partial(
+        figure_of_distributions, runs=_STRONGLY_DAMPED["default step"], particles=_FLIPPERS_SHOWN
+    ),
+)

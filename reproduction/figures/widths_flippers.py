@@ -1,0 +1,219 @@
+"""Figures 12 and 14: velocity widths of flippers, by their damping and by their number."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import partial
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from crazybilliards.comparison.distances import distances_in_plot
+from crazybilliards.comparison.fits import fit_border_power_law
+from crazybilliards.comparison.widths import central_width
+from crazybilliards.model import Chain
+from crazybilliards.model.arrays import Array, middle_tenth
+from crazybilliards.reproduction import chains
+from crazybilliards.reproduction.claims.repetition import Results, Runs, effort, share_of_runs
+from crazybilliards.reproduction.claims.study import Study
+from crazybilliards.reproduction.claims.verdicts import (
+    EYE,
+    Claim,
+    Estimate,
+    at_choices,
+    furthest_in_plot,
+)
+from crazybilliards.reproduction.profiles import bulge, figure_of_flippers, mirrored, nu
+
+_RESTITUTION = 1.05
+
+# -- figure 12: by the damping, from convex to concave ----------------------------------------
+
+_SIZE = 100
+_DAMPINGS = (4.0, 5.0, 6.0, 8.0, 10.0)
+_WEAK, _STRONG = _DAMPINGS[0], _DAMPINGS[-1]
+_BY_DAMPING = chains.all_at_both_steps(
+    {damping: chains.flippers(_SIZE, damping) for damping in _DAMPINGS}
+)
+_DAMPED = {damping: chains.kinetic_equation(_SIZE, _RESTITUTION, damping) for damping in _DAMPINGS}
+_SOURCE_12 = "section Anti-Dissipation, fig:mom_var_antidiss_diff_gamma_sq"
+
+
+def _crowding(run: xr.Dataset) -> float:
+    """Ln of the collision rate in the middle over that at the borders."""
+    rate = run.collision_rate.values[:-1]  # the last rod has no right neighbour
+    return float(np.log(rate[middle_tenth(rate.size)].mean() / rate[[0, -1]].mean()))
+
+
+def _claims_by_damping(results: Results) -> list[Claim]:
+    bulges = [runs.estimate(results, bulge) for runs in _BY_DAMPING["default step"].values()]
+    change = np.interp(0.0, [value for value, _ in bulges][::-1], _DAMPINGS[::-1])
+    return [
+        Claim(
+            f"convex at gamma = {_WEAK:g}",
+            "ln of the border's width over the centre's:",
+            **at_choices(_BY_DAMPING, lambda group: group[_WEAK].estimate(results, bulge)),
+            source=_SOURCE_12,
+        ),
+        Claim(
+            f"concave at gamma = {_STRONG:g}",
+            f"it changes at gamma = {change:.1f}; ln of the centre's width over the border's:",
+            **at_choices(_BY_DAMPING, lambda group: -group[_STRONG].estimate(results, bulge)),
+            source=_SOURCE_12,
+        ),
+        *(_crowding_claim(results, damping) for damping in (_STRONG, _WEAK)),
+        _power_law_claim(results),
+    ]
+
+
+def _crowding_claim(results: Results, damping: float) -> Claim:
+    return Claim(
+        f"rods collide more often in the bulk than at the border, gamma = {damping:g}",
+        "ln of the collision rate of the middle tenth of the contacts over that of the outermost:",
+        **at_choices(_BY_DAMPING, lambda group: group[damping].estimate(results, _crowding)),
+        source=_SOURCE_12,
+    )
+
+
+def _power_law_claim(results: Results) -> Claim:
+    """Decide whether the best sum of two power laws is visibly off in a plot like the paper's."""
+    ours, other = _BY_DAMPING.values()
+    try:
+        words = f"nu = {nu(ours[_WEAK].mean(results)):.3f} fits best"
+    except ValueError:
+        words = "no such law fits"
+    return Claim(
+        f"the convex profile at gamma = {_WEAK:g} cannot be described by a power law",
+        "gamma W_v against i for the five dampings, rods averaged with their mirror images, both "
+        f"axes linear: {words}; how much further than an eye sees, {EYE:g} of the plotted range, "
+        "the symbol that decides is away from the nearest point of the line:",
+        number=_beyond_the_eye(results, ours, np.asarray),
+        elsewhere={
+            "both axes logarithmic": _beyond_the_eye(results, ours, np.log),
+            f"dt = {chains.OTHER_STEP:g}": _beyond_the_eye(results, other, np.asarray),
+        },
+        source=_SOURCE_12,
+        ours="whether the axes are linear",
+        reason="a sum of two flat power laws fits",
+    )
+
+
+def _beyond_the_eye(
+    results: Results, group: Mapping[float, Runs], axes: Callable[[Array], Array]
+) -> Estimate:
+    """Return the distance from the fit that decides, as a share of the plot, less EYE."""
+    profiles = {damping: runs.mean(results) for damping, runs in group.items()}
+    plotted = axes(np.concatenate([g * run.velocity_width.values for g, run in profiles.items()]))
+    low, high = float(plotted.min()), float(plotted.max())
+    run = mirrored(profiles[_WEAK])
+    try:
+        fit = fit_border_power_law(run)
+    except ValueError:  # no such law fits
+        return Estimate(1.0 - EYE, 0.0)
+    i, width, error = (
+        run[name].values for name in ("particle", "velocity_width", "velocity_width_error")
+    )
+    fine = np.geomspace(1, _SIZE, 2000)
+    distances = distances_in_plot(
+        axes(i), axes(_WEAK * width), axes(fine), axes(_WEAK * fit(fine)), y_range=(low, high)
+    )
+    below, above = axes(_WEAK * (width - error)), axes(_WEAK * (width + error))
+    furthest = furthest_in_plot(distances, (above - below) / 2 / (high - low))
+    return Estimate(furthest.value - EYE, furthest.error)
+
+
+def _draw_by_damping(results: Results) -> Figure:
+    curves = {}
+    for damping, runs in _BY_DAMPING["default step"].items():
+        # gamma W_v over that of a free rod at gamma = 1, A/sqrt(2 m).
+        unit = runs.chain.replace(damping=1.0).free_velocity_width / damping
+        curves[rf"$\gamma = {damping:g}$"] = runs, _DAMPED[damping], unit
+    label = r"$\gamma W_v/(A/\sqrt{2m})$  [M$^{1/2}$T$^{-1/2}$]"
+    return figure_of_flippers(results, curves, label)
+
+
+BY_DAMPING = Study(
+    number=12,
+    name="widths-damping",
+    title="Velocity widths of flippers for several dampings",
+    caption="Damping times velocity width against the normalized particle number, L = 100, e = "
+    "1.05. Lines: the kinetic equation.",
+    needs=[*chains.all_of(_BY_DAMPING), *_DAMPED.values()],
+    claims=_claims_by_damping,
+    draw=_draw_by_damping,
+)
+
+# -- figure 14: by the length, concave, convex, then divergence -------------------------------
+
+_DAMPING = 4.0
+_SIZES = (25, 50, 75, 100, 105)
+_SHORT, _LONG = _SIZES[0], _SIZES[-1]
+_BY_LENGTH = chains.all_at_both_steps({size: chains.flippers(size, _DAMPING) for size in _SIZES})
+_OF_LENGTH = {size: chains.kinetic_equation(size, _RESTITUTION, _DAMPING) for size in _SIZES}
+_DIVERGING = Runs(
+    "unsteady",
+    Chain(size=150, restitution=_RESTITUTION, damping=_DAMPING),
+    effort((4,), (4,)),
+    {"duration": 1000.0, "warmup": 0.0, "observe": ["energy"]},
+)
+_UNSTEADY = {
+    "default step": _DIVERGING,
+    f"dt = {chains.OTHER_STEP:g}": _DIVERGING.at_step(chains.OTHER_STEP, _DIVERGING.effort),
+}
+
+
+def _claims_by_length(results: Results) -> list[Claim]:
+    def growth(group: Mapping[int, Runs]) -> Estimate:
+        short, long = (group[size].estimate(results, central_width) for size in (_SHORT, _LONG))
+        return long.minus(short)
+
+    def diverged(runs: Runs) -> list[bool]:
+        return [run.attrs["status"] == "diverged" for run in runs.members(results)]
+
+    claim = partial(Claim, source="section Anti-Dissipation, fig:antidiss_diff_L")
+    released = diverged(_DIVERGING)
+    return [
+        claim(
+            f"concave at L = {_SHORT}",
+            "ln of the centre's width over the border's:",
+            **at_choices(_BY_LENGTH, lambda group: -group[_SHORT].estimate(results, bulge)),
+        ),
+        claim(
+            f"convex at L = {_LONG}",
+            "ln of the border's width over the centre's:",
+            **at_choices(_BY_LENGTH, lambda group: group[_LONG].estimate(results, bulge)),
+        ),
+        claim(
+            "the longer the chain, the larger W_v",
+            f"W_v in the centre at L = {_LONG} less that at L = {_SHORT}:",
+            **at_choices(_BY_LENGTH, growth),
+        ),
+        claim(
+            f"without a steady state at L = {_DIVERGING.chain.size}",
+            f"{sum(released)} of {len(released)} runs, released from rest, diverged; their "
+            "share, as far as so few runs show it:",
+            **at_choices(_UNSTEADY, lambda runs: share_of_runs(diverged(runs))),
+            ours="the size that is too large",
+        ),
+    ]
+
+
+def _draw_by_length(results: Results) -> Figure:
+    curves = {
+        f"$L = {size}$": (runs, _OF_LENGTH[size], runs.chain.free_velocity_width)
+        for size, runs in _BY_LENGTH["default step"].items()
+    }
+    return figure_of_flippers(results, curves, "velocity width $W_v/W$")
+
+
+BY_LENGTH = Study(
+    number=14,
+    name="widths-size",
+    title="Velocity widths of flippers for several sizes",
+    caption="W_v against the normalized particle number, e = 1.05, gamma = 4. Lines: the kinetic "
+    "equation. Longer chains have no steady state: L = 150 diverges.",
+    needs=[*chains.all_of(_BY_LENGTH), *_OF_LENGTH.values(), *_UNSTEADY.values()],
+    claims=_claims_by_length,
+    draw=_draw_by_length,
+)

@@ -1,0 +1,168 @@
+"""Figure 7: velocity widths for several restitutions, and the exponent against the restitution."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_points, draw_rods
+from crazybilliards.comparison.fits import Fit
+from crazybilliards.comparison.layout import legend_above, mosaic
+from crazybilliards.comparison.widths import central_width
+from crazybilliards.reproduction import chains
+from crazybilliards.reproduction.claims.repetition import Results, Runs
+from crazybilliards.reproduction.claims.study import Study
+from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, at_choices, worst
+from crazybilliards.reproduction.fits import fit_exponential
+from crazybilliards.reproduction.profiles import bulge, fits_in_plot, nu
+
+_RUNS = {e: chains.dissipative(chains.LARGE, e) for e in chains.RESTITUTIONS}
+_STEPS = chains.all_at_both_steps(_RUNS)
+_ELASTIC = chains.elastic(100)
+_UNIT = _ELASTIC.chain.free_velocity_width
+_PRECISION = 0.005  # of exponents: the paper gives them with two decimals
+_CROSSES: dict[str, dict[str, Any]] = {
+    chains.INDEPENDENT: {"marker": "x", "linestyle": "none", "color": COLOURS[4]},
+    chains.PAIRS: {"marker": "+", "linestyle": "none", "color": COLOURS[2]},
+}
+
+
+def _exponents(results: Results, group: Mapping[float, Runs]) -> dict[float, Estimate]:
+    return {e: -runs.estimate(results, nu) for e, runs in group.items()}
+
+
+def _exponential(exponents: Mapping[float, Estimate]) -> Fit:
+    return fit_exponential(list(exponents), *np.transpose(list(exponents.values())))
+
+
+def _claims(results: Results) -> list[Claim]:
+    low, high = chains.RESTITUTIONS[0], chains.RESTITUTIONS[-1]
+    source = "section seq:e_larger, fig.4"
+    ours = "the restitutions (those of fig.5, and 0.5) and the time step"
+
+    def unevenness(group: Mapping[float, Runs], e: float) -> Estimate:
+        return group[e].estimate(results, bulge)
+
+    def means(group: Mapping[float, Runs]) -> list[xr.Dataset]:
+        return [runs.mean(results) for runs in group.values()]
+
+    return [
+        Claim(
+            "the larger e, the less the width varies along the chain",
+            f"ln of the border's width over the centre's: {unevenness(_RUNS, low)} at e = {low:g} "
+            f"and {unevenness(_RUNS, high)} at e = {high:g}, difference",
+            **at_choices(
+                _STEPS, lambda group: unevenness(group, low).minus(unevenness(group, high))
+            ),
+            source=source,
+            ours=ours,
+        ),
+        Claim(
+            "W_v(i) is described by a sum of two power laws at every e < 1",
+            **at_choices(_STEPS, lambda group: fits_in_plot("six restitutions", means(group))),
+            source=f"{source}, eq:power_law",
+            ours=ours,
+            reason="the two power laws leave systematic residuals",
+        ),
+        Claim(
+            "-nu depends on e like exp(-lambda (1 - e)) + d, lambda unknown",
+            **at_choices(_STEPS, lambda group: _residuals(results, group)),
+            source=f"{source}, inset",
+            ours=ours,
+            reason="the errors of the exponents are about as large as the limit",
+        ),
+    ]
+
+
+def _residuals(results: Results, group: Mapping[float, Runs]) -> dict[str, Any]:
+    """Return what decides whether the exponents follow an exponential."""
+    exponents = _exponents(results, group)
+    fit = _exponential(exponents)
+    rate, amplitude, offset = (
+        Estimate(fit.parameters[name], fit.errors[name]) for name in ("rate", "amplitude", "offset")
+    )
+    listed = ", ".join(f"{e:g}: {exponent}" for e, exponent in exponents.items())
+    return worst(
+        f"with an amplitude a before it lambda = {rate}, a = {amplitude}, d = {offset}; -nu by e: "
+        f"{listed}; -nu less the curve",
+        [Estimate(value - float(fit(e)), error) for e, (value, error) in exponents.items()],
+        _PRECISION,
+    )
+
+
+def _draw(results: Results) -> Figure:
+    figure, axes = mosaic(
+        [["widths", "exponents"], ["widths", "centre"]], height=3.9, width_ratios=(1.4, 1)
+    )
+    _draw_widths(axes["widths"], results)
+    legend_above(figure, axes["widths"])
+    axes["exponents"].sharex(axes["centre"])
+    _draw_exponents(axes["exponents"], results)
+    _draw_centre(axes["centre"], results)
+    return figure
+
+
+def _draw_widths(ax: Axes, results: Results) -> None:
+    solved = chains.predictions(results)
+    ax.set(ylabel="velocity width $W_v/W$", yscale="log")
+    for number, (e, runs) in enumerate((_RUNS | {1.0: _ELASTIC}).items()):
+        label = f"$e = {e:g}$" + (f", $L = {runs.chain.size}$" if e == 1 else "")
+        run = runs.mean(results)
+        draw_rods(ax, run, "velocity_width", number=number, unit=_UNIT, label=label)
+        for name, theories in solved.items():
+            if theory := theories.get(e):
+                look: Any = {"color": COLOURS[number], "linestyle": chains.LINES[name], "zorder": 4}
+                ax.plot(theory.normalized_particle, theory.velocity_width / _UNIT, **look)
+    along_the_chain(ax)
+    for name, theories in solved.items():
+        ax.plot(
+            [], [], chains.LINES[name], color="0.4", label=rf"{name}, $e \geq {min(theories):g}$"
+        )
+
+
+def _draw_centre(ax: Axes, results: Results) -> None:
+    def share(result: xr.Dataset) -> float:
+        return central_width(result) / _UNIT
+
+    _draw_by_restitution(ax, results, share)
+    ax.set(xlabel="restitution $e$", ylabel="central width $W_v^{\\min}/W$")
+    ax.legend()
+
+
+def _draw_exponents(ax: Axes, results: Results) -> None:
+    _draw_by_restitution(ax, results, lambda result: -nu(result))
+    fit, fine = _exponential(_exponents(results, _RUNS)), np.linspace(0, 1, 101)
+    ax.plot(fine, fit(fine), "0.4", label=rf"fit, $\lambda = {fit.rate:.1f}$")
+    ax.set(ylabel=r"exponent $-\nu$")
+    ax.tick_params(labelbottom=False)
+    ax.legend()
+
+
+def _draw_by_restitution(
+    ax: Axes, results: Results, quantity: Callable[[xr.Dataset], float]
+) -> None:
+    """Draw a quantity of the simulations and of both theories against e."""
+    values, errors = np.transpose([runs.estimate(results, quantity) for runs in _RUNS.values()])
+    draw_points(ax, list(_RUNS), values, errors, number=0, color="black", label="simulation")
+    for name, theories in chains.predictions(results).items():
+        values = [quantity(theory) for theory in theories.values()]
+        ax.plot(list(theories), values, label=name, **_CROSSES[name])
+
+
+RESTITUTION = Study(
+    number=7,
+    name="widths-restitution",
+    title="Velocity widths for several restitutions",
+    caption="(a) W_v against the normalized particle number, L = 1000 (e = 1: L = 100). Lines: the "
+    "kinetic equation in the colour of its e, dashed without pair correlations, full with them; "
+    "nothing of the simulation goes into these lines. (b) The exponent of the two power laws "
+    "against the restitution, and a exp(-lambda (1 - e)) + d fitted to it. (c) W_v in the centre.",
+    needs=[*chains.all_of(_STEPS), *chains.all_of(chains.PREDICTIONS), _ELASTIC],
+    claims=_claims,
+    draw=_draw,
+)

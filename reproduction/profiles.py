@@ -1,0 +1,101 @@
+"""Profiles along the chain: mirror images, the shape of W_v(i), the paper's two power laws."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from crazybilliards.comparison.distances import distances_in_plot
+from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_rods
+from crazybilliards.comparison.fits import fit_border_power_law
+from crazybilliards.comparison.layout import legend_above, panels
+from crazybilliards.comparison.widths import border_width, central_width
+from crazybilliards.model import chain_of
+from crazybilliards.reproduction.claims.repetition import Results, Runs, Solution
+from crazybilliards.reproduction.claims.verdicts import furthest_in_plot, in_plot
+
+_SIGNS = {"velocity_width": 1, "displacement_width": 1, "mean_displacement": -1}
+# Of the chain: rods closer to their mirror image than this are not taken as independent. It is
+# twice the length over which velocities of rods are correlated at e = 0.
+_CLOSE = 0.25
+
+
+def mirrored(run: xr.Dataset) -> xr.Dataset:
+    """Return the result with both widths and <dx> averaged over mirror images, with their errors.
+
+    Both ends of a chain have the same averages, apart from the sign of displacements. The mean of
+    two independent rods has half the variance of one. Rods near the centre move with their mirror
+    image: their errors become no smaller.
+    """
+    size = run.sizes["particle"]
+    apart = np.abs(2 * run.particle.values - (size + 1)) > _CLOSE * size
+    values = {}
+    for name, sign in _SIGNS.items():
+        own, error = run[name].values, run[f"{name}_error"].values
+        image, image_error = own[::-1], error[::-1]
+        mean = np.sqrt((own**2 + image**2) / 2) if sign > 0 else (own - image) / 2
+        both = np.where(apart, np.hypot(error, image_error), error + image_error) / 2
+        values[name] = run[name].copy(data=mean)
+        values[f"{name}_error"] = run[f"{name}_error"].copy(data=both)
+    return run.assign(values)
+
+
+def bulge(run: xr.Dataset) -> float:
+    """Ln of the border's width over the centre's: positive for a convex profile."""
+    return float(np.log(border_width(run) / central_width(run)))
+
+
+def nu(run: xr.Dataset) -> float:
+    """Return the exponent of the two power laws."""
+    return fit_border_power_law(run).exponent
+
+
+def fits_in_plot(of_what: str, runs: Iterable[xr.Dataset]) -> dict[str, Any]:
+    """Return what decides whether two power laws fit the widths in a plot of all runs.
+
+    Both axes are logarithmic, widths are averaged over mirror images, and the plotted range ends at
+    the free rod's width.
+    """
+    runs = [mirrored(run) for run in runs]
+    free = np.log(chain_of(runs[0]).free_velocity_width)
+    lowest = np.log(min(float(run.velocity_width.min()) for run in runs))
+    longest = np.log(max(run.sizes["particle"] for run in runs))
+    distances, errors, vertical = [], [], 0.0
+    for run in runs:
+        fit = fit_border_power_law(run)
+        i, width = run.particle.values, run.velocity_width.values
+        error = run.velocity_width_error.values
+        fine = np.geomspace(1, i[-1], 2000)
+        symbols, line = (np.log(i), np.log(width)), (np.log(fine), np.log(fit(fine)))
+        ranges = {"x_range": (0.0, longest), "y_range": (lowest, free)}
+        distances.append(distances_in_plot(*symbols, *line, **ranges))
+        errors.append(error / width / (free - lowest))
+        vertical = max(vertical, float(np.abs((fit(i) - width) / error).max()))
+    return in_plot(
+        f"{of_what}, rods averaged with their mirror images, and their fits, both axes logarithmic",
+        furthest_in_plot(np.concatenate(distances), np.concatenate(errors)),
+        vertical,
+    )
+
+
+def figure_of_flippers(
+    results: Results, curves: Mapping[str, tuple[Runs, Solution, float]], ylabel: str
+) -> Figure:
+    """Return W_v(i) of runs as symbols and of the kinetic equation as lines, in one panel.
+
+    ``curves`` has by label the runs, the theory, and the unit of their widths.
+    """
+    figure, [ax] = panels(1, 1, height=3.1)
+    for number, (label, (runs, theory, unit)) in enumerate(curves.items()):
+        draw_rods(ax, runs.mean(results), "velocity_width", number=number, unit=unit, label=label)
+        solved = results[theory.name]
+        ax.plot(solved.normalized_particle, solved.velocity_width / unit, color=COLOURS[number])
+    along_the_chain(ax)
+    ax.set_ylabel(ylabel)
+    ax.plot([], [], color="0.4", label="kinetic equation")
+    legend_above(figure, ax)
+    return figure
