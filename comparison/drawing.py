@@ -126,7 +126,7 @@ def draw_measured(
         if ax.get_xscale() == "log":
             shown = np.unique(np.geomspace(1, count, _SOME).round().astype(int)) - 1
         look |= {"linestyle": "-", "markevery": list(shown), "errorevery": shown}
-    ax.errorbar(x, values, errors, **look | {"zorder": 1.9} | how)  # below the lines of theories
+    ax.errorbar(x, values, errors, **look | {"zorder": 1.8} | how)  # below the lines of theories
 
 
 def draw_rods(

@@ -9,7 +9,6 @@ from functools import cache
 from pathlib import Path
 
 import matplotlib as mpl
-import matplotlib.pyplot as plt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import FancyBboxPatch
@@ -110,7 +109,8 @@ def _direct(graph: Graph) -> Graph:
 
 def draw() -> Figure:
     """Return the figure."""
-    figure, ax = plt.subplots(figsize=(8.6, 15.2))
+    figure = Figure(figsize=(8.6, 15.2), layout="constrained")
+    ax = figure.subplots()
     ax.set(xlim=(-0.1, 12.1), ylim=(-0.1, 22.9))
     ax.axis("off")
     for room, (left, bottom, width, height, colour) in ROOMS.items():
@@ -196,13 +196,10 @@ def described() -> str:
 
 def write(path: Path) -> None:
     """Write the picture, the same every time: no date, no random names."""
-    with mpl.rc_context({"svg.hashsalt": "crazybilliards", "figure.constrained_layout.use": True}):
-        figure = draw()
+    with mpl.rc_context({"svg.hashsalt": "crazybilliards"}):
         metadata = {"Date": None, "Description": described()}
-        figure.savefig(path, format="svg", metadata=metadata, facecolor="white")
-        plt.close(figure)
+        draw().savefig(path, metadata=metadata)
 
 
 if __name__ == "__main__":
-    mpl.use("svg")
     write(PICTURE)

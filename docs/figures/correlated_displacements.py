@@ -7,11 +7,9 @@ The picture names the digest of its table, so that a test finds a picture of an 
 import hashlib
 from pathlib import Path
 
-import matplotlib as mpl
-import matplotlib.pyplot as plt
 import pandas as pd
 
-from crazybilliards.comparison.drawing import COLOURS, SYMBOLS
+from crazybilliards.comparison.drawing import draw_points
 from crazybilliards.comparison.layout import house_style, panels
 
 TABLE = Path(__file__).parents[1] / "tables" / "displacement_widths.csv"
@@ -20,6 +18,7 @@ AXES = {
     "Gamma": (r"damping $\Gamma = \gamma/\sqrt{km}$", "log", (0.25, 0.5, 1)),
     "L": ("number of rods $L$", "log", (25, 50, 100, 200)),
 }
+LABELS = {"before": "with $h$", "now": "with $h'$"}
 
 
 def main() -> None:
@@ -27,19 +26,13 @@ def main() -> None:
     table = pd.read_csv(TABLE)
     with house_style():
         figure, axes = panels(1, 3, height=2.7)
-        for ax, (column, (label, scale, ticks)) in zip(axes, AXES.items(), strict=True):
-            for number, name in enumerate(("before", "now")):
-                ax.errorbar(
-                    table[column],
-                    table[f"{name}, %"].abs(),
-                    yerr=table["its error, %"],
-                    fmt=SYMBOLS[number],
-                    color=COLOURS[number],
-                    markerfacecolor="none",
-                    linewidth=0.8,
-                    label={"before": "with $h$", "now": "with $h'$"}[name],
+        for ax, (column, (axis, scale, ticks)) in zip(axes, AXES.items(), strict=True):
+            for number, (name, label) in enumerate(LABELS.items()):
+                errors = table[f"{name}, %"].abs()
+                draw_points(
+                    ax, table[column], errors, table["its error, %"], number=number, label=label
                 )
-            ax.set(xlabel=label, xscale=scale, ylim=(0, 22))
+            ax.set(xlabel=axis, xscale=scale, ylim=(0, 22))
             ax.minorticks_off()
             ax.set_xticks(ticks, [f"{each:g}" for each in ticks])
             ax.set_yticks(range(0, 21, 5))
@@ -47,9 +40,7 @@ def main() -> None:
         axes[0].legend()
         digest = hashlib.sha256(TABLE.read_text(encoding="utf-8").encode()).hexdigest()
         figure.savefig(Path(__file__).with_suffix(".png"), metadata={"Source": digest})
-        plt.close(figure)
 
 
 if __name__ == "__main__":
-    mpl.use("Agg")
     main()

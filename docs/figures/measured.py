@@ -32,7 +32,7 @@ def main() -> None:
             densities = {name: smooth(each) for name, each in densities.items()}
             for name, each in list(densities.items())[:-1]:
                 print(f"e = {e:g}, {name}: {deviation(each, densities['simulation'])}")
-            overlay(densities, ax=ax)
+            overlay(densities, ax=ax, style={"simulation": {"color": "black"}})
             entitle(ax, f"$e = {e:g}$")
             ax.set_xlim(-180, 180)
             ax.label_outer()

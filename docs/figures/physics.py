@@ -5,14 +5,12 @@ Run it to write collision.svg, isotonic.svg and breathing.svg beside it.
 
 from pathlib import Path
 
-import matplotlib as mpl
-import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from scipy.optimize import isotonic_regression
 
 from crazybilliards.comparison.drawing import COLOURS
+from crazybilliards.comparison.layout import entitle, house_style, panels
 from crazybilliards.kinetic import breathing_cloud
 from crazybilliards.model import Chain
 
@@ -27,7 +25,7 @@ def collision() -> Figure:
     meeting, times = 1.0, np.linspace(0, 2, 3)
     before = np.stack([0.4 + 1.6 * (times - meeting), 0.4 - 0.5 * (times - meeting)])
     points = np.where(times > meeting, before[::-1], before)  # the velocities are exchanged
-    figure, axes = plt.subplots(1, 3, figsize=(8.4, 3.0), sharey=True, layout="constrained")
+    figure, axes = panels(1, 3, height=2.5, sharey=True)
     for y, shift, colour in zip(points, (-RADIUS, RADIUS), (FIRST, SECOND), strict=True):
         centre = y + shift
         axes[0].fill_betweenx(
@@ -39,7 +37,8 @@ def collision() -> Figure:
         axes[2].plot(y, times, color=colour)
     titles = ("two rods", "two points that bounce", "the points, relabelled")
     for ax, title, name in zip(axes, titles, ("x", "y", "y"), strict=True):
-        ax.set(title=title, xlabel=f"position ${name}$", xticks=[], yticks=[])
+        entitle(ax, title)
+        ax.set(xlabel=f"position ${name}$", xticks=[], yticks=[])
     axes[0].set_ylabel("time")
     return figure
 
@@ -52,7 +51,7 @@ def isotonic() -> Figure:
         ("4 joins the block", _pooled(1, 4)),
     )
     assert np.allclose(stages[-1][1], isotonic_regression(FREE).x)
-    figure, axes = plt.subplots(1, 3, figsize=(8.4, 2.8), sharey=True, layout="constrained")
+    figure, axes = panels(1, 3, sharey=True)
     number = np.arange(1, FREE.size + 1)
     for ax, (title, z) in zip(axes, stages, strict=True):
         ax.plot(number, FREE, "x", color="black")
@@ -63,7 +62,8 @@ def isotonic() -> Figure:
             ax.plot(block, np.full(block.size, value), "o", color=FIRST, zorder=0)
         for i in np.flatnonzero(z[1:] < z[:-1]):
             ax.plot(number[i : i + 2], z[i : i + 2], color=SECOND, linestyle="--", zorder=0)
-        ax.set(title=title, xlabel="point $i$", xticks=number)
+        entitle(ax, title)
+        ax.set(xlabel="point $i$", xticks=number)
     axes[0].set_ylabel("position")
     return figure
 
@@ -80,7 +80,7 @@ def breathing() -> Figure:
     s, period = chain.thermal_length, 2 * np.pi * np.sqrt(chain.mass / chain.stiffness)
     cloud = breathing_cloud(chain, duration=3 * period, stretch=0.3)
     time = cloud.time / period
-    figure, (left, right) = plt.subplots(1, 2, figsize=(8.4, 3.0), layout="constrained")
+    figure, (left, right) = panels(1, 2, height=2.5)
     left.plot(time, cloud.mean_displacement / s, color=FIRST, linewidth=0.8)
     left.set(xlabel=r"time $\omega_0 t/2\pi$", ylabel="mean positions $y_i/s$")
     right.plot(time, cloud.cloud_width / s, color=FIRST, label=r"width $\sigma/s$")
@@ -88,25 +88,14 @@ def breathing() -> Figure:
     right.plot(time, local_width, color=SECOND, label="velocity width, relative")
     right.axhline(1, color="0.6", linewidth=0.8, zorder=0)
     right.set(xlabel=r"time $\omega_0 t/2\pi$", ylim=(0, None))
-    right.legend(frameon=False)
+    right.legend()
     for ax in (left, right):
-        _plain(ax)
+        ax.margins(x=0)
     return figure
 
 
-def _plain(ax: Axes) -> None:
-    ax.spines[["top", "right"]].set_visible(False)
-    ax.margins(x=0)
-
-
-def write(path: Path, figure: Figure) -> None:
-    """Write a picture, the same every time: no date, no random names."""
-    figure.savefig(path, format="svg", metadata={"Date": None}, facecolor="white")
-    plt.close(figure)
-
-
 if __name__ == "__main__":
-    mpl.use("svg")
-    with mpl.rc_context({"svg.hashsalt": "crazybilliards"}):
+    with house_style():
         for draw in (collision, isotonic, breathing):
-            write(HERE / f"{draw.__name__}.svg", draw())
+            # Without the date it is the same file every time.
+            draw().savefig(HERE / f"{draw.__name__}.svg", metadata={"Date": None})
