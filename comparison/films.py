@@ -9,6 +9,7 @@ import math
 import os
 import tempfile
 from collections.abc import Callable, Iterable
+from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -78,8 +79,8 @@ def film(
         The file, whose name ends in ``.mp4``, ``.gif`` or ``.html``. None: a player for a notebook.
         An mp4 needs ffmpeg, which ``pip install 'crazybilliards[film]'`` brings.
     seconds
-        Length of the film, with up to 25 pictures a second. A film of rods is shorter if there are
-        fewer snapshots, because it always has 25.
+        Length of the film, about, with up to 25 pictures a second. A film of rods is shorter if
+        there are fewer snapshots, because it always has 25.
     duration
         Time to simulate, of a chain [T]; None: 20. A result has its own.
     springs
@@ -121,7 +122,7 @@ def film(
     with house_style():
         if isinstance(run, xr.DataTree):
             figure, show, number = relaxation_film(run, pictures)
-            a_second = number / seconds
+            a_second = max(round(number / seconds), 1)
         else:
             figure, show, number = _rod_film(run, pictures, springs)
             a_second = _A_SECOND
@@ -145,11 +146,7 @@ def _short_run(chain: Chain, duration: float, pictures: int, progress: bool) -> 
 
 
 def _content(
-    figure: Figure,
-    show: Callable[[int], None],
-    pictures: Iterable[int],
-    suffix: str,
-    a_second: float = _A_SECOND,
+    figure: Figure, show: Callable[[int], None], pictures: Iterable[int], suffix: str, a_second: int
 ) -> bytes:
     """Return the content of a file whose name has this ending: a film of a figure.
 
@@ -175,10 +172,9 @@ def _content(
 
 
 def _has_ffmpeg() -> bool:
-    if find_spec("imageio_ffmpeg"):
-        import imageio_ffmpeg
-
-        rcParams["animation.ffmpeg_path"] = imageio_ffmpeg.get_ffmpeg_exe()
+    """Return whether there is an ffmpeg; without another one matplotlib is told our extra's."""
+    if not animation.FFMpegWriter.isAvailable() and find_spec("imageio_ffmpeg"):
+        rcParams["animation.ffmpeg_path"] = import_module("imageio_ffmpeg").get_ffmpeg_exe()
     return animation.FFMpegWriter.isAvailable()
 
 
@@ -216,8 +212,9 @@ def _rod_film(
     fastest = float(np.quantile(np.abs(v), 0.99)) or 1.0
     bodies = PolyCollection([], cmap=DIRECTIONS, edgecolor="black", linewidth=0.4)
     bodies.set_norm(CenteredNorm(halfrange=fastest))
-    lines = ax.add_collection(LineCollection([], color=_GREY, linewidth=1))
-    ax.add_collection(bodies)
+    lines = LineCollection([], color=_GREY, linewidth=1)
+    for shown in (lines, bodies):
+        ax.add_collection(shown)
     bars = ax.scatter([], [], marker="_", linewidths=3, color="black")
     figure.colorbar(bodies, ax=ax, label=axis_label(rods.velocity), pad=0.01, extend="both")
     clock, unit = ax.text(0.0, 1.04, "", transform=ax.transAxes), unit_of(rods.time)

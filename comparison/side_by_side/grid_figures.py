@@ -66,8 +66,7 @@ def draw_density(tree: xr.DataTree) -> Figure:
         last = slice(inside[-1] - length, inside[-1])
         cut = {name: result.sel(x=last) for name, result in results.items()}
         _draw_differences(end, cut, "density", chain.close_packed_density)
-    pairs[0][1].set_ylabel("difference at the end\n[% of close packing]")
-    legend_above(figure, *pairs[0])
+    _finish_pairs(figure, pairs, "difference at the end\n[% of close packing]")
     return figure
 
 
@@ -82,8 +81,7 @@ def draw_displacement(tree: xr.DataTree) -> Figure:
         symbol, unit = displacement_unit(chain_of(results[SIMULATION]))
         _draw_best(above, results, "mean_displacement")
         _draw_differences(below, results, "mean_displacement", unit)
-    pairs[0][1].set_ylabel(f"difference\n[% of ${symbol}$]")
-    legend_above(figure, *pairs[0])
+    _finish_pairs(figure, pairs, f"difference\n[% of ${symbol}$]")
     return figure
 
 
@@ -98,6 +96,14 @@ def _pairs(tree: xr.DataTree) -> tuple[Figure, list[tuple[Axes, Axes]]]:
     for ax, group in zip(upper, tree.children.values(), strict=True):
         entitle(ax, _varied(group))
     return figure, list(zip(upper, lower, strict=True))
+
+
+def _finish_pairs(figure: Figure, pairs: list[tuple[Axes, Axes]], difference: str) -> None:
+    """Label the vertical axes at the left only, and put one legend above."""
+    for ax in (ax for pair in pairs[1:] for ax in pair):
+        ax.set_ylabel("")
+    pairs[0][1].set_ylabel(difference)
+    legend_above(figure, *pairs[0])
 
 
 def _results(group: xr.DataTree) -> dict[str, xr.Dataset]:
@@ -116,7 +122,7 @@ def _draw_best(ax: Axes, results: dict[str, xr.Dataset], quantity: str) -> None:
     shown = {name: results[name] for name in (best, SIMULATION)}
     looks = {name: _LOOKS[name] for name in shown}
     overlay(shown, quantity, along="mean_position", ax=ax, style=looks)
-    ax.set(xlabel="", ylabel=ax.get_ylabel() if ax.get_subplotspec().is_first_col() else "")
+    ax.set_xlabel("")
 
 
 def _draw_differences(ax: Axes, results: dict[str, xr.Dataset], quantity: str, unit: float) -> None:
@@ -131,7 +137,6 @@ def _draw_differences(ax: Axes, results: dict[str, xr.Dataset], quantity: str, u
     looks = {name: _LOOKS[name] for name in results}
     looks[SIMULATION] = {"color": "black", "marker": "none"}
     overlay(differences, quantity, along="mean_position", ax=ax, style=looks)
-    ax.set_ylabel("")
 
 
 def _varied(group: xr.DataTree) -> str:
