@@ -21,12 +21,12 @@ def end_with_parent() -> None:
     """End this process when the one that started it ends, even if that one was killed."""
     import psutil  # here, because most commands start no process
 
-    parent = multiprocessing.parent_process()
-    assert parent is not None
+    starter = multiprocessing.parent_process()
+    parent = starter.pid if starter else os.getppid()  # of a process that subprocess started
 
     def follow() -> None:
         # A dead parent that nobody has waited for still counts as a process, but not as the parent.
-        while os.getppid() == parent.pid and psutil.pid_exists(os.getppid()):
+        while os.getppid() == parent and psutil.pid_exists(os.getppid()):
             time.sleep(_BETWEEN_LOOKS)
         os._exit(1)
 
