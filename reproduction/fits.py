@@ -56,7 +56,7 @@ def _singularity(t: Array, scale: float, time: float, exponent: float) -> Array:
 
 
 def fit_growth(time: ArrayLike, energy: ArrayLike) -> Fit:
-    """Fit E(t) = C exp(rate t) to an energy: ``scale`` is C, and ``rate`` is in 1/T.
+    """Fit E(t) = C exp(rate t) to an energy: ``scale`` is C, and ``rate`` is in 1/t_0.
 
     It is a straight line through ln E, with ``rate_error`` and ``misfit`` as in
     :func:`fit_singularity`.
@@ -141,8 +141,8 @@ def fit_exponential(restitution: ArrayLike, y: ArrayLike, error: ArrayLike) -> F
     values, covariance, quality = least_squares("exponential", _saturating, (e, y), start, error)
     names = ("amplitude", "rate", "offset")
     parameters, errors = (
-        dict(zip(names, map(float, each), strict=True))
-        for each in (values, np.sqrt(np.diag(covariance)))
+        dict(zip(names, map(float, numbers), strict=True))
+        for numbers in (values, np.sqrt(np.diag(covariance)))
     )
     return Fit(parameters, errors, _saturating, quality)
 
@@ -202,7 +202,7 @@ def _probability(size: Array, exponent: float, *, sizes: Array) -> Array:
 
 
 def tail_length(velocity: ArrayLike, density: ArrayLike, beyond: float) -> float:
-    """Length w of the tails p(v) ~ exp(-|v|/w) for |v| > ``beyond`` [R/T], of both sides.
+    """Length w of the tails p(v) ~ exp(-|v|/w) for |v| > ``beyond`` [R/t_0], of both sides.
 
     The maximum-likelihood estimate is the mean excess over ``beyond``: the integral of the share of
     velocities beyond v, over all v > ``beyond``, divided by that share at ``beyond``. The logarithm
@@ -233,10 +233,10 @@ def _beyond(edges: Array, density: Array, start: float) -> tuple[float, float]:
     at_low, at_high = shares[:-1][used], shares[1:][used]
     # No logarithm where the share ends at 0: the velocities are then evenly spread over the bin.
     fall = np.log(at_low / np.where(at_high > 0, at_high, at_low))
-    here = np.maximum(low, start)
-    part = (high - here) / (high - low)
-    at_here = np.where(at_high > 0, at_low * np.exp(-fall * (1 - part)), at_low * part)
+    begin = np.maximum(low, start)
+    part = (high - begin) / (high - low)
+    at_begin = np.where(at_high > 0, at_low * np.exp(-fall * (1 - part)), at_low * part)
     falling = fall > 1e-9
-    mean = np.where(at_high > 0, at_here, at_here / 2)
-    np.divide(at_here - at_high, fall * part, out=mean, where=falling)
-    return float(at_here[0]), float(np.sum(mean * (high - here)))
+    mean = np.where(at_high > 0, at_begin, at_begin / 2)
+    np.divide(at_begin - at_high, fall * part, out=mean, where=falling)
+    return float(at_begin[0]), float(np.sum(mean * (high - begin)))

@@ -135,8 +135,8 @@ def at_choices(
     """
     keywords = {}
     for name, choice in choices.items():
-        found = measured(choice)
-        keywords[name] = {"number": found} if isinstance(found, Estimate) else found
+        number = measured(choice)
+        keywords[name] = {"number": number} if isinstance(number, Estimate) else number
     ours, *others = choices
     return {**keywords[ours], "elsewhere": {name: keywords[name]["number"] for name in others}}
 

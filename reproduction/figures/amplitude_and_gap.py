@@ -102,8 +102,8 @@ def _differences(results: Results, restitution: float, name: str) -> list[Estima
 def _draw_amplitude(results: Results) -> Figure:
     figure, axes = panels(2, 2, height=2.3)
     labels = {
-        "velocity_variance": r"$W_v^2/A^2$ [1/(M T)]",
-        "mean_displacement": r"$\langle\Delta x\rangle/A$ [T$^{3/2}$/M]",
+        "velocity_variance": r"$W_v^2/A^2$ [1/(M $t_0$)]",
+        "mean_displacement": r"$\langle\Delta x\rangle/A$ [$t_0^{3/2}$/M]",
     }
     for row, (e, group) in zip((axes[:2], axes[2:]), _BY_AMPLITUDE.items(), strict=True):
         row[0].set_yscale("log")

@@ -25,11 +25,11 @@ _SOURCE = "section Anti-Dissipation, non_linear_vs_linear"
 _FEW = effort((4,), (6,))
 _BEGINNINGS = 100.0, 250.0  # of two spans in which collisions are counted; the first is from 1e3 on
 _SPAN = 50.0
-_GROWING = 1e3  # energy beyond which noise no longer matters [M R^2/T^2]
-_HALF_WAY = 150.0  # where the rate of linear springs is measured up to, and again from [T]
+_GROWING = 1e3  # energy beyond which noise no longer matters [M R^2/t_0^2]
+_HALF_WAY = 150.0  # where the rate of linear springs is measured up to, and again from [t_0]
 # And beyond which damping matters little: how far beyond, the exponent depends on.
 _SINGULAR = (1e5, 1e6, 1e7, 1e8)
-_ENERGY = r"kinetic energy $E$ [M R$^2$/T$^2$]"
+_ENERGY = r"kinetic energy $E$ [M R$^2$/$t_0^2$]"
 
 
 def _from_rest(chain: Chain, duration: float, time_step: float) -> Runs:
@@ -86,7 +86,7 @@ def _frequency(run: xr.Dataset) -> float:
 
 
 def _singularity(run: xr.Dataset, beyond: float) -> tuple[float, float]:
-    """Return exponent and t_c [T] of the fit from an energy on."""
+    """Return exponent and t_c [t_0] of the fit from an energy on."""
     fit = fit_singularity(*_late(run, beyond))
     return fit.exponent, fit.time
 
@@ -109,9 +109,9 @@ def _frequency_claim(results: Results) -> Claim:
     begin, then = _BEGINNINGS
     return Claim(
         "linear springs: the collision frequency C_f is about constant",
-        f"collisions of a contact per T: {early} from t = {begin:g} to {begin + _SPAN:g} T and "
-        f"{late} from {then:g} to {then + _SPAN:g} T, while the energy grows; the second less the "
-        "first, over the first:",
+        f"collisions of a contact per t_0: {early} from t = {begin:g} to {begin + _SPAN:g} t_0 and "
+        f"{late} from {then:g} to {then + _SPAN:g} t_0, while the energy grows; the second less "
+        "the first, over the first:",
         **at_choices(steps, lambda counted: _change(*frequencies(counted))),
         within=around(0.0, 0.1),
         source="section Anti-Dissipation",
@@ -127,8 +127,8 @@ def _growth_claim(results: Results) -> Claim:
     early, late = rates(steps[""])
     return Claim(
         "linear springs: exponential growth",
-        f"rate {early} per T from E = {_GROWING:.0e} to t = {_HALF_WAY:g} T, and {late} from there "
-        f"to {_LINEAR.settings['duration']:g} T; the second less the first, over the first:",
+        f"rate {early} per t_0 from E = {_GROWING:.0e} to t = {_HALF_WAY:g} t_0, and {late} from "
+        f"there to {_LINEAR.settings['duration']:g} t_0; the second less the first, over the first:",
         **at_choices(steps, lambda linear: _change(*rates(linear))),
         within=around(0.0, 0.1),
         source=_SOURCE,
@@ -150,7 +150,7 @@ def _singularity_claim(results: Results) -> Claim:
     diverged = sum(run.attrs["status"] == "diverged" for run in runs)
     return Claim(
         "quadratic springs: divergence in finite time, a power law of t_c - t",
-        f"{diverged} of {len(runs)} runs diverged, t_c = {time} T; exponent of E "
+        f"{diverged} of {len(runs)} runs diverged, t_c = {time} t_0; exponent of E "
         f"by the least energy fitted: {listed}; middle and half the spread, with the error",
         **at_choices(steps, _middle),
         source=f"{_SOURCE}, inset",
@@ -175,9 +175,9 @@ def _draw(results: Results) -> Figure:
     t = np.array([40.0, _HALF_WAY])
     members = _LINEAR.members(results)
     anchor = np.mean([np.interp(90, run.time, run.kinetic_energy) for run in members])
-    label = rf"theory: $\exp({rate:.3f}\,t/$T$)$"
+    label = rf"theory: $\exp({rate:.3f}\,t/t_0)$"
     left.semilogy(t, anchor * np.exp(rate * (t - 90)), "k--", label=label)
-    left.set(xlabel="time $t$ [T]", ylabel=_ENERGY, xlim=(0, _HALF_WAY), ylim=(1, 1e8))
+    left.set(xlabel="time $t$ [$t_0$]", ylabel=_ENERGY, xlim=(0, _HALF_WAY), ylim=(1, 1e8))
     left.legend()
     _draw_singularity(right, results)
     return figure
@@ -192,7 +192,7 @@ def _draw_singularity(ax: Axes, results: Results) -> None:
     ax.plot([], [], linestyle="none", **look, label="quadratic springs")
     span = np.array([0.6, 6.0])
     ax.loglog(span, 3e7 * span**-6.0, "k--", label="slope $-6$")
-    ax.set(xlabel="time left $t_c - t$ [T]", ylabel=_ENERGY, ylim=(1, 1e12))
+    ax.set(xlabel="time left $t_c - t$ [$t_0$]", ylabel=_ENERGY, ylim=(1, 1e12))
     ax.legend()
 
 

@@ -129,7 +129,7 @@ def _draw_by_damping(results: Results) -> Figure:
         # gamma W_v over that of a free rod at gamma = 1, A/sqrt(2 m).
         unit = runs.chain.replace(damping=1.0).free_velocity_width / damping
         curves[rf"$\gamma = {damping:g}$"] = runs, _DAMPED[damping], unit
-    label = r"$\gamma W_v/(A/\sqrt{2m})$  [M$^{1/2}$T$^{-1/2}$]"
+    label = r"$\gamma W_v/(A/\sqrt{2m})$  [(M/$t_0$)$^{1/2}$]"
     return figure_of_flippers(results, curves, label)
 
 

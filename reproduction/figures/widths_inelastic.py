@@ -143,7 +143,7 @@ def _draw_exponents(ax: Axes, results: Results) -> None:
     ax.axhline(_NU, color="0.4", linestyle="--", label="paper")
     ax.plot([], [], **_CROSS, color="0.4", label="theory with pairs")
     ax.legend(loc="upper right")
-    ax.set(xscale="log", xlabel="time step $dt$ [T]", ylabel=r"exponent $\nu$")
+    ax.set(xscale="log", xlabel="time step $dt$ [$t_0$]", ylabel=r"exponent $\nu$")
     ax.set_xticks([margin, 1e-3, 1e-2], ["theory", "$10^{-3}$", "$10^{-2}$"])
     ax.set_xlim(0.5 * margin, 4e-2)
 

@@ -199,7 +199,7 @@ def test_the_growth_rate_is_given_early_and_late():
     _, growth, power_law = claims_of_energy(0.0594, lambda left: 1e6 * left**-5.0)
     assert growth.verdict == "reproduced"
     assert "rate 0.060009" in growth.quantity
-    assert "from E = 1e+03 to t = 150 T, and 0.0594089" in growth.quantity
+    assert "from E = 1e+03 to t = 150 t_0, and 0.0594089" in growth.quantity
     assert growth.number.value == pytest.approx(-0.01, rel=1e-6)
     assert power_law.number == pytest.approx((5.0, 0.0), abs=1e-4)
     assert "1e+05: 5.0" in power_law.quantity
