@@ -128,7 +128,8 @@ def _growth_claim(results: Results) -> Claim:
     return Claim(
         "linear springs: exponential growth",
         f"rate {early} per t_0 from E = {_GROWING:.0e} to t = {_HALF_WAY:g} t_0, and {late} from "
-        f"there to {_LINEAR.settings['duration']:g} t_0; the second less the first, over the first:",
+        f"there to {_LINEAR.settings['duration']:g} t_0; the second less the first, over the "
+        "first:",
         **at_choices(steps, lambda linear: _change(*rates(linear))),
         within=around(0.0, 0.1),
         source=_SOURCE,
