@@ -12,7 +12,7 @@ from crazybilliards.model.arrays import Array
 from crazybilliards.model.parameters import WALLS_AND_MASSES
 from crazybilliards.model.vocabulary import result
 from crazybilliards.particles.laws.law import EXACT, TURN
-from crazybilliards.particles.observers.base import Variables
+from crazybilliards.particles.observers.base import Integers, Variables
 from crazybilliards.particles.run import Run
 from crazybilliards.particles.running.replica import NEVER, Replica
 from crazybilliards.particles.scales import centre_width, relaxation_time, time_step_error
@@ -35,18 +35,10 @@ def collect(run: Run, replicas: list[Replica], interrupted: bool) -> xr.Dataset:
     if interrupted and counts.sum() == 0:
         raise KeyboardInterrupt("nothing was measured yet")
     diverged = reached < NEVER
-    variables: Variables = {}
-    coordinates: dict[str, Array] = {}
-    # A chain that diverged before its first snapshot has a status and a time, but no averages.
-    observed = zip(*(replica.observers for replica in replicas), strict=True)
-    for first, *others in observed if counts.sum() else ():
-        first.join(others)
-        with warnings.catch_warnings():
-            if diverged:  # that rods lie outside of every grid then is no news
-                warnings.simplefilter("ignore")
-            # An error if two observers report the same variable.
-            variables = dict(**variables, **first.report(counts))
-        coordinates |= first.coordinates()
+    with warnings.catch_warnings():
+        if diverged:  # that rods lie outside of every grid then is no news
+            warnings.simplefilter("ignore")
+        variables, coordinates = _report(replicas, counts)
     if run.ensemble:
         coordinates["time"] = times
     variables = {name: only_chosen(run, *values) for name, values in variables.items()}
@@ -67,6 +59,22 @@ def collect(run: Run, replicas: list[Replica], interrupted: bool) -> xr.Dataset:
         "time_step_error": _time_step_error(run, measured),
     }
     return measured
+
+
+def _report(replicas: list[Replica], counts: Integers) -> tuple[Variables, dict[str, Array]]:
+    """Join the observers of all replicas; return their variables and coordinates.
+
+    A chain that diverged before its first snapshot has none.
+    """
+    variables: Variables = {}
+    coordinates: dict[str, Array] = {}
+    if counts.sum():
+        for first, *others in zip(*(replica.observers for replica in replicas), strict=True):
+            first.join(others)
+            # An error if two observers report the same variable.
+            variables = dict(**variables, **first.report(counts))
+            coordinates |= first.coordinates()
+    return variables, coordinates
 
 
 def _time_step_error(run: Run, measured: xr.Dataset) -> float:
