@@ -1,8 +1,10 @@
 """Noisy rods on springs colliding in one dimension: simulation and gas-kinetic theory.
 
-All public names of the rooms ``model``, ``particles``, ``kinetic`` and ``comparison`` can be
-taken from here. Each name loads its module when it is first used. Above these rooms stand
-``reproduction``, the paper's figures and claims, and ``apps``, the command line and the page.
+The names that most users need are taken from here, ``cb.simulate`` for example; observers from
+``cb.observers``; fits and others from their rooms, ``cb.comparison.fit_arctanh``. Each name loads
+its module when it is first used. Above the rooms ``model``, ``particles``, ``kinetic`` and
+``comparison`` stand ``reproduction``, the paper's figures and claims, and ``apps``, the command
+line and the page.
 
 Examples
 --------
@@ -14,15 +16,20 @@ Examples
 True
 """
 
-from importlib import import_module
 from typing import Any
 
-_ROOMS = ("model", "particles", "kinetic", "comparison")
+import lazy_loader
 
-# The rooms list their names; here they are only collected.
-_ROOM_OF = {name: room for room in _ROOMS for name in import_module(f"{__name__}.{room}").__all__}
+_public_name, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
 
-__all__ = list(_ROOM_OF)
+# Where the names are that version 0.5 had here.
+_MOVED = {
+    "observers": "Avalanches Collisions Covariances Density Energy Impacts Modes Raw "
+    "TimeCorrelations TriggeredCollisions Velocities Walls Widths",
+    "comparison": "Deviation Fit Player fit_arctanh fit_border_power_law",
+    "kinetic": "UnmeasuredWarning",
+    "particles": "ShortRunWarning",
+}
 
 
 def __getattr__(name: str) -> Any:
@@ -30,10 +37,12 @@ def __getattr__(name: str) -> Any:
         from importlib.metadata import version
 
         return version("crazybilliards")
-    if name not in _ROOM_OF:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(f"{__name__}.{_ROOM_OF[name]}"), name)
-
-
-def __dir__() -> list[str]:
-    return [*_ROOM_OF, *_ROOMS, "__version__"]
+    for place, names in _MOVED.items():
+        if name in names.split():
+            raise AttributeError(f"{name} is cb.{place}.{name}")
+    if name == "simulate_limit":
+        raise AttributeError(
+            "simulate_limit is gone: a second run, with half the time_step, shows the error of the "
+            "step, which time_step_error of every run estimates"
+        )
+    return _public_name(name)

@@ -292,7 +292,7 @@ runs_of = {
     100: profiles[0],
     300: independent_runs(sticky.replace(size=300), 6, 400),
 }
-fits = {size: [cb.fit_border_power_law(run) for run in runs_of[size]] for size in (30, 100, 300)}
+fits = {size: [cb.comparison.fit_border_power_law(run) for run in runs_of[size]] for size in (30, 100, 300)}
 for size, each in fits.items():
     nu, nu_error = mean_and_error([fit.exponent for fit in each])
     c, c_error = mean_and_error([fit.origin for fit in each])
@@ -489,7 +489,7 @@ for name, each in tau.items():
 # ## Exercise
 #
 # How does the exponent $\nu$ change if $c$ is left out? Use
-# `cb.fit_border_power_law(run, shifted=False)` for all `runs_of`.
+# `cb.comparison.fit_border_power_law(run, shifted=False)` for all `runs_of`.
 #
 # <details><summary>Solution</summary>
 #

@@ -390,7 +390,7 @@ assert abs(whole - exact.density).max() * 2 < 1e-3
 fits = {}
 for amplitude in (1, 10, 100):
     theory = cb.equilibrium(cb.Chain(size=100, amplitude=amplitude))
-    fit, unit = cb.fit_arctanh(theory), s * amplitude  # the thermal length of this chain
+    fit, unit = cb.comparison.fit_arctanh(theory), s * amplitude  # the thermal length of this chain
     off = (fit(theory.mean_position.values) - theory.mean_displacement.values) / unit
     print(f"A = {amplitude}: the arctanh is wrong by at most {abs(off).max():.4f} s")
     fits[amplitude] = off

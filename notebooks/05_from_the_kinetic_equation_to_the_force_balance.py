@@ -339,7 +339,7 @@ assert after.maximum_in_errors < 5
 # %%
 hundred = cb.Chain(size=100, amplitude=10)
 long = cb.simulate(hundred, duration=100_000, replicas=2, seed=1, progress=False)
-fit = cb.fit_arctanh(long)
+fit = cb.comparison.fit_arctanh(long)
 closures = {"labels": cb.force_balance(hundred), "fit": cb.force_balance(hundred, fit)}
 for name, theory in closures.items():
     for reading, each in (("fluid", theory), ("rods", cb.rod_by_rod(theory))):

@@ -269,7 +269,7 @@ plt.show()
 
 # %%
 binned = cb.smooth(run)
-paper = cb.force_balance(chain, displacement=cb.fit_arctanh(run))
+paper = cb.force_balance(chain, displacement=cb.comparison.fit_arctanh(run))
 flow = cb.hydrodynamics(warm, cb.compressed(warm, SQUEEZE), END, every=0.4, progress=False)
 in_time = np.array([fields[0] for fields in storage.data])
 theirs = np.array([np.interp(X, flow.x, row) for row in flow.density])

@@ -674,7 +674,7 @@ x, displacement = x[density > 1e-6], displacement[density > 1e-6]
 closures = {
     "by place": (x, displacement),
     "by rod": rods_of,
-    "by rod, arctanh fitted": cb.fit_arctanh(rods_of),
+    "by rod, arctanh fitted": cb.comparison.fit_arctanh(rods_of),
 }
 for name, known in closures.items():
     theory = cb.force_balance(case, displacement=known)
@@ -687,7 +687,7 @@ shown = x > 0
 ax.plot(x[shown], displacement[shown], color=ORANGE, linewidth=3, label="rods found at x, exact")
 outer = rods_of.particle.values > case.size / 2
 ax.plot(by_rod[outer], rods_of.mean_displacement[outer], "o", color=BLUE, ms=3, label="rod i")
-fitted = cb.fit_arctanh(rods_of)(by_rod[outer])
+fitted = cb.comparison.fit_arctanh(rods_of)(by_rod[outer])
 ax.plot(by_rod[outer], fitted, "k-", linewidth=1, label="arctanh fit")
 ax.set(xlabel="position x [R]", ylabel=r"$\langle\Delta x\rangle$ [R]")
 ax.legend()

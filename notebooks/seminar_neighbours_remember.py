@@ -55,7 +55,7 @@ if not safe(
 # %% [markdown]
 # ## 1. Do neighbours move together?
 #
-# The observer `cb.Covariances` measures $\langle v_iv_{i+r}\rangle$ for all rods $i$ and
+# The observer `cb.observers.Covariances` measures $\langle v_iv_{i+r}\rangle$ for all rods $i$ and
 # separations $r$. We need all separations later, so we ask for 99 of them. The observer `impacts`
 # watches every single collision.
 #
@@ -68,7 +68,7 @@ if not safe(
 import crazybilliards as cb
 
 chains = {e: cb.Chain(size=100, restitution=e) for e in (1, 0.75)}
-observe = ["widths", cb.Covariances(separations=99), "impacts"]
+observe = ["widths", cb.observers.Covariances(separations=99), "impacts"]
 runs = {
     e: cb.simulate(chain, duration=duration, every=0.5, observe=observe, seed=1, progress=False)
     for e, chain in chains.items()

@@ -103,7 +103,7 @@ def simulate(
         (wall_force, wall_collision_rate), ``"avalanches"`` (avalanche_count),
         ``"triggered-collisions"`` (triggered_count) and ``"snapshots"``
         (position and velocity as they are). Observers can also be given as objects,
-        ``cb.Velocities(bins=801)`` or your own.
+        ``cb.observers.Velocities(bins=801)`` or your own.
     start
         A result with ``position`` and ``velocity`` over (replica, particle), such as
         ``equilibrium_states(chain, replicas)`` or ``given_start(chain, position)``; None: every

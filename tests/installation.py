@@ -4,10 +4,9 @@ import subprocess
 from importlib.metadata import version
 from pathlib import Path
 
-import crazybilliards as cb
-
 ROOT = Path(__file__).parent.parent
-FOLDERS = {"api": ""} | {room: f".{room}" for room in (*cb._ROOMS, "reproduction", "apps")}
+ROOMS = ("model", "particles", "kinetic", "comparison")  # those with public names
+FOLDERS = {"api": ""} | {room: f".{room}" for room in (*ROOMS, "reproduction", "apps")}
 EXPECTED = ["Chain", "simulate", "force_balance", "overlay", "load", "save", "equilibrium"]
 TRY = f"""
 import sys

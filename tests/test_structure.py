@@ -3,6 +3,7 @@
 import ast
 import doctest
 import graphlib
+import inspect
 import pydoc
 import sys
 import tomllib
@@ -12,7 +13,7 @@ from pathlib import Path
 
 import architecture
 import pytest
-from installation import EXPECTED, ROOT, run
+from installation import EXPECTED, ROOMS, ROOT, run
 
 import crazybilliards as cb
 
@@ -44,11 +45,11 @@ FLOORS = {
         {"correlations"},
     ),
     "comparison": (
-        {"combining", "coverage", "distances", "drawing", "fits", "layout", "widths"}
-        | {"curves", "encoding", "rod_film", "stationary_theories", "symbols"},
+        {"combining", "coverage", "curves", "distances", "drawing", "fits", "layout", "widths"}
+        | {"stationary_theories"},
         {"sweeps"},
         {"side_by_side"},
-        {"moving_pictures"},
+        {"films"},
     ),
     "reproduction": (
         {"claims", "fits"},
@@ -110,7 +111,7 @@ def test_the_picture_of_the_architecture_shows_the_imports():
 )
 def test_examples_in_docstrings(room):
     # The names that a room hands out have their examples where they are defined.
-    names = [name for name in MODULES if name.split(".")[0] == room and name not in cb._ROOMS]
+    names = [name for name in MODULES if name.split(".")[0] == room and name not in ROOMS]
     modules = [f"crazybilliards.{name}".removesuffix(".") for name in names or [""]]
     failed = {name: doctest.testmod(import_module(name)).failed for name in modules}
     assert not any(failed.values()), failed
@@ -118,29 +119,43 @@ def test_examples_in_docstrings(room):
 
 # -- ``import crazybilliards as cb``: all public names, loaded late -----------------------------
 
-PUBLIC = [f"crazybilliards.{room}" for room in cb._ROOMS]  # rooms with public names
+PUBLIC = [f"crazybilliards.{room}" for room in (*ROOMS, "particles.observers")]
 
 
-def test_all_names_of_all_rooms_are_there():
-    names = [(room, name) for room in PUBLIC for name in import_module(room).__all__]
-    assert len({name for _, name in names}) == len(names), "two rooms share a name"
-    assert {name for _, name in names} == set(cb.__all__) < set(dir(cb))
-    for room, name in names:
-        assert getattr(cb, name) is getattr(import_module(room), name)
+def test_the_front_door_has_the_names_that_most_users_need():
+    names = {
+        name: getattr(import_module(room), name)
+        for room in PUBLIC
+        for name in import_module(room).__all__
+    }
+    for name in cb.__all__:
+        assert getattr(cb, name) is names.get(name, sys.modules.get(f"crazybilliards.{name}"))
     assert set(EXPECTED) <= set(cb.__all__)
-    with pytest.raises(AttributeError, match="no attribute 'nonsense'"):
+    assert len(cb.__all__) <= 40
+    described = pydoc.render_doc(cb, renderer=pydoc.plaintext)
+    assert not [name for name in (*cb.__all__, version("crazybilliards")) if name not in described]
+    with pytest.raises(AttributeError, match="nonsense"):
         cb.nonsense  # noqa: B018
-    told = pydoc.render_doc(cb, renderer=pydoc.plaintext)
-    assert not [name for name in (*cb.__all__, version("crazybilliards")) if name not in told]
 
 
-@pytest.mark.parametrize("name", ["crazybilliards", *PUBLIC])
+@pytest.mark.parametrize("name", [*" ".join(cb._MOVED.values()).split(), "simulate_limit"])
+def test_an_old_name_says_where_it_is(name):
+    with pytest.raises(AttributeError, match=f"{name} is ") as caught:
+        getattr(cb, name)
+    place = str(caught.value).partition(" is ")[2]
+    assert name == "simulate_limit" or eval(place).__name__ == name
+
+
+@pytest.mark.parametrize("name", ["crazybilliards", *PUBLIC[:-1]])
 def test_a_public_name_is_no_module(name):
     """Importing a module of that name would put it in the place of the function."""
     assert not (ROOT / "crazybilliards").exists()  # which would shadow the package
     package = import_module(name)
     for public in package.__all__:
-        assert not any(list(Path(folder).glob(f"{public}*")) for folder in package.__path__)
+        if inspect.ismodule(getattr(package, public)):
+            continue
+        for end in ("", ".py"):
+            assert not any(Path(folder, public + end).exists() for folder in package.__path__)
 
 
 def test_the_import_is_quick():

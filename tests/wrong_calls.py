@@ -19,7 +19,7 @@ cb.compare(chain, {"e": [0.9]}) | restitution is e of the paper
 cb.Sweep({"e": [1]}) | restitution is e of the paper
 cb.simulate(chain, observe="width") | did you mean 'widths'?
 cb.Chain(spring="lineer") | spring must be one of...got 'lineer'; did you mean 'linear'?
-cb.fit_arctanh(foreign) | the result has no 'mean_displacement'
+cb.comparison.fit_arctanh(foreign) | the result has no 'mean_displacement'
 """
 
 VALUES = """
@@ -37,8 +37,8 @@ cb.given_start(chain, chain.anchors, np.datetime64("2020-01-01")) | velocity mus
 cb.given_start(chain, chain.anchors, np.ma.masked_less(range(5), 2)) | velocity must be numbers
 cb.simulate(chain, seed=[1, 2]) | a Generator of numpy...got [1, 2]
 cb.deviation(foreign, foreign) | not a crazybilliards result
-cb.fit_arctanh(exact.isel(particle=slice(2))) | fit_arctanh: the result has 2 particles, the chain 5
-cb.fit_arctanh(exact.isel(particle=slice(None, None, -1))) | must ascend from 1 to 5
+cb.comparison.fit_arctanh(exact.isel(particle=slice(2))) | fit_arctanh: the result has 2 particles
+cb.comparison.fit_arctanh(exact.isel(particle=slice(None, None, -1))) | must ascend from 1 to 5
 cb.smooth(run.sel(x=slice(-1, 1))) | of the chain's 5 rods: smooth needs the whole grid
 """
 
@@ -56,7 +56,7 @@ cb.simulate(chain, observe="impacts", average="ensemble") | 'impacts' is average
 cb.simulate(cb.Chain(size=1), observe="impacts") | 'impacts' needs a chain of at least 2 rods
 cb.simulate(cb.Chain(damping=0), observe="velocities") | 'velocities' needs
 cb.simulate(chain, observe="walls") | 'walls' needs a chain between walls, Chain(box=...)
-cb.simulate(chain, observe=cb.Density(reach=1e12)) | reach=1e+12 is too large for a grid
+cb.simulate(chain, observe=cb.observers.Density(reach=1e12)) | reach=1e+12 is too large for a grid
 cb.simulate(chain, particles=3) | particles must be a list of numbers, got 3
 cb.simulate(chain, particles=(3, 2)) | particles must ascend
 cb.simulate(chain, replicas=10**12) | would take...GiB of memory
@@ -80,8 +80,8 @@ cb.critical_size(sorts.replace(restitution=1.1)) | does not know the chain's mas
 cb.breathing_cloud(walled, 1, stretch=0.5) | does not know the chain's box
 cb.displaced(walled, 1) | does not know the chain's box
 cb.compare_relaxation(sorts, "displaced") | does not know the chain's mass_ratio
-cb.fit_arctanh(walls) | fit_arctanh does not know the chain's box
-cb.fit_border_power_law(walls) | fit_border_power_law does not know the chain's box
+cb.comparison.fit_arctanh(walls) | fit_arctanh does not know the chain's box
+cb.comparison.fit_border_power_law(walls) | fit_border_power_law does not know the chain's box
 """
 
 THEORIES = """

@@ -23,6 +23,22 @@ from crazybilliards.particles.observers.walls import Walls
 from crazybilliards.particles.observers.widths import Widths
 from crazybilliards.particles.run import Run
 
+__all__ = [
+    "Avalanches",
+    "Collisions",
+    "Covariances",
+    "Density",
+    "Energy",
+    "Impacts",
+    "Modes",
+    "Raw",
+    "TimeCorrelations",
+    "TriggeredCollisions",
+    "Velocities",
+    "Walls",
+    "Widths",
+]
+
 OBSERVERS: dict[str, type[Observer]] = {
     observer.name: observer
     for observer in (

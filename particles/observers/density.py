@@ -85,7 +85,7 @@ class Density(Averaged):
             share = self.outside / counts.sum()
             warn_user(
                 f"density: {share:.3g} rods per snapshot lay outside the grid and are missing; "
-                "observe=cb.Density(reach=...) makes the grid wider"
+                "observe=cb.observers.Density(reach=...) makes the grid wider"
             )
         spacing = self.spacing
         variables = self.averages({"density": lambda average: average / spacing}, counts, "x")

@@ -135,7 +135,7 @@ class TimeCorrelations(Averaged):
                 return spacing, last
         raise ValueError(
             f"observe: {self.name!r} needs a duration above the longest lag {longest:.4g}, got "
-            f"{duration:.4g}; cb.TimeCorrelations(longest=...) chooses another"
+            f"{duration:.4g}; cb.observers.TimeCorrelations(longest=...) chooses another"
         )
 
     def shape(self, run: Run) -> tuple[int, ...]:

@@ -13,7 +13,8 @@ from crazybilliards.kinetic import (
     hydrodynamics,
 )
 from crazybilliards.model import Chain
-from crazybilliards.particles import Density, simulate
+from crazybilliards.particles import simulate
+from crazybilliards.particles.observers import Density
 
 
 def coverage_slowly(positions, x, radius):

@@ -13,7 +13,8 @@ from crazybilliards.comparison.curves import axis_label
 from crazybilliards.kinetic import correlated_phase_space
 from crazybilliards.model import Chain
 from crazybilliards.model.vocabulary import VOCABULARY
-from crazybilliards.particles import Covariances, simulate
+from crazybilliards.particles import simulate
+from crazybilliards.particles.observers import Covariances
 
 
 @pytest.fixture(scope="module")

@@ -181,7 +181,9 @@ def test_a_wrong_case_at_the_end_of_a_grid_is_found_before_any_work(tmp_path):
 
 def test_runs_that_are_too_short_are_counted(tmp_path):
     short = Sweep({"size": [10, 20], "duration": [20, 1000]})
-    with pytest.warns(cb.ShortRunWarning, match=r"^2 of 4 cases; the first: duration=20 is short"):
+    with pytest.warns(
+        cb.particles.ShortRunWarning, match=r"^2 of 4 cases; the first: duration=20 is short"
+    ):
         run_cases(short, tmp_path, **QUIET)
 
 

@@ -9,8 +9,14 @@ import xarray as xr
 from scipy.optimize import curve_fit
 from scipy.stats import truncnorm
 
-from crazybilliards import UnmeasuredWarning, deviation, smooth
-from crazybilliards.kinetic import equilibrium, force_balance, hydrodynamics, rod_by_rod
+from crazybilliards import deviation, smooth
+from crazybilliards.kinetic import (
+    UnmeasuredWarning,
+    equilibrium,
+    force_balance,
+    hydrodynamics,
+    rod_by_rod,
+)
 from crazybilliards.kinetic.fluids.one_mass import wave_model_error
 from crazybilliards.model import Chain
 

@@ -6,7 +6,8 @@ import pytest
 from crazybilliards.kinetic import correlated_phase_space
 from crazybilliards.kinetic.correlations.cells import make_cells, of_rods
 from crazybilliards.model import Chain
-from crazybilliards.particles import Covariances, simulate
+from crazybilliards.particles import simulate
+from crazybilliards.particles.observers import Covariances
 
 CHAIN = Chain(size=30, restitution=0.9)
 

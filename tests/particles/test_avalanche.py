@@ -114,7 +114,7 @@ def test_both_counts_are_taken_in_one_run():
 def test_elastic_rods_meet_with_the_speeds_of_gaussian_processes(size):
     """Rice: the speed w of a crossing has the density w exp(-w^2/4 W^2)/2 W^2."""
     chain = Chain(size=size)
-    how = {"duration": 1000, "observe": cb.Impacts(bins=40), "progress": False}
+    how = {"duration": 1000, "observe": cb.observers.Impacts(bins=40), "progress": False}
     runs = [simulate(chain, seed=seed, **how) for seed in range(32)]
     [speed] = {tuple(run.impact_speed.values) for run in runs}
     edges = np.sinh(np.linspace(0, np.arcsinh(20_000), 41)) * 0.05 * chain.free_velocity_width
@@ -135,7 +135,7 @@ def test_speeds_of_impacts_are_those_whose_temperature_is_given():
     driven = Chain(size=5, restitution=0.5, gap=0.3)
     free = driven.replace(amplitude=0, damping=0, restitution=0.99)
     start = cb.given_start(free, free.anchors + np.array([-3.0, -1.0, 0.0, 1.0, 3.0]))
-    how = {"duration": 200, "observe": cb.Impacts(bins=5000), "progress": False}
+    how = {"duration": 200, "observe": cb.observers.Impacts(bins=5000), "progress": False}
     for chain, begun in ((driven, None), (free, start)):
         run = simulate(chain, start=begun, **how)
         width = np.diff(run.impact_speed, prepend=-run.impact_speed[0])

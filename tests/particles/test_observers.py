@@ -11,7 +11,6 @@ from scipy.integrate import quad
 from scipy.stats import kurtosis, norm, skew
 
 import crazybilliards as cb
-from crazybilliards import particles
 from crazybilliards.model import Chain, load, save
 from crazybilliards.model.vocabulary import VOCABULARY
 from crazybilliards.particles import simulate
@@ -22,10 +21,9 @@ from crazybilliards.particles.observers.energy import Energy
 
 def test_every_observer_is_a_public_name():
     for name, observer in OBSERVERS.items():
-        public = getattr(cb, observer.__name__)
-        assert public is observer
+        assert getattr(cb.observers, observer.__name__) is observer
         assert name in pydoc.render_doc(cb.simulate, renderer=pydoc.plaintext)
-    assert {observer.__name__ for observer in OBSERVERS.values()} < set(particles.__all__)
+    assert sorted(kind.__name__ for kind in OBSERVERS.values()) == cb.observers.__all__
 
     def leaves(kind):
         own = [each for each in kind.__subclasses__() if each.__module__.startswith("crazyb")]

@@ -8,14 +8,8 @@ import pytest
 from crazybilliards.comparison import coverage_density, deviation, overlay, smooth
 from crazybilliards.kinetic import equilibrium, equilibrium_states
 from crazybilliards.model import Chain
-from crazybilliards.particles import (
-    Density,
-    ShortRunWarning,
-    TimeCorrelations,
-    given_start,
-    relaxation_time,
-    simulate,
-)
+from crazybilliards.particles import ShortRunWarning, given_start, relaxation_time, simulate
+from crazybilliards.particles.observers import Density, TimeCorrelations
 
 QUIET = {"progress": False, "threads": 1}
 

@@ -7,7 +7,8 @@ from scipy.fft import dct
 
 import crazybilliards as cb
 from crazybilliards.model import Chain
-from crazybilliards.particles import TimeCorrelations, simulate
+from crazybilliards.particles import simulate
+from crazybilliards.particles.observers import TimeCorrelations
 from crazybilliards.particles.observers.base import Snapshots
 
 CRITICAL = 2 * np.sqrt(4 * np.pi / 3)
