@@ -208,14 +208,3 @@ def merge_pairs(blocks: NDArray[Any]) -> None:
     half = len(blocks) // 2
     blocks[:half] = blocks[0::2] + blocks[1::2]
     blocks[half:] = 0
-
-
-def restore(owner: Any, name: str, value: NDArray[Any]) -> None:
-    """Set an attribute to a restored value; an array stays an array, a number a number."""
-    current = getattr(owner, name)
-    if isinstance(current, np.ndarray):
-        if current.shape != value.shape or current.dtype != value.dtype:
-            raise ValueError(f"the checkpoint's {name} does not fit this run")
-        current[...] = value  # in place: kernels write into the same array
-    else:
-        setattr(owner, name, type(current)(value))

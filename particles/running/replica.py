@@ -13,7 +13,7 @@ from crazybilliards.model.arrays import Array
 from crazybilliards.particles.laws.avalanche import Tally, make_tally
 from crazybilliards.particles.laws.law import make_scratch
 from crazybilliards.particles.noise import STATE, make_noise
-from crazybilliards.particles.observers.base import Snapshots, merge_pairs, restore
+from crazybilliards.particles.observers.base import Snapshots, merge_pairs
 from crazybilliards.particles.run import Run
 from crazybilliards.particles.stepping import advance, record
 
@@ -194,3 +194,14 @@ class Replica:
         for observer in self.observers:
             tally = observer.tally(tally)
         return tally
+
+
+def restore(owner: Any, name: str, value: NDArray[Any]) -> None:
+    """Set an attribute to a restored value; an array stays an array, a number a number."""
+    current = getattr(owner, name)
+    if isinstance(current, np.ndarray):
+        if current.shape != value.shape or current.dtype != value.dtype:
+            raise ValueError(f"the checkpoint's {name} does not fit this run")
+        current[...] = value  # in place: kernels write into the same array
+    else:
+        setattr(owner, name, type(current)(value))

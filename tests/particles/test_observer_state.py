@@ -7,7 +7,7 @@ from described_runs import a_run, some_snapshots
 from crazybilliards.model import Chain
 from crazybilliards.particles.laws.avalanche import make_tally
 from crazybilliards.particles.observers import OBSERVERS
-from crazybilliards.particles.observers.base import restore
+from crazybilliards.particles.running.replica import restore
 
 BUILT_IN = [pytest.param(observer, id=name) for name, observer in OBSERVERS.items()]
 
