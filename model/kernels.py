@@ -76,7 +76,7 @@ def kernel(
     # numba has no public way to add to the stamp of its cache, or to let it fail. If a later numba
     # lacks these private names, its cache works unchanged.
     disk = getattr(dispatcher, "_cache", None)
-    index = getattr(disk, "_cache_file", None)
+    index: Any = getattr(disk, "_cache_file", None)
     if hasattr(index, "_source_stamp"):
         rooms = room_fingerprint("model", "particles", "kinetic")
         index._source_stamp = (index._source_stamp, rooms)

@@ -104,13 +104,8 @@ TYPED = """
 import crazybilliards as cb
 from crazybilliards.kinetic import force_balance
 
-class Whole:  # as numpy's integers are
-    def __index__(self) -> int:
-        return 3
-
-
-chain: cb.Chain = cb.Chain(size=Whole())
-run = cb.simulate(chain, seed=Whole())
+chain: cb.Chain = cb.Chain(size=3)
+run = cb.simulate(chain, observe=cb.observers.Density(reach=3))
 size: int = chain.size
 release: str = cb.__version__
 force_balance(chain)

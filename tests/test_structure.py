@@ -51,11 +51,7 @@ FLOORS = {
         {"side_by_side"},
         {"films"},
     ),
-    "reproduction": (
-        {"claims", "fits"},
-        {"chains", "distributions", "profiles"},
-        {"figures"},
-    ),
+    "reproduction": ({"claims", "fits"}, {"chains", "distributions", "profiles"}, {"figures"}),
     "apps": ({"explore"}, {"commands"}),
 }
 LINES = 300

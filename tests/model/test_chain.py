@@ -38,13 +38,6 @@ def test_zero_amplitude_damping_and_stiffness_are_chains_without_a_steady_state(
     assert Chain(amplitude=0, damping=0).temperature == 0
 
 
-def test_numpy_numbers_become_plain_ones():
-    chain = Chain(size=np.int64(7), amplitude=np.float32(2), gap=1)
-    assert chain == Chain(size=7, amplitude=2.0, gap=1.0)
-    assert type(chain.size) is int
-    assert type(chain.gap) is float
-
-
 def test_is_frozen_and_replace_checks():
     with pytest.raises(AttributeError):
         Chain().gap = 1
@@ -70,11 +63,6 @@ def test_reduced_and_physical_coordinates_are_inverse(size, gap, radius):
     np.testing.assert_allclose(chain.reduced(chain.physical(y)), y, atol=1e-9 * max(radius, 1))
     np.testing.assert_allclose(np.diff(chain.anchors), 2 * radius + gap)
     np.testing.assert_allclose(chain.anchors, -chain.anchors[::-1])
-
-
-def test_parameters_round_trip():
-    chain = Chain(size=3, gap=0.25, spring="quadratic")
-    assert Chain(**chain.parameters()) == chain
 
 
 @pytest.mark.parametrize(

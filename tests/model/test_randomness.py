@@ -32,18 +32,9 @@ def test_a_sequence_means_its_number(name):
     assert not five.equals(six)
 
 
-@pytest.mark.parametrize("name", FUNCTIONS)
-@pytest.mark.parametrize("seed", [-1, "5", None, np.random.RandomState(1)])
-def test_what_is_no_seed_is_refused(name, seed):
-    with pytest.raises(ValueError, match="seed must be an integer >= 0"):
-        FUNCTIONS[name](seed=seed)
-
-
 def test_a_number_that_is_too_long_for_the_provenance_is_mixed_to_a_shorter_one():
     assert seed_of(np.random.SeedSequence(2**4096)) < 2**128
     assert seed_of(np.random.SeedSequence(2**4095)) == 2**4095
-    run = simulate(CHAIN, seed=2**4096 - 1, **SHORT)
-    assert json.loads(run.attrs["provenance"])["seed"] == 2**4096 - 1
 
 
 def test_a_generator_gives_a_seed_that_the_provenance_tells():
@@ -54,13 +45,6 @@ def test_a_generator_gives_a_seed_that_the_provenance_tells():
     again = np.random.default_rng(1)
     assert seeds == [int(again.integers(2**63)) for _ in range(2)]
     assert simulate(CHAIN, seed=seeds[0], **SHORT).identical(first)
-
-
-def test_a_checkpoint_continues_a_run_that_began_with_an_equal_generator(tmp_path):
-    file = tmp_path / "run.checkpoint"
-    whole = simulate(CHAIN, seed=np.random.default_rng(1), checkpoint=file, **SHORT)
-    again = simulate(CHAIN, seed=np.random.default_rng(1), checkpoint=file, **SHORT)
-    assert whole.equals(again)
 
 
 def test_streams_of_one_sequence_differ():
