@@ -1,11 +1,10 @@
 """Jobs that are forked and killed, and what they leave in their folders.
 
 Importing and compiling would take most of the time. So this process has done both, and each attempt
-is a fork of it; workers are forked, too. A job may become another program by ``os.execv``.
+is a fork of it. Its workers are started anew. A job may become another program by ``os.execv``.
 """
 
 import faulthandler
-import multiprocessing
 import os
 import re
 import signal
@@ -14,7 +13,6 @@ import time
 import traceback
 import warnings
 from contextlib import suppress
-from functools import partial
 from pathlib import Path
 
 from crazybilliards.model import load
@@ -59,11 +57,6 @@ def _attempt(job, folder, begun):
         os.dup2(log, stream)
     sys.stdout = sys.stderr = os.fdopen(log, "w", buffering=1)
     faulthandler.register(signal.SIGUSR1, file=log)
-    fork = multiprocessing.get_context("fork")
-    multiprocessing.get_context = lambda name: fork
-    # A worker that is started anew has none of the handlers of its parent; a forked one would.
-    for number in (signal.SIGTERM, signal.SIGHUP):
-        os.register_at_fork(after_in_child=partial(signal.signal, number, signal.SIG_DFL))
     signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
     os.write(begun, b"!")
     job(folder)
@@ -132,21 +125,15 @@ def contents(folder):
             continue
         if path.suffix == ".nc":
             found[name] = load(path)
-            found[name].attrs.pop("seconds", None)  # computing time
         else:
             content = read_sealed(path) if name == "state" else path.read_bytes()
             found[name] = re.sub(rb"\d+ s of computing", b"", content)
     return found
 
 
-def require_same(found, undisturbed, *, finished=False):
-    """Compare whatever there is with an undisturbed run; what is interrupted says so.
-
-    Until a sweep has ``finished`` its index lists the cases that there are.
-    """
+def require_same(found, undisturbed):
+    """Compare whatever there is with an undisturbed run; what is interrupted says so."""
     for name, content in found.items():
-        if name.endswith("index.csv") and not finished:
-            continue
         if "-interrupted" in name:
             assert name.endswith(".png") or content.attrs["status"] == "interrupted"
         elif name.endswith(".nc"):

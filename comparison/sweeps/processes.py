@@ -11,6 +11,7 @@ from contextlib import contextmanager
 from typing import Any
 
 from loky import ProcessPoolExecutor, cpu_count
+from tqdm import tqdm
 
 from crazybilliards.model.checks import check_integer
 from crazybilliards.model.process import end_with_parent
@@ -86,4 +87,6 @@ class _Processes(ThreadPoolExecutor):
 
 def _prepare_process() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Windows blocks no signals
+    # The default lock of tqdm works across processes, and a killed process would leave it behind.
+    tqdm.set_lock(threading.RLock())
     end_with_parent()
