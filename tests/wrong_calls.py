@@ -125,6 +125,7 @@ SWEEPS = r"""
 [simulate]\n[phase_space] | one job a sweep
 [grid]\nsize = 3 | size must be a list
 [grid]\ngap = [3, 3.0] | twice
+[grid]\ngap = [0, 1]\n[chain]\ngap = 2 | gap is given twice
 [grid]\nbox = [0, 20] | box must be above 200, the length of all rods
 [grid]\nmass_ratio = [1, 3]\n[phase_space] | does not know the chain's mass_ratio
 [grid]\nrestitution = [0.5]\n[equilibrium] | restitution must be 1

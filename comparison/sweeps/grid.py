@@ -63,7 +63,7 @@ class Sweep:
     Raises
     ------
     ValueError
-        For an unknown name, or an empty or repeated list of values.
+        For an unknown name, or an empty list of values; for a value or a name given twice.
     """
 
     grid: Mapping[str, Any]
@@ -74,6 +74,8 @@ class Sweep:
     def __post_init__(self) -> None:
         grid = {name: _values(name, values) for name, values in self.grid.items()}
         object.__setattr__(self, "grid", grid)
+        if twice := grid.keys() & {*self.chain, *self.settings}:
+            raise ValueError(f"{min(twice)} is given twice: in the grid, and the same for all")
         next(iter(self))  # checks all names
 
     def __len__(self) -> int:
@@ -92,14 +94,14 @@ class Sweep:
         return list(self)
 
 
-def _values(name: str, given: Any) -> list[Any]:
+def _values(name: str, values: Any) -> list[Any]:
     """Return the values of a parameter as a person writes them, or raise a ValueError."""
-    if not is_list(given) or isinstance(given, Mapping | set) or len(given) == 0:
-        raise ValueError(f"grid: {name} must be a list of values, got {shown(given)}")
-    values = [as_written(each) for each in given]
-    if len({json.dumps(plain(name, each)) for each in values}) < len(values):
-        raise ValueError(f"grid: {name} holds a value twice, got {shown(given)}")
-    return values
+    if not is_list(values) or isinstance(values, Mapping | set) or len(values) == 0:
+        raise ValueError(f"grid: {name} must be a list of values, got {shown(values)}")
+    written = [as_written(value) for value in values]
+    if len({json.dumps(plain(name, value)) for value in written}) < len(written):
+        raise ValueError(f"grid: {name} holds a value twice, got {shown(values)}")
+    return written
 
 
 def read_sweep(path: str | os.PathLike[str]) -> Sweep:

@@ -74,11 +74,16 @@ def run_cases(
     place = check_path("folder", folder)
     if not isinstance(cases, Sweep):
         cases = list(dict.fromkeys(cases))
-    if short := [*filter(None, (case.too_short for case in cases))]:  # which checks all
-        warn_user(f"{len(short)} of {len(cases)} cases; the first: {short[0]}", ShortRunWarning)
+    short = filter(None, (case.too_short for case in cases))
+    if first := next(short, ""):
+        number = 1 + sum(1 for _ in short)  # which checks the others
+        warn_user(f"{number} of {len(cases)} cases; the first: {first}", ShortRunWarning)
     make_folder(place)
     failed: dict[Case, str] = {}
-    with locked(place), tqdm(total=len(cases), disable=None if progress else True) as bar:
+    with (
+        locked(place),
+        tqdm(total=len(cases), unit="case", disable=None if progress else True) as bar,
+    ):
         missing = _missing(cases, place, keep_old, bar)
         computed = _computed_by(executor, missing) if executor else _computed_here(missing, threads)
         with closing(computed):
