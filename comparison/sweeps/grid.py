@@ -202,7 +202,8 @@ def _with_attributes(
     ``case`` repeats the parameters, which are coordinates.
     """
     joined.attrs.pop("case", None)
-    for name, column in attributes.drop(columns=["case", *names], errors="ignore").items():
+    for label, column in attributes.drop(columns=["case", *names], errors="ignore").items():
+        name = str(label)
         if pd.api.types.is_numeric_dtype(column):
             meaning, unit = ATTRIBUTES.get(name, (name.replace("_", " "), "1"))
             joined[name] = ("case", column.to_numpy(float), described(meaning, unit))

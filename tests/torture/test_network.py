@@ -141,7 +141,6 @@ theory --size 10 --restitution 0.95
 relax --size 10 --duration 4 --replicas 8 --film
 reproduce arctanh --processes 2
 sweep grid.toml --processes 2
-sweep grid.toml --scheduler local
 """
 
 
