@@ -7,7 +7,7 @@ are made without pyplot, so no picture that is written to a file depends on the 
 from __future__ import annotations
 
 import string
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from contextlib import AbstractContextManager
 from typing import Any
 
@@ -35,19 +35,6 @@ def panels(
     axes = list(figure.subplots(rows, columns, squeeze=False, **how).ravel())
     if len(axes) > 1:
         letter(axes)
-    return figure, axes
-
-
-def mosaic(
-    pattern: Sequence[Sequence[str]], *, height: float, **how: Any
-) -> tuple[Figure, dict[str, Axes]]:
-    """Make a figure of two columns with lettered panels of several sizes, by their names.
-
-    ``pattern`` and ``how`` are as ``Figure.subplot_mosaic`` takes them.
-    """
-    figure = Figure(figsize=(TWO_COLUMNS, height))
-    axes = figure.subplot_mosaic([list(row) for row in pattern], **how)
-    letter(axes.values())
     return figure, axes
 
 

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_points, draw_rods
 from crazybilliards.comparison.fits import Fit
-from crazybilliards.comparison.layout import legend_above, mosaic
+from crazybilliards.comparison.layout import TWO_COLUMNS, legend_above, letter
 from crazybilliards.comparison.widths import central_width
 from crazybilliards.reproduction import chains
 from crazybilliards.reproduction.claims.repetition import Results, Runs
@@ -96,9 +96,11 @@ def _residuals(results: Results, group: Mapping[float, Runs]) -> dict[str, Any]:
 
 
 def _draw(results: Results) -> Figure:
-    figure, axes = mosaic(
-        [["widths", "exponents"], ["widths", "centre"]], height=3.9, width_ratios=(1.4, 1)
+    figure = Figure(figsize=(TWO_COLUMNS, 3.9))
+    axes = figure.subplot_mosaic(
+        [["widths", "exponents"], ["widths", "centre"]], width_ratios=(1.4, 1)
     )
+    letter(axes.values())
     _draw_widths(axes["widths"], results)
     legend_above(figure, axes["widths"])
     axes["exponents"].sharex(axes["centre"])
