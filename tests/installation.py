@@ -23,5 +23,5 @@ def run(*command, **options):
     done = subprocess.run(
         [*map(str, command)], capture_output=True, text=True, timeout=600, check=False, **options
     )
-    assert done.returncode == 0, done.stderr
+    assert done.returncode == 0, done.stdout + done.stderr
     return done
