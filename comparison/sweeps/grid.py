@@ -1,17 +1,4 @@
-"""Sweeps: a grid over any parameters, described by a TOML file, read back as one Dataset.
-
-[grid]                            # every combination of these
-size = [30, 100, 300]
-restitution = [0.0, 0.5, 0.95]
-seed = [1, 2]
-
-[chain]                           # the same for all
-damping = 2.0
-
-[simulate]                        # the job, and its settings the same for all
-duration = 1000
-observe = ["widths"]
-"""
+"""Sweeps: a grid over any parameters, described by a TOML file, read back as one Dataset."""
 
 from __future__ import annotations
 
