@@ -203,7 +203,11 @@ def _warn_of_no_theory(chain: Chain, job: str, reason: str) -> None:
 
 def _tree(results: Mapping[str, Mapping[str, xr.Dataset]], status: str) -> xr.DataTree:
     tree = xr.DataTree.from_dict(
-        {f"{name}/{key}": each for name, group in results.items() for key, each in group.items()}
+        {
+            f"{name}/{key}": result
+            for name, group in results.items()
+            for key, result in group.items()
+        }
     )
     tree.attrs |= {"status": status, "source": "comparison"}
     return tree

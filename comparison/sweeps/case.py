@@ -50,7 +50,7 @@ _SOURCES = {
 
 @dataclass(frozen=True, eq=False)
 class Case:
-    """One checked job for one chain; equal cases have equal keys.
+    """One checked job for one chain; equal cases have one file.
 
     Parameters
     ----------
@@ -196,8 +196,8 @@ def stored_parameters(attributes: Mapping[Any, Any]) -> dict[str, Any]:
 @cache
 def default_settings(job: str) -> dict[str, Any]:
     """Return the arguments of a job that are settings, with their defaults."""
-    arguments = inspect.signature(JOBS[job]).parameters.items()
-    return _plain_all({k: each.default for k, each in arguments if k not in _NO_SETTINGS})
+    arguments = inspect.signature(JOBS[job]).parameters.values()
+    return _plain_all({a.name: a.default for a in arguments if a.name not in _NO_SETTINGS})
 
 
 @cache
@@ -214,7 +214,7 @@ def plain(name: str, value: Any) -> Any:
     if isinstance(value, np.generic | np.ndarray):
         value = value.tolist()
     if isinstance(value, list | tuple | range):
-        return [plain(name, each) for each in value]
+        return [plain(name, item) for item in value]
     if isinstance(value, float):
         return int(value) if value.is_integer() and abs(value) < 1e15 else value
     if value is None or isinstance(value, str | int):

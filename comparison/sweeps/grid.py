@@ -171,7 +171,7 @@ def _read_case(path: Path) -> xr.Dataset:
 
 def _varied(points: Sequence[Mapping[str, Any]]) -> pd.DataFrame:
     """Return a column for each parameter that differs between the cases, those of a chain first."""
-    table = pd.DataFrame([{k: _scalar(value) for k, value in each.items()} for each in points])
+    table = pd.DataFrame([{k: _scalar(value) for k, value in point.items()} for point in points])
     names = [*_CHAIN, *(name for name in table if name not in _CHAIN)]
     return table[[name for name in names if table[name].nunique(dropna=False) > 1]]
 
@@ -204,16 +204,17 @@ def _with_attributes(
 
 def _alike(results: Sequence[xr.Dataset]) -> Sequence[xr.Dataset]:
     """Make other dimensions than the particle fit; differing coordinates become numbers."""
-    for dimension in sorted({str(name) for each in results for name in each.dims} - {"particle"}):
-        values = [each[dimension] for each in results if dimension in each.dims]
-        if len(values) < len(results) or not all(each.equals(values[0]) for each in values):
-            results = [
-                _numbered(each, dimension) if dimension in each.dims else each for each in results
-            ]
+    dimensions = {str(name) for result in results for name in result.dims}
+    for dimension in sorted(dimensions - {"particle"}):
+        values = [result[dimension] for result in results if dimension in result.dims]
+        if len(values) < len(results) or not all(value.equals(values[0]) for value in values):
+            results = [_numbered(result, dimension) for result in results]
     return results
 
 
 def _numbered(result: xr.Dataset, dimension: str) -> xr.Dataset:
+    if dimension not in result.dims:
+        return result
     places = range(result.sizes[dimension])
     if dimension not in result.coords:
         return result.assign_coords({dimension: places})
