@@ -88,9 +88,14 @@ def is_of_one_rod(dataset: xr.Dataset, quantity: str) -> bool:
 
 def axis_label(variable: xr.DataArray) -> str:
     """Return the name and the unit of a variable, with indices and powers set as in print."""
-    unit = unit_of(variable)
     name = _LABELS.get(str(variable.name), variable.attrs["long_name"])
-    return _set(name) + (f" [{_set(unit)}]" if unit != "1" else "")
+    return _set(name) + (f" [{unit_label(variable)}]" if unit_of(variable) != "1" else "")
+
+
+def unit_label(variable: xr.DataArray) -> str:
+    """Return the unit of a variable in the mathtext of matplotlib."""
+    unit = unit_of(variable)
+    return f"${unit}$" if "t_0" in unit else _set(unit)
 
 
 def _set(text: str) -> str:

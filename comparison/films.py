@@ -22,7 +22,7 @@ from matplotlib.colors import CenteredNorm
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from crazybilliards.comparison.curves import axis_label
+from crazybilliards.comparison.curves import axis_label, unit_label
 from crazybilliards.comparison.drawing import DIRECTIONS
 from crazybilliards.comparison.layout import TWO_COLUMNS, house_style
 from crazybilliards.comparison.side_by_side.relaxation_figures import relaxation_film
@@ -32,7 +32,6 @@ from crazybilliards.model.checks import check_path, check_real
 from crazybilliards.model.parameters import WALLS_AND_MASSES
 from crazybilliards.model.progress import progress_bar
 from crazybilliards.model.storage import write_atomically
-from crazybilliards.model.vocabulary import unit_of
 from crazybilliards.particles import simulate
 
 _A_SECOND = 25  # pictures
@@ -82,7 +81,7 @@ def film(
         Length of the film, about, with up to 25 pictures a second. A film of rods is shorter if
         there are fewer snapshots, because it always has 25.
     duration
-        Time to simulate, of a chain [T]; None: 20. A result has its own.
+        Time to simulate, of a chain [t_0]; None: 20. A result has its own.
     springs
         Also draw the anchors, and a line from each to its rod; not of a relaxation.
     progress
@@ -217,7 +216,7 @@ def _rod_film(
         ax.add_collection(shown)
     bars = ax.scatter([], [], marker="_", linewidths=3, color="black")
     figure.colorbar(bodies, ax=ax, label=axis_label(rods.velocity), pad=0.01, extend="both")
-    clock, unit = ax.text(0.0, 1.04, "", transform=ax.transAxes), unit_of(rods.time)
+    clock, unit = ax.text(0.0, 1.04, "", transform=ax.transAxes), unit_label(rods.time)
     digits = max(2, math.ceil(-math.log10(np.ptp(time) / time.size or 1.0)))
     half = max(chain.radius, width / 1500)  # a thinner rod would not be seen
 

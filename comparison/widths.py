@@ -16,7 +16,7 @@ _LEAST_INNER = 7  # rods from which on the two at each border are left out of th
 
 
 def free_widths(chain: Chain) -> list[float]:
-    """W_v of a rod without collisions, of both masses if there are two [R/T]."""
+    """W_v of a rod without collisions, of both masses if there are two [R/t_0]."""
     return sorted({math.sqrt(chain.temperature / mass) for mass in chain.rod_masses[:2]})
 
 

@@ -58,7 +58,7 @@ def require_chain(
 
 
 def output_times(duration: float | None, every: float | None, number: int) -> Array:
-    """Return the times 0, every, 2 every, ... up to the first one not before ``duration`` [T].
+    """Return the times 0, every, 2 every, ... up to the first one not before ``duration`` [t_0].
 
     ``every`` None: ``number`` outputs after the start.
     """

@@ -15,8 +15,8 @@ velocity, v1' - v2' = -e (v1 - v2) (eq. ``eq:rest``).
 Rods become points that may touch but not pass, y_1 <= ... <= y_L, with anchors spaced g. The
 displacement from the anchor is the same in both. The whole package computes in y.
 
-Units: length R, mass M, time T. With the defaults a rod has the radius 1 R and the mass 4 pi/3 M,
-and a linear spring has the stiffness 1 M/T^2.
+Units: length R, mass M, time t_0. With the defaults a rod has the radius 1 R and the mass 4 pi/3 M,
+and a linear spring has the stiffness 1 M/t_0^2.
 """
 
 from __future__ import annotations
@@ -46,11 +46,12 @@ class Chain(Parameters):
     restitution
         e >= 0: below 1 dissipative, 1 elastic, above 1 anti-dissipative (flippers).
     amplitude
-        Noise amplitude A >= 0 [M R / T^(3/2)].
+        Noise amplitude A >= 0 [M R /t_0^(3/2)].
     damping
-        gamma >= 0 [M/T]. With 0 there is no steady state.
+        gamma >= 0 [M/t_0]. With 0 there is no steady state.
     stiffness
-        k >= 0 [M/T^2], for a quadratic spring [M/(R T^2)]. With 0 only a box has a steady state.
+        k >= 0 [M/t_0^2], for a quadratic spring [M/(R t_0^2)]. With 0 only a box has a steady
+        state.
     gap
         g >= 0, the free distance between neighbouring rods at their anchors [R].
     radius, mass
@@ -188,13 +189,13 @@ class Chain(Parameters):
         return 2 if self.spring == "linear" else 3
 
     def force(self, displacement: ArrayLike) -> NDArray[np.float64]:
-        """Restoring force F(d) = k d or k d |d|, with the sign of d [M R/T^2]."""
+        """Restoring force F(d) = k d or k d |d|, with the sign of d [M R/t_0^2]."""
         refuse_units("displacement", displacement)
         d = np.asarray(displacement, dtype=float)
         return self.stiffness * spring.force(d, self.potential_exponent)
 
     def potential(self, displacement: ArrayLike) -> NDArray[np.float64]:
-        """Spring energy U(d) = k |d|^n / n [M R^2/T^2]."""
+        """Spring energy U(d) = k |d|^n / n [M R^2/t_0^2]."""
         refuse_units("displacement", displacement)
         d = np.asarray(displacement, dtype=float)
         return self.stiffness * spring.potential(d, self.potential_exponent)
@@ -214,7 +215,7 @@ class Chain(Parameters):
 
     @property
     def temperature(self) -> float:
-        """Temperature T = m W^2 = A^2 / (2 gamma) [M R^2/T^2]; inf without damping."""
+        """Temperature T = m W^2 = A^2 / (2 gamma) [M R^2/t_0^2]; inf without damping."""
         if self.amplitude == 0:
             return 0.0
         if self.damping == 0:
@@ -223,7 +224,7 @@ class Chain(Parameters):
 
     @property
     def free_velocity_width(self) -> float:
-        """W = A / sqrt(2 m gamma), the velocity width without collisions (eq. ``free``) [R/T]."""
+        """W = A / sqrt(2 m gamma), the velocity width without collisions (eq. ``free``) [R/t_0]."""
         return math.sqrt(self.temperature / self.mass)
 
     @property

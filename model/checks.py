@@ -16,8 +16,8 @@ from crazybilliards.model.words import meant
 # Squares and ratios of parameters must neither overflow nor underflow.
 _SMALLEST, _LARGEST = 1e-60, 1e60
 
-# A unit as `vocabulary.described` writes it, or did up to version 0.3.
-_OWN_UNIT = re.compile(r"[RMT\d_^/ ]*")
+# A unit as `vocabulary.described` writes it, or did up to version 0.5.
+_OWN_UNIT = re.compile(r"[RMTt\d_^/ ]*")
 
 _SHORTLY = reprlib.Repr()
 _SHORTLY.maxstring = _SHORTLY.maxother = _SHORTLY.maxlong = 80

@@ -43,9 +43,11 @@ class Parameters:
     restitution: float = _parameter(
         1.0, "Restitution e: below 1 dissipative, above 1 anti-dissipative"
     )
-    amplitude: float = _parameter(1.0, "Noise amplitude A", "M R/T^(3/2)")
-    damping: float = _parameter(1.0, "Damping gamma", "M/T")
-    stiffness: float = _parameter(1.0, "Stiffness k of the springs", "M/T^2, quadratic M/(R T^2)")
+    amplitude: float = _parameter(1.0, "Noise amplitude A", "M R/t_0^(3/2)")
+    damping: float = _parameter(1.0, "Damping gamma", "M/t_0")
+    stiffness: float = _parameter(
+        1.0, "Stiffness k of the springs", "M/t_0^2, quadratic M/(R t_0^2)"
+    )
     gap: float = _parameter(0.0, "Gap g between rods at their anchors", "R")
     radius: float = _parameter(
         1.0, "Half a rod's length", "R", check=partial(check_real, positive=True)

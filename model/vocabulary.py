@@ -22,69 +22,69 @@ from crazybilliards.model.chain import Chain
 from crazybilliards.model.checks import shown
 from crazybilliards.model.words import meant
 
-# name: (meaning, unit). R length, M mass, T = sqrt(M/k) time.
+# name: (meaning, unit). R length, M mass, t_0 = sqrt(M/k) time.
 VOCABULARY = {
     "density": ("particle density rho", "1/R"),
     "density_block": ("particle density rho, block by block", "1/R"),
     "outside": ("rods per snapshot outside the grid x", "1"),
     "mean_displacement": ("mean displacement <x_i - x0_i>", "R"),
     "displacement_width": ("displacement width W_x", "R"),
-    "velocity_width": ("velocity width W_v", "R/T"),
-    "mean_velocity": ("mean velocity <v_i>", "R/T"),
-    "velocity_density": ("probability density of v_i", "T/R"),
+    "velocity_width": ("velocity width W_v", "R/t_0"),
+    "mean_velocity": ("mean velocity <v_i>", "R/t_0"),
+    "velocity_density": ("probability density of v_i", "t_0/R"),
     "velocity_outside": ("share of velocities beyond the bins", "1"),
     "velocity_skewness": ("skewness of v_i", "1"),
     "velocity_kurtosis": ("excess kurtosis of v_i", "1"),
-    "kinetic_energy": ("kinetic energy sum m v^2/2", "M R^2/T^2"),
-    "spring_energy": ("energy of the springs sum U(x_i - x0_i)", "M R^2/T^2"),
-    "total_energy": ("kinetic energy and that of the springs", "M R^2/T^2"),
-    "collision_rate": ("collisions with the right neighbour per time", "1/T"),
+    "kinetic_energy": ("kinetic energy sum m v^2/2", "M R^2/t_0^2"),
+    "spring_energy": ("energy of the springs sum U(x_i - x0_i)", "M R^2/t_0^2"),
+    "total_energy": ("kinetic energy and that of the springs", "M R^2/t_0^2"),
+    "collision_rate": ("collisions with the right neighbour per time", "1/t_0"),
     "avalanche_count": ("waves started by the particle that triggered N_c collisions", "1"),
     "avalanche_size": ("collisions triggered N_c", "1"),
     "triggered_count": ("hits of the right neighbour that triggered N_c further collisions", "1"),
     "triggered_collisions": ("collisions triggered after the first N_c", "1"),
-    "autocorrelation_time": ("autocorrelation time of the displacement", "T"),
+    "autocorrelation_time": ("autocorrelation time of the displacement", "t_0"),
     "displacement": ("mean displacement <dx>(x)", "R"),
     "label": ("number of rods to the left N", "1"),
-    "flow_velocity": ("flow velocity V", "R/T"),
-    "velocity_variance": ("velocity variance W^2", "R^2/T^2"),
-    "heat_flux": ("heat flux (m/2) int (v - V)^3 f dv", "M R^2/T^3"),
-    "phase_space_density": ("phase-space density f(y, v)", "T/R^2"),
-    "neighbour_covariance": ("covariance of neighbours' velocities <v_i v_i+1>", "R^2/T^2"),
-    "relative_temperature": ("relative temperature <(v_i - v_i+1)^2>/2", "R^2/T^2"),
-    "contact_force": ("mean force between neighbours", "M R/T^2"),
-    "wall_force": ("mean force of the rods on a wall, the pressure", "M R/T^2"),
-    "wall_collision_rate": ("collisions with a wall per time", "1/T"),
-    "contact_temperature": ("relative temperature before a collision", "R^2/T^2"),
-    "rebound_temperature": ("relative temperature after a collision", "R^2/T^2"),
-    "contact_loss": ("power that collisions take at a contact", "M R^2/T^3"),
-    "impact_speed_density": ("probability density of the speed w at which rods meet", "T/R"),
-    "velocity_covariance": ("covariance of velocities <v_i v_i+r>", "R^2/T^2"),
+    "flow_velocity": ("flow velocity V", "R/t_0"),
+    "velocity_variance": ("velocity variance W^2", "R^2/t_0^2"),
+    "heat_flux": ("heat flux (m/2) int (v - V)^3 f dv", "M R^2/t_0^3"),
+    "phase_space_density": ("phase-space density f(y, v)", "t_0/R^2"),
+    "neighbour_covariance": ("covariance of neighbours' velocities <v_i v_i+1>", "R^2/t_0^2"),
+    "relative_temperature": ("relative temperature <(v_i - v_i+1)^2>/2", "R^2/t_0^2"),
+    "contact_force": ("mean force between neighbours", "M R/t_0^2"),
+    "wall_force": ("mean force of the rods on a wall, the pressure", "M R/t_0^2"),
+    "wall_collision_rate": ("collisions with a wall per time", "1/t_0"),
+    "contact_temperature": ("relative temperature before a collision", "R^2/t_0^2"),
+    "rebound_temperature": ("relative temperature after a collision", "R^2/t_0^2"),
+    "contact_loss": ("power that collisions take at a contact", "M R^2/t_0^3"),
+    "impact_speed_density": ("probability density of the speed w at which rods meet", "t_0/R"),
+    "velocity_covariance": ("covariance of velocities <v_i v_i+r>", "R^2/t_0^2"),
     "gap_covariance": ("covariance of gaps <g_i g_i+r> - <g_i><g_i+r>", "R^2"),
     "mean_gap": ("mean free room between neighbours <g_i>", "R"),
-    "mode_velocity_variance": ("mean square velocity of a mode <|v_q|^2>", "R^2/T^2"),
-    "velocity_autocorrelation": ("velocity autocorrelation <v_i(0) v_i(t)>", "R^2/T^2"),
+    "mode_velocity_variance": ("mean square velocity of a mode <|v_q|^2>", "R^2/t_0^2"),
+    "velocity_autocorrelation": ("velocity autocorrelation <v_i(0) v_i(t)>", "R^2/t_0^2"),
     "displacement_autocorrelation": ("displacement autocorrelation <d_i(0) d_i(t)>", "R^2"),
     "mean_squared_displacement": ("mean squared displacement <(x_i(t) - x_i(0))^2>", "R^2"),
-    "velocity_spectrum": ("spectrum of the velocity v_i", "R^2/T"),
-    "wave_velocity_autocorrelation": ("velocity autocorrelation of a wave", "R^2/T^2"),
+    "velocity_spectrum": ("spectrum of the velocity v_i", "R^2/t_0"),
+    "wave_velocity_autocorrelation": ("velocity autocorrelation of a wave", "R^2/t_0^2"),
     "wave_displacement_autocorrelation": ("displacement autocorrelation of a wave", "R^2"),
     "wave_mean_squared_displacement": ("mean squared displacement of a wave", "R^2"),
-    "wave_velocity_spectrum": ("spectrum of the velocity of a wave", "R^2/T"),
-    "centre_velocity_autocorrelation": ("velocity autocorrelation of the centre", "R^2/T^2"),
+    "wave_velocity_spectrum": ("spectrum of the velocity of a wave", "R^2/t_0"),
+    "centre_velocity_autocorrelation": ("velocity autocorrelation of the centre", "R^2/t_0^2"),
     "centre_displacement_autocorrelation": ("displacement autocorrelation of the centre", "R^2"),
     "centre_mean_squared_displacement": ("mean squared displacement of the centre", "R^2"),
-    "centre_velocity_spectrum": ("spectrum of the velocity of the centre", "R^2/T"),
+    "centre_velocity_spectrum": ("spectrum of the velocity of the centre", "R^2/t_0"),
     "rods": ("number of rods", "1"),
     "centre": ("mean position of all rods", "R"),
     "cloud_width": ("standard deviation of y over the rods", "R"),
-    "covariance": ("covariance of y and v over the rods", "R^2/T"),
+    "covariance": ("covariance of y and v over the rods", "R^2/t_0"),
     "unsteadiness": ("rms rate of change, in units of the free case", "1"),
     "position": ("rod centres x_i", "R"),
-    "velocity": ("velocity v", "R/T"),
-    "velocity_bin": ("velocity v in the middle of a bin", "R/T"),
-    "impact_speed": ("speed w at which rods meet, in the middle of a bin", "R/T"),
-    "time": ("time t", "T"),
+    "velocity": ("velocity v", "R/t_0"),
+    "velocity_bin": ("velocity v in the middle of a bin", "R/t_0"),
+    "impact_speed": ("speed w at which rods meet, in the middle of a bin", "R/t_0"),
+    "time": ("time t", "t_0"),
     "x": ("position x", "R"),
     "y": ("reduced position y", "R"),
     "particle": ("particle i", "1"),
@@ -93,8 +93,8 @@ VOCABULARY = {
     "normalized_contact": ("normalized particle i_n half way between i and i + 1", "1"),
     "mode": ("mode q", "1"),
     "wave": ("wave cos(pi q (i - 1/2)/L) along the chain q", "1"),
-    "lag": ("time between two snapshots t", "T"),
-    "frequency": ("angular frequency w", "1/T"),
+    "lag": ("time between two snapshots t", "t_0"),
+    "frequency": ("angular frequency w", "1/t_0"),
     "separation": ("separation r of two particles or contacts", "1"),
     "mean_position": ("mean position <x_i>", "R"),
     "normalized_particle": ("normalized particle i_n", "1"),
@@ -102,11 +102,11 @@ VOCABULARY = {
 
 # Numbers about a whole result are its attributes, plain numbers in these units.
 ATTRIBUTES = {
-    "end_time": ("time reached, warm-up included", "T"),
+    "end_time": ("time reached, warm-up included", "t_0"),
     "seconds": ("computing time", "s"),
     "residual": ("how far the equations are from satisfied", "1"),
     "time_step_error": ("relative error of W_v due to the time step", "1"),
-    "relaxation_time": ("time in which the chain forgets its start", "T"),
+    "relaxation_time": ("time in which the chain forgets its start", "t_0"),
     "mesh_error": ("largest relative error of W_v due to the mesh", "1"),
     "velocity_width_model_error": ("relative error of W_v of the theory itself", "1"),
     "border_model_error": ("relative error of W_v at the border of the theory itself", "1"),
@@ -212,15 +212,16 @@ def result(
 def described(meaning: str, unit: str) -> dict[str, str]:
     """Return the attributes of a variable.
 
-    The units are written R_0, M_0 and T_0, because libraries of units take R for the gas constant
-    and T for tesla. :func:`unit_of` gives them as they are in the vocabulary.
+    R and M are written R_0 and M_0, because libraries of units take R for the gas constant.
+    :func:`unit_of` gives them as they are in the vocabulary.
     """
-    return {"long_name": meaning, "units": re.sub("[RMT]", r"\g<0>_0", unit)}
+    return {"long_name": meaning, "units": re.sub("[RM]", r"\g<0>_0", unit)}
 
 
 def unit_of(variable: xr.DataArray) -> str:
-    """Return the unit of a variable as in the vocabulary, R/T for example."""
-    return str(variable.attrs["units"]).replace("_0", "")  # up to version 0.3 it was written so
+    """Return the unit of a variable as in the vocabulary, R/t_0 for example."""
+    unit = re.sub("T(_0)?", "t_0", str(variable.attrs["units"]))  # so up to version 0.5
+    return re.sub("([RM])_0", r"\1", unit)
 
 
 def _require_all_rods(chain: Chain, label: ArrayLike) -> None:

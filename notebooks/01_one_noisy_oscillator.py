@@ -64,12 +64,12 @@ t = path.time.values - path.time.values[0]
 # %% tags=["hide-input"]
 left, right_panel = panels(2, height=3.4, width_ratios=(2, 1))
 left.plot(t, x, color=PINK, label="position x [R]")
-left.plot(t, v, color=GREEN, linewidth=1, label="velocity v [R/T]")
-left.set(xlabel="time t [T]", xlim=(0, t[-1]), ylim=np.array([-1.1, 1.5]) * abs(x).max())
+left.plot(t, v, color=GREEN, linewidth=1, label="velocity v [$R/t_0$]")
+left.set(xlabel="time $t$ [$t_0$]", xlim=(0, t[-1]), ylim=np.array([-1.1, 1.5]) * abs(x).max())
 left.legend(loc="upper right", ncols=2)
 right_panel.plot(x, v, color="0.3", linewidth=0.8)
 right_panel.plot(x[-1], v[-1], "o", color=RED, label="now")
-right_panel.set(xlabel="position x [R]", ylabel="velocity v [R/T]")
+right_panel.set(xlabel="position x [R]", ylabel="velocity v [$R/t_0$]")
 right_panel.legend(loc="upper left")
 plt.show()
 
@@ -84,7 +84,7 @@ plt.show()
 # $$m\ddot x = -\gamma\dot x - kx + A\,\xi(t),\qquad
 # \langle\xi(t)\rangle = 0,\quad \langle\xi(t)\,\xi(t')\rangle = \delta(t-t').$$
 #
-# Lengths are measured in rod radii R, masses in M, and times in $\mathsf{T}=\sqrt{M/k}$. In these
+# Lengths are measured in rod radii R, masses in M, and times in $t_0=\sqrt{M/k}$. In these
 # units $k=1$ and $m=\frac{4\pi}{3}$. The friction $\gamma$ (`damping`) and the noise amplitude $A$
 # are 1 unless another value is given.
 #
@@ -128,7 +128,7 @@ variants = {
 for name, one in variants.items():
     run = cb.simulate(one, duration=100_000, observe="widths", seed=1, progress=False)
     W, s = one.free_velocity_width, one.thermal_length
-    agree(f"{name}, W", run.velocity_width, W, run.velocity_width_error, unit="R/T")
+    agree(f"{name}, W", run.velocity_width, W, run.velocity_width_error, unit="R/t_0")
     agree(f"{name}, s", run.displacement_width, s, run.displacement_width_error, unit="R")
 
 # %% [markdown]
@@ -341,7 +341,7 @@ circle = 2 * np.stack([np.cos(angle), np.sin(angle)])
 for place, colour in ((2, ORANGE), (4, GREEN), (8, PINK), (40, BLUE)):
     ax.plot(z[0, :, place] / s, z[1, :, place] / W, ".", color=colour, markersize=2, alpha=0.6)
     ellipse = mean[place][:, None] + np.linalg.cholesky(covariance[place]) @ circle
-    name = f"t = {t[place]:.1f} T"
+    name = f"t = {t[place]:.1f} $t_0$"
     ax.plot(ellipse[0] / s, ellipse[1] / W, color=colour, linewidth=2, label=name)
 way = np.array([expm(G * time) @ [4 * s, 0] for time in np.linspace(0, t[-1], 500)])
 ax.plot(way[:, 0] / s, way[:, 1] / W, "k--", linewidth=1, label="mean, theory")
@@ -352,7 +352,7 @@ plt.show()
 variances = covariance[1:, [0, 1], [0, 1]]
 scatter = np.sqrt(variances / copies)
 agree("mean x", z[0, :, 1:].mean(axis=0), mean[1:, 0], scatter[:, 0], unit="R")
-agree("mean v", z[1, :, 1:].mean(axis=0), mean[1:, 1], scatter[:, 1], unit="R/T")
+agree("mean v", z[1, :, 1:].mean(axis=0), mean[1:, 1], scatter[:, 1], unit="R/t_0")
 ratios = z[:, :, 1:].var(axis=1, ddof=1).T / variances
 agree("measured variances over theory", ratios, 1, np.sqrt(2 / (copies - 1)))
 
@@ -485,7 +485,7 @@ for (stepper, which), (colour, symbol, name, moment) in styles.items():
     for (each, dt), (off, error) in measured.items():
         if each == stepper and abs(off[which]) > 3 * error[which]:  # else nothing to draw
             ax.errorbar(dt, abs(off[which]), error[which], fmt=symbol, color=colour, markersize=5)
-ax.set(xlabel=r"time step $\Delta t$ [T]", ylabel="relative error in the steady state")
+ax.set(xlabel=r"time step $\Delta t$ [$t_0$]", ylabel="relative error in the steady state")
 ax.legend(title=r"$\langle v^2\rangle$ of splitting: no error")
 plt.show()
 for stepper, scheme in maps.items():

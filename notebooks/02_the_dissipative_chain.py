@@ -27,7 +27,7 @@
 #
 # with independent white noises $\xi_i$ of unit strength. A collision conserves momentum and gives
 # $v_1' - v_2' = -e\,(v_1 - v_2)$. Lengths are in rod radii $R$, masses in $M$ (a rod has
-# $m = 4\pi/3\,M$), and times in $T = \sqrt{M/k}$. In these units $\gamma = A = 1$. The rods touch
+# $m = 4\pi/3\,M$), and times in $t_0 = \sqrt{M/k}$. In these units $\gamma = A = 1$. The rods touch
 # when they sit at their anchors $x^0_i$. Without collisions the velocity of a rod is Gaussian with
 # the width $W = A/\sqrt{2m\gamma}$ ([lesson 1](01_one_noisy_oscillator.ipynb)).
 #
@@ -65,7 +65,7 @@ import crazybilliards as cb
 
 sticky = cb.Chain(size=100, restitution=0, damping=damping)
 W = sticky.free_velocity_width
-print(f"a free rod: W = {W:.4f} R/T")
+print(f"a free rod: W = {W:.4f} R/t_0")
 
 # %% [markdown]
 # ## 1. Three rods are enough
@@ -205,7 +205,7 @@ for ax, (e, film) in zip(axes, films.items(), strict=True):
     v = film.velocity.isel(replica=0).transpose("particle", "time") / W
     shown = {"cmap": DIRECTIONS, "vmin": -2, "vmax": 2, "rasterized": True}
     colours = ax.pcolormesh(time, film.particle, v, **shown)
-    ax.set(xlabel="time t [T]", title=f"restitution e = {e}")
+    ax.set(xlabel="time $t$ [$t_0$]", title=f"restitution e = {e}")
 axes[0].set_ylabel("particle i")
 axes[0].figure.colorbar(colours, ax=axes, label="velocity $v/W$")
 plt.show()
@@ -390,7 +390,7 @@ for runs in profiles.values():
 # **Predict.** Is there a typical size of avalanches? Or is there none, as in a power law
 # $p(N_c) \sim N_c^{-\tau}$?
 #
-# **Run.** We take 200 rods at a *fixed* time step of 0.01 T. Rods in contact are kicked anew in every
+# **Run.** We take 200 rods at a *fixed* time step of 0.01 $t_0$. Rods in contact are kicked anew in every
 # step, so the count depends on the step.
 
 # %%
@@ -445,7 +445,7 @@ plt.show()
 # There are avalanches of all sizes up to a hundred. But the points bend everywhere, and a fit to
 # larger sizes gives a larger $\tau$: from 1.8 to 3.8 in the centre. The distribution is no power law.
 # The paper quotes an exponent around $-2.2$ for 1000 rods. An exponent must be quoted with the range
-# of its fit, and here also with the time step: $\tau$ is 2.5 at 0.04 T and 3.6 at 0.0025 T (origins
+# of its fit, and here also with the time step: $\tau$ is 2.5 at 0.04 $t_0$ and 3.6 at 0.0025 $t_0$ (origins
 # in the centre, sizes 10 to 60).
 #
 # </details>
@@ -467,7 +467,7 @@ short_steps = independent_runs(sticky, 6, 1500, time_step=default_time_step(stic
 usual, error = mean_and_error([centre_width(run, share=1 / 3) for run in profiles[0]])
 finer, finer_error = mean_and_error([centre_width(run, share=1 / 3) for run in short_steps])
 uncertain = np.hypot(error, finer_error)
-agree("middle third, at a quarter of the step", finer, usual, uncertain, unit="R/T")
+agree("middle third, at a quarter of the step", finer, usual, uncertain, unit="R/t_0")
 print(f"change: {finer / usual - 1:+.1%} ± {uncertain / usual:.1%}")
 print(f"error of the step, as simulate states it: {profiles[0][0].attrs['time_step_error']:.1%}")
 

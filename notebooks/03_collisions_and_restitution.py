@@ -71,7 +71,7 @@ def spacetime(ax, t, x):
 # velocities. With more rods, collisions that lose energy may never end (section 6). The
 # explanations quote the numbers of 12 rods.
 #
-# Lengths are in rod radii R, times in T, velocities in R/T. `film` is a short helper: it calls
+# Lengths are in rod radii R, times in $t_0$, velocities in $R/t_0$. `film` is a short helper: it calls
 # `simulate` with a given start, and returns times, positions and velocities.
 
 # %%
@@ -117,7 +117,7 @@ for ax, method in zip(axes, methods, strict=True):
     after[method] = velocities[-1]
     print(f"{method:16s} velocities after: {after[method].round(6)}", end="; ")
     print(f"momentum {after[method].sum():.6f}, energy {np.sum(after[method] ** 2):.6f} m/2")
-axes[0].set_ylabel("time t [T]")
+axes[0].set_ylabel("time $t$ [$t_0$]")
 plt.show()
 
 # %% tags=["remove-cell"]
@@ -264,7 +264,7 @@ print(f"{len(closing)} collisions")
 # %% tags=["hide-input"]
 left, right_panel = panels(2, height=4, sharey=True)
 spacetime(left, t, x)
-left.set(ylabel="time t [T]", title="rods: simulate")
+left.set(ylabel="time $t$ [$t_0$]", title="rods: simulate")
 for i in range(rods.size):
     right_panel.plot(paths[:, i], times, color=OF_RODS[i % len(OF_RODS)])
 right_panel.set(xlabel="reduced position y [R]", title="points: our own billiard")
@@ -380,7 +380,7 @@ for e in (0.8, 0.9, 1, 1.1):
     _, _, v_end, closing = billiard(y, v, e, duration)
     lost = m / 2 * (np.sum(v**2) - np.sum(v_end**2))
     counted = np.sum(solutions.energy_taken(closing, e, m))
-    print(f"e = {e}: {len(closing):3d} collisions took {counted:8.4f} of {lost:8.4f} M R²/T² lost")
+    print(f"e = {e}: {len(closing):3d} collisions took {counted:8.4f} of {lost:8.4f} M R²/t_0² lost")
 
 # %% tags=["remove-cell"]
 for e in (0.8, 0.9, 1, 1.1):
@@ -449,7 +449,7 @@ ax = panels(width=6, height=4)
 for i in range(rods.size):
     ax.plot(y[i] + v[i] * history, history, color="0.85", linewidth=1)
     ax.plot(lines[:, i], history, color=OF_RODS[i % len(OF_RODS)])
-ax.set(xlabel="reduced position y [R]", ylabel="time t [T]", xlim=(1.5 * y[0], 1.5 * y[-1]))
+ax.set(xlabel="reduced position y [R]", ylabel="time $t$ [$t_0$]", xlim=(1.5 * y[0], 1.5 * y[-1]))
 ax.set_title("sticky points; light grey: free points")
 plt.show()
 

@@ -25,7 +25,7 @@
 # restitution 1. The paper does not have the exact solution.
 #
 # Lengths are in rod radii $R$, masses in $M$ (a rod has $m = 4\pi/3\,M$), times in
-# $T = \sqrt{M/k}$. In these units $k = \gamma = A = 1$.
+# $t_0 = \sqrt{M/k}$. In these units $k = \gamma = A = 1$.
 #
 # *Level: third year. You need: lesson 1, sections 1 to 3; lesson 3, sections 1 and 2; the Gibbs
 # distribution. Time: 90 minutes. To predict before you see the results, type `make lessons` in the
@@ -100,7 +100,7 @@ for ax, lines, title in (
     ax.plot(time, lines, color="0.8", linewidth=0.7)
     for i, colour in marked.items():
         ax.plot(time, lines[:, i], color=colour, linewidth=1.6, label=f"number {i + 1}")
-    ax.set(xlabel="time t [T]", title=title, ylim=(-3.2, 2.5))
+    ax.set(xlabel="time $t$ [$t_0$]", title=title, ylim=(-3.2, 2.5))
     ax.legend(loc="lower center", ncols=3)
 axes[0].set_ylabel("position y [R]")
 plt.show()
@@ -162,7 +162,7 @@ for name, each in kinds.items():
 # %% tags=["hide-input"]
 ax = panels(width=7, height=3.2)
 for number, (name, run) in enumerate(runs.items()):
-    agree(f"{name}, W_v", run.velocity_width, W, run.velocity_width_error, unit="R/T")
+    agree(f"{name}, W_v", run.velocity_width, W, run.velocity_width_error, unit="R/t_0")
     ax.errorbar(
         run.particle + 0.2 * (number - 1),
         run.velocity_width / W,
@@ -540,11 +540,11 @@ heat = (run.velocity_width**2).mean("particle").values
 left, right_panel = panels(2, height=3.5)
 left.plot(times, np.sqrt(exact_y2) / s, color=ORANGE, linewidth=2.2, label="exact")
 left.plot(times[::2], sigma[::2] / s, "o", color="k", mfc="none", ms=4, label="1000 chains")
-left.set(xlabel="time t [T]", ylabel=r"width of the cloud $\sigma/s$")
+left.set(xlabel="time $t$ [$t_0$]", ylabel=r"width of the cloud $\sigma/s$")
 left.legend()
 right_panel.plot(times, exact_v2 / W**2, color=ORANGE, linewidth=2.2)
 right_panel.plot(times[::2], heat[::2] / W**2, "o", color="k", mfc="none", ms=4)
-right_panel.set(xlabel="time t [T]", ylabel=r"$\langle v^2\rangle/W^2$")
+right_panel.set(xlabel="time $t$ [$t_0$]", ylabel=r"$\langle v^2\rangle/W^2$")
 plt.show()
 points = replicas * fifty.size  # independent Gaussian points
 agree("cloud width over theory", sigma / np.sqrt(exact_y2), 1, 1 / np.sqrt(2 * points))

@@ -58,7 +58,7 @@ import crazybilliards as cb
 
 chain = cb.Chain(size=size, amplitude=amplitude)
 W, s, d = chain.free_velocity_width, chain.thermal_length, 2 * chain.radius  # d: length of a rod
-print(f"free velocity width W = {W:.2f} R/T, thermal length s = {s:.2f} R")
+print(f"free velocity width W = {W:.2f} R/t_0, thermal length s = {s:.2f} R")
 
 # %% [markdown]
 # ## 1. What pushes the chain apart?
@@ -179,7 +179,7 @@ run = cb.simulate(chain, duration=60_000, seed=1, **watch)
 before = cb.deviation(cb.smooth(run), cb.smooth(fluid))
 print(f"smoothed densities differ by up to {before.maximum:.1%} of close packing,", end=" ")
 print(f"{before.maximum_in_errors:.0f} standard errors")
-agree("velocity widths of all rods", run.velocity_width, W, run.velocity_width_error, unit="R/T")
+agree("velocity widths of all rods", run.velocity_width, W, run.velocity_width_error, unit="R/t_0")
 
 # %% tags=["hide-input"]
 ax = panels(width=8, height=3.4)

@@ -26,7 +26,7 @@
 # temperature, and exactly. Then we push the rods in the middle: do rods carry sound?
 #
 # The unit of length is the rod radius $R$, and that of mass is $M$ (a rod has $m =
-# \frac{4\pi}{3}M$). The unit of time is $\sqrt{M/k}$, written T on the axes. The restitution is 1,
+# \frac{4\pi}{3}M$). The unit of time is $\sqrt{M/k}$, $t_0$ on the axes. The restitution is 1,
 # and there is no gap between the anchors.
 #
 # *Level: fourth year. You need: lessons 4 and 5; partial differential equations. Time: 90 minutes.
@@ -64,7 +64,7 @@ import crazybilliards as cb
 chain = cb.Chain(size=100, amplitude=30, damping=damping)
 s, W, R = chain.thermal_length, chain.free_velocity_width, chain.radius
 omega, friction = np.sqrt(chain.stiffness / chain.mass), chain.damping / chain.mass
-print(f"thermal length s = {s:.1f} R, velocity width W = {W:.2f} R/T, s/W = {s / W:.2f} T")
+print(f"thermal length s = {s:.1f} R, velocity width W = {W:.2f} R/t_0, s/W = {s / W:.2f} t_0")
 print(f"one free rod: frequency {omega:.3f} /T, friction gamma/m = {friction:.3f} /T")
 
 # %% [markdown]
@@ -85,7 +85,7 @@ time = rods.time.values
 
 # %% tags=["hide-input"]
 ax = panels(width=7, height=3)
-for moment, name in ((0, "squeezed, t = 0"), (-1, f"t = {time[-1]:.0f} T")):
+for moment, name in ((0, "squeezed, t = 0"), (-1, f"t = {time[-1]:.0f} $t_0$")):
     seen = cb.smooth(rods.isel(time=moment))
     style = {"color": ("0.55", "k")[moment], "linestyle": ("-", "--")[moment]}
     ax.plot(seen.x, seen.density, label=name, **style)
@@ -149,14 +149,14 @@ for ax, (name, result) in zip(axes, shown.items(), strict=True):
         picture.x, time, picture.density, cmap="cividis", vmin=0, vmax=0.5, rasterized=True
     )
     ax.set(title=name, xlabel="position x [R]", xlim=(-200, 200))
-axes[0].set_ylabel("time t [T]")
+axes[0].set_ylabel("time $t$ [$t_0$]")
 fig.colorbar(image, ax=axes, label=r"density $\rho$ [1/R]")
 plt.show()
 
 # %% [markdown]
 # <details><summary>Explain</summary>
 #
-# The isothermal fluid overshoots: near $t = 4\,$T its chain is longer, and less dense in the middle,
+# The isothermal fluid overshoots: near $t = 4\,t_0$ its chain is longer, and less dense in the middle,
 # than at the end. Neither the rods nor the fluid with a temperature overshoot.
 #
 # </details>
@@ -222,7 +222,7 @@ def breathe(chain, times, squeeze, heated=True):
 # %%
 cold_width, cold_rate, _ = breathe(chain, time, SQUEEZE, heated=False)
 width, rate, heat = breathe(chain, time, SQUEEZE)
-print(f"isothermal: widest {cold_width.max():.3f} s at t = {time[cold_width.argmax()]:.1f} T")
+print(f"isothermal: widest {cold_width.max():.3f} s at t = {time[cold_width.argmax()]:.1f} t_0")
 print(f"with temperature: widest {width.max():.4f} s, lowest heat {heat.min():.3f} W_0^2")
 
 # %% tags=["hide-input"]
@@ -237,14 +237,14 @@ left, other = panels(2)
 left.plot(time, cold_width, "--", color=PINK, label="isothermal fluid")
 left.plot(time, width, color=GREEN, linewidth=2.5, label="fluid with temperature")
 left.plot(time, rods_width, "o", color="k", markersize=4, fillstyle="none", label="rods")
-left.set(xlabel="time t [T]", ylabel=r"width of the cloud $\sigma/s$", ylim=(0, 1.7))
+left.set(xlabel="time $t$ [$t_0$]", ylabel=r"width of the cloud $\sigma/s$", ylim=(0, 1.7))
 other.plot(time, 1 + cold_rate**2, "--", color=PINK, label="isothermal fluid: motion + heat")
 other.plot(
     time, heat + rate**2, color=GREEN, linewidth=2.5, label="with temperature: motion + heat"
 )
 other.plot(time, heat, ":", color=SKY, linewidth=2, label="with temperature: heat $W^2$ alone")
 other.plot(time, kinetic, "o", color="k", markersize=4, fillstyle="none", label="rods")
-other.set(xlabel="time t [T]", ylabel=r"$\langle v^2\rangle / W_0^2$", ylim=(0, 2.9))
+other.set(xlabel="time $t$ [$t_0$]", ylabel=r"$\langle v^2\rangle / W_0^2$", ylim=(0, 2.9))
 for ax in (left, other):
     ax.legend(loc="upper right")
 plt.show()
@@ -485,11 +485,11 @@ for ax, (name, flow), factor in zip(axes, pulses.items(), (1, np.sqrt(3)), stric
         ax.plot(side * path, t, "--", color="white", linewidth=1.2)
     ax.set(title=name, xlabel="position x [R]", xlim=(-130, 130))
     print(f"{name}: crest at {crests[-1]:.1f} R, path with {factor:.3f} c: {path[-1]:.1f} R")
-axes[0].set_ylabel("time t [T]")
+axes[0].set_ylabel("time $t$ [$t_0$]")
 fig.colorbar(image, ax=axes, label="flow velocity V / push")
 plt.show()
 middle = expected_speed(rest.density.sel(x=0, method="nearest").item())
-print(f"in the middle: W = {W:.1f} R/T, c = {middle:.1f} R/T")
+print(f"in the middle: W = {W:.1f} R/t_0, c = {middle:.1f} R/t_0")
 
 # %% tags=["remove-cell"]
 assert all(abs(ratio - 1) < 0.03 for ratio in measured.values())
@@ -569,7 +569,7 @@ ax.plot(fine / s, truth / W, color=RED, linewidth=2.5, label="exact")
 look = {"fmt": "o", "color": "k", "fillstyle": "none", "markersize": 4}
 ax.errorbar(centres / s, binned / W, errors / W, label="rods, 10 000 chains", **look)
 ax.set(xlim=(-2, 2), xlabel="reduced position y / s", ylabel="mean velocity / W")
-ax.set(title=f"t = {moment:.2f} T = 0.5 s/W after a push in the middle", ylim=(-0.025, 0.19))
+ax.set(title=f"t = {moment:.2f} $t_0$ = 0.5 s/W after a push in the middle", ylim=(-0.025, 0.19))
 ax.legend(ncols=2, loc="upper center")
 plt.show()
 

@@ -260,7 +260,7 @@ hard_run = cb.simulate(hard, duration=500, **snapshots, **settings)
 in_theory = 0.0623  # phase_space(hard, cells=16).velocity_width[45:55].mean(), minutes
 middle = float(hard_run.velocity_width[45:55].mean())
 middle_error = float(hard_run.velocity_width_error[45:55].mean())  # neighbours err together
-print(f"centre: simulation {middle:.4f} +- {middle_error:.4f}, theory {in_theory:.4f} R/T")
+print(f"centre: simulation {middle:.4f} +- {middle_error:.4f}, theory {in_theory:.4f} R/t_0")
 print(f"theory over simulation - 1: {100 * (in_theory / middle - 1):.0f} %")
 
 # %% tags=["remove-cell"]

@@ -85,7 +85,7 @@ slow = [release(linear, seed, duration=300, time_step=0.02, every=0.2) for seed 
 fast = [release(quadratic, seed, duration=100, time_step=0.002, every=0.1) for seed in seeds]
 end = np.array([run.attrs["end_time"] for run in fast])
 print("status of the quadratic runs:", {run.attrs["status"] for run in fast})
-print(f"they end at t = {end.mean():.1f} T, with a standard deviation of {end.std(ddof=1):.1f} T")
+print(f"they end at t = {end.mean():.1f} t_0, with a standard deviation of {end.std(ddof=1):.1f} t_0")
 
 # %% tags=["hide-input"]
 ax = panels(width=7)
@@ -93,7 +93,7 @@ for runs, colour, name in ((slow, BLUE, "linear springs"), (fast, ORANGE, "quadr
     for run in runs:
         ax.semilogy(run.time, run.kinetic_energy, color=colour, linewidth=0.8, alpha=0.7)
     ax.plot([], [], color=colour, label=name)
-ax.set(xlabel="time t [T]", ylabel=r"kinetic energy [M R$^2$/T$^2$]", ylim=(1, 1e12))
+ax.set(xlabel="time $t$ [$t_0$]", ylabel=r"kinetic energy [$M R^2/t_0^2$]", ylim=(1, 1e12))
 ax.legend(frameon=False)
 plt.show()
 
@@ -108,7 +108,7 @@ assert 35 < end.mean() < 45
 #
 # Every line is a run with its own noise. With linear springs the energy becomes a straight line on
 # this scale, so it grows exponentially. With quadratic springs the energy of all runs grows faster
-# and faster, and becomes infinite at nearly the same time, near 40 T.
+# and faster, and becomes infinite at nearly the same time, near 40 $t_0$.
 #
 # **A divergence is a result.** `simulate` stops when a rod is a million times faster than a typical
 # one. It returns everything that it has measured before, with the status `diverged` and the time
@@ -130,7 +130,7 @@ assert 35 < end.mean() < 45
 L, e, m, k, gamma = 100, linear.restitution, linear.mass, linear.stiffness, linear.damping
 critical = np.pi * gamma / ((e - 1) * np.sqrt(k * m))
 first_order = gamma / m * (L / critical - 1)
-print(f"L_c = {critical:.1f} rods; rate with e - 1: {first_order:.4f} per T")
+print(f"L_c = {critical:.1f} rods; rate with e - 1: {first_order:.4f} per t_0")
 
 # %% [markdown]
 # **Your turn.** Write the rate of growth $\dot E/E$ as a function. Keep $(e^2-1)/2$, and do not
@@ -158,12 +158,12 @@ check(growth_rate, expected_growth_rate, at=chains, hint=hint)
 #     return (e**2 - 1) / 2 * L / (np.pi * np.sqrt(m / k)) - gamma / m
 # ```
 #
-# At $e = 1.01$ the rate is 0.0608 per T. With $e - 1$ it is 0.0600 per T.
+# At $e = 1.01$ the rate is 0.0608 per $t_0$. With $e - 1$ it is 0.0600 per $t_0$.
 # </details>
 #
 # **Predict.** Does the simulation tell the two rates apart?
 #
-# **Run.** We fit an exponential from 150 T on. The noise no longer matters there, and the chain has
+# **Run.** We fit an exponential from 150 $t_0$ on. The noise no longer matters there, and the chain has
 # forgotten its start.
 
 # %%
@@ -171,10 +171,10 @@ unexpanded = solutions.growth_rate(linear)
 late = [run.sel(time=slice(150, None)) for run in slow]
 fits = [fit_growth(run.time.values, run.kinetic_energy.values) for run in late]
 rate, rate_error = mean_and_error([fit.rate for fit in fits])
-print(f"measured rate: {rate:.5f} +- {rate_error:.5f} per T, from twelve runs")
+print(f"measured rate: {rate:.5f} +- {rate_error:.5f} per t_0, from twelve runs")
 print(f"balance: {unexpanded:.5f} with e^2 - 1, {first_order:.5f} with e - 1")
-print(f"error that one fit gives: {fits[0].rate_error:.5f} per T")
-print(f"scatter of the fits:      {np.std([fit.rate for fit in fits], ddof=1):.5f} per T")
+print(f"error that one fit gives: {fits[0].rate_error:.5f} per t_0")
+print(f"scatter of the fits:      {np.std([fit.rate for fit in fits], ddof=1):.5f} per t_0")
 
 # %% tags=["remove-cell"]
 assert first_order + 5 * rate_error < rate < unexpanded - 5 * rate_error
@@ -210,14 +210,14 @@ check(my_factor_of_the_period, solutions.period_factor(64), hint=hint)
 
 # %%
 def half_period(energy):
-    """Return half the period of a rod on a quadratic spring [T]."""
+    """Return half the period of a rod on a quadratic spring [t_0]."""
     amplitude = (3 * energy / k) ** (1 / 3)
     integral = quad(lambda x: (1 - x**3) ** -0.5, 0, 1)[0]  # x = y/a
     return 2 * amplitude * integral / np.sqrt(2 * energy / m)
 
 
 for energy in (1.0, 64.0, 64.0**2):
-    print(f"energy {energy:6.0f}: half a period takes {half_period(energy):.3f} T")
+    print(f"energy {energy:6.0f}: half a period takes {half_period(energy):.3f} t_0")
 
 # %% tags=["remove-cell"]
 assert np.isclose(half_period(1.0), 2 * half_period(64.0))
@@ -251,7 +251,7 @@ assert np.isclose(half_period(1.0), 2 * half_period(64.0))
 beta = 6 * gamma / (5 * m)
 for time_left in (1, 10, 20, 40):
     slope = beta * time_left / (np.exp(beta * time_left / 6) - 1)
-    print(f"{time_left:3d} T before the end the exponent is {slope:.2f}")
+    print(f"{time_left:3d} t_0 before the end the exponent is {slope:.2f}")
 
 # %% tags=["remove-cell"]
 left = np.geomspace(0.1, 100, 200)
@@ -362,7 +362,7 @@ for runs, colour, name in named:
     for run in runs:
         ax.loglog(run.energy, run.number, color=colour, linewidth=0.7, alpha=0.5)
     ax.plot([], [], color=colour, label=name)
-ax.set(xlabel=r"energy of the chain [M R$^2$/T$^2$]", ylabel="rods that share it, P")
+ax.set(xlabel=r"energy of the chain [$M R^2/t_0^2$]", ylabel="rods that share it, P")
 ax.set(xlim=(1e2, 1e12), ylim=(0.8, 120))
 ax.set_yticks([1, 3, 10, 30, 100], ["1", "3", "10", "30", "100"])
 ax.legend(frameon=False)
@@ -435,8 +435,8 @@ def last_rod(energy, halves):
 
 
 energies, times = last_rod(1e6, 200)
-print(f"half a period at the start takes {half_period(1e6):.2f} T")
-print(f"100 half periods take {times[100]:.4f} T, 200 of them {times[-1]:.4f} T")
+print(f"half a period at the start takes {half_period(1e6):.2f} t_0")
+print(f"100 half periods take {times[100]:.4f} t_0, 200 of them {times[-1]:.4f} t_0")
 
 # %% tags=["remove-cell"]
 assert times[-1] - times[100] < 1e-6  # the sum converges: infinitely many in a finite time
@@ -474,7 +474,7 @@ for number, style, name in ((1, "-", "one rod has it all"), (40, "--", "40 rods 
     alpha = alpha_1 * number ** (-1 / 6)
     u = alpha / beta * (1 - np.exp(-beta * ahead / 6))
     left_ax.plot(-ahead, u, "k", linestyle=style, linewidth=1.2, label=name)
-left_ax.set(xlabel="time before the end $t - t_c$ [T]", ylabel="$E^{-1/6}$, in units of M, R, T")
+left_ax.set(xlabel="time before the end $t - t_c$ [$t_0$]", ylabel="$E^{-1/6}$, in units of M, R, $t_0$")
 left_ax.set(xlim=(-17, 0.5), ylim=(0, 0.34))
 left_ax.legend(frameon=False)
 
@@ -492,7 +492,7 @@ energies, times = last_rod(run.energy[first], 9)
 right_ax.semilogy(run.time[begin:], run.energy[begin:], color=ORANGE, label="simulation, one run")
 look = {"markersize": 5, "markerfacecolor": "none", "label": "one rod, from turn to turn"}
 right_ax.plot(run.time[first] + times, energies, "ko", **look)
-right_ax.set(xlabel="time t [T]", ylabel=r"energy [M R$^2$/T$^2$]")
+right_ax.set(xlabel="time $t$ [$t_0$]", ylabel=r"energy [$M R^2/t_0^2$]")
 right_ax.set(ylim=(run.energy[begin] / 3, 1e12), xlim=(run.time[begin] - 0.1, run.time[-1] + 0.2))
 right_ax.legend(frameon=False)
 plt.show()
@@ -521,7 +521,7 @@ assert abs(growth / np.log(factor) - 1) < 0.03
 # ## Exercise
 #
 # Is the finite time real, or is it an effect of the time step? Repeat the quadratic runs of
-# section 1 with steps from 0.02 T to 0.0005 T.
+# section 1 with steps from 0.02 $t_0$ to 0.0005 $t_0$.
 #
 # <details><summary>Solution</summary>
 #

@@ -26,7 +26,7 @@
 # numbers why they are written differently.
 #
 # The labels such as `diff_gl` are those of the LaTeX source of the paper. The unit of length is the
-# rod radius $R$. The unit of time is $T = \sqrt{M/k}$, where a rod has the mass
+# rod radius $R$. The unit of time is $t_0 = \sqrt{M/k}$, where a rod has the mass
 # $m = \frac{4\pi}{3}M$.
 #
 # *Level: for readers of the paper. You need: numpy and scipy. Time: 30 minutes. The lessons 1 to 10
@@ -210,7 +210,7 @@ assert apart[inside].max() < 0.01
 # $\langle\Delta x\rangle = x - 2R\,(N - L/2)$.
 #
 # The last term of the velocity equation is not in the paper. It is a small viscosity, which
-# py-pde's central differences need. Its value 4 $R^2/T$ is small against $sW_v = 220\,R^2/T$.
+# py-pde's central differences need. Its value 4 $R^2/t_0$ is small against $sW_v = 220\,R^2/t_0$.
 
 # %%
 warm = chain.replace(amplitude=30)
@@ -256,7 +256,7 @@ pde.plot_kymograph(
     storage,
     field_index=0,
     title=r"density $\rho$ [1/R]",
-    ax_style={"xlabel": "position x [R]", "ylabel": "time t [T]"},
+    ax_style={"xlabel": "position x [R]", "ylabel": "time $t$ [$t_0$]"},
 )
 plt.show()
 
@@ -291,7 +291,7 @@ assert theirs.shape == in_time.shape == (31, X.size)
 # %% tags=["hide-input"]
 plt.figure(figsize=(6, 3))
 for moment in (0, 5, 15):
-    colour = plt.plot(X, in_time[moment], label=f"t = {flow.time[moment]:.0f} T")[0].get_color()
+    colour = plt.plot(X, in_time[moment], label=f"t = {flow.time[moment]:.0f} $t_0$")[0].get_color()
     plt.plot(X[::10], theirs[moment][::10], "o", color=colour, markersize=3)
 plt.gca().set(xlabel="position x [R]", ylabel=r"density $\rho$ [1/R]")
 plt.legend(title="lines: three strings\npoints: hydrodynamics", fontsize=8, title_fontsize=8)
@@ -327,7 +327,7 @@ check(my_speed_of_sound, lambda free: solutions.speed_of_sound(free, R), at=plac
 # ```
 # </details>
 #
-# **Predict.** We squeeze the chain of section 6 to 0.2 instead of 0.6. Does the time step of 0.02 T
+# **Predict.** We squeeze the chain of section 6 to 0.2 instead of 0.6. Does the time step of 0.02 $t_0$
 # still do?
 #
 # **Run.**
@@ -338,9 +338,9 @@ with np.errstate(all="ignore"):
     fluid.solve(released(0.2), t_range=1.0, tracker=tight.tracker(0.1), **solver)
 broken = [not (np.isfinite(fields).all() and (fields[0] >= 0).all()) for fields in tight.data]
 first = tight.times[np.argmax(broken)]
-print(f"three strings: a density is negative or not a number at t = {first:.1f} T")
+print(f"three strings: a density is negative or not a number at t = {first:.1f} t_0")
 flow = cb.hydrodynamics(warm, cb.compressed(warm, 0.2), END, every=0.4, progress=False)
-print(f"hydrodynamics: {flow.rods[-1].item():.4f} rods at t = {END:.0f} T")
+print(f"hydrodynamics: {flow.rods[-1].item():.4f} rods at t = {END:.0f} t_0")
 
 # %% tags=["remove-cell"]
 assert any(broken)
@@ -425,7 +425,7 @@ assert largest < 0.01
 #
 # <details><summary>Solution</summary>
 #
-# Remove `+ 4 * d2_dx2(V)`. At $t=4.8\,T$ the densities are not numbers any more. Central
+# Remove `+ 4 * d2_dx2(V)`. At $t=4.8\,t_0$ the densities are not numbers any more. Central
 # differences do not damp waves that are two cells long, and the equations are not linear, so these
 # waves grow.
 # </details>

@@ -26,7 +26,7 @@
 # velocity width in the centre is wrong by 8 %. Here you measure the reason, and see a theory that
 # corrects it.
 #
-# Units as in all lessons: the rod radius $R$, $T = \sqrt{M/k}$ for times. $W$ is the velocity width
+# Units as in all lessons: the rod radius $R$, $t_0 = \sqrt{M/k}$ for times. $W$ is the velocity width
 # of a rod without collisions, $W_v$ that of a rod in the chain.
 #
 # *Level: fourth year. You need: lesson 9, sections 1 and 2. Time: 45 minutes. To predict before you
@@ -47,8 +47,8 @@ duration = 2000
 # %% tags=["hide-input"]
 if not safe(
     duration >= 1000,
-    f"A duration of {duration} T leaves errors that hide what is to be seen. "
-    "The notebook goes on with 2000 T.",
+    f"A duration of {duration} t_0 leaves errors that hide what is to be seen. "
+    "The notebook goes on with 2000 t_0.",
 ):
     duration = 2000
 

@@ -68,7 +68,7 @@ def make_dynamics(
 ) -> Dynamics:
     """Return the numbers and arrays that the kernels need of a chain; see ``simulate``.
 
-    ``speed`` is typical of the rods [R/T]. ``counted``: every collision is to be recorded at its
+    ``speed`` is typical of the rods [R/t_0]. ``counted``: every collision is to be recorded at its
     contact, and ``struck`` every impulse on a wall.
     """
     second = chain.replace(mass=chain.mass * chain.mass_ratio, mass_ratio=1.0)

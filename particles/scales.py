@@ -34,7 +34,7 @@ _SLOWEST_MODE = 1.241  # rate of a strongly damped rod on a quadratic spring, in
 
 
 def spring_rate(chain: Chain) -> float:
-    """w0 = sqrt(F'(d)/m) [1/T]; a quadratic spring's is taken at U(d) = 10 T, the temperature."""
+    """w0 = sqrt(F'(d)/m) [1/t_0]; a quadratic spring's is taken at U(d) = 10 T, the temperature."""
     lightest = chain.rod_masses[:2].min()
     if chain.spring == "linear":
         return math.sqrt(chain.stiffness / lightest)
@@ -164,7 +164,7 @@ def _noise_error(e: float, ratio: float, method: str, corrected: bool) -> float:
 
 
 def relaxation_time(chain: Chain) -> float:
-    """Time in which a chain forgets its start [T], but for a factor e.
+    """Time in which a chain forgets its start [t_0], but for a factor e.
 
     It is infinite without damping, and if neither springs nor walls hold the rods.
 
@@ -190,7 +190,7 @@ def relaxation_time(chain: Chain) -> float:
 
 
 def settling_time(chain: Chain) -> float:
-    """Return the relaxation time or, where nothing ties the rods, that of velocities [T]."""
+    """Return the relaxation time or, where nothing ties the rods, that of velocities [t_0]."""
     if chain.damping == 0:
         return math.inf
     times = [_settling_time(chain, float(mass)) for mass in chain.rod_masses[:2]]
@@ -201,7 +201,7 @@ def settling_time(chain: Chain) -> float:
 
 
 def _crossing_time(chain: Chain) -> float:
-    """Time constant of the slowest wave of density in a box, diffusive or free [T]."""
+    """Time constant of the slowest wave of density in a box, diffusive or free [t_0]."""
     wave_number = math.pi / (2 * chain.walls[1])
     slowest = math.sqrt(chain.temperature / chain.rod_masses[:2].max())
     diffusion = chain.damping / (wave_number**2 * chain.temperature)
@@ -220,7 +220,7 @@ def _settling_time(chain: Chain, mass: float) -> float:
 
 
 def correlation_time(chain: Chain) -> float:
-    """Longest integral of an autocorrelation function from 0 on [T]; 0 if nothing relaxes.
+    """Longest integral of an autocorrelation function from 0 on [t_0]; 0 if nothing relaxes.
 
     It is m/gamma for energies under weak damping, and gamma/k' for displacements under strong
     damping. With the critical damping, displacements are correlated for twice
@@ -236,7 +236,7 @@ def correlation_time(chain: Chain) -> float:
 
 
 def _relaxing_stiffness(chain: Chain) -> float:
-    """Stiffness k' of the linear spring that relaxes as slowly as the chain's own [M/T^2].
+    """Stiffness k' of the linear spring that relaxes as slowly as the chain's own [M/t_0^2].
 
     It is 1.241 k s min[1, sqrt(z^2 + 1/(1 + g L/2s)^2)], z = (0.54 g/s)^(2/5), for quadratic ones.
     """
@@ -251,7 +251,7 @@ def _relaxing_stiffness(chain: Chain) -> float:
 
 
 def first_decay(chain: Chain) -> float:
-    """Estimate the time in which a rod's velocity decays first [T]: to 0.1 at e = 1, 0.5 below.
+    """Estimate the time in which a rod's velocity decays first [t_0]: to 0.1 at e = 1, 0.5 below.
 
     It is the shortest of m/gamma, 1/w0, and the distance to the next rod over the velocity width,
     in the middle of a cloud of the width that a free rod has, or on the lattice of the gap.
@@ -269,7 +269,7 @@ def first_decay(chain: Chain) -> float:
 
 
 def typical_speed(chain: Chain, duration: float, y: Array, v: Array) -> float:
-    """Upper estimate of the speed that noise and the start's own energy give a rod [R/T]."""
+    """Upper estimate of the speed that noise and the start's own energy give a rod [R/t_0]."""
     lightest = chain.rod_masses[:2].min()
     heating = min(duration, lightest / (2 * chain.damping) if chain.damping else np.inf)
     noise = chain.amplitude / lightest * np.sqrt(heating)

@@ -61,11 +61,11 @@ def simulate(
     chain
         The chain, with any restitution.
     duration
-        Time measured in each replica [T]; rounded up to whole snapshots. Good values are hundreds
+        Time measured in each replica [t_0]; rounded up to whole snapshots. Good values are hundreds
         of relaxation times (:func:`relaxation_time`, 8.4 for the default chain).
         In less than some twenty of them, error bars would be too small, which a warning says.
     warmup
-        Time before measuring [T]; None: 12 relaxation times, or 0 with a ``start`` and for an
+        Time before measuring [t_0]; None: 12 relaxation times, or 0 with a ``start`` and for an
         ensemble.
     time_step
         None: 0.05 of the shorter of the times of spring and damping (0.1 for the default chain).
@@ -118,7 +118,7 @@ def simulate(
         equal times, for relaxation: widths, density, energy over (time, ...), the first time
         being the start or the end of a ``warmup``. Errors are then those of 32 groups of replicas.
     every
-        Time between snapshots [T]; None: 10 steps, or less where ``"time-correlations"`` needs it,
+        Time between snapshots [t_0]; None: 10 steps, less where ``"time-correlations"`` needs it,
         for an ensemble a hundredth of the duration (with exact flight as far apart as 10 steps of a
         chain with a gap would be).
         The time step is shortened to a whole fraction of it. At most a million steps may be

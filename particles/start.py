@@ -32,7 +32,7 @@ def given_start(
     position
         Rod centres x_i [R], shape (L,) for all replicas or (replicas, L), in order from the left.
     velocity
-        Velocities v_i [R/T], of the same shapes, or one for all rods.
+        Velocities v_i [R/t_0], of the same shapes, or one for all rods.
     replicas
         Number of replicas with this start, the same as in the call of ``simulate``.
 

@@ -83,7 +83,7 @@ def errors(chain: Chain, factor: float, folder: Path) -> tuple[float, float, flo
 
 def table(folder: Path, held_out: bool) -> Table:
     if held_out:
-        yield "e", "L", "Gamma", "y times", "largest error, %", "at t [T]", "stated, %"
+        yield "e", "L", "Gamma", "y times", "largest error, %", "at t [t_0]", "stated, %"
     else:
         yield "theory", "quantity", "L", "e", "Gamma", "y times", "error", "standard error"
     for place, factor in itertools.product(HELD_OUT if held_out else MEASURED, FACTORS):

@@ -34,10 +34,11 @@ def test_units_are_not_those_of_a_unit_library():
     for _, unit in VOCABULARY.values():
         written = described("", unit)["units"]
         for word in written.replace("^", " ").replace("/", " ").split():
-            assert word.strip("()").isdecimal() or word in ("R_0", "M_0", "T_0")
+            assert word.strip("()").isdecimal() or word in ("R_0", "M_0", "t_0")
     width = cb.equilibrium(CHAIN).velocity_width
-    assert width.attrs["units"] == "R_0/T_0"
-    assert unit_of(width) == unit_of(width.assign_attrs(units="R/T")) == "R/T"
+    assert width.attrs["units"] == "R_0/t_0"
+    assert unit_of(width) == unit_of(width.assign_attrs(units="R_0/T_0")) == "R/t_0"
     assert (
-        cb.overlay({"exact": cb.equilibrium(CHAIN)}, "velocity_width").get_ylabel()[-5:] == "[R/T]"
+        cb.overlay({"exact": cb.equilibrium(CHAIN)}, "velocity_width").get_ylabel()[-9:]
+        == "[$R/t_0$]"
     )

@@ -15,14 +15,14 @@ from crazybilliards.model import Chain
 
 
 class Units:
-    """Other units: a length R, mass M or time T in them is that many times the former number."""
+    """Other units: a length R, mass M or time t_0 in them is that many times the former number."""
 
     def __init__(self, length, mass, time):
         self.length, self.mass, self.time = length, mass, time
 
     def of(self, unit):
-        """Return the factor of a unit as results carry it, "M R^2/T^2" say."""
-        factors = {"1": 1.0, "R": self.length, "M": self.mass, "T": self.time}
+        """Return the factor of a unit as results carry it, "M R^2/t_0^2" say."""
+        factors = {"1": 1.0, "R": self.length, "M": self.mass, "t": self.time}
         above, _, below = unit.partition("/")
         product = 1.0
         for part, sign in ((above, 1), (below, -1)):
@@ -36,10 +36,11 @@ class Units:
             radius=self.length * chain.radius,
             gap=self.length * chain.gap,
             mass=self.mass * chain.mass,
-            damping=self.of("M/T") * chain.damping,
-            stiffness=self.of("M/T^2" if chain.spring == "linear" else "M/R T^2") * chain.stiffness,
+            damping=self.of("M/t_0") * chain.damping,
+            stiffness=self.of("M/t_0^2" if chain.spring == "linear" else "M/R t_0^2")
+            * chain.stiffness,
             box=self.length * chain.box,
-            amplitude=self.of("M R/T") / np.sqrt(self.time) * chain.amplitude,
+            amplitude=self.of("M R/t_0") / np.sqrt(self.time) * chain.amplitude,
         )
 
     def given(self, chain):
@@ -51,7 +52,7 @@ class Units:
         return Given(
             start=start,
             variance=self.variance,
-            number=0.1 * self.of("R^2/T^2"),
+            number=0.1 * self.of("R^2/t_0^2"),
             length=self.length,
             times={"duration": 2 * self.time, "every": self.time},
             run={"duration": 200 * self.time},
@@ -59,7 +60,7 @@ class Units:
         )
 
     def variance(self, x):
-        return self.of("R^2/T^2") * (0.1 + 0.05 * np.exp(-((x / self.length) ** 2)))
+        return self.of("R^2/t_0^2") * (0.1 + 0.05 * np.exp(-((x / self.length) ** 2)))
 
 
 LINEAR = Chain(size=5, gap=0.25, amplitude=1.3, radius=0.8)

@@ -103,7 +103,7 @@ def fit_border_power_law(
     Returns
     -------
     Fit
-        ``scale``, ``exponent`` and ``origin``: a [R/T], nu and c. The power laws begin at the
+        ``scale``, ``exponent`` and ``origin``: a [R/t_0], nu and c. The power laws begin at the
         particle numbers c and L + 1 - c, beyond the outermost rods: c < 1. The errors are standard
         errors from the scatter about the fit. Neighbouring rods move together, so the scatter
         between independent runs is larger. It is the better measure.

@@ -72,7 +72,7 @@ def compare(
         is done. The same call takes them from there, so nothing is lost when the program is killed.
         None: a folder that is removed at the end.
     duration
-        Simulated time of each of two replicas [T]; 100 000 takes 2 s for 100 rods at e = 1, and
+        Simulated time of each of two replicas [t_0]; 100 000 takes 2 s for 100 rods at e = 1, and
         25 s at e = 0.9.
     seed
         As in ``simulate``. Every chain has its own random numbers.

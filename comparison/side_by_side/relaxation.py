@@ -76,7 +76,7 @@ def compare_relaxation(
         ``"wave"``: with a density over y like 1 + ``by`` cos(pi (y + l/2)/l); ``"confined"``: the
         equilibrium state of the chain in the middle share ``by`` of l.
     duration, every
-        Time, and time between outputs [T].
+        Time, and time between outputs [t_0].
     replicas, seed, threads
         Those of the ensemble of simulated chains, as in ``simulate``.
 

@@ -11,14 +11,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from crazybilliards.comparison.coverage import smooth
-from crazybilliards.comparison.curves import axis_label
+from crazybilliards.comparison.curves import axis_label, unit_label
 from crazybilliards.comparison.drawing import overlay
 from crazybilliards.comparison.layout import TWO_COLUMNS, entitle, legend_above, panels
 from crazybilliards.comparison.side_by_side.grid import SIMULATION
 from crazybilliards.comparison.side_by_side.relaxation import LEGEND, PARTICLES, cloud
 from crazybilliards.comparison.widths import displacement_unit
 from crazybilliards.model import Chain, chain_of
-from crazybilliards.model.vocabulary import unit_of
 
 _NAMES = {PARTICLES: SIMULATION} | LEGEND
 _MOMENTS = (0.0, 0.05, 0.1, 1.0)  # of the duration, for the profiles
@@ -58,7 +57,7 @@ def draw_profiles(tree: xr.DataTree) -> Figure:
     for ax, share in zip(axes, _MOMENTS, strict=True):
         moment = round(share * (time.size - 1))
         overlay({n: each.isel(time=moment) for n, each in densities.items()}, ax=ax, style=_LOOK)
-        entitle(ax, f"$t = {float(time[moment]):.3g}$ {unit_of(time)}")
+        entitle(ax, f"$t = {float(time[moment]):.3g}$ {unit_label(time)}")
         ax.margins(x=0)
         ax.label_outer()
         _draw_walls(ax, chain_of(densities[SIMULATION]))
@@ -108,7 +107,7 @@ def relaxation_film(tree: xr.DataTree, most: int) -> tuple[Figure, Callable[[int
 
     def show(picture: int) -> None:
         time = float(rods.time[picture])
-        ax.set_title(f"{title(tree)}: $t = {time:.2f}$ {unit_of(rods.time)}")
+        ax.set_title(f"{title(tree)}: $t = {time:.2f}$ {unit_label(rods.time)}")
         for name, each in densities.items():
             lines[name].set_ydata(each.density.values[picture])
 

@@ -49,13 +49,13 @@ def breathing_cloud(
     chain
         A chain with linear springs, no gap and restitution 1.
     duration
-        Time to solve for [T].
+        Time to solve for [t_0].
     every
-        Time between outputs [T]; None: a hundredth of the duration.
+        Time between outputs [t_0]; None: a hundredth of the duration.
     stretch, shift
         How the stationary cloud is changed: sigma(0) = stretch s, Y(0) = shift [R].
     start_velocity_variance
-        W^2 at the start [R^2/T^2]; None: the free value.
+        W^2 at the start [R^2/t_0^2]; None: the free value.
     evolving
         True: with the temperature equation, exact for the rods. False: isothermal at the free
         value.

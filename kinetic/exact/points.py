@@ -31,7 +31,7 @@ _CELLS = 4096  # between the walls, and cosines
 def gas_of_points(chain: Chain, start: xr.Dataset, duration: float, every: float) -> xr.Dataset:
     """Return ``density`` [1/R] and ``label`` over (time, x) by the law of this module.
 
-    ``start`` has a ``label`` over x, and the chain's temperature. Times are in T.
+    ``start`` has a ``label`` over x, and the chain's temperature. Times are in t_0.
     """
     times = output_times(duration, every, number=1)
     y = np.linspace(*chain.walls, _CELLS + 1)

@@ -99,13 +99,13 @@ def hydrodynamics(
         ``velocity_variance``, such as ``force_balance`` of another chain (a quench), or
         ``displaced`` and ``compressed`` of this one.
     duration
-        Time to solve for [T]; 12 relaxation times 2m/gamma come within 1e-5 of the steady state.
+        Time to solve for [t_0]; 12 relaxation times 2m/gamma come within 1e-5 of the steady state.
     displacement
         None: by labels, which the flow carries along. Or a frozen <dx>(x) [R], in any form that
         ``force_balance`` takes. It needs the eulerian frame.
     velocity_variance
         None: isothermal at the free W^2 (wrong in transients). ``"evolving"``: with
-        the temperature equation. Or a prescribed W^2 [R^2/T^2] in any form that ``force_balance``
+        the temperature equation. Or a prescribed W^2 [R^2/t_0^2] in any form that ``force_balance``
         takes: a number is isothermal at this value, a profile W^2(x) needs the eulerian frame.
     frame
         ``"label"``: conserves the number of rods exactly, has no grid of positions, and takes
@@ -114,7 +114,7 @@ def hydrodynamics(
         Between walls it takes starts with a vacuum at a wall, which the other frame refuses if the
         temperature evolves.
     every
-        Time between outputs [T]; None: a hundredth of the duration. Each output takes 100 bytes
+        Time between outputs [t_0]; None: a hundredth of the duration. Each output takes 100 bytes
         for each node of its grid x (21 or more in a rod length) and for each rod.
     cells
         Number of cells; None: chosen from the chain's scales. In the eulerian frame a cell may be

@@ -8,7 +8,7 @@ The conserved quantities rho, rho V and, with a temperature, E = rho (V^2 + W^2)
 
 where Gamma_T = gamma <1/m>, W_0^2 = A^2/(2 m gamma) and F is the spring's force at the displacement
 <dx> = x - (2 R + g)(N - L/2), N = int rho dx, or at a frozen profile <dx>(x). py-pde gets the grid
-and these fields in the chain's units, R and T, and with these names.
+and these fields in the chain's units, R and t_0, and with these names.
 
 **Discretisation.** The finite volumes (:mod:`.finite_volumes`) are of second order and well
 balanced, and n always stays positive and below close packing. The grid ends far out, where the

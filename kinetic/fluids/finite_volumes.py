@@ -35,16 +35,16 @@ class Constants(NamedTuple):
 
     x: Array  # the cells' middles [R]
     spacing: float  # their width [R]
-    variance: Array  # W^2 at the cells [R^2/T^2], where no equation determines it
+    variance: Array  # W^2 at the cells [R^2/t_0^2], where no equation determines it
     frozen: Array  # <dx> at the cells [R], or empty: labels are carried along
     size: int  # number of rods
     rod: float  # 2 R
     lattice: float  # 2 R + g, the distance of the anchors [R]
     stiffness: float  # k/m
-    damping: float  # gamma/m [1/T]
-    heating: float  # Gamma_T = gamma <1/m> [1/T]
+    damping: float  # gamma/m [1/t_0]
+    heating: float  # Gamma_T = gamma <1/m> [1/t_0]
     exponent: int  # of the springs' potential
-    heat: float  # the free W^2 [R^2/T^2]
+    heat: float  # the free W^2 [R^2/t_0^2]
     dilute: float  # L/s, the density of rods without a length [1/R]
     walled: bool  # the outermost faces are walls
 

@@ -90,7 +90,7 @@ def points(size: int, profiles: Moments) -> Points:
 
 
 def rods(chain: Chain, profiles: Moments, length: float, velocity: float) -> Rods:
-    """Return the moments [R, R/T] of the rods of a steady state.
+    """Return the moments [R, R/t_0] of the rods of a steady state.
 
     The velocities are corrected for the centre of mass, the positions are those of points.
     """

@@ -87,11 +87,11 @@ def relax_phase_space(
         ``flow_velocity`` and ``velocity_variance``, such as ``displaced``, ``compressed`` or
         ``force_balance`` of another chain. Velocities are then Maxwellian around the flow.
     duration
-        Time to solve for [T].
+        Time to solve for [t_0].
     every
-        Time between outputs [T]; None: a fiftieth of the duration.
+        Time between outputs [t_0]; None: a fiftieth of the duration.
     time_step
-        Longest step [T]; None: 0.04 of the spring's s/W. The error of the moments is a quarter of
+        Longest step [t_0]; None: 0.04 of the spring's s/W. The error of the moments is a quarter of
         its square in these units, 4e-4.
     cells
         Number of cells from the centre to the end of the mesh in each direction. Its square

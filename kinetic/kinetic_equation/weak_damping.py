@@ -39,7 +39,7 @@ def weak_damping_critical_size(chain: Chain) -> float:
 
 
 def weak_damping_growth_rate(chain: Chain) -> float:
-    """Return E'/E [1/T], without an expansion in e - 1.
+    """Return E'/E [1/t_0], without an expansion in e - 1.
 
     Simulated chains grow at this rate within 5 % if they have L >= 30 rods, (e^2 - 1) L/2 <= 1.05,
     gamma <= sqrt(k m)/4 and L >= 1.5 L_c, on linear springs without a gap. At (e^2 - 1) L/2 = 3

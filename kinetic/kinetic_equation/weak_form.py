@@ -50,7 +50,7 @@ from crazybilliards.model.arrays import Array
 
 
 class Units(NamedTuple):
-    """Units of length [R] and velocity [R/T] of an equation."""
+    """Units of length [R] and velocity [R/t_0] of an equation."""
 
     length: float
     velocity: float

@@ -41,7 +41,7 @@ _SAME = 1e-12
 
 
 def displacement_widths(chain: Chain, points: RodPlaces, velocity_variance: Array) -> Array:
-    """Return W_x [R] of rods with these W_v^2 [R^2/T^2], on linear springs.
+    """Return W_x [R] of rods with these W_v^2 [R^2/t_0^2], on linear springs.
 
     ``points``: where the rods of independent points are. The time is O(L^2).
     """

@@ -72,7 +72,7 @@ def force_balance(
         None: by labels, without an input. Otherwise <dx>(x) [R]: a table (x, <dx>), a result
         with ``mean_displacement``, or a callable of x (the paper: a fitted arctanh).
     velocity_variance
-        W^2 [R^2/T^2]. None: the free value, which is right for restitution 1 only. Otherwise a
+        W^2 [R^2/t_0^2]. None: the free value, which is right for restitution 1 only. Otherwise a
         number, or a profile W^2(x) in any form of the displacement (the ``velocity_width`` of a
         simulation is squared). A profile needs linear springs and the closure by labels.
 

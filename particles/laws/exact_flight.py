@@ -33,10 +33,10 @@ class Propagator(NamedTuple):
     """E and the triangular root of Sigma for one step, as plain numbers."""
 
     y_from_y: float
-    y_from_v: float  # [T]
-    v_from_y: float  # [1/T]
+    y_from_v: float  # [t_0]
+    v_from_y: float  # [1/t_0]
     v_from_v: float
-    noise: float  # standard deviation of v [R/T]
+    noise: float  # standard deviation of v [R/t_0]
     shared_noise: float  # the part of y that follows the noise of v [R]
     own_noise: float  # the part of y that does not [R]
 
@@ -48,7 +48,7 @@ def independent_rods(chain: Chain) -> bool:
 
 
 def make_propagator(chain: Chain, duration: float) -> Propagator:
-    """Return the numbers of a step of this duration [T]."""
+    """Return the numbers of a step of this duration [t_0]."""
     square, damping = chain.stiffness / chain.mass, chain.damping / chain.mass
     turns = duration * max(math.sqrt(square), damping)
     doublings = max(math.ceil(math.log2(turns)), 0) if turns > 0 else 0

@@ -92,8 +92,8 @@ class TimeCorrelations(Averaged):
     Parameters
     ----------
     longest
-        Longest lag [T], below the duration. None: 5 relaxation times of the chain, but at most 300
-        lags.
+        Longest lag [t_0], below the duration. None: 5 relaxation times of the chain, but at most
+        300 lags.
     lags
         Most lags above 0. Where ``longest`` is more snapshots away, only every second, third, ...
         snapshot is used. None: every snapshot is used.

@@ -28,7 +28,7 @@ def test_overlay_draws_symbols_with_errors_and_lines():
     assert (line.get_linestyle(), line.get_marker()) == ("-", "None")
     np.testing.assert_array_equal(line.get_ydata(), exact.velocity_width)
     assert ax.get_xlabel() == "normalized particle $i_n$"
-    assert ax.get_ylabel() == "velocity width $W_v$ [R/T]"
+    assert ax.get_ylabel() == "velocity width $W_v$ [$R/t_0$]"
     assert set(ax.get_legend_handles_labels()[1]) == {"exact", "rods"}
 
 

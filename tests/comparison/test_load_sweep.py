@@ -21,7 +21,7 @@ def test_loading_gives_one_dataset_over_the_grid(tmp_path):
     run_cases(cases[:3], tmp_path, progress=False)  # the last one is missing
     grid = load_sweep(tmp_path)
     assert grid.velocity_width.dims == ("size", "restitution", "particle")
-    assert grid.velocity_width.attrs["units"] == "R_0/T_0"
+    assert grid.velocity_width.attrs["units"] == "R_0/t_0"
     for case in cases[:3]:
         own = case.load(tmp_path)
         here = grid.sel(size=case.chain.size, restitution=case.chain.restitution)
@@ -53,7 +53,7 @@ def test_numbers_about_a_case_are_variables_over_the_grid(tmp_path):
     assert np.isfinite(loaded.time_step_error.sel(restitution=0.5)).all()
     assert (loaded.time_step_error.sel(restitution=1.0)[:1] == 0).all()  # exact there
     assert loaded.time_step_error.attrs["units"] == "1"
-    assert loaded.end_time.attrs == {"long_name": "time reached, warm-up included", "units": "T_0"}
+    assert loaded.end_time.attrs == {"long_name": "time reached, warm-up included", "units": "t_0"}
     assert not {"status", "end_time", "case"} & loaded.attrs.keys()
     save(loaded, tmp_path / "grid" / "all.nc")
     xr.testing.assert_identical(

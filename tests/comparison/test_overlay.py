@@ -56,7 +56,7 @@ def test_labels_of_axes_are_set_as_in_print():
         assert not set("_^") & set(re.sub(r"\$.*?\$", "", words)), words
         plt.figtext(0, 0, words)
     plt.gcf().draw_without_rendering()  # formulas are read only here
-    assert label("kinetic_energy", "", "M R^2/T^2") == "kinetic energy $E$ [M R$^{2}$/T$^{2}$]"
+    assert label("kinetic_energy", "", "M R^2/t_0^2") == "kinetic energy $E$ [$M R^2/t_0^2$]"
     assert label("own", "<v_i v_i+1>", "1") == "<v$_{i}$ v$_{i+1}$>"
     assert label("own", "my_value $E^2$", "kg m^-1") == "my_value $E^2$ [kg m$^{-1}$]"
     assert label("own", "my_value", "R") == "my_value [R]"
@@ -75,8 +75,8 @@ def test_a_contact_lies_half_way_between_its_rods(pair):
 def test_velocity_densities_of_a_rod_picked_at_random(pair):
     """Both add up to one and have the mean square of all rods; the outermost bins are left out."""
     ax = overlay(pair, "velocity_density")
-    assert ax.get_xlabel() == "velocity $v$ [R/T]"
-    assert ax.get_ylabel() == "probability density of $v$ [T/R]"
+    assert ax.get_xlabel() == "velocity $v$ [$R/t_0$]"
+    assert ax.get_ylabel() == "probability density of $v$ [$t_0/R$]"
     theory = pair["theory"]
     v, p = ax.lines[-1].get_data()
     assert trapezoid(p, v) == pytest.approx(1, abs=1e-6)

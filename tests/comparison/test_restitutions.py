@@ -84,7 +84,7 @@ def test_a_theory_is_a_line_in_a_band_of_the_error_that_it_states(tree):
         np.testing.assert_array_equal(ax.lines[0].get_ydata(), theory[name])
         top = ax.collections[0].get_datalim(ax.transData).y1
         assert top == pytest.approx(float(theory[name].max() + error))
-    assert widths.get_ylabel() == "velocity width $W_v$ [R/T]"
+    assert widths.get_ylabel() == "velocity width $W_v$ [$R/t_0$]"
 
 
 def test_pictures(tree):

@@ -149,7 +149,7 @@ def test_memory_does_not_grow_with_the_duration():
 @pytest.mark.compiled
 @pytest.mark.parametrize("average", ["time", "ensemble"])
 def test_a_short_run_may_have_short_steps(average):
-    """A thousand steps of 1e-9 T cost nothing, and a thousand of them show how noise begins."""
+    """A thousand steps of 1e-9 t_0 cost nothing, and a thousand of them show how noise begins."""
     chain = Chain(size=3)
     arguments = {"duration": 1e-6, "every": 1e-9, "warmup": 0.0, "observe": "energy"}
     run = simulate(chain, average=average, replicas=32, **arguments, progress=False)
