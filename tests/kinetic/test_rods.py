@@ -210,7 +210,7 @@ def _wrong():
     run = simulate(Chain(size=3), duration=20, observe="density", progress=False)
     yield run, "takes a theory"
     yield balance.drop_attrs(), "names no chain"
-    yield balance.density, "xarray.Dataset"
+    yield balance.density, "a DataArray"
 
 
 def test_refusals():
