@@ -14,6 +14,8 @@ import hashlib
 import io
 import os
 import secrets
+import sys
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
 
@@ -90,7 +92,10 @@ def load_attributes(path: str | os.PathLike[str]) -> dict[str, Any]:
 
 def netcdf(result: xr.Dataset | xr.DataTree) -> bytes:
     """Return a result as the content of a NetCDF-4 file."""
-    return bytes(result.to_netcdf(engine="h5netcdf"))
+    dask = sys.modules.get("dask")
+    # A worker of a dask cluster would ask the scheduler for a lock, which knows none of bytes.
+    with dask.config.set(scheduler="threads") if dask else nullcontext():
+        return bytes(result.to_netcdf(engine="h5netcdf"))
 
 
 def _load_classic(content: bytes) -> xr.Dataset:

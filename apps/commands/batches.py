@@ -2,100 +2,93 @@
 
 from __future__ import annotations
 
-from math import isfinite
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Literal
 
-import typer
+from typer import Argument, Exit, Option
 
 from crazybilliards.apps.commands.options import Json, Processes
-from crazybilliards.apps.commands.output import end, writing_to, written_lines
+from crazybilliards.apps.commands.output import answer, complain, writing_to
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
 
-    from crazybilliards.comparison.sweeps import Case, Sweep
+    from crazybilliards.comparison.sweeps import Case
+    from crazybilliards.reproduction.claims.report import Reproduction
 
 _PRINTED = ("its number", "found here", "at other choices", "why")  # of what there is to say
 _PAGES = {"all": "claims.md", "analytics": "analytics.md"}
 
 
 def sweep(
-    file: Annotated[
-        Path,
-        typer.Argument(
-            help="TOML file with the tables [grid], [chain] and [simulate] (or another job).",
-            show_default=False,
-        ),
-    ],
-    output: Annotated[
-        Path, typer.Option("--output", "-o", help="Folder for the results, one file a case.")
-    ],
+    file: Path = Argument(..., help="TOML file: [grid], [chain] and [simulate], or another job."),
+    output: Path = Option(..., "--output", "-o", help="Folder for the results, one file a case."),
     processes: Processes = None,
-    keep_old: Annotated[
-        bool,
-        typer.Option("--keep-old", help="Take results of other source code of crazybilliards."),
-    ] = False,
+    scheduler: str | None = Option(None, help="dask cluster to compute on, tcp://HOST:PORT say."),
+    keep_old: bool = Option(False, "--keep-old", help="Take results of other source code, too."),
     as_json: Json = False,
 ) -> None:
     """Compute every case of a grid of parameters, each into a file of its own.
 
-    The table [grid] holds lists of values of parameters of the chain or settings of the job. Every
-    combination of them is a case. The tables [chain] and [simulate] (or the name of a theory) hold
-    what is the same for all. What the folder holds already is not computed again: after Ctrl-C, a
-    crash, or with a larger grid, the same command computes what is missing. In Python,
-    crazybilliards.load_sweep(FOLDER) reads all of them as one Dataset.
+    The table [grid] of the file holds lists of values of parameters of the chain or settings of
+    the job. Every combination of them is a case. The tables [chain] and [simulate] (or the name of
+    a theory, see crazybilliards theory --help) hold what is the same for all cases.
+
+    What the folder holds already is not computed again: after Ctrl-C, a crash, or with a larger
+    grid, the same command computes what is missing. In Python, crazybilliards.load_sweep(FOLDER)
+    reads all of them as one Dataset.
 
     Example: crazybilliards sweep grid.toml --output results/grid
     """
-    from crazybilliards.comparison.sweeps import process_pool, read_sweep
+    from crazybilliards.comparison.sweeps import read_sweep, run_cases
 
     cases = read_sweep(file)
-    with process_pool(processes) as pool:
-        facts, *how = _compute(cases, output, pool, keep_old)
-    end(facts, as_json, f"{facts['cases']} cases, {facts['failed']} failed", status=how[0], why=how[1])
+    with _workers(processes, scheduler) as executor:
+        failed = run_cases(cases, output, executor, keep_old=keep_old)
+    reasons = [case.arguments | {"reason": reason} for case, reason in failed.items()]
+    facts = {"cases": len(cases), "folder": str(output), "failed": reasons}
+    answer(as_json, facts, f"{len(cases)} cases in {output}, {len(failed)} of them failed")
+    _end_if(failed)
 
 
-def _compute(
-    cases: Sweep | list[Case], folder: Path, pool: Executor, keep_old: bool = False
-) -> tuple[dict[str, Any], str, str]:
-    """Compute what is missing; return facts, the status, and what went wrong."""
-    from crazybilliards.comparison.sweeps import run_cases
+@contextmanager
+def _workers(processes: int | None, scheduler: str | None) -> Iterator[Executor]:
+    """Give what computes cases: processes of this machine, or the cluster of a scheduler."""
+    if scheduler is None:
+        from crazybilliards.comparison.sweeps import process_pool
 
+        with process_pool(processes) as pool:
+            yield pool
+        return
+    if processes is not None:
+        raise ValueError("processes: a dask cluster decides that itself")
     try:
-        failed = run_cases(cases, folder, pool, keep_old=keep_old)
-    except KeyboardInterrupt:
-        return {"cases": len(cases), "failed": 0}, "interrupted", "the same command goes on"
-    except RuntimeError as error:  # a worker died
-        return {"cases": len(cases), "failed": 0}, "diverged", str(error)
-    facts = {"cases": len(cases), "failed": len(failed), "folder": str(folder)}
-    why = "; ".join(f"{case.canonical}: {reason}" for case, reason in failed.items())
-    return facts, "diverged" if failed else "completed", why[:400]
+        from distributed import Client
+    except ImportError as error:
+        raise ValueError("no dask here: pip install 'crazybilliards[sweep]'") from error
+    with Client(scheduler, set_as_default=False) as client:
+        yield client.get_executor(pure=False)
+
+
+def _end_if(failed: dict[Case, str]) -> None:
+    """End the command with status 1 if cases failed, and tell the first reason."""
+    for case, reason in failed.items():
+        complain(f"{len(failed)} cases failed, the first, {case.canonical}, with {reason}")
+        raise Exit(1)
 
 
 def reproduce(
-    which: Annotated[
-        str,
-        typer.Argument(
-            help="Numbers or names of figures of the paper, separated by commas, all (figures of "
-            "the paper), or analytics (those of the paper's section of that name and of the "
-            "velocities at restitution 1)."
-        ),
-    ] = "all",
-    show_list: Annotated[bool, typer.Option("--list", help="List the figures, and stop.")] = False,
-    quality: Annotated[
-        str,
-        typer.Option(
-            help="All figures take 2 minutes (quick) or 15 (full) on two cores.",
-            metavar="quick|full",
-        ),
-    ] = "quick",
-    output: Annotated[
-        Path, typer.Option("--output", "-o", help="Folder for pictures, report and results.")
-    ] = Path("reproduced"),
-    vector: Annotated[
-        str | None, typer.Option(help="Another format for every picture.", metavar="pdf|svg")
-    ] = None,
+    which: str = Argument(
+        "all",
+        help="Numbers or names of figures, separated by commas; all figures of the paper; or "
+        "analytics: those of the section of that name and of the velocities at restitution 1.",
+    ),
+    show_list: bool = Option(False, "--list", help="List the figures, and stop."),
+    quality: Literal["quick", "full"] = Option("quick", help="For all figures 2 minutes, or 15."),
+    output: Path = Option(Path("reproduced"), "--output", "-o", help="Folder for all files."),
+    vector: Literal["pdf", "svg"] | None = Option(None, help="Another format for every picture."),
     processes: Processes = None,
     as_json: Json = False,
 ) -> None:
@@ -108,46 +101,49 @@ def reproduce(
 
     Example: crazybilliards reproduce 16,17 --output results/paper
     """
-    from crazybilliards.comparison.sweeps import process_pool
-    from crazybilliards.model.checks import check_choice
+    from crazybilliards.comparison.sweeps import run_cases
     from crazybilliards.model.storage import write_atomically
     from crazybilliards.reproduction.claims import report
     from crazybilliards.reproduction.figures import FIGURES, find_figures
 
     if show_list:
-        studies = [{"number": each.number, "title": each.title} for each in FIGURES]
-        lines = (f"{each.number:3}  {each.name:28s} {each.title}" for each in FIGURES)
-        end({"studies": studies}, as_json, *lines)
+        studies = [{"number": study.number, "title": study.title} for study in FIGURES]
+        lines = (f"{study.number:3}  {study.name:28s} {study.title}" for study in FIGURES)
+        answer(as_json, {"studies": studies}, *lines)
         return
-    wanted, written = find_figures(which), []
-    chosen: Any = check_choice("quality", quality, ("quick", "full"))
-    formats = [] if vector is None else [check_choice("vector", vector, ("pdf", "svg"))]
-    with writing_to(output), process_pool(processes) as pool:
-        if cases := report.all_cases(wanted, chosen):
-            facts, status, why = _compute(cases, output / "cases", pool)
-            if status != "completed":
-                end(facts, as_json, status=status, why=why)
-        done = list(report.reproduce(wanted, chosen, output / "cases", formats=formats))
-        for each in done:
-            for kind, picture in each.pictures.items():
-                written.append(output / f"{each.study.stem}.{kind}")
-                write_atomically(written[-1], picture)
+    wanted = find_figures(which)
+    formats = [] if vector is None else [vector]
+    files: dict[str, bytes] = {}
+    with writing_to(output), _workers(processes, None) as executor:
+        if cases := report.all_cases(wanted, quality):
+            _end_if(run_cases(cases, output / "cases", executor))
+        drawn = list(report.reproduce(wanted, quality, output / "cases", formats=formats))
+        for figure in drawn:
+            for kind, content in figure.pictures.items():
+                files[f"{figure.study.stem}.{kind}"] = content
         if which in _PAGES:
-            written.append(output / _PAGES[which])
-            write_atomically(written[-1], report.markdown(done, chosen).encode())
-    claims = [(each.study, claim) for each in done for claim in each.claims]
-    facts = {
-        "written": [str(each) for each in written],
-        "summary": report.summary(done),
-        "claims": [
-            {"figure": study.name, "claim": claim.statement, **claim.details}
-            | {"number": claim.number._asdict(), "within": [*filter(isfinite, claim.within)]}
-            for study, claim in claims
-        ],
-    }
-    lines = [
-        f"{study.number}. {claim.statement}: {claim.verdict}"
-        + "".join(f"\n    {name}: {claim.details[name]}" for name in _PRINTED if name in claim.details)
-        for study, claim in claims
-    ]
-    end(facts, as_json, written_lines(facts["written"]), *lines, *report.summary(done))
+            files[_PAGES[which]] = report.markdown(drawn, quality).encode()
+        for name, content in files.items():
+            write_atomically(output / name, content)
+    _answer_claims(drawn, [str(output / name) for name in files], as_json)
+
+
+def _answer_claims(drawn: list[Reproduction], written: list[str], as_json: bool) -> None:
+    """Print the claims of the figures, and how many came out how."""
+    from crazybilliards.reproduction.claims.report import summary
+
+    facts, lines = [], [f"wrote {name}" for name in written]
+    for figure in drawn:
+        for claim in figure.claims:
+            numbers = {
+                "number": claim.number._asdict(),
+                "within": claim.within,
+                "elsewhere": {name: at._asdict() for name, at in claim.elsewhere.items()},
+            }
+            named = {"figure": figure.study.name, "claim": claim.statement}
+            facts.append(named | claim.details | numbers)
+            lines.append(f"{figure.study.number}. {claim.statement}: {claim.verdict}")
+            shown = [name for name in _PRINTED if name in claim.details]
+            lines += [f"    {name}: {claim.details[name]}" for name in shown]
+    counted = summary(drawn)
+    answer(as_json, {"written": written, "summary": counted, "claims": facts}, *lines, *counted)

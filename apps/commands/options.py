@@ -8,42 +8,43 @@ from dataclasses import fields
 from pathlib import Path
 from typing import Annotated, Any, get_type_hints
 
-import typer
+from typer import Option
 
 from crazybilliards.model.parameters import Parameters
 
 Output = Annotated[
-    Path | None,
-    typer.Option("--output", "-o", help="Folder for files; without it nothing is written."),
+    Path | None, Option("--output", "-o", help="Folder for files; without it nothing is written.")
 ]
-Json = Annotated[bool, typer.Option("--json", help="Print one JSON object, numbers in full.")]
-Seed = Annotated[int, typer.Option(help="Seed of the random numbers.")]
-Threads = Annotated[int | None, typer.Option(help="Threads to simulate in; default: one per core.")]
-Processes = Annotated[
-    int | None, typer.Option(help="Processes to compute in; default: one per core.")
+Json = Annotated[
+    bool, Option("--json", help="Print one JSON object instead of text, numbers in full.")
 ]
+Seed = Annotated[int, Option(help="Seed of the random numbers.")]
+Threads = Annotated[int | None, Option(help="Threads to simulate in; default: one per core.")]
+Processes = Annotated[int | None, Option(help="Processes to compute in; default: one per core.")]
 
 
-def with_chain_options(*without: str, **defaults: Any) -> Callable[[Any], Callable[..., None]]:
+def chain_options(*without: str, **defaults: Any) -> Callable[[Any], Callable[..., None]]:
     """Give a command, in the place of its argument ``chain``, one option for each parameter.
 
     ``without``: parameters that the command chooses itself; ``defaults``: values of others.
     """
 
     def decorated(command: Callable[..., None]) -> Callable[..., None]:
-        options = [each for each in _options(defaults) if each.name not in without]
+        parameters = [option for option in _options(defaults) if option.name not in without]
 
-        def with_options(**given: Any) -> None:
+        def with_options(**values: Any) -> None:
             from crazybilliards.model import Chain
 
-            chain = Chain(**{each.name: given.pop(each.name) for each in options})
-            command(chain=chain, **given)
+            chain = Chain(**{option.name: values.pop(option.name) for option in parameters})
+            command(chain=chain, **values)
 
         command.__annotations__.pop("chain")  # its class is not loaded yet
         _, *others = inspect.signature(command, eval_str=True).parameters.values()
-        others = [each.replace(kind=inspect.Parameter.KEYWORD_ONLY) for each in others]
-        with_options.__signature__ = inspect.Signature(options + others)  # type: ignore[attr-defined]
-        with_options.__annotations__ = {each.name: each.annotation for each in options + others}
+        signature = inspect.Signature(parameters + others)
+        with_options.__signature__ = signature  # type: ignore[attr-defined]
+        with_options.__annotations__ = {
+            option.name: option.annotation for option in signature.parameters.values()
+        }
         with_options.__doc__, with_options.__name__ = command.__doc__, command.__name__
         return with_options
 
@@ -51,19 +52,19 @@ def with_chain_options(*without: str, **defaults: Any) -> Callable[[Any], Callab
 
 
 def _options(defaults: dict[str, Any]) -> list[inspect.Parameter]:
-    kinds = get_type_hints(Parameters) | {"spring": str}
-    return [
-        inspect.Parameter(
-            each.name,
+    kinds = get_type_hints(Parameters)
+    options = []
+    for field in fields(Parameters):
+        unit = field.metadata["unit"]
+        text = field.metadata["meaning"] + (f" [{unit}]." if unit else ".")
+        option = inspect.Parameter(
+            field.name,
             inspect.Parameter.KEYWORD_ONLY,
-            default=defaults.get(each.name, each.default),
-            annotation=Annotated[
-                kinds[each.name],
-                typer.Option(help=f"{each.metadata['meaning']} [{each.metadata['unit'] or '1'}]."),
-            ],
+            default=defaults.get(field.name, field.default),
+            annotation=Annotated[kinds[field.name], Option(help=text)],
         )
-        for each in fields(Parameters)
-    ]
+        options.append(option)
+    return options
 
 
 def numbers(name: str, text: str, kind: Callable[[str], Any] = float) -> list[Any]:

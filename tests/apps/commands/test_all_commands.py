@@ -39,7 +39,7 @@ for line in sys.stdin.read().splitlines():
 
 
 def test_help_shows_an_example_and_loads_nothing_heavy():
-    asked = ["-h", "", *(f"{each} --help" for each in COMMANDS)]
+    asked = ["-h", *(f"{each} --help" for each in COMMANDS)]
     process = [sys.executable, "-c", HELP]
     done = subprocess.run(
         process, input="\n".join(asked), capture_output=True, text=True, check=False
@@ -54,68 +54,31 @@ def test_help_shows_an_example_and_loads_nothing_heavy():
 
 def test_the_usual_conventions_hold(run):
     assert run("-V").stdout == run("--version").stdout
-    assert run("help").stdout == run("--help").stdout
+    assert run().stdout == run("--help").stdout
     for name in COMMANDS:
         shown = run(name, "--help").stdout
-        assert run("help", name).stdout == run(name[:3], "-h").stdout == shown
+        assert run(name, "-h").stdout == shown
         assert name == "explore" or " -o" in shown
 
 
-def test_an_error_that_quotes_an_endless_argument_is_cut(run):
-    done = run("compare", "--json", "9" * 5000)
-    assert done.returncode == 2
-    assert "unexpected extra argument" in done.stderr
-    assert len(done.stderr) < 500
-
-
 REFUSED = """
-compare --amplitude 1,x | amplitude takes numbers
-compare --amplitudes 1 | No such option
-compare --restitution 0.8,0.9 --amplitude 1,2 | several values of amplitude or of restitution, not
-compare --colour | No such option
-compare extra | unexpected extra argument 'extra'
-compare --restitution 0.8 0.9 | restitution takes values separated by commas: --restitution 0.8,0.9
-compare --amplitude=1 2 3 | amplitude takes values separated by commas: --amplitude 1,2
-simulate --observe widths energy | observe takes values separated by commas: --observe widths,energy
-simulate --observe widths --json energy | unexpected extra argument 'energy'
-simulate --size 5 6 | unexpected extra argument '6'
-simulate --size 1e3 | size must be an integer, got '1e3'; write 1000
-simulate --size 2.5 | size must be an integer, got '2.5'
-simulate --size x | size must be an integer, got 'x'
-simulate --amplitude 0,9 | amplitude must be a number, got '0,9'; write 0.9
-simulate --duration 1,500 | duration must be a number, got '1,500'
-simulate --duration long | duration must be a number, got 'long'
-explore --port abc | port must be an integer, got 'abc'
-reproduce --quality best | quality must be one of ('quick', 'full'), got 'best'
-reproduce --columns 3 | columns must be an integer from 1 to 2, got 3
-reproduce --vector png | vector must be one of ('pdf', 'svg'), got 'png'
-reproduce fig17 | no figure 'fig17'; did you mean 17?
-reproduce 3,fig17_density.png | no figure 'fig17_density.png'; did you mean 17?
-reproduce fig20 | no figure 'fig20'; there are: all, analytics, 1 model
-reproduce arctan | no figure 'arctan'; did you mean 'arctanh'?
-reproduce 16 17 | which takes values separated by commas: 16,17
-relax --seed -1 | seed must be
-simulate --stepper euler | No such option
-simulate --particles 1,x | particles takes numbers
-simulate --particles 1.0 | particles takes numbers
+simluate | No such command 'simluate'
+simulate --stepper euler | No such option: --stepper
+simulate --size x | Invalid value for '--size'
+simulate --method euler | 'euler' is not one of 'event-driven', 'contact-dynamics'
+simulate --particles 1,x | particles takes numbers separated by commas, got '1,x'
 simulate --particles 101 | particles must ascend within 1..100
-simulate --accuracy 0.01 --duration 50 | --duration has no meaning with --accuracy
-simulate --output run.txt | a folder or a file whose name ends in .nc
-simulate -o run.txt | a folder or a file whose name ends in .nc
-simulat -o run.txt | a folder or a file whose name ends in .nc
-theory -o run.nc | output must be a folder, got run.nc; only simulate takes a file
-sweep grid.toml -o run.nc | output must be a folder, got run.nc; only simulate takes a file
-simluate | no command 'simluate'; did you mean 'simulate'?
-re | no command 're'; did you mean relax or reproduce?
-film | no command 'film'; in Python it is crazybilliards.film
-equilibrium | no command 'equilibrium'; crazybilliards theory equilibrium solves it
+compare --restitution 0.8,0.9 --amplitude 1,2 | several values of amplitude or of restitution, not
+relax --film | film needs --output FOLDER
+relax --output grid.toml | Not a directory: 'grid.toml'
+relax --output grid.toml/results | Not a directory: 'grid.toml/results'
+reproduce fig20 | no figure 'fig20'
 theory fluid | name must be one of ('equilibrium',
-theory equilibrium --restitution 0.9 | the exact equilibrium
-theory --restitution 1.3 --damping 4 | the energy grows without bound
-sweep none.toml | none.toml
-sweep wrong.toml | size must be
-sweep grid.toml --processes 0 | processes must be
-sweep grid.toml --scheduler local --processes 2 | a dask cluster decides
+theory --restitution 1.3 --damping 4 --output results | the energy grows without bound
+sweep none.toml --output results | No such file or directory: 'none.toml'
+sweep wrong.toml --output results | size must be
+sweep grid.toml --output results --processes 0 | processes must be
+sweep grid.toml --output results --processes 2 --scheduler tcp://nowhere:1 | a dask cluster decides
 """
 
 
@@ -128,15 +91,17 @@ def test_bad_input_is_one_line_exit_two_and_nothing_written(
     monkeypatch.chdir(tmp_path)
     for name, sizes in (("grid", [3]), ("wrong", [3, 0])):
         Path(f"{name}.toml").write_text(f"[grid]\nsize = {sizes}\n[simulate]\nduration = 100\n")
-    command, *arguments = shlex.split(line)
-    output = [] if command == "explore" or "-o" in arguments else ["--output", "results"]
-    refused(message, command, *arguments, *([] if "--output" in arguments else output))
+    refused(message, *shlex.split(line))
     assert {path.name for path in tmp_path.iterdir()} == {"grid.toml", "wrong.toml"}
 
 
 # What is interrupted, a finished result of before, and what there is afterwards.
 INTERRUPTED = {
-    "simulate": ("--size 10 --duration 1e9 --output run.nc", "run.nc", {"run-interrupted.nc"}),
+    "simulate": (
+        "--size 10 --duration 1e9 --output .",
+        "simulation.nc",
+        {"simulation-interrupted.nc"},
+    ),
     "compare": (
         "--size 10 --duration 1e9 --output .",
         "comparison.nc",
@@ -174,7 +139,7 @@ def test_a_signal_saves_what_was_computed_beside_a_finished_result(
     for path in tmp_path.glob("*-interrupted.nc"):
         assert load(path).attrs["status"] == "interrupted"
     assert not list(tmp_path.glob("cases/*"))
-    assert name != "relax" or "minus" in done.stdout
+    assert name != "relax" or "rms distance" in done.stdout
 
 
 # What a command chooses itself.
@@ -226,8 +191,8 @@ def test_a_new_parameter_of_a_chain_is_an_option_of_itself(monkeypatch):
 
     monkeypatch.setattr(options, "Parameters", More)
 
-    @options.with_chain_options(size=3)
-    def command(chain, seed: int = 0):
+    @options.chain_options(size=3)
+    def command(chain: object, *, seed: int = 0):
         """Do nothing."""
 
     parameters = inspect.signature(command).parameters

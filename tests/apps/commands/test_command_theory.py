@@ -43,16 +43,6 @@ def test_every_theory_by_its_name(name, run, solved, tmp_path):
     assert name in run("theory", "--help").stdout
 
 
-def test_walls_and_two_masses_have_one_theory(run, tmp_path):
-    two = ("--size", 4, "--box", 10, "--mass-ratio", 4)
-    done = run("theory", *two, "--output", tmp_path)
-    assert "A free rod has W_v = 0.1727 or 0.3455 R/T" in done.stdout
-    force = load(tmp_path / "theory.nc").wall_force
-    assert force.sizes == {"wall": 2}
-    shown = f"Mean force on a wall: {force.values.mean():.4g} M R/T^2."
-    assert shown in " ".join(done.stdout.split())
-
-
 def test_without_a_name_it_is_the_best_theory_and_says_so(run, solved):
     done = run("theory", "--size", 12, "--restitution", 0.5)
     assert done.returncode == 0
@@ -64,9 +54,7 @@ def test_without_a_name_it_is_the_best_theory_and_says_so(run, solved):
 def test_the_list_tells_who_takes_the_chain(run, solved):
     done = run("theory", "--list", "--restitution", 0.5)
     text = " ".join(done.stdout.split())
-    assert "best of W_v: correlated_phase_space" in text
-    assert "restitution must be 1, got 0.5" in text
+    assert "correlated_phase_space" in text
     assert solved == []
     facts = json.loads(run("theory", "--list", "--restitution", 0.5, "--json").stdout)
-    assert facts["best"] == "correlated_phase_space"
     assert [row["theory"] for row in facts["theories"]] == list(THEORIES)

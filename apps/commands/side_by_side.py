@@ -1,0 +1,197 @@
+"""The commands that put simulated chains and their theories side by side: compare and relax."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from functools import partial
+from typing import TYPE_CHECKING, Any, Literal
+
+from typer import Option
+
+from crazybilliards.apps.commands.options import Json, Output, Seed, Threads, chain_options, numbers
+from crazybilliards.apps.commands.output import DIVERGED, complain, conclude, picture, writing_to
+from crazybilliards.apps.commands.tables import table
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from crazybilliards.model import Chain
+
+_COLUMNS = {
+    "amplitude": "A",
+    "restitution": "e",
+    "theory": "theory",
+    "density_maximum": "rho\nmax\n[%]",
+    "density_rms": "rho\nrms\n[%]",
+    "density_maximum_in_errors": "rho\nmax\n[se]",
+    "velocity_width_largest": "W_v\nmax\n[%]",
+    "velocity_width_stated": "W_v\nstated\n[%]",
+    "velocity_width_centre": "W_v\nmid\n[%]",
+    "velocity_width_border": "W_v\nends\n[%]",
+    "velocity_width_largest_in_errors": "W_v\nmax\n[se]",
+}
+_CAPTION = (
+    "How far theories are from the simulation. rho, smoothed as in the paper, in % of close "
+    "packing 1/(2R): largest difference, root mean square, and the largest in standard errors (se) "
+    "of the simulation; 3 to 4 is normal for the largest of many. W_v, theory minus simulation: "
+    "the largest of the particles 3 to L-2; the largest that the theory states (-: not measured "
+    "for chains like this one); of the middle tenth; of the first and the last; the largest of all "
+    "in standard errors."
+)
+
+
+@chain_options("amplitude", "restitution")
+def compare(
+    chain: Chain,
+    *,
+    output: Output = None,
+    amplitude: str | None = Option(
+        None, help="Values of A [M R/t_0^(3/2)], separated by commas; default: 1,3,10,30, with e 1."
+    ),
+    restitution: str | None = Option(None, help="Values of e, separated by commas; default: 1."),
+    duration: float = Option(100_000.0, help="Simulated time of each of two replicas [t_0]."),
+    seed: Seed = 0,
+    processes: int | None = Option(None, help="Processes; default: this one, in threads."),
+    threads: Threads = None,
+    as_json: Json = False,
+) -> None:
+    """Compare simulated chains with their theories.
+
+    Several values of the amplitude, or of the restitution, make as many chains. If all are elastic
+    they are compared with the exact equilibrium and force balances, otherwise with the kinetic
+    equations. Draws everything over one another and prints how far apart it is. After Ctrl-C, a
+    crash, or with more chains, the same command computes what FOLDER/cases lacks.
+
+    Example: crazybilliards compare --output results --amplitude 1,10 --gap 0.2
+
+    Example: crazybilliards compare --output results --restitution 0.9,0.95,0.98
+    """
+    from crazybilliards.comparison.side_by_side import grid
+
+    amplitude = amplitude or ("1,3,10,30" if restitution is None else "1")
+    values = {
+        "amplitude": numbers("amplitude", amplitude),
+        "restitution": numbers("restitution", restitution or "1"),
+    }
+    if min(map(len, values.values())) > 1:
+        raise ValueError("give several values of amplitude or of restitution, not of both")
+    several = [name for name, listed in values.items() if len(listed) > 1]
+    [over] = several or ["amplitude" if restitution is None else "restitution"]
+    chain = chain.replace(**{name: listed[0] for name, listed in values.items()})
+    how: dict[str, Any] = {"duration": duration, "seed": seed}
+    how |= {"processes": processes, "threads": threads, "folder": output and output / "cases"}
+    with writing_to(output):
+        tree = grid.compare(chain, {over: values[over]}, **how)
+        rows = _deviations(over, tree)
+        columns = {name: heading for name, heading in _COLUMNS.items() if name in (over, *rows[0])}
+        shown = table(columns, rows, _CAPTION)
+        conclude(tree, output, _comparison_files(tree), as_json, {"deviations": rows}, shown)
+
+
+def _comparison_files(tree: xr.DataTree) -> dict[str, Any]:
+    """Return what writes the files of a comparison."""
+    from xarray import DataTree
+
+    from crazybilliards.comparison.side_by_side import grid_figures as figures
+    from crazybilliards.model import save
+
+    # The data first: a failing picture must not cost the computation.
+    files: dict[str, Any] = {"comparison.nc": partial(save, tree)}
+    # A chain that diverged before anything was measured cannot be drawn.
+    drawn = DataTree(
+        children={n: g for n, g in tree.children.items() if "particle" in g["simulation"].dims}
+    )
+    if drawn.children:
+        files["density.png"] = picture(figures.draw_density, drawn)
+        files["displacement.png"] = picture(figures.draw_displacement, drawn)
+        files["widths.png"] = picture(figures.draw_widths, drawn)
+    for name, group in tree.children.items():
+        if "phase_space" in group:
+            theory = group["phase_space"].to_dataset()
+            files[f"phase_space_{name}.png"] = picture(figures.draw_phase_space, theory)
+    return files
+
+
+def _deviations(over: str, tree: xr.DataTree) -> list[dict[str, Any]]:
+    """Return how far each theory is from its simulation."""
+    from crazybilliards.comparison.distances import deviations
+
+    rows = []
+    for name, group in tree.children.items():
+        run = group["simulation"].to_dataset()
+        if run.attrs["status"] == "diverged":
+            complain(f"{name}: {DIVERGED}")
+        named = {over: float(name.removeprefix(f"{over}_")), "status": run.attrs["status"]}
+        for key, deviation in deviations(group).items():
+            row = named | {"theory": key}
+            row |= {f"density_{name}": value for name, value in asdict(deviation.density).items()}
+            if (width := deviation.velocity_width) is not None:
+                row |= {f"velocity_width_{name}": value for name, value in width._asdict().items()}
+                row["velocity_width_stated"] = group[key].attrs["velocity_width_model_error"]
+            rows.append(row)
+        if len(group.children) == 1:  # no theory
+            rows.append(named)
+    return rows
+
+
+@chain_options("restitution", amplitude=30.0)
+def relax(
+    chain: Chain,
+    *,
+    output: Output = None,
+    release: Literal[
+        "compressed", "displaced", "quenched", "gathered", "wave", "confined"
+    ] = Option("compressed", help="What it starts from; the last three in a box."),
+    by: float | None = Option(
+        None,
+        help="Factor of y (compressed), thermal lengths (displaced), factor of the amplitude "
+        "(quenched); default: 0.3, 2, 3. In a box share of the room, or height of a wave: 0.5.",
+    ),
+    duration: float = Option(40.0, help="Time to follow [t_0]."),
+    every: float = Option(0.5, help="Time between outputs [t_0]."),
+    replicas: int = Option(300, help="Simulated chains to average over."),
+    seed: Seed = 0,
+    threads: Threads = None,
+    film: bool = Option(False, "--film", help="Also write relaxation.html, a film."),
+    as_json: Json = False,
+) -> None:
+    """Release an elastic chain and follow it: rods, two fluids, and the exact solution.
+
+    Prints how far the rods are from where each theory has them, and draws the densities, which
+    relaxation.nc holds smoothed. Ctrl-C or SIGTERM stops early: what has been computed is written
+    under names with "-interrupted".
+
+    Example: crazybilliards relax --output results --release gathered --box 400 --stiffness 0
+    """
+    from crazybilliards.comparison import film as write_film
+    from crazybilliards.comparison.side_by_side import relaxation
+    from crazybilliards.comparison.side_by_side import relaxation_figures as figures
+    from crazybilliards.model import save
+
+    if film and output is None:
+        raise ValueError("film needs --output FOLDER, into which it is written")
+    if by is None:
+        by = {"compressed": 0.3, "displaced": 2.0, "quenched": 3.0}.get(release, 0.5)
+    how: dict[str, Any] = {"release": release, "by": by, "duration": duration, "every": every}
+    how |= {"replicas": replicas, "seed": seed, "threads": threads}
+    with writing_to(output):
+        tree = relaxation.condensed(relaxation.compare_relaxation(chain, **how))
+        files: dict[str, Any] = {
+            "relaxation.nc": partial(save, tree),
+            "spacetime.png": picture(figures.draw_spacetime, tree),
+            "profiles.png": picture(figures.draw_profiles, tree),
+            "cloud.png": picture(figures.draw_cloud, tree),
+        }
+        if film:
+            files["relaxation.html"] = partial(write_film, tree)
+        distances = [
+            {"theory": key, "title": relaxation.LEGEND[key], "distance": distance}
+            for key, distance in relaxation.label_distances(tree).items()
+        ]
+        shown = table(
+            {"title": "theory", "distance": "rms distance"},
+            distances,
+            "Of the rods' mean positions in theory from those simulated, in thermal "
+            "lengths, without springs in halves of the free room, at the time when it is largest.",
+        )
+        conclude(tree, output, files, as_json, {"distances": distances}, shown)
