@@ -1,7 +1,6 @@
 from . import comparison as comparison, kinetic as kinetic, model as model, particles as particles
 from .comparison import (
     Sweep as Sweep,
-    best_theory as best_theory,
     combine as combine,
     compare as compare,
     compare_relaxation as compare_relaxation,

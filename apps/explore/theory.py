@@ -83,7 +83,7 @@ def answer(query: str) -> Answer:
     ``border`` and of the density (``density_error``), ``widths`` in free widths, and the
     ``density`` as pairs of x and the share of time that a rod covers x, smoothed as in the paper.
     """
-    from crazybilliards.comparison.stationary_theories import THEORIES, choose_theory
+    from crazybilliards.comparison.stationary_theories import THEORIES, best_theory
     from crazybilliards.kinetic.accuracy import UnmeasuredWarning
 
     try:
@@ -94,8 +94,8 @@ def answer(query: str) -> Answer:
     # The page shows what is not known.
     with warnings.catch_warnings(action="ignore", category=UnmeasuredWarning):
         try:
-            best = choose_theory(chain).theory
-            coarse = {} if best.refusal(chain, _TOLERANCE) else _TOLERANCE
+            best = best_theory(chain)
+            coarse = _TOLERANCE if best.name.endswith("phase_space") else {}
             theories = {"best": _result(best, best.solve(chain, **coarse))}
             if not other.refusal(chain):
                 theories["other"] = _result(other, other.solve(chain))

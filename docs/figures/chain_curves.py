@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from crazybilliards.comparison.stationary_theories import THEORIES, best_theory
+from crazybilliards.comparison.stationary_theories import best_theory
 from crazybilliards.comparison.widths import border_width, central_width
 from crazybilliards.model import Chain
 
@@ -26,11 +26,16 @@ CHALLENGES = (
 )
 
 
+def solved(chain: Chain) -> xr.Dataset:
+    """Solve the theory with the smallest stated error of W_v."""
+    return best_theory(chain).solve(chain)
+
+
 def stored(chain: Chain, theory: xr.Dataset) -> dict[str, object]:
     """Return a chain, the errors of its theory and the widths of its left half, in free widths."""
+    best = best_theory(chain)
     widths = theory.velocity_width.values / chain.free_velocity_width
     half = widths[: (chain.size + 1) // 2]
-    best = THEORIES[theory.attrs["best_theory"]]
     errors = best.accuracy(chain)
     return {name: getattr(chain, name) for name in SHOWN} | {
         "title": best.title,
@@ -48,12 +53,9 @@ def turning(theories: dict[float, xr.Dataset]) -> float:
 
 def script() -> str:
     """Solve the theories; return the page's script with their curves."""
-    theories = {
-        damping: best_theory(TURNING.replace(damping=damping), progress=False)
-        for damping in DAMPINGS
-    }
+    theories = {damping: solved(TURNING.replace(damping=damping)) for damping in DAMPINGS}
     curves = [stored(TURNING.replace(damping=g), theories[g]) for g in SEEN]
-    curves += [stored(chain, best_theory(chain, progress=False)) for chain in CHALLENGES]
+    curves += [stored(chain, solved(chain)) for chain in CHALLENGES]
     lines = ",\n".join(f"    {json.dumps(each, separators=(',', ':'))}" for each in curves)
     return (
         "/* Velocity widths by the best theory, of the rods of the left half, in free widths.\n"
