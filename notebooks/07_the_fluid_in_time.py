@@ -26,7 +26,7 @@
 # temperature, and exactly. Then we push the rods in the middle: do rods carry sound?
 #
 # The unit of length is the rod radius $R$, and that of mass is $M$ (a rod has $m =
-# \frac{4\pi}{3}M$). The unit of time is $\sqrt{M/k}$, $t_0$ on the axes. The restitution is 1,
+# \frac{4\pi}{3}M$). The unit of time is $t_0 = \sqrt{M/k}$. The restitution is 1,
 # and there is no gap between the anchors.
 #
 # *Level: fourth year. You need: lessons 4 and 5; partial differential equations. Time: 90 minutes.

@@ -9,7 +9,7 @@ construction, and the velocity equation reads
 
     u = eta - Lam nu,      Lam = g L/s,      Gamma = gamma s/(m W),      K = 1,
 
-with theta = T/T_0, which is 1 in the isothermal case. The temperature equation is that of a gas
+with theta = T/(m W^2), which is 1 in the isothermal case. The temperature equation is that of a gas
 with one degree of freedom and no heat flux, in contact with the noise:
 
     theta_t + V theta_y = -2 theta V_y - 2 Gamma_T (theta - 1),      Gamma_T = gamma <1/m> s/W.

@@ -55,7 +55,7 @@ class Observer(ABC):
         The variables that it reports.
     vocabulary
         ``{name: (meaning, unit)}`` of its variables and coordinates, as far as they are not in
-        ``VOCABULARY`` of ``crazybilliards.model.vocabulary``. Units consist of R, M and T.
+        ``VOCABULARY`` of ``crazybilliards.model.vocabulary``. Units consist of R, M and t_0.
     along
         The coordinates that it adds to the result, e.g. ``("velocity_bin",)``.
     least_rods
