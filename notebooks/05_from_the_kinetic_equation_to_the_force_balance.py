@@ -23,7 +23,7 @@
 # [Mani, Böttcher, Herrmann and Helbing](https://arxiv.org/abs/1404.7460) gives both.
 #
 # Lengths are in rod radii $R$, masses in $M$ (a rod has $m = \frac{4\pi}{3}M$), times in
-# $T=\sqrt{M/k}$. Collisions are elastic, $e=1$, and the anchors of the springs have no gap.
+# $t_0=\sqrt{M/k}$. Collisions are elastic, $e=1$, and the anchors of the springs have no gap.
 #
 # *Level: third year. You need: lesson 3, section 1; lesson 4, sections 1 to 4; the pressure of a
 # gas. Time: 90 minutes. To predict before you see the results, type `make lessons` in the folder of

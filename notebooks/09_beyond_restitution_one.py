@@ -24,7 +24,7 @@
 # grows without end? The theory of [Mani, Böttcher, Herrmann and
 # Helbing](https://arxiv.org/abs/1404.7460) is for $e = 1$ only.
 #
-# The units are the rod radius $R$ for lengths, $M$ for masses (a rod has $m = 4\pi/3\,M$), and $T =
+# The units are the rod radius $R$ for lengths, $M$ for masses (a rod has $m = 4\pi/3\,M$), and $t_0 =
 # \sqrt{M/k}$ for times. Between collisions $m\ddot x = -\gamma\dot x - k(x - x_i^0) + A\,\xi(t)$. A
 # collision gives $v_1' - v_2' = -e(v_1 - v_2)$. A single rod would have the velocity width $W =
 # A/\sqrt{2m\gamma}$ and the displacement width $s = W\sqrt{m/k}$.

@@ -24,7 +24,7 @@
 #
 # [Mani, Böttcher, Herrmann and Helbing](https://arxiv.org/abs/1404.7460) found both.
 #
-# The units are the rod radius $R$ for lengths, $M$ for masses (a rod has $m = 4\pi/3\,M$), and $T =
+# The units are the rod radius $R$ for lengths, $M$ for masses (a rod has $m = 4\pi/3\,M$), and $t_0 =
 # \sqrt{M/k}$ for times. Between collisions rod $i$ obeys $m\ddot x = -\gamma\dot x - F(x - x_i^0) +
 # A\,\xi(t)$ with white noise $\xi$. Linear springs have $F(d) = k d$, quadratic ones $F(d) = k d|d|$.
 #
