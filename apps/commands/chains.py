@@ -128,7 +128,7 @@ def theory(
     Example: crazybilliards theory --output results --restitution 1.05 --damping 4
     """
     from crazybilliards.comparison.side_by_side import grid_figures as figures
-    from crazybilliards.comparison.stationary_theories import THEORIES, choose_theory, theories
+    from crazybilliards.comparison.stationary_theories import THEORIES, best_theory, theories
     from crazybilliards.model import save
     from crazybilliards.model.checks import check_choice
 
@@ -138,11 +138,12 @@ def theory(
         lines = [f"{row['theory']} does not take the chain: {row['reason']}" for row in refused]
         answer(as_json, {"theories": rows}, _errors_table(rows), *lines)
         return
-    solver, why = choose_theory(chain) if name is None else (None, "")
-    if solver is None:
+    if name is None:
+        solver = best_theory(chain)
+    else:
         solver = THEORIES[check_choice("name", name, tuple(THEORIES))]
-        if reason := solver.refusal(chain):
-            raise ValueError(reason)
+    if reason := solver.refusal(chain):
+        raise ValueError(reason)
     with writing_to(output):
         result = solver.solve(chain)
         files: dict[str, Any] = {
@@ -153,8 +154,7 @@ def theory(
         if "phase_space_density" in result:
             files["phase_space.png"] = picture(figures.draw_phase_space, result)
         title = f"{solver.title.capitalize()}, L = {chain.size}, e = {chain.restitution:g}"
-        text: list[str | Table] = [why, title] if why else [title]
-        text.append(rods_table(result))
+        text: list[str | Table] = [title, rods_table(result)]
         stated = [name for name in ("residual", "mesh_error") if name in result.attrs]
         text += [f"{name}: {result.attrs[name]:.1e}" for name in stated]
         text.append(_errors_table([row for row in rows if row["theory"] == solver.name]))

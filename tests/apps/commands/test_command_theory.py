@@ -46,7 +46,7 @@ def test_every_theory_by_its_name(name, run, solved, tmp_path):
 def test_without_a_name_it_is_the_best_theory_and_says_so(run, solved):
     done = run("theory", "--size", 12, "--restitution", 0.5)
     assert done.returncode == 0
-    assert done.stdout.startswith("correlated_phase_space has the smallest stated error")
+    assert done.stdout.startswith("Kinetic equation with pair correlations, L = 12, e = 0.5")
     [(_, result)] = solved
     assert f"{result.velocity_width[0]:.4g}" in done.stdout
 
