@@ -68,7 +68,7 @@ def test_a_chain_that_no_theory_takes_has_none():
     assert theories(chain).attrs["best"] == ""
     with pytest.raises(ValueError, match=r"^this chain has no steady state: damping=0"):
         best_theory(chain)
-    with pytest.raises(ValueError, match="^no theory takes this chain: equilibrium: ") as caught:
+    with pytest.raises(ValueError, match=r"^no theory takes this chain: equilibrium: ") as caught:
         best_theory(Chain(size=200_000, restitution=0.9))
     assert "\n" not in str(caught.value)
 
