@@ -22,13 +22,18 @@ import lazy_loader
 
 _public_name, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
 
-# Where the names are that version 0.5 had here.
+# Where the names are that version 0.5 had here, and what to use in the place of others.
 _MOVED = {
     "observers": "Avalanches Collisions Covariances Density Energy Impacts Modes Raw "
     "TimeCorrelations TriggeredCollisions Velocities Walls Widths",
     "comparison": "Deviation Fit Player fit_arctanh fit_border_power_law",
     "kinetic": "UnmeasuredWarning",
     "particles": "ShortRunWarning",
+}
+_GONE = {
+    "simulate_limit": "a second run, with half the time_step, shows the error of the step, which "
+    "time_step_error of every run estimates",
+    "best_theory": "cb.theories(chain).attrs['best'] is the name of the best theory",
 }
 
 
@@ -40,9 +45,6 @@ def __getattr__(name: str) -> Any:
     for place, names in _MOVED.items():
         if name in names.split():
             raise AttributeError(f"{name} is cb.{place}.{name}")
-    if name == "simulate_limit":
-        raise AttributeError(
-            "simulate_limit is gone: a second run, with half the time_step, shows the error of the "
-            "step, which time_step_error of every run estimates"
-        )
+    if name in _GONE:
+        raise AttributeError(f"{name} is gone: {_GONE[name]}")
     return _public_name(name)

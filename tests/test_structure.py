@@ -134,12 +134,12 @@ def test_the_front_door_has_the_names_that_most_users_need():
         cb.nonsense  # noqa: B018
 
 
-@pytest.mark.parametrize("name", [*" ".join(cb._MOVED.values()).split(), "simulate_limit"])
+@pytest.mark.parametrize("name", [*" ".join(cb._MOVED.values()).split(), *cb._GONE])
 def test_an_old_name_says_where_it_is(name):
     with pytest.raises(AttributeError, match=f"{name} is ") as caught:
         getattr(cb, name)
     place = str(caught.value).partition(" is ")[2]
-    assert name == "simulate_limit" or eval(place).__name__ == name
+    assert place.startswith("gone: ") or eval(place).__name__ == name
 
 
 @pytest.mark.parametrize("name", ["crazybilliards", *PUBLIC[:-1]])
