@@ -29,7 +29,6 @@ from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.checks import as_written, check_integer, check_path, is_list, shown
 from crazybilliards.model.kernels import announced
 from crazybilliards.model.parameters import WALLS_AND_MASSES
-from crazybilliards.model.progress import waiting_for
 from crazybilliards.model.randomness import Seed, seed_of
 from crazybilliards.model.warn import warn_user
 from crazybilliards.model.words import check_chain
@@ -115,8 +114,7 @@ def compare(
     results, status = _computed(cases, folder, processes, threads, progress)
     if not elastic:
         return _tree(results, status)
-    with waiting_for("theories", progress):
-        return elastic_tree({name: group[SIMULATION] for name, group in results.items()}, status)
+    return elastic_tree({name: group[SIMULATION] for name, group in results.items()}, status)
 
 
 def elastic_tree(runs: Mapping[str, xr.Dataset], status: str = "completed") -> xr.DataTree:

@@ -31,7 +31,6 @@ from crazybilliards.kinetic.starts import gathered, wave
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.checks import check_choice, check_integer, check_real
 from crazybilliards.model.parameters import WALLS_AND_MASSES
-from crazybilliards.model.progress import waiting_for
 from crazybilliards.model.randomness import Seed, seed_of
 from crazybilliards.particles import simulate
 
@@ -108,13 +107,11 @@ def compare_relaxation(
     # On labels the outermost cell would fill an empty room at a wall, and hold the others off.
     how: Any = {"frame": "eulerian" if release in ("gathered", "confined") else "label"}
     for name, variance in FLUIDS.items():
-        with waiting_for(f"solving: {LEGEND[name]}", progress):
-            how |= {"velocity_variance": variance, "every": every, "progress": False}
-            results[name] = hydrodynamics(chain, fluid, duration, **how)
+        how |= {"velocity_variance": variance, "every": every, "progress": False}
+        results[name] = hydrodynamics(chain, fluid, duration, **how)
         if results[name].attrs["status"] == "interrupted":
             raise KeyboardInterrupt("interrupted before the simulation")
-    with waiting_for("summing rod by rod", progress):
-        results["rods"] = rod_by_rod(results["evolving"])
+    results["rods"] = rod_by_rod(results["evolving"])
     if has_one_mass(chain):
         results["exact"] = rod_by_rod(gas_of_points(chain, fluid, duration, every))
     elif chain.gap == 0 and chain.spring == "linear" and not chain.unknown():

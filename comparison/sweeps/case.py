@@ -29,7 +29,6 @@ from crazybilliards.kinetic.accuracy import UnmeasuredWarning
 from crazybilliards.model import Chain, load
 from crazybilliards.model.checks import check_choice
 from crazybilliards.model.fingerprint import room_fingerprint
-from crazybilliards.model.progress import silent
 from crazybilliards.model.storage import load_attributes, netcdf
 from crazybilliards.model.words import check_arguments
 from crazybilliards.particles import ShortRunWarning, simulate
@@ -169,7 +168,7 @@ def compute(case: Case, source: str, threads: int = 1) -> bytes:
     if case.job not in THEORIES:
         how |= {"threads": threads, "progress": False}
     # Linear algebra in threads sums in another order, and it would make other workers wait.
-    with threadpool_limits(1), warnings.catch_warnings(), silent():
+    with threadpool_limits(1), warnings.catch_warnings():
         # The result states that its error is unknown; a line per process would not say of which.
         warnings.simplefilter("ignore", UnmeasuredWarning)
         warnings.simplefilter("ignore", ShortRunWarning)  # said of the whole sweep

@@ -21,6 +21,7 @@ from crazybilliards.comparison.sweeps.case import Case, compute
 from crazybilliards.comparison.sweeps.grid import Sweep
 from crazybilliards.model.checks import check_path
 from crazybilliards.model.locks import locked
+from crazybilliards.model.progress import progress_bar
 from crazybilliards.model.storage import make_folder, write_sealed
 from crazybilliards.model.warn import warn_user
 from crazybilliards.particles import ShortRunWarning
@@ -80,10 +81,7 @@ def run_cases(
         warn_user(f"{number} of {len(cases)} cases; the first: {first}", ShortRunWarning)
     make_folder(place)
     failed: dict[Case, str] = {}
-    with (
-        locked(place),
-        tqdm(total=len(cases), unit="case", disable=None if progress else True) as bar,
-    ):
+    with locked(place), progress_bar(progress, total=len(cases), unit="case") as bar:
         missing = _missing(cases, place, keep_old, bar)
         computed = _computed_by(executor, missing) if executor else _computed_here(missing, threads)
         with closing(computed):

@@ -23,7 +23,6 @@ from dataclasses import replace
 import numpy as np
 import xarray as xr
 
-from crazybilliards.kinetic.accuracy import expected_seconds
 from crazybilliards.kinetic.correlations.closure import Closure, background, implied
 from crazybilliards.kinetic.correlations.displacements import relaxing_pairs
 from crazybilliards.kinetic.correlations.fixed_point import NoFixedPointError, find_fixed_point
@@ -51,7 +50,6 @@ from crazybilliards.kinetic.kinetic_equation.velocity_space import one_thread
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array
-from crazybilliards.model.progress import waiting_for
 
 _MOST_CELLS = 80  # of a mesh that is not asked for
 _ROUGHLY = 1e-3
@@ -110,10 +108,8 @@ def correlated_phase_space(
     array([0.26 , 0.206, 0.194])
     """
     check_correlated_phase_space(chain, tolerance=tolerance, cells=cells)
-    seconds = expected_seconds("correlated_phase_space", chain)
     try:
-        with waiting_for("pair correlations", seconds=seconds):
-            return assemble(*_solve(chain, tolerance, cells))
+        return assemble(*_solve(chain, tolerance, cells))
     except (NotSolvedError, NoFixedPointError) as error:
         raise ValueError(
             f"the kinetic equation with pair correlations could not be solved: {error}; "

@@ -31,7 +31,7 @@ import xarray as xr
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from crazybilliards.kinetic.accuracy import expected, expected_seconds
+from crazybilliards.kinetic.accuracy import expected
 from crazybilliards.kinetic.exact.between_walls import BoxRecursion, box_recursion, nodes_of
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain
@@ -40,7 +40,6 @@ from crazybilliards.model.checks import check_integer
 from crazybilliards.model.grid import position_grid, require_resolved, thermal_reach
 from crazybilliards.model.memory import require_memory
 from crazybilliards.model.parameters import WALLS_AND_MASSES
-from crazybilliards.model.progress import waiting_for
 from crazybilliards.model.randomness import Seed, seed_of
 from crazybilliards.model.vocabulary import OF_RODS, result
 from crazybilliards.model.words import check_chain
@@ -78,8 +77,7 @@ def equilibrium(chain: Chain) -> xr.Dataset:
     array([-0.56419,  0.56419])
     """
     check_chain(chain)
-    with waiting_for("exact equilibrium", seconds=expected_seconds("equilibrium", chain)):
-        return _in_vocabulary(chain, recursion_of(chain))
+    return _in_vocabulary(chain, recursion_of(chain))
 
 
 def _in_vocabulary(chain: Chain, recursion: Recursion | BoxRecursion) -> xr.Dataset:
@@ -146,8 +144,7 @@ def equilibrium_states(chain: Chain, replicas: int, seed: Seed = 0) -> xr.Datase
     seed = seed_of(seed)
     generator = np.random.default_rng(seed)
     require_memory(f"replicas={replicas} of {chain.size} rods", 40.0 * replicas * chain.size)
-    with waiting_for("exact equilibrium", seconds=expected_seconds("equilibrium", chain) / 2):
-        recursion = recursion_of(chain)
+    recursion = recursion_of(chain)
     y = np.empty((replicas, chain.size))
     below = np.full(replicas, np.inf)
     for i in reversed(range(chain.size)):

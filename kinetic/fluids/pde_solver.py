@@ -13,10 +13,10 @@ from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
-from pde import CartesianGrid, FieldCollection, MemoryStorage, PDEBase, ProgressTracker, ScalarField
+from pde import CallbackTracker, CartesianGrid, FieldCollection, MemoryStorage, PDEBase, ScalarField
 
 from crazybilliards.model.arrays import Array
-from crazybilliards.model.progress import watched
+from crazybilliards.model.progress import progress_bar
 
 # py-pde would warn that a short run spent more time on storing than on solving.
 logging.getLogger("pde.solvers.controller").setLevel(logging.ERROR)
@@ -84,12 +84,12 @@ def solve(
     takes times that differ by 1e-8 for the same.
     """
     storage = MemoryStorage()
-    trackers: list[Any] = [storage.tracker(list(times))]
-    if progress and watched():
-        trackers.append(ProgressTracker(list(times), leave=False))
-    flow = Flow(rate)
+    flow, span = Flow(rate), (float(times[0]), float(times[-1]))
     try:
-        flow.solve(state, t_range=(float(times[0]), float(times[-1])), tracker=trackers, **solver)
+        with progress_bar(progress, total=times.size, desc="hydrodynamics", leave=False) as bar:
+            shown = CallbackTracker(lambda _: bar.update(), interrupts=list(times))
+            trackers = [storage.tracker(list(times)), shown]
+            flow.solve(state, t_range=span, tracker=trackers, **solver)
     except RuntimeError as error:  # a step that became too small, or not a number
         raise ValueError(f"the hydrodynamic equations could not be solved: {error}") from error
     outputs = len(storage.data)

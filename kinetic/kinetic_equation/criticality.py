@@ -36,7 +36,6 @@ from crazybilliards.kinetic.kinetic_equation.weak_form import Coefficients
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array
-from crazybilliards.model.progress import waiting_for
 from crazybilliards.model.words import check_chain
 
 _CELLS = 24
@@ -45,7 +44,6 @@ _FITTED = 4  # the last ones, for the limit
 _TOLERANCE = 1e-6
 _MOST_HALVINGS = 4
 _WEAK, _STRONG = 1e-3, 3.5  # Gamma: the closed form below, nothing beyond
-_SECONDS = 2.0  # for one damping, about
 _EXTRAPOLATED = 0.2  # the error, as a share of the way to the limit
 
 
@@ -117,8 +115,7 @@ def _critical_drag(damping: float) -> tuple[float, float]:
             f"gamma/sqrt(k m) = {damping:.3g} is too strong a damping: the critical state is known "
             f"up to {_STRONG:g}"
         )
-    with waiting_for("critical size", seconds=_SECONDS):
-        drags = drag_at_noise(damping, _NOISE)
+    drags = drag_at_noise(damping, _NOISE)
     tau, kappa = np.array(_NOISE[-_FITTED:]), drags[-_FITTED:]
     limit = float(np.polynomial.Polynomial.fit(tau, kappa, _FITTED - 1)(0.0))
     return limit, _EXTRAPOLATED * abs(limit - float(drags[-1]))

@@ -21,7 +21,7 @@ from typing import Literal
 import numpy as np
 import xarray as xr
 
-from crazybilliards.kinetic.accuracy import expected, expected_seconds, warn_if_unmeasured
+from crazybilliards.kinetic.accuracy import expected, warn_if_unmeasured
 from crazybilliards.kinetic.kinetic_equation.continuation import (
     CELLS,
     State,
@@ -49,7 +49,6 @@ from crazybilliards.kinetic.rods.places import (
 from crazybilliards.kinetic.rods.waves import displacement_widths
 from crazybilliards.model import Chain
 from crazybilliards.model.checks import check_integer
-from crazybilliards.model.progress import waiting_for
 from crazybilliards.model.words import check_chain
 
 _MOST_CELLS = 80  # of a mesh that is not asked for: 22, 33, 50 and 75 cells are tried
@@ -124,11 +123,10 @@ def phase_space(
     """
     order = check_phase_space(chain, order=order, tolerance=tolerance, cells=cells)
     try:
-        with waiting_for("kinetic equation", seconds=expected_seconds("phase_space", chain)):
-            state = continued(chain, elastic_state(chain, order, CELLS))
-            if cells is None:
-                state = refined(state, CELLS)
-            found = _assemble(*on_fine_mesh(state, _rods, tolerance, cells, _MOST_CELLS))
+        state = continued(chain, elastic_state(chain, order, CELLS))
+        if cells is None:
+            state = refined(state, CELLS)
+        found = _assemble(*on_fine_mesh(state, _rods, tolerance, cells, _MOST_CELLS))
     except NotSolvedError as error:
         raise ValueError(f"{error}: {_out_of_range(chain, order)}") from error
     warn_if_unmeasured("the kinetic equation", found.attrs["velocity_width_model_error"])
