@@ -7,6 +7,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import minimize_scalar
+from scipy.stats import linregress
 
 from crazybilliards.comparison.fits.fit import Fit, check_points, least_squares, root_mean_square
 from crazybilliards.model.arrays import Array
@@ -62,15 +63,10 @@ def fit_growth(time: ArrayLike, energy: ArrayLike) -> Fit:
     :func:`fit_singularity`.
     """
     t, log_energy = _logarithm(time, energy, least=3)
-    (rate, intercept), covariance = np.polyfit(t, log_energy, 1, cov="unscaled")
-    residuals = log_energy - intercept - rate * t
-    spread = float(np.sqrt(covariance[0, 0] * (residuals @ residuals) / (t.size - 2)))
-    return Fit(
-        {"scale": float(np.exp(intercept)), "rate": float(rate)},
-        {"rate": spread},
-        _growth,
-        {"misfit": root_mean_square(residuals)},
-    )
+    line = linregress(t, log_energy)
+    misfit = root_mean_square(log_energy - line.intercept - line.slope * t)
+    parameters = {"scale": float(np.exp(line.intercept)), "rate": float(line.slope)}
+    return Fit(parameters, {"rate": float(line.stderr)}, _growth, {"misfit": misfit})
 
 
 def _growth(t: Array, scale: float, rate: float) -> Array:
@@ -82,8 +78,6 @@ def _logarithm(time: ArrayLike, energy: ArrayLike, least: int) -> tuple[Array, A
     t, E = check_points(time=time, energy=energy)
     if t.size < least or E.min() <= 0:
         raise ValueError(f"the fit needs at least {least} energies, all of them positive")
-    if np.ptp(t) == 0:
-        raise ValueError(f"the fit needs energies at more than one time, got time={t[0]:g} only")
     return t, np.log(E)
 
 
@@ -98,24 +92,17 @@ def fit_scaling(x: ArrayLike, y: ArrayLike, error: ArrayLike) -> Fit:
     x, y, error = check_points(x=x, y=y, error=error)
     if x.size < 2 or np.min([x, y, error]) <= 0:
         raise ValueError("a power law needs at least two points, positive, with positive errors")
-    if np.ptp(x) == 0:
-        raise ValueError(f"a power law needs more than one x, got x={x[0]:g} only")
-    relative = error / y
 
     def line(log_x: Array, intercept: float, slope: float) -> Array:
         return np.asarray(intercept + slope * log_x)
 
-    # Centred, so that the two parameters are nearly independent.
-    middle = float(np.average(np.log(x), weights=relative**-2))
-    points = np.log(x) - middle, np.log(y)
     (intercept, slope), covariance, quality = least_squares(
-        "power law", line, points, (0.0, 0.0), relative
+        "power law", line, (np.log(x), np.log(y)), (0.0, 0.0), error / y
     )
-    scale = float(np.exp(intercept - slope * middle))
-    variance = covariance[0, 0] + middle**2 * covariance[1, 1] - 2 * middle * covariance[0, 1]
+    scale, errors = float(np.exp(intercept)), np.sqrt(np.diag(covariance))
     return Fit(
         {"scale": scale, "exponent": float(slope)},
-        {"scale": scale * float(np.sqrt(variance)), "exponent": float(np.sqrt(covariance[1, 1]))},
+        {"scale": scale * float(errors[0]), "exponent": float(errors[1])},
         _power_law,
         quality,
     )
@@ -136,8 +123,8 @@ def fit_exponential(restitution: ArrayLike, y: ArrayLike, error: ArrayLike) -> F
         raise ValueError("an exponential with offset needs at least three points")
     if error.min() <= 0:
         raise ValueError("an exponential with offset needs positive errors")
-    order = np.argsort(e)
-    start = (float(y[order[-1]] - y[order[0]]), 5.0, float(y[order[0]]))
+    lowest, highest = float(y[e.argmin()]), float(y[e.argmax()])
+    start = (highest - lowest, 5.0, lowest)
     values, covariance, quality = least_squares("exponential", _saturating, (e, y), start, error)
     names = ("amplitude", "rate", "offset")
     parameters, errors = (
@@ -165,15 +152,12 @@ def fit_avalanches(count: ArrayLike, *, smallest: int = 1, largest: int | None =
     largest = counts.size if largest is None else check_integer("largest", largest, least=smallest)
     chosen = slice(smallest - 1, largest)
     sizes, counts = np.arange(1.0, counts.size + 1)[chosen], counts[chosen]
-    total = float(counts.sum())
-    if sizes.size < 2 or not total > 0:
-        raise ValueError(f"no avalanches of sizes {smallest} to {largest} to fit")
-    if counts.min() < 0 or np.count_nonzero(counts) < 2:
+    if np.count_nonzero(counts) < 2 or counts.min() < 0:
         raise ValueError(
             f"count needs avalanches of at least two of the sizes {smallest} to {largest}, and "
             "none below 0"
         )
-    logs = np.log(sizes)
+    total, logs = float(counts.sum()), np.log(sizes)
     mean = float(counts @ logs) / total
 
     def cost(exponent: float) -> float:

@@ -99,7 +99,7 @@ cb.compare(chain, 3) | over must be one parameter of the chain and its values...
 cb.compare(chain, {"restitution": "0.5"}) | over: restitution must be a list, got '0.5'
 fits.fit_growth([1, 2, 3], [1, 2]) | time, energy must have
 fits.fit_growth([1, 2, np.nan], [1, 2, 3]) | time must be finite, got [1, 2, nan]
-fits.fit_avalanches([4, 2, 1], smallest=10**400) | no avalanches of sizes 1000
+fits.fit_avalanches([4, 2, 1], smallest=10**400) | at least two of the sizes 1000
 """
 
 PICTURES = """
