@@ -9,7 +9,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.animation import FuncAnimation
 
-from crazybilliards.reproduction.claims.repetition import error_of_mean
+from crazybilliards.reproduction.claims.study import error_of_mean
 
 BLUE, ORANGE, GREEN, PINK, RED, SKY = COLOURS = (
     "#0072B2",

@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 import xarray as xr
 
 from crazybilliards.model import Chain
-from crazybilliards.reproduction.claims.repetition import (
+from crazybilliards.reproduction.claims.study import (
     Effort,
     Quality,
     Results,
@@ -27,7 +27,7 @@ RESTITUTIONS = (0.0, 0.5, 0.75, 0.85, 0.92, 0.95)
 # The time steps at which the perfectly inelastic chain runs, by their names. None: the default one.
 STEPS = {"default step": None, "dt = 0.01": 1e-2, "dt = 0.003": 3e-3, "dt = 0.001": 1e-3}
 # That at which the others run too, to see whether the step decides a claim.
-OTHER_STEP = 1e-2
+OTHER_STEP, OTHER = 1e-2, "dt = 0.01"
 
 # By the number of rods from which on it holds. The longest chains have warm-ups of their own:
 # W_v and <dx> of 1000 rods that start at their anchors are steady, to 2 %, after 20 time units at
@@ -58,12 +58,12 @@ _AT_STEP = {
     LARGE: effort((4, 40, 20), (6, 800, 50)),
 }
 _AGAIN = effort((4, 40, 20), (4, 200, 50))
-_ELASTIC = effort((8, 50_000), (8, 50_000))  # a quarter of a second, so that both can afford it
 _FLIPPERS = effort((4, 1000), (8, 8000))
 # Whether the fit of a power law to the profile of these, (size, damping), misses a rod needs more.
 _MOST_FLIPPERS = (100, 4.0)
 _FLIPPERS_LONG = effort((4, 1000), (32, 8000))
 _FLIPPERS_AGAIN = effort((4, 300), (4, 1500))
+_CELLS = {"phase_space": 16, "correlated_phase_space": 22}  # of a coarse mesh
 
 Key = TypeVar("Key", bound=Hashable)
 Need = TypeVar("Need", Runs, Solution)
@@ -94,9 +94,9 @@ def inelastic(size: int, step: float | None = None) -> Runs:
     return runs if step is None else runs.at_step(step, _of_size(_AT_STEP, size))
 
 
-def inelastic_at_steps(sizes: Iterable[int]) -> list[Runs]:
-    """Return runs of these perfectly inelastic chains at every time step."""
-    return [inelastic(size, step) for size in sizes for step in STEPS.values()]
+def inelastic_at_steps(sizes: Iterable[int]) -> dict[str, dict[int, Runs]]:
+    """Return runs of these perfectly inelastic chains by the names of the steps."""
+    return {name: {size: inelastic(size, step) for size in sizes} for name, step in STEPS.items()}
 
 
 def flippers(size: int, damping: float) -> Runs:
@@ -109,66 +109,54 @@ def flippers(size: int, damping: float) -> Runs:
     )
 
 
-def elastic(size: int) -> Runs:
-    """Return runs at e = 1 at the default time step."""
-    return Runs(f"L={size} e=1", Chain(size=size), _ELASTIC, {"observe": ["widths", "velocities"]})
+# A quarter of a second each, so that both qualities can afford it.
+ELASTIC = Runs(
+    "L=100 e=1",
+    Chain(size=100),
+    effort((8, 50_000), (8, 50_000)),
+    {"observe": ["widths", "velocities"]},
+)
 
 
-def at_other_step(runs: Runs) -> Runs:
-    """Return runs of the same chain of 1000 rods, or of flippers, at the step ``OTHER_STEP``."""
+def at_both_steps(runs: Mapping[Key, Runs]) -> dict[str, dict[Key, Runs]]:
+    """Return the runs, and those of the same chains at the other step, by the names of the steps.
+
+    The chains are of 1000 rods, or of flippers.
+    """
+    others = {key: _at_other_step(one) for key, one in runs.items()}
+    return {"default step": dict(runs), OTHER: others}
+
+
+def _at_other_step(runs: Runs) -> Runs:
     if runs.chain == Chain(size=LARGE, restitution=0.0):
         return inelastic(LARGE, OTHER_STEP)
     return runs.at_step(OTHER_STEP, _FLIPPERS_AGAIN if runs.chain.restitution > 1 else _AGAIN)
 
 
-def at_both_steps(runs: Runs) -> dict[str, Runs]:
-    """Return the runs, and those at the other step, by the names of the steps."""
-    return {"default step": runs, f"dt = {OTHER_STEP:g}": at_other_step(runs)}
-
-
-def all_at_both_steps(runs: Mapping[Key, Runs]) -> dict[str, dict[Key, Runs]]:
-    """Return runs of several chains by the names of the steps, as :func:`at_both_steps` does."""
-    both = {key: at_both_steps(one) for key, one in runs.items()}
-    steps = next(iter(both.values()))
-    return {step: {key: one[step] for key, one in both.items()} for step in steps}
-
-
 def all_of(groups: Mapping[Any, Mapping[Any, Need]]) -> list[Need]:
-    """Return what all groups hold, runs at both steps, say, as a study takes it."""
+    """Return what all groups hold, runs at several steps, say, as a study takes it."""
     return [need for group in groups.values() for need in group.values()]
 
 
-def kinetic_equation(
-    size: int, restitution: float, damping: float = 1.0, *, quick: bool = True
+def solution(
+    job: str, size: int, restitution: float, damping: float = 1.0, *, quick: bool = True
 ) -> Solution:
-    """Return the kinetic equation; quick: on a coarser mesh, half a per cent off, or not at all."""
-    return Solution(
-        f"theory L={size} e={restitution:g} gamma={damping:g}",
-        "phase_space",
-        Chain(size=size, restitution=restitution, damping=damping),
-        _settings(16, quick),
-    )
-
-
-def correlated_equation(size: int, restitution: float, *, quick: bool) -> Solution:
-    """Return the kinetic equation with pair correlations; quick as above."""
-    return Solution(
-        f"theory of pairs L={size} e={restitution:g}",
-        "correlated_phase_space",
-        Chain(size=size, restitution=restitution),
-        _settings(22, quick),
-    )
-
-
-def _settings(cells: int, quick: bool) -> dict[Quality, dict[str, int]]:
-    return {"quick": {"cells": cells}, "full": {}} if quick else {"full": {}}
+    """Return a theory; quick: on a coarser mesh, half a per cent off, or not at all."""
+    settings: dict[Quality, dict[str, int]] = {"full": {}}
+    if quick:
+        settings["quick"] = {"cells": _CELLS[job]}
+    chain = Chain(size=size, restitution=restitution, damping=damping)
+    name = f"theory {job} L={size} e={restitution:g} gamma={damping:g}"
+    return Solution(name, job, chain, settings)
 
 
 # The kinetic equation of 1000 rods, without and with pair correlations, by the restitution.
 INDEPENDENT, PAIRS = "kinetic equation", "with pair correlations"
 PREDICTIONS: dict[str, dict[float, Solution]] = {
-    INDEPENDENT: {e: kinetic_equation(LARGE, e, quick=e == 0.95) for e in RESTITUTIONS if e > 0.8},
-    PAIRS: {e: correlated_equation(LARGE, e, quick=e == 0.95) for e in RESTITUTIONS},
+    INDEPENDENT: {
+        e: solution("phase_space", LARGE, e, quick=e == 0.95) for e in RESTITUTIONS if e > 0.8
+    },
+    PAIRS: {e: solution("correlated_phase_space", LARGE, e, quick=e == 0.95) for e in RESTITUTIONS},
 }
 LINES = {INDEPENDENT: "--", PAIRS: "-"}  # in pictures
 

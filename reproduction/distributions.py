@@ -7,14 +7,12 @@ from collections.abc import Callable, Sequence
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from crazybilliards.comparison.distances import distances_in_plot
 from crazybilliards.comparison.drawing import COLOURS, draw_points
-from crazybilliards.comparison.layout import legend_above, panels
 from crazybilliards.model import chain_of
 from crazybilliards.model.arrays import Array
-from crazybilliards.reproduction.claims.repetition import Results, Runs, error_of_mean
+from crazybilliards.reproduction.claims.study import error_of_mean
 
 _SYMBOLS_DRAWN = 41
 _LEAST = 1e-5  # of the largest density: below, counts are too few to draw
@@ -85,11 +83,3 @@ def draw_distributions(ax: Axes, runs: Sequence[xr.Dataset], particles: Sequence
     ax.set_yscale("log")
     ax.set(ylim=(3e-6, ax.get_ylim()[1]), xlim=(-1.05 * reach, 1.05 * reach))
     ax.set(xlabel="velocity $v/W$", ylabel="probability density $W p(v)$")
-
-
-def figure_of_distributions(results: Results, runs: Runs, particles: Sequence[int]) -> Figure:
-    """Return :func:`draw_distributions` as a figure of one panel, with a legend."""
-    figure, [ax] = panels(1, 1, height=2.9)
-    draw_distributions(ax, runs.members(results), particles)
-    legend_above(figure, ax)
-    return figure

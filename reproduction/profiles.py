@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.figure import Figure
 
 from crazybilliards.comparison.distances import distances_in_plot
-from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_rods
 from crazybilliards.comparison.fits import fit_border_power_law
-from crazybilliards.comparison.layout import legend_above, panels
 from crazybilliards.comparison.widths import border_width, central_width
 from crazybilliards.model import chain_of
-from crazybilliards.reproduction.claims.repetition import Results, Runs, Solution
 from crazybilliards.reproduction.claims.verdicts import furthest_in_plot, in_plot
 
 _SIGNS = {"velocity_width": 1, "displacement_width": 1, "mean_displacement": -1}
@@ -80,22 +76,3 @@ def fits_in_plot(of_what: str, runs: Iterable[xr.Dataset]) -> dict[str, Any]:
         furthest_in_plot(np.concatenate(distances), np.concatenate(errors)),
         vertical,
     )
-
-
-def figure_of_flippers(
-    results: Results, curves: Mapping[str, tuple[Runs, Solution, float]], ylabel: str
-) -> Figure:
-    """Return W_v(i) of runs as symbols and of the kinetic equation as lines, in one panel.
-
-    ``curves`` has by label the runs, the theory, and the unit of their widths.
-    """
-    figure, [ax] = panels(1, 1, height=3.1)
-    for number, (label, (runs, theory, unit)) in enumerate(curves.items()):
-        draw_rods(ax, runs.mean(results), "velocity_width", number=number, unit=unit, label=label)
-        solved = results[theory.name]
-        ax.plot(solved.normalized_particle, solved.velocity_width / unit, color=COLOURS[number])
-    along_the_chain(ax)
-    ax.set_ylabel(ylabel)
-    ax.plot([], [], color="0.4", label="kinetic equation")
-    legend_above(figure, ax)
-    return figure

@@ -26,7 +26,7 @@ has D = 0. The kick that opens the contact is made stronger until the walk has D
 import numpy as np
 from scipy.special import gamma, hyp1f1, hyperu
 
-from crazybilliards.reproduction.claims.repetition import error_of_mean
+from crazybilliards.reproduction.claims.study import error_of_mean
 from studies.common import Table, options, print_table
 
 STRENGTHS = np.array([1.0, 1.15, 1.2, 1.25, 1.3])

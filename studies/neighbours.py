@@ -24,7 +24,7 @@ from crazybilliards.comparison.layout import entitle, legend_above, panels
 from crazybilliards.comparison.sweeps import Case
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.arrays import middle_tenth
-from crazybilliards.reproduction.claims.repetition import error_of_mean
+from crazybilliards.reproduction.claims.study import error_of_mean
 from crazybilliards.reproduction.claims.verdicts import Estimate
 from studies.common import Results, Table, carry_out
 

@@ -27,7 +27,7 @@ from crazybilliards.particles.laws.closed_contacts import CRITICAL_RESTITUTION, 
 from crazybilliards.particles.laws.law import Scratch, drift, make_scratch
 from crazybilliards.particles.noise import Noise, fill, make_noise
 from crazybilliards.particles.scales import default_time_step
-from crazybilliards.reproduction.claims.repetition import error_of_mean
+from crazybilliards.reproduction.claims.study import error_of_mean
 from studies.common import Table, options, percents, print_table
 
 WARM_UP = 60.0

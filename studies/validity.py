@@ -21,7 +21,7 @@ from crazybilliards.comparison.widths import border_width, central_width, width_
 from crazybilliards.model import Chain
 from crazybilliards.particles.scales import default_time_step
 from crazybilliards.reproduction.chains import LARGE, RESTITUTIONS, dissipative
-from crazybilliards.reproduction.claims.repetition import Runs
+from crazybilliards.reproduction.claims.study import Runs
 from studies.common import Results, Table, carry_out
 
 # Why a chain is among them. The first check the equation without correlations only. The last are

@@ -76,23 +76,19 @@ def check_observers(run: Run) -> None:
     """Raise if an observer cannot work in this run, or if two report the same variable."""
     owners: dict[str, Observer] = {}
     for observer in run.observers:
-        if run.chain.size < observer.least_rods:
-            raise ValueError(
-                f"observe: {observer.name!r} needs a chain of at least {observer.least_rods} rods"
-            )
-        if run.ensemble and not observer.ensemble:
-            raise ValueError(
-                f"observe: {observer.name!r} is averaged over time only, not over an ensemble"
-            )
-        if observer.meets_walls and not run.chain.box:
-            raise ValueError(
-                f"observe: {observer.name!r} needs a chain between walls, Chain(box=...)"
-            )
-        if (observer.single_collisions or observer.meets_walls) and run.method != "event-driven":
-            raise ValueError(
-                f"observe: {observer.name!r} needs single collisions, which only "
-                "method='event-driven' sees"
-            )
+        least, walls = observer.least_rods, observer.meets_walls
+        counts = observer.single_collisions or walls
+        refusals = {
+            f"needs a chain of at least {least} rods": run.chain.size < least,
+            "is averaged over time only, not over an ensemble": run.ensemble
+            and not observer.ensemble,
+            "needs a chain between walls, Chain(box=...)": walls and not run.chain.box,
+            "needs single collisions, which only method='event-driven' sees": counts
+            and run.method != "event-driven",
+        }
+        for reason, refused in refusals.items():
+            if refused:
+                raise ValueError(f"observe: {observer.name!r} {reason}")
         # The times of an ensemble are the same for all observers.
         names = {*observer.gives, *observer.along} - ({"time"} if run.ensemble else set())
         for name in sorted(names):

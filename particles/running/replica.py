@@ -109,7 +109,7 @@ class Replica:
             self._start()
 
     def _warm_up(self, stop: Event) -> Iterator[int]:
-        scratch = self._scratch()
+        scratch = make_scratch(self.y.size, self.dynamics.inverse)
         uncounted = make_tally(self.y.size, contacts=False)
         while self.steps < self.run.warmup_steps and not (self.over or stop.is_set()):
             steps = min(self._chunk(), self.run.warmup_steps - self.steps)
@@ -121,7 +121,7 @@ class Replica:
 
     def _measure(self, stop: Event) -> Iterator[int]:
         run, chunk = self.run, self._chunk()
-        scratch, tally = self._scratch(), self._tally()
+        scratch, tally = make_scratch(self.y.size, self.dynamics.inverse), self._tally()
         rows = max(min(chunk // run.stride, _ROOM // self.y.size), 1)
         y_buffer, v_buffer = np.empty((2, rows, self.y.size))
         while self.snapshots < run.snapshots and not (self.over or stop.is_set()):
@@ -137,7 +137,8 @@ class Replica:
                     self._diverge(block)
                     return
             else:
-                good = self._record(scratch, tally, due, n, y_buffer, v_buffer)
+                state = self.y, self.v, self.noise, self.dynamics, scratch, tally
+                good, *_ = record(*state, due, y_buffer[:n], v_buffer[:n])
                 steps = good * due
             self._observe(block, y_buffer[:good], v_buffer[:good], tally)
             # All updates come before the yield, where a checkpoint may be saved.
@@ -152,18 +153,9 @@ class Replica:
         """Return the steps between two checks for Ctrl-C."""
         return max(_CHUNK // self.y.size, 1)
 
-    def _scratch(self) -> Any:
-        """Return the arrays that the kernels work in."""
-        return make_scratch(self.y.size, self.dynamics.inverse)
-
     def _advance(self, scratch: Any, tally: Tally, steps: int) -> bool:
         """Take steps without snapshots; return False if the chain diverged."""
         return advance(self.y, self.v, self.noise, self.dynamics, scratch, tally, steps) >= 0
-
-    def _record(self, scratch: Any, tally: Tally, due: int, n: int, y: Array, v: Array) -> int:
-        """Fill ``n`` rows of the buffers, ``due`` steps apart; return the number of valid rows."""
-        state = self.y, self.v, self.noise, self.dynamics, scratch, tally
-        return record(*state, due, y[:n], v[:n])[0]
 
     def _block(self) -> tuple[int, int]:
         """Return the block of the next snapshot, and how many it still needs; make room for it."""
@@ -189,8 +181,7 @@ class Replica:
 
     def _tally(self) -> Tally:
         """Return the record of collisions: counts, and the arrays that observers add."""
-        counted = any(observer.single_collisions for observer in self.observers)
-        tally = make_tally(self.y.size, contacts=counted)
+        tally = make_tally(self.y.size, contacts=self.run.recorded["counted"])
         for observer in self.observers:
             tally = observer.tally(tally)
         return tally

@@ -18,8 +18,7 @@ import xarray as xr
 
 from crazybilliards.comparison.layout import house_style
 from crazybilliards.comparison.sweeps import Case
-from crazybilliards.reproduction.claims.repetition import Quality
-from crazybilliards.reproduction.claims.study import Study
+from crazybilliards.reproduction.claims.study import Quality, Study
 from crazybilliards.reproduction.claims.verdicts import Claim, Verdict
 
 _NO_DATE = {"pdf": {"CreationDate": None}, "svg": {"Date": None}}

@@ -16,8 +16,7 @@ from crazybilliards.comparison.layout import entitle, legend_above, panels
 from crazybilliards.comparison.widths import central_width
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.reproduction import chains
-from crazybilliards.reproduction.claims.repetition import Results, Runs, effort
-from crazybilliards.reproduction.claims.study import Study
+from crazybilliards.reproduction.claims.study import Results, Runs, Study, effort
 from crazybilliards.reproduction.claims.verdicts import (
     EYE,
     Claim,
@@ -136,7 +135,6 @@ _GAPS = (0.05, 0.2, 1.0)
 _WIDE = 3.0  # a gap that hardly any rods cross, where only the motion in the centre is looked at
 _FLAT = 0.1  # change of ln W_v^2 that still counts as a plateau
 _EFFORT = effort((4, 80, 50), (4, 600, 100))
-_OTHER = f"dt = {chains.OTHER_STEP:g}"
 _claim = partial(
     Claim, source="appendix, fig:mom_var_gaps", ours="the gaps, the restitutions and the time step"
 )
@@ -153,7 +151,7 @@ def _with_gap(restitution: float, gap: float) -> Runs:
 
 # By restitution: by time step, the runs by their gaps.
 _BY_GAP = {
-    e: chains.all_at_both_steps({gap: _with_gap(e, gap) for gap in (0.0, *_GAPS)})
+    e: chains.at_both_steps({gap: _with_gap(e, gap) for gap in (0.0, *_GAPS)})
     for e in (0.0, 0.75, 0.95)
 }
 _ALMOST_FREE = {e: _with_gap(e, _WIDE) for e in _BY_GAP}
@@ -243,7 +241,7 @@ def _free_centre_claims(results: Results, e: float) -> list[Claim]:
     """
     gap, *others = reversed(_GAPS)
     ours, other = _BY_GAP[e].values()
-    of_gaps = {f"g = {gap:g}": ours[gap], f"g = {gap:g}, {_OTHER}": other[gap]}
+    of_gaps = {f"g = {gap:g}": ours[gap], f"g = {gap:g}, {chains.OTHER}": other[gap]}
     of_gaps |= {f"g = {g:g}": ours[g] for g in others} | {f"g = {_WIDE:g}": _ALMOST_FREE[e]}
     of_steps = {step: group[gap] for step, group in _BY_GAP[e].items()}
     return [

@@ -14,8 +14,7 @@ from crazybilliards.comparison.layout import entitle, panels
 from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array
 from crazybilliards.reproduction import chains
-from crazybilliards.reproduction.claims.repetition import Results, Runs, effort
-from crazybilliards.reproduction.claims.study import Study
+from crazybilliards.reproduction.claims.study import Results, Runs, Study, effort
 from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, around, at_choices
 from crazybilliards.reproduction.fits import fit_avalanches
 
@@ -223,7 +222,7 @@ INELASTIC = Study(
 # -- figure 13: flippers, system-spanning where the damping is weak ---------------------------
 
 _SIZE = 100
-_FLIPPERS = chains.all_at_both_steps(
+_FLIPPERS = chains.at_both_steps(
     {damping: chains.flippers(_SIZE, damping) for damping in (4.0, 10.0)}
 )
 _FIRST_TEN = slice(1, 10)

@@ -19,8 +19,7 @@ from crazybilliards.comparison.widths import central_width
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.arrays import Array, middle_tenth
 from crazybilliards.reproduction import chains
-from crazybilliards.reproduction.claims.repetition import Results, Runs
-from crazybilliards.reproduction.claims.study import Study
+from crazybilliards.reproduction.claims.study import Results, Runs, Study
 from crazybilliards.reproduction.claims.verdicts import (
     EYE,
     Claim,
@@ -43,6 +42,7 @@ def _swelling(run: xr.Dataset) -> float:
 # -- figure 5: the perfectly inelastic chain, by its length -----------------------------------
 
 _SIZES = (30, 100, 300, chains.LARGE)
+_INELASTIC = chains.inelastic_at_steps(_SIZES)
 
 
 def _claims_by_length(results: Results) -> list[Claim]:
@@ -70,14 +70,14 @@ def _decrease(
 ) -> Claim:
     """Decide at all time steps whether a quantity decreases from one size to the next."""
 
-    def both(step: float | None) -> list[Estimate]:
-        return [chains.inelastic(size, step).estimate(results, measured) for size in sizes]
+    def both(group: Mapping[int, Runs]) -> list[Estimate]:
+        return [group[size].estimate(results, measured) for size in sizes]
 
-    small, large = both(None)
+    small, large = both(_INELASTIC["default step"])
     return Claim(
         statement,
         f"{quantity}: {small} less {large}, difference",
-        **at_choices(chains.STEPS, lambda step: Estimate.minus(*both(step))),
+        **at_choices(_INELASTIC, lambda group: Estimate.minus(*both(group))),
         source=f"section seq:e_0, {label}",
         ours="the sizes and the time step",
     )
@@ -85,8 +85,8 @@ def _decrease(
 
 def _draw_by_length(results: Results) -> Figure:
     figure, axes = panels(1, 2)
-    for number, size in enumerate(_SIZES):
-        run = chains.inelastic(size).mean(results)
+    for number, (size, runs) in enumerate(_INELASTIC["default step"].items()):
+        run = runs.mean(results)
         for ax, name in zip(axes, ("mean_displacement", "displacement_width"), strict=True):
             draw_rods(ax, run, name, number=number, unit=_S, label=f"$L = {size}$")
     axes[0].set(ylabel=r"mean displacement $\langle\Delta x\rangle/s$")
@@ -103,7 +103,7 @@ BY_LENGTH = Study(
     title="Mean displacements at e = 0",
     caption="(a) Mean displacement and (b) its width (the paper's inset) against the normalized "
     "particle number, e = 0, in units of the thermal length s.",
-    needs=chains.inelastic_at_steps(_SIZES),
+    needs=chains.all_of(_INELASTIC),
     claims=_claims_by_length,
     draw=_draw_by_length,
 )
@@ -112,7 +112,7 @@ BY_LENGTH = Study(
 
 Law = Callable[[Array, float, float, float], Array]
 _RUNS = {e: chains.dissipative(chains.LARGE, e) for e in (0.0, 0.75, 0.85, 0.92, 0.95)}
-_STEPS = chains.all_at_both_steps(_RUNS)
+_STEPS = chains.at_both_steps(_RUNS)
 _FRAME = 0.7  # of the picture of all rods
 
 
@@ -151,7 +151,7 @@ def _power_law_claim(results: Results) -> Claim:
         "point of the line, at the e where it fits best:",
         number=least(_power_law, ours),
         elsewhere={
-            f"dt = {chains.OTHER_STEP:g}": least(_power_law, other),
+            chains.OTHER: least(_power_law, other),
             "the difference of two power laws, b [(i - c)^nu - (L + 1 - c - i)^nu]": least(
                 _two_power_laws, ours
             ),
@@ -184,8 +184,7 @@ def _beyond_the_eye(run: xr.Dataset, law: Law) -> Estimate:
     fine = np.geomspace(1, i[-1], 2000)
     distances = distances_in_plot(i, shift, fine, law(fine, *values))
     errors = half.mean_displacement_error.values / np.ptp(shift)
-    furthest = furthest_in_plot(distances, errors)
-    return Estimate(furthest.value - EYE, furthest.error)
+    return furthest_in_plot(distances, errors).minus(Estimate(EYE, 0.0))
 
 
 def _energy_claims(results: Results) -> list[Claim]:
@@ -193,18 +192,14 @@ def _energy_claims(results: Results) -> list[Claim]:
     e = max(_RUNS)
 
     def excess(group: Mapping[float, Runs], sign: int) -> Estimate:
-        potential, kinetic = (
-            group[e].estimate(results, partial(_excess, name=name))
-            for name in ("potential", "kinetic")
-        )
+        potential, kinetic = group[e].estimates(results, _excess)
         # Both are of the same rods: their errors add.
         return Estimate(potential.value + sign * kinetic.value, potential.error + kinetic.error)
 
-    parts = ", ".join(
-        f"{name} {_RUNS[e].estimate(results, partial(_excess, name=name))}"
-        for name in ("potential", "kinetic")
+    potential, kinetic = _RUNS[e].estimates(results, _excess)
+    quantity = (
+        f"border's less centre's, in units of m W^2/2: potential {potential}, kinetic {kinetic}"
     )
-    quantity = f"border's less centre's, in units of m W^2/2: {parts}"
     claim = partial(Claim, source="section seq:e_larger", ours="the restitution")
     return [
         claim(
@@ -220,15 +215,15 @@ def _energy_claims(results: Results) -> list[Claim]:
     ]
 
 
-def _excess(run: xr.Dataset, name: str) -> float:
-    """Mean energy of the two border rods less that of the middle tenth, in units of m W^2/2."""
+def _excess(run: xr.Dataset) -> Array:
+    """Potential and kinetic energy of the border rods less those of the middle tenth [m W^2/2]."""
     chain = chain_of(run)
-    if name == "kinetic":
-        energy = (run.velocity_width.values / chain.free_velocity_width) ** 2
-    else:
-        squares = run.mean_displacement.values**2 + run.displacement_width.values**2
-        energy = squares / chain.thermal_length**2
-    return float(energy[[0, -1]].mean() - energy[middle_tenth(energy.size)].mean())
+    potential = run.mean_displacement.values**2 + run.displacement_width.values**2
+    kinetic = run.velocity_width.values**2
+    scales = [[chain.thermal_length**2], [chain.free_velocity_width**2]]
+    energy = np.array([potential, kinetic]) / scales
+    centre = energy[:, middle_tenth(run.sizes["particle"])]
+    return np.asarray(energy[:, [0, -1]].mean(axis=1) - centre.mean(axis=1))
 
 
 def _draw_by_restitution(results: Results) -> Figure:

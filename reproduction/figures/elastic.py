@@ -20,8 +20,7 @@ from crazybilliards.comparison.stationary_theories import TITLES
 from crazybilliards.kinetic import equilibrium, force_balance
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.reproduction import chains
-from crazybilliards.reproduction.claims.repetition import Results, Runs, effort
-from crazybilliards.reproduction.claims.study import Study
+from crazybilliards.reproduction.claims.study import Results, Runs, Study, effort
 from crazybilliards.reproduction.claims.verdicts import (
     EYE,
     Claim,
@@ -39,7 +38,6 @@ from crazybilliards.reproduction.distributions import (
 
 # -- figure 8: velocities --------------------------------------------------------------
 
-_FREE = chains.elastic(100)
 _RODS = (1, 50)
 _SHOWN = 4.0  # free widths to either side in the plot of a distribution
 _LONG = effort((4, 2000), (4, 2000))
@@ -60,14 +58,14 @@ _METHODS = {
 
 def _distance_from_free_rod(runs: Sequence[xr.Dataset]) -> float:
     """Return how far p(v) is off the free rod's, as a share of the plot: the worse of two rods."""
-    unit = _FREE.chain.free_velocity_width
+    unit = chains.ELASTIC.chain.free_velocity_width
     reach = _SHOWN * unit
     densities = [histogram(runs, [particle], reach) for particle in _RODS]
     return max(distance_in_plot(v, p, lambda v: gaussian(v, unit), reach) for v, p in densities)
 
 
 def _claims_of_velocities(results: Results) -> list[Claim]:
-    run, unit = _FREE.mean(results), _FREE.chain.free_velocity_width
+    run, unit = chains.ELASTIC.mean(results), chains.ELASTIC.chain.free_velocity_width
     differences, errors = run.velocity_width / unit - 1, run.velocity_width_error / unit
     source = "section seq:e_larger, fig.4.2"
     return [
@@ -80,7 +78,7 @@ def _claims_of_velocities(results: Results) -> list[Claim]:
             "the distributions of rods 1 and 50 are a free rod's Gaussian",
             **in_plot(
                 f"p(v) and the free rod's, both axes linear, v to {_SHOWN:g} W",
-                _FREE.estimate_together(results, _distance_from_free_rod),
+                chains.ELASTIC.estimate_together(results, _distance_from_free_rod),
             ),
             source=source,
         ),
@@ -89,10 +87,10 @@ def _claims_of_velocities(results: Results) -> list[Claim]:
 
 def _draw_velocities(results: Results) -> Figure:
     figure, (left, right) = panels(1, 2, height=2.7)
-    draw_distributions(left, _FREE.members(results), _RODS)
-    entitle(left, f"$L = {_FREE.chain.size}$")
+    draw_distributions(left, chains.ELASTIC.members(results), _RODS)
+    entitle(left, f"$L = {chains.ELASTIC.chain.size}$")
     left.legend(loc="lower center")
-    unit = _FREE.chain.free_velocity_width
+    unit = chains.ELASTIC.chain.free_velocity_width
     for number, (label, runs) in enumerate(_METHODS.items()):
         run = runs.mean(results)
         draw_rods(right, run, "velocity_width", number=number, unit=unit, label=label)
@@ -111,7 +109,7 @@ VELOCITIES = Study(
     caption="(a) Symbols: simulated rods 1 and 50 of 100, with standard errors. Dotted: the exact "
     "distribution, that of a free rod. (b) W_v of 1000 rods, exact at any step with event-driven "
     "collisions, wrong with Contact Dynamics at steps that are affordable.",
-    needs=[_FREE, *_METHODS.values()],
+    needs=[chains.ELASTIC, *_METHODS.values()],
     claims=_claims_of_velocities,
     draw=_draw_velocities,
 )

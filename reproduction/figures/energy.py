@@ -16,8 +16,7 @@ from crazybilliards.comparison.layout import panels
 from crazybilliards.kinetic.kinetic_equation.weak_damping import weak_damping_growth_rate
 from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array
-from crazybilliards.reproduction.claims.repetition import Results, Runs, effort
-from crazybilliards.reproduction.claims.study import Study
+from crazybilliards.reproduction.claims.study import Results, Runs, Study, effort
 from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, around, at_choices
 from crazybilliards.reproduction.fits import fit_growth, fit_singularity
 
@@ -71,14 +70,14 @@ def _late(run: xr.Dataset, beyond: float) -> tuple[Array, Array]:
     return run.time.values[begin:], energy[begin:]
 
 
-def _early_rate(run: xr.Dataset) -> float:
+def _rates(run: xr.Dataset) -> tuple[float, float]:
+    """Return the growth rates up to the half and from there on."""
     time, energy = _late(run, _GROWING)
-    return fit_growth(time[time <= _HALF_WAY], energy[time <= _HALF_WAY]).rate
-
-
-def _late_rate(run: xr.Dataset) -> float:
-    late = run.time.values > _HALF_WAY
-    return fit_growth(run.time.values[late], run.kinetic_energy.values[late]).rate
+    early, late = time <= _HALF_WAY, run.time.values > _HALF_WAY
+    return (
+        fit_growth(time[early], energy[early]).rate,
+        fit_growth(run.time.values[late], run.kinetic_energy.values[late]).rate,
+    )
 
 
 def _frequency(run: xr.Dataset) -> float:
@@ -120,17 +119,15 @@ def _frequency_claim(results: Results) -> Claim:
 
 
 def _growth_claim(results: Results) -> Claim:
-    def rates(linear: tuple[Runs, ...]) -> list[Estimate]:
-        return [linear[0].estimate(results, rate) for rate in (_early_rate, _late_rate)]
-
-    steps = _at_steps(_LINEAR)
-    early, late = rates(steps[""])
+    early, late = _LINEAR.estimates(results, _rates)
     return Claim(
         "linear springs: exponential growth",
         f"rate {early} per t_0 from E = {_GROWING:.0e} to t = {_HALF_WAY:g} t_0, and {late} from "
         f"there to {_LINEAR.settings['duration']:g} t_0; the second less the first, over the "
         "first:",
-        **at_choices(steps, lambda linear: _change(*rates(linear))),
+        **at_choices(
+            _at_steps(_LINEAR), lambda linear: _change(*linear[0].estimates(results, _rates))
+        ),
         within=around(0.0, 0.1),
         source=_SOURCE,
     )

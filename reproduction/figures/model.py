@@ -12,8 +12,7 @@ from matplotlib.patches import Circle
 from crazybilliards.comparison.drawing import COLOURS
 from crazybilliards.comparison.layout import panels
 from crazybilliards.model import Chain
-from crazybilliards.reproduction.claims.repetition import Results
-from crazybilliards.reproduction.claims.study import Study
+from crazybilliards.reproduction.claims.study import Results, Study
 
 _DISPLACEMENTS = (-1.3, -0.4, 0.5, 0.3)
 _CEILING = 2.7  # height of the anchors

@@ -16,17 +16,23 @@ from crazybilliards.comparison.widths import border_width, central_width
 from crazybilliards.model import chain_of
 from crazybilliards.model.arrays import Array, middle_tenth
 from crazybilliards.reproduction import chains
-from crazybilliards.reproduction.claims.repetition import Results, Runs
-from crazybilliards.reproduction.claims.study import Study
+from crazybilliards.reproduction.claims.study import Results, Runs, Study
 from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, at_choices, in_plot
 from crazybilliards.reproduction.distributions import (
     distance_in_plot,
     draw_distributions,
-    figure_of_distributions,
     histogram,
     mean_shape,
 )
 from crazybilliards.reproduction.fits import tail_length
+
+
+def _draw(results: Results, runs: Runs, particles: Sequence[int]) -> Figure:
+    figure, [ax] = panels(1, 1, height=2.9)
+    draw_distributions(ax, runs.members(results), particles)
+    legend_above(figure, ax)
+    return figure
+
 
 # -- figure 2: the perfectly inelastic chain --------------------------------------------------
 
@@ -74,7 +80,7 @@ def _claims_inelastic(results: Results) -> list[Claim]:
 
     ours, *others = _INELASTIC.items()
     peaks = ", ".join(f"{step}: {kurtosis(runs)}" for step, runs in others)
-    source = "section seq:e_0, fig.1"
+    claim = partial(Claim, source="section seq:e_0, fig.1")
 
     def misfit(runs: Runs) -> dict[str, Any]:
         return in_plot(
@@ -84,27 +90,24 @@ def _claims_inelastic(results: Results) -> list[Claim]:
         )
 
     return [
-        Claim(
+        claim(
             "in the bulk the distributions can be fitted by Gaussians",
             **at_choices(_INELASTIC, misfit),
-            source=source,
             ours="the time step, and whether the axes are linear",
             reason="the shorter the step, the more peaked is the distribution and the longer are "
             "its tails, while the kicks of a long step, which are Gaussian, hide this; excess "
             f"kurtosis {kurtosis(ours[1])} at the {ours[0]}, {peaks}",
         ),
-        Claim(
+        claim(
             "close to the border the distributions are slightly skewed",
             f"skewness of the outer three rods {skewness(ours[1])}, outward positive; its "
             "magnitude",
             **at_choices(_INELASTIC, magnitude),
-            source=source,
         ),
-        Claim(
+        claim(
             "narrower inside than at the border",
             "W_v(border) - W_v(centre) =",
             **at_choices(_INELASTIC, narrowing),
-            source=source,
         ),
     ]
 
@@ -118,17 +121,14 @@ INELASTIC = Study(
     "runs. Velocities in units of the free width W.",
     needs=list(_INELASTIC.values()),
     claims=_claims_inelastic,
-    draw=partial(
-        figure_of_distributions, runs=_INELASTIC["default step"], particles=(1, 10, 100, 500)
-    ),
+    draw=partial(_draw, runs=_INELASTIC["default step"], particles=(1, 10, 100, 500)),
 )
 
 # -- figures 10 and 11: flippers --------------------------------------------------------------
 
-_WEAKLY_DAMPED, _STRONGLY_DAMPED = (
-    chains.at_both_steps(chains.flippers(100, g)) for g in (4.0, 10.0)
-)
 _SIZE = 100
+_WEAK, _STRONG = 4.0, 10.0
+_FLIPPERS = chains.at_both_steps({g: chains.flippers(_SIZE, g) for g in (_WEAK, _STRONG)})
 _FLIPPERS_SHOWN = (1, 10, 50)
 _TAIL = 3.0  # widths of the rod, where the tail begins
 
@@ -150,34 +150,32 @@ def _tail_ratio(run: xr.Dataset) -> float:
 def _claims_weakly_damped(results: Results) -> list[Claim]:
     def less(least: float, quantity: Callable[[xr.Dataset], float]) -> dict[str, Any]:
         return at_choices(
-            _WEAKLY_DAMPED,
-            lambda runs: runs.estimate(results, quantity).minus(Estimate(least, 0.0)),
+            _FLIPPERS,
+            lambda group: group[_WEAK].estimate(results, quantity).minus(Estimate(least, 0.0)),
         )
 
-    runs = _WEAKLY_DAMPED["default step"]
+    runs = _FLIPPERS["default step"][_WEAK]
     unit, ends = runs.chain.free_velocity_width, (1, _SIZE)
     kurtosis = runs.estimate(results, lambda run: mean_shape(run, ends, "velocity_kurtosis"))
     ratio = runs.estimate(results, _tail_ratio)
-    source = "section Anti-Dissipation, fig:mom_hist_antidiss_gamma4"
+    claim = partial(Claim, source="section Anti-Dissipation, fig:mom_hist_antidiss_gamma4")
     return [
-        Claim(
+        claim(
             "every rod is faster than a free one",
             "W_v/W of the slowest rod less 1:",
             **less(1.0, lambda run: float(run.velocity_width.min()) / unit),
-            source=source,
         ),
-        Claim(
+        claim(
             "large velocities are likelier at the border than in the centre",
             "W_v(border) - W_v(centre) =",
             **less(0.0, lambda run: border_width(run) - central_width(run)),
-            source=source,
         ),
-        Claim(
+        claim(
             "the tail at the border falls off exponentially",
             f"excess kurtosis {kurtosis}; length of the tail beyond 5 W_v over that beyond 3 W_v "
             f"{ratio} (exponential: 1, Gaussian: 0.65), less half-way between the two",
             **less(0.825, _tail_ratio),
-            source=f"{source}, inset",
+            source="section Anti-Dissipation, fig:mom_hist_antidiss_gamma4, inset",
             reason="the tail falls off faster than an exponential",
         ),
     ]
@@ -191,14 +189,14 @@ def _claims_strongly_damped(results: Results) -> list[Claim]:
         Claim(
             "large velocities are likelier in the centre than at the border",
             "W_v(centre) - W_v(border) =",
-            **at_choices(_STRONGLY_DAMPED, lambda runs: runs.estimate(results, widening)),
+            **at_choices(_FLIPPERS, lambda group: group[_STRONG].estimate(results, widening)),
             source="section Anti-Dissipation, fig:mom_hist_antidiss_gamma10",
         )
     ]
 
 
 def _draw_weakly_damped(results: Results) -> Figure:
-    runs = _WEAKLY_DAMPED["default step"].members(results)
+    runs = _FLIPPERS["default step"][_WEAK].members(results)
     figure, [ax] = panels(1, 1, height=2.9)
     draw_distributions(ax, runs, _FLIPPERS_SHOWN)
     both = [_border_density(run) for run in runs]
@@ -221,7 +219,7 @@ WEAKLY_DAMPED = Study(
     caption="L = 100, e = 1.05, gamma = 4. Symbols: simulation. Lines: Gaussians of the same "
     "width. Dashed: an exponential of the border's mean excess over three widths. Dotted: a free "
     "rod. Error bars: standard errors from independent runs.",
-    needs=list(_WEAKLY_DAMPED.values()),
+    needs=[group[_WEAK] for group in _FLIPPERS.values()],
     claims=_claims_weakly_damped,
     draw=_draw_weakly_damped,
 )
@@ -231,9 +229,7 @@ STRONGLY_DAMPED = Study(
     title="Velocity distributions at e = 1.05, gamma = 10",
     caption="L = 100, e = 1.05, gamma = 10. Symbols: simulation. Lines: Gaussians of the same "
     "width. Dotted: a free rod. Error bars: standard errors from independent runs.",
-    needs=list(_STRONGLY_DAMPED.values()),
+    needs=[group[_STRONG] for group in _FLIPPERS.values()],
     claims=_claims_strongly_damped,
-    draw=partial(
-        figure_of_distributions, runs=_STRONGLY_DAMPED["default step"], particles=_FLIPPERS_SHOWN
-    ),
+    draw=partial(_draw, runs=_FLIPPERS["default step"][_STRONG], particles=_FLIPPERS_SHOWN),
 )

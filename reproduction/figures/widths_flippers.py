@@ -10,13 +10,21 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from crazybilliards.comparison.distances import distances_in_plot
+from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_rods
 from crazybilliards.comparison.fits import fit_border_power_law
+from crazybilliards.comparison.layout import legend_above, panels
 from crazybilliards.comparison.widths import central_width
 from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array, middle_tenth
 from crazybilliards.reproduction import chains
-from crazybilliards.reproduction.claims.repetition import Results, Runs, effort, share_of_runs
-from crazybilliards.reproduction.claims.study import Study
+from crazybilliards.reproduction.claims.study import (
+    Results,
+    Runs,
+    Solution,
+    Study,
+    effort,
+    share_of_runs,
+)
 from crazybilliards.reproduction.claims.verdicts import (
     EYE,
     Claim,
@@ -24,20 +32,44 @@ from crazybilliards.reproduction.claims.verdicts import (
     at_choices,
     furthest_in_plot,
 )
-from crazybilliards.reproduction.profiles import bulge, figure_of_flippers, mirrored, nu
+from crazybilliards.reproduction.profiles import bulge, mirrored, nu
 
 _RESTITUTION = 1.05
+
+
+def _figure(
+    results: Results, curves: Mapping[str, tuple[Runs, Solution, float]], ylabel: str
+) -> Figure:
+    """Return W_v(i) of runs as symbols and of the kinetic equation as lines, in one panel.
+
+    ``curves`` has by label the runs, the theory, and the unit of their widths.
+    """
+    figure, [ax] = panels(1, 1, height=3.1)
+    for number, (label, (runs, theory, unit)) in enumerate(curves.items()):
+        draw_rods(ax, runs.mean(results), "velocity_width", number=number, unit=unit, label=label)
+        solved = results[theory.name]
+        ax.plot(solved.normalized_particle, solved.velocity_width / unit, color=COLOURS[number])
+    along_the_chain(ax)
+    ax.set_ylabel(ylabel)
+    ax.plot([], [], color="0.4", label="kinetic equation")
+    legend_above(figure, ax)
+    return figure
+
 
 # -- figure 12: by the damping, from convex to concave ----------------------------------------
 
 _SIZE = 100
 _DAMPINGS = (4.0, 5.0, 6.0, 8.0, 10.0)
 _WEAK, _STRONG = _DAMPINGS[0], _DAMPINGS[-1]
-_BY_DAMPING = chains.all_at_both_steps(
+_BY_DAMPING = chains.at_both_steps(
     {damping: chains.flippers(_SIZE, damping) for damping in _DAMPINGS}
 )
-_DAMPED = {damping: chains.kinetic_equation(_SIZE, _RESTITUTION, damping) for damping in _DAMPINGS}
-_SOURCE_12 = "section Anti-Dissipation, fig:mom_var_antidiss_diff_gamma_sq"
+_DAMPED = {
+    damping: chains.solution("phase_space", _SIZE, _RESTITUTION, damping) for damping in _DAMPINGS
+}
+_claim_by_damping = partial(
+    Claim, source="section Anti-Dissipation, fig:mom_var_antidiss_diff_gamma_sq"
+)
 
 
 def _crowding(run: xr.Dataset) -> float:
@@ -50,17 +82,15 @@ def _claims_by_damping(results: Results) -> list[Claim]:
     bulges = [runs.estimate(results, bulge) for runs in _BY_DAMPING["default step"].values()]
     change = np.interp(0.0, [value for value, _ in bulges][::-1], _DAMPINGS[::-1])
     return [
-        Claim(
+        _claim_by_damping(
             f"convex at gamma = {_WEAK:g}",
             "ln of the border's width over the centre's:",
             **at_choices(_BY_DAMPING, lambda group: group[_WEAK].estimate(results, bulge)),
-            source=_SOURCE_12,
         ),
-        Claim(
+        _claim_by_damping(
             f"concave at gamma = {_STRONG:g}",
             f"it changes at gamma = {change:.1f}; ln of the centre's width over the border's:",
             **at_choices(_BY_DAMPING, lambda group: -group[_STRONG].estimate(results, bulge)),
-            source=_SOURCE_12,
         ),
         *(_crowding_claim(results, damping) for damping in (_STRONG, _WEAK)),
         _power_law_claim(results),
@@ -68,11 +98,10 @@ def _claims_by_damping(results: Results) -> list[Claim]:
 
 
 def _crowding_claim(results: Results, damping: float) -> Claim:
-    return Claim(
+    return _claim_by_damping(
         f"rods collide more often in the bulk than at the border, gamma = {damping:g}",
         "ln of the collision rate of the middle tenth of the contacts over that of the outermost:",
         **at_choices(_BY_DAMPING, lambda group: group[damping].estimate(results, _crowding)),
-        source=_SOURCE_12,
     )
 
 
@@ -83,7 +112,7 @@ def _power_law_claim(results: Results) -> Claim:
         words = f"nu = {nu(ours[_WEAK].mean(results)):.3f} fits best"
     except ValueError:
         words = "no such law fits"
-    return Claim(
+    return _claim_by_damping(
         f"the convex profile at gamma = {_WEAK:g} cannot be described by a power law",
         "gamma W_v against i for the five dampings, rods averaged with their mirror images, both "
         f"axes linear: {words}; how much further than an eye sees, {EYE:g} of the plotted range, "
@@ -91,9 +120,8 @@ def _power_law_claim(results: Results) -> Claim:
         number=_beyond_the_eye(results, ours, np.asarray),
         elsewhere={
             "both axes logarithmic": _beyond_the_eye(results, ours, np.log),
-            f"dt = {chains.OTHER_STEP:g}": _beyond_the_eye(results, other, np.asarray),
+            chains.OTHER: _beyond_the_eye(results, other, np.asarray),
         },
-        source=_SOURCE_12,
         ours="whether the axes are linear",
         reason="a sum of two flat power laws fits",
     )
@@ -120,7 +148,7 @@ def _beyond_the_eye(
     )
     below, above = axes(_WEAK * (width - error)), axes(_WEAK * (width + error))
     furthest = furthest_in_plot(distances, (above - below) / 2 / (high - low))
-    return Estimate(furthest.value - EYE, furthest.error)
+    return furthest.minus(Estimate(EYE, 0.0))
 
 
 def _draw_by_damping(results: Results) -> Figure:
@@ -130,7 +158,7 @@ def _draw_by_damping(results: Results) -> Figure:
         unit = runs.chain.replace(damping=1.0).free_velocity_width / damping
         curves[rf"$\gamma = {damping:g}$"] = runs, _DAMPED[damping], unit
     label = r"$\gamma W_v/(A/\sqrt{2m})$  [(M/$t_0$)$^{1/2}$]"
-    return figure_of_flippers(results, curves, label)
+    return _figure(results, curves, label)
 
 
 BY_DAMPING = Study(
@@ -149,8 +177,8 @@ BY_DAMPING = Study(
 _DAMPING = 4.0
 _SIZES = (25, 50, 75, 100, 105)
 _SHORT, _LONG = _SIZES[0], _SIZES[-1]
-_BY_LENGTH = chains.all_at_both_steps({size: chains.flippers(size, _DAMPING) for size in _SIZES})
-_OF_LENGTH = {size: chains.kinetic_equation(size, _RESTITUTION, _DAMPING) for size in _SIZES}
+_BY_LENGTH = chains.at_both_steps({size: chains.flippers(size, _DAMPING) for size in _SIZES})
+_OF_LENGTH = {size: chains.solution("phase_space", size, _RESTITUTION, _DAMPING) for size in _SIZES}
 _DIVERGING = Runs(
     "unsteady",
     Chain(size=150, restitution=_RESTITUTION, damping=_DAMPING),
@@ -159,7 +187,7 @@ _DIVERGING = Runs(
 )
 _UNSTEADY = {
     "default step": _DIVERGING,
-    f"dt = {chains.OTHER_STEP:g}": _DIVERGING.at_step(chains.OTHER_STEP, _DIVERGING.effort),
+    chains.OTHER: _DIVERGING.at_step(chains.OTHER_STEP, _DIVERGING.effort),
 }
 
 
@@ -204,7 +232,7 @@ def _draw_by_length(results: Results) -> Figure:
         f"$L = {size}$": (runs, _OF_LENGTH[size], runs.chain.free_velocity_width)
         for size, runs in _BY_LENGTH["default step"].items()
     }
-    return figure_of_flippers(results, curves, "velocity width $W_v/W$")
+    return _figure(results, curves, "velocity width $W_v/W$")
 
 
 BY_LENGTH = Study(

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import itertools
 import json
-from collections.abc import Iterable
+from collections.abc import Mapping
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -18,8 +19,7 @@ from crazybilliards.comparison.layout import legend_above, panels
 from crazybilliards.comparison.widths import central_width
 from crazybilliards.model import Chain
 from crazybilliards.reproduction import chains
-from crazybilliards.reproduction.claims.repetition import Results, Runs, effort
-from crazybilliards.reproduction.claims.study import Study
+from crazybilliards.reproduction.claims.study import Results, Runs, Study, effort
 from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, around, at_choices, worst
 from crazybilliards.reproduction.fits import fit_scaling
 from crazybilliards.reproduction.profiles import fits_in_plot, nu
@@ -29,19 +29,17 @@ _FREE = Chain().free_velocity_width
 # -- figure 3: along the chain ----------------------------------------------------------------
 
 _SIZES = (30, 100, 300, chains.LARGE)
-_PAIRS = {size: chains.correlated_equation(size, 0.0, quick=size == 30) for size in _SIZES}
+_STEPS = chains.inelastic_at_steps(_SIZES)
+_PAIRS = {
+    size: chains.solution("correlated_phase_space", size, 0.0, quick=size == 30) for size in _SIZES
+}
 _CROSS: dict[str, Any] = {"marker": "+", "linestyle": "none"}  # of the theory
 _NU, _PRECISION = -0.46, 0.005  # "nu ~ -0.46": half a unit of the last digit
 _SAME = 2 * _PRECISION  # two numbers that are both written -0.46 differ by less
 
 
-def _exponent(results: Results, size: int, step: float | None) -> Estimate:
-    """Return nu, from the scatter between independent runs."""
-    return chains.inelastic(size, step).estimate(results, nu)
-
-
-def _profiles(results: Results, step: float | None) -> list[xr.Dataset]:
-    return [chains.inelastic(size, step).mean(results) for size in _SIZES]
+def _profiles(results: Results, group: Mapping[int, Runs]) -> list[xr.Dataset]:
+    return [runs.mean(results) for runs in group.values()]
 
 
 def _narrowing(runs: list[xr.Dataset]) -> Estimate:
@@ -54,54 +52,53 @@ def _narrowing(runs: list[xr.Dataset]) -> Estimate:
     return Estimate(1 - share, error)
 
 
-def _difference_of_exponents(results: Results, step: float | None) -> dict[str, Any]:
+def _difference_of_exponents(results: Results, group: Mapping[int, Runs]) -> dict[str, Any]:
     """Return what decides whether the exponents of two chains differ."""
-    exponents = {size: _exponent(results, size, step) for size in _SIZES}
+    exponents = {size: runs.estimate(results, nu) for size, runs in group.items()}
     pairs = itertools.combinations(exponents.values(), 2)
     listed = ", ".join(f"{size}: {exponent}" for size, exponent in exponents.items())
     return worst(f"{listed}; difference of two", [a.minus(b) for a, b in pairs], _SAME)
 
 
 def _claims_along(results: Results) -> list[Claim]:
-    source, ours = "section seq:e_0, eq:power_law, fig.2", "the sizes below 1000 and the time step"
+    claim = partial(
+        Claim,
+        source="section seq:e_0, eq:power_law, fig.2",
+        ours="the sizes below 1000 and the time step",
+    )
     return [
-        Claim(
+        claim(
             "collisions make every velocity distribution narrower than a free rod's",
             "1 - W_v/W of the fastest rod of all four chains:",
-            **at_choices(chains.STEPS, lambda step: _narrowing(_profiles(results, step))),
+            **at_choices(_STEPS, lambda group: _narrowing(_profiles(results, group))),
             source="section seq:e_0, fig.2",
-            ours=ours,
         ),
-        Claim(
+        claim(
             "W_v(i) can be fitted by a sum of two power laws",
             **at_choices(
-                chains.STEPS, lambda step: fits_in_plot("four chains", _profiles(results, step))
+                _STEPS, lambda group: fits_in_plot("four chains", _profiles(results, group))
             ),
-            source=source,
-            ours=ours,
         ),
-        *(_nu_claim(results, size, source) for size in _SIZES),
-        Claim(
+        *(_nu_claim(results, size) for size in _SIZES),
+        claim(
             "the same exponent for all L",
-            **at_choices(chains.STEPS, lambda step: _difference_of_exponents(results, step)),
-            source=source,
-            ours=ours,
+            **at_choices(_STEPS, lambda group: _difference_of_exponents(results, group)),
         ),
     ]
 
 
-def _nu_claim(results: Results, size: int, source: str) -> Claim:
+def _nu_claim(results: Results, size: int) -> Claim:
     def weighted(run: xr.Dataset) -> float:
         return fit_border_power_law(run, weighted=True).exponent
 
-    numbers = at_choices(chains.STEPS, lambda step: _exponent(results, size, step))
+    numbers = at_choices(_STEPS, lambda group: group[size].estimate(results, nu))
     by_errors = chains.inelastic(size).estimate(results, weighted)
     numbers["elsewhere"]["rods weighed by their error bars"] = by_errors
     return Claim(
         f"nu = -0.46 at L = {size}",
         **numbers,
         within=around(_NU, _PRECISION),
-        source=source,
+        source="section seq:e_0, eq:power_law, fig.2",
         ours="the time step, the weights" + (" and the size" if size < chains.LARGE else ""),
     )
 
@@ -109,7 +106,7 @@ def _nu_claim(results: Results, size: int, source: str) -> Claim:
 def _draw_along(results: Results) -> Figure:
     figure, (widths, exponents) = panels(1, 2, height=3.2, width_ratios=(1.4, 1))
     widths.set(xscale="log", yscale="log")
-    for number, run in enumerate(_profiles(results, None)):
+    for number, run in enumerate(_profiles(results, _STEPS["default step"])):
         size, label = _SIZES[number], f"$L = {_SIZES[number]}$"
         look: Any = {"number": number, "along": "particle", "label": label}
         draw_rods(widths, run, "velocity_width", unit=_FREE, **look)
@@ -131,8 +128,8 @@ def _draw_exponents(ax: Axes, results: Results) -> None:
     margin = 2e-4
     for number, size in enumerate(_SIZES):
         exponents = {
-            step or _default_step(results, size): _exponent(results, size, step)
-            for step in chains.STEPS.values()
+            _time_step(results, group[size]): group[size].estimate(results, nu)
+            for group in _STEPS.values()
         }
         values, errors = np.transpose([exponents[step] for step in sorted(exponents)])
         look: Any = {"number": number, "linewidth": 0.8, "linestyle": "-"}
@@ -148,9 +145,9 @@ def _draw_exponents(ax: Axes, results: Results) -> None:
     ax.set_xlim(0.5 * margin, 4e-2)
 
 
-def _default_step(results: Results, size: int) -> float:
-    provenance = chains.inelastic(size).members(results)[0].attrs["provenance"]
-    return float(json.loads(provenance)["schedule"]["time_step"])
+def _time_step(results: Results, runs: Runs) -> float:
+    default = json.loads(runs.members(results)[0].attrs["provenance"])["schedule"]["time_step"]
+    return float(runs.settings.get("time_step", default))
 
 
 ALONG = Study(
@@ -161,7 +158,7 @@ ALONG = Study(
     "[(i - c)^nu + (L + 1 - c - i)^nu] to all rods; dotted, in (b) crosses: the kinetic equation "
     "with pair correlations. (b) The exponent against the time step; the leftmost symbol of each "
     "size is the default step.",
-    needs=[*chains.inelastic_at_steps(_SIZES), *_PAIRS.values()],
+    needs=[*chains.all_of(_STEPS), *_PAIRS.values()],
     claims=_claims_along,
     draw=_draw_along,
 )
@@ -169,11 +166,12 @@ ALONG = Study(
 # -- figure 4: the centre, by the length ------------------------------------------------------
 
 _EXPONENT = -0.38  # of the paper, of the same precision
+_ALL_STEPS = chains.inelastic_at_steps(chains.SIZES)
 # Beyond the paper: the default step would take hours there. These steps are in the ratio of the
 # widths squared, so that the velocity kick of a step is two thirds of the central width at every
 # size: the error of the step is then the same for all, and leaves the exponent alone.
-_LONG = [
-    Runs(
+_LONG = {
+    size: Runs(
         f"long L={size}",
         Chain(size=size, restitution=0.0),
         runs,
@@ -183,16 +181,11 @@ _LONG = [
         (1000, 6.5e-3, effort((4, 60, 40), (4, 400, 60))),
         (10_000, 1e-3, effort((4, 5, 10), (4, 100, 60))),
     )
-]
+}
 
 
-def _central_widths(results: Results, group: Iterable[Runs]) -> dict[int, Estimate]:
-    """W_v in the centre by size."""
-    return {runs.chain.size: runs.estimate(results, central_width) for runs in group}
-
-
-def _at_step(results: Results, step: float | None) -> dict[int, Estimate]:
-    return _central_widths(results, [chains.inelastic(size, step) for size in chains.SIZES])
+def _central_widths(results: Results, group: Mapping[int, Runs]) -> dict[int, Estimate]:
+    return {size: runs.estimate(results, central_width) for size, runs in group.items()}
 
 
 def _power_law(widths: dict[int, Estimate], least: int = 1) -> Fit:
@@ -200,17 +193,14 @@ def _power_law(widths: dict[int, Estimate], least: int = 1) -> Fit:
     return fit_scaling(sizes, *np.transpose([widths[size] for size in sizes]))
 
 
-def _exponent_of(fit: Fit) -> Estimate:
-    return Estimate(fit.exponent, fit.exponent_error)
-
-
 def _claims_by_length(results: Results) -> list[Claim]:
-    fits = {name: _power_law(_at_step(results, step)) for name, step in chains.STEPS.items()}
-    fits["L = 30 to 1000"] = _power_law(_at_step(results, None), least=30)
+    widths = {name: _central_widths(results, group) for name, group in _ALL_STEPS.items()}
+    fits = {name: _power_law(by_size) for name, by_size in widths.items()}
+    fits["L = 30 to 1000"] = _power_law(widths["default step"], least=30)
     return [
         Claim(
             "W_v^min ~ L^-0.38, L = 10 to 1000",
-            **at_choices(fits, _exponent_of),
+            **at_choices(fits, lambda fit: Estimate(fit.exponent, fit.exponent_error)),
             within=around(_EXPONENT, _PRECISION),
             source="section seq:e_0, fig.3",
             ours="the least size, 10, and the time step",
@@ -221,9 +211,9 @@ def _claims_by_length(results: Results) -> list[Claim]:
 
 def _draw_by_length(results: Results) -> Figure:
     figure, (top, bottom) = panels(2, 1, height=2.0, height_ratios=(2, 1), sharex=True)
-    series = {name: _at_step(results, step) for name, step in chains.STEPS.items()}
+    groups = _ALL_STEPS | {"kick 2/3 of $W_v$": _LONG}
+    series = {name: _central_widths(results, group) for name, group in groups.items()}
     reference = _power_law(series["default step"])
-    series["kick 2/3 of $W_v$"] = _central_widths(results, _LONG)
     for number, (label, widths) in enumerate(series.items()):
         sizes = np.array(list(widths))
         values, errors = np.transpose(list(widths.values()))
@@ -254,7 +244,7 @@ BY_LENGTH = Study(
     "the default time step, L = 10 to 1000. Dashed: the paper's exponent. (b) The ratio to the "
     "fit. Longer chains than the paper's are at time steps whose velocity kick is two thirds of "
     "the width at every size.",
-    needs=[*chains.inelastic_at_steps(chains.SIZES), *_LONG],
+    needs=[*chains.all_of(_ALL_STEPS), *_LONG.values()],
     claims=_claims_by_length,
     draw=_draw_by_length,
 )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -15,16 +16,14 @@ from crazybilliards.comparison.fits import Fit
 from crazybilliards.comparison.layout import TWO_COLUMNS, legend_above, letter
 from crazybilliards.comparison.widths import central_width
 from crazybilliards.reproduction import chains
-from crazybilliards.reproduction.claims.repetition import Results, Runs
-from crazybilliards.reproduction.claims.study import Study
+from crazybilliards.reproduction.claims.study import Results, Runs, Study
 from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, at_choices, worst
 from crazybilliards.reproduction.fits import fit_exponential
 from crazybilliards.reproduction.profiles import bulge, fits_in_plot, nu
 
 _RUNS = {e: chains.dissipative(chains.LARGE, e) for e in chains.RESTITUTIONS}
-_STEPS = chains.all_at_both_steps(_RUNS)
-_ELASTIC = chains.elastic(100)
-_UNIT = _ELASTIC.chain.free_velocity_width
+_STEPS = chains.at_both_steps(_RUNS)
+_UNIT = chains.ELASTIC.chain.free_velocity_width
 _PRECISION = 0.005  # of exponents: the paper gives them with two decimals
 _CROSSES: dict[str, dict[str, Any]] = {
     chains.INDEPENDENT: {"marker": "x", "linestyle": "none", "color": COLOURS[4]},
@@ -42,8 +41,11 @@ def _exponential(exponents: Mapping[float, Estimate]) -> Fit:
 
 def _claims(results: Results) -> list[Claim]:
     low, high = chains.RESTITUTIONS[0], chains.RESTITUTIONS[-1]
-    source = "section seq:e_larger, fig.4"
-    ours = "the restitutions (those of fig.5, and 0.5) and the time step"
+    claim = partial(
+        Claim,
+        source="section seq:e_larger, fig.4",
+        ours="the restitutions (those of fig.5, and 0.5) and the time step",
+    )
 
     def unevenness(group: Mapping[float, Runs], e: float) -> Estimate:
         return group[e].estimate(results, bulge)
@@ -52,28 +54,24 @@ def _claims(results: Results) -> list[Claim]:
         return [runs.mean(results) for runs in group.values()]
 
     return [
-        Claim(
+        claim(
             "the larger e, the less the width varies along the chain",
             f"ln of the border's width over the centre's: {unevenness(_RUNS, low)} at e = {low:g} "
             f"and {unevenness(_RUNS, high)} at e = {high:g}, difference",
             **at_choices(
                 _STEPS, lambda group: unevenness(group, low).minus(unevenness(group, high))
             ),
-            source=source,
-            ours=ours,
         ),
-        Claim(
+        claim(
             "W_v(i) is described by a sum of two power laws at every e < 1",
             **at_choices(_STEPS, lambda group: fits_in_plot("six restitutions", means(group))),
-            source=f"{source}, eq:power_law",
-            ours=ours,
+            source="section seq:e_larger, fig.4, eq:power_law",
             reason="the two power laws leave systematic residuals",
         ),
-        Claim(
+        claim(
             "-nu depends on e like exp(-lambda (1 - e)) + d, lambda unknown",
             **at_choices(_STEPS, lambda group: _residuals(results, group)),
-            source=f"{source}, inset",
-            ours=ours,
+            source="section seq:e_larger, fig.4, inset",
             reason="the errors of the exponents are about as large as the limit",
         ),
     ]
@@ -103,16 +101,24 @@ def _draw(results: Results) -> Figure:
     letter(axes.values())
     _draw_widths(axes["widths"], results)
     legend_above(figure, axes["widths"])
-    axes["exponents"].sharex(axes["centre"])
-    _draw_exponents(axes["exponents"], results)
-    _draw_centre(axes["centre"], results)
+    exponents, centre = axes["exponents"], axes["centre"]
+    exponents.sharex(centre)
+    _draw_by_restitution(exponents, results, lambda result: -nu(result))
+    fit, fine = _exponential(_exponents(results, _RUNS)), np.linspace(0, 1, 101)
+    exponents.plot(fine, fit(fine), "0.4", label=rf"fit, $\lambda = {fit.rate:.1f}$")
+    exponents.set(ylabel=r"exponent $-\nu$")
+    exponents.tick_params(labelbottom=False)
+    exponents.legend()
+    _draw_by_restitution(centre, results, lambda result: central_width(result) / _UNIT)
+    centre.set(xlabel="restitution $e$", ylabel="central width $W_v^{\\min}/W$")
+    centre.legend()
     return figure
 
 
 def _draw_widths(ax: Axes, results: Results) -> None:
     solved = chains.predictions(results)
     ax.set(ylabel="velocity width $W_v/W$", yscale="log")
-    for number, (e, runs) in enumerate((_RUNS | {1.0: _ELASTIC}).items()):
+    for number, (e, runs) in enumerate((_RUNS | {1.0: chains.ELASTIC}).items()):
         label = f"$e = {e:g}$" + (f", $L = {runs.chain.size}$" if e == 1 else "")
         run = runs.mean(results)
         draw_rods(ax, run, "velocity_width", number=number, unit=_UNIT, label=label)
@@ -125,24 +131,6 @@ def _draw_widths(ax: Axes, results: Results) -> None:
         ax.plot(
             [], [], chains.LINES[name], color="0.4", label=rf"{name}, $e \geq {min(theories):g}$"
         )
-
-
-def _draw_centre(ax: Axes, results: Results) -> None:
-    def share(result: xr.Dataset) -> float:
-        return central_width(result) / _UNIT
-
-    _draw_by_restitution(ax, results, share)
-    ax.set(xlabel="restitution $e$", ylabel="central width $W_v^{\\min}/W$")
-    ax.legend()
-
-
-def _draw_exponents(ax: Axes, results: Results) -> None:
-    _draw_by_restitution(ax, results, lambda result: -nu(result))
-    fit, fine = _exponential(_exponents(results, _RUNS)), np.linspace(0, 1, 101)
-    ax.plot(fine, fit(fine), "0.4", label=rf"fit, $\lambda = {fit.rate:.1f}$")
-    ax.set(ylabel=r"exponent $-\nu$")
-    ax.tick_params(labelbottom=False)
-    ax.legend()
 
 
 def _draw_by_restitution(
@@ -164,7 +152,7 @@ RESTITUTION = Study(
     "kinetic equation in the colour of its e, dashed without pair correlations, full with them; "
     "nothing of the simulation goes into these lines. (b) The exponent of the two power laws "
     "against the restitution, and a exp(-lambda (1 - e)) + d fitted to it. (c) W_v in the centre.",
-    needs=[*chains.all_of(_STEPS), *chains.all_of(chains.PREDICTIONS), _ELASTIC],
+    needs=[*chains.all_of(_STEPS), *chains.all_of(chains.PREDICTIONS), chains.ELASTIC],
     claims=_claims,
     draw=_draw,
 )

@@ -10,8 +10,8 @@ from small_sweeps import AtOnce
 
 from crazybilliards.comparison.sweeps import Case, run_cases
 from crazybilliards.model import Chain
-from crazybilliards.reproduction.claims.repetition import Runs, effort
 from crazybilliards.reproduction.claims.report import all_cases, describe, markdown, reproduce
+from crazybilliards.reproduction.claims.study import Runs, effort
 from crazybilliards.reproduction.claims.verdicts import EYE, Verdict
 from crazybilliards.reproduction.figures import FIGURES, elastic, find_figures
 

@@ -10,7 +10,7 @@ from crazybilliards.comparison.widths import border_width, central_width
 from crazybilliards.model import Chain
 from crazybilliards.model.vocabulary import result
 from crazybilliards.particles import simulate
-from crazybilliards.reproduction.claims.repetition import Runs, effort, error_of_mean, share_of_runs
+from crazybilliards.reproduction.claims.study import Runs, effort, error_of_mean, share_of_runs
 from crazybilliards.reproduction.claims.verdicts import POSITIVE, Claim
 from crazybilliards.reproduction.distributions import mean_shape
 from crazybilliards.reproduction.profiles import fits_in_plot, mirrored
