@@ -43,7 +43,7 @@ def combine(runs: Sequence[xr.Dataset] | xr.Dataset) -> xr.Dataset:
     """
     if isinstance(runs, xr.Dataset) and "seed" in runs.dims:
         for text in runs.get("provenance", xr.DataArray("")).values.flat:
-            if text and not _is_run(json.loads(text)):
+            if text and "snapshots" not in json.loads(text):
                 raise ValueError(f"combine {_NO_RUN}")
         return _mean(runs, xr.ones_like(runs.seed, dtype=float))
     if isinstance(runs, xr.Dataset) or not is_list(runs) or len(runs) == 0:
@@ -73,28 +73,23 @@ def combine(runs: Sequence[xr.Dataset] | xr.Dataset) -> xr.Dataset:
     )
 
 
-def _is_run(provenance: dict[str, Any]) -> bool:
-    """Return whether it is that of a simulation."""
-    return "snapshots" in provenance
-
-
 def _check(runs: Sequence[xr.Dataset]) -> list[dict[str, Any]]:
     """Return what is known about the runs, or raise a ValueError if their mean has no meaning."""
     first: xr.Dataset = runs[0]
-    seeds: list[int] = []
-    for number, run in enumerate(runs):
-        require(run, _names(first) if number else ())
+    provenances: list[dict[str, Any]] = []
+    for run in runs:
+        require(run, _names(first) if provenances else ())
         chain, provenance = chain_of(run), json.loads(run.attrs["provenance"])
-        if run.attrs.get("source") != "simulation" or not _is_run(provenance):
+        if run.attrs.get("source") != "simulation" or "snapshots" not in provenance:
             raise ValueError(f"combine {_NO_RUN}")
         if "smoothed" in run.attrs:
             raise ValueError("combine takes runs before their densities are smoothed")
         if chain != chain_of(first):
             raise ValueError(f"runs must be of one chain, got {chain_of(first)} and {chain}")
-        if provenance["seed"] in seeds:
+        if any(provenance["seed"] == other["seed"] for other in provenances):
             raise ValueError(f"runs must have other seeds, got {shown(provenance['seed'])} twice")
-        seeds.append(provenance["seed"])
-    return [json.loads(run.attrs["provenance"]) for run in runs]
+        provenances.append(provenance)
+    return provenances
 
 
 def _names(run: xr.Dataset) -> list[str]:

@@ -7,7 +7,6 @@ from typing import NamedTuple
 
 import xarray as xr
 
-from crazybilliards.model.checks import shown
 from crazybilliards.model.vocabulary import VOCABULARY, chain_of, described, require, unit_of
 
 _RAISED = re.compile(r"([_^])(-?[\d.]+|[a-z](?:\+\w)?)(?![a-z])")
@@ -58,8 +57,6 @@ def find_curve(label: str, dataset: xr.Dataset, quantity: str, along: str) -> Cu
     Raise a ValueError if the result, which the message calls ``label``, lacks the quantity, or has
     it over several dimensions.
     """
-    if not isinstance(dataset, xr.Dataset):
-        raise ValueError(f"{label}: not a crazybilliards result: {shown(dataset)}")
     if quantity == "velocity_density":
         dataset = _of_any_rod(dataset)
     require(dataset, (quantity,))
@@ -78,12 +75,6 @@ def find_curve(label: str, dataset: xr.Dataset, quantity: str, along: str) -> Cu
         values = values.where(values > 0)
     error = dataset.get(f"{quantity}_error")
     return Curve(dataset[abscissa], values, error, dataset.attrs.get("source") == "simulation")
-
-
-def is_of_one_rod(dataset: xr.Dataset, quantity: str) -> bool:
-    """Return whether one particle was chosen of a quantity that all particles have."""
-    particle = dataset[quantity].coords.get("particle") if quantity in dataset else None
-    return particle is not None and particle.ndim == 0
 
 
 def axis_label(variable: xr.DataArray) -> str:

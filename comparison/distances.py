@@ -13,7 +13,7 @@ from crazybilliards.comparison.coverage import require_same_smoothing, smooth
 from crazybilliards.comparison.widths import WidthDeviation, width_deviation
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.arrays import Array
-from crazybilliards.model.checks import check_real, shown
+from crazybilliards.model.checks import check_real
 from crazybilliards.model.grid import require_even
 from crazybilliards.model.vocabulary import require
 from crazybilliards.model.warn import warn_user
@@ -73,15 +73,10 @@ def deviation(
     ------
     ValueError
         If a result has no density, if only one is smoothed, or none unless ``raw``, or if they are
-        of other numbers of rods, or of rods of other lengths. For a quantity in place of ``floor``.
+        of other numbers of rods, or of rods of other lengths.
     """
-    if isinstance(floor, str):
-        raise ValueError(
-            f"floor must be a number, got {shown(floor)}: deviation compares densities only; for "
-            "widths divide them, run.velocity_width / theory.velocity_width - 1"
-        )
     floor = check_real("floor", floor)
-    chains = chain_of(result), chain_of(reference)
+    chain = chain_of(reference)
     for dataset in (result, reference):
         require(dataset, ("density",))
     require_same_smoothing({"result": result, "reference": reference})
@@ -89,14 +84,13 @@ def deviation(
         raise ValueError(
             "the densities are not smoothed: take cb.smooth of both, or raw=True to compare spikes"
         )
-    _say_what_differs(*chains)
+    _say_what_differs(chain_of(result), chain)
     difference, error, either = _differences(result, reference, floor)
     differences = difference[either] if either.any() else np.zeros(1)
     known = np.isfinite(error)
     in_errors = difference[known] / error[known]
     spacing = float(reference.x[1] - reference.x[0])
-    close_packed = chain_of(reference).close_packed_density
-    share = np.abs(difference).sum() * close_packed * spacing / chain_of(reference).size
+    share = np.abs(difference).sum() * chain.close_packed_density * spacing / chain.size
     return Deviation(
         maximum=float(np.abs(differences).max()),
         rms=float(np.sqrt((differences**2).mean())),
@@ -213,23 +207,16 @@ def distances_in_plot(
     is given by points in order, dense enough to be joined by straight pieces. For logarithmic axes
     give logarithms.
     """
-    x, y, line_x, line_y = (np.asarray(each, dtype=float) for each in (x, y, line_x, line_y))
-    begins, pieces = [], []
-    for corners in (_in_range(line_x, x, x_range), _in_range(line_y, y, y_range)):
-        begins.append(corners[:-1])
-        pieces.append(np.diff(corners))
-    (begin_x, begin_y), (piece_x, piece_y) = begins, pieces
-    length = np.maximum(piece_x**2 + piece_y**2, np.finfo(float).tiny)
-    distances = np.empty(x.size)
-    symbols = zip(_in_range(x, x, x_range), _in_range(y, y, y_range), strict=True)
-    for k, (symbol_x, symbol_y) in enumerate(symbols):
-        from_x, from_y = symbol_x - begin_x, symbol_y - begin_y
-        along = np.clip((from_x * piece_x + from_y * piece_y) / length, 0, 1)
-        squares = (from_x - along * piece_x) ** 2 + (from_y - along * piece_y) ** 2
-        distances[k] = np.sqrt(squares.min())
+    symbols, line = np.array([x, y], dtype=float), np.array([line_x, line_y], dtype=float)
+    for axis, span in enumerate((x_range, y_range)):
+        low, high = span or (symbols[axis].min(), symbols[axis].max())
+        for points in (symbols, line):
+            points[axis] = (points[axis] - low) / (high - low)
+    pieces = np.diff(line)
+    squares = np.maximum((pieces**2).sum(axis=0), np.finfo(float).tiny)
+    distances = np.empty(symbols.shape[1])
+    for number, symbol in enumerate(symbols.T):
+        away = symbol[:, np.newaxis] - line[:, :-1]
+        along = np.clip((away * pieces).sum(axis=0) / squares, 0, 1)
+        distances[number] = np.sqrt(((away - along * pieces) ** 2).sum(axis=0).min())
     return distances
-
-
-def _in_range(values: Array, symbols: Array, span: tuple[float, float] | None) -> Array:
-    low, high = span or (float(symbols.min()), float(symbols.max()))
-    return np.asarray((values - low) / (high - low))

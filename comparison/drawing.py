@@ -14,7 +14,7 @@ from matplotlib.container import ErrorbarContainer
 from numpy.typing import ArrayLike
 
 from crazybilliards.comparison.coverage import require_same_smoothing
-from crazybilliards.comparison.curves import axis_label, find_curve, is_of_one_rod
+from crazybilliards.comparison.curves import axis_label, find_curve
 from crazybilliards.model.checks import check_choice
 
 Along = Literal["normalized_particle", "mean_position"]
@@ -105,8 +105,12 @@ def _require_same_kind(results: Mapping[str, xr.Dataset], quantity: str) -> None
     """Raise a ValueError if results must not be drawn over one another."""
     if quantity == "density":
         require_same_smoothing(results)
-    single = [label for label, dataset in results.items() if is_of_one_rod(dataset, quantity)]
     of_all = [label for label, dataset in results.items() if quantity not in dataset]
+    single = [  # whose coordinate is one number
+        label
+        for label, dataset in results.items()
+        if "particle" in dataset.coords and "particle" not in dataset.dims
+    ]
     if single and of_all:
         raise ValueError(f"{quantity}: {single[0]} is of one rod, {of_all[0]} of all rods")
 

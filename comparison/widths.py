@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
@@ -13,11 +12,6 @@ from crazybilliards.model.arrays import middle_tenth
 from crazybilliards.model.parameters import WALLS_AND_MASSES
 
 _LEAST_INNER = 7  # rods from which on the two at each border are left out of the largest deviation
-
-
-def free_widths(chain: Chain) -> list[float]:
-    """W_v of a rod without collisions, of both masses if there are two [R/t_0]."""
-    return sorted({math.sqrt(chain.temperature / mass) for mass in chain.rod_masses[:2]})
 
 
 def displacement_unit(chain: Chain) -> tuple[str, float]:

@@ -96,14 +96,14 @@ cb.compare_relaxation(walled, "wave", 2) | height must be from -1 to 1, got 2
 cb.compare_relaxation(walled, "gathered", 2) | share must be at most 1, got 2
 cb.compare_relaxation(walled, "confined", 2) | confined needs a box, and by <= 1, got by=2
 cb.compare(chain, 3) | over must be one parameter of the chain and its values...got 3
-cb.compare(chain, {"restitution": "0.5"}) | over: restitution must be a list, got '0.5'
+cb.compare(chain, {"restitution": "0.5"}) | over: restitution must be a list of values, got '0.5'
 fits.fit_growth([1, 2, 3], [1, 2]) | time, energy must have
 fits.fit_growth([1, 2, np.nan], [1, 2, 3]) | time must be finite, got [1, 2, nan]
 fits.fit_avalanches([4, 2, 1], smallest=10**400) | at least two of the sizes 1000
 """
 
 PICTURES = """
-cb.deviation(exact, exact, "velocity_width") | densities only
+cb.deviation(exact, exact, "velocity_width") | floor must be a number
 cb.deviation(run, run) | not smoothed: take cb.smooth of both, or raw=True
 cb.overlay({"a": run.expand_dims(size=[1, 2])}) | density is over (size, x)
 cb.overlay({"run": run}, style={"rum": {}}) | style: ...got 'rum'; did you mean 'run'?

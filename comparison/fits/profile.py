@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from functools import partial
 
 import numpy as np
@@ -138,8 +139,8 @@ def fit_border_power_law(
     if not (np.min([width, weight]) > 0 and np.isfinite([width, weight]).all()):
         raise ValueError("the fit needs positive widths and errors")
     i = np.arange(1.0, size + 1)
-    values, errors, correlation = _best_fit(i, width, weight, shifted)
     curve = partial(_sum_of_powers, size=size)
+    values, errors, correlation = _best_fit(curve, i, width, weight, shifted)
     parameters, of_errors = (
         dict(zip(("scale", "exponent", "origin"), map(float, each), strict=True))
         for each in (values, errors)
@@ -150,32 +151,27 @@ def fit_border_power_law(
     )
 
 
-def _best_fit(i: Array, width: Array, weight: Array, shifted: bool) -> tuple[Array, Array, float]:
+def _best_fit(
+    curve: Callable[..., Array], i: Array, width: Array, weight: Array, shifted: bool
+) -> tuple[Array, Array, float]:
     """Return a, nu and c, their errors, and the correlation of the last two."""
-
-    def model(i: Array, scale: float, nu: float, c: float = 0.0) -> Array:
-        return _sum_of_powers(i, scale, nu, c, size=i.size)
-
-    def slopes(i: Array, scale: float, nu: float, c: float = 0.0) -> Array:
-        return _slopes_of_powers(i, scale, nu, c)[:, :number]
-
     number = 3 if shifted else 2
     bounds = ([0.0, _STEEPEST, -float(i.size)][:number], [np.inf, 0.0, 1.0][:number])
     best: tuple[float, Array, Array] | None = None
     for nu, c in _STARTS if shifted else _STARTS[:1]:
         # The best scale for these two.
-        unscaled = model(i, 1.0, nu, c) / weight
+        unscaled = curve(i, 1.0, nu, c) / weight
         scale = float(unscaled @ (width / weight) / (unscaled @ unscaled))
         try:
             values, covariance = curve_fit(
-                model,
+                curve,
                 i,
                 width,
                 p0=(scale, nu, c)[:number],
                 sigma=weight,
                 absolute_sigma=True,
                 bounds=bounds,
-                jac=slopes,
+                jac=lambda *point: _slopes_of_powers(*point)[:, :number],
                 x_scale=(scale, 0.1, 1.0)[:number],
                 ftol=1e-12,
                 xtol=1e-10,
@@ -184,7 +180,7 @@ def _best_fit(i: Array, width: Array, weight: Array, shifted: bool) -> tuple[Arr
             )
         except RuntimeError:
             continue  # no fit from this start; another may succeed
-        cost = float(np.sum(((model(i, *values) - width) / weight) ** 2))
+        cost = float(np.sum(((curve(i, *values) - width) / weight) ** 2))
         if best is None or cost < best[0]:
             best = cost, values, covariance
     if best is None or not _inside(best[1], bounds) or not np.isfinite(best[2]).all():
@@ -203,12 +199,14 @@ def _inside(values: Array, bounds: tuple[list[float], list[float]]) -> bool:
     return all(low + 1e-3 < value < high - 1e-3 for value, low, high in triples)
 
 
-def _sum_of_powers(i: Array, scale: float, exponent: float, origin: float, *, size: int) -> Array:
+def _sum_of_powers(
+    i: Array, scale: float, exponent: float, origin: float = 0.0, *, size: int
+) -> Array:
     laws = (i - origin) ** exponent + (size + 1 - origin - i) ** exponent
     return np.asarray(scale * laws)
 
 
-def _slopes_of_powers(i: Array, scale: float, exponent: float, origin: float) -> Array:
+def _slopes_of_powers(i: Array, scale: float, exponent: float, origin: float = 0.0) -> Array:
     """Return the derivatives with respect to scale, exponent and origin, a column each."""
     distance = np.array([i - origin, i.size + 1 - origin - i])
     laws = distance**exponent

@@ -1,13 +1,4 @@
-"""One chain at several values of a parameter: simulated, and solved by its theories.
-
-If all chains have e = 1, the theories are the exact equilibrium; the force balance closed by
-labels, without an input; the density of its rods; and the force balance with an arctanh fitted to
-the simulated displacements, as in the paper, if there are springs. Otherwise they are the kinetic
-equations, without a fit.
-
-The simulations and the kinetic equations are cases of a sweep: each is written to a folder as soon
-as it is computed, and the same call takes it from there.
-"""
+"""One chain at several values of a parameter: simulated, and solved by its theories."""
 
 from __future__ import annotations
 
@@ -23,10 +14,11 @@ from numpy.typing import ArrayLike
 from crazybilliards.comparison.fits import fit_arctanh
 from crazybilliards.comparison.stationary_theories import THEORIES
 from crazybilliards.comparison.sweeps import Case, process_pool, run_cases
+from crazybilliards.comparison.sweeps.grid import grid_values
 from crazybilliards.kinetic import equilibrium, force_balance, rod_by_rod
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain, chain_of
-from crazybilliards.model.checks import as_written, check_integer, check_path, is_list, shown
+from crazybilliards.model.checks import check_integer, check_path, shown
 from crazybilliards.model.kernels import announced
 from crazybilliards.model.parameters import WALLS_AND_MASSES
 from crazybilliards.model.randomness import Seed, seed_of
@@ -87,8 +79,9 @@ def compare(
     xarray.DataTree
         ``tree["amplitude_3/simulation"]`` and its theories beside it by the names of their
         functions, results in the common vocabulary, not smoothed. If all chains have e = 1:
-        ``equilibrium``, ``force_balance``, ``rod_by_rod`` and, with springs,
-        ``force_balance_arctanh``. Otherwise ``phase_space``, and ``correlated_phase_space`` where
+        ``equilibrium``, ``force_balance`` (closed by labels, without an input), ``rod_by_rod`` and,
+        with springs, ``force_balance_arctanh`` (an arctanh fitted to the simulated displacements,
+        as in the paper). Otherwise ``phase_space``, and ``correlated_phase_space`` where
         it takes the chain; ``theories`` tells how good they are. A theory that has no steady state
         is left out, with a warning that gives the reason. ``attrs["status"]`` is ``interrupted`` if
         Ctrl-C ended it early, and ``diverged`` if a simulation diverged. The tree then holds the
@@ -141,19 +134,15 @@ def _chains(chain: Chain, over: Mapping[str, ArrayLike]) -> dict[str, Chain]:
             f"{{'amplitude': [1, 3]}}, got {shown(over)}"
         )
     [(name, values)] = over.items()
-    if not is_list(values):
-        raise ValueError(f"over: {name} must be a list, got {shown(values)}")
-    if not len(values):
-        raise ValueError(f"over: {name} must hold at least one value")
-    chains = {}
+    values, chains = grid_values("over", name, values), {}
     for value in values:
-        changed = chain.replace(**{name: as_written(value)})
+        changed = chain.replace(**{name: value})
         require_chain(changed, "the comparison with theories", knows=WALLS_AND_MASSES)
         number = changed.parameters()[name]
         chains[f"{name}_{number if isinstance(number, str) else f'{number:g}'}"] = changed
     if len(chains) != len(values):
         raise ValueError(
-            f"over: the values of {name} must differ in their first six digits, got {list(values)}"
+            f"over: the values of {name} must differ in their first six digits, got {values}"
         )
     return chains
 

@@ -6,6 +6,7 @@ them, which are too small to be seen above; at e != 1 those from the simulation.
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -27,24 +28,20 @@ from crazybilliards.comparison.layout import (
 )
 from crazybilliards.comparison.side_by_side.grid import ELASTIC, KINETIC, SIMULATION
 from crazybilliards.comparison.stationary_theories import TITLES
-from crazybilliards.comparison.widths import displacement_unit, free_widths
+from crazybilliards.comparison.widths import displacement_unit
 from crazybilliards.model import chain_of
 from crazybilliards.model.vocabulary import require
 
 _DECADES = 5  # of f in the image
 _SYMBOLS = {"amplitude": "A", "restitution": "e", "size": "L", "gap": "g", "damping": r"\gamma"}
 _EXACT = TITLES["equilibrium"]
-# In a picture of chains and in one of theories.
-_DASHES = {"equilibrium": "-"} | dict(zip(KINETIC, ("--", "-"), strict=True))
+_THEORIES, _OF_THEORIES = (*ELASTIC, *KINETIC), ("-", "--", ":", "-.", "--", "-")
+# In a picture of theories, and in one of chains, which have a colour each.
 _LOOKS: dict[str, dict[str, Any]] = {SIMULATION: {"color": "black"}} | {
-    title: {"color": colour, "linestyle": dashes}
-    for title, colour, dashes in zip(
-        [TITLES[name] for name in (*ELASTIC, *KINETIC)],
-        COLOURS,
-        ("-", "--", ":", "-.", "--", "-"),
-        strict=False,
-    )
+    TITLES[name]: {"color": colour, "linestyle": dashes}
+    for name, colour, dashes in zip(_THEORIES, COLOURS, _OF_THEORIES, strict=False)
 }
+_DASHES = {"equilibrium": "-", "phase_space": "--", "correlated_phase_space": "-"}
 _LEAST_DRAWN = 1e-4  # of close packing: pictures of densities end where they are lower
 
 
@@ -236,7 +233,9 @@ def draw_profile(theory: xr.Dataset, name: str) -> Figure:
     for ax, quantity in zip(axes, ("velocity_width", "mean_displacement"), strict=True):
         _draw_theory(ax, theory, quantity, color=COLOURS[0], label=name)
         ax.set_ylabel(axis_label(theory[quantity]))
-    for number, width in enumerate(free_widths(chain_of(theory))):
+    chain = chain_of(theory)
+    widths = {math.sqrt(chain.temperature / mass) for mass in chain.rod_masses[:2]}
+    for number, width in enumerate(sorted(widths)):
         label = None if number else "free rod (and e = 1)"
         axes[0].axhline(width, color="0.4", linestyle=":", label=label)
     _finish_rods(axes)

@@ -1,9 +1,6 @@
 """Relaxation from one start: simulated rods, two fluids and, where it is known, the exact solution.
 
-An elastic chain is released from a displaced or compressed state, or quenched from another driving
-amplitude; in a box from one side, a wave or a smaller box. The results are an ensemble of simulated
-chains, the isothermal fluid (the paper's two equations with a constant W^2), the fluid with a
-temperature equation, as it is and rod by rod, and the exact motion without a gap.
+The fluids are the paper's two equations with a constant W^2, and with a temperature equation.
 """
 
 from __future__ import annotations

@@ -101,13 +101,18 @@ def relaxation_film(tree: xr.DataTree, most: int) -> tuple[Figure, Callable[[int
     high = max(float(each.density.max()) for each in densities.values())
     ax.set_ylim(0, 1.05 * high)
     ax.margins(x=0)
-    _draw_walls(ax, chain_of(rods))
+    chain = chain_of(rods)
+    _draw_walls(ax, chain)
     legend_above(figure, ax)
+    title = (
+        f"{chain.size} rods, A = {chain.amplitude:g}, g = {chain.gap:g}, "
+        f"{tree.attrs['release']} by {tree.attrs['by']:g} and released at t = 0"
+    )
     lines = {str(line.get_label()): line for line in ax.lines}
 
     def show(picture: int) -> None:
         time = float(rods.time[picture])
-        ax.set_title(f"{title(tree)}: $t = {time:.2f}$ {unit_label(rods.time)}")
+        ax.set_title(f"{title}: $t = {time:.2f}$ {unit_label(rods.time)}")
         for name, each in densities.items():
             lines[name].set_ydata(each.density.values[picture])
 
@@ -117,15 +122,6 @@ def relaxation_film(tree: xr.DataTree, most: int) -> tuple[Figure, Callable[[int
 def _draw_walls(ax: Axes, chain: Chain) -> None:
     for wall in [-chain.box / 2, chain.box / 2] if chain.box else []:
         ax.axvline(wall, color="0.6", linewidth=2, zorder=1)
-
-
-def title(tree: xr.DataTree) -> str:
-    """Say in one line what was released, and how."""
-    chain = chain_of(tree[PARTICLES].to_dataset())
-    return (
-        f"{chain.size} rods, A = {chain.amplitude:g}, g = {chain.gap:g}, "
-        f"{tree.attrs['release']} by {tree.attrs['by']:g} and released at t = 0"
-    )
 
 
 def _densities(tree: xr.DataTree) -> dict[str, xr.Dataset]:

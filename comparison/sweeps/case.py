@@ -47,7 +47,7 @@ _SOURCES = {
 }
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
 class Case:
     """One checked job for one chain; equal cases have one file.
 
@@ -80,8 +80,7 @@ class Case:
     def __post_init__(self) -> None:
         defaults = default_settings(check_choice("job", self.job, sorted(JOBS)))
         check_arguments(self.job, self.settings, sorted(defaults))
-        settings = {name: plain(name, value) for name, value in self.settings.items()}
-        object.__setattr__(self, "settings", {**defaults, **settings})
+        object.__setattr__(self, "settings", defaults | _plain_all(self.settings))
         _ = self.too_short
 
     @cached_property
@@ -128,9 +127,6 @@ class Case:
 
     def __hash__(self) -> int:
         return hash(self.canonical)
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, Case) and self.canonical == other.canonical
 
     def file(self, folder: Path) -> Path:
         """Return the name of its file in ``folder``."""

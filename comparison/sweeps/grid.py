@@ -59,7 +59,7 @@ class Sweep:
     settings: Mapping[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        grid = {name: _values(name, values) for name, values in self.grid.items()}
+        grid = {name: grid_values("grid", name, values) for name, values in self.grid.items()}
         object.__setattr__(self, "grid", grid)
         if twice := grid.keys() & {*self.chain, *self.settings}:
             raise ValueError(f"{min(twice)} is given twice: in the grid, and the same for all")
@@ -81,13 +81,13 @@ class Sweep:
         return list(self)
 
 
-def _values(name: str, values: Any) -> list[Any]:
+def grid_values(owner: str, name: str, values: Any) -> list[Any]:
     """Return the values of a parameter as a person writes them, or raise a ValueError."""
     if not is_list(values) or isinstance(values, Mapping | set) or len(values) == 0:
-        raise ValueError(f"grid: {name} must be a list of values, got {shown(values)}")
+        raise ValueError(f"{owner}: {name} must be a list of values, got {shown(values)}")
     written = [as_written(value) for value in values]
     if len({json.dumps(plain(name, value)) for value in written}) < len(written):
-        raise ValueError(f"grid: {name} holds a value twice, got {shown(values)}")
+        raise ValueError(f"{owner}: {name} holds a value twice, got {shown(values)}")
     return written
 
 

@@ -8,7 +8,7 @@ workers of a cluster need no common file system.
 from __future__ import annotations
 
 import os
-from collections.abc import Generator, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable, Iterator
 from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future
 from contextlib import closing
 from pathlib import Path
@@ -116,11 +116,7 @@ def _computed_here(
 ) -> Generator[tuple[Case, bytes | Exception]]:
     """Compute cases in this process; yield each with its file, or with the error instead."""
     for case in cases:
-        try:
-            result: bytes | Exception = compute(case, case.source, threads)
-        except Exception as error:
-            result = error
-        yield case, result
+        yield case, _result(compute, case, case.source, threads)
 
 
 def _computed_by(
@@ -144,7 +140,7 @@ def _computed_by(
                 case = next(cases, None)
                 continue
             future = returned.get()
-            result = _result(future)
+            result = _result(future.result)
             if isinstance(result, BrokenExecutor | CancelledError):
                 case, lost = None, result  # others may have returned before
             else:
@@ -160,8 +156,8 @@ def _computed_by(
         ) from lost
 
 
-def _result(future: Future[bytes]) -> bytes | Exception:
+def _result(function: Callable[..., bytes], *arguments: Any) -> bytes | Exception:
     try:
-        return future.result()
+        return function(*arguments)
     except Exception as error:
         return error

@@ -140,19 +140,10 @@ def test_a_gas_in_a_box_goes_without_the_fit_and_has_its_pressure(mass_ratio):
         assert figure.get_axes()[0].get_title(loc="left") == "$A = 1$"
 
 
-@pytest.mark.parametrize(
-    ("chain", "amplitudes", "message"),
-    [
-        (Chain(), (), "at least one"),
-        (Chain(), (1, 0), "no steady state: amplitude=0"),
-        (Chain(), (1, -1), "amplitude must be"),
-        (Chain(), (1, 1.0), "differ"),
-        (Chain(damping=0), (1,), "no steady state"),
-    ],
-)
-def test_wrong_arguments_are_refused(chain, amplitudes, message):
-    with pytest.raises(ValueError, match=message):
-        compare(chain, {"amplitude": amplitudes}, progress=False)
+@pytest.mark.parametrize("chain", [Chain(), Chain(damping=0)])
+def test_chains_without_a_steady_state_are_refused(chain):
+    with pytest.raises(ValueError, match="no steady state"):
+        compare(chain, {"amplitude": [1, 0]}, progress=False)
 
 
 @pytest.fixture

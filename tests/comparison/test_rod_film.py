@@ -135,7 +135,6 @@ def test_what_cannot_be_filmed_is_refused(run):
         (run.drop_vars("velocity"), {}, none),
         (run * np.nan, {}, "no snapshot in which all velocities are known"),
         (CHAIN, {"duration": -1}, "duration must be positive"),
-        (run, {"duration": 5}, "duration is that of a chain to simulate"),
         (hot, {"progress": False}, "no steady state to film: its simulation diverged"),
     ):
         with pytest.raises(ValueError, match=said):
