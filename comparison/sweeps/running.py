@@ -15,7 +15,7 @@ from pathlib import Path
 from queue import SimpleQueue
 from typing import Any
 
-from tqdm.auto import tqdm
+from tqdm import tqdm
 
 from crazybilliards.comparison.sweeps.case import Case, compute
 from crazybilliards.comparison.sweeps.grid import Sweep
