@@ -1,6 +1,6 @@
 """Films of rods, of a run or of a chain, and of the densities of a relaxation.
 
-matplotlib draws them and writes them, as mp4, gif or a page with buttons.
+matplotlib draws them and writes them, as mp4, gif or a page.
 """
 
 from __future__ import annotations
@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 import os
 import tempfile
+from base64 import b64encode
 from collections.abc import Callable, Iterable
 from importlib import import_module
 from importlib.util import find_spec
@@ -39,6 +40,7 @@ _FINER = 4  # snapshots for one picture, of a chain that is simulated
 _FADING = 0.7  # of a flash, from one picture to the next
 _GROUND, _TALL, _LOW = -0.95, 0.5, 0.25  # heights of the anchors and of the two kinds of rods
 _GREY = "#777777"
+_PAGE = '<video controls loop autoplay muted src="data:video/mp4;base64,{}"></video>\n'
 
 
 class Player:
@@ -106,7 +108,7 @@ def film(
     suffix = ".html" if file is None else file.suffix
     if suffix not in (".mp4", ".gif", ".html"):
         raise ValueError(f"path must end in .mp4, .gif or .html, got {file}")
-    if suffix == ".mp4" and not _has_ffmpeg():
+    if suffix == ".mp4" and not has_ffmpeg():
         raise ValueError(
             "a film as mp4 needs ffmpeg, which was not found: pip install 'crazybilliards[film]' "
             "brings it, and a name that ends in .gif or .html needs none"
@@ -149,14 +151,18 @@ def _content(
 ) -> bytes:
     """Return the content of a file whose name has this ending: a film of a figure.
 
-    ``show(picture)`` draws each of the ``pictures``; ``a_second`` is their number.
+    ``show(picture)`` draws each of the ``pictures``; ``a_second`` is their number. A page holds an
+    mp4, which is small, and without ffmpeg all pictures, with buttons.
     """
+    if suffix == ".html" and has_ffmpeg():
+        video = b64encode(_content(figure, show, pictures, ".mp4", a_second)).decode()
+        return _PAGE.format(video).encode()
     writer: animation.AbstractMovieWriter
     if suffix == ".mp4":
         writer = animation.FFMpegWriter(a_second, codec="h264")
     elif suffix == ".gif":
         writer = animation.PillowWriter(a_second)
-    else:  # however large the page is, all pictures are in it
+    else:  # all pictures are in it, however large the page is
         writer = animation.HTMLWriter(
             a_second, embed_frames=True, default_mode="loop", embed_limit=math.inf
         )
@@ -170,7 +176,7 @@ def _content(
         return file.read_bytes()
 
 
-def _has_ffmpeg() -> bool:
+def has_ffmpeg() -> bool:
     """Return whether there is an ffmpeg; without another one matplotlib is told our extra's."""
     if not animation.FFMpegWriter.isAvailable() and find_spec("imageio_ffmpeg"):
         rcParams["animation.ffmpeg_path"] = import_module("imageio_ffmpeg").get_ffmpeg_exe()

@@ -9,6 +9,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.animation import FuncAnimation
 
+from crazybilliards.comparison.films import has_ffmpeg
 from crazybilliards.reproduction.claims.study import error_of_mean
 
 BLUE, ORANGE, GREEN, PINK, RED, SKY = COLOURS = (
@@ -33,7 +34,8 @@ def played(figure, show, frames, a_second):
     from IPython.display import HTML  # a lesson runs in Jupyter
 
     film = FuncAnimation(figure, show, frames, interval=1000 / a_second)
-    player = HTML(film.to_jshtml(default_mode="loop"))
+    # Pictures with buttons, which need no ffmpeg, are four times as large.
+    player = HTML(film.to_html5_video() if has_ffmpeg() else film.to_jshtml(default_mode="loop"))
     plt.close(figure)  # or the notebook would also show the last picture
     return player
 

@@ -82,15 +82,20 @@ def test_bars_fade_and_rods_that_are_no_neighbours_have_none():
     assert set(sizes[just + 1, 0]) <= {sizes.max(), films._FADING * sizes.max()}
 
 
-@pytest.mark.parametrize("kind", ["mp4", "gif", "html"])
-def test_a_film_has_all_its_pictures(run, kind, tmp_path):
+@pytest.mark.parametrize("kind", ["mp4", "gif", "html", "html without ffmpeg"])
+def test_a_film_has_all_its_pictures(run, kind, tmp_path, monkeypatch):
+    if kind == "html without ffmpeg":
+        monkeypatch.setattr(films, "has_ffmpeg", lambda: False)
+    kind, *without = kind.split()
     path = film(run, tmp_path / f"rods.{kind}", seconds=0.8, springs=True, progress=False)
     assert [path] == list(tmp_path.iterdir())
     if kind == "gif":
         with Image.open(path) as pictures:
             assert pictures.n_frames == 20
-    elif kind == "html":
+    elif without:
         assert path.read_text().count("data:image/png;base64") == 20
+    elif kind == "html":
+        assert path.read_text().count("data:video/mp4;base64") == 1
     else:
         shown = imageio_ffmpeg.count_frames_and_secs(str(path))
         assert shown == (20, pytest.approx(0.8, abs=0.01))
@@ -118,11 +123,11 @@ def test_successive_pictures_have_different_times(run, step):
 
 def test_a_chain_is_simulated_and_a_notebook_gets_a_player():
     player = film(CHAIN, seconds=0.2, duration=1.0, progress=False)
-    assert player._repr_html_().count("data:image/png;base64") == 5
+    assert player._repr_html_().count("data:video/mp4;base64") == 1
 
 
 def test_without_ffmpeg_an_mp4_is_refused_before_any_work(monkeypatch):
-    monkeypatch.setattr(films, "_has_ffmpeg", lambda: False)
+    monkeypatch.setattr(films, "has_ffmpeg", lambda: False)
     with pytest.raises(ValueError, match=r"needs ffmpeg.*crazybilliards\[film\]"):
         film(CHAIN, "rods.mp4")
 
