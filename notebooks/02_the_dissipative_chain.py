@@ -292,7 +292,8 @@ runs_of = {
     100: profiles[0],
     300: independent_runs(sticky.replace(size=300), 6, 400),
 }
-fits = {size: [cb.comparison.fit_border_power_law(run) for run in runs_of[size]] for size in (30, 100, 300)}
+fit = cb.comparison.fit_border_power_law
+fits = {size: [fit(run) for run in runs_of[size]] for size in (30, 100, 300)}
 for size, each in fits.items():
     nu, nu_error = mean_and_error([fit.exponent for fit in each])
     c, c_error = mean_and_error([fit.origin for fit in each])

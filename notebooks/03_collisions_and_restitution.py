@@ -380,7 +380,8 @@ for e in (0.8, 0.9, 1, 1.1):
     _, _, v_end, closing = billiard(y, v, e, duration)
     lost = m / 2 * (np.sum(v**2) - np.sum(v_end**2))
     counted = np.sum(solutions.energy_taken(closing, e, m))
-    print(f"e = {e}: {len(closing):3d} collisions took {counted:8.4f} of {lost:8.4f} M R²/t_0² lost")
+    took = f"{counted:8.4f} of {lost:8.4f} M R²/t_0² lost"
+    print(f"e = {e}: {len(closing):3d} collisions took {took}")
 
 # %% tags=["remove-cell"]
 for e in (0.8, 0.9, 1, 1.1):

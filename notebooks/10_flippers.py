@@ -85,7 +85,7 @@ slow = [release(linear, seed, duration=300, time_step=0.02, every=0.2) for seed 
 fast = [release(quadratic, seed, duration=100, time_step=0.002, every=0.1) for seed in seeds]
 end = np.array([run.attrs["end_time"] for run in fast])
 print("status of the quadratic runs:", {run.attrs["status"] for run in fast})
-print(f"they end at t = {end.mean():.1f} t_0, with a standard deviation of {end.std(ddof=1):.1f} t_0")
+print(f"they end at t = {end.mean():.1f} t_0; standard deviation {end.std(ddof=1):.1f} t_0")
 
 # %% tags=["hide-input"]
 ax = panels(width=7)
@@ -474,7 +474,8 @@ for number, style, name in ((1, "-", "one rod has it all"), (40, "--", "40 rods 
     alpha = alpha_1 * number ** (-1 / 6)
     u = alpha / beta * (1 - np.exp(-beta * ahead / 6))
     left_ax.plot(-ahead, u, "k", linestyle=style, linewidth=1.2, label=name)
-left_ax.set(xlabel="time before the end $t - t_c$ [$t_0$]", ylabel="$E^{-1/6}$, in units of M, R, $t_0$")
+left_ax.set(xlabel="time before the end $t - t_c$ [$t_0$]")
+left_ax.set(ylabel="$E^{-1/6}$, in units of M, R, $t_0$")
 left_ax.set(xlim=(-17, 0.5), ylim=(0, 0.34))
 left_ax.legend(frameon=False)
 
