@@ -18,6 +18,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from importlib.metadata import version
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -83,13 +84,15 @@ class Checkpoint:
     def _write(self, replicas: Sequence[Replica]) -> None:
         """Write the state of all replicas, each at the end of its chunk."""
         header = json.dumps({"identity": self.identity}).encode()
-        arrays = {"header": np.frombuffer(header, dtype=np.uint8)}
+        arrays: dict[str, Any] = {"header": np.frombuffer(header, dtype=np.uint8)}
         for number, replica in enumerate(replicas):
             with replica.lock:
                 for name, value in replica.state().items():
-                    arrays[f"{number}/{name}"] = np.array(value)
+                    array = arrays[f"{number}/{name}"] = np.array(value)
+                    if array.dtype.hasobject:  # numpy would pickle it, and not read it again
+                        raise ValueError(f"a checkpoint holds arrays and numbers, {name} is none")
         buffer = io.BytesIO()
-        np.savez(buffer, allow_pickle=False, **arrays)
+        np.savez(buffer, **arrays)
         write_sealed(self.path, buffer.getvalue())
         self.saved = time.monotonic()
 
