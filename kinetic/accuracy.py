@@ -8,7 +8,8 @@ tables in ``kinetic/measured``, which
     python -m studies.relaxation_error FOLDER
 
 have written. A stated error is the measured one plus two of its standard errors: the largest of the
-measured chains on all sides of a chain. It is NaN beyond them.
+measured chains on all sides of a chain, or in time of all measured chains in a range of L (1 - e).
+It is NaN beyond them.
 """
 
 from __future__ import annotations
@@ -38,6 +39,8 @@ _LENGTH = "s/R"
 _IN_A_BOX = 0.18
 _CONTINUOUS, _SAME = ("Gamma", "g L/s", "g/s", _LENGTH), 5e-3  # relative
 _ANY = 0.49  # Gamma of a measured chain
+# Of the chains and starts in time: L, Gamma, what y was multiplied by, and the shift in s.
+_IN_TIME = {"L": (20, 100), "Gamma": (0.3, 1.5), "stretch": (0.8, 1.3), "shift": (-2, 2)}
 
 
 class Accuracy(NamedTuple):
@@ -88,6 +91,46 @@ def expected(theory: str, chain: Chain) -> Accuracy:
     }
     exact = {"velocity_width": 0.0, "border": 0.0} if chain.restitution == 1 else {}
     return Accuracy(**errors | exact)
+
+
+class Release(NamedTuple):
+    """A start in time from the equilibrium at e = 1."""
+
+    stretch: float  # of y
+    shift: float  # in thermal lengths
+    heat: float  # W^2 over the free one
+
+
+def expected_in_time(chain: Chain, release: Release | None) -> float:
+    """Return the relative error of the kinetic energy of ``hydrodynamics`` with a temperature.
+
+    It is that of any time after a ``release``; None: another start. NaN: not measured. At e = 1
+    Gaussian clouds are exact.
+    """
+    place = _place(chain)
+    unknown = math.isnan(place["L"]) or chain.gap > 0 or chain.box > 0 or chain.mass_ratio != 1
+    if unknown or release is None:
+        return math.nan
+    if chain.restitution == 1:
+        return 0.0
+    place |= {"stretch": release.stretch, "shift": release.shift}
+    inside = all(
+        least - _SAME * abs(least) <= place[axis] <= most * (1 + _SAME)
+        for axis, (least, most) in _IN_TIME.items()
+    )
+    if not inside or abs(release.heat - 1) > 2 * _SAME:
+        return math.nan
+    concentration = chain.size * (1 - chain.restitution)
+    ranges = _tables().get(("hydrodynamics", "kinetic_energy"), {})
+    return next(
+        (
+            float(error)
+            for least, rest in ranges.items()
+            for most, error in rest.items()
+            if least <= concentration <= most
+        ),
+        math.nan,
+    )
 
 
 def expected_relax_phase_space(chain: Chain, compression: float) -> float:

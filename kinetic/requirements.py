@@ -19,6 +19,7 @@ def require_chain(
     theory: str,
     *,
     elastic: bool = False,
+    elastic_walls: bool = False,
     linear: bool = False,
     gapless: bool = False,
     steady: bool = True,
@@ -30,10 +31,10 @@ def require_chain(
     Every theory calls this once, before any work. A chain with a parameter that the theories do
     not know passes only if that parameter has its default value.
 
-    ``theory`` is its name in the error. It needs restitution 1 (``elastic``), linear springs, no
-    gap, or a steady state, where these are True. ``remedy`` says what to do for another
-    restitution, at the end of that error. ``knows``: parameters beside ``KNOWN`` that this theory
-    takes; all others go on refusing them.
+    ``theory`` is its name in the error. It needs restitution 1 (``elastic``; of the walls alone:
+    ``elastic_walls``), linear springs, no gap, or a steady state, where these are True. ``remedy``
+    says what to do for another restitution, at the end of that error. ``knows``: parameters beside
+    ``KNOWN`` that this theory takes; all others go on refusing them.
     """
     check_chain(chain)
     chain.require_known(theory, knows)
@@ -42,7 +43,7 @@ def require_chain(
             f"{theory} holds for elastic collisions only: restitution must be 1, got "
             f"{chain.restitution:g}{remedy}"
         )
-    if elastic and chain.wall_restitution != 1:
+    if (elastic or elastic_walls) and chain.wall_restitution != 1:
         raise ValueError(
             f"{theory} holds for elastic walls only: wall_restitution must be 1, got "
             f"{chain.wall_restitution:g}"

@@ -41,8 +41,9 @@ FLOORS = {
         {"statics", "exact"},
         {"rods"},
         {"starts"},
-        {"fluids", "kinetic_equation"},
+        {"kinetic_equation"},
         {"correlations"},
+        {"fluids"},
     ),
     "comparison": (
         {"combining", "coverage", "curves", "distances", "drawing", "fits", "layout", "widths"}

@@ -134,7 +134,7 @@ def _deviations(over: str, tree: xr.DataTree) -> list[dict[str, Any]]:
     return rows
 
 
-@chain_options("restitution", amplitude=30.0)
+@chain_options(amplitude=30.0)
 def relax(
     chain: Chain,
     *,
@@ -155,7 +155,7 @@ def relax(
     film: bool = Option(False, "--film", help="Also write relaxation.html, a film."),
     as_json: Json = False,
 ) -> None:
-    """Release an elastic chain and follow it: rods, two fluids, and the exact solution.
+    """Release a chain and follow it: rods, fluids and, at e = 1, the exact solution.
 
     Prints how far the rods are from where each theory has them, and draws the densities, which
     relaxation.nc holds smoothed. Ctrl-C or SIGTERM stops early: what has been computed is written

@@ -21,6 +21,18 @@ takes from the two points goes into their covariance. The decay of the third mom
 response of <H3> to a distribution with the weight 1 + <H3> H3/6:
 
     decay = -< |v-u| (H3(v*) - H3(v)) (H3(v) + H3(u))/6 >.
+
+All of this holds for e > 1 too, where energy and decay are negative.
+
+**Two masses.** Equal elastic rods only exchange their velocities, and decay = 0. If their masses
+are m and M, an elastic collision rotates v and u, the velocities times the roots of the masses,
+
+    v* = d v + r u,      u* = r v - d u,      d = (m - M)/(m + M),      r^2 = 1 - d^2,
+
+and the mean third moment of both sorts decays. In units of the mean mass, and at equal
+temperatures,
+
+    decay = -< |v/sqrt(m) - u/sqrt(M)| (H3(v*) + H3(u*) - H3(v) - H3(u)) (H3(v) + H3(u)) >/12.
 """
 
 from __future__ import annotations
@@ -47,7 +59,7 @@ class CollisionMoments(NamedTuple):
 
 
 def moments_of_collisions(restitution: float) -> CollisionMoments:
-    """Return the moments for a restitution between 0 and 1; all vanish at 1."""
+    """Return the moments for a restitution from 0 on; all vanish at 1."""
     share = (1 - restitution) / 2
 
     def exchanged(v: Array, u: Array) -> tuple[Array, Array]:
@@ -72,6 +84,20 @@ def moments_of_collisions(restitution: float) -> CollisionMoments:
     )
 
 
+def decay_of_two_masses(mass_ratio: float) -> float:
+    """Return the decay of the third moment in elastic collisions of rods with this ratio M/m."""
+    light = 2 / (1 + mass_ratio)
+    heavy = mass_ratio * light
+    d = (light - heavy) / (light + heavy)
+    r = math.sqrt(1 - d**2)
+
+    def lost(v: Array, u: Array) -> Array:
+        before = _third(v) + _third(u)
+        return (before - _third(d * v + r * u) - _third(r * v - d * u)) * before / 12
+
+    return _average(lost, 1 / math.sqrt(light), 1 / math.sqrt(heavy))
+
+
 def _second(v: Array) -> Array:
     return v**2 - 1
 
@@ -80,18 +106,18 @@ def _third(v: Array) -> Array:
     return v**3 - 3 * v
 
 
-def _average(function: Callable[[Array, Array], Array]) -> float:
-    """Return < |v - u| function(v, u) > over two Gaussians of variance 1, exactly for polynomials.
+def _average(function: Callable[[Array, Array], Array], a: float = 1.0, b: float = 1.0) -> float:
+    """Return < |a v - b u| function(v, u) > over two Gaussians of variance 1.
 
-    The sum and the difference, (v +- u)/sqrt(2) = S and R, are independent Gaussians; int over
-    R > 0 of R exp(-R^2/2) is that of exp(-t) over t = R^2/2.
+    It is exact for polynomials. (a v - b u)/g = R and (b v + a u)/g = S, with g^2 = a^2 + b^2, are
+    independent Gaussians; int over R > 0 of R exp(-R^2/2) is that of exp(-t) over t = R^2/2.
     """
     S, S_weights = np.polynomial.hermite_e.hermegauss(_NODES)
     t, t_weights = np.polynomial.laguerre.laggauss(_NODES)
-    R = np.sqrt(2 * t)
-    weights = S_weights[:, None] * t_weights / (2 * math.pi) * math.sqrt(2)
+    g = math.hypot(a, b)
+    weights = S_weights[:, None] * t_weights / (2 * math.pi) * g
     total = 0.0
-    for sign in (1, -1):
-        v, u = (S[:, None] + sign * R) / math.sqrt(2), (S[:, None] - sign * R) / math.sqrt(2)
+    for R in (np.sqrt(2 * t), -np.sqrt(2 * t)):
+        v, u = (b * S[:, None] + a * R) / g, (a * S[:, None] - b * R) / g
         total += float((weights * function(v, u)).sum())
     return total

@@ -246,4 +246,12 @@ def _on_grid(
         rods[i] = np.interp(chain.rank + L / 2, np.maximum.accumulate(label[i]), x)
         rod_velocities[i] = np.interp(rods[i], x, velocity[i])
     fields = (density, label, velocity, variance, rods, rod_velocities)
-    return FlowFields(x, *fields, middle.size, unsteadiness)
+    energy = np.array([_energy(state, constants) for state in solution])
+    return FlowFields(x, *fields, middle.size, unsteadiness, energy)
+
+
+def _energy(fields: Array, constants: Constants) -> float:
+    """Return the mean of v^2 over the rods: of the flow and of the heat."""
+    _, v, log_variance = primitive(fields, constants).T
+    square = v**2 + constants.heat * np.exp(log_variance)
+    return float(fields[0] @ square / fields[0].sum())

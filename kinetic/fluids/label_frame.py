@@ -9,19 +9,21 @@ construction, and the velocity equation reads
 
     u = eta - Lam nu,      Lam = g L/s,      Gamma = gamma s/(m W),      K = 1,
 
-with theta = T/(m W^2), which is 1 in the isothermal case. The temperature equation is that of a gas
-with one degree of freedom and no heat flux, in contact with the noise:
+with theta = T/(m W^2), which is 1 in the isothermal case. With a temperature theta and the third
+moment q of the velocities, in W^3, obey
 
-    theta_t + V theta_y = -2 theta V_y - 2 Gamma_T (theta - 1),      Gamma_T = gamma <1/m> s/W.
+    theta_t = -2 theta V_y - (q/eta_nu)_nu - 2 Gamma_T (theta - 1) - L a E theta^(3/2)/eta_nu,
+    q_t = -3 theta theta_y - 3 q V_y - (3 Gamma_T + L a c sqrt(theta)/eta_nu) q,
 
-The quantity S = theta eta_nu^2 obeys the linear law S_t = 2 Gamma_T (eta_nu^2 - S), so it stays
-positive.
+with f_y = f_nu/eta_nu for any f, and Gamma_T = gamma <1/m> s/W. E, c and a are those of
+:mod:`.equations`, as are the limits of q. The quantity S = theta eta_nu^2 is not changed by the
+flow.
 
 **Between walls** the unit of length is that of the state at rest, which may be shorter than s, and
 K is the strength of the springs in it (:mod:`crazybilliards.kinetic.statics.label_closure`). V = 0
 at a wall, which is a mirror: two more cells are the images of the outermost ones.
 
-**Discretisation.** M cells of labels, equally wide at the edges, hold eta and V. S and p are
+**Discretisation.** M cells of labels, equally wide at the edges, hold eta, V and q. S and p are
 defined on the faces between them, p = kappa S/d^3 with d the distance of neighbouring cells. kappa
 and the positions of the cells are calibrated on the stationary state. This state, its rigid motions
 and, without a gap, every breathing motion are therefore exact for any M. The ends are free, p = 0.
@@ -32,84 +34,43 @@ its work becomes heat.
 
 from __future__ import annotations
 
-import numpy as np
-from scipy.interpolate import PchipInterpolator
+from typing import NamedTuple
 
-from crazybilliards.kinetic.fluids.finite_volumes import minmod
+import numpy as np
+
+from crazybilliards.kinetic.correlations.collision_moments import (
+    decay_of_two_masses,
+    moments_of_collisions,
+)
 from crazybilliards.kinetic.fluids.label_cells import LabelCells, make_cells, mirrored
+from crazybilliards.kinetic.fluids.label_positions import on_positions
+from crazybilliards.kinetic.fluids.label_rates import CLOSEST, Constants, label_rate
 from crazybilliards.kinetic.fluids.pde_solver import FlowFields, make_state, solve
 from crazybilliards.kinetic.starts import Start
 from crazybilliards.kinetic.statics.label_closure import Stationary, stationary
-from crazybilliards.model import Chain, spring
+from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array
-from crazybilliards.model.grid import position_grid, thermal_reach
-from crazybilliards.model.kernels import inlined, kernel
-
-_pull = inlined(spring.force)
 
 _THINNEST = 1e-6  # density of the state at rest at the walls, in L/s
 _EMPTIEST = 5.0  # room of a cell at a wall at the start, in units of that at rest
-_CLOSEST = 1e-3  # distance of cells, as a share of that at rest
-_SPACING = 0.05  # of the points that a solution is read out at, in thermal lengths
+_DIVERGED = 1e3  # times the energy of the start or of free rods
+_MOST_BROKEN = 0.5  # share of the rods whose heat flux may be at its limit
 
 
-@kernel(allocates=True)
-def label_rate(  # type: ignore[no-untyped-def]
-    fields,
-    labels,
-    shares,
-    kappa,
-    stationary_distance,
-    lam,
-    stiffness,
-    gamma,
-    heating_rate,
-    walled,
-    exponent,
-):
-    """Rates of change of (eta, V) or, with a temperature, of (eta, V, S).
+class Exchange(NamedTuple):
+    """What the noise and the collisions do to the temperature and the heat flux."""
 
-    ``gamma`` is Gamma and ``heating_rate`` Gamma_T.
+    noise: float  # Gamma_T/Gamma
+    loss: float  # L a E
+    mixing: float  # L a c
 
-    ``fields`` has the shape (2 or 3, M). S of the face right of a cell is stored at the cell, in
-    units in which it is ``stationary_distance`` squared at rest. Its last value is not used.
-    """
-    eta, v = fields[0], fields[1]
-    thermal = fields.shape[0] == 3
-    cells = eta.size
-    rates = np.empty_like(fields)
-    before = 0.0  # pressure at the left face
-    for i in range(cells):
-        pressure = 0.0
-        if i < cells - 1:
-            # Cells may cross in trial stages of an integrator. The rates stay finite and drive them
-            # back.
-            d = max(eta[i + 1] - eta[i], _CLOSEST * stationary_distance[i])
-            theta = 1.0
-            if thermal:
-                theta = min(max(fields[2, i], 0.0) / d**2, 1e6)
-            pressure = kappa[i] * theta / d
-            jump = v[i + 1] - v[i]
-            viscous = 0.0
-            if jump < 0:
-                left = minmod(v[i] - v[i - 1], jump) if i > 0 else 0.0
-                right = minmod(v[i + 2] - v[i + 1], jump) if i < cells - 2 else 0.0
-                rest = max(min(jump - (left + right) / 2, 0.0), -1e3)
-                viscous = kappa[i] / d * (2 * rest**2 - 0.5 * np.sqrt(theta) * rest)
-                pressure += viscous
-            if thermal:
-                heating = -4 * viscous * jump * d**2 / (shares[i] + shares[i + 1])
-                rates[2, i] = 2 * heating_rate * (d**2 - fields[2, i]) + heating
-        elif thermal:
-            rates[2, i] = 0.0
-        force = stiffness * _pull(eta[i] - lam * labels[i], exponent)
-        rates[0, i] = v[i]
-        rates[1, i] = (before - pressure) / shares[i] - force - gamma * v[i]
-        before = pressure
-    if walled:
-        for j in range(2):
-            rates[j, 0], rates[j, cells - 1] = -rates[j, 1], -rates[j, cells - 2]
-    return rates
+
+def exchange_of(chain: Chain) -> Exchange:
+    """Return what a chain has: a rod collides with the L - 1 others, L a = L - 1."""
+    others, moments = chain.size - 1, moments_of_collisions(chain.restitution)
+    decay = moments.decay + decay_of_two_masses(chain.mass_ratio)
+    noise = chain.mean_mass * float((1 / chain.rod_masses).mean())
+    return Exchange(noise, others * moments.energy, others * decay)
 
 
 def solve_on_labels(
@@ -119,31 +80,49 @@ def solve_on_labels(
     number: int | None,
     *,
     thermal: bool,
-    exchange: float,
+    exchange: Exchange,
     progress: bool,
 ) -> FlowFields:
-    """Solve from a start with ``number`` cells, by DOP853 of scipy through py-pde.
-
-    ``exchange`` is Gamma_T/Gamma.
-    """
+    """Solve from a start with ``number`` cells, by DOP853 of scipy through py-pde."""
     state, W = stationary(chain), chain.free_velocity_width
     s, walled = state.unit, chain.box > 0
     if walled and state.at_walls < _THINNEST / s:
         raise ValueError(
             "frame='label' needs walls that rods reach at rest, and these are too far out; use "
-            "frame='eulerian'"
+            "frame='eulerian' (at restitution 1) or box=0"
         )
     cells = make_cells(state, chain.potential_exponent, number)
     gamma = chain.damping * s / (chain.mass * W)
-    at_rest = cells.labels, cells.shares, cells.kappa, np.diff(cells.eta), state.lam
-    constants = (*at_rest, state.stiffness, gamma, exchange * gamma, walled)
+    constants = Constants(
+        cells.labels,
+        cells.shares,
+        cells.kappa,
+        np.diff(cells.eta),
+        lam=float(state.lam),
+        stiffness=float(state.stiffness),
+        damping=gamma,
+        heating=exchange.noise * gamma,
+        loss=exchange.loss,
+        mixing=exchange.mixing,
+        walled=walled,
+        exponent=chain.potential_exponent,
+    )
     # In the unit of time of `solve`: py-pde drops outputs that are less than 1e-8 units apart.
     interval = times[1] * W / s
 
     def rate(values: Array) -> Array:
-        return np.asarray(label_rate(values, *constants, chain.potential_exponent))
+        return np.asarray(label_rate(values, constants))
+
+    def watch(values: Array, time: float) -> bool:
+        """Refuse what the equations do not describe; return whether the energy diverges."""
+        if problem := _breakdown(cells, values):
+            raise ValueError(
+                f"the hydrodynamic equations do not hold beyond t = {time * times[1]:g}: {problem}"
+            )
+        return bool(_energy(cells, values, walled) > most)
 
     fields = _starting_fields(chain, cells, state, start, thermal=thermal)
+    most = _DIVERGED * max(1.0, _energy(cells, np.array(list(fields.values())), walled))
     # A trial step may overflow if rods are very light. The solver refuses what is not a number.
     with np.errstate(over="ignore", invalid="ignore"):
         solution = solve(
@@ -152,22 +131,57 @@ def solve_on_labels(
             make_state(fields, (0, cells.labels.size)),
             np.arange(float(times.size)),
             progress=progress,
+            watch=watch,
             solver="scipy",
             backend="numpy",  # the rate is compiled already
             method="DOP853",
             rtol=1e-7,
             atol=1e-7,
         )
-    closest = np.diff(solution[:, 0], axis=1) / np.diff(cells.eta)
-    if not (closest > _CLOSEST).all():
-        raise ValueError(
-            "the hydrodynamic equations could not be solved: the fluid collapses to less than "
-            f"{_CLOSEST:g} of its width at rest"
-        )
+    diverged = _energy(cells, solution[-1], walled) > most
+    solution = solution[:-1] if diverged else solution
     rates = np.array([rate(values)[:2] for values in solution])
     own = slice(1, -1) if walled else slice(None)
     unsteadiness = np.sqrt(np.sum(rates[..., own] ** 2, axis=1) @ cells.shares[own])
-    return _on_positions(chain, cells, state, solution, unsteadiness)
+    energy = W**2 * np.array([_energy(cells, values, walled) for values in solution])
+    found = on_positions(chain, cells, state, solution, unsteadiness, energy)
+    return found._replace(diverged=diverged)
+
+
+def _temperature(cells: LabelCells, values: Array) -> Array:
+    """Return theta at the faces between the cells."""
+    if len(values) == 2:
+        return np.ones(cells.kappa.size)
+    return np.asarray(values[2, :-1] / np.diff(values[0]) ** 2)
+
+
+def _energy(cells: LabelCells, values: Array, walled: bool) -> float:
+    """Return the mean of v^2 over the rods: of the flow and of the heat."""
+    own = slice(1, -1) if walled else slice(None)
+    weights = cells.kappa.copy()
+    if walled:  # half of the outermost faces' rods are images
+        weights[[0, -1]] /= 2
+    heat = weights @ _temperature(cells, values) / weights.sum()
+    return float(cells.shares[own] @ values[1, own] ** 2 + heat)
+
+
+def _breakdown(cells: LabelCells, values: Array) -> str:
+    """Return why the equations do not hold any longer, or nothing."""
+    if not (np.diff(values[0]) > CLOSEST * np.diff(cells.eta)).all():
+        return f"the fluid collapses to less than {CLOSEST:g} of its width at rest"
+    if len(values) == 2:
+        return ""
+    theta = _temperature(cells, values)
+    if not (theta > 0).all():
+        return "the cells do not resolve the temperature; more cells can help"
+    largest = ((theta[1:] + theta[:-1]) / 2) ** 1.5
+    broken = float(cells.shares[1:-1] @ (np.abs(values[3, 1:-1]) > largest))
+    if broken > _MOST_BROKEN:
+        return (
+            f"{broken:.0%} of the rods carry more heat than their velocities can, and their "
+            "temperature means nothing"
+        )
+    return ""
 
 
 def _starting_fields(
@@ -203,74 +217,10 @@ def _starting_fields(
     if thermal and chain.box and empty.any():
         raise ValueError(
             "frame='label' does not resolve the temperature where there is hardly a rod at a wall "
-            "at the start; use frame='eulerian'"
+            "at the start; use frame='eulerian' (at restitution 1)"
         )
     if thermal:
         faces = np.clip(cells.faces, left[0], right[-1])
         fields["S"] = np.append(at(faces)[2] * np.diff(eta) ** 2, 0.0)
+        fields["q"] = np.zeros(eta.size)
     return fields
-
-
-def _on_positions(
-    chain: Chain, cells: LabelCells, state: Stationary, solution: Array, unsteadiness: Array
-) -> FlowFields:
-    """Put the solution onto positions and particles, in the chain's units.
-
-    eta is interpolated as a function of the stationary eta of the same label, which is smooth and,
-    for shifts and stretches, linear; beyond the outermost faces it is continued linearly.
-    Densities are those of the stationary state over the slope of that function.
-    """
-    s, W, L, R = state.unit, chain.free_velocity_width, chain.size, chain.radius
-    weights = cells.weights
-    rest = cells.eta[:-1] + weights * np.diff(cells.eta)
-    distance = np.diff(solution[:, 0], axis=1)
-    moved = solution[:, 0, :-1] + weights * distance
-    flow = solution[:, 1, :-1] + weights * np.diff(solution[:, 1], axis=1)
-    theta = solution[:, 2, :-1] / distance**2 if solution.shape[1] == 3 else np.ones_like(distance)
-    # Stay just inside: at the end itself rounding may put a node into the vacuum.
-    inner_faces = rest[1:-1] if chain.box else rest
-    nodes = _refined(inner_faces, (state.right + state.lam / 2) * (1 - 1e-12))
-    labels, log_density = state.profile(nodes)
-    rod_nodes = state.at(chain.rank / L)[0]
-
-    place = [_continued(rest, y, nodes) for y in moved]
-    position = [s * eta + 2 * R * L * labels for eta, _ in place]
-    farthest = max(float(np.abs(y[[0, -1]]).max()) for y in position) - chain.anchors[-1]
-    x = position_grid(chain, max(farthest, thermal_reach(chain)))
-    density, label, velocity, variance = np.empty((4, len(solution), x.size))
-    rods, rod_velocities = np.empty((2, len(solution), L))
-    for i, (edges, (_, slope)) in enumerate(zip(position, place, strict=True)):
-        within = np.clip(x, edges[0], edges[-1])
-        log_reduced = PchipInterpolator(edges, log_density - np.log(slope))(within)
-        reduced = np.where(x == within, L / s * np.exp(log_reduced), 0.0)
-        density[i] = reduced / (1 + 2 * R * reduced)
-        label[i] = L * (0.5 + PchipInterpolator(edges, labels)(within))
-        label[i][x < edges[0]], label[i][x > edges[-1]] = 0.0, L
-        velocity[i] = W * np.interp(within, edges, _continued(rest, flow[i], nodes)[0])
-        inner = s * moved[i] + 2 * R * L * cells.faces
-        variance[i] = W**2 * np.interp(within, inner, theta[i])
-        rods[i] = s * _continued(rest, moved[i], rod_nodes)[0] + 2 * R * chain.rank
-        rod_velocities[i] = W * _continued(rest, flow[i], rod_nodes)[0]
-    fields = (density, label, velocity, variance, rods, rod_velocities)
-    return FlowFields(x, *fields, cells.labels.size, unsteadiness)
-
-
-def _refined(faces: Array, end: float) -> Array:
-    """Return points from -end to end: the faces, the tails, and points in wide gaps between."""
-    coarse = np.concatenate([[-end], faces, [end]])
-    parts = np.ceil(np.diff(coarse) / _SPACING).astype(int)
-    fine = [
-        np.linspace(left, right, n, endpoint=False)
-        for left, right, n in zip(coarse[:-1], coarse[1:], parts, strict=True)
-    ]
-    return np.append(np.concatenate(fine), end)
-
-
-def _continued(nodes: Array, values: Array, wanted: Array) -> tuple[Array, Array]:
-    """Interpolate, linearly beyond the ends; return values and slopes."""
-    spline = PchipInterpolator(nodes, values)
-    inside = np.clip(wanted, nodes[0], nodes[-1])
-    slopes = np.diff(values)[[0, -1]] / np.diff(nodes)[[0, -1]]
-    slope = np.where(wanted < nodes[0], slopes[0], slopes[1])
-    slope = np.where(wanted == inside, spline(inside, 1), slope)
-    return spline(inside) + (wanted - inside) * slope, slope

@@ -5,12 +5,17 @@ The slowest wave of density, k = pi/(X - 2RL), then decays exactly as
 
     exp(-k^2 M(t)/2),      G = gamma/m,      M(t) as in :mod:`crazybilliards.kinetic.exact.points`,
 
-while the relative density r, velocity w and temperature h of the fluid obey, for small amplitudes,
+while the relative density r, velocity w, temperature h and heat flux f of the fluid obey, for small
+amplitudes,
 
-    r' = -k w,      w' = k W^2 (r + h) - G w,      h' = -2 k w - 2 G h   (isothermal: h = 0).
+    r' = -k w,      w' = k W^2 (r + h) - G w,      h' = -2 k w - k f - 2 G h,
+    f' = 3 k W^2 h - 3 G f,
 
-The two agree if damping is strong, G > 4 k W, where both diffuse. With weak damping the fluid has
-sound, and such a gas has none: the damping that would keep its temperature takes the wave away.
+without the last line if there is no heat flux, f = 0, and without the last two if the fluid is
+isothermal, h = 0. With the heat flux the undamped waves have the frequencies
+k W sqrt(3 +- sqrt(6)). The two agree if damping is strong, where both diffuse. With weak damping
+the fluid has sound, and such a gas has none: the damping that would keep its temperature takes the
+wave away.
 """
 
 import math
@@ -30,14 +35,23 @@ def has_one_mass(chain: Chain) -> bool:
     return alone and chain.restitution == chain.wall_restitution == chain.mass_ratio == 1
 
 
-def wave_model_error(chain: Chain, duration: float, *, thermal: bool) -> float:
-    """Return the largest error of the fluid's slowest wave, in units of its first height."""
+def wave_model_error(chain: Chain, duration: float, *, moments: int) -> float:
+    """Return the largest error of the fluid's slowest wave, in units of its first height.
+
+    ``moments`` of the fluid: 2 if it is isothermal, 3 with a temperature, 4 with the heat flux.
+    """
     W, G = chain.free_velocity_width, chain.damping / chain.mass
     k = math.pi / (2 * chain.walls[1])
-    rates = np.array([[0, -k, 0], [k * W**2, -G, k * W**2], [0, -2 * k, -2 * G]])
-    rates = rates if thermal else rates[:2, :2]
+    rates = np.array(
+        [
+            [0, -k, 0, 0],
+            [k * W**2, -G, k * W**2, 0],
+            [0, -2 * k, -2 * G, -k],
+            [0, 0, 3 * k * W**2, -3 * G],
+        ]
+    )[:moments, :moments]
     t = np.linspace(0, duration, _TIMES)
-    step, state, wave = expm(rates * t[1]), np.eye(len(rates))[0], []
+    step, state, wave = expm(rates * t[1]), np.eye(moments)[0], []
     for _ in t:
         wave.append(state[0])
         state = step @ state

@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from pde import CallbackTracker, CartesianGrid, FieldCollection, MemoryStorage, PDEBase, ScalarField
+from pde.trackers.base import FinishedSimulation
 
 from crazybilliards.model.arrays import Array
 from crazybilliards.model.progress import progress_bar
@@ -36,6 +37,9 @@ class FlowFields(NamedTuple):
     rod_velocities: Array
     cells: int
     unsteadiness: Array  # rms rate of change of eta and V in scaled units, (times,)
+    energy: Array  # mean of v^2 over the rods, (times,)
+    heat_flux: Array | None = None  # (m/2) n q, (times, nodes), over the mass
+    diverged: bool = False
 
 
 class _Rates(NamedTuple):
@@ -72,11 +76,18 @@ def make_state(fields: Mapping[str, Array], ends: tuple[float, float]) -> FieldC
 
 
 def solve(
-    rate: Rate, state: FieldCollection, times: Array, *, progress: bool, **solver: Any
+    rate: Rate,
+    state: FieldCollection,
+    times: Array,
+    *,
+    progress: bool,
+    watch: Callable[[Array, float], bool] = lambda fields, time: False,
+    **solver: Any,
 ) -> Array:
     """Solve from ``times[0]`` on; return the fields at all ``times``, (times, fields, cells).
 
-    py-pde ends a run at Ctrl-C without raising. The result then has the first times only.
+    py-pde ends a run at Ctrl-C without raising. The result then has the first times only, as when
+    ``watch`` returned True for the fields and the time of an output.
 
     ``state`` are the initial values. ``solver`` are the arguments of py-pde: ``solver``,
     ``backend``, ``dt`` and others.
@@ -87,14 +98,21 @@ def solve(
     flow, span = Flow(rate), (float(times[0]), float(times[-1]))
     try:
         with progress_bar(progress, total=times.size, desc="hydrodynamics", leave=False) as bar:
-            shown = CallbackTracker(lambda _: bar.update(), interrupts=list(times))
-            trackers = [storage.tracker(list(times)), shown]
+
+            def seen(fields: Any, time: float) -> None:
+                bar.update()
+                if watch(fields.data, time):
+                    raise FinishedSimulation
+
+            trackers = [storage.tracker(list(times)), CallbackTracker(seen, list(times))]
             flow.solve(state, t_range=span, tracker=trackers, **solver)
     except RuntimeError as error:  # a step that became too small, or not a number
         raise ValueError(f"the hydrodynamic equations could not be solved: {error}") from error
     outputs = len(storage.data)
     # py-pde reports Ctrl-C here only.
-    if flow.diagnostics["controller"]["successful"] and outputs != times.size:
+    controller = flow.diagnostics["controller"]
+    ended = controller["stop_reason"] == "Reached final time"
+    if controller["successful"] and ended and outputs != times.size:
         raise RuntimeError(f"py-pde made {outputs} outputs of {times.size}")
     if not outputs:
         raise KeyboardInterrupt("nothing was computed yet")

@@ -52,6 +52,23 @@ def test_with_a_gap_the_fluid_with_temperature_stays_close(release, by):
         assert distances["isothermal"] > 8 * distances["evolving"]
 
 
+def test_inelastic_chains_are_followed_by_the_fluid_with_temperature_and_heat_flux():
+    chain = Chain(size=30, restitution=0.95, amplitude=20)
+    tree = compare_relaxation(chain, "compressed", 0.8, duration=20, replicas=400, progress=False)
+    assert set(tree.children) == {"particles", "evolving", "rods"}
+    run, fluid = tree["particles"].to_dataset(), tree["evolving"].to_dataset()
+    off = fluid.kinetic_energy / run.kinetic_energy - 1
+    noise = 5 * run.kinetic_energy_error / run.kinetic_energy
+    assert float((np.abs(off) - noise).max()) < fluid.attrs["kinetic_energy_model_error"] < 0.06
+    assert label_distances(tree)["rods"] < 0.05
+    assert len(draw_spacetime(condensed(tree)).axes) == 4
+    with pytest.raises(ValueError, match="release='gathered' holds for elastic collisions only"):
+        compare_relaxation(GAS.replace(restitution=0.9), "gathered", 0.5)
+    growing = Chain(size=160, restitution=1.05, damping=4.0)
+    with pytest.raises(ValueError, match=r"the energy diverges after t = .*: give a shorter"):
+        compare_relaxation(growing, "displaced", 0.1, replicas=2, progress=False)
+
+
 GAS = Chain(size=20, box=80, stiffness=0, mass=1, damping=0.01, amplitude=0.02**0.5)
 
 

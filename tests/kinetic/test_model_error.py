@@ -147,7 +147,7 @@ def measured_in_time(size, e, gamma):
     """Return the largest error of two starts, plus two standard errors."""
     return max(
         float(row["error"]) + 2 * float(row["standard error"])
-        for row in rows(TABLES / "relaxation.csv")
+        for row in rows(TABLES / "relax_phase_space.csv")
         if (int(row["L"]), float(row["e"]), float(row["Gamma"])) == (size, e, gamma)
     )
 
