@@ -27,6 +27,7 @@ from .kinetic import (
     phase_space as phase_space,
     relax_phase_space as relax_phase_space,
     rod_by_rod as rod_by_rod,
+    steady_state as steady_state,
 )
 from .model import Chain as Chain, chain_of as chain_of, load as load, save as save
 from .particles import (

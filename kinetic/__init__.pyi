@@ -1,4 +1,5 @@
 from .accuracy import UnmeasuredWarning as UnmeasuredWarning
+from .gas.steady_state import steady_state as steady_state
 from .correlations.stationary import correlated_phase_space as correlated_phase_space
 from .exact.breathing import breathing_cloud as breathing_cloud
 from .exact.gibbs_measure import (

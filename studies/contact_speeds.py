@@ -28,7 +28,7 @@ from scipy import sparse
 from scipy.optimize import root_scalar
 from scipy.sparse.linalg import spsolve
 
-from crazybilliards.kinetic.correlations.contact_speeds import SQUARES
+from crazybilliards.kinetic.gas.contact_speeds import SQUARES
 from studies.common import options
 
 DAMPING = np.sqrt(2 / np.pi)  # a sqrt(<w^2>)

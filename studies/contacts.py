@@ -26,7 +26,7 @@ from matplotlib.figure import Figure
 from crazybilliards.comparison.drawing import COLOURS, draw_points
 from crazybilliards.comparison.layout import legend_above, panels
 from crazybilliards.kinetic import correlated_phase_space
-from crazybilliards.kinetic.correlations.contact_speeds import contact_speed
+from crazybilliards.kinetic.gas.contact_speeds import contact_speed
 from crazybilliards.kinetic.correlations.stationary import in_agreement
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate

@@ -44,10 +44,10 @@ from typing import NamedTuple
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
-from crazybilliards.kinetic.correlations.cells import Cells, at_distance
-from crazybilliards.kinetic.correlations.contact_speeds import contact_speed
 from crazybilliards.kinetic.correlations.one_rod import OneRod
 from crazybilliards.kinetic.correlations.pair_covariance import Background, PairCovariance, Problem
+from crazybilliards.kinetic.gas.cells import Cells, at_distance
+from crazybilliards.kinetic.gas.contact_speeds import contact_speed
 from crazybilliards.kinetic.kinetic_equation.weak_form import Factors
 from crazybilliards.model.arrays import Array
 

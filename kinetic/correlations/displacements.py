@@ -20,8 +20,6 @@ from __future__ import annotations
 import numpy as np
 from scipy.linalg import block_diag
 
-from crazybilliards.kinetic.correlations.cells import Cells, at_distance, of_cells
-from crazybilliards.kinetic.correlations.fixed_point import find_fixed_point
 from crazybilliards.kinetic.correlations.pair_covariance import (
     Background,
     LinearResponse,
@@ -35,6 +33,8 @@ from crazybilliards.kinetic.correlations.pair_covariance import (
     scales,
     steps,
 )
+from crazybilliards.kinetic.gas.cells import Cells, at_distance, of_cells
+from crazybilliards.kinetic.gas.fixed_point import find_fixed_point
 from crazybilliards.model.arrays import Array
 
 _AGREEMENT = 1e-3  # of h_gg and ln tau; W_x changes by less than a tenth of it

@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from crazybilliards.kinetic.correlations.cells import Cells
+from crazybilliards.kinetic.gas.cells import Cells
 from crazybilliards.kinetic.kinetic_equation.continuation import State
 from crazybilliards.kinetic.kinetic_equation.order_statistics import LabelAverage, mirrored
 from crazybilliards.kinetic.kinetic_equation.velocity_moments import Moments, moments

@@ -46,11 +46,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.linalg import block_diag, eigvals, solve_continuous_lyapunov
 
-from crazybilliards.kinetic.correlations.cells import Cells, make_cells, of_cells
-from crazybilliards.kinetic.correlations.collision_moments import (
-    CollisionMoments,
-    moments_of_collisions,
-)
+from crazybilliards.kinetic.gas.cells import Cells, make_cells, of_cells
+from crazybilliards.kinetic.gas.collision_moments import CollisionMoments, moments_of_collisions
 from crazybilliards.kinetic.kinetic_equation.continuation import free_units
 from crazybilliards.kinetic.kinetic_equation.weak_form import coefficients
 from crazybilliards.model import Chain

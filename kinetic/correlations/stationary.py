@@ -25,7 +25,6 @@ import xarray as xr
 
 from crazybilliards.kinetic.correlations.closure import Closure, background, implied
 from crazybilliards.kinetic.correlations.displacements import relaxing_pairs
-from crazybilliards.kinetic.correlations.fixed_point import NoFixedPointError, find_fixed_point
 from crazybilliards.kinetic.correlations.one_rod import profiles_of_one_rod
 from crazybilliards.kinetic.correlations.pair_covariance import (
     Problem,
@@ -33,6 +32,7 @@ from crazybilliards.kinetic.correlations.pair_covariance import (
     solve_pairs,
 )
 from crazybilliards.kinetic.correlations.stationary_result import Correlated, assemble, rods
+from crazybilliards.kinetic.gas.fixed_point import NoFixedPointError, find_fixed_point
 from crazybilliards.kinetic.kinetic_equation.continuation import (
     CELLS,
     State,

@@ -9,7 +9,6 @@ import numpy as np
 import xarray as xr
 
 from crazybilliards.kinetic.accuracy import expected
-from crazybilliards.kinetic.correlations.cells import of_cells, of_rods
 from crazybilliards.kinetic.correlations.closure import Closure, collective_variance
 from crazybilliards.kinetic.correlations.pair_covariance import (
     Background,
@@ -17,6 +16,7 @@ from crazybilliards.kinetic.correlations.pair_covariance import (
     Problem,
     dissipation,
 )
+from crazybilliards.kinetic.gas.cells import of_cells, of_rods
 from crazybilliards.kinetic.kinetic_equation.continuation import State, free_units
 from crazybilliards.kinetic.kinetic_equation.order_statistics import Rods, mirrored, points
 from crazybilliards.kinetic.kinetic_equation.stationary_result import in_vocabulary

@@ -8,7 +8,7 @@ import pytest
 from first_order import displacement_source, hermite, mode_variances
 from scipy.stats import norm
 
-from crazybilliards.kinetic.correlations.cells import make_cells
+from crazybilliards.kinetic.gas.cells import make_cells
 from crazybilliards.kinetic.correlations.closure import Closure, background
 from crazybilliards.kinetic.correlations.displacements import relaxing_pairs
 from crazybilliards.kinetic.correlations.one_rod import profiles_of_one_rod

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from crazybilliards.kinetic import correlated_phase_space
-from crazybilliards.kinetic.correlations.cells import make_cells, of_rods
+from crazybilliards.kinetic.gas.cells import make_cells, of_rods
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
 from crazybilliards.particles.observers import Covariances

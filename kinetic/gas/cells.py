@@ -9,10 +9,12 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from scipy.special import ndtr
 
 from crazybilliards.model.arrays import Array
 
-MOST = 130
+MOST = 200
+_SCORES, _POINTS = 5.5, 160
 
 
 class Cells(NamedTuple):
@@ -22,6 +24,16 @@ class Cells(NamedTuple):
     centres: Array  # label of each, from 0 to L, shape (M,)
     contacts: Array  # label of the contact between two, shape (M - 1,)
     distances: Array  # from centre to centre, shape (M - 1,)
+    to_wall: float  # from the outermost centres to a wall
+
+    def all_distances(self, walled: bool) -> Array:
+        """Return the distances across all contacts, those of walls included."""
+        return np.pad(self.distances, 1, constant_values=self.to_wall) if walled else self.distances
+
+    def all_labels(self, walled: bool) -> Array:
+        """Return the labels of all contacts, 0 and L being walls."""
+        ends = [0.0], [self.rods.sum()]
+        return np.concatenate([ends[0], self.contacts, ends[1]]) if walled else self.contacts
 
 
 def make_cells(size: int, most: int = MOST, *, whole: bool = False) -> Cells:
@@ -35,8 +47,20 @@ def make_cells(size: int, most: int = MOST, *, whole: bool = False) -> Cells:
         uneven = 1 - most / size if whole else 0.5
         ends = size * (s - uneven * np.sin(2 * np.pi * s) / (2 * np.pi))
         ends = (ends + size - ends[::-1]) / 2  # symmetric but for rounding
+    return _between(ends, 0.5)
+
+
+def cells_of_points(size: int) -> Cells:
+    """Return cells much smaller than a rod at both ends: evenly spaced normal scores of labels."""
+    ends = size * ndtr(np.linspace(-_SCORES, _SCORES, _POINTS + 1))
+    ends[0], ends[-1] = 0, size
+    return _between((ends + size - ends[::-1]) / 2, 0.0)
+
+
+def _between(ends: Array, beyond: float) -> Cells:
+    """Return cells between ends. ``beyond``: rods from the outermost ends to a wall."""
     rods, centres = np.diff(ends), (ends[1:] + ends[:-1]) / 2
-    return Cells(rods, centres, ends[1:-1], np.diff(centres))
+    return Cells(rods, centres, ends[1:-1], np.diff(centres), rods[0] / 2 + beyond)
 
 
 def at_distance(

@@ -1,0 +1,136 @@
+r"""From the fluctuations of the gas to its mean state: the strength of collisions, shared motion.
+
+**Collective motion.** Whole neighbourhoods move together: the displacement u of a place has the
+variance h_uu, and its velocity has K times it, as the waves that displace rods far are hardly
+faster than the spring, whose stiffness is K. The mean state describes the rods within their
+neighbourhood, so
+
+    W_v^2 = T + K h_uu,      noise of the mean state:  2 Gamma (1 - K h_uu) in place of 2 Gamma.
+
+What feeds the mean state and the collective motion adds up to the noise that there is. For the
+centre of mass alone, K h_uu = 1/L. Without springs nothing pulls a neighbourhood back, and it
+shares no motion of this kind.
+
+**What collisions take.** With w the speed at which rods meet, a collision has the impulse
+(1 + e) w/2 and takes (1 - e^2) w^2/2 from the sum of v^2. So with the means over the collisions of
+a contact
+
+    Lambda = (1 - e) P <w^2>/<w> = (4/sqrt(pi)) (1 - e) P K F sqrt(Theta),
+
+the density being gone. Theta = W_v^2 - h_c is the relative temperature of all neighbours, h_c being
+their covariance. K(e) of :mod:`.contact_speeds` says how much slower they are when they meet.
+
+h_c is the mean of two values: with what the last collision of the two left, and without it, which
+is continued from pairs of rods further apart. Half of all neighbours leave one another.
+
+**Clustering.** P goes like Theta/g and Lambda like Theta^(3/2)/g, with g and Theta of the
+neighbourhood, which fluctuate. To second order in the relative deviations their ratio has the mean
+
+    F = 1 + 3/8 h_ThetaTheta - 1/2 h_gTheta,
+
+the covariances being those of contacts next to each other. How much gaps fluctuate does not enter.
+
+In the equations of the gas that is Lambda = a E n T^(3/2), with P = n T and
+
+    a = 2/(1 + e) K F sqrt(Theta/T),
+
+and 1 - 1/L times it for points at a label, which meet L - 1 others.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from crazybilliards.kinetic.gas.cells import Cells, at_distance
+from crazybilliards.kinetic.gas.contact_speeds import contact_speed
+from crazybilliards.kinetic.gas.fluctuations import Background, PairCovariance
+from crazybilliards.model.arrays import Array
+
+_NEIGHBOUR = 1.0  # rod
+_BEYOND = 2  # cells between two rods that have not hit one another
+_LEAST = 0.02  # bound of Theta/T, F and 1 - K h_uu on the way; at the end they must be far from it
+
+
+class Closure(NamedTuple):
+    """The unknowns that mean state and fluctuations must agree on, at the M - 1 contacts."""
+
+    shared: Array  # h_c/W_v^2
+    collective: Array  # K h_uu
+    log_clustering: Array  # ln F
+
+    @property
+    def is_possible(self) -> bool:
+        """True if no unknown lies on one of the bounds to which ``implied`` keeps an iteration."""
+        bounded = 1 - self.shared, 1 - self.collective, np.exp(self.log_clustering)
+        return min(float(values.min()) for values in bounded) > 2 * _LEAST
+
+    def packed(self) -> Array:
+        """Return them as one vector."""
+        return np.concatenate(self)
+
+    @classmethod
+    def unpacked(cls, vector: Array) -> Closure:
+        """Return the unknowns of a vector, within their bounds."""
+        shared, collective, clustering = np.split(vector, 3)
+        most = 1 - _LEAST
+        return cls(np.minimum(shared, most), np.minimum(collective, most), clustering)
+
+    def at(self, contacts: Array, labels: Array) -> Closure:
+        """Return those at other labels."""
+        return Closure(*(np.interp(labels, contacts, values) for values in self))
+
+    def relative_temperature(self, T: Array) -> Array:
+        """Return Theta of contacts where the mean state has T."""
+        return (T + self.collective) * (1 - self.shared)
+
+    def strength(self, T: Array, restitution: float) -> Array:
+        """Return a at the contacts, for rods."""
+        slower = np.sqrt(self.relative_temperature(T) / T)
+        return pair_strength(restitution, self) * slower
+
+
+class Independent:
+    """The closure of the mean field: colliding rods are independent."""
+
+    collective = 0.0
+
+    def at(self, contacts: Array, labels: Array) -> Independent:
+        """Return the same at other labels."""
+        return self
+
+    def strength(self, T: Array, restitution: float) -> Array:
+        """Return a = 1 at the contacts."""
+        return np.ones(T.size)
+
+
+def pair_strength(restitution: float, closure: Closure) -> Array:
+    """Return b = 2 K F/(1 + e), the strength of collisions of rods with Theta and P."""
+    return 2 / (1 + restitution) * contact_speed(restitution) * np.exp(closure.log_clustering)
+
+
+def implied(cells: Cells, around: Background, inner: slice, pairs: PairCovariance) -> Closure:
+    """Return the unknowns that follow from the fluctuations. ``inner``: contacts of two cells."""
+    leaving, approaching = (
+        at_distance(pairs.velocity, cells.centres, cells.contacts, _NEIGHBOUR, nearest)
+        for nearest in (1, _BEYOND)
+    )
+    variance = (around.temperature + around.shared)[inner]
+    stiffness = np.interp(cells.contacts, cells.centres, around.stiffness)
+    collective = stiffness * at_distance(pairs.displacement, cells.centres, cells.contacts, 0.0)
+    mixed, temperature = (
+        at_distance(field, cells.contacts, cells.contacts, _NEIGHBOUR)
+        for field in (pairs.gap_temperature, pairs.temperature)
+    )
+    clustering = 1 + 0.375 * temperature - 0.5 * mixed
+    return Closure(
+        np.minimum(_even((leaving + approaching) / 2 / variance), 1 - _LEAST),
+        np.minimum(_even(collective), 1 - _LEAST),
+        np.log(np.maximum(_even(clustering), _LEAST)),
+    )
+
+
+def _even(values: Array) -> Array:
+    """Average over a contact and its mirror image: rounding must not break the symmetry."""
+    return (values + values[::-1]) / 2

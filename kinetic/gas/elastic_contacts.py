@@ -1,0 +1,91 @@
+r"""How much of the load contacts carry in a chain with a gap: phi = P g/T.
+
+Rods that stay near their anchors seldom meet, and springs carry a part of the load. In the exact
+equilibrium at e = 1 mean places and mean forces of all rods follow from the Gibbs measure
+(:mod:`crazybilliards.kinetic.exact.gibbs_measure`), the force P between neighbours from the balance
+of each rod, and so phi at every contact and at walls. It is taken at the temperature of the
+outermost rods. Inside the chain the local one changes phi as in the uniform elastic lattice of
+wells, where phi = 1 - v and v(x) is the variance of a rod over T/k at the spacing x = g sqrt(k/T)
+(``studies/elastic_lattice.py``).
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+from scipy.interpolate import PchipInterpolator
+
+from crazybilliards.kinetic.exact.gibbs_measure import recursion_of
+from crazybilliards.kinetic.gas.cells import Cells
+from crazybilliards.kinetic.gas.mean_state import Medium, between
+from crazybilliards.kinetic.rods.places import at_temperature
+from crazybilliards.model import Chain
+from crazybilliards.model.arrays import Array
+
+# x: variance of a rod in the elastic lattice of wells over T/k, to 1e-4.
+VARIANCES = {
+    0.0: 0.0,
+    0.1: 0.0493,
+    0.2: 0.0974,
+    0.3: 0.1439,
+    0.5: 0.2328,
+    0.7: 0.3163,
+    1.0: 0.4315,
+    1.5: 0.5971,
+    2.0: 0.7305,
+    2.5: 0.8329,
+    3.0: 0.9060,
+    4.0: 0.9792,
+    5.0: 0.9973,
+    8.0: 1.0,
+}
+_VARIANCE = PchipInterpolator(list(VARIANCES), list(VARIANCES.values()))
+_MOST = 1000  # rods of a gap whose exact state is computed; longer chains have the same ends
+_LEAST = 1e-12  # of phi
+
+
+def contact_share(chain: Chain, medium: Medium, cells: Cells, temperature: Array) -> Array:
+    """Return phi at all contacts. ``temperature``: W_v^2 of the cells."""
+    if chain.exchangeable:
+        return np.ones(cells.all_labels(medium.walled).size)
+    edge = float(temperature[[0, -1]].mean())
+    places, share = _of_rods(at_temperature(chain, edge * chain.temperature))
+    labels = cells.all_labels(medium.walled)
+    if len(places) < chain.size + 1:  # counted from the nearer end
+        labels = np.minimum(np.minimum(labels, chain.size - labels), places[-1] / 2)
+    phi = np.interp(labels, places, share)
+    if chain.spring == "linear":
+        x = medium.lattice * np.sqrt(medium.stiffness)
+        local = between(temperature, medium.walled)
+        phi = phi * _lattice_share(x / np.sqrt(local)) / _lattice_share(x / np.sqrt(edge))
+    return phi
+
+
+def _lattice_share(spacing: Array | float) -> Array:
+    """Return phi of the uniform lattice at a spacing in units of sqrt(T/k)."""
+    return np.maximum(1 - _VARIANCE(np.minimum(spacing, max(VARIANCES))), _LEAST)
+
+
+@lru_cache(maxsize=8)
+def _of_rods(chain: Chain) -> tuple[Array, Array]:
+    """Return the labels 0 to L and phi there, of an elastic chain with a gap."""
+    if not chain.box and chain.size > _MOST:
+        chain = chain.replace(size=_MOST)
+    recursion, (place, force) = recursion_of(chain), np.empty((2, chain.size))
+    at_wall = 0.0
+    for i in range(chain.size):
+        d, log_p = recursion.log_density(i)
+        p = np.exp(log_p - log_p.max())
+        p /= (p * recursion.weights).sum()
+        if i == 0 and chain.box and recursion.nodes(0)[-1] == chain.walls[1]:
+            at_wall = chain.temperature * p[0] / (d[1] - d[0])
+        p *= recursion.weights
+        place[i], force[i] = chain.reduced_anchors[i] + d @ p, chain.force(d) @ p
+    # From both ends inwards, so that rounding does not add up: the sum of all forces vanishes.
+    below = -np.concatenate([[0.0], np.cumsum(force)])
+    beyond = np.concatenate([[0.0], np.cumsum(force[::-1])])[::-1]
+    ends = chain.walls if chain.box else (place[0], place[-1])
+    gap = np.diff(np.concatenate([[ends[0]], place, [ends[1]]]))
+    share = ((below + beyond) / 2 + at_wall) * gap / chain.temperature
+    return np.arange(chain.size + 1.0), np.maximum(share, _LEAST)

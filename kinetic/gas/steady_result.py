@@ -1,0 +1,200 @@
+"""The steady state of the gas in the common vocabulary."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+from scipy.interpolate import PchipInterpolator
+
+from crazybilliards.kinetic.gas.agreement import Fluctuations, Steady
+from crazybilliards.kinetic.gas.cells import at_distance, of_rods
+from crazybilliards.kinetic.gas.fluctuations import dissipation
+from crazybilliards.kinetic.rods.places import (
+    MOST_RODS,
+    MOST_RODS_WITH_GAP,
+    are_resolved,
+    at_temperature,
+    elastic_rods,
+    exchangeable,
+)
+from crazybilliards.kinetic.rods.profiles import over_positions
+from crazybilliards.model import Chain
+from crazybilliards.model.arrays import Array
+from crazybilliards.model.grid import position_grid
+from crazybilliards.model.vocabulary import OF_FLUID, OF_RODS, result
+
+_MOST_COVARIANCES = 1000  # rods whose covariances, a square table, are returned
+
+Variables = dict[str, tuple[str | tuple[str, ...], Array]]
+
+
+class Rods(NamedTuple):
+    """Moments of each rod in the units of the gas, shape (L,)."""
+
+    place: Array
+    width: Array  # W_x; NaN if it is not known
+    velocity_variance: Array
+
+
+def in_vocabulary(chain: Chain, found: Steady) -> xr.Dataset:
+    """Return the result of ``steady_state``."""
+    length, W = found.problem.medium.length, chain.free_velocity_width
+    rods, of = rods_of(chain, found), found.fluctuations
+    variables: Variables = {
+        "velocity_width": ("particle", W * np.sqrt(rods.velocity_variance)),
+        "mean_displacement": ("particle", length * rods.place - chain.reduced_anchors),
+    }
+    if np.isfinite(rods.width).all():
+        variables["displacement_width"] = ("particle", length * rods.width)
+    if chain.box:
+        force = chain.mass * W**2 / length * found.mean.force[[0, -1]]
+        variables["wall_force"] = ("wall", force)
+    coordinates, fields = _over_positions(chain, found, rods)
+    variables |= fields
+    if of is not None:
+        variables |= _of_pairs(chain, found, of, rods)
+        coordinates["mode"] = np.arange(float(found.problem.cells.rods.size))
+        if "velocity_covariance" in variables:
+            coordinates["separation"] = np.arange(float(chain.size))
+    theory = "gas along labels" if of else "gas along labels, mean field"
+    dataset = result(
+        chain,
+        variables,
+        coordinates=coordinates,
+        source="theory",
+        method={"theory": theory},
+        residual=found.residual,
+    )
+    resolved = are_resolved(chain)
+    dataset.attrs |= {"density_of": OF_RODS if resolved else OF_FLUID}
+    dataset.attrs |= {"iterations": found.iterations}
+    return dataset
+
+
+def rods_of(chain: Chain, found: Steady) -> Rods:
+    """Return the moments of the rods."""
+    medium, cells = found.problem.medium, found.problem.cells
+    middles: Array = np.arange(chain.size) + 0.5
+    place, T = (
+        np.interp(middles, cells.centres, field)
+        for field in (found.mean.place, found.mean.temperature)
+    )
+    own = _own_widths(chain, found, T)
+    if found.fluctuations is None or found.displaced is None:
+        share, K = 1 / chain.size, medium.stiffness
+        of_centre = share * (1 - T) / K if medium.exponent == 2 and K else 0.0
+        return Rods(place, np.sqrt(own**2 + of_centre), (1 - share) * T + share)
+    collective = np.interp(middles, cells.contacts, found.fluctuations.closure.collective)
+    of = found.displaced
+    displaced = at_distance(of.pairs.displacement, of.cells.centres, middles, 0.0)
+    width = np.sqrt(np.maximum(own**2 + displaced, 0.0))
+    return Rods(place, width, T + collective)
+
+
+def _own_widths(chain: Chain, found: Steady, T: Array) -> Array:
+    """Return the widths of the rods in their neighbourhoods; NaN of too many rods."""
+    length = found.problem.medium.length
+    if found.labels is not None and chain.size <= MOST_RODS:
+        law = exchangeable(chain.size)
+        score, place = found.labels.score, found.labels.place
+        inside = np.clip(law.places, score[0], score[-1])
+        y = PchipInterpolator(score, place)(inside)
+        return np.sqrt(law.mean(y**2) - law.mean(y) ** 2)
+    if found.labels is None and chain.size <= MOST_RODS_WITH_GAP:
+        mean = float(T.mean())
+        elastic = elastic_rods(at_temperature(chain, mean * chain.temperature))
+        return elastic.width() / length * np.sqrt(T / mean)
+    return np.full(chain.size, np.nan)
+
+
+def _over_positions(chain: Chain, found: Steady, rods: Rods) -> tuple[dict[str, Array], Variables]:
+    """Return the positions x, and what lies over them."""
+    medium, W, R = found.problem.medium, chain.free_velocity_width, chain.radius
+    cells = found.labels.fine if found.labels else found.problem.cells
+    y = medium.length * (found.labels.place if found.labels else found.mean.place)
+    label = cells.centres - chain.size / 2
+    places = y + 2 * R * label
+    x = position_grid(chain, float(np.abs(places).max() - chain.anchors[-1]))
+    shapes = None
+    if are_resolved(chain):
+        temperature = chain.temperature * float(rods.velocity_variance.mean())
+        shapes = elastic_rods(at_temperature(chain, temperature)).moved(
+            medium.length * rods.place, medium.length * rods.width
+        )
+        farthest = float(np.abs(shapes.places).max() - chain.reduced_anchors[-1])
+        x = max(x, position_grid(chain, farthest), key=len)
+    number = np.interp(x, places, label + chain.size / 2)
+    number[x < places[0]], number[x > places[-1]] = 0.0, chain.size
+    middles: Array = np.arange(chain.size) + 0.5
+    T = np.interp(number, middles, rods.velocity_variance)
+    fluid = np.gradient(np.interp(x, places, label), x)
+    density, count = over_positions(chain, x, shapes) if shapes else (fluid, number)
+    displacement = x - (2 * R + chain.lattice_gap) * (number - chain.size / 2)
+    variables: Variables = {
+        "density": ("x", density),
+        "label": ("x", count),
+        "displacement": ("x", displacement),
+        "velocity_variance": ("x", W**2 * T),
+        "heat_flux": ("x", _heat_flux(chain, found, number)),
+    }
+    return {"x": x}, variables
+
+
+def _heat_flux(chain: Chain, found: Steady, label: Array) -> Array:
+    """Return (m/2) n q at labels."""
+    medium, cells, mean = found.problem.medium, found.problem.cells, found.mean
+    inner = found.problem.inner
+    T, force = mean.contact_temperature[inner], mean.force[inner]
+    n = force / T
+    strength = np.ones(T.size)
+    if found.fluctuations is not None:
+        strength = found.fluctuations.closure.strength(T, chain.restitution)
+    rate = 3 * medium.damping + np.maximum(strength * medium.decay * n * np.sqrt(T), 0.0)
+    flux = -3 * n**2 * T / rate * np.diff(mean.temperature) / cells.distances
+    W = chain.free_velocity_width
+    places, ends = (np.pad(field, 1) for field in (cells.contacts, flux))
+    places[-1] = chain.size
+    return chain.mass * W**3 / (2 * medium.length) * np.interp(label, places, ends)
+
+
+def _of_pairs(chain: Chain, found: Steady, of: Fluctuations, rods: Rods) -> Variables:
+    """Return what two rods have in common."""
+    medium, cells, inner = found.problem.medium, found.problem.cells, found.problem.inner
+    W, contacts = chain.free_velocity_width, np.arange(1.0, chain.size)
+    lost = dissipation(found.problem, of.background)
+    shared, pressure, loss = (
+        np.interp(contacts, cells.contacts, field[inner])
+        for field in (of.background.shared, of.background.pressure, lost)
+    )
+    variance = rods.velocity_variance
+    own = (variance[1:] + variance[:-1]) / 2
+    variables: Variables = {
+        "neighbour_covariance": ("contact", W**2 * shared),
+        "relative_temperature": ("contact", W**2 * (own - shared)),
+        "contact_force": ("contact", chain.mass * W**2 / medium.length * pressure),
+        "contact_loss": ("contact", chain.mass / 2 * W**3 / medium.length * loss),
+        "mode_velocity_variance": ("mode", W**2 * _mode_variances(chain, found, of, rods)),
+    }
+    if chain.size <= _MOST_COVARIANCES:
+        covariance = of_rods(of.pairs.velocity, cells)
+        # A rod with itself has W_v^2, with the local part, and neighbours half of what their last
+        # collision left. Two other rods have h alone.
+        covariance[:, 0], covariance[:-1, 1] = variance, shared
+        variables["velocity_covariance"] = (("particle", "separation"), W**2 * covariance)
+    return variables
+
+
+def _mode_variances(chain: Chain, found: Steady, of: Fluctuations, rods: Rods) -> Array:
+    """Return <|v_q|^2>, v_q = sum_i sqrt((2 or, for q = 0, 1)/L) cos(pi q (i - 1/2)/L) v_i."""
+    cells, size = found.problem.cells, chain.size
+    q = np.arange(cells.rods.size)[:, None]
+    waves = np.sqrt(np.where(q == 0, 1, 2) / size) * np.cos(np.pi * q * cells.centres / size)
+    own = np.interp(cells.centres, np.arange(size) + 0.5, rods.velocity_variance)
+    shared = np.interp(cells.centres, cells.contacts, of.background.shared[found.problem.inner])
+    weighted = waves * cells.rods
+    return np.asarray(
+        (waves**2) @ (cells.rods * (own - shared))
+        + np.einsum("qi,ij,qj->q", weighted, of.pairs.velocity, weighted)
+    )

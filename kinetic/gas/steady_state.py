@@ -1,0 +1,113 @@
+r"""The steady state of every chain, by the gas along labels.
+
+Mean state and fluctuations of the equations in :mod:`crazybilliards.kinetic.gas` agree with one
+another (:mod:`.agreement`). No number is fitted, and nothing from a simulation goes in. The rods
+have
+
+    W_v(i)^2 = T(i) + K h_uu(i),       W_x(i)^2 = q(i)^2 + h'_uu(i),
+
+T being the temperature within their neighbourhood, K h_uu the velocity that a neighbourhood shares,
+q the width of a rod in its neighbourhood, and h'_uu the displacement of neighbourhoods
+(:mod:`.displacements`). Without a gap q is that of the i-th of L points, with a gap that of the
+elastic chain at the temperature of the rod.
+
+**The mean field** (``correlations=False``, and always for e > 1) takes colliding rods for
+independent. The noise drives the centre of mass as well, which collisions leave alone, so that
+
+    W_v^2 = (1 - 1/L) T + 1/L,
+
+and the same for the displacements on linear springs. For e > 1 velocities have heavy tails, which a
+closure of moments does not know: with a damping above 0.6 sqrt(k m) it is too cold at the ends.
+"""
+
+from __future__ import annotations
+
+import xarray as xr
+from threadpoolctl import threadpool_limits
+
+from crazybilliards.kinetic.gas.agreement import in_agreement, mean_field
+from crazybilliards.kinetic.gas.cells import make_cells
+from crazybilliards.kinetic.gas.fixed_point import NoFixedPointError
+from crazybilliards.kinetic.gas.mean_state import NoSteadyStateError
+from crazybilliards.kinetic.gas.steady_result import in_vocabulary
+from crazybilliards.kinetic.requirements import require_chain
+from crazybilliards.model import Chain
+from crazybilliards.model.words import check_chain
+
+_MOST_RODS = 100_000
+_FEWEST_CORRELATED = 4  # rods; fewer have no pairs beyond neighbours
+
+
+@threadpool_limits.wrap(limits=1, user_api="blas")  # small matrices: more only wait
+def steady_state(chain: Chain, *, correlations: bool = True) -> xr.Dataset:
+    """Solve for the steady state of the gas in this module.
+
+    Parameters
+    ----------
+    chain
+        Up to 100 000 rods of one mass, with any restitution and any gap, on linear or quadratic
+        springs, also between walls with a wall restitution above 0, and without springs in a box.
+        At restitution 1 ``equilibrium`` is exact.
+    correlations
+        False: the mean field, in which colliding rods are independent. It is the theory of first
+        order in 1 - e, and the only one for e > 1.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over particle ``velocity_width``, ``displacement_width`` and ``mean_displacement``;
+        ``density`` and ``label`` of the rods over x, and there ``displacement``,
+        ``velocity_variance`` and ``heat_flux`` of the gas; in a box ``wall_force`` over wall. Of
+        more than 10 000 rods, or 3000 with a gap, the density is that of a fluid
+        (``attrs["density_of"]``).
+
+        With correlations, over ``contact`` (i with i + 1): ``neighbour_covariance``
+        <v_i v_{i+1}>, ``relative_temperature`` <(v_i - v_{i+1})^2>/2, ``contact_force`` and
+        ``contact_loss``, the power that collisions take; over ``mode`` the
+        ``mode_velocity_variance`` <|v_q|^2> of the waves cos(pi q (i - 1/2)/L), q = 0 being the
+        centre of mass; up to 1000 rods over (particle, separation) the ``velocity_covariance``
+        <v_i v_{i+r}>, NaN beyond the chain.
+
+        ``attrs``: ``residual``, the largest disagreement of mean state and fluctuations;
+        ``iterations``; and the errors of the theory in simulations of chains like this one, NaN
+        where none was measured: ``velocity_width_model_error`` and ``border_model_error``,
+        relative, of W_v of the particles 3 to L - 2 and of the first and the last;
+        ``displacement_width_model_error``, relative, of W_x; ``mean_displacement_model_error``, in
+        thermal lengths; ``density_model_error``, of the smoothed density, relative to close
+        packing; ``wall_force_model_error``, relative. An ``UnmeasuredWarning`` says that
+        ``velocity_width_model_error`` is not known.
+
+    Raises
+    ------
+    ValueError
+        For a chain without a steady state: without noise, damping, or springs and walls, or with
+        e > 1 and too many rods; for two masses; for absorbing walls; if mean state and
+        fluctuations cannot be brought to agree.
+
+    Notes
+    -----
+    It takes 0.1 s for 30 rods, half a second for 100, and up to 10 s for more than 200.
+
+    Examples
+    --------
+    >>> theory = steady_state(Chain(size=30, restitution=0.5))
+    >>> theory.velocity_width.values[[0, 7, 14]].round(3)
+    array([0.241, 0.155, 0.138])
+    """
+    check_steady_state(chain, correlations=correlations)
+    correlated = correlations and chain.restitution <= 1 and chain.size >= _FEWEST_CORRELATED
+    solve, cells = in_agreement if correlated else mean_field, make_cells(chain.size, whole=True)
+    try:
+        return in_vocabulary(chain, solve(chain, cells))
+    except (NoFixedPointError, NoSteadyStateError) as error:
+        raise ValueError(f"the gas has no steady state that could be found: {error}") from error
+
+
+def check_steady_state(chain: Chain, *, correlations: bool = True) -> None:
+    """Raise for what ``steady_state`` does not take."""
+    check_chain(chain)
+    if chain.size > _MOST_RODS:
+        raise ValueError(f"size must be at most {_MOST_RODS}, got {chain.size}")
+    require_chain(chain, "the gas in its steady state", knows=("box", "wall_restitution"))
+    if chain.wall_restitution == 0:
+        raise ValueError("the gas needs walls that do not absorb: wall_restitution above 0, got 0")
