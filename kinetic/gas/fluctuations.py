@@ -15,8 +15,8 @@ n rods per length where they collide, n = P/Theta, the mean gap g and the stiffn
 rods that pass freely, with <c^4> closed as that of a Gaussian, springs, damping and cooling. c is
 ``decay`` of :mod:`.collision_moments` and b the strength of collisions. There are no forces beyond
 open ends. A wall is a contact with a neighbour that does not move, without loss and noise. For
-quadratic springs K is the mean slope 2 <|x|> at each rod. Written x' = M x, the covariance of all fields is a local part, that of independent rods
-(Theta delta(l - l') for velocities, g^2 delta(l - l') for gaps), plus h, and
+quadratic springs K is the mean slope 2 <|x|> at each rod. Written x' = M x, the covariance of all
+fields is a local part, that of independent rods (Theta delta(l - l') for velocities, g^2 delta(l - l') for gaps), plus h, and
 
     M h + h M^T + Q = 0.
 

@@ -76,7 +76,7 @@ def in_vocabulary(chain: Chain, found: Steady) -> xr.Dataset:
 def rods_of(chain: Chain, found: Steady) -> Rods:
     """Return the moments of the rods."""
     medium, cells = found.problem.medium, found.problem.cells
-    middles: Array = np.arange(chain.size) + 0.5
+    middles: Array = np.arange(0.5, chain.size)
     place, T = (
         np.interp(middles, cells.centres, field)
         for field in (found.mean.place, found.mean.temperature)
@@ -127,7 +127,7 @@ def _over_positions(chain: Chain, found: Steady, rods: Rods) -> tuple[dict[str, 
         x = max(x, position_grid(chain, farthest), key=len)
     number = np.interp(x, places, label + chain.size / 2)
     number[x < places[0]], number[x > places[-1]] = 0.0, chain.size
-    middles: Array = np.arange(chain.size) + 0.5
+    middles: Array = np.arange(0.5, chain.size)
     T = np.interp(number, middles, rods.velocity_variance)
     fluid = np.gradient(np.interp(x, places, label), x)
     density, count = over_positions(chain, x, shapes) if shapes else (fluid, number)
