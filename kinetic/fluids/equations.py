@@ -28,7 +28,7 @@ The first terms are the adiabatic compression of a gas with one degree of freedo
 are closed by the fourth moment of a Gaussian, <(v - V)^4> = 3 W^4. The noise exchanges heat at the
 rate Gamma_T = gamma/m. What collisions take from the heat, E, and from the third moment, c, are
 Gaussian averages (``energy`` and ``decay`` of
-:mod:`crazybilliards.kinetic.correlations.collision_moments`). A rod meets the L - 1 others only,
+:mod:`crazybilliards.kinetic.gas.collision_moments`). A rod meets the L - 1 others only,
 a = 1 - 1/L. Without a gap and at restitution 1 this is exact for Gaussian clouds, in which q = 0.
 *Prescribed*: a number, or a profile W^2(x), at all times.
 

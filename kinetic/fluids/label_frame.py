@@ -38,7 +38,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from crazybilliards.kinetic.correlations.collision_moments import (
+from crazybilliards.kinetic.gas.collision_moments import (
     decay_of_two_masses,
     moments_of_collisions,
 )

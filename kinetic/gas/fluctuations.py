@@ -16,7 +16,8 @@ rods that pass freely, with <c^4> closed as that of a Gaussian, springs, damping
 ``decay`` of :mod:`.collision_moments` and b the strength of collisions. There are no forces beyond
 open ends. A wall is a contact with a neighbour that does not move, without loss and noise. For
 quadratic springs K is the mean slope 2 <|x|> at each rod. Written x' = M x, the covariance of all
-fields is a local part, that of independent rods (Theta delta(l - l') for velocities, g^2 delta(l - l') for gaps), plus h, and
+fields is a local part, that of independent rods (Theta delta(l - l') for
+velocities, g^2 delta(l - l') for gaps), plus h, and
 
     M h + h M^T + Q = 0.
 

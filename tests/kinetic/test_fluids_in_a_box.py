@@ -17,7 +17,7 @@ from crazybilliards.kinetic import (
     hydrodynamics,
     rod_by_rod,
 )
-from crazybilliards.kinetic.correlations.collision_moments import decay_of_two_masses
+from crazybilliards.kinetic.gas.collision_moments import decay_of_two_masses
 from crazybilliards.kinetic.fluids.one_mass import wave_model_error
 from crazybilliards.model import Chain
 

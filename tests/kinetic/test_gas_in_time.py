@@ -15,7 +15,7 @@ from crazybilliards.kinetic import (
     force_balance,
     hydrodynamics,
 )
-from crazybilliards.kinetic.correlations.collision_moments import (
+from crazybilliards.kinetic.gas.collision_moments import (
     decay_of_two_masses,
     moments_of_collisions,
 )
