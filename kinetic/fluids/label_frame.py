@@ -38,14 +38,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from crazybilliards.kinetic.gas.collision_moments import (
-    decay_of_two_masses,
-    moments_of_collisions,
-)
 from crazybilliards.kinetic.fluids.label_cells import LabelCells, make_cells, mirrored
 from crazybilliards.kinetic.fluids.label_positions import on_positions
 from crazybilliards.kinetic.fluids.label_rates import CLOSEST, Constants, label_rate
 from crazybilliards.kinetic.fluids.pde_solver import FlowFields, make_state, solve
+from crazybilliards.kinetic.gas.collision_moments import decay_of_two_masses, moments_of_collisions
 from crazybilliards.kinetic.starts import Start
 from crazybilliards.kinetic.statics.label_closure import Stationary, stationary
 from crazybilliards.model import Chain

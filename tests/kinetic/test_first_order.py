@@ -8,11 +8,11 @@ import pytest
 from first_order import displacement_source, hermite, mode_variances
 from scipy.stats import norm
 
-from crazybilliards.kinetic.gas.cells import make_cells
 from crazybilliards.kinetic.correlations.closure import Closure, background
 from crazybilliards.kinetic.correlations.displacements import relaxing_pairs
 from crazybilliards.kinetic.correlations.one_rod import profiles_of_one_rod
 from crazybilliards.kinetic.correlations.pair_covariance import Problem, parts, scales
+from crazybilliards.kinetic.gas.cells import make_cells
 from crazybilliards.kinetic.kinetic_equation.continuation import elastic_state
 from crazybilliards.model import Chain
 

@@ -17,8 +17,8 @@ from crazybilliards.kinetic import (
     hydrodynamics,
     rod_by_rod,
 )
-from crazybilliards.kinetic.gas.collision_moments import decay_of_two_masses
 from crazybilliards.kinetic.fluids.one_mass import wave_model_error
+from crazybilliards.kinetic.gas.collision_moments import decay_of_two_masses
 from crazybilliards.model import Chain
 
 

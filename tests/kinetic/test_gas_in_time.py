@@ -15,12 +15,9 @@ from crazybilliards.kinetic import (
     force_balance,
     hydrodynamics,
 )
-from crazybilliards.kinetic.gas.collision_moments import (
-    decay_of_two_masses,
-    moments_of_collisions,
-)
 from crazybilliards.kinetic.exact.breathing import breathing_cloud
 from crazybilliards.kinetic.fluids.label_rates import Constants, label_rate
+from crazybilliards.kinetic.gas.collision_moments import decay_of_two_masses, moments_of_collisions
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
 

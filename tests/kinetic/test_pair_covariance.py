@@ -4,11 +4,7 @@ import numpy as np
 import pytest
 from scipy.integrate import dblquad
 
-from crazybilliards.kinetic.gas.cells import at_distance, make_cells
 from crazybilliards.kinetic.correlations.closure import Closure, background, implied
-from crazybilliards.kinetic.gas.collision_moments import moments_of_collisions
-from crazybilliards.kinetic.gas.contact_speeds import contact_speed
-from crazybilliards.kinetic.gas.fixed_point import NoFixedPointError, find_fixed_point
 from crazybilliards.kinetic.correlations.one_rod import OneRod
 from crazybilliards.kinetic.correlations.pair_covariance import (
     Background,
@@ -18,6 +14,10 @@ from crazybilliards.kinetic.correlations.pair_covariance import (
     linear_response,
     solve_pairs,
 )
+from crazybilliards.kinetic.gas.cells import at_distance, make_cells
+from crazybilliards.kinetic.gas.collision_moments import moments_of_collisions
+from crazybilliards.kinetic.gas.contact_speeds import contact_speed
+from crazybilliards.kinetic.gas.fixed_point import NoFixedPointError, find_fixed_point
 from crazybilliards.model import Chain
 
 
