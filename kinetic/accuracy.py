@@ -107,30 +107,39 @@ def expected_in_time(chain: Chain, release: Release | None) -> float:
     It is that of any time after a ``release``; None: another start. NaN: not measured. At e = 1
     Gaussian clouds are exact.
     """
-    place = _place(chain)
-    unknown = math.isnan(place["L"]) or chain.gap > 0 or chain.box > 0 or chain.mass_ratio != 1
-    if unknown or release is None:
+    known = chain.stiffness > 0 and chain.box == 0 and chain.mass_ratio == 1
+    if not known or release is None:
         return math.nan
-    if chain.restitution == 1:
+    if chain.restitution == 1 and chain.gap == 0 and chain.spring == "linear":
         return 0.0
-    place |= {"stretch": release.stretch, "shift": release.shift}
+    s, W = chain.thermal_length, chain.free_velocity_width
+    place = {
+        "L": float(chain.size),
+        "Gamma": chain.damping * s / (chain.mass * W),
+        "stretch": release.stretch,
+        "shift": release.shift,
+    }
     inside = all(
         least - _SAME * abs(least) <= place[axis] <= most * (1 + _SAME)
         for axis, (least, most) in _IN_TIME.items()
     )
     if not inside or abs(release.heat - 1) > 2 * _SAME:
         return math.nan
-    concentration = chain.size * (1 - chain.restitution)
-    ranges = _tables().get(("hydrodynamics", "kinetic_energy"), {})
-    return next(
-        (
-            float(error)
-            for least, rest in ranges.items()
-            for most, error in rest.items()
-            if least <= concentration <= most
-        ),
-        math.nan,
-    )
+    measured = _tables()["hydrodynamics", "kinetic_energy"].get(chain.potential_exponent, {})
+    concentration = round(chain.size * (1 - chain.restitution), 9)
+    return _in_ranges(measured, [chain.lattice_gap / s, concentration])
+
+
+def _in_ranges(measured: Any, place: list[float]) -> float:
+    """Return the error of the first ranges, from least to most, that hold all values; or NaN."""
+    if not place:
+        return float(measured)
+    value, *rest = place
+    for least, ends in measured.items():
+        for most, inner in ends.items():
+            if least <= value <= most and not math.isnan(found := _in_ranges(inner, rest)):
+                return found
+    return math.nan
 
 
 def expected_relax_phase_space(chain: Chain, compression: float) -> float:

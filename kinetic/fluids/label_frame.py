@@ -89,44 +89,28 @@ def solve_on_labels(
             "frame='eulerian' (at restitution 1) or box=0"
         )
     cells = make_cells(state, chain.potential_exponent, number)
-    gamma = chain.damping * s / (chain.mass * W)
-    constants = Constants(
-        cells.labels,
-        cells.shares,
-        cells.kappa,
-        np.diff(cells.eta),
-        lam=float(state.lam),
-        stiffness=float(state.stiffness),
-        damping=gamma,
-        heating=exchange.noise * gamma,
-        loss=exchange.loss,
-        mixing=exchange.mixing,
-        walled=walled,
-        exponent=chain.potential_exponent,
-    )
-    # In the unit of time of `solve`: py-pde drops outputs that are less than 1e-8 units apart.
-    interval = times[1] * W / s
-
-    def rate(values: Array) -> Array:
-        return np.asarray(label_rate(values, constants))
+    constants = _constants(chain, cells, state, exchange)
+    fields = _starting_fields(chain, cells, state, start, thermal=thermal)
+    most = _DIVERGED * max(1.0, _energy(cells, np.array(list(fields.values())), walled))
 
     def watch(values: Array, time: float) -> bool:
         """Refuse what the equations do not describe; return whether the energy diverges."""
         if problem := _breakdown(cells, values):
             raise ValueError(
-                f"the hydrodynamic equations do not hold beyond t = {time * times[1]:g}: {problem}"
+                f"the hydrodynamic equations do not hold beyond t = {time:g}: {problem}"
             )
-        return bool(_energy(cells, values, walled) > most)
+        return _energy(cells, values, walled) > most
 
-    fields = _starting_fields(chain, cells, state, start, thermal=thermal)
-    most = _DIVERGED * max(1.0, _energy(cells, np.array(list(fields.values())), walled))
+    # In the unit of time of `solve`: py-pde drops outputs that are less than 1e-8 units apart.
+    interval = times[1] * W / s
     # A trial step may overflow if rods are very light. The solver refuses what is not a number.
     with np.errstate(over="ignore", invalid="ignore"):
         solution = solve(
-            lambda values, time: interval * rate(values),
+            lambda values, time: interval * label_rate(values, constants),
             # The cells are not equally wide. For py-pde they have numbers and not positions.
             make_state(fields, (0, cells.labels.size)),
             np.arange(float(times.size)),
+            unit=times[1],
             progress=progress,
             watch=watch,
             solver="scipy",
@@ -137,12 +121,30 @@ def solve_on_labels(
         )
     diverged = _energy(cells, solution[-1], walled) > most
     solution = solution[:-1] if diverged else solution
-    rates = np.array([rate(values)[:2] for values in solution])
+    rates = np.array([label_rate(values, constants)[:2] for values in solution])
     own = slice(1, -1) if walled else slice(None)
     unsteadiness = np.sqrt(np.sum(rates[..., own] ** 2, axis=1) @ cells.shares[own])
     energy = W**2 * np.array([_energy(cells, values, walled) for values in solution])
     found = on_positions(chain, cells, state, solution, unsteadiness, energy)
     return found._replace(diverged=diverged)
+
+
+def _constants(chain: Chain, cells: LabelCells, state: Stationary, exchange: Exchange) -> Constants:
+    gamma = chain.damping * state.unit / (chain.mass * chain.free_velocity_width)
+    return Constants(
+        cells.labels,
+        cells.shares,
+        cells.kappa,
+        np.diff(cells.eta),
+        lam=float(state.lam),
+        stiffness=float(state.stiffness),
+        damping=gamma,
+        heating=exchange.noise * gamma,
+        loss=exchange.loss,
+        mixing=exchange.mixing,
+        walled=chain.box > 0,
+        exponent=chain.potential_exponent,
+    )
 
 
 def _temperature(cells: LabelCells, values: Array) -> Array:

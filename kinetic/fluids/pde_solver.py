@@ -81,13 +81,15 @@ def solve(
     times: Array,
     *,
     progress: bool,
+    unit: float = 1.0,
     watch: Callable[[Array, float], bool] = lambda fields, time: False,
     **solver: Any,
 ) -> Array:
     """Solve from ``times[0]`` on; return the fields at all ``times``, (times, fields, cells).
 
     py-pde ends a run at Ctrl-C without raising. The result then has the first times only, as when
-    ``watch`` returned True for the fields and the time of an output.
+    ``watch`` returned True for the fields and the time [t_0] of an output. ``unit`` is that of
+    ``times`` [t_0].
 
     ``state`` are the initial values. ``solver`` are the arguments of py-pde: ``solver``,
     ``backend``, ``dt`` and others.
@@ -101,13 +103,16 @@ def solve(
 
             def seen(fields: Any, time: float) -> None:
                 bar.update()
-                if watch(fields.data, time):
+                if watch(fields.data, unit * time):
                     raise FinishedSimulation
 
             trackers = [storage.tracker(list(times)), CallbackTracker(seen, list(times))]
             flow.solve(state, t_range=span, tracker=trackers, **solver)
     except RuntimeError as error:  # a step that became too small, or not a number
-        raise ValueError(f"the hydrodynamic equations could not be solved: {error}") from error
+        reached = unit * storage.times[-1] if storage.times else 0.0
+        raise ValueError(
+            f"the hydrodynamic equations could not be solved beyond t = {reached:g}: {error}"
+        ) from error
     outputs = len(storage.data)
     # py-pde reports Ctrl-C here only.
     controller = flow.diagnostics["controller"]
